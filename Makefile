@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# make demo: set up and fly the demo. make test: set up and run the tests. Each makes .venv; PYTHON chooses the interpreter.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+export PIP_DISABLE_PIP_VERSION_CHECK = 1
+
+.PHONY: demo test lint bench clean
+
+demo: $(VENV)/demo.stamp
+	$(BIN)/sitl demo copter
+
+test: $(VENV)/dev.stamp
+	$(BIN)/python -m pytest -n 2 -m "not slow"
+	$(BIN)/python -m pytest -m slow
+
+lint: $(VENV)/dev.stamp
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/dev.stamp
+	$(BIN)/python -m benchmarks
+
+$(VENV)/bin/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "gym-sitl needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
+	$(PYTHON) -m venv $(VENV) || { echo "python3 -m venv failed: on Debian and Ubuntu, apt install python3-venv"; rm -rf $(VENV); exit 1; }
+
+# The clock library of `sitl exec` is compiled once: ziglang brings a C compiler where the system has none.
+$(VENV)/demo.stamp: pyproject.toml $(VENV)/bin/python
+	$(BIN)/pip install -q -e '.[mavsdk,viz]' $$(command -v cc gcc clang >/dev/null || echo ziglang)
+	@touch $@
+
+$(VENV)/dev.stamp: pyproject.toml $(VENV)/bin/python
+	$(BIN)/pip install -q -e '.[dev]' $$(command -v cc gcc clang >/dev/null || echo ziglang)
+	@touch $@
+
+clean:
+	rm -rf $(VENV) build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis

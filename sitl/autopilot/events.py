@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the core tells the shell: a ring of (time, code, two numbers) in the record."""
+
+from __future__ import annotations
+
+from ..core.kernels import law
+
+EVENT_RING = 64
+
+# Codes. The shell turns them into STATUSTEXT, MISSION_ITEM_REACHED and log entries; a and b are the two numbers.
+ARMED = 1  # a: method
+DISARMED = 2  # a: method
+MODE_CHANGED = 3  # a: number, b: reason
+LANDED = 4
+TAKEOFF_COMPLETE = 5
+COMMAND_COMPLETE = 6  # the navigation command under way is done: the shell gives the next one
+LEG_ENDING = 7  # the shell plans the following leg
+CRASH_DISARM = 8  # a: angle error [deg]
+GUIDED_TIMEOUT = 9
+EKF_INITIALISED = 10
+EKF_TILT_ALIGNED = 11
+EKF_YAW_ALIGNED = 12
+EKF_ORIGIN_SET = 13
+EKF_USES_GPS = 14
+EKF_STOPPED_GPS = 15
+EKF_YAW_ALIGNED_IN_FLIGHT = 16
+HIT_GROUND = 17  # a: speed [m/s] (from physics)
+FAILSAFE = 18  # a: which (failsafe.py), b: 1 on, 0 off
+MODE_REFUSED = 19  # a: number, b: cause
+
+
+@law
+def emit(events, time_us, code, a, b):
+    """Append an event; the oldest is overwritten when the shell did not fetch it in time."""
+    k = int(events.count) % EVENT_RING
+    events.time_us[k] = time_us
+    events.code[k] = code
+    events.a[k] = a
+    events.b[k] = b
+    events.count += 1
+
+
+@law
+def emit_and_return(events, time_us, code, a, b):
+    """Append an event that needs Python: the core returns to the shell at the end of this tick."""
+    emit(events, time_us, code, a, b)
+    events.attention = 1

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The firmware's parameters, under ArduPilot's names and with ArduPilot's defaults."""

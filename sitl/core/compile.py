@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Builds, caches and loads the compiled core.
+
+Each unit is compiled by Numba into a folder named after its fingerprint (``fingerprint.py``), so a stale unit cannot be
+loaded: its folder would have another name. Missing units are built by worker processes side by side. A warm start finds
+all folders and only loads machine code.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+import platformdirs
+
+from .fingerprint import fingerprint
+from .kernels import LAWS, UNITS, Unit, jit_disabled
+
+Progress = Callable[[str, int, int], None]
+"""Called as ``progress(unit name, units done, units to build)``."""
+
+_KEEP_VERSIONS = 4
+_jitable: set[int] = set()
+_linked: set[str] = set()
+_loaded: dict[str, Any] = {}
+
+
+class BuildError(RuntimeError):
+    """A unit of the core could not be compiled."""
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled units: ``$SITL_CACHE_DIR``, else the user's cache folder."""
+    return Path(os.environ.get("SITL_CACHE_DIR") or platformdirs.user_cache_dir("gym-sitl"))
+
+
+def clear_cache() -> int:
+    """Delete every compiled unit; returns how many were there."""
+    folders = [p for p in cache_folder().glob("*") if (p / "unit.py").exists()]
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
+    return len(folders)
+
+
+def toolchain() -> str:
+    """Versions that machine code depends on."""
+    import llvmlite
+    import numba
+
+    return f"{numba.__version__} {llvmlite.__version__} {np.__version__} {platform.python_version()} {platform.machine()}"
+
+
+def unit_folder(unit: Unit, dtype: np.dtype[Any]) -> Path:
+    """Where the unit's current machine code is or will be."""
+    return cache_folder() / f"{unit.name}-{fingerprint(unit, dtype, toolchain())}"
+
+
+def missing(dtype: np.dtype[Any]) -> list[Unit]:
+    """Units that have no machine code for their present source, longest source first."""
+    return [u for u in UNITS.values() if not (unit_folder(u, dtype) / "built").exists()]
+
+
+def _make_jitable() -> None:
+    """Let Numba compile laws into their callers (the functions themselves stay plain Python)."""
+    from numba.extending import register_jitable
+
+    for function in LAWS:
+        if id(function) not in _jitable:
+            _jitable.add(id(function))
+            register_jitable(error_model="numpy")(function)
+    for unit in UNITS.values():
+        if unit.name not in _linked:
+            _linked.add(unit.name)
+            _link(unit)
+
+
+def _link(unit: Unit) -> None:
+    """Make a call of the unit's function, inside another unit, a call of its C symbol."""
+    from numba import types
+    from numba.extending import overload
+
+    integers = [types.int64] * unit.integers
+    external = types.ExternalFunction(unit.symbol, types.void(types.uintp, types.int64, types.int64, *integers))
+
+    # No annotations here: Numba compares these signatures with those of the lambdas.
+    def plain(fleet, index):  # type: ignore[no-untyped-def]
+        return lambda fleet, index: external(fleet.ctypes.data, len(fleet), index)
+
+    def with_integer(fleet, index, n):  # type: ignore[no-untyped-def]
+        return lambda fleet, index, n: external(fleet.ctypes.data, len(fleet), index, n)
+
+    overload(unit.function)(with_integer if unit.integers else plain)
+
+
+def _body(unit: Unit) -> Any:
+    """The unit's function under a second identity: the first one is a call of its symbol (``_link``)."""
+    from numba.extending import register_jitable
+
+    original = unit.function
+    copy = FunctionType(original.__code__, original.__globals__, original.__name__ + "_body")
+    return register_jitable(error_model="numpy")(copy)
+
+
+def _wrapper_source(unit: Unit) -> str:
+    integers = "".join(f", n{k}" for k in range(unit.integers))
+    return (
+        f"# The C entry of unit {unit.name}.\n"
+        f"def entry(vehicles, count, index{integers}):\n"
+        f"    body(carray(vehicles, count, DTYPE), index{integers})\n"
+    )
+
+
+def load_unit(unit: Unit, dtype_path: str) -> Any:
+    """Compile the unit or load it from the cache; returns Numba's CFunc and registers its symbol."""
+    if unit.name in _loaded:
+        return _loaded[unit.name]
+    import llvmlite.binding
+    import numba
+    from numba import types
+
+    _make_jitable()
+    module_name, dtype_name = dtype_path.rsplit(".", 1)
+    dtype = getattr(importlib.import_module(module_name), dtype_name)
+    folder = unit_folder(unit, dtype)
+    folder.mkdir(parents=True, exist_ok=True)
+    source = folder / "unit.py"
+    if not source.exists():
+        temporary = folder / f"unit.{os.getpid()}"
+        temporary.write_text(_wrapper_source(unit))
+        os.utime(temporary, (0, 0))
+        os.replace(temporary, source)
+    module = ModuleType(unit.symbol)  # in sys.modules, because Numba's cache looks the entry's module up by name
+    sys.modules[unit.symbol] = module
+    vars(module).update(carray=numba.carray, DTYPE=dtype, body=_body(unit))
+    exec(compile(source.read_text(), str(source), "exec"), vars(module))
+    signature = types.void(
+        types.CPointer(numba.from_dtype(dtype)), types.int64, types.int64, *[types.int64] * unit.integers
+    )
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
+    try:
+        function = numba.cfunc(signature, cache=True, error_model="numpy")(vars(module)["entry"])
+    finally:
+        numba.config.CACHE_DIR = before
+    llvmlite.binding.add_symbol(unit.symbol, function.address)
+    (folder / "built").touch()
+    _loaded[unit.name] = function
+    return function
+
+
+def build(
+    entry: Callable[..., Any], dtype_path: str, dtype: np.dtype[Any], progress: Progress | None = None, jobs: int = 0
+) -> float:
+    """Compile the units that are missing in the cache; returns the seconds it took.
+
+    Raises:
+        BuildError: a unit failed to compile; the message holds Numba's own.
+    """
+    start = time.monotonic()
+    with _build_lock():
+        todo = sorted(missing(dtype), key=lambda u: -_weight(u))
+        jobs = jobs or min(len(todo), os.cpu_count() or 1)
+        running: list[tuple[Unit, subprocess.Popen[str]]] = []
+        done, total = 0, len(todo)
+        while todo or running:
+            while todo and len(running) < jobs:
+                unit = todo.pop(0)
+                if progress:
+                    progress(unit.name, done, total)
+                running.append((unit, _start_worker(entry.__module__, dtype_path, unit)))
+            running[0][1].poll()
+            finished = [(u, p) for u, p in running if p.poll() is not None]
+            if not finished:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    running[0][1].wait(0.05)
+                continue
+            for unit, process in finished:
+                running.remove((unit, process))
+                if process.returncode != 0:
+                    for _, other in running:
+                        other.kill()
+                    raise BuildError(f"compiling unit {unit.name} failed:\n{process.communicate()[1][-4000:]}")
+                done += 1
+                if progress:
+                    progress(unit.name, done, total)
+        if total:
+            _drop_old_versions()
+    return time.monotonic() - start
+
+
+def _weight(unit: Unit) -> int:
+    """A guess at the compile time: the source reached, in bytes."""
+    from .fingerprint import _walk
+
+    lines: list[str] = []
+    _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)  # type: ignore[arg-type]
+    return sum(len(line) for line in lines)
+
+
+def _start_worker(entry_module: str, dtype_path: str, unit: Unit) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "sitl.core.worker", entry_module, dtype_path, unit.name]
+    root = str(Path(__file__).resolve().parents[2])
+    path = os.pathsep.join(p for p in (root, os.environ.get("PYTHONPATH", "")) if p)
+    environment = {**os.environ, "PYTHONPATH": path}
+    return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+@contextlib.contextmanager
+def _build_lock() -> Iterator[None]:
+    """One building process at a time; the others wait and then find the units built."""
+    folder = cache_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "lock", "w") as handle:
+        try:
+            import fcntl
+        except ImportError:  # Windows: two builders repeat work but do not harm each other
+            yield
+            return
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+
+
+def _drop_old_versions() -> None:
+    """Keep the newest few builds of each unit (switching branches back and forth stays warm)."""
+    by_unit: dict[str, list[Path]] = {}
+    for folder in cache_folder().glob("*"):
+        if (folder / "built").exists():
+            by_unit.setdefault(folder.name.rsplit("-", 1)[0], []).append(folder)
+    for folders in by_unit.values():
+        folders.sort(key=lambda f: (f / "built").stat().st_mtime, reverse=True)
+        for folder in folders[_KEEP_VERSIONS:]:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def load(dtype_path: str, dtype: np.dtype[Any], entry: Callable[..., Any], progress: Progress | None = None) -> Any:
+    """The compiled form of unit ``entry`` as a C function ``(address, count, index, *integers)``.
+
+    Builds what is missing. With Numba's JIT disabled, returns None: call ``entry`` itself.
+    """
+    if jit_disabled():
+        return None
+    if missing(dtype):
+        build(entry, dtype_path, dtype, progress)
+    # Units register in the order of their definition, callees before callers, so symbols exist when needed.
+    for unit in UNITS.values():
+        load_unit(unit, dtype_path)
+    found = next(u for u in UNITS.values() if u.function is entry)
+    return _loaded[found.name].ctypes

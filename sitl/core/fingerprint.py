@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a unit's machine code depends on, as one hash.
+
+Numba's own cache looks only at the file of the entry point, so an edit to a law in another file would leave stale code.
+Here the hash covers every function and constant that a unit reaches, to the last law (comments and docstrings left out),
+the record layout, and the versions of the compilers. Other units are a border: calling one does not depend on its inside.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import inspect
+import textwrap
+import types
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from .kernels import UNITS, Unit
+
+
+def _normal_source(function: Callable[..., Any]) -> str:
+    """The function's syntax tree without docstring, decorators, comments and layout."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    assert isinstance(tree, ast.FunctionDef)
+    tree.decorator_list = []
+    if ast.get_docstring(tree, clean=False) is not None:
+        tree.body = tree.body[1:]
+    return ast.dump(tree)
+
+
+def _referenced(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
+    """Global names, and attributes of global modules, that the function's bytecode mentions."""
+    names = function.__code__.co_names
+    for name in names:
+        if name not in function.__globals__:
+            continue
+        value = function.__globals__[name]
+        if isinstance(value, types.ModuleType):
+            for attribute in names:
+                if hasattr(value, attribute):
+                    yield f"{name}.{attribute}", getattr(value, attribute)
+        else:
+            yield name, value
+
+
+def _walk(function: types.FunctionType, seen: set[int], units: set[int], lines: list[str]) -> None:
+    if id(function) in seen:
+        return
+    seen.add(id(function))
+    lines.append(f"def {function.__module__}.{function.__qualname__} {_normal_source(function)}")
+    for name, value in _referenced(function):
+        if isinstance(value, types.FunctionType):
+            if id(value) in units:
+                lines.append(f"unit {name}")
+            else:
+                _walk(value, seen, units, lines)
+        elif isinstance(value, (bool, int, float, str, tuple)):
+            lines.append(f"{name} = {value!r}")
+        elif isinstance(value, np.ndarray):
+            lines.append(f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}")
+
+
+def layout(dtype: np.dtype[Any]) -> str:
+    """The whole record layout as text: names, types and offsets."""
+    if dtype.subdtype is not None:
+        base, shape = dtype.subdtype
+        return f"{layout(base)}{shape}"
+    if dtype.names is None or dtype.fields is None:
+        return dtype.str
+    return "{" + ",".join(f"{n}:{dtype.fields[n][1]}:{layout(dtype.fields[n][0])}" for n in dtype.names) + "}"
+
+
+def fingerprint(unit: Unit, dtype: np.dtype[Any], toolchain: str) -> str:
+    """Hash (20 hex digits) of all that ``unit``'s machine code depends on."""
+    lines: list[str] = [toolchain, layout(dtype)]
+    _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The build of the core, on a toy core of two units in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+LAWS = """
+from sitl.core.kernels import law
+
+GAIN = 2.0
+
+@law
+def inner(x):
+    "One law."
+    return GAIN * x  # a comment
+
+@law
+def outer(x):
+    return x + 1.0
+"""
+
+ENTRY = """
+import numpy as np
+from sitl.core.kernels import unit
+from toy_laws import inner, outer
+
+DTYPE = np.dtype([("x", "f8"), ("y", "f8")])
+
+@unit
+def first(fleet, i):
+    v = fleet[i]
+    v.x = inner(v.x)
+
+@unit
+def entry(fleet, i, n):
+    v = fleet[i]
+    for _ in range(n):
+        first(fleet, i)
+        v.y = outer(v.y)
+"""
+
+RUN = """
+import json, sys
+import numpy as np
+import toy
+from sitl.core import compile, fingerprint, kernels
+units = {u.function.__name__: u for u in kernels.UNITS.values()}
+prints = {n: fingerprint.fingerprint(u, toy.DTYPE, "toolchain") for n, u in units.items()}
+fleet = np.zeros(2, toy.DTYPE)
+fleet["x"] = 1.0
+built = []
+if len(sys.argv) > 1:
+    call = compile.load("toy.DTYPE", toy.DTYPE, toy.entry, lambda name, done, total: built.append(name))
+    call(fleet.ctypes.data, 2, 1, 5)
+else:
+    toy.entry(fleet.view(np.recarray), 1, 5)
+print(json.dumps({"prints": prints, "fleet": fleet.tolist(), "built": sorted(set(built))}))
+"""
+
+
+class Toy:
+    """A folder with the toy core, and runs of it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        (folder / "toy.py").write_text(ENTRY)
+        (folder / "run.py").write_text(RUN)
+        self.write(LAWS)
+
+    def write(self, laws: str) -> None:
+        (self.folder / "toy_laws.py").write_text(laws)
+
+    def run(self, *arguments: str) -> dict:
+        root = str(Path(__file__).parents[2])
+        env = {**os.environ, "SITL_CACHE_DIR": str(self.folder / "cache")}
+        env["PYTHONPATH"] = os.pathsep.join([str(self.folder), root])
+        env.pop("NUMBA_DISABLE_JIT", None)
+        result = subprocess.run(
+            [sys.executable, "run.py", *arguments], cwd=self.folder, env=env, capture_output=True, text=True
+        )
+        assert result.returncode == 0, result.stderr
+        return json.loads(result.stdout)
+
+
+@pytest.fixture
+def toy(tmp_path: Path) -> Toy:
+    return Toy(tmp_path)
+
+
+def test_compiled_equals_python_and_second_start_builds_nothing(toy: Toy) -> None:
+    plain = toy.run()
+    cold = toy.run("compiled")
+    warm = toy.run("compiled")
+    assert plain["fleet"] == cold["fleet"] == warm["fleet"] == [[1.0, 0.0], [32.0, 5.0]]
+    assert cold["built"] == ["toy.entry", "toy.first"]
+    assert warm["built"] == []
+
+
+def test_an_edited_law_rebuilds_only_the_units_that_reach_it(toy: Toy) -> None:
+    toy.run("compiled")
+    toy.write(LAWS.replace("x + 1.0", "x + 2.0"))
+    after = toy.run("compiled")
+    assert after["built"] == ["toy.entry"]
+    assert after["fleet"][1] == [32.0, 10.0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "changed"),
+    [
+        ("GAIN = 2.0", "GAIN = 3.0", {"first"}),
+        ("return GAIN * x", "return GAIN + x", {"first"}),
+        ("# a comment", "# another", set()),
+        ("One law.", "A law.", set()),
+        ("x + 1.0", "x + 2.0", {"entry"}),
+    ],
+)
+def test_fingerprint_follows_code_and_constants_but_not_comments(
+    toy: Toy, old: str, new: str, changed: set[str]
+) -> None:
+    before = toy.run()["prints"]
+    toy.write(LAWS.replace(old, new))
+    after = toy.run()["prints"]
+    assert {name for name in before if before[name] != after[name]} == changed
+
+
+def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:
+    toy.write(LAWS.replace("GAIN * x", "GAIN * x.nothing"))
+    root = str(Path(__file__).parents[2])
+    env = {**os.environ, "SITL_CACHE_DIR": str(toy.folder / "cache")}
+    env["PYTHONPATH"] = os.pathsep.join([str(toy.folder), root])
+    result = subprocess.run(
+        [sys.executable, "run.py", "compiled"], cwd=toy.folder, env=env, capture_output=True, text=True
+    )
+    assert result.returncode != 0
+    assert "BuildError: compiling unit toy.first failed" in result.stderr
+    assert "nothing" in result.stderr
