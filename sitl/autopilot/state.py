@@ -11,6 +11,7 @@ from ..core.records import record
 from .arming_state import ARMING_DTYPE
 from .control.state import CONTROL_DTYPE
 from .estimation.state import EKF_DTYPE
+from .events import EVENT_RING
 from .modes.copter.state import MODES_DTYPE
 from .params.table import PARAMS_DTYPE
 

@@ -26,10 +26,12 @@ import platformdirs
 
 from .fingerprint import fingerprint
 from .kernels import LAWS, UNITS, Unit, jit_disabled
+from .numba_tuning import law_options, quick
 
 Progress = Callable[[str, int, int], None]
 """Called as ``progress(unit name, units done, units to build)``."""
 
+ENTRY = "sitl_unit_entry"
 _KEEP_VERSIONS = 4
 _jitable: set[int] = set()
 _linked: set[str] = set()
@@ -78,7 +80,7 @@ def _make_jitable() -> None:
     for function in LAWS:
         if id(function) not in _jitable:
             _jitable.add(id(function))
-            register_jitable(error_model="numpy")(function)
+            register_jitable(**law_options())(function)
     for unit in UNITS.values():
         if unit.name not in _linked:
             _linked.add(unit.name)
@@ -109,14 +111,14 @@ def _body(unit: Unit) -> Any:
 
     original = unit.function
     copy = FunctionType(original.__code__, original.__globals__, original.__name__ + "_body")
-    return register_jitable(error_model="numpy")(copy)
+    return register_jitable(**law_options())(copy)
 
 
 def _wrapper_source(unit: Unit) -> str:
     integers = "".join(f", n{k}" for k in range(unit.integers))
     return (
         f"# The C entry of unit {unit.name}.\n"
-        f"def entry(vehicles, count, index{integers}):\n"
+        f"def {ENTRY}(vehicles, count, index{integers}):\n"
         f"    body(carray(vehicles, count, DTYPE), index{integers})\n"
     )
 
@@ -149,7 +151,8 @@ def load_unit(unit: Unit, dtype_path: str) -> Any:
     )
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
     try:
-        function = numba.cfunc(signature, cache=True, error_model="numpy")(vars(module)["entry"])
+        with quick(ENTRY):
+            function = numba.cfunc(signature, cache=True, error_model="numpy")(vars(module)[ENTRY])
     finally:
         numba.config.CACHE_DIR = before
     llvmlite.binding.add_symbol(unit.symbol, function.address)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The earth's magnetic field: IGRF-14 at epoch 2025.0, spherical harmonics to degree 8, at sea level.
 
-Source: International Geomagnetic Reference Field, 14th generation (IAGA Division V, doi:10.5281/zenodo.14012302);
-public coefficients, Schmidt semi-normalised, nanotesla. The degrees left out are worth about 20 nT (0.05 degree of
-declination).
+Source: International Geomagnetic Reference Field, 14th generation (IAGA Division V,
+doi:10.5281/zenodo.14012302); public coefficients, Schmidt semi-normalised, nanotesla. The degrees left out
+are worth about 20 nT (0.05 degree of declination).
 """
 
 from __future__ import annotations

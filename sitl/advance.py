@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The core's entry: physics and autopilot, tick by tick, for as long as nothing needs Python."""
+
+from __future__ import annotations
+
+from .autopilot import firmware
+from .core.kernels import unit
+from .physics.native.step import step
+from .truth_estimator import observe
+
+
+@unit
+def advance(fleet, index, ticks):
+    """Advance one vehicle by up to ``ticks`` ticks of 2500 us.
+
+    Returns early, at the end of a tick, when ``events.attention`` is set. The border is crossed once a tick: physics
+    writes ``sensors``, the autopilot reads them and writes ``actuators``.
+    """
+    vehicle = fleet[index]
+    for _ in range(ticks):
+        step(fleet, index)
+        if vehicle.autopilot.ekf.use_external != 0:
+            observe(vehicle)
+        firmware.update(fleet, index)
+        if vehicle.autopilot.events.attention != 0:
+            break

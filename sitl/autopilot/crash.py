@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Crash check: a vehicle that lies on its side and cannot right itself is disarmed (FS_CRASH_CHECK)."""
+
+from __future__ import annotations
+
+import math
+
+from ..core.kernels import law
+from . import arming, landing
+from .events import CRASH_DISARM, emit
+
+TRIGGER_TICKS = 800
+"""2 s."""
+ANGLE_ERROR_MAX = math.radians(30.0)
+COS_LEAN_MIN = math.cos(math.radians(15.0))
+ACCEL_MAX = 3.0  # [m/s^2]
+SPEED_MAX = 10.0  # [m/s]
+
+
+@law
+def is_crashed(v):
+    """Whether this tick looks like a crash: far off its lean, yet neither accelerating nor fast."""
+    ap = v.autopilot
+    if ap.arming.armed == 0 or ap.arming.landed != 0 or ap.params.FS_CRASH_CHECK < 1.0:
+        return False
+    attitude = ap.control.attitude
+    if attitude.cos_lean > COS_LEAN_MIN or attitude.thrust_error_angle <= ANGLE_ERROR_MAX:
+        return False
+    if landing.acceleration(v) >= ACCEL_MAX:
+        return False
+    vel = ap.estimate.vel
+    return vel[0] * vel[0] + vel[1] * vel[1] + vel[2] * vel[2] < SPEED_MAX * SPEED_MAX
+
+
+@law
+def update(v):
+    """One tick: count, and disarm after two seconds."""
+    ap = v.autopilot
+    if not is_crashed(v):
+        ap.arming.crash_ticks = 0
+        return
+    ap.arming.crash_ticks += 1
+    if ap.arming.crash_ticks >= TRIGGER_TICKS:
+        error = math.degrees(ap.control.attitude.thrust_error_angle)
+        emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(v))
+        arming.disarm(v, arming.BY_CRASH, 1)
+
+
+def text(angle_error_deg: float, acceleration: float) -> str:
+    """Status text (MAV_SEVERITY_EMERGENCY) of CRASH_DISARM."""
+    return f"Crash: Disarming: AngErr={angle_error_deg:.0f}>30, Accel={acceleration:.1f}<3.0"

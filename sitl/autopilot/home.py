@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Home: set once the estimator has an origin, moved to where the vehicle is armed unless the user fixed it."""
+
+from __future__ import annotations
+
+from ..core.geodesy import add_offset, offset_ne
+from ..core.kernels import law
+
+
+@law
+def set_here(v):
+    """Home is where the vehicle is. Returns 1, or 0 without an origin."""
+    ap = v.autopilot
+    est = ap.estimate
+    if est.origin_set == 0:
+        return 0
+    n, e, d = float(est.pos[0]), float(est.pos[1]), float(est.pos[2])
+    lat, lon = add_offset(int(est.origin_lat), int(est.origin_lon), n, e)
+    ap.home.lat = int(lat + 0.5) if lat >= 0.0 else int(lat - 0.5)
+    ap.home.lon = int(lon + 0.5) if lon >= 0.0 else int(lon - 0.5)
+    ap.home.alt = est.origin_alt - d
+    ap.home.pos[0] = n
+    ap.home.pos[1] = e
+    ap.home.pos[2] = d
+    ap.home.is_set = 1
+    return 1
+
+
+@law
+def set_place(v, lat, lon, alt, lock):
+    """Home at ``lat``, ``lon`` [degE7], ``alt`` above mean sea level [m]; ``lock``: arming does not move it.
+
+    Returns 1, or 0 without an origin or for a place that is not on the globe (home stays as it was).
+    """
+    ap = v.autopilot
+    est = ap.estimate
+    if est.origin_set == 0 or not (alt - alt == 0.0):
+        return 0
+    if lat < -900000000 or lat > 900000000 or lon < -1800000000 or lon > 1800000000:
+        return 0
+    n, e = offset_ne(int(est.origin_lat), int(est.origin_lon), lat, lon)
+    ap.home.lat = lat
+    ap.home.lon = lon
+    ap.home.alt = alt
+    ap.home.pos[0] = n
+    ap.home.pos[1] = e
+    ap.home.pos[2] = est.origin_alt - alt
+    ap.home.is_set = 1
+    ap.home.locked = 1 if lock != 0 else 0
+    return 1
+
+
+@law
+def update(v):
+    """Set home for the first time."""
+    if v.autopilot.home.is_set == 0:
+        set_here(v)

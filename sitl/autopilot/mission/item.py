@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One mission item, as MISSION_ITEM_INT carries it, and what is known of each command.
+
+https://mavlink.io/en/messages/common.html#MISSION_ITEM_INT,
+https://ardupilot.org/copter/docs/mission-command-list.html
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+NAV_WAYPOINT = 16
+NAV_LOITER_UNLIM = 17
+NAV_LOITER_TURNS = 18
+NAV_LOITER_TIME = 19
+NAV_RETURN_TO_LAUNCH = 20
+NAV_LAND = 21
+NAV_TAKEOFF = 22
+NAV_DELAY = 93
+CONDITION_DELAY = 112
+CONDITION_DISTANCE = 114
+CONDITION_YAW = 115
+DO_JUMP = 177
+DO_CHANGE_SPEED = 178
+DO_SET_HOME = 179
+DO_SET_ROI_LOCATION = 195
+DO_SET_ROI_NONE = 197
+DO_SET_ROI = 201
+
+GLOBAL, MISSION, RELATIVE, GLOBAL_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT = 0, 2, 3, 5, 6, 10, 11
+"""MAV_FRAMEs; MISSION counts as GLOBAL for a command with a place."""
+
+
+class Command(NamedTuple):
+    """What a command is."""
+
+    name: str
+    """As ArduPilot's "Mission: 1 Takeoff" texts say it."""
+    is_nav: bool
+    has_place: bool
+    """x, y, z are latitude, longitude [degE7] and altitude [m]."""
+
+
+COMMANDS = {
+    NAV_WAYPOINT: Command("WP", True, True),
+    NAV_LOITER_UNLIM: Command("LoitUnlim", True, True),
+    NAV_LOITER_TURNS: Command("LoitTurns", True, True),
+    NAV_LOITER_TIME: Command("LoitTime", True, True),
+    NAV_RETURN_TO_LAUNCH: Command("RTL", True, False),
+    NAV_LAND: Command("Land", True, True),
+    NAV_TAKEOFF: Command("Takeoff", True, True),
+    NAV_DELAY: Command("Delay", True, False),
+    CONDITION_DELAY: Command("CondDelay", False, False),
+    CONDITION_DISTANCE: Command("CondDist", False, False),
+    CONDITION_YAW: Command("CondYaw", False, False),
+    DO_JUMP: Command("Jump", False, False),
+    DO_CHANGE_SPEED: Command("ChangeSpeed", False, False),
+    DO_SET_HOME: Command("SetHome", False, True),
+    DO_SET_ROI_LOCATION: Command("SetROI", False, True),
+    DO_SET_ROI_NONE: Command("SetROI", False, False),
+    DO_SET_ROI: Command("SetROI", False, True),
+}
+"""Every command that this firmware takes."""
+
+RELATIVE_FRAMES = (RELATIVE, RELATIVE_INT)
+TERRAIN_FRAMES = (TERRAIN, TERRAIN_INT)
+
+
+class MissionItem(NamedTuple):
+    """A command with its parameters."""
+
+    command: int
+    """MAV_CMD"""
+    frame: int = RELATIVE
+    """MAV_FRAME of x, y, z"""
+    p1: float = 0.0
+    p2: float = 0.0
+    p3: float = 0.0
+    p4: float = 0.0
+    x: int = 0
+    """Latitude [degE7], or parameter 5."""
+    y: int = 0
+    """Longitude [degE7], or parameter 6."""
+    z: float = 0.0
+    """Altitude in the frame [m], or parameter 7."""
+    autocontinue: int = 1
+    current: int = 0
+
+    @property
+    def is_nav(self) -> bool:
+        """Whether it is a navigation command (one at a time), not a do-command or condition."""
+        return self.command in COMMANDS and COMMANDS[self.command].is_nav
+
+    @property
+    def name(self) -> str:
+        """The command's short name, "?" when unknown."""
+        return COMMANDS[self.command].name if self.command in COMMANDS else "?"
+
+    @property
+    def no_place(self) -> bool:
+        """Latitude and longitude are both zero: "where the vehicle is"."""
+        return self.x == 0 and self.y == 0
+
+
+def home_item(lat: int, lon: int, alt: float) -> MissionItem:
+    """Item 0 of a downloaded mission: home [degE7, m above mean sea level]."""
+    return MissionItem(NAV_WAYPOINT, GLOBAL, x=lat, y=lon, z=alt)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the sequencer tells the outside: the bridge turns each into a message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+INFO = 6
+"""MAV_SEVERITY"""
+WARNING = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """STATUSTEXT."""
+
+    severity: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class ItemReached:
+    """MISSION_ITEM_REACHED."""
+
+    seq: int
+
+
+@dataclass(frozen=True, slots=True)
+class CurrentChanged:
+    """MISSION_CURRENT."""
+
+    seq: int
+
+
+Note = Text | ItemReached | CurrentChanged

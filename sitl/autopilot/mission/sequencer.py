@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gives the core one navigation command after the other, and runs the do-commands in between.
+
+A navigation command (waypoint, landing, ...) is flown by the core, which says when it is complete. The
+do-commands and conditions that follow it in the mission run while it is flown; those that a condition still
+holds back when it completes are passed over. DO_JUMP sends the mission elsewhere, so many times. Behaviour
+and texts: ArduPilot's missions
+(https://ardupilot.org/copter/docs/common-planning-a-mission-with-waypoints-and-events.html).
+
+All run state is in the vehicle's record (``nav.mission_*``, ``nav.jump_*``): a sequencer holds nothing but
+the mission. Every method takes the vehicle's record view ``v`` and returns what the outside should be told.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Protocol
+
+from .. import events
+from ..navigation import planner, waypoint
+from ..navigation.state import (
+    COMPLETE,
+    CONDITION_NONE,
+    DO_COMMAND,
+    JUMPS,
+    LEG_REQUEST,
+    RUNNING,
+    STOPPED,
+)
+from . import do_commands, jumps, nav_commands
+from .item import NAV_LOITER_TIME, NAV_TAKEOFF, NAV_WAYPOINT
+from .mission import Mission
+from .notes import INFO, CurrentChanged, ItemReached, Note, Text
+
+AUTO = 3
+"""Custom mode number."""
+SAYS_REACHED = (NAV_WAYPOINT, NAV_LOITER_TIME)
+
+
+class Holder(Protocol):
+    """What has the vehicle and keeps its mission (and puts both into snapshots)."""
+
+    v: Any
+    mission: Mission
+
+
+class Sequencer:
+    """Runs one vehicle's mission."""
+
+    def __init__(self, holder: Holder) -> None:
+        self._holder = holder
+        self._publish(holder.v)
+        holder.v.autopilot.modes.nav.mission_events = holder.v.autopilot.events.count
+
+    @property
+    def mission(self) -> Mission:
+        """The mission to fly."""
+        return self._holder.mission
+
+    def attend(self) -> list[Note]:
+        """Handle the events that came since the last call; to be called when the core asks for attention."""
+        v = self._holder.v
+        ring, nav = v.autopilot.events, v.autopilot.modes.nav
+        notes: list[Note] = []
+        nav.mission_events = max(int(nav.mission_events), int(ring.count) - events.EVENT_RING)
+        while nav.mission_events < ring.count:
+            k = int(nav.mission_events) % events.EVENT_RING
+            nav.mission_events += 1
+            notes += self.on_event(v, int(ring.code[k]), float(ring.a[k]), float(ring.b[k]))
+        return notes
+
+    def _publish(self, v: Any) -> None:
+        """Tell the core what the mission is."""
+        ap, mission = v.autopilot, self.mission
+        ap.params.MIS_TOTAL = float(len(mission))
+        ap.modes.mission_count = len(mission)
+        first = mission.get(jumps.next_nav(mission, 1, {}, JUMPS))
+        ap.modes.mission_takes_off = 1 if first is not None and first.command == NAV_TAKEOFF else 0
+
+    def set_mission(self, v: Any, mission: Mission) -> list[Note]:
+        """Take a new mission. One under way goes on with its present command, then with the new items."""
+        self._holder.mission = mission
+        self._publish(v)
+        nav = v.autopilot.modes.nav
+        jumps.keep(nav, {})
+        if nav.mission_state == RUNNING:
+            nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
+            self._look_ahead(v)
+            return []
+        notes: list[Note] = []
+        nav.mission_state = STOPPED
+        self._set_current(nav, 0, notes)
+        return notes
+
+    def may_clear(self, v: Any) -> bool:
+        """Whether MISSION_CLEAR_ALL is taken: not while the mission runs."""
+        return bool(v.autopilot.modes.nav.mission_state != RUNNING)
+
+    def start(self, v: Any) -> list[Note]:
+        """AUTO was entered: start the mission, or go on where it was (MIS_RESTART, MISSION_SET_CURRENT)."""
+        ap = v.autopilot
+        nav = ap.modes.nav
+        notes: list[Note] = []
+        if not self.mission.present:
+            return notes
+        restart = ap.params.MIS_RESTART == 1 and nav.mission_resume == 0
+        if restart or nav.mission_state == COMPLETE or nav.mission_current == 0:
+            jumps.keep(nav, {})
+            nav.mission_current = 0
+        nav.mission_resume = 0
+        nav.speed_ne = nav.speed_up = nav.speed_down = 0.0
+        waypoint.stop(ap)
+        self._run_from(v, max(int(nav.mission_current), 1), notes)
+        return notes
+
+    def stop(self, v: Any) -> list[Note]:
+        """AUTO was left: the mission stops and can be resumed.
+
+        Legs and speeds are the new mode's: it may be using them.
+        """
+        nav = v.autopilot.modes.nav
+        if nav.mission_state == RUNNING:
+            nav.mission_state = STOPPED
+        nav.condition_kind = CONDITION_NONE
+        nav_commands.give_none(nav)
+        return []
+
+    def reset(self, v: Any) -> list[Note]:
+        """Back to the first item, as at disarming; a running mission starts again."""
+        nav = v.autopilot.modes.nav
+        notes: list[Note] = []
+        jumps.keep(nav, {})
+        if nav.mission_state == RUNNING and self.mission.present:
+            nav_commands.give_none(nav)
+            waypoint.stop(v.autopilot)
+            self._run_from(v, 1, notes)
+        else:
+            self._set_current(nav, 0, notes)
+        return notes
+
+    def set_current(self, v: Any, seq: int) -> tuple[bool, list[Note]]:
+        """MISSION_SET_CURRENT: (whether there is such an item, notes).
+
+        0 is the mission's start; in AUTO it goes there at once.
+        """
+        nav = v.autopilot.modes.nav
+        notes: list[Note] = []
+        if not self.mission.present or not 0 <= seq < len(self.mission):
+            return (False, notes)
+        jumps.keep(nav, {})
+        in_auto = v.autopilot.modes.number == AUTO
+        if nav.mission_state == RUNNING or (nav.mission_state == COMPLETE and in_auto):
+            self._run_from(v, max(seq, 1), notes)
+        else:
+            nav.mission_state = STOPPED
+            nav.mission_resume = 1
+            self._set_current(nav, max(seq, 1), notes)
+        return (True, notes)
+
+    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+        """DO_CHANGE_SPEED from outside while the mission runs: legs under way go on with the new limit."""
+        if v.autopilot.modes.nav.mission_state != RUNNING or not 0.0 < speed < math.inf:
+            return False
+        do_commands.change_speed(v.autopilot, kind, speed)
+        return True
+
+    def on_event(self, v: Any, code: int, a: float, b: float) -> list[Note]:
+        """What an event of the core means for the mission."""
+        nav = v.autopilot.modes.nav
+        running = nav.mission_state == RUNNING
+        if code == events.COMMAND_COMPLETE and running:
+            if a == DO_COMMAND:
+                return self._condition_met(v, int(b))
+            return self._complete(v) if int(b) == nav.command_count else []
+        if code == events.LEG_ENDING and a == LEG_REQUEST:
+            planner.serve(v.autopilot, int(v.time_us))
+        elif code == events.MODE_CHANGED:
+            in_auto = int(a) == AUTO
+            if in_auto and not running:
+                return self.start(v)
+            if not in_auto and running:
+                return self.stop(v)
+        elif code == events.DISARMED:
+            return self.reset(v)
+        return []
+
+    # --- inside
+
+    def _set_current(self, nav: Any, seq: int, notes: list[Note]) -> None:
+        if nav.mission_current != seq:
+            nav.mission_current = seq
+            notes.append(CurrentChanged(seq))
+
+    def _run_from(self, v: Any, seq: int, notes: list[Note]) -> None:
+        """Run the mission from item ``seq``: do-commands that come first, then the navigation command."""
+        nav = v.autopilot.modes.nav
+        nav.mission_state = RUNNING
+        nav.condition_kind, nav.mission_do, nav.mission_do_next = CONDITION_NONE, 0, 0
+        self._advance(v, seq, notes, run_do=True)
+
+    def _complete(self, v: Any) -> list[Note]:
+        """The navigation command under way is done."""
+        nav = v.autopilot.modes.nav
+        seq = int(nav.command_seq)
+        item = self.mission.get(seq)
+        nav.mission_reached = seq
+        notes: list[Note] = [ItemReached(seq)]
+        if item is not None and item.command in SAYS_REACHED:
+            notes.append(Text(INFO, f"Reached command #{seq}"))
+        nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
+        self._advance(v, seq + 1, notes, run_do=False)
+        return notes
+
+    def _advance(self, v: Any, seq: int, notes: list[Note], run_do: bool) -> None:
+        """Go on to the next navigation command from ``seq`` on;
+        the mission is complete when there is none.
+        """
+        nav = v.autopilot.modes.nav
+        counts = jumps.runs(nav)
+        for _ in range(len(self.mission) + jumps.LONGEST):
+            taken: list[tuple[int, int, int]] = []
+            seq = jumps.following(self.mission, seq, counts, JUMPS, taken)
+            notes.extend(Text(INFO, f"Mission: {k} Jump {done}/{times}") for k, done, times in taken)
+            item = self.mission.get(seq)
+            if item is None:
+                break
+            if item.is_nav:
+                jumps.keep(nav, counts)
+                self._give(v, seq, notes)
+                return
+            if run_do:
+                self._do(v, seq, notes)
+                nav.condition_kind = CONDITION_NONE  # nothing is flown yet that a condition could wait for
+            seq += 1
+        jumps.keep(nav, counts)
+        self._finish(v)
+
+    def _give(self, v: Any, seq: int, notes: list[Note]) -> None:
+        """Begin navigation command ``seq`` and the do-commands behind it."""
+        nav = v.autopilot.modes.nav
+        item = self.mission.items[seq]
+        notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
+        self._set_current(nav, seq, notes)
+        nav_commands.give(v, seq, item)
+        self._look_ahead(v)
+        nav.mission_do_next = seq + 1
+        self._run_do(v, notes)
+
+    def _look_ahead(self, v: Any) -> None:
+        """Plan the leg after the current one."""
+        nav = v.autopilot.modes.nav
+        seq = jumps.next_nav(self.mission, int(nav.command_seq) + 1, jumps.runs(nav), JUMPS)
+        nav_commands.look_ahead(v.autopilot, self.mission.get(seq))
+
+    def _run_do(self, v: Any, notes: list[Note]) -> None:
+        """Run do-commands up to the next navigation command or a condition."""
+        nav = v.autopilot.modes.nav
+        counts = jumps.runs(nav)  # a copy: the jump is counted when the navigation command after it begins
+        seq = int(nav.mission_do_next)
+        for _ in range(len(self.mission) + jumps.LONGEST):
+            seq = jumps.following(self.mission, seq, counts, JUMPS)
+            item = self.mission.get(seq)
+            if item is None or item.is_nav:
+                break
+            self._do(v, seq, notes)
+            seq += 1
+            if nav.condition_kind != CONDITION_NONE:
+                nav.mission_do_next = seq
+                return
+        nav.mission_do_next = 0
+
+    def _do(self, v: Any, seq: int, notes: list[Note]) -> None:
+        item = self.mission.items[seq]
+        notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
+        v.autopilot.modes.nav.mission_do = seq
+        do_commands.run(v, item)
+        if v.autopilot.modes.nav.condition_kind == CONDITION_NONE:
+            notes.append(ItemReached(seq))
+
+    def _condition_met(self, v: Any, seq: int) -> list[Note]:
+        nav = v.autopilot.modes.nav
+        if seq != nav.mission_do or nav.mission_do_next == 0:
+            return []
+        notes: list[Note] = [ItemReached(seq)]
+        self._run_do(v, notes)
+        return notes
+
+    def _finish(self, v: Any) -> None:
+        """The mission has come to its end: AUTO disarms on the ground and stays where it is in the air."""
+        nav = v.autopilot.modes.nav
+        nav.mission_state = COMPLETE
+        nav.condition_kind = CONDITION_NONE
+        if v.autopilot.arming.landed != 0:
+            nav_commands.give_none(nav)
+        else:
+            nav_commands.give_hold(v)

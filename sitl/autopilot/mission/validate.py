@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which mission items the firmware takes,
+as MAV_MISSION_RESULT (https://mavlink.io/en/messages/common.html#MAV_MISSION_RESULT).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from .item import (
+    COMMANDS,
+    GLOBAL,
+    GLOBAL_INT,
+    MISSION,
+    NAV_LAND,
+    NAV_LOITER_UNLIM,
+    NAV_TAKEOFF,
+    NAV_WAYPOINT,
+    RELATIVE_FRAMES,
+    TERRAIN_FRAMES,
+    MissionItem,
+)
+
+ACCEPTED = 0
+ERROR = 1
+UNSUPPORTED_FRAME = 2
+UNSUPPORTED = 3
+NO_SPACE = 4
+INVALID = 5
+INVALID_PARAM1 = 6
+INVALID_PARAM5_X = 10
+INVALID_PARAM6_Y = 11
+INVALID_PARAM7 = 12
+INVALID_SEQUENCE = 13
+DENIED = 14
+
+MAX_ITEMS = 724
+"""Items that fit, home included."""
+HIGHEST = 83000.0
+"""Altitudes are below this [m]."""
+
+INT32_MAX = 2**31 - 1
+
+PLACE_FRAMES = (GLOBAL, GLOBAL_INT, MISSION, *RELATIVE_FRAMES, *TERRAIN_FRAMES)
+_YAW_MAY_BE_NAN = (NAV_WAYPOINT, NAV_LOITER_UNLIM, NAV_LAND, NAV_TAKEOFF)
+
+
+def check(item: MissionItem) -> int:
+    """Result for one item: parameters are numbers, the command and frame known, the place on earth.
+
+    NaN as parameter 4 means "keep the heading" in some navigation commands; elsewhere it is refused. Commands
+    without a place take any frame.
+    """
+    for k, value in enumerate((item.p1, item.p2, item.p3, item.p4)):
+        keep_yaw = k == 3 and item.command in _YAW_MAY_BE_NAN and math.isnan(value)
+        if not math.isfinite(value) and not keep_yaw:
+            return INVALID_PARAM1 + k
+    if item.command not in COMMANDS:
+        return UNSUPPORTED
+    if COMMANDS[item.command].has_place:
+        if not -900000000 <= item.x <= 900000000:
+            return INVALID_PARAM5_X
+        if not -1800000000 <= item.y <= 1800000000:
+            return INVALID_PARAM6_Y
+        if not abs(item.z) < HIGHEST:
+            return INVALID_PARAM7
+        if item.frame not in PLACE_FRAMES:
+            return UNSUPPORTED_FRAME
+    elif abs(item.x) > INT32_MAX:
+        return INVALID_PARAM5_X
+    elif abs(item.y) > INT32_MAX:
+        return INVALID_PARAM6_Y
+    elif not math.isfinite(item.z):
+        return INVALID_PARAM7
+    return ACCEPTED
+
+
+def check_count(count: int) -> int:
+    """Result for an announced number of items."""
+    return NO_SPACE if count > MAX_ITEMS else ACCEPTED
+
+
+def check_all(items: Sequence[MissionItem]) -> tuple[int, int]:
+    """(result, number of the first item refused or -1) for a whole mission."""
+    if check_count(len(items)) != ACCEPTED:
+        return (NO_SPACE, MAX_ITEMS)
+    for seq, item in enumerate(items):
+        result = check(item)
+        if result != ACCEPTED:
+            return (result, seq)
+    return (ACCEPTED, -1)

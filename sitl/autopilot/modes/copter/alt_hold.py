@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ALT_HOLD: lean angles and turn rate as STABILIZE, the throttle stick is a climb rate; and what LOITER shares with it."""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ....core.rotations import constrain
+from ... import pilot
+from ...control import altitude, attitude
+from ...control.throttle_mix import lean_limit
+from . import ground, takeoff
+
+# What the vertical part is doing
+STOPPED = 0
+LANDED_IDLE = 1
+LANDED_READY = 2
+TAKING_OFF = 3
+FLYING = 4
+
+
+@law
+def start(v):
+    """Enter from the present vertical motion. Returns 0."""
+    start_vertical(v)
+    return 0
+
+
+@law
+def start_vertical(v):
+    """Limits of the throttle stick: PILOT_SPEED_UP, PILOT_SPEED_DN, PILOT_ACCEL_Z."""
+    ap = v.autopilot
+    set_limits(ap)
+    if not altitude.is_active_d(ap):
+        altitude.init_d(ap)
+    ap.modes.takeoff.user_active = 0
+
+
+@law
+def set_limits(ap):
+    """Vertical limits of modes that the pilot flies."""
+    p = ap.params
+    down = p.PILOT_SPEED_DN if p.PILOT_SPEED_DN > 0.0 else p.PILOT_SPEED_UP
+    altitude.set_max_speed_accel_d(ap, down * 0.01, p.PILOT_SPEED_UP * 0.01, p.PILOT_ACCEL_Z * 0.01)
+
+
+@law
+def state(v, climb):
+    """What to do with the throttle stick asking for ``climb`` [m/s]; sets the spool state that this needs."""
+    ap = v.autopilot
+    motors = ap.control.motors
+    if ap.arming.armed == 0:
+        motors.desired_spool = ground.SHUT_DOWN
+        return STOPPED
+    if ap.modes.takeoff.user_active != 0 or takeoff.is_triggered(v, climb):
+        motors.desired_spool = ground.UNLIMITED
+        return TAKING_OFF
+    if ap.arming.auto_armed == 0 or ap.arming.landed != 0:
+        motors.desired_spool = ground.GROUND_IDLE if climb < 0.0 else ground.UNLIMITED
+        if motors.spool_state == ground.IS_GROUND_IDLE or motors.spool_state == ground.IS_SHUT_DOWN:
+            return LANDED_IDLE
+        return LANDED_READY
+    motors.desired_spool = ground.UNLIMITED
+    return FLYING
+
+
+@law
+def climb_rate(ap):
+    """Climb rate of the stick within the limits [m/s]."""
+    return constrain(pilot.climb_rate(ap), -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
+
+
+@law
+def run_vertical(v, doing, climb):
+    """Vertical part of one tick."""
+    ap = v.autopilot
+    if doing == TAKING_OFF:
+        if ap.modes.takeoff.user_active == 0:
+            takeoff.begin_user(v, constrain(ap.params.PILOT_TKOFF_ALT * 0.01, 0.0, 10.0))
+        if ap.control.motors.spool_state == ground.IS_UNLIMITED:
+            takeoff.run_user(v, climb)
+            return
+        altitude.relax_d(ap, 0.0)
+    elif doing == FLYING:
+        altitude.input_vel_accel_d(ap, -climb, 0.0)
+    else:
+        altitude.relax_d(ap, 0.0)
+    altitude.update_d(ap)
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    set_limits(ap)
+    climb = climb_rate(ap)
+    doing = state(v, climb)
+    if doing == STOPPED or doing == LANDED_IDLE:
+        attitude.reset_yaw_target(ap)
+    most = math.radians(ap.params.ANGLE_MAX * 0.01)
+    roll, pitch = pilot.lean_angles(ap, most, min(most, lean_limit(ap)))
+    attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
+    run_vertical(v, doing, climb)

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""AUTO: flies the mission's navigation commands one after the other.
+
+The shell writes the command under way into ``modes.nav`` and counts it up; this mode begins it, flies it and says when it is done
+(``navigation.command.complete``), upon which the shell gives the next.
+"""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+from ... import arming
+from ...control import altitude, position
+from ...navigation import command, waypoint
+from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
+from . import auto_yaw, ground, land, rtl, takeoff
+from .numbers import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+
+_TAKE_OFF_ALONE = 2
+"""AUTO_OPTIONS: takes off without a raised throttle."""
+_NO_PILOT_YAW = 128
+
+# LAND: on the way to the place, then going down
+FLYING = 0
+DESCENDING = 1
+
+
+@law
+def enter(v, forced):
+    """Enter; refused without a mission, and on the ground when it does not begin with a take-off. ``forced``: disarmed."""
+    ap = v.autopilot
+    if forced == 0:
+        if ap.modes.mission_count < 2:
+            return INIT_FAILED
+        if ap.arming.landed != 0 and ap.modes.mission_takes_off == 0:
+            return MISSING_TAKEOFF
+    auto = ap.modes.auto
+    waypoint.stop(ap)
+    ap.modes.nav.speed_ne = 0.0
+    ap.modes.nav.speed_up = 0.0
+    ap.modes.nav.speed_down = 0.0
+    auto.command = int(ap.modes.nav.command_count)
+    ap.modes.nav.command_kind = NONE
+    auto.submode = NONE
+    auto.started = 0
+    auto.begin_us = v.time_us
+    if ap.modes.auto_yaw.mode == auto_yaw.ROI:
+        auto_yaw.set_mode(v, auto_yaw.HOLD)
+    auto_yaw.set_default(v, 0)
+    ground.set_waypoint_limits(v)
+    if not position.is_active_ne(ap):
+        position.init_ne(ap)
+    if not altitude.is_active_d(ap):
+        altitude.init_d(ap)
+    return ACCEPTED
+
+
+@law
+def start(v):
+    """MAV_CMD_MISSION_START: a take-off at the beginning need not wait for a raised throttle."""
+    v.autopilot.modes.auto.started = 1
+    if v.autopilot.arming.armed != 0:
+        v.autopilot.arming.auto_armed = 1
+
+
+@law
+def begin(v):
+    """Begin the command that the shell has written."""
+    ap = v.autopilot
+    nav = ap.modes.nav
+    auto = ap.modes.auto
+    auto.command = int(nav.command_count)
+    auto.submode = int(nav.command_kind)
+    auto.begin_us = v.time_us
+    auto.land_state = FLYING
+    ap.arming.landed_maybe = ap.arming.landed
+    command.begin(ap, v.time_us)
+    if auto.submode == TAKEOFF:
+        auto_yaw.set_mode(v, auto_yaw.HOLD)
+        takeoff.begin(v, float(nav.target[2]))
+    elif auto.submode == RTL:
+        rtl.start(v, 1)
+    elif auto.submode == LAND:
+        if nav.has_place == 0:
+            begin_descent(v)
+        else:
+            auto_yaw.set_default(v, 0)
+    elif ap.modes.auto_yaw.mode != auto_yaw.ROI and ap.modes.auto_yaw.mode != auto_yaw.FIXED:
+        auto_yaw.set_default(v, 0)
+
+
+@law
+def begin_descent(v):
+    """Land where it is."""
+    v.autopilot.modes.auto.land_state = DESCENDING
+    land.begin(v)
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    nav = ap.modes.nav
+    auto = ap.modes.auto
+    if auto.command != nav.command_count:
+        begin(v)
+    if (int(ap.params.AUTO_OPTIONS) & _NO_PILOT_YAW) == 0:
+        auto_yaw.pilot(v)
+    kind = auto.submode
+    if kind == TAKEOFF:
+        run_takeoff(v)
+    elif kind == LAND:
+        run_land(v)
+    elif kind == RTL:
+        rtl.run(v)
+        if ap.arming.landed != 0 and ap.modes.rtl.state == rtl.LANDING:
+            command.complete(ap, v.time_us)
+    elif ground.is_grounded(v):
+        ground.handle(v)
+        if ap.arming.armed != 0 and ap.arming.landed != 0 and nav.mission_state == COMPLETE:
+            arming.disarm(v, arming.BY_MISSION_EXIT, 0)
+    else:
+        ap.control.motors.desired_spool = ground.UNLIMITED
+        if command.follows_path(kind) != 0:
+            command.run(ap, v.time_us)
+        else:
+            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        ground.fly(v)
+    command.check_condition(ap, v.time_us, 1 if auto_yaw.reached(v) else 0)
+
+
+@law
+def run_takeoff(v):
+    """One tick of the take-off command."""
+    ap = v.autopilot
+    if ap.arming.armed != 0 and ap.arming.auto_armed == 0:
+        if ap.modes.auto.started != 0 or (int(ap.params.AUTO_OPTIONS) & _TAKE_OFF_ALONE) != 0:
+            ap.arming.auto_armed = 1
+    takeoff.run(v)
+    if ap.modes.takeoff.complete != 0:
+        command.complete(ap, v.time_us)
+
+
+@law
+def run_land(v):
+    """One tick of the land command: to the place at the present height, then down."""
+    ap = v.autopilot
+    land.finish(v)
+    if ap.arming.landed != 0 and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
+        command.complete(ap, v.time_us)
+    if ground.is_grounded(v):
+        ground.handle(v)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    if ap.modes.auto.land_state == FLYING:
+        reached = waypoint.advance(ap, v.time_us)
+        ground.fly(v)
+        if reached != 0:
+            begin_descent(v)
+    else:
+        land.descend(v, 0)
+
+
+@law
+def is_landing(v):
+    """Whether the descent to the ground has begun."""
+    auto = v.autopilot.modes.auto
+    if auto.submode == RTL:
+        return rtl.is_landing(v)
+    return auto.submode == LAND and auto.land_state == DESCENDING
+
+
+@law
+def is_taking_off(v):
+    """Whether a take-off command is not done yet."""
+    return v.autopilot.modes.auto.submode == TAKEOFF and v.autopilot.modes.takeoff.complete == 0

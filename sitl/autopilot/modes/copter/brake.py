@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""BRAKE: stops as fast as is sensible and holds; the sticks do nothing."""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ...control import altitude, attitude, position
+from . import ground
+from .numbers import ALT_HOLD, LOITER, REASON_BRAKE_TIMEOUT
+
+DECELERATION = 7.5
+"""[m/s^2]"""
+SPEED_D = 2.5
+"""[m/s]"""
+
+
+@law
+def start(v):
+    """Enter. Returns 0."""
+    ap = v.autopilot
+    vn, ve, vd = float(ap.estimate.vel[0]), float(ap.estimate.vel[1]), float(ap.estimate.vel[2])
+    position.set_max_speed_accel_ne(ap, max(math.hypot(vn, ve), 0.1), DECELERATION)
+    position.init_ne(ap)
+    altitude.set_max_speed_accel_d(ap, max(SPEED_D, vd), max(SPEED_D, -vd), DECELERATION)
+    altitude.init_d(ap)
+    ap.modes.brake.until_us = 0
+    return 0
+
+
+@law
+def leave_after(v, seconds):
+    """Leave to LOITER (or ALT_HOLD) after so many seconds."""
+    v.autopilot.modes.brake.until_us = v.time_us + int(seconds * 1e6)
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    if ground.is_grounded(v):
+        ground.handle(v)
+    else:
+        ap.control.motors.desired_spool = ground.UNLIMITED
+        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+        altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        position.update_ne(ap)
+        altitude.update_d(ap)
+        tx, ty, tz = position.thrust_vector(ap)
+        attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, 0.0)
+    if ap.modes.brake.until_us != 0 and v.time_us >= ap.modes.brake.until_us:
+        ap.modes.wanted = (LOITER if ap.estimate.position_ok != 0 else ALT_HOLD) + 1
+        ap.modes.wanted_reason = REASON_BRAKE_TIMEOUT

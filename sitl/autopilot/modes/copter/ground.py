@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all modes share on the ground, and the last step of all modes that hold a position."""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+from ...control import altitude, attitude, position
+from . import auto_yaw
+
+# Spool states wanted by a mode (control/motors.py)
+SHUT_DOWN = 0
+GROUND_IDLE = 1
+UNLIMITED = 2
+
+# Spool states that the motors are in
+IS_SHUT_DOWN = 0
+IS_GROUND_IDLE = 1
+IS_UNLIMITED = 3
+
+
+@law
+def is_grounded(v):
+    """Disarmed, not told to fly since arming, or landed."""
+    arming = v.autopilot.arming
+    return arming.armed == 0 or arming.auto_armed == 0 or arming.landed != 0
+
+
+@law
+def set_landed(v, landed):
+    """Note that the vehicle stands on the ground (1) or flies (0)."""
+    arming = v.autopilot.arming
+    arming.landed = landed
+    arming.landed_ticks = 0
+    if landed != 0:
+        arming.landed_maybe = 1
+    else:
+        arming.landed_maybe = 0
+
+
+@law
+def handle(v):
+    """One tick on the ground: motors idle, controllers follow the vehicle, throttle decays to zero."""
+    ap = v.autopilot
+    motors = ap.control.motors
+    motors.desired_spool = GROUND_IDLE if ap.arming.armed != 0 else SHUT_DOWN
+    if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
+        attitude.reset_yaw_target(ap)
+    position.relax_ne(ap)
+    position.update_ne(ap)
+    altitude.relax_d(ap, 0.0)
+    altitude.update_d(ap)
+    attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, 0.0)
+
+
+@law
+def fly(v):
+    """Position controllers, then the attitude that they ask for with the heading of auto_yaw."""
+    ap = v.autopilot
+    position.update_ne(ap)
+    altitude.update_d(ap)
+    tx, ty, tz = position.thrust_vector(ap)
+    auto_yaw.apply(v, tx, ty, tz)
+
+
+@law
+def set_waypoint_limits(v):
+    """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
+    ap = v.autopilot
+    p = ap.params
+    position.set_max_speed_accel_ne(ap, p.WPNAV_SPEED * 0.01, p.WPNAV_ACCEL * 0.01)
+    altitude.set_max_speed_accel_d(ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01)
+
+
+@law
+def start_position_control(v):
+    """Take over position control from whatever flew before, without a jump."""
+    ap = v.autopilot
+    set_waypoint_limits(v)
+    position.init_ne(ap)
+    altitude.init_d(ap)

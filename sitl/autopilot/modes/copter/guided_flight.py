@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""GUIDED: flies the set-points of a companion computer or ground station.
+
+Set-points are written by the laws of ``guided``. Velocity, acceleration and attitude set-points older than GUID_TIMEOUT stop
+the vehicle: velocity and acceleration become zero, the attitude level at constant height.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ....core.rotations import constrain, quat_from_euler, quat_to_euler
+from ...control import altitude, attitude, position, position_ned, throttle_mix
+from ...events import GUIDED_TIMEOUT, emit
+from . import auto_yaw, ground, takeoff
+from .guided_state import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
+
+DT = 0.0025
+_NO_PILOT_YAW = 4
+"""GUID_OPTIONS: the yaw stick is ignored."""
+
+
+@law
+def start(v):
+    """Enter: come to a stop and hold. Returns 0."""
+    auto_yaw.set_default(v, 0)
+    start_velocity(v)
+    return 0
+
+
+@law
+def start_submode(v, submode):
+    """Change what kind of set-point is flown, from the present motion."""
+    guided = v.autopilot.modes.guided
+    guided.submode = submode
+    guided.paused = 0
+    guided.timed_out = 0
+    for k in range(3):
+        guided.vel[k] = 0.0
+        guided.acc[k] = 0.0
+    ground.start_position_control(v)
+
+
+@law
+def start_velocity(v):
+    """Fly velocity set-points, beginning with a stop."""
+    start_submode(v, VELOCITY_ACCEL)
+    v.autopilot.modes.guided.update_us = v.time_us
+
+
+@law
+def is_old(v):
+    """Whether the set-point is older than GUID_TIMEOUT."""
+    ap = v.autopilot
+    return v.time_us - ap.modes.guided.update_us > ap.params.GUID_TIMEOUT * 1e6
+
+
+@law
+def is_stale(v):
+    """Whether the set-point, of a kind that times out, is too old; tells the shell once."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if not is_old(v):
+        guided.timed_out = 0
+        return False
+    if guided.timed_out == 0:
+        guided.timed_out = 1
+        emit(ap.events, v.time_us, GUIDED_TIMEOUT, float(guided.submode), 0.0)
+    return True
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if (int(ap.params.GUID_OPTIONS) & _NO_PILOT_YAW) == 0:
+        auto_yaw.pilot(v)
+    if guided.submode == TAKEOFF:
+        takeoff.run(v)
+    elif guided.submode == ANGLE:
+        run_angle(v)
+    elif ground.is_grounded(v):
+        ground.handle(v)
+    else:
+        ap.control.motors.desired_spool = ground.UNLIMITED
+        if guided.paused != 0:
+            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        elif guided.submode == POSITION:
+            run_position(v)
+        else:
+            run_motion(v)
+        ground.fly(v)
+
+
+@law
+def run_position(v):
+    """Fly to a point and stay; the speed limits keep a climbing path straight."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if is_old(v):
+        auto_yaw.stop_turning(v)
+    position_ned.input_pos_ned(ap, float(guided.pos[0]), float(guided.pos[1]), float(guided.pos[2]))
+
+
+@law
+def run_motion(v):
+    """Fly velocity, acceleration, or position with both; the set-point moves on between messages."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if is_stale(v):
+        for k in range(3):
+            guided.vel[k] = 0.0
+            guided.acc[k] = 0.0
+        auto_yaw.stop_turning(v)
+        if guided.submode == ACCEL:
+            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+            return
+    an, ae, ad = float(guided.acc[0]), float(guided.acc[1]), float(guided.acc[2])
+    if guided.submode == ACCEL:
+        position.input_accel_ne(ap, an, ae)
+        altitude.input_vel_accel_d(ap, float(ap.control.pos_d.vel_desired), ad)
+        return
+    for k in range(3):
+        guided.pos[k] += (guided.vel[k] + 0.5 * guided.acc[k] * DT) * DT
+        guided.vel[k] += guided.acc[k] * DT
+    vn, ve, vd = float(guided.vel[0]), float(guided.vel[1]), float(guided.vel[2])
+    if guided.submode == POS_VEL_ACCEL:
+        position.input_pos_vel_accel_ne(ap, guided.pos[0], guided.pos[1], vn, ve, an, ae)
+        altitude.input_pos_vel_accel_d(ap, guided.pos[2], vd, ad)
+    else:
+        position.input_vel_accel_ne(ap, vn, ve, an, ae)
+        altitude.input_vel_accel_d(ap, vd, ad)
+
+
+@law
+def run_angle(v):
+    """Fly SET_ATTITUDE_TARGET: attitude or rates with a climb rate or a thrust."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    climb = 0.0
+    if guided.use_thrust == 0:
+        climb = constrain(float(guided.climb_rate), -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
+    if is_stale(v):
+        climb = 0.0
+        level_off(v)
+    wants_up = guided.thrust > 0.0 if guided.use_thrust != 0 else climb > 0.0
+    if ap.arming.armed != 0 and wants_up:
+        ap.arming.auto_armed = 1
+    if ap.arming.armed == 0 or ap.arming.auto_armed == 0 or (ap.arming.landed != 0 and not wants_up):
+        ground.handle(v)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    if ap.arming.landed != 0:
+        throttle_mix.set_throttle_out(ap, 0.0, 0, 0.0)
+        attitude.relax(ap)
+        if ap.control.motors.spool_state == ground.IS_UNLIMITED:
+            ground.set_landed(v, 0)
+            altitude.init_d(ap)
+        return
+    p, q, r = float(guided.rates[0]), float(guided.rates[1]), float(guided.rates[2])
+    if guided.use_attitude != 0:
+        w, x, y, z = float(guided.q[0]), float(guided.q[1]), float(guided.q[2]), float(guided.q[3])
+        attitude.input_quaternion(ap, w, x, y, z, p, q, r)
+    else:
+        attitude.input_rates(ap, p, q, r)
+    if guided.use_thrust != 0:
+        throttle_mix.set_throttle_out(ap, float(guided.thrust), 1, 0.0)
+    else:
+        altitude.input_vel_accel_d(ap, -climb, 0.0)
+        altitude.update_d(ap)
+
+
+@law
+def level_off(v):
+    """Replace a stale attitude by level flight at constant height, heading kept."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if guided.use_attitude != 0:
+        _roll, _pitch, yaw = quat_to_euler(
+            float(guided.q[0]), float(guided.q[1]), float(guided.q[2]), float(guided.q[3])
+        )
+    else:
+        yaw = float(ap.control.attitude.target_euler[2])
+    w, x, y, z = quat_from_euler(0.0, 0.0, yaw)
+    guided.q[0], guided.q[1], guided.q[2], guided.q[3] = w, x, y, z
+    guided.use_attitude = 1
+    for k in range(3):
+        guided.rates[k] = 0.0
+    if guided.use_thrust != 0:
+        guided.use_thrust = 0
+        altitude.init_d(ap)
+    guided.climb_rate = 0.0
+
+
+@law
+def distance(v):
+    """Horizontal distance to the target position [m]; 0 when the set-point has none."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if guided.submode != POSITION and guided.submode != POS_VEL_ACCEL:
+        return 0.0
+    return math.hypot(guided.pos[0] - ap.estimate.pos[0], guided.pos[1] - ap.estimate.pos[1])

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What GUIDED is doing (``modes.guided.submode``), and the answers of its set-point laws."""
+
+from __future__ import annotations
+
+TAKEOFF = 0
+POSITION = 1
+POS_VEL_ACCEL = 2
+VELOCITY_ACCEL = 3
+ACCEL = 4
+ANGLE = 5
+
+OK = 0
+NOT_FINITE = 1
+NOT_IN_GUIDED = 2
+OUT_OF_RANGE = 3

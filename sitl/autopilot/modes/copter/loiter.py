@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""LOITER: holds the position; roll and pitch sticks accelerate it, drag and braking bring it to rest again.
+
+The sticks are a horizontal acceleration. The desired velocity follows what a lean that obeys the attitude controller's
+shaping would give, less a drag that balances a full stick at LOIT_SPEED; with the sticks centred for LOIT_BRK_DELAY it brakes
+with LOIT_BRK_JERK up to LOIT_BRK_ACCEL.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ....core.rotations import constrain, wrap_pi
+from ... import pilot
+from ...control import attitude, position
+from ...control.shaping import shape_angle, sqrt_controller
+from . import alt_hold
+
+DT = 0.0025
+_CDEG = math.pi / 18000.0
+_LEAN_SHARE = 2.0 / 3.0
+"""LOIT_ANG_MAX 0: so much of the lean limit is the pilot's."""
+_SPEED_MIN = 0.2  # [m/s]
+
+
+@law
+def angle_max(ap):
+    """Lean of a full stick [rad]: LOIT_ANG_MAX, or two thirds of the lean limit."""
+    most = math.radians(ap.params.ANGLE_MAX * 0.01)
+    if ap.params.PSC_ANGLE_MAX > 0.0:
+        most = min(most, math.radians(ap.params.PSC_ANGLE_MAX))
+    if ap.params.LOIT_ANG_MAX > 0.0:
+        return min(math.radians(ap.params.LOIT_ANG_MAX), most)
+    return _LEAN_SHARE * most
+
+
+@law
+def start(v):
+    """Enter from the present motion. Returns 0."""
+    ap = v.autopilot
+    loiter = ap.modes.loiter
+    set_limits(ap)
+    active = position.is_active_ne(ap)
+    if not active:
+        position.init_ne(ap)
+    target = ap.control.attitude.target_euler
+    loiter.predicted_euler[0] = target[0]
+    loiter.predicted_euler[1] = target[1]
+    n, e = lean_to_accel(float(target[0]), float(target[1]), float(ap.estimate.euler[2]))
+    loiter.predicted_acc[0], loiter.predicted_acc[1] = n, e
+    loiter.predicted_rate[0] = 0.0
+    loiter.predicted_rate[1] = 0.0
+    loiter.brake_acc = 0.0
+    loiter.brake_us = v.time_us
+    alt_hold.start_vertical(v)
+    return 0
+
+
+@law
+def set_limits(ap):
+    """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
+    p = ap.params
+    position.set_max_speed_accel_ne(ap, max(p.LOIT_SPEED * 0.01, _SPEED_MIN), p.LOIT_ACC_MAX * 0.01)
+
+
+@law
+def lean_to_accel(roll, pitch, yaw):
+    """(north, east) [m/s^2] of level flight at that lean [rad]."""
+    return position.lean_accel(roll, pitch, yaw)
+
+
+@law
+def read_sticks(v, roll, pitch):
+    """Accelerations that the sticks ask for, and that a vehicle which follows them would have."""
+    ap = v.autopilot
+    p = ap.params
+    loiter = ap.modes.loiter
+    yaw = float(ap.estimate.euler[2])
+    if roll == 0.0 and pitch == 0.0:
+        loiter.acc[0] = 0.0
+        loiter.acc[1] = 0.0
+    else:
+        loiter.acc[0], loiter.acc[1] = lean_to_accel(roll, pitch, yaw)
+    tc = float(p.ATC_INPUT_TC)
+    wanted = (roll, pitch)
+    limits = (p.ATC_ACCEL_R_MAX * _CDEG, p.ATC_ACCEL_P_MAX * _CDEG)
+    for k in range(2):
+        error = wrap_pi(wanted[k] - loiter.predicted_euler[k])
+        rate = shape_angle(error, tc, limits[k], float(loiter.predicted_rate[k]), 0.0, 0.0, DT)
+        loiter.predicted_rate[k] = rate
+        loiter.predicted_euler[k] = loiter.predicted_euler[k] + rate * DT
+    loiter.predicted_acc[0], loiter.predicted_acc[1] = lean_to_accel(
+        float(loiter.predicted_euler[0]), float(loiter.predicted_euler[1]), yaw
+    )
+
+
+@law
+def advance(v):
+    """Move the desired position, velocity and acceleration on by one tick."""
+    ap = v.autopilot
+    p = ap.params
+    loiter = ap.modes.loiter
+    ne = ap.control.pos_ne
+    most = max(p.LOIT_SPEED * 0.01, _SPEED_MIN)
+    vn = ne.vel_desired[0] + loiter.predicted_acc[0] * DT
+    ve = ne.vel_desired[1] + loiter.predicted_acc[1] * DT
+    an, ae = float(loiter.acc[0]), float(loiter.acc[1])
+    speed = math.hypot(vn, ve)
+    if an != 0.0 or ae != 0.0:
+        loiter.brake_us = v.time_us
+    if speed > 1e-9:
+        drag = 9.80665 * math.tan(angle_max(ap)) * speed / most
+        brake = 0.0
+        if v.time_us - loiter.brake_us > p.LOIT_BRK_DELAY * 1e6:
+            gain = 0.5 * p.PSC_VELXY_P
+            brake = constrain(sqrt_controller(speed, gain, p.LOIT_BRK_JERK * 0.01, DT), 0.0, p.LOIT_BRK_ACCEL * 0.01)
+        jerk = p.LOIT_BRK_JERK * 0.01 * DT
+        loiter.brake_acc += constrain(brake - loiter.brake_acc, -jerk, jerk)
+        slower = min(max(speed - (drag + loiter.brake_acc) * DT, 0.0), most)
+        an -= vn / speed * loiter.brake_acc
+        ae -= ve / speed * loiter.brake_acc
+        vn *= slower / speed
+        ve *= slower / speed
+    loiter.vel[0], loiter.vel[1] = vn, ve
+    position.set_pos_vel_accel_ne(
+        ap, ne.pos_desired[0] + vn * DT, ne.pos_desired[1] + ve * DT, vn, ve, an, ae
+    )
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    alt_hold.set_limits(ap)
+    set_limits(ap)
+    most = angle_max(ap)
+    limit = min(math.radians(ap.params.ANGLE_MAX * 0.01), most)
+    roll, pitch = pilot.lean_angles(ap, most, limit)
+    read_sticks(v, roll, pitch)
+    climb = alt_hold.climb_rate(ap)
+    doing = alt_hold.state(v, climb)
+    if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
+        attitude.reset_yaw_target(ap)
+    if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
+        position.relax_ne(ap)
+        ap.modes.loiter.brake_acc = 0.0
+        position.update_ne(ap)
+        attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, float(ap.modes.pilot.yaw_rate))
+    else:
+        if ap.arming.landed_maybe != 0:
+            position.soften_for_landing_ne(ap)
+        advance(v)
+        position.update_ne(ap)
+        tx, ty, tz = position.thrust_vector(ap)
+        attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, float(ap.modes.pilot.yaw_rate))
+    alt_hold.run_vertical(v, doing, climb)

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""RTL: climbs, flies home along a planned leg, waits, lands (or stays at RTL_ALT_FINAL)."""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ...control import altitude, position
+from ...navigation import waypoint
+from . import auto_yaw, ground, land
+
+# States
+CLIMB = 1
+RETURN = 2
+LOITER = 3
+FINAL_DESCENT = 4
+LANDING = 5
+
+_LEAST_CLIMB = 0.3
+"""Home is approached at least this high [m]."""
+_LEAST_SLOPE = 0.5
+_DESCENT_DONE = 0.2  # [m]
+
+
+@law
+def start(v, forced):
+    """Enter; needs a home unless ``forced``. Returns 0, or 1 when it cannot."""
+    ap = v.autopilot
+    if ap.home.is_set == 0 and forced == 0:
+        return 1
+    rtl = ap.modes.rtl
+    waypoint.stop(ap)
+    speed = ap.params.RTL_SPEED * 0.01
+    ap.modes.nav.speed_ne = speed if speed > 0.0 else 0.0
+    ap.modes.nav.speed_up = 0.0
+    ap.modes.nav.speed_down = 0.0
+    ground.set_waypoint_limits(v)
+    if not position.is_active_ne(ap):
+        position.init_ne(ap)
+    if not altitude.is_active_d(ap):
+        altitude.init_d(ap)
+    build_path(v)
+    rtl.state = CLIMB
+    rtl.complete = 0
+    rtl.loiter_us = 0
+    auto_yaw.set_mode(v, auto_yaw.HOLD)
+    n, e = position.stopping_point_ne(ap)
+    if ap.arming.armed != 0 and ap.arming.landed == 0:
+        waypoint.request_legs(ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d))
+    return 0
+
+
+@law
+def build_path(v):
+    """Height of the way home from RTL_ALT, RTL_CLIMB_MIN and RTL_CONE_SLOPE; never below the present height."""
+    ap = v.autopilot
+    p = ap.params
+    rtl = ap.modes.rtl
+    rtl.home[0] = ap.home.pos[0]
+    rtl.home[1] = ap.home.pos[1]
+    home_d = float(ap.home.pos[2])
+    height = home_d - float(ap.estimate.pos[2])
+    rtl.return_d = home_d - return_height(
+        height,
+        math.hypot(ap.home.pos[0] - ap.estimate.pos[0], ap.home.pos[1] - ap.estimate.pos[1]),
+        p.RTL_ALT * 0.01,
+        p.RTL_CLIMB_MIN * 0.01,
+        p.RTL_CONE_SLOPE,
+    )
+    rtl.descent_d = home_d - p.RTL_ALT_FINAL * 0.01
+
+
+@law
+def return_height(height, distance, wanted, climb, slope):
+    """Height of the way home [m above home] from a height and a distance [m] from home."""
+    least = max(_LEAST_CLIMB, height + max(climb, 0.0))
+    target = max(wanted, least)
+    if slope >= _LEAST_SLOPE:
+        target = min(target, max(distance * slope, least))
+    return max(target, height)
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    rtl = ap.modes.rtl
+    auto_yaw.pilot(v)
+    if ap.arming.armed == 0:
+        ground.handle(v)
+        return
+    if rtl.state == LANDING:
+        run_landing(v)
+        return
+    if ground.is_grounded(v):
+        ground.handle(v)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    if rtl.state == FINAL_DESCENT:
+        run_descent(v)
+        return
+    reached = 0
+    if ap.modes.nav.request_pending != 0:
+        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+        altitude.input_vel_accel_d(ap, 0.0, 0.0)
+    else:
+        reached = waypoint.advance(ap, v.time_us)
+    ground.fly(v)
+    if rtl.state == CLIMB:
+        if reached != 0:
+            rtl.state = RETURN
+            auto_yaw.set_default(v, 1)
+            waypoint.request_leg(ap, v.time_us, float(rtl.home[0]), float(rtl.home[1]), float(rtl.return_d))
+    elif rtl.state == RETURN:
+        if reached != 0:
+            rtl.state = LOITER
+            rtl.loiter_us = v.time_us
+    elif v.time_us - rtl.loiter_us >= ap.params.RTL_LOIT_TIME * 1000.0:
+        begin_descent(v)
+
+
+@law
+def begin_descent(v):
+    """Over home: land, or go down to RTL_ALT_FINAL."""
+    ap = v.autopilot
+    rtl = ap.modes.rtl
+    if ap.params.RTL_ALT_FINAL > 0.0 and ap.modes.failsafe.radio == 0:
+        rtl.state = FINAL_DESCENT
+        ground.set_waypoint_limits(v)
+    else:
+        rtl.state = LANDING
+        land.begin(v)
+
+
+@law
+def run_landing(v):
+    """One tick of the landing at home."""
+    ap = v.autopilot
+    land.finish(v)
+    if ground.is_grounded(v):
+        ground.handle(v)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    land.descend(v, 0)
+
+
+@law
+def run_descent(v):
+    """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
+    ap = v.autopilot
+    rtl = ap.modes.rtl
+    vn, ve = land.stick_velocity(ap)
+    position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)
+    altitude.input_pos_vel_accel_d(ap, float(rtl.descent_d), 0.0, 0.0)
+    ground.fly(v)
+    if abs(rtl.descent_d - ap.estimate.pos[2]) < _DESCENT_DONE:
+        rtl.complete = 1
+
+
+@law
+def is_landing(v):
+    """Whether the descent to the ground has begun."""
+    return v.autopilot.modes.rtl.state == LANDING

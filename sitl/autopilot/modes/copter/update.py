@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The decisions of one tick: sticks, mode, landing and crash detection, failsafes."""
+
+from __future__ import annotations
+
+from ....core.kernels import law, unit
+from ... import arming, battery, crash, failsafe, home, landing, pilot
+from ...control.motors import hover_throttle, learn_hover_throttle
+from . import (
+    alt_hold,
+    auto,
+    brake,
+    ground,
+    guided_flight,
+    land,
+    loiter,
+    rtl,
+    set_mode,
+    stabilize,
+    switch,
+)
+from .numbers import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, has_manual_throttle
+
+_TENTH = 40  # ticks
+_SECOND = 400
+_LEARN_TICKS = 4
+_LEARN_COS_LEAN = 0.9962  # 5 degrees
+_LEARN_SPEED = 0.6  # [m/s]
+
+
+@unit
+def update(fleet, i):
+    """One tick of vehicle ``i``: reads the estimate, writes targets of the controllers."""
+    v = fleet[i]
+    tick = v.tick
+    if tick % pilot.RC_TICKS == 0:
+        read_transmitter(v)
+    if tick % _TENTH == 4:
+        check_slowly(v)
+    if tick % _SECOND == 12:
+        home.update(v)
+        arming.update(v)
+    arming.update_armed(v)
+    run_mode(v)
+    landing.update(v)
+    crash.update(v)
+    landing.update_mix(v)
+    if tick % _LEARN_TICKS == 0:
+        learn_hover(v)
+
+
+@law
+def read_transmitter(v):
+    """50 times a second."""
+    pilot.receive(v)
+    failsafe.update_radio(v)
+    switch.read_mode(v)
+    switch.read_rudder(v)
+
+
+@law
+def check_slowly(v):
+    """Ten times a second."""
+    battery.update(v)
+    failsafe.update_gcs(v)
+    failsafe.update_battery(v)
+    failsafe.update_ekf(v)
+    arming.update_delay(v)
+
+
+@law
+def run_mode(v):
+    """The mode's own tick, then the change that it may have asked for."""
+    ap = v.autopilot
+    number = ap.modes.number
+    if number == GUIDED:
+        guided_flight.run(v)
+    elif number == AUTO:
+        auto.run(v)
+    elif number == LOITER:
+        loiter.run(v)
+    elif number == ALT_HOLD:
+        alt_hold.run(v)
+    elif number == RTL:
+        rtl.run(v)
+    elif number == LAND:
+        land.run(v)
+    elif number == BRAKE:
+        brake.run(v)
+    else:
+        stabilize.run(v)
+    ap.modes.last_tick = v.tick
+    if ap.modes.wanted != 0:
+        wanted = int(ap.modes.wanted) - 1
+        ap.modes.wanted = 0
+        set_mode.request(v, wanted, int(ap.modes.wanted_reason))
+    if ap.arming.armed == 0 or ap.modes.arming_delay != 0:
+        ap.control.motors.desired_spool = ground.SHUT_DOWN
+
+
+@law
+def learn_hover(v):
+    """While hovering level in a mode that holds height: the throttle of this moment is the hover throttle."""
+    ap = v.autopilot
+    if ap.arming.armed == 0 or ap.arming.landed != 0 or has_manual_throttle(int(ap.modes.number)):
+        return
+    if abs(ap.control.pos_d.vel_desired) > 0.01 or abs(ap.estimate.vel[2]) >= _LEARN_SPEED:
+        return
+    if ap.control.attitude.cos_lean < _LEARN_COS_LEAN or ap.control.motors.throttle <= 0.0:
+        return
+    if landing.is_taking_off(v) or hover_throttle(ap) <= 0.0:
+        return
+    learn_hover_throttle(ap, _LEARN_TICKS * 0.0025)

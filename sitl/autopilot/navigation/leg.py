@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plans legs: time-optimal travel along a straight line within speed, acceleration, jerk and snap limits.
+
+Ruckig (L. Berscheid, T. Kroeger: "Jerk-limited Real-time Trajectory Generation with Arbitrary Target States",
+RSS 2021) gives the timing of the constant-jerk phases. A leg that starts and ends at rest is then made
+snap-limited: each jerk pulse keeps its duration and its area but rises and falls linearly over ``rise``
+seconds. All pulses of such a leg are alike, so the distance and the speeds at their ends do not change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import ruckig
+
+from .state import SEGMENTS
+
+SHORTEST = 1e-4
+"""A leg shorter than this [m] has no length."""
+
+
+class LegError(ValueError):
+    """A leg that cannot be planned; says which number is wrong."""
+
+
+class Limits(NamedTuple):
+    """Limits along a leg [m/s, m/s^2, m/s^3, s]."""
+
+    speed: float
+    acceleration: float
+    jerk: float
+    rise: float = 0.0
+    """Time in which jerk rises from zero to its limit: snap = jerk / rise."""
+
+
+class Segment(NamedTuple):
+    """A polynomial piece from time ``t``: distance, speed, acceleration, jerk at its start,
+    and its constant snap.
+    """
+
+    t: float
+    p: float
+    v: float
+    a: float
+    j: float
+    s: float
+
+
+class Profile(NamedTuple):
+    """Motion along a leg. The last segment is the state at and after the end."""
+
+    segments: tuple[Segment, ...]
+    duration: float
+    turn_in: float
+    """End of the time of greatest acceleration from the start [s]."""
+    turn_out: float
+    """When the deceleration to the end begins [s]."""
+
+
+def pulse_acceleration(duration: float, limits: Limits) -> float:
+    """Acceleration reached by one jerk pulse of ``duration`` [s]: rise, hold,
+    fall (or rise and fall when short).
+    """
+    if duration >= 2.0 * limits.rise:
+        return limits.jerk * (duration - limits.rise)
+    return 0.25 * limits.jerk / limits.rise * duration * duration
+
+
+def pulse_duration(length: float, limits: Limits) -> float:
+    """Duration [s] of the jerk pulses of a leg of ``length`` [m] from rest to rest.
+
+    The shortest of the times in which such pulses reach the acceleration, the speed (two pulses) or half
+    the length (four pulses).
+    """
+
+    def solve(reached: Any, wanted: float) -> float:
+        low, high = 0.0, 1.0
+        while reached(high) < wanted:
+            high *= 2.0
+        for _ in range(80):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if reached(middle) < wanted else (low, middle)
+        return high
+
+    def speed(d: float) -> float:
+        return pulse_acceleration(d, limits) * d
+
+    return min(
+        solve(lambda d: pulse_acceleration(d, limits), limits.acceleration),
+        solve(speed, limits.speed),
+        solve(lambda d: 2.0 * speed(d) * d, length),
+    )
+
+
+def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: float = 0.0) -> Profile:
+    """Profile over ``length`` [m] from speed ``v0`` and acceleration ``a0`` to speed ``v1``.
+
+    Raises:
+        LegError: a number is not finite, a limit not positive, or the length negative.
+    """
+    for name, value in (*zip(("speed", "acceleration", "jerk"), limits, strict=False),):
+        if not (math.isfinite(value) and value > 0.0):
+            raise LegError(f"leg: {name} limit {value} must be a positive number")
+    if not math.isfinite(length + v0 + a0 + v1 + limits.rise) or length < 0.0 or limits.rise < 0.0:
+        raise LegError(
+            f"leg: length {length}, rise {limits.rise} must be 0 or more and speeds {v0}, {v1} finite"
+        )
+    at_rest = v0 == 0.0 and a0 == 0.0 and v1 == 0.0
+    if at_rest and length < SHORTEST:
+        return Profile((Segment(0.0, length, 0.0, 0.0, 0.0, 0.0),), 0.0, 0.0, 0.0)
+    pulse = pulse_duration(max(length, SHORTEST), limits)
+    jerk = pulse_acceleration(pulse, limits) / pulse
+    if not at_rest:
+        top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
+        jerk = pulse_acceleration(top, limits) / top
+    phases = _phases(length, limits, jerk, v0, a0, v1)
+    if at_rest and limits.rise > 0.0:
+        phases = [
+            piece for phase in phases for piece in _soften(*phase, pulse, min(limits.rise, 0.5 * pulse))
+        ]
+    return _profile(phases, length, v0, a0, v1)
+
+
+def _phases(
+    length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
+) -> list[tuple[float, float, float]]:
+    """Ruckig's phases as (duration, jerk, snap)."""
+    wanted = ruckig.InputParameter(1)
+    wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [0.0], [v0], [a0]
+    wanted.target_position, wanted.target_velocity, wanted.target_acceleration = [length], [v1], [0.0]
+    wanted.max_velocity, wanted.max_acceleration, wanted.max_jerk = (
+        [limits.speed],
+        [limits.acceleration],
+        [jerk],
+    )
+    trajectory = ruckig.Trajectory(1)
+    result = ruckig.Ruckig(1).calculate(wanted, trajectory)
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise LegError(
+            f"leg: ruckig finds no profile over {length} m from {v0} to {v1} m/s within {limits}: {result}"
+        )
+    profile = trajectory.profiles[0][0]
+    pieces = [*zip(profile.brake.t, profile.brake.j, strict=False), *zip(profile.t, profile.j, strict=False)]
+    return [(t, j, 0.0) for t, j in pieces if t > 1e-9]
+
+
+def _soften(
+    duration: float, jerk: float, _snap: float, pulse: float, rise: float
+) -> list[tuple[float, float, float]]:
+    """A constant-jerk phase as one or two pulses of rise, hold and fall, with the same duration and area.
+
+    Where a leg turns from accelerating to braking without cruise, ruckig's phase is two pulses long.
+    """
+    if jerk == 0.0:
+        return [(duration, 0.0, 0.0)]
+    count = max(round(duration / pulse), 1)
+    each = duration / count
+    peak = jerk * each / (each - rise)
+    pieces = [(rise, 0.0, peak / rise), (each - 2.0 * rise, peak, 0.0), (rise, peak, -peak / rise)]
+    return [piece for piece in pieces if piece[0] > 1e-9] * count
+
+
+def _profile(
+    phases: Sequence[tuple[float, float, float]], length: float, v0: float, a0: float, v1: float
+) -> Profile:
+    """Integrates phases to segments and finds where the start's acceleration ends and the final
+    deceleration begins.
+    """
+    segments: list[Segment] = []
+    t, p, v, a = 0.0, 0.0, v0, a0
+    for h, j, s in phases:
+        segments.append(Segment(t, p, v, a, j, s))
+        t += h
+        p += h * (v + h * (a / 2.0 + h * (j / 6.0 + h * s / 24.0)))
+        v += h * (a + h * (j / 2.0 + h * s / 6.0))
+        a += h * (j + h * s / 2.0)
+    ends = [s.t for s in segments[1:]] + [t]
+    turn_out = t
+    for k in range(len(segments) - 1, -1, -1):  # backwards over the deceleration to the end
+        j = segments[k].j + 0.5 * (ends[k] - segments[k].t) * segments[k].s
+        if not (segments[k].a < -1e-9 or j < -1e-9):
+            break
+        turn_out = segments[k].t
+    turn_in = 0.0
+    for k, segment in enumerate(segments):
+        j = segment.j + 0.5 * (ends[k] - segment.t) * segment.s
+        if j < -1e-9 or segment.a < -1e-9:
+            break
+        turn_in = ends[k]
+    segments.append(Segment(t, length, v1, 0.0, 0.0, 0.0))
+    if len(segments) > SEGMENTS:
+        raise LegError(f"leg: {len(segments)} segments, {SEGMENTS} fit")
+    return Profile(tuple(segments), t, min(turn_in, turn_out), turn_out)
+
+
+def axis_limits(direction: Sequence[float], horizontal: float, up: float, down: float) -> float:
+    """Greatest magnitude of a vector along ``direction`` (unit,
+    NED) within a horizontal and two vertical limits.
+    """
+    ne = math.hypot(direction[0], direction[1])
+    d = abs(direction[2])
+    vertical = up if direction[2] < 0.0 else down
+    return min(horizontal / ne if ne > 1e-9 else math.inf, vertical / d if d > 1e-9 else math.inf)
+
+
+def write(
+    leg: Any, profile: Profile, origin: Sequence[float], direction: Sequence[float], length: float
+) -> None:
+    """Put a profile into a leg record, at its start and not started."""
+    leg.segments = len(profile.segments)
+    leg.started = leg.k = leg.fast = 0
+    leg.elapsed, leg.duration = 0.0, profile.duration
+    leg.turn_in, leg.turn_out, leg.length = profile.turn_in, profile.turn_out, length
+    for k in range(3):
+        leg.origin[k], leg.unit[k] = origin[k], direction[k]
+    for k, segment in enumerate(profile.segments):
+        leg.t[k], leg.p[k], leg.v[k], leg.a[k], leg.j[k], leg.s[k] = segment

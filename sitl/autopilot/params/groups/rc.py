@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Radio control channels."""
+
+from __future__ import annotations
+
+from ..parameter import INT16, INT8, Parameter
+
+PARAMETERS = (
+    Parameter("RC1_MIN", 1100, 800, 2200, "us", "Least pulse of channel 1", INT16),
+    Parameter("RC1_TRIM", 1500, 800, 2200, "us", "Pulse of channel 1 at rest", INT16),
+    Parameter("RC1_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 1", INT16),
+    Parameter("RC1_REVERSED", 0, 0, 1, "", "Channel 1 works the other way round", INT8),
+    Parameter("RC1_DZ", 20, 0, 200, "us", "Dead zone of channel 1", INT16),
+    Parameter("RC2_MIN", 1100, 800, 2200, "us", "Least pulse of channel 2", INT16),
+    Parameter("RC2_TRIM", 1500, 800, 2200, "us", "Pulse of channel 2 at rest", INT16),
+    Parameter("RC2_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 2", INT16),
+    Parameter("RC2_REVERSED", 0, 0, 1, "", "Channel 2 works the other way round", INT8),
+    Parameter("RC2_DZ", 20, 0, 200, "us", "Dead zone of channel 2", INT16),
+    Parameter("RC3_MIN", 1100, 800, 2200, "us", "Least pulse of channel 3", INT16),
+    Parameter("RC3_TRIM", 1500, 800, 2200, "us", "Pulse of channel 3 at rest", INT16),
+    Parameter("RC3_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 3", INT16),
+    Parameter("RC3_REVERSED", 0, 0, 1, "", "Channel 3 works the other way round", INT8),
+    Parameter("RC3_DZ", 30, 0, 200, "us", "Dead zone of channel 3", INT16),
+    Parameter("RC4_MIN", 1100, 800, 2200, "us", "Least pulse of channel 4", INT16),
+    Parameter("RC4_TRIM", 1500, 800, 2200, "us", "Pulse of channel 4 at rest", INT16),
+    Parameter("RC4_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 4", INT16),
+    Parameter("RC4_REVERSED", 0, 0, 1, "", "Channel 4 works the other way round", INT8),
+    Parameter("RC4_DZ", 20, 0, 200, "us", "Dead zone of channel 4", INT16),
+    Parameter("RC5_MIN", 1100, 800, 2200, "us", "Least pulse of channel 5", INT16),
+    Parameter("RC5_TRIM", 1500, 800, 2200, "us", "Pulse of channel 5 at rest", INT16),
+    Parameter("RC5_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 5", INT16),
+    Parameter("RC5_REVERSED", 0, 0, 1, "", "Channel 5 works the other way round", INT8),
+    Parameter("RC5_DZ", 0, 0, 200, "us", "Dead zone of channel 5", INT16),
+    Parameter("RC6_MIN", 1100, 800, 2200, "us", "Least pulse of channel 6", INT16),
+    Parameter("RC6_TRIM", 1500, 800, 2200, "us", "Pulse of channel 6 at rest", INT16),
+    Parameter("RC6_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 6", INT16),
+    Parameter("RC6_REVERSED", 0, 0, 1, "", "Channel 6 works the other way round", INT8),
+    Parameter("RC6_DZ", 0, 0, 200, "us", "Dead zone of channel 6", INT16),
+    Parameter("RC7_MIN", 1100, 800, 2200, "us", "Least pulse of channel 7", INT16),
+    Parameter("RC7_TRIM", 1500, 800, 2200, "us", "Pulse of channel 7 at rest", INT16),
+    Parameter("RC7_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 7", INT16),
+    Parameter("RC7_REVERSED", 0, 0, 1, "", "Channel 7 works the other way round", INT8),
+    Parameter("RC7_DZ", 0, 0, 200, "us", "Dead zone of channel 7", INT16),
+    Parameter("RC8_MIN", 1100, 800, 2200, "us", "Least pulse of channel 8", INT16),
+    Parameter("RC8_TRIM", 1500, 800, 2200, "us", "Pulse of channel 8 at rest", INT16),
+    Parameter("RC8_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 8", INT16),
+    Parameter("RC8_REVERSED", 0, 0, 1, "", "Channel 8 works the other way round", INT8),
+    Parameter("RC8_DZ", 0, 0, 200, "us", "Dead zone of channel 8", INT16),
+    Parameter("RC_OVERRIDE_TIME", 3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"),
+    Parameter("RC_FS_TIMEOUT", 1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost"),
+)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One client as the bridge sees it: its own sequence numbers, MAVLink version, streams and statistics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .dialect import MessageType
+from .frame import Frame, Splitter, encode_v1, encode_v2
+from .links.link import Peer
+from .stream_table import StreamTable
+
+COMPONENT = 1
+"""MAV_COMP_ID_AUTOPILOT1."""
+
+
+@dataclass
+class Statistics:
+    """Counts of one channel."""
+
+    received: int = 0
+    sent: int = 0
+    lost: int = 0
+    """Gaps in the client's sequence numbers."""
+
+
+class Channel:
+    """Frames to and from one client.
+
+    It speaks MAVLink 2, except to a client that has only ever been heard in MAVLink 1.
+    """
+
+    def __init__(self, peer: Peer, number: int, system: int) -> None:
+        self.peer = peer
+        self.number = number
+        self.system = system
+        """Our system id in outgoing frames."""
+        self.version = 2
+        self.heard_v2 = False
+        self.sequence = 0
+        self.splitter = Splitter()
+        self.streams = StreamTable()
+        self.statistics = Statistics()
+        self._expected: dict[tuple[int, int], int] = {}
+
+    @property
+    def name(self) -> str:
+        """Link and address, for people."""
+        return self.peer.name
+
+    def send(self, kind: MessageType, payload: bytes) -> None:
+        """Queue one message; the bridge flushes all channels when it is done."""
+        encode = encode_v2 if self.version == 2 else encode_v1
+        frame = encode(kind, payload, self.sequence, self.system, COMPONENT)
+        if frame:
+            self.sequence = (self.sequence + 1) & 0xFF
+            self.statistics.sent += 1
+            self.peer.write(frame)
+
+    def receive(self) -> list[Frame]:
+        """Frames that came in since the last call."""
+        data = self.peer.take()
+        if not data:
+            return []
+        frames = self.splitter.feed(data)
+        for frame in frames:
+            self._note(frame)
+        return frames
+
+    def _note(self, frame: Frame) -> None:
+        self.statistics.received += 1
+        sender = (frame.system, frame.component)
+        expected = self._expected.get(sender)
+        if expected is not None:
+            self.statistics.lost += (frame.sequence - expected) & 0xFF
+        if expected is not None or len(self._expected) < 256:
+            self._expected[sender] = (frame.sequence + 1) & 0xFF
+        if frame.version == 2:
+            self.heard_v2, self.version = True, 2
+        elif not self.heard_v2:
+            self.version = 1

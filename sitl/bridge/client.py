@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A MAVLink client in the vehicle's own process: real bytes, no socket, no thread."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from .dialect import message
+from .frame import Splitter, encode_v2
+from .links.inprocess import InProcessLink
+
+
+class Received(NamedTuple):
+    """A message from the vehicle: its name and its fields (a named tuple)."""
+
+    name: str
+    fields: Any
+
+
+class Client:
+    """The other end of an :class:`InProcessLink`.
+
+    Args:
+        link: the link that the vehicle's bridge has.
+        system, component: who sends; 255 and 190 are a ground station's.
+    """
+
+    def __init__(self, link: InProcessLink | None = None, system: int = 255, component: int = 190) -> None:
+        self.link = link or InProcessLink()
+        self.system, self.component = system, component
+        self._splitter = Splitter()
+        self._sequence = 0
+
+    def send(self, name: str, **fields: Any) -> None:
+        """Encode and send one message; fields not given are zero."""
+        kind = message(name)
+        self.send_payload(kind, kind.payload(**fields))
+
+    def send_payload(self, kind: Any, payload: bytes) -> None:
+        """Send one message whose payload is packed already (the quick way for set-points)."""
+        self.link.send(encode_v2(kind, payload, self._sequence, self.system, self.component))
+        self._sequence = (self._sequence + 1) & 0xFF
+
+    def command(self, number: int, *params: float, target: int = 1) -> None:
+        """Send a COMMAND_LONG with up to seven parameters."""
+        values = dict(zip(("param1", "param2", "param3", "param4", "param5", "param6", "param7"), params))
+        self.send("COMMAND_LONG", target_system=target, target_component=1, command=number, **values)
+
+    def set_interval(self, name: str, rate_hz: float) -> None:
+        """Ask for a message at a rate (MAV_CMD_SET_MESSAGE_INTERVAL)."""
+        self.command(511, message(name).id, 1e6 / rate_hz if rate_hz > 0 else -1)
+
+    def receive(self) -> list[Received]:
+        """All messages since the last call, in order."""
+        data = self.link.receive()
+        if not data:
+            return []
+        return [Received(f.kind.name, f.kind.decode(f.payload)) for f in self._splitter.feed(data)]

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""MAVLink frames: payload to bytes, and a stream of bytes back to frames.
+
+Source: https://mavlink.io/en/guide/serialization.html (packet format, zero truncation, checksum).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .dialect import KNOWN_IDS, MessageType, crc_mcrf4xx, message_by_id
+
+MARK_V1, MARK_V2 = 0xFE, 0xFD
+HEADER_V1, HEADER_V2, CHECKSUM, SIGNATURE = 6, 10, 2, 13
+SIGNED = 0x01
+"""Incompatibility flag: 13 bytes of signature follow the checksum."""
+
+
+def encode_v2(kind: MessageType, payload: bytes, sequence: int, system: int, component: int) -> bytes:
+    """A MAVLink 2 frame; trailing zeros of the payload are left out (one byte always stays)."""
+    payload = payload.rstrip(b"\0") or b"\0"
+    body = bytes((len(payload), 0, 0, sequence, system, component)) + kind.id_bytes + payload
+    return b"\xfd" + body + crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little")
+
+
+def encode_v1(kind: MessageType, payload: bytes, sequence: int, system: int, component: int) -> bytes:
+    """A MAVLink 1 frame (no extension fields).
+
+    Empty for a message number above 255, which version 1 cannot carry.
+    """
+    if kind.id > 255:
+        return b""
+    payload = payload[: kind.base_size]
+    body = bytes((len(payload), sequence, system, component, kind.id)) + payload
+    return b"\xfe" + body + crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little")
+
+
+class Frame(NamedTuple):
+    """A frame whose checksum is right."""
+
+    kind: MessageType
+    payload: bytes
+    sequence: int
+    system: int
+    component: int
+    version: int
+    raw: bytes
+
+
+class Splitter:
+    """Cuts frames out of a stream of bytes, whatever the stream contains.
+
+    A header that cannot be right (unknown message, payload longer than the message, unknown incompatibility
+    flag) or a wrong checksum costs one byte: the search goes on right behind its start mark, so a good frame
+    that follows, or that stands inside what looked like a frame, is found. Signed frames are accepted and
+    their signature is not checked.
+    """
+
+    def __init__(self) -> None:
+        self._rest = b""
+        self.skipped_bytes = 0
+        self.bad_checksums = 0
+
+    def feed(self, data: bytes) -> list[Frame]:
+        """All frames completed by ``data``, in order. Never raises."""
+        buffer = self._rest + data if self._rest else bytes(data)
+        frames: list[Frame] = []
+        at, end = 0, len(buffer)
+        while at < end:
+            mark = buffer[at]
+            if mark == MARK_V2:
+                header = HEADER_V2
+            elif mark == MARK_V1:
+                header = HEADER_V1
+            else:
+                found = self._next_mark(buffer, at + 1)
+                self.skipped_bytes += found - at
+                at = found
+                continue
+            if end - at < header:
+                break
+            size = buffer[at + 1]
+            if header == HEADER_V2:
+                flags = buffer[at + 2]
+                number = buffer[at + 7] | buffer[at + 8] << 8 | buffer[at + 9] << 16
+                total = HEADER_V2 + size + CHECKSUM + (SIGNATURE if flags & SIGNED else 0)
+                plausible = flags & ~SIGNED == 0
+            else:
+                number = buffer[at + 5]
+                total = HEADER_V1 + size + CHECKSUM
+                plausible = True
+            if not plausible or number not in KNOWN_IDS or size > (kind := message_by_id(number)).size:
+                self.skipped_bytes += 1
+                at += 1
+                continue
+            if end - at < total:
+                break
+            start = at + header
+            stop = start + size
+            if (
+                crc_mcrf4xx(buffer[at + 1 : stop] + kind.crc_extra, 0xFFFF)
+                != buffer[stop] | buffer[stop + 1] << 8
+            ):
+                self.bad_checksums += 1
+                self.skipped_bytes += 1
+                at += 1
+                continue
+            payload = buffer[start:stop]
+            raw = buffer[at : at + total]
+            if header == HEADER_V2:
+                frames.append(Frame(kind, payload, raw[4], raw[5], raw[6], 2, raw))
+            else:
+                frames.append(Frame(kind, payload, raw[2], raw[3], raw[4], 1, raw))
+            at += total
+        self._rest = buffer[at:]
+        return frames
+
+    @staticmethod
+    def _next_mark(buffer: bytes, at: int) -> int:
+        """Index of the next start mark at or behind ``at``, or the end."""
+        one, two = buffer.find(b"\xfd", at), buffer.find(b"\xfe", at)
+        if one < 0 and two < 0:
+            return len(buffer)
+        return min(i for i in (one, two) if i >= 0)

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every link has: peers, each with bytes that came in and frames that go out. Nothing here blocks."""
+
+from __future__ import annotations
+
+import selectors
+from collections.abc import Callable
+
+Selector = selectors.BaseSelector
+
+
+class Peer:
+    """One client at the other end of a link: a TCP connection, a UDP address, the other half of a pair."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.closed = False
+        self.why_closed = ""
+        self._inbox: list[bytes] = []
+        self.outbox: list[bytes] = []
+
+    def deliver(self, data: bytes) -> None:
+        """Bytes from the client, kept until the bridge takes them."""
+        self._inbox.append(data)
+
+    def take(self) -> bytes:
+        """All bytes that came in since the last call."""
+        if not self._inbox:
+            return b""
+        data = self._inbox[0] if len(self._inbox) == 1 else b"".join(self._inbox)
+        self._inbox.clear()
+        return data
+
+    def write(self, frame: bytes) -> None:
+        """Queue one frame; ``flush`` sends it."""
+        self.outbox.append(frame)
+
+    def flush(self) -> None:
+        """Hand queued frames to the operating system, as far as it takes them now."""
+        self.outbox.clear()
+
+    @property
+    def congested(self) -> bool:
+        """True when the client reads too slowly: telemetry should wait, answers still go."""
+        return False
+
+
+class Link:
+    """A place where peers appear.
+
+    ``on_peer`` is called for each new one, also for those there before it was set.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.peers: list[Peer] = []
+        self._on_peer: Callable[[Peer], None] | None = None
+
+    def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
+        """Register sockets with ``selector``.
+
+        (its ``data`` is the function to call when readable) and report peers.
+        """
+        self._on_peer = on_peer
+        for peer in self.peers:
+            on_peer(peer)
+
+    def reattach(self, on_peer: Callable[[Peer], None]) -> None:
+        """Report peers, present and new, to another listener; sockets stay registered."""
+        self._on_peer = on_peer
+        for peer in self.peers:
+            on_peer(peer)
+
+    def add_peer(self, peer: Peer) -> None:
+        self.peers.append(peer)
+        if self._on_peer is not None:
+            self._on_peer(peer)
+
+    def close(self) -> None:
+        """Close all sockets; peers are marked closed."""
+        for peer in self.peers:
+            peer.closed = True
+        self.peers.clear()

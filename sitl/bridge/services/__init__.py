@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""MAVLink's microservices, one file each (https://mavlink.io/en/services/)."""
+
+from .commands import CommandService
+from .events import EventService
+from .ftp import FtpService
+from .heartbeat import HeartbeatService
+from .home import HomeService
+from .mission import MissionService
+from .parameters import ParameterService
+from .ping import PingService
+from .rc import RcService
+from .setpoints import SetpointService
+from .statustext import StatusTextService
+from .streams import StreamService
+from .timesync import TimesyncService
+
+ALL_SERVICES = (
+    StatusTextService,
+    HeartbeatService,
+    StreamService,
+    CommandService,
+    ParameterService,
+    MissionService,
+    SetpointService,
+    RcService,
+    HomeService,
+    TimesyncService,
+    PingService,
+    EventService,
+    FtpService,
+)
+"""In the order in which they act when several are due at the same time."""

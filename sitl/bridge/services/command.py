@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A command from COMMAND_LONG or COMMAND_INT, in one shape."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..channel import Channel
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+
+GLOBAL, LOCAL_NED, MISSION, GLOBAL_RELATIVE_ALT = 0, 1, 2, 3
+FRAMES_AMSL = frozenset((0, 5))
+FRAMES_RELATIVE = frozenset((3, 6))
+FRAMES_TERRAIN = frozenset((10, 11))
+GLOBAL_FRAMES = FRAMES_AMSL | FRAMES_RELATIVE | FRAMES_TERRAIN
+"""MAV_FRAME numbers with latitude and longitude."""
+
+
+class Command(NamedTuple):
+    """One command; numbers are finite, a NaN ("not given") has become 0."""
+
+    number: int
+    p1: float
+    p2: float
+    p3: float
+    p4: float
+    lat: int
+    """[degE7]"""
+    lon: int
+    z: float
+    """p7: altitude [m] or whatever the command makes of it."""
+    frame: int
+    is_int: bool
+    p5: float
+    """As given, for commands that are not about a place."""
+    p6: float
+
+
+class Entry(NamedTuple):
+    """How a command is carried out."""
+
+    run: Callable[[Bridge, Channel, Command], int]
+    """Gives the MAV_RESULT."""
+    required: tuple[int, ...] = ()
+    """Parameters (1..7) that must be numbers: NaN is refused with DENIED."""
+    place: bool = False
+    """p5, p6 are latitude and longitude [deg] in COMMAND_LONG."""
+    int_only: bool = False
+    """COMMAND_LONG is UNSUPPORTED: single precision cannot say where."""
+    long_frame: int = GLOBAL_RELATIVE_ALT
+    """Frame of a COMMAND_LONG, which has none."""
+
+
+def from_long(fields: Any, entry: Entry) -> Command | None:
+    """Command of a COMMAND_LONG, or None when a parameter is infinite, a required one NaN.
+
+    Or the place not on Earth.
+    """
+    values = (
+        fields.param1,
+        fields.param2,
+        fields.param3,
+        fields.param4,
+        fields.param5,
+        fields.param6,
+        fields.param7,
+    )
+    clean = _clean(values, entry)
+    if clean is None:
+        return None
+    p1, p2, p3, p4, p5, p6, p7 = clean
+    lat = lon = 0
+    if entry.place:
+        if not (abs(p5) <= 90.0 and abs(p6) <= 180.0):
+            return None
+        lat, lon = round(p5 * 1e7), round(p6 * 1e7)
+    return Command(fields.command, p1, p2, p3, p4, lat, lon, p7, entry.long_frame, False, p5, p6)
+
+
+def from_int(fields: Any, entry: Entry) -> Command | None:
+    """Command of a COMMAND_INT, or None as for ``from_long``."""
+    values = (
+        fields.param1,
+        fields.param2,
+        fields.param3,
+        fields.param4,
+        float(fields.x),
+        float(fields.y),
+        fields.z,
+    )
+    clean = _clean(values, entry)
+    if clean is None:
+        return None
+    p1, p2, p3, p4, p5, p6, p7 = clean
+    if entry.place and not (abs(fields.x) <= 900_000_000 and abs(fields.y) <= 1_800_000_000):
+        return None
+    return Command(fields.command, p1, p2, p3, p4, fields.x, fields.y, p7, fields.frame, True, p5, p6)
+
+
+def _clean(values: tuple[float, ...], entry: Entry) -> list[float] | None:
+    if any(math.isinf(x) for x in values) or any(math.isnan(values[k - 1]) for k in entry.required):
+        return None
+    return [0.0 if math.isnan(x) else x for x in values]

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the core tells (``autopilot.events``) as texts and messages for clients. Texts are ArduCopter's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...autopilot import events as core
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from ..dialect import message
+from ..stream_table import NEVER
+from .home import HomeService
+from .results import CRITICAL, INFO, WARNING
+from .service import Service
+from .statustext import StatusTextService
+
+LOOK_EVERY_US = 100_000
+"""Events that do not stop the core are looked for this often [simulated us]."""
+BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Ready"))
+"""(simulated us after boot, text)"""
+
+TEXTS = {
+    core.ARMED: (INFO, "Arming motors"),
+    core.DISARMED: (INFO, "Disarming motors"),
+    core.EKF_INITIALISED: (INFO, "EKF3 IMU0 initialised"),
+    core.EKF_TILT_ALIGNED: (INFO, "EKF3 IMU0 tilt alignment complete"),
+    core.EKF_YAW_ALIGNED: (INFO, "EKF3 IMU0 MAG0 initial yaw alignment complete"),
+    core.EKF_YAW_ALIGNED_IN_FLIGHT: (INFO, "EKF3 IMU0 MAG0 in-flight yaw alignment complete"),
+    core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
+    core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
+    core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
+    core.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
+}
+"""Event code -> (severity, text with the event's numbers a and b)."""
+
+HEARTBEAT = message("HEARTBEAT").id
+MISSION_CURRENT = message("MISSION_CURRENT").id
+REACHED = message("MISSION_ITEM_REACHED")
+E = "autopilot.events."
+
+
+class EventService(Service):
+    """Reads the ring of events; says texts; tells of home, origin and the mission's progress."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._count = bridge.reader.field(E + "count")
+        self._seen = 0
+        self._boot_text = 0
+        self._next_us = 0
+
+    def next_due_us(self) -> int:
+        return self._next_us if self.bridge.channels else NEVER
+
+    def service(self, now_us: int) -> None:
+        self._next_us = (now_us // LOOK_EVERY_US + 1) * LOOK_EVERY_US
+        while self._boot_text < len(BOOT_TEXTS) and BOOT_TEXTS[self._boot_text][0] <= now_us:
+            self.bridge.get(StatusTextService).say(INFO, BOOT_TEXTS[self._boot_text][1])
+            self._boot_text += 1
+        self.read()
+
+    def clock_changed(self, now_us: int) -> None:
+        """The record was put to another time: events up to there are old."""
+        self._seen = int(self._count())
+        self._next_us = now_us
+        self._boot_text = sum(at <= now_us for at, _ in BOOT_TEXTS)
+
+    def read(self) -> None:
+        """Tell of every event since the last call."""
+        count = int(self._count())
+        if count == self._seen:
+            return
+        ring = self.bridge.vehicle.v.autopilot.events
+        for k in range(max(self._seen, count - core.EVENT_RING), count):
+            at = k % core.EVENT_RING
+            self._tell(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
+        self._seen = count
+        self.bridge.get(HomeService).tell_changes()
+
+    def _tell(self, code: int, a: float, b: float) -> None:
+        say = self.bridge.get(StatusTextService).say
+        if code in TEXTS:
+            severity, text = TEXTS[code]
+            say(severity, text.format(a=a, b=b))
+        if code == core.EKF_INITIALISED:
+            say(INFO, "AHRS: EKF3 active")
+        elif code == core.EKF_ORIGIN_SET:
+            altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
+            say(INFO, f"Field Elevation Set: {altitude:.0f}m")
+        elif code == core.MODE_CHANGED:
+            for channel in self.bridge.channels:
+                self.bridge.send_now(channel, HEARTBEAT)
+        else:
+            self.notes(self.bridge.autopilot.texts_of(code, int(a), int(b)))
+
+    def notes(self, notes: list[Any]) -> None:
+        """Texts and progress that the mission's sequencer or a law gave back."""
+        for note in notes:
+            if isinstance(note, Text):
+                self.bridge.get(StatusTextService).say(note.severity, note.text)
+            elif isinstance(note, ItemReached):
+                self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
+            elif isinstance(note, CurrentChanged):
+                for channel in self.bridge.channels:
+                    self.bridge.send_now(channel, MISSION_CURRENT)

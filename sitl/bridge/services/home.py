@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Home and origin: SET_GPS_GLOBAL_ORIGIN, SET_HOME_POSITION.
+
+Every change of home or origin is told to all clients.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..channel import Channel
+from ..dialect import message
+from .service import Handler, Sender, Service
+
+HOME, ORIGIN = message("HOME_POSITION").id, message("GPS_GLOBAL_ORIGIN").id
+H, E = "autopilot.home.", "autopilot.estimate.origin_"
+
+
+class HomeService(Service):
+    """https://mavlink.io/en/services/mission.html has no home service of its own; this is common.xml's."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._home = bridge.reader.fields(H + "is_set", H + "lat", H + "lon", H + "alt")
+        self._origin = bridge.reader.fields(E + "set", E + "lat", E + "lon", E + "alt")
+        self._told_home = self._home()
+        self._told_origin = self._origin()
+
+    def handlers(self) -> dict[str, Handler]:
+        return {"SET_GPS_GLOBAL_ORIGIN": self._set_origin, "SET_HOME_POSITION": self._set_home}
+
+    def tell_changes(self) -> None:
+        """Send HOME_POSITION or GPS_GLOBAL_ORIGIN to everyone when they are other than last told."""
+        home, origin = self._home(), self._origin()
+        for number, now, told in ((ORIGIN, origin, self._told_origin), (HOME, home, self._told_home)):
+            if now != told and now[0]:
+                for channel in self.bridge.channels:
+                    self.bridge.send_now(channel, number)
+        self._told_home, self._told_origin = home, origin
+
+    def _set_origin(self, channel: Channel, m: Any, sender: Sender) -> None:
+        """Only before the estimator has an origin; else nothing happens, as in ArduPilot."""
+        if self._valid(m.latitude, m.longitude):
+            if self.bridge.autopilot.set_origin(m.latitude, m.longitude, m.altitude * 1e-3):
+                self.tell_changes()
+
+    def _set_home(self, channel: Channel, m: Any, sender: Sender) -> None:
+        if self._valid(m.latitude, m.longitude):
+            if self.bridge.autopilot.set_home(m.latitude, m.longitude, m.altitude * 1e-3):
+                self.tell_changes()
+
+    @staticmethod
+    def _valid(lat: int, lon: int) -> bool:
+        return abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000 and (lat, lon) != (0, 0)

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The mission protocol (https://mavlink.io/en/services/mission.html), vehicle side.
+
+An upload is collected apart and replaces the mission only when it is complete and valid; until then the old
+one stands.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...autopilot.mission.item import MissionItem
+from ...autopilot.mission.validate import MAX_ITEMS
+from ..channel import Channel
+from ..dialect import message
+from ..stream_table import NEVER
+from .mission_item import from_float, from_int, to_float, to_int
+from .mission_results import (
+    ACCEPTED,
+    CANCELLED,
+    DENIED,
+    ERROR,
+    INVALID,
+    INVALID_SEQUENCE,
+    NO_SPACE,
+    UNSUPPORTED,
+)
+from .mission_upload import Upload
+from .results import INFO, WARNING
+from .service import Handler, Sender, Service
+from .setpoints import SetpointService
+from .statustext import StatusTextService
+
+MISSION, FENCE, RALLY, ALL = 0, 1, 2, 255
+ACK, COUNT, REQUEST = message("MISSION_ACK"), message("MISSION_COUNT"), message("MISSION_REQUEST")
+MISSION_CURRENT = message("MISSION_CURRENT").id
+GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
+"""Values of ``current`` that make a mission item a target for GUIDED (DroneKit's simple_goto)."""
+
+
+class MissionService(Service):
+    """Upload, download, clear, set current, partial write; fences and rally points are answered as empty."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self.upload: Upload | None = None
+        self._last: tuple[Channel, Sender, int] | None = None
+        """Who uploaded last, and the number of the last item: its acknowledgement may have been lost."""
+
+    def handlers(self) -> dict[str, Handler]:
+        return {
+            "MISSION_COUNT": self._count,
+            "MISSION_WRITE_PARTIAL_LIST": self._write_partial,
+            "MISSION_ITEM_INT": self._item_int,
+            "MISSION_ITEM": self._item_float,
+            "MISSION_REQUEST_LIST": self._request_list,
+            "MISSION_REQUEST_INT": self._request_int,
+            "MISSION_REQUEST": self._request_float,
+            "MISSION_CLEAR_ALL": self._clear_all,
+            "MISSION_SET_CURRENT": self._set_current,
+            "MISSION_ACK": self._ack_received,
+        }
+
+    def channel_removed(self, channel: Channel) -> None:
+        if self.upload is not None and self.upload.channel is channel:
+            self.upload = None
+        if self._last is not None and self._last[0] is channel:
+            self._last = None
+
+    def _ack(self, channel: Channel, sender: Sender, result: int, kind: int = MISSION) -> None:
+        system, component = sender
+        fields = {
+            "target_system": system,
+            "target_component": component,
+            "type": result,
+            "mission_type": kind,
+        }
+        channel.send(ACK, ACK.payload(**fields))
+
+    # ------------------------------------------------------------------ upload
+
+    def _may_start(self, channel: Channel, sender: Sender, kind: int) -> bool:
+        """Whether this sender may upload now; answers if not. A sender may begin its own upload anew."""
+        if self.upload is not None and (self.upload.channel, self.upload.sender) != (channel, sender):
+            self._ack(channel, sender, DENIED, kind)
+            return False
+        return True
+
+    def _count(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        kind = fields.mission_type
+        if kind != MISSION:
+            empty = kind in (FENCE, RALLY) and fields.count == 0
+            self._ack(channel, sender, ACCEPTED if empty else UNSUPPORTED, kind)
+        elif self._may_start(channel, sender, kind):
+            self.upload = None
+            if fields.count > MAX_ITEMS:
+                self._ack(channel, sender, NO_SPACE)
+            elif fields.count == 0:
+                self._ack(channel, sender, ACCEPTED if self.bridge.autopilot.clear_mission() else ERROR)
+            else:
+                self._begin(channel, sender, 0, fields.count, ())
+
+    def _write_partial(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        if fields.mission_type != MISSION:
+            self._ack(channel, sender, UNSUPPORTED, fields.mission_type)
+        elif self._may_start(channel, sender, MISSION):
+            self.upload = None
+            items = self.bridge.autopilot.mission_items()
+            first, last = fields.start_index, fields.end_index
+            if not 0 <= first <= last < len(items):
+                self._ack(channel, sender, INVALID_SEQUENCE)
+            else:
+                self._begin(channel, sender, first, last + 1, items)
+
+    def _begin(
+        self, channel: Channel, sender: Sender, first: int, stop: int, base: tuple[MissionItem, ...]
+    ) -> None:
+        self.upload = Upload(channel, sender, first, stop, base, self.bridge.now_us)
+        self._last = None
+        self._request_next(self.upload)
+
+    def _request_next(self, upload: Upload) -> None:
+        system, component = upload.sender
+        upload.asked(self.bridge.now_us)
+        fields = {"target_system": system, "target_component": component, "seq": upload.next}
+        upload.channel.send(REQUEST, REQUEST.payload(**fields))
+
+    def _item_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._item(channel, fields, sender, *from_int(fields))
+
+    def _item_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        if (
+            self.upload is not None
+            and fields.current not in (GUIDED_TARGET, ALTITUDE_CHANGE)
+            and fields.seq == 0
+        ):
+            say = self.bridge.get(StatusTextService).say
+            say(WARNING, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")
+        self._item(channel, fields, sender, *from_float(fields))
+
+    def _item(self, channel: Channel, fields: Any, sender: Sender, item: MissionItem, result: int) -> None:
+        kind = fields.mission_type
+        if kind != MISSION:
+            self._ack(channel, sender, UNSUPPORTED, kind)
+            return
+        if fields.current in (GUIDED_TARGET, ALTITUDE_CHANGE):
+            if result == ACCEPTED:
+                target = self.bridge.get(SetpointService).mission_item_target
+                result = ACCEPTED if target(item, fields.current == ALTITUDE_CHANGE) else ERROR
+            self._ack(channel, sender, result)
+            return
+        upload = self.upload
+        if upload is None:
+            repeated = self._last == (channel, sender, fields.seq)
+            self._ack(channel, sender, ACCEPTED if repeated else ERROR)
+        elif (upload.channel, upload.sender) != (channel, sender):
+            self._ack(channel, sender, DENIED)
+        elif fields.seq == upload.next - 1 and fields.seq >= upload.first:
+            self._request_next(upload)  # our request for the next was lost, or this is a repeat
+        elif fields.seq != upload.next:
+            self._cancel(INVALID_SEQUENCE)
+        elif result != ACCEPTED:
+            self._cancel(result)
+        else:
+            upload.add(item, self.bridge.now_us)
+            if upload.complete:
+                self._finish(upload)
+            else:
+                self._request_next(upload)
+
+    def _finish(self, upload: Upload) -> None:
+        self.upload = None
+        result = self.bridge.autopilot.replace_mission(upload.merged())
+        self._ack(upload.channel, upload.sender, result)
+        if result == ACCEPTED:
+            self._last = (upload.channel, upload.sender, upload.stop - 1)
+            self.bridge.get(StatusTextService).say(INFO, "Flight plan received")
+        self.bridge.say_pending()
+
+    def _cancel(self, result: int) -> None:
+        if self.upload is not None:
+            self._ack(self.upload.channel, self.upload.sender, result)
+            self.upload = None
+
+    def _ack_received(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        """The uploader gives up.
+
+        The end of a download is acknowledged in the same way and needs no action.
+        """
+        upload = self.upload
+        if (
+            upload is not None
+            and (upload.channel, upload.sender) == (channel, sender)
+            and fields.type != ACCEPTED
+        ):
+            self.upload = None
+
+    def clock_changed(self, now_us: int) -> None:
+        self.upload = None
+
+    def next_due_us(self) -> int:
+        return NEVER if self.upload is None else self.upload.due_us
+
+    def service(self, now_us: int) -> None:
+        if self.upload is not None and now_us >= self.upload.due_us:
+            if now_us >= self.upload.deadline_us:
+                self._cancel(CANCELLED)
+                self.bridge.get(StatusTextService).say(WARNING, "Mission upload timeout")
+            else:
+                self._request_next(self.upload)
+
+    # ------------------------------------------------------------------ download
+
+    def _request_list(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        kind = fields.mission_type
+        if kind not in (MISSION, FENCE, RALLY):
+            self._ack(channel, sender, UNSUPPORTED, kind)
+        elif self._may_start(channel, sender, kind):
+            count = len(self.bridge.autopilot.mission_items()) if kind == MISSION else 0
+            target = {"target_system": sender[0], "target_component": sender[1]}
+            channel.send(COUNT, COUNT.payload(count=count, mission_type=kind, **target))
+
+    def _request_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._send_item(channel, fields, sender, to_int)
+
+    def _request_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._send_item(channel, fields, sender, to_float)
+
+    def _send_item(self, channel: Channel, fields: Any, sender: Sender, pack: Any) -> None:
+        items = self.bridge.autopilot.mission_items() if fields.mission_type == MISSION else ()
+        if fields.mission_type not in (MISSION, FENCE, RALLY):
+            self._ack(channel, sender, UNSUPPORTED, fields.mission_type)
+        elif fields.seq >= len(items):
+            self._ack(channel, sender, INVALID_SEQUENCE, fields.mission_type)
+        else:
+            is_current = fields.seq == self.bridge.autopilot.current_item()
+            channel.send(*pack(items[fields.seq], fields.seq, is_current, sender))
+
+    # ------------------------------------------------------------------ the rest
+
+    def _clear_all(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        kind = fields.mission_type
+        if kind not in (MISSION, FENCE, RALLY, ALL):
+            self._ack(channel, sender, INVALID, kind)
+        elif self.upload is not None:
+            self._ack(channel, sender, DENIED, kind)
+        elif kind in (FENCE, RALLY):
+            self._ack(channel, sender, ACCEPTED, kind)
+        else:
+            self._ack(channel, sender, ACCEPTED if self.bridge.autopilot.clear_mission() else ERROR, kind)
+
+    def _set_current(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        if self.bridge.autopilot.set_current_item(fields.seq, False):
+            self.bridge.send_now(channel, MISSION_CURRENT)
+        self.bridge.say_pending()

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The parameter protocol (https://mavlink.io/en/services/parameter.html), with ArduPilot's encoding.
+
+The number itself as float32.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32
+from ...autopilot.params.table import BY_NAME, TABLE, stored
+from ..channel import Channel
+from ..dialect import message
+from ..stream_table import NEVER
+from .results import WARNING
+from .service import Handler, Sender, Service
+from .statustext import StatusTextService
+from .streams import StreamService
+
+VALUE = message("PARAM_VALUE")
+WIRE_TYPES = {INT8: 2, INT16: 4, INT32: 6, FLOAT: 9}
+"""MAV_PARAM_TYPE"""
+NO_INDEX = 65535
+LIST_EVERY_US = 10_000
+LIST_AT_ONCE = 10
+"""A list goes out at ten parameters in 10 ms of simulated time."""
+
+
+class ParameterService(Service):
+    """List, read by name or index, set."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._lists: dict[Channel, int] = {}
+        self._next_us = NEVER
+
+    def handlers(self) -> dict[str, Handler]:
+        return {
+            "PARAM_REQUEST_LIST": self._request_list,
+            "PARAM_REQUEST_READ": self._request_read,
+            "PARAM_SET": self._set,
+        }
+
+    def channel_removed(self, channel: Channel) -> None:
+        self._lists.pop(channel, None)
+
+    def value(self, name: str) -> float:
+        """Present value, in the parameter's own unit."""
+        return float(self.bridge.vehicle.v.autopilot.params[name])
+
+    def _payload(self, name: str, index: int) -> bytes:
+        kind = WIRE_TYPES[BY_NAME[name].kind]
+        return VALUE.pack(self.value(name), len(TABLE), index, name.encode(), kind)
+
+    # ------------------------------------------------------------------ reading
+
+    def _request_list(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._lists[channel] = 0
+        self._next_us = min(self._next_us, self.bridge.now_us)
+
+    def clock_changed(self, now_us: int) -> None:
+        self._next_us = now_us if self._lists else NEVER
+
+    def next_due_us(self) -> int:
+        return self._next_us
+
+    def service(self, now_us: int) -> None:
+        for channel, at in list(self._lists.items()):
+            if channel.peer.congested:
+                continue
+            stop = min(at + LIST_AT_ONCE, len(TABLE))
+            for k in range(at, stop):
+                channel.send(VALUE, self._payload(TABLE[k].name, k))
+            self._lists[channel] = stop
+            if stop == len(TABLE):
+                del self._lists[channel]
+        self._next_us = now_us + LIST_EVERY_US if self._lists else NEVER
+
+    def _request_read(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        if fields.param_index >= 0:
+            if fields.param_index < len(TABLE):
+                name = TABLE[fields.param_index].name
+                channel.send(VALUE, self._payload(name, fields.param_index))
+            return
+        name = fields.param_id.decode("ascii", "replace")
+        if name in BY_NAME:
+            channel.send(VALUE, self._payload(name, NO_INDEX))
+
+    # ------------------------------------------------------------------ writing
+
+    def _set(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        name = fields.param_id.decode("ascii", "replace")
+        if name not in BY_NAME:
+            return
+        refusal = self.set(name, fields.param_value)
+        if refusal is not None:
+            self.bridge.get(StatusTextService).say(WARNING, refusal)
+            channel.send(VALUE, self._payload(name, NO_INDEX))
+
+    def set(self, name: str, value: float) -> str | None:
+        """Set a parameter and tell every client, or say why not.
+
+        Raises:
+            KeyError: there is no such parameter.
+        """
+        parameter = BY_NAME[name]
+        refusal = parameter.refusal(value)
+        if refusal is not None:
+            return refusal
+        self.bridge.vehicle.v.autopilot.params[name] = stored(parameter, value)
+        self.bridge.broadcast(VALUE, self._payload(name, NO_INDEX))
+        self.bridge.autopilot.parameter_changed(name)
+        self.bridge.get(StreamService).parameter_changed(name)
+        if name == "MAV_SYSID":
+            self.bridge.refresh_identity()
+        return None

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ground station's sticks.
+
+RC_CHANNELS_OVERRIDE and MANUAL_CONTROL, only from the system named by MAV_GCS_SYSID.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..channel import Channel
+from .service import Handler, Sender, Service
+
+IGNORE, RELEASE_EXTENDED = 65535, 65534
+"""Channels 1..8: 0 gives the channel back; channels 9..18: 65534 does, and 0 means nothing."""
+CHANNELS = 18
+INVALID = 32767
+DEFAULT_RANGE = (1100.0, 1900.0)
+LOWEST, HIGHEST = 800, 2200
+"""Pulses outside cannot come from a receiver and are ignored [us]."""
+
+
+class RcService(Service):
+    """Writes ``rc.override``; the firmware forgets an override after RC_OVERRIDE_TIME."""
+
+    def handlers(self) -> dict[str, Handler]:
+        return {"RC_CHANNELS_OVERRIDE": self._override, "MANUAL_CONTROL": self._manual}
+
+    def _put(self, channel: int, pulse: int) -> None:
+        """Override channel 0.. with a pulse [us]; 0 gives it back."""
+        rc = self.bridge.vehicle.v.autopilot.rc
+        rc.override[channel] = pulse
+        rc.override_us[channel] = self.bridge.now_us
+
+    def _heard(self) -> None:
+        self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
+
+    def _override(self, channel: Channel, m: Any, sender: Sender) -> None:
+        if sender[0] != self.bridge.ground_station:
+            return
+        for k in range(CHANNELS):
+            pulse = getattr(m, f"chan{k + 1}_raw")
+            if pulse == IGNORE or (k >= 8 and pulse == 0):
+                continue
+            if pulse == 0 or (k >= 8 and pulse == RELEASE_EXTENDED):
+                self._put(k, 0)
+            elif LOWEST <= pulse <= HIGHEST:
+                self._put(k, pulse)
+        self._heard()
+
+    def _manual(self, channel: Channel, m: Any, sender: Sender) -> None:
+        """x pitch (forward positive), y roll, r yaw: -1000..1000; z throttle 0..1000."""
+        if sender[0] != self.bridge.ground_station or m.target != channel.system:
+            return
+        sticks = (("RCMAP_ROLL", 1, m.y, 1000), ("RCMAP_PITCH", 2, -m.x, 1000))
+        sticks += (("RCMAP_THROTTLE", 3, 2 * m.z - 1000, 1000), ("RCMAP_YAW", 4, m.r, 1000))  # type: ignore[assignment]
+        given = (m.y, m.x, m.z, m.r)
+        for (name, default, value, full), raw in zip(sticks, given, strict=True):
+            number = int(self.bridge.parameter(name) or default)
+            if raw == INVALID or not 1 <= number <= CHANNELS:
+                continue
+            low, high = self._range(number)
+            share = (min(max(value, -full), full) + full) / (2.0 * full)
+            self._put(number - 1, int(low + (high - low) * share))
+        self._heard()
+
+    def _range(self, number: int) -> tuple[float, float]:
+        low, high = self.bridge.parameter(f"RC{number}_MIN"), self.bridge.parameter(f"RC{number}_MAX")
+        return (low, high) if low is not None and high is not None else DEFAULT_RANGE

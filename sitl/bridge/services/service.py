@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a MAVLink microservice is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ..channel import Channel
+from ..stream_table import NEVER
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+
+Sender = tuple[int, int]
+"""(system id, component id) of who sent a message."""
+Handler = Callable[[Channel, Any, Sender], None]
+"""``handler(channel, message, sender)``; the message is a named tuple with MAVLink's field names."""
+
+
+class Service:
+    """Base of all services; each overrides what it needs."""
+
+    def __init__(self, bridge: Bridge) -> None:
+        self.bridge = bridge
+
+    def handlers(self) -> dict[str, Handler]:
+        """Messages that this service acts on, by name. Messages for other systems do not arrive here."""
+        return {}
+
+    def channel_added(self, channel: Channel) -> None:
+        """A client appeared."""
+
+    def channel_removed(self, channel: Channel) -> None:
+        """A client went away."""
+
+    def next_due_us(self) -> int:
+        """When ``service`` wants to be called [simulated us]."""
+        return NEVER
+
+    def service(self, now_us: int) -> None:
+        """Called at or after ``next_due_us``."""
+
+    def clock_changed(self, now_us: int) -> None:
+        """Simulated time was set to ``now_us``, back or forth.
+
+        Forget what was to happen at times of before.
+        """

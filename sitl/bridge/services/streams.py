@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is sent regularly: ArduPilot's stream groups and single message intervals, per channel.
+
+Sources: https://mavlink.io/en/guide/message_rates.html, https://ardupilot.org/dev/docs/mavlink-requesting-data.html
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..channel import Channel
+from ..dialect import message
+from .command import Command
+from .results import ACCEPTED, DENIED, FAILED, WARNING
+from .service import Handler, Sender, Service
+from .statustext import StatusTextService
+
+GROUPS: dict[int, tuple[str, tuple[str, ...]]] = {
+    1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+    2: (
+        "EXT_STAT",
+        ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
+         "POSITION_TARGET_GLOBAL_INT"),
+    ),
+    3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+    4: ("RAW_CTRL", ()),
+    6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
+    10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
+    11: ("EXTRA2", ("VFR_HUD",)),
+    12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "WIND", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION")),
+}  # fmt: skip
+"""MAV_DATA_STREAM -> (ending of the MAV1_ rate parameter, messages)."""
+ALL_STREAMS = 0
+RATE_PREFIX = "MAV1_"
+HEARTBEAT_US = 1_000_000
+TIMESYNC_US = 10_000_000
+LONGEST_US = 60_000_000 * 60
+ON_REQUEST_ONLY = frozenset(("AUTOPILOT_VERSION", "STATUSTEXT"))
+HEARTBEAT, TIMESYNC = message("HEARTBEAT").id, message("TIMESYNC").id
+INTERVAL = message("MESSAGE_INTERVAL")
+
+
+class StreamService(Service):
+    """Decides each channel's intervals; ``StreamTable`` keeps them."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._group_of = {message(n).id: group for group, (_, names) in GROUPS.items() for n in names}
+
+    def handlers(self) -> dict[str, Handler]:
+        return {"REQUEST_DATA_STREAM": self._request_data_stream}
+
+    def channel_added(self, channel: Channel) -> None:
+        self._set(channel, HEARTBEAT, HEARTBEAT_US)
+        self._set(channel, TIMESYNC, TIMESYNC_US)
+        for group in GROUPS:
+            rate = self._rate_parameter(group)
+            if rate:
+                self.set_group(channel, group, rate)
+
+    def parameter_changed(self, name: str) -> None:
+        """A MAV1_ rate parameter was set: it holds for every channel from now on."""
+        for group, (ending, _) in GROUPS.items():
+            if name == RATE_PREFIX + ending:
+                for channel in self.bridge.channels:
+                    self.set_group(channel, group, self._rate_parameter(group))
+
+    def _rate_parameter(self, group: int) -> int:
+        rate = self.bridge.parameter(RATE_PREFIX + GROUPS[group][0])
+        return int(rate) if rate is not None and rate > 0 else 0
+
+    def set_group(self, channel: Channel, group: int, rate_hz: int) -> None:
+        """Send a group's messages at ``rate_hz`` (0: stop), whatever was asked for them singly before."""
+        rate_hz = min(rate_hz, self._loop_rate())
+        for name in GROUPS[group][1]:
+            self._set(channel, message(name).id, 1_000_000 // rate_hz if rate_hz > 0 else 0)
+
+    def _set(self, channel: Channel, number: int, interval_us: int) -> None:
+        entry = self.bridge.telemetry.get(number)
+        if entry is not None:
+            channel.streams.set(entry, interval_us, self.bridge.now_us)
+
+    def _loop_rate(self) -> int:
+        return max(int(self.bridge.parameter("SCHED_LOOP_RATE") or 400), 1)
+
+    def _request_data_stream(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        rate = fields.req_message_rate if fields.start_stop == 1 else 0
+        if fields.start_stop > 1:
+            return
+        wanted = GROUPS if fields.req_stream_id == ALL_STREAMS else (fields.req_stream_id,)
+        for group in wanted:
+            if group in GROUPS:
+                self.set_group(channel, group, rate)
+
+    # ------------------------------------------------------------------ commands
+
+    def set_interval(self, channel: Channel, command: Command) -> int:
+        """MAV_CMD_SET_MESSAGE_INTERVAL: p1 message id, p2 interval [us], -1 off, 0 default."""
+        number, interval = int(command.p1), command.p2
+        entry = self.bridge.telemetry.get(number)
+        say = self.bridge.get(StatusTextService).say
+        if entry is None or entry[0].name in ON_REQUEST_ONLY:
+            say(WARNING, f"No ap_message for mavlink id ({number})")
+            return DENIED
+        if interval == 0.0:
+            self._set(channel, number, self._default_interval(number))
+            return ACCEPTED
+        if interval < 0.0:
+            self._set(channel, number, 0)
+            return ACCEPTED
+        if interval < 1e6 / self._loop_rate():
+            say(WARNING, f"Requested rate for message ID {number} too fast. Increase SCHED_LOOP_RATE")
+            return DENIED
+        self._set(channel, number, int(min(interval, LONGEST_US)))
+        return ACCEPTED
+
+    def _default_interval(self, number: int) -> int:
+        if number in (HEARTBEAT, TIMESYNC):
+            return HEARTBEAT_US if number == HEARTBEAT else TIMESYNC_US
+        group = self._group_of.get(number)
+        rate = self._rate_parameter(group) if group is not None else 0
+        return 1_000_000 // rate if rate else 0
+
+    def get_interval(self, channel: Channel, command: Command) -> int:
+        """MAV_CMD_GET_MESSAGE_INTERVAL: answers MESSAGE_INTERVAL; 0 not available, -1 not sent."""
+        number = int(command.p1)
+        known = number in self.bridge.telemetry
+        interval = (channel.streams.interval(number) or -1) if known else 0
+        if 0 <= number <= 0xFFFF:
+            channel.send(INTERVAL, INTERVAL.payload(message_id=number, interval_us=interval))
+        return ACCEPTED if known else FAILED
+
+    def request_message(self, channel: Channel, command: Command) -> int:
+        """MAV_CMD_REQUEST_MESSAGE: p1 message id."""
+        return ACCEPTED if self.bridge.send_now(channel, int(command.p1)) else FAILED

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What one channel sends regularly, and when the next of it is due."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .dialect import MessageType
+
+NEVER = 1 << 62
+"""A time that does not come [us]."""
+
+Entry = tuple[MessageType, Callable[[], bytes]]
+
+
+class _Bucket:
+    """Messages with the same interval: they go out together, on whole multiples of it since boot."""
+
+    __slots__ = ("entries", "interval_us", "next_us")
+
+    def __init__(self, interval_us: int, now_us: int) -> None:
+        self.interval_us = interval_us
+        self.next_us = (now_us // interval_us + 1) * interval_us
+        self.entries: dict[int, Entry] = {}
+
+
+class StreamTable:
+    """Intervals by message.
+
+    Equal intervals fall on equal times, so that the simulation is interrupted as seldom as possible.
+    """
+
+    def __init__(self) -> None:
+        self._buckets: dict[int, _Bucket] = {}
+        self._interval: dict[int, int] = {}
+        self.next_us = NEVER
+
+    def interval(self, number: int) -> int:
+        """Interval of a message [us], 0 when it is not sent."""
+        return self._interval.get(number, 0)
+
+    def set(self, entry: Entry, interval_us: int, now_us: int) -> None:
+        """Send ``entry`` every ``interval_us``, beginning at the next whole multiple; 0 stops it."""
+        number = entry[0].id
+        old = self._interval.get(number, 0)
+        if old == interval_us:
+            return
+        if old:
+            bucket = self._buckets[old]
+            del bucket.entries[number], self._interval[number]
+            if not bucket.entries:
+                del self._buckets[old]
+        if interval_us:
+            if interval_us not in self._buckets:
+                self._buckets[interval_us] = _Bucket(interval_us, now_us)
+            self._buckets[interval_us].entries[number] = entry
+            self._interval[number] = interval_us
+        self._find_next()
+
+    def restart(self, now_us: int) -> None:
+        """Time was set to ``now_us``: everything is due at its next whole multiple from there."""
+        for bucket in self._buckets.values():
+            bucket.next_us = (now_us // bucket.interval_us + 1) * bucket.interval_us
+        self._find_next()
+
+    def _find_next(self) -> None:
+        self.next_us = min((b.next_us for b in self._buckets.values()), default=NEVER)
+
+    def take_due(self, now_us: int) -> list[Entry]:
+        """All messages due by ``now_us``, in order of interval, then number of request.
+
+        Each once, however late it is.
+        """
+        if now_us < self.next_us:
+            return []
+        due: list[Entry] = []
+        for interval in sorted(self._buckets):
+            bucket = self._buckets[interval]
+            if bucket.next_us <= now_us:
+                due.extend(bucket.entries.values())
+                bucket.next_us = (now_us // interval + 1) * interval
+        self._find_next()
+        return due

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pulses in and out: RC_CHANNELS, SERVO_OUTPUT_RAW."""
+
+from __future__ import annotations
+
+from ..dialect import message
+from .builder import Build, Builder, Context
+from .units import uint16
+
+
+def rc_channels(context: Context) -> Build:
+    """RC_CHANNELS: pulses in use [us], 0 where there is none."""
+    read = context.fields("time_us", "autopilot.rc.channels")
+    pack = message("RC_CHANNELS").pack
+
+    def build() -> bytes:
+        t, *pulses = read()
+        return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), 16, 255)
+
+    return build
+
+
+def servo_output_raw(context: Context) -> Build:
+    """SERVO_OUTPUT_RAW: pulses to motors and servos [us]."""
+    read = context.fields("time_us", "actuators.pwm")
+    pack = message("SERVO_OUTPUT_RAW").pack
+
+    def build() -> bytes:
+        t, *pulses = read()
+        pulses = [uint16(p) for p in pulses]
+        return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
+
+    return build
+
+
+BUILDERS: dict[str, Builder] = {"RC_CHANNELS": rc_channels, "SERVO_OUTPUT_RAW": servo_output_raw}

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the bridge needs of a vehicle. The simulation fulfils it; so does a small fake in the tests."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Vehicle(Protocol):
+    """One simulated vehicle."""
+
+    fleet: np.ndarray[Any, Any]
+    """Array of records (``sitl.vehicle.VEHICLE_DTYPE``); its memory stays in place for the vehicle's life."""
+    index: int
+    v: Any
+    """Record view of ``fleet[index]`` with attribute access."""
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since boot [us]."""
+        ...
+
+    def request_reboot(self) -> None:
+        """Restart the autopilot at the next opportunity (MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN)."""
+        ...

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl demo copter``: the MAVSDK example flies a mission; figures, log and picture."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from tqdm import tqdm
+
+from .. import runner
+from ..logs import flight as flights
+from ..logs import plot
+from ..simulation import OptionError, Simulation
+from . import execute
+from .options import VEHICLES, add_vehicle_options, build_simulation, open_folder
+
+SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "mavsdk_mission.py"
+_SHOWN_US = 200_000
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser("demo", help="fly the MAVSDK example and draw the flight")
+    parser.add_argument("vehicle", choices=sorted(VEHICLES))
+    parser.add_argument("--speedup", default=execute.DEFAULT_SPEEDUP, metavar="K", help="simulated seconds a second")
+    add_vehicle_options(parser)
+    parser.set_defaults(function=demo)
+
+
+def demo(options: argparse.Namespace) -> int:
+    """Fly, print the figures, draw."""
+    if not SCRIPT.exists():
+        raise OptionError(f"the demo flies {SCRIPT}, which is part of a source checkout and is not there")
+    folder = open_folder(options.log_dir)
+    simulation = build_simulation(options)
+    link = runner.listen_udp(simulation)
+    log = runner.open_log(simulation, folder, f"demo-{options.vehicle}")
+    start = time.monotonic()
+    command = [sys.executable, str(SCRIPT), link]
+    try:
+        with FlightProgress(simulation) as progress:
+            code = execute.run_script(simulation, command, options.speedup, None, progress.update)
+    finally:
+        simulation.close()
+    wall = time.monotonic() - start
+    if code:
+        print(f"sitl demo: {SCRIPT.name} ended with exit code {code}; log: {log}", file=sys.stderr)
+        return code
+    simulated = simulation.time_us * 1e-6
+    print(f"simulated {simulated:.1f} s in {wall:.1f} s of wall time: {simulated / wall:.1f}x real time")
+    flown = flights.read(log)
+    armed = next((t for t, state in flown.armed if state), 0.0)
+    for t, seq in flown.reached:
+        print(f"  mission item {seq} reached {t - armed:6.1f} s after arming (t = {t:.1f} s)")
+    if flown.armed and not flown.armed[-1][1]:
+        print(f"  disarmed               {flown.armed[-1][0] - armed:6.1f} s after arming (t = {flown.armed[-1][0]:.1f} s)")
+    picture = log.with_suffix(".png")
+    plot.draw(flown, picture, f"{simulation.airframe.name}: {SCRIPT.name}, {simulated / wall:.0f}x real time")
+    print(f"log:     {log}\npicture: {picture}")
+    return 0
+
+
+class FlightProgress:
+    """A bar over the flight's steps: boot, ready, armed, each mission item, disarmed."""
+
+    _STEPS = 10
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._next_us = 0
+        self._bar: tqdm[None] = tqdm(
+            total=self._STEPS, file=sys.stderr, leave=False, bar_format="{desc:50s} {bar} {elapsed}"
+        )
+        self._was_armed = False
+
+    def update(self) -> None:
+        """Redraw now and then."""
+        if self._simulation.time_us < self._next_us:
+            return
+        self._next_us = self._simulation.time_us + _SHOWN_US
+        ap = self._simulation.v.autopilot
+        armed, reached = bool(ap.arming.armed), int(ap.modes.nav.mission_reached)
+        if armed:
+            self._was_armed = True
+            step, text = 2 + reached, f"armed, item {int(ap.modes.nav.mission_current)}"
+        elif self._was_armed:
+            step, text = self._STEPS, "landed and disarmed"
+        else:
+            step, text = (1, "ready to arm") if ap.arming.prearm_ok else (0, "starting, waiting for a position")
+        self._bar.set_description_str(f"{self._simulation.time_us * 1e-6:6.1f} s  {text}", refresh=False)
+        self._bar.n = min(step, self._STEPS)
+        self._bar.refresh()
+
+    def __enter__(self) -> FlightProgress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Options that ``sitl run`` and ``sitl exec`` share, and what they mean."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from ..autopilot.params import files
+from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation
+from .progress import CompileProgress
+
+VEHICLES = {"copter": "erle_copter"}
+"""Vehicle kinds and the airframe each flies by default."""
+
+
+def home(text: str) -> Home:
+    """``LAT,LON,ALT,HEADING`` in degrees and metres, checked."""
+    try:
+        lat, lon, alt, heading = (float(word) for word in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not LAT,LON,ALT,HEADING (degrees, degrees, metres, degrees), as in {DEFAULT_HOME}"
+        ) from None
+    if not (-90 <= lat <= 90 and -180 <= lon <= 180 and math.isfinite(alt) and math.isfinite(heading)):
+        raise argparse.ArgumentTypeError(f"{text!r}: latitude is within +-90, longitude within +-180 degrees")
+    return (lat, lon, alt, heading % 360.0)
+
+
+def count(text: str) -> int:
+    """A whole number from 0 to 254 (an instance)."""
+    if not text.isdigit() or int(text) > 254:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 254")
+    return int(text)
+
+
+def seconds(text: str) -> float:
+    """A positive number of simulated seconds."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number of simulated seconds")
+    return value
+
+
+def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
+    """What describes the vehicle and where it stands."""
+    parser.add_argument("--frame", metavar="NAME", help="airframe (default: the vehicle's own)")
+    parser.add_argument("--home", type=home, default=DEFAULT_HOME, metavar="LAT,LON,ALT,HEADING", help="start")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
+    parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")
+    parser.add_argument("--params", action="append", default=[], metavar="FILE", help=".parm file (repeatable)")
+    parser.add_argument("--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="where .tlog files go")
+
+
+def build_simulation(options: argparse.Namespace) -> Simulation:
+    """The simulation that the options describe; compiles the core with a progress line when it must."""
+    values: dict[str, float] = {}
+    for path in options.params:
+        values.update(files.load(path))
+    with CompileProgress() as progress:
+        simulation = Simulation(
+            options.frame or VEHICLES[getattr(options, "vehicle", "copter")],
+            home=options.home,
+            seed=options.seed,
+            estimator=options.estimator,
+            params=values,
+            progress=progress,
+        )
+    if simulation.unknown_parameters:
+        names = simulation.unknown_parameters
+        shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")
+        print(f"sitl: {len(names)} parameters of the files are not in this firmware: {shown}", file=sys.stderr)
+    return simulation
+
+
+def open_folder(folder: Path) -> Path:
+    """The folder, made if need be; OptionError when that cannot be done."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OptionError(f"--log-dir {str(folder)!r} cannot be made: {error.strerror}") from None
+    return folder

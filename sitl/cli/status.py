@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The live status line of a run."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+
+from ..bridge.modes import mode_name
+from ..simulation import Simulation
+
+
+class StatusLine:
+    """One line on a terminal, rewritten a few times a second; nothing where stderr is not a terminal."""
+
+    _PERIOD_S = 0.25
+
+    def __init__(self, simulation: Simulation, enabled: bool = True) -> None:
+        self._simulation = simulation
+        self._enabled = enabled and sys.stderr.isatty()
+        self._next = self._last_wall = time.monotonic()
+        self._last_us = simulation.time_us
+        self._factor = 0.0
+        self._width = 0
+
+    def update(self) -> None:
+        """Rewrite the line when it is time to."""
+        if not self._enabled or time.monotonic() < self._next:
+            return
+        now, time_us = time.monotonic(), self._simulation.time_us
+        if now > self._last_wall:
+            self._factor = (time_us - self._last_us) * 1e-6 / (now - self._last_wall)
+        self._last_wall, self._last_us, self._next = now, time_us, now + self._PERIOD_S
+        text = describe(self._simulation, self._factor)
+        sys.stderr.write("\r" + text.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(text)
+
+    def close(self) -> None:
+        """Leave the last line standing and go to the next."""
+        if self._enabled and self._width:
+            sys.stderr.write("\n")
+
+
+def describe(simulation: Simulation, factor: float) -> str:
+    """Time, speed, mode, position and clients in one line."""
+    v = simulation.v
+    estimate, ap = v.autopilot.estimate, v.autopilot
+    height = -float(estimate.pos[2]) + float(ap.home.pos[2])
+    speed = math.hypot(float(estimate.vel[0]), float(estimate.vel[1]))
+    armed = "ARMED" if int(ap.arming.armed) else "disarmed"
+    ready = "" if int(ap.arming.prearm_ok) or int(ap.arming.armed) else " (not ready to arm)"
+    return (
+        f"{simulation.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {mode_name(int(ap.modes.number))} {armed}{ready}"
+        f"  alt {height:.1f} m  speed {speed:.1f} m/s  {float(ap.battery.voltage):.1f} V"
+        f"  clients {simulation.bridge.client_count()}"
+    )

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes Numba compile a unit without work that is thrown away; the machine code of the unit is the same.
+
+Numba is built for functions that Python calls one by one: of every law that a unit contains it makes machine code and
+wrappers for Python and for C, and it names types by printing them, which for a record of records costs more than compiling. Of
+a unit only the entry is ever called. What is switched off here reaches into Numba's internals, so each step is guarded by
+what it needs: with a Numba that looks different inside, compilation is slower and nothing else changes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from typing import Any
+
+_NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def law_options() -> dict[str, Any]:
+    """Compiler options of laws: no wrappers, and IEEE division instead of Python's exception."""
+    return {"error_model": "numpy", **_NO_WRAPPERS}
+
+
+@contextlib.contextmanager
+def quick(entry: str) -> Iterator[None]:
+    """While it lasts, only code of libraries whose name contains ``entry`` becomes machine code."""
+    undo: list[Callable[[], None]] = []
+    try:
+        for patch in (_remember_record_names, _skip_inner_machine_code):
+            with contextlib.suppress(ImportError, AttributeError):
+                undo.append(patch(entry))
+        yield
+    finally:
+        for restore in undo:
+            restore()
+
+
+def _remember_record_names(_: str) -> Callable[[], None]:
+    from numba.core.types.npytypes import Record
+
+    original = Record.__repr__
+
+    def remembered(self: Any) -> str:
+        known = self.__dict__.get("_sitl_repr")
+        if known is None:
+            known = self.__dict__["_sitl_repr"] = original(self)
+        return str(known)
+
+    Record.__repr__ = remembered
+    return lambda: setattr(Record, "__repr__", original)
+
+
+def _skip_inner_machine_code(entry: str) -> Callable[[], None]:
+    from numba.core.codegen import CPUCodeLibrary
+    from numba.core.cpu import CPUContext
+
+    finalize, executable = CPUCodeLibrary._finalize_final_module, CPUContext.get_executable
+
+    def finalize_entry_only(self: Any) -> None:
+        if entry in self.name:
+            finalize(self)
+        else:  # optimised IR is all that the caller links
+            self._finalize_dynamic_globals()
+            self._finalized = True
+
+    def executable_of_entry_only(self: Any, library: Any, fndesc: Any, env: Any) -> Any:
+        if entry in library.name:
+            return executable(self, library, fndesc, env)
+        return [].append  # Numba keeps laws by their callables: it must be built in, and another one each time
+
+    CPUCodeLibrary._finalize_final_module = finalize_entry_only
+    CPUContext.get_executable = executable_of_entry_only
+
+    def restore() -> None:
+        CPUCodeLibrary._finalize_final_module = finalize
+        CPUContext.get_executable = executable
+
+    return restore

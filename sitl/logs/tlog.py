@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Telemetry logs (.tlog).
+
+Frames as they went over the wire, each behind its time (Unix microseconds, 8 bytes, big-endian).
+
+The format of MAVProxy and QGroundControl; ``mavlogdump.py`` and Mission Planner read it. Times are an epoch
+plus simulated time, so the same run gives the same file.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO
+
+_TIME = struct.Struct(">Q")
+_FLUSH_BYTES = 1 << 16
+
+
+class TlogWriter:
+    """Writes a .tlog.
+
+    As a tap of a bridge (``bridge.taps.append(writer)``) it gets every frame of every client, in both
+    directions; behind a ``LogLink`` it gets streams of its own. The two can be used together.
+    """
+
+    def __init__(self, path: str | Path, epoch_us: int) -> None:
+        self.path = Path(path)
+        self.epoch_us = epoch_us
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._file: BinaryIO | None = self.path.open("wb")
+        self._pending: list[bytes] = []
+        self._size = 0
+
+    def frame(self, time_us: int, raw: bytes) -> None:
+        """Append one frame, sent or received at simulated ``time_us``; nothing after ``close``."""
+        if self._file is None:
+            return
+        self._pending.append(_TIME.pack(self.epoch_us + time_us) + raw)
+        self._size += len(raw) + 8
+        if self._size >= _FLUSH_BYTES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write out what is collected."""
+        if self._file is not None and self._pending:
+            self._file.write(b"".join(self._pending))
+            self._file.flush()
+            self._pending.clear()
+            self._size = 0
+
+    def close(self) -> None:
+        """Write everything and close the file."""
+        self.flush()
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def __enter__(self) -> TlogWriter:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def read_tlog(path: str | Path) -> Iterator[tuple[int, bytes]]:
+    """(Unix time [us], frame) of each frame of a log; what is cut off at the end is left out."""
+    data = Path(path).read_bytes()
+    at = 0
+    while at + _TIME.size + 3 <= len(data):
+        (time_us,) = _TIME.unpack_from(data, at)
+        at += _TIME.size
+        mark, size, flags = data[at : at + 3]
+        if mark == 0xFD:  # MAVLink 2; flag 1: a signature follows
+            size += 12 + (13 if flags & 1 else 0)
+        elif mark == 0xFE:
+            size += 8
+        else:
+            return
+        if at + size > len(data):
+            return
+        yield time_us, data[at : at + size]
+        at += size

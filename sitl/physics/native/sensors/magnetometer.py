@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Magnetometer: the geomagnetic field at home in the body frame, hard-iron offset and white noise."""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+from ....core.rng import normal
+from ....core.rotations import quat_rotate_inverse
+
+
+@law
+def sample(p, sensors, rng):
+    """Write mag [gauss], body frame."""
+    a, q, field = p.airframe, p.body.q, p.place.field
+    x, y, z = quat_rotate_inverse(
+        float(q[0]), float(q[1]), float(q[2]), float(q[3]), float(field[0]), float(field[1]), float(field[2])
+    )
+    scale = float(a.noise_scale)
+    noise = scale * float(a.mag_noise)
+    sensors.mag[0] = x + scale * float(a.mag_offset[0]) + noise * normal(rng)
+    sensors.mag[1] = y + scale * float(a.mag_offset[1]) + noise * normal(rng)
+    sensors.mag[2] = z + scale * float(a.mag_offset[2]) + noise * normal(rng)
+    sensors.mag_count += 1

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Power module: battery voltage and current."""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+
+PERIOD_TICKS = 40
+"""Samples every 0.1 s, as ArduPilot's battery monitor reads it."""
+
+
+@law
+def sample(p, sensors):
+    """Write battery_voltage [V] and battery_current [A]."""
+    sensors.battery_voltage = float(p.battery.voltage)
+    sensors.battery_current = float(p.battery.current)

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One simulated vehicle with its autopilot, mission and MAVLink bridge, and the clock that only this module advances."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import vehicles
+from .advance import advance as advance_unit
+from .autopilot import boot
+from .autopilot.mission.mission import Mission
+from .autopilot.mission.sequencer import Sequencer
+from .autopilot.params import files, table
+from .bridge.bridge import Bridge
+from .core import compile as compiler
+from .core import records
+from .core.compile import Progress
+from .physics.native.init import init as init_physics
+from .vehicle import TICK_US, VEHICLE_DTYPE
+
+Array = np.ndarray[Any, Any]
+Home = tuple[float, float, float, float]
+"""Latitude [deg], longitude [deg], altitude above mean sea level [m], heading [deg]."""
+
+DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
+"""Canberra model aircraft club, ArduPilot's default SITL location."""
+
+ESTIMATORS = ("ekf", "truth")
+
+Core = Callable[[Array, int, int], None]
+
+
+class OptionError(ValueError):
+    """An option of the simulation that cannot be taken."""
+
+
+def load_core(progress: Progress | None = None) -> Core:
+    """The core as ``advance(fleet, index, ticks)``; compiles what changed since it was last built."""
+    function = compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, advance_unit, progress)
+    if function is None:
+        return lambda fleet, index, ticks: advance_unit(fleet.view(np.recarray), index, ticks)
+    return lambda fleet, index, ticks: function(fleet.ctypes.data, len(fleet), index, ticks)
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Everything that a later :meth:`Simulation.restore` needs to continue bit for bit."""
+
+    record: Array
+    mission: Mission
+    before_boot_us: int
+
+
+class Simulation:
+    """A vehicle from power-on, advanced in simulated time.
+
+    Args:
+        frame: airframe name (``sitl.vehicles.names()``).
+        home: where it stands at power-on.
+        seed: seed of all sensor noise and turbulence.
+        estimator: "ekf", or "truth" for work on controllers.
+        params: values under ArduPilot's names, over the airframe's own and the defaults.
+        core: a core already loaded (tests share one).
+
+    Raises:
+        OptionError, sitl.vehicles.AirframeError, ParameterError: an argument that cannot be taken, named.
+    """
+
+    def __init__(
+        self,
+        frame: str = "erle_copter",
+        *,
+        home: Home = DEFAULT_HOME,
+        seed: int = 0,
+        estimator: str = "ekf",
+        params: Mapping[str, float] | None = None,
+        core: Core | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        if estimator not in ESTIMATORS:
+            raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
+        check_home(home)
+        self.airframe = vehicles.load(frame)
+        self.home, self.seed, self.estimator = home, seed, estimator
+        self.fleet: Array = np.zeros(1, VEHICLE_DTYPE)
+        self.index = 0
+        self.v = records.view(self.fleet, self.index)
+        self._clock = self.fleet["time_us"]
+        self._attention = self.fleet["autopilot"]["events"]["attention"]
+        self._event_count = self.fleet["autopilot"]["events"]["count"]
+        self._events_seen = 0
+        self.before_boot_us = 0
+        """Simulated time that passed before the last reboot [us]."""
+        self._reboot = False
+        params_record = self.v.autopilot.params
+        table.set_defaults(params_record)
+        files.apply(params_record, self.airframe.parameters, f"airframe {frame}")
+        self.unknown_parameters = files.apply(params_record, params or {}, "parameters")
+        """Names in ``params`` that this firmware does not have."""
+        self.core = core or load_core(progress)
+        self.mission = Mission()
+        self._power_on()
+        self.sequencer = Sequencer(self)
+        self.bridge = Bridge(self)
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since the start of the simulation [us]; reboots do not set it back."""
+        return self.before_boot_us + int(self._clock[self.index])
+
+    def advance(self, seconds: float) -> None:
+        """Advance by a simulated time, rounded to whole ticks of 2.5 ms."""
+        self.advance_to(self.time_us + round(seconds * 1e6))
+
+    def advance_to(self, time_us: int) -> None:
+        """Advance until simulated time ``time_us``, serving MAVLink on the way, exactly when each message falls due.
+
+        What clients sent is read at the beginning; the clock ends on the first whole tick at or after ``time_us``.
+        """
+        bridge = self.bridge
+        bridge.receive()
+        while True:
+            if self._event_count[self.index] != self._events_seen:
+                self._follow_events()
+            if self._reboot:
+                self._do_reboot()
+                bridge = self.bridge
+            now = int(self._clock[self.index])
+            stop = time_us - self.before_boot_us
+            if now >= stop:
+                return
+            due = bridge.next_due_us()
+            ticks = (min(stop, due) - now + TICK_US - 1) // TICK_US
+            self.core(self.fleet, self.index, ticks if ticks > 1 else 1)
+            if self._event_count[self.index] != self._events_seen:
+                self._follow_events()
+            bridge.service()
+
+    def snapshot(self) -> Snapshot:
+        """A copy of everything in the vehicle; later restores leave it as it is."""
+        return Snapshot(self.fleet[self.index : self.index + 1].copy(), self.mission, self.before_boot_us)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Put the vehicle, its autopilot and its mission back to a snapshot of this airframe."""
+        self.fleet[self.index] = snapshot.record[0]
+        self.sequencer.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
+        self._events_seen = int(self._event_count[self.index])
+        self.bridge.clock_changed()
+
+    def request_reboot(self) -> None:
+        """Restart vehicle and autopilot before the next tick; parameters and mission stay, links stay open."""
+        self._reboot = True
+
+    def close(self) -> None:
+        """Close links and log."""
+        self.bridge.close()
+
+    def _power_on(self) -> None:
+        boot.clear(self.v)
+        init_physics(self.v, self.airframe, self.home, self.seed)
+        boot.power_on(self.v)
+        self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
+
+    def _follow_events(self) -> None:
+        """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
+        self._attention[self.index] = 0
+        self.bridge.on_events()
+        self.bridge.tell(self.sequencer.attend())
+        self._events_seen = int(self._event_count[self.index])
+
+    def _do_reboot(self) -> None:
+        self._reboot = False
+        self.before_boot_us = self.time_us
+        self._power_on()
+        self._events_seen = 0
+        self.sequencer = Sequencer(self)
+        self.bridge = self.bridge.successor()
+
+
+def check_home(home: Home) -> None:
+    """OptionError when ``home`` is not on the globe."""
+    lat, lon, alt, heading = home
+    if not (abs(lat) <= 90 and abs(lon) <= 180 and np.isfinite(alt) and np.isfinite(heading)):
+        raise OptionError(f"home {home}: latitude is within +-90, longitude within +-180 degrees, the rest finite")

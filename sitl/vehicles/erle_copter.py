@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Erle-Copter: the 1.1 kg quadrotor of Erle Robotics, X frame, as its Gazebo model describes it.
+
+Sources: [model] erlerobot/gym-gazebo, urdf/erlecopter/erlecopter.xacro and erlecopter_base.xacro; [derived]
+from those; [estimate] this project's, where nothing was published.
+"""
+
+from __future__ import annotations
+
+import math
+
+from . import sensor_sets
+from .airframe import CCW, CW, Airframe, Rotor
+from .figures import THRUST_SPEED_SQUARED
+
+REACH = 0.141  # [m] rotors from the centre along x and y [model]
+ABOVE = -0.030  # [m] rotors 3 cm above the centre [model]
+
+AIRFRAME = Airframe(
+    name="erle_copter",
+    description="Erle-Copter, X frame, 1.14 kg",
+    rotors=(
+        Rotor(REACH, REACH, ABOVE, CCW),  # motor 1, front right [model]
+        Rotor(-REACH, -REACH, ABOVE, CCW),  # motor 2, back left [model]
+        Rotor(REACH, -REACH, ABOVE, CW),  # motor 3, front left [model]
+        Rotor(-REACH, REACH, ABOVE, CW),  # motor 4, back right [model]
+    ),
+    figures={
+        "mass": 1.14,  # [kg] 1.1 body, 4 x 0.005 rotors, 0.02 lidar and sonar [model, derived]
+        "inertia": (0.0347563, 0.0458929, 0.0977),  # [kg m^2] [model]
+        "drag_area": (0.015, 0.018, 0.030),  # [m^2] the 0.18 x 0.12 x 0.10 m box and the arms [estimate]
+        "thrust_model": THRUST_SPEED_SQUARED,
+        "control_max": 0.838,  # (PWM - 1000 us) is taken as rad/s: 1838 us gives top speed [derived]
+        "time_constant_up": 0.0125,  # [s] [model]
+        "time_constant_down": 0.025,  # [s] [model]
+        "speed_max": 838.0,  # [rad/s] 6.00 N a rotor [model]
+        "speed_voltage": 10.8,  # [V] three cells of 3.6 V still reach top speed [estimate]
+        "thrust_coefficient": 8.54858e-6,  # [N/(rad/s)^2] [model]
+        "moment_coefficient": 0.016,  # [m] [model]
+        "rotor_drag": 8.06428e-5,  # [N/(rad/s)/(m/s)] [model]
+        "rolling_moment": 1e-6,  # [N m/(rad/s)/(m/s)] [model]
+        "rotor_inertia": 2.41e-5,  # [kg m^2] bar of 0.005 kg, 0.24 x 0.015 m [model, derived]
+        "efficiency": 0.75,  # motor and controller [estimate]
+        "battery_voltage_full": 12.6,  # [V] three lithium-polymer cells [estimate]
+        "battery_capacity": 5.0,  # [Ah] [estimate]
+        "battery_resistance": 0.02,  # [ohm] [estimate]
+        "avionics_current": 0.8,  # [A] Erle-Brain, receiver, lidar [estimate]
+        "ground_friction": 0.8,  # rubber feet [estimate]
+        "leg_time_constant": 0.02,  # [s] [estimate]
+        "tip_angle": math.radians(60.0),  # [rad] [estimate]
+        "hit_speed": 0.1,  # [m/s]
+        **sensor_sets.ADIS16448,
+        **sensor_sets.UBLOX_M8,
+        **sensor_sets.MS5611,
+        **sensor_sets.HMC5883,
+    },
+    parameters={
+        "FRAME_CLASS": 1,  # quad
+        "FRAME_TYPE": 1,  # X
+        "ANGLE_MAX": 3000,  # [cdeg] the airframe's own parameter file
+        # Torque of a unit of command by inertia [rad/s^2]: roll 48.7, pitch 36.9, yaw 2.0; the quad 287,
+        # 287, 12. Rate loops cross over near 30 rad/s in roll and pitch, where the rotors' lag costs 30 deg.
+        "ATC_RAT_RLL_P": 0.60,
+        "ATC_RAT_RLL_I": 0.60,
+        "ATC_RAT_RLL_D": 0.018,
+        "ATC_RAT_PIT_P": 0.80,
+        "ATC_RAT_PIT_I": 0.80,
+        "ATC_RAT_PIT_D": 0.024,
+        "ATC_RAT_YAW_P": 2.0,
+        "ATC_RAT_YAW_I": 0.2,
+        "ATC_ANG_YAW_P": 3.0,
+        "ATC_ACCEL_R_MAX": 60000.0,  # [cdeg/s^2] half of what the rotors can do at hover thrust
+        "ATC_ACCEL_P_MAX": 50000.0,
+        "ATC_ACCEL_Y_MAX": 5000.0,
+        "MOT_SPIN_MAX": 0.838,  # top speed at 1838 us
+        "MOT_THST_EXPO": 0.7,  # thrust (0.15 + 0.688 x)^2 / 0.838^2 of output x
+        "MOT_THST_HOVER": 0.45,  # thrust 11.2 N of 24.0 N through that curve
+        "BATT_MONITOR": 4,  # voltage and current
+        "BATT_CAPACITY": 5000,  # [mAh]
+        "GPS1_DELAY_MS": 120,  # as gps_delay
+    },
+)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compiles the preload library (``preload/*.c``) and the runtime for static programs (``static/*.c``) on the user's
+machine, once, into a cache folder.
+
+The name of the result holds a hash of the sources, the compiler and the machine, so a changed source is compiled again
+and two versions never meet. Compilers tried in this order: ``$CC``, ``cc``, ``gcc``, ``clang``, then the one in the
+PyPI package ``ziglang`` (a C compiler that pip can install where the system has none).
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.util
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).parent
+
+
+class CannotBuild(RuntimeError):
+    """The library or the runtime cannot be made here; the message says what to install or change."""
+
+
+def cache_folder() -> Path:
+    """Where compiled libraries are kept: ``$SITL_CACHE_DIR``, else ``$XDG_CACHE_HOME/gym-sitl``, else ~/.cache/gym-sitl."""
+    if chosen := os.environ.get("SITL_CACHE_DIR"):
+        return Path(chosen) / "warp"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gym-sitl" / "warp"
+
+
+def compiler() -> list[str]:
+    """The command that compiles C here, as the first words of a command line; raises CannotBuild if there is none."""
+    if named := os.environ.get("CC"):
+        return shlex.split(named)
+    for name in ("cc", "gcc", "clang"):
+        if path := shutil.which(name):
+            return [path]
+    if importlib.util.find_spec("ziglang"):
+        return [sys.executable, "-m", "ziglang", "cc"]
+    raise CannotBuild(
+        "sitl exec needs a C compiler to put a script on simulated time, and found none of $CC, cc, gcc, clang. "
+        "Install one (Debian: apt install gcc; anywhere: pip install ziglang), or run the script at --speedup 1."
+    )
+
+
+@functools.cache
+def preload_library() -> Path:
+    """The compiled preload library for this machine; compiles it if it is not in the cache. Raises CannotBuild."""
+    if sys.platform != "linux":
+        raise CannotBuild(
+            f"sitl exec: scripts on simulated time are supported on Linux, not on {sys.platform}. "
+            "Run the script at --speedup 1, or on Linux (a container or WSL 2 will do)."
+        )
+    return _cached("libsitlclock.so", "preload", ["-fPIC"], ["-shared", "-ldl", "-pthread"])
+
+
+@functools.cache
+def static_runtime() -> Path:
+    """The compiled program that starts static programs on the clock; raises CannotBuild.
+
+    Needs Linux on x86-64 or aarch64.
+    """
+    flags = ["-ffreestanding", "-fno-builtin", "-fno-stack-protector", "-fno-asynchronous-unwind-tables", "-fPIE"]
+    if platform.machine() == "aarch64":
+        flags.append("-mno-outline-atomics")  # those are in a library that this program does without
+    return _cached("sitl-static-runtime", "static", flags, ["-fPIE", "-pie", "-nostdlib", "-Wl,--no-dynamic-linker"])
+
+
+def _cached(name: str, folder: str, compile_flags: list[str], link_flags: list[str]) -> Path:
+    command = compiler()
+    sources = sorted((HERE / folder).glob("*.c"))
+    compile_flags = ["-std=gnu11", "-O2", "-fno-strict-aliasing", *compile_flags]
+    machine = (command, compile_flags, link_flags, platform.machine(), platform.libc_ver())
+    digest = hashlib.sha256(repr(machine).encode())
+    for source in [*sources, *sorted(HERE.glob("*/*.h"))]:
+        digest.update(source.read_bytes())
+    target = cache_folder() / digest.hexdigest()[:16] / name
+    if target.exists():
+        return target
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=target.parent) as drafts:
+            objects = [str(Path(drafts, source.stem + ".o")) for source in sources]
+            for source, made in zip(sources, objects, strict=True):
+                _compile([*command, *compile_flags, "-c", "-o", made, str(source)])
+            draft = Path(drafts, name)
+            _compile([*command, "-o", str(draft), *objects, *link_flags])
+            os.replace(draft, target)  # two runs at once both end with a whole file
+    except OSError as error:
+        raise CannotBuild(
+            f"cannot write {target}: {error}. Set SITL_CACHE_DIR to a folder that can be written."
+        ) from error
+    return target
+
+
+def _compile(words: list[str]) -> None:
+    try:
+        done = subprocess.run(words, capture_output=True, text=True)
+    except OSError as error:
+        raise CannotBuild(f"cannot run the C compiler {words[0]}: {error}. Set CC to one that works.") from error
+    if done.returncode:
+        raise CannotBuild(f"the C compiler failed: {shlex.join(words)}\n{done.stderr.strip()}")

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from fakes import Bench
+
+from sitl.autopilot import events
+from sitl.autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from sitl.bridge.services.statustext import StatusTextService
+
+
+def emit(bench: Bench, code: int, a: float = 0.0, b: float = 0.0) -> None:
+    v = bench.vehicle.v
+    events.emit(v.autopilot.events, int(v.time_us), code, a, b)
+
+
+def texts(bench: Bench) -> list[str]:
+    return [m.text for m in bench.client.receive("STATUSTEXT")]
+
+
+def test_texts_of_a_flight(bench: Bench) -> None:
+    bench.run(3.0)
+    assert texts(bench) == ["Barometer 1 calibration complete", "ArduPilot Ready"]
+    emit(bench, events.ARMED)
+    emit(bench, events.HIT_GROUND, 0.499648)
+    emit(bench, events.DISARMED)
+    bench.run(0.1)
+    assert texts(bench) == ["Arming motors", "SIM Hit ground at 0.499648 m/s", "Disarming motors"]
+    bench.run(1.0)
+    assert texts(bench) == []
+
+
+def test_a_full_ring_loses_the_oldest_only(bench: Bench) -> None:
+    bench.run(3.0)
+    texts(bench)
+    for _ in range(events.EVENT_RING + 10):
+        emit(bench, events.ARMED)
+    bench.run(0.1)
+    assert len(texts(bench)) == events.EVENT_RING
+
+
+def test_origin_and_home_are_told_when_they_come(bench: Bench) -> None:
+    bench.vehicle.locate()
+    emit(bench, events.EKF_ORIGIN_SET)
+    bench.run(0.1)
+    found = bench.client.receive()
+    assert {"HOME_POSITION", "GPS_GLOBAL_ORIGIN"} <= {m.get_type() for m in found}
+    assert "Field Elevation Set: 584m" in [m.text for m in found if m.get_type() == "STATUSTEXT"]
+
+
+def test_a_mode_change_is_told_by_a_heartbeat_at_once(bench: Bench) -> None:
+    bench.run(1.0)
+    bench.client.receive()
+    bench.vehicle.v.autopilot.modes.number = 6
+    emit(bench, events.MODE_CHANGED, 6.0)
+    bench.bridge.on_events()
+    bench.bridge.flush()
+    assert [m.custom_mode for m in bench.client.receive("HEARTBEAT")] == [6]
+
+
+def test_progress_of_a_mission(bench: Bench) -> None:
+    bench.bridge.tell([ItemReached(3), Text(6, "Reached command #3"), CurrentChanged(4)])
+    bench.bridge.flush()
+    found = bench.client.receive()
+    assert [m.get_type() for m in found] == ["MISSION_ITEM_REACHED", "STATUSTEXT", "MISSION_CURRENT"]
+    assert found[0].seq == 3
+
+
+def test_long_texts_come_in_pieces(bench: Bench) -> None:
+    old = bench.connect(version=1)
+    say = bench.bridge.get(StatusTextService).say
+    for length in (1, 49, 50, 51, 100, 120):
+        bench.bridge.channels[1].version = 1
+        say(4, "x" * length)
+        bench.bridge.flush()
+        pieces = bench.client.receive("STATUSTEXT")
+        assert "".join(p.text for p in pieces) == "x" * length
+        assert [p.chunk_seq for p in pieces] == list(range(len(pieces)))
+        assert (pieces[0].id != 0) == (length > 50)
+        assert len(pieces[-1].text) < 50 or length == 50
+        (first,) = old.receive("STATUSTEXT")
+        assert first.text == "x" * min(length, 50)

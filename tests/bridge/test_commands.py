@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import math
+
+import pytest
+from fakes import HOME, Bench
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
+
+
+def command_int(bench: Bench, number: int, frame: int, x: int, y: int, z: float, *p: float) -> int:
+    values = (*p, *(0.0,) * (4 - len(p)))
+    message = mavlink.MAVLink_command_int_message(1, 1, frame, number, 0, 0, *values, x, y, z)
+    acks = bench.ask(message, "COMMAND_ACK")
+    assert len(acks) == 1 and acks[0].command == number
+    return int(acks[0].result)
+
+
+@pytest.mark.parametrize("number", [0, 16, 34, 183, 2000, 31010, 42424, 65535])
+def test_what_is_unknown_is_unsupported(bench: Bench, number: int) -> None:
+    assert bench.command(number) == UNSUPPORTED
+    assert command_int(bench, number, 0, 0, 0, 0.0) == UNSUPPORTED
+    assert bench.autopilot.calls == []
+
+
+def test_targets(bench: Bench) -> None:
+    other = mavlink.MAVLink_command_long_message(2, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
+    assert bench.ask(other) == []
+    assert bench.command(400, 1, system=0, component=0) == ACCEPTED
+    assert bench.autopilot.calls == [("arm", False)]
+
+
+def test_the_vehicle_does_not_answer_itself(bench: Bench) -> None:
+    bench.client.mav.srcSystem, bench.client.mav.srcComponent = 1, 1
+    assert bench.ask(mavlink.MAVLink_command_long_message(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)) == []
+
+
+def test_arming(bench: Bench) -> None:
+    assert bench.command(400, 1) == ACCEPTED
+    assert bench.command(400, 1, 2989) == ACCEPTED
+    assert bench.command(400, 1, 21196) == ACCEPTED
+    assert bench.command(400, 0) == ACCEPTED  # was not armed
+    bench.vehicle.v.autopilot.arming.armed = 1
+    assert bench.command(400, 1) == ACCEPTED
+    bench.autopilot.ok = False
+    assert bench.command(400, 0) == FAILED
+    assert bench.command(400, 0, 21196) == FAILED
+    assert bench.command(400, 2) == UNSUPPORTED
+    calls = [("arm", False), ("arm", True), ("arm", True), ("disarm", False), ("disarm", True)]
+    assert bench.autopilot.calls == calls
+
+
+def test_modes(bench: Bench) -> None:
+    assert bench.command(176, 1, 4) == ACCEPTED
+    assert bench.command(176, 129, 5) == ACCEPTED
+    assert bench.command(176, 0, 4) == DENIED
+    ask = mavlink.MAVLink_command_long_message(1, 1, 176, 0, 1, 99, 0, 0, 0, 0, 0)
+    answers = bench.ask(ask)
+    assert [m.text for m in answers if m.get_type() == "STATUSTEXT"] == ["No such mode 99"]
+    assert [m.result for m in answers if m.get_type() == "COMMAND_ACK"] == [FAILED]
+    assert bench.command(176, 1, 4.5) == FAILED
+    for number, mode in ((17, 5), (20, 6), (21, 9)):
+        assert bench.command(number, 0, 0, 0, math.nan) == ACCEPTED
+        assert bench.autopilot.mode() == mode
+    old = bench.ask(mavlink.MAVLink_set_mode_message(1, 1, 4), "COMMAND_ACK")
+    assert [(m.command, m.result) for m in old] == [(11, ACCEPTED)] and bench.autopilot.mode() == 4
+
+
+def test_takeoff(bench: Bench) -> None:
+    assert bench.command(22, 0, 0, 0, 0, 0, 0, 10.0) == ACCEPTED
+    assert command_int(bench, 22, 3, 0, 0, 12.0) == ACCEPTED
+    assert command_int(bench, 22, 0, 0, 0, 12.0) == DENIED
+    assert bench.autopilot.calls == [("takeoff", 10.0), ("takeoff", 12.0)]
+
+
+def test_reposition(bench: Bench) -> None:
+    assert bench.command(192, -1, 1, 0, 0, -35.0, 149.0, 10) == UNSUPPORTED
+    place = (HOME[0] + 1000, HOME[1])
+    assert command_int(bench, 192, 3, *place, 10.0, -1, 1) == FAILED  # no origin yet
+    bench.vehicle.locate()
+    assert command_int(bench, 192, 8, *place, 10.0, -1, 1) == DENIED
+    assert command_int(bench, 192, 3, *place, 10.0, -1, 0) == DENIED  # may not change the mode
+    assert command_int(bench, 192, 3, *place, 10.0, -1, 1, 0, math.nan) == ACCEPTED
+    assert command_int(bench, 192, 0, *place, 594.0) == ACCEPTED
+    assert command_int(bench, 192, 0, 910_000_000, 0, 594.0) == DENIED
+    targets = [c[1] for c in bench.autopilot.calls if c[0] == "guided_position"]
+    assert len(targets) == 2
+    for target in targets:
+        assert target == pytest.approx((11.13, 0.0, -10.0), abs=0.01)
+
+
+def test_speed_yaw_pause(bench: Bench) -> None:
+    assert bench.command(178, 1, 3, -1) == ACCEPTED
+    assert bench.command(178, 1, -5, -1) == DENIED
+    assert bench.command(178, 9, 3, -1) == DENIED
+    assert bench.command(115, 90, 30, -1, 1) == ACCEPTED
+    assert bench.command(115, 361, 30, -1, 1) == FAILED
+    assert bench.command(193, 0) == ACCEPTED
+    assert bench.command(193, 1) == ACCEPTED
+    assert bench.command(193, 2) == DENIED
+    yaw = pytest.approx(math.pi / 2), pytest.approx(math.pi / 6)
+    assert bench.autopilot.calls == [
+        ("change_speed", 1, 3.0), ("condition_yaw", *yaw, -1, True), ("pause", True), ("pause", False)
+    ]  # fmt: skip
+
+
+def test_home(bench: Bench) -> None:
+    bench.vehicle.locate()
+    assert bench.command(179, 1) == ACCEPTED
+    assert command_int(bench, 179, 0, 0, 0, 584.0) == ACCEPTED
+    assert command_int(bench, 179, 0, HOME[0], HOME[1], 590.0) == ACCEPTED
+    assert command_int(bench, 179, 3, HOME[0], HOME[1], 5.0) == ACCEPTED
+    assert command_int(bench, 179, 1, HOME[0], HOME[1], 5.0) == DENIED
+    calls = bench.autopilot.calls
+    assert [c[0] for c in calls] == ["set_home_here", "set_home_here", "set_home", "set_home"]
+    assert calls[2][1:4] == (*HOME[:2], 590.0) and calls[3][3] == 589.0
+
+
+def test_system_commands(bench: Bench) -> None:
+    assert bench.command(401) == ACCEPTED
+    assert bench.command(246, 2) == UNSUPPORTED
+    assert bench.command(245, 0) == DENIED
+    assert bench.command(241, 1) == ACCEPTED
+    assert bench.command(241, 0, 0, 0, 0, 4) == TEMPORARILY_REJECTED
+    assert bench.command(185, 0) == FAILED
+    assert bench.command(246, 1) == ACCEPTED and bench.vehicle.reboots == 1
+    bench.vehicle.v.autopilot.arming.armed = 1
+    assert bench.command(246, 1) == FAILED and bench.vehicle.reboots == 1
+    assert bench.command(401) == TEMPORARILY_REJECTED
+    assert bench.command(241, 1) == FAILED
+    assert bench.command(410) == FAILED
+    assert bench.command(520, 1) == ACCEPTED
+
+
+def test_mission_commands(bench: Bench) -> None:
+    assert bench.command(300) == ACCEPTED
+    assert bench.command(300, 1, 2) == DENIED
+    assert bench.command(224, 1) == DENIED
+    assert bench.command(224, 1.5) == DENIED
+
+
+def test_a_repeated_command_is_answered_again(bench: Bench) -> None:
+    for confirmation in range(3):
+        ask = mavlink.MAVLink_command_long_message(1, 1, 512, confirmation, 148, 0, 0, 0, 0, 0, 0)
+        assert [m.get_type() for m in bench.ask(ask)] == ["AUTOPILOT_VERSION", "COMMAND_ACK"]
+    version = bench.ask(ask, "AUTOPILOT_VERSION")[0]
+    assert version.flight_sw_version >> 16 == 0x0407 and version.capabilities & 0x2000
+
+
+def test_a_version_1_client_is_answered_in_version_1(bench: Bench) -> None:
+    old = bench.connect(version=1)
+    old.send(mavlink.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0))
+    bench.bridge.receive()
+    raw = old.link.receive()
+    assert raw[0] == 0xFE
+    assert mavlink.MAVLink(None).parse_buffer(raw)[0].get_type() == "AUTOPILOT_VERSION"
+    old.version = 2
+    old.send(mavlink.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0))
+    bench.bridge.receive()
+    assert old.link.receive()[0] == 0xFD

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sockets on free ports of the loopback interface; the vehicle's clock is the test's."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+from fakes import Bench
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from sitl.bridge.frame import Splitter
+from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOutLink, open_link
+from sitl.bridge.links.address import parse
+from sitl.bridge.links.tcp import CONGESTED_BYTES
+from sitl.bridge.services.statustext import StatusTextService
+
+LOCAL = "127.0.0.1"
+TRIES = 200
+
+
+def packed(message: object, system: int = 255) -> bytes:
+    return message.pack(mavlink.MAVLink(None, srcSystem=system, srcComponent=190))  # type: ignore[attr-defined]
+
+
+REQUEST = packed(mavlink.MAVLink_command_long_message(1, 1, 512, 0, 30, 0, 0, 0, 0, 0, 0))
+
+
+def names(data: bytes) -> list[str]:
+    return [f.kind.name for f in Splitter().feed(data)]
+
+
+def receive(bench: Bench) -> None:
+    """Let the bridge read; the loopback may take a moment of wall time."""
+    bench.bridge.wait(2.0)
+    bench.bridge.receive()
+
+
+def test_tcp_clients_are_separate_and_may_leave(bench: Bench) -> None:
+    link = TcpServerLink(0)
+    bench.bridge.add_link(link)
+    one, two = (socket.create_connection(link.local_address) for _ in range(2))
+    for s in (one, two):
+        s.settimeout(5.0)
+    for _ in range(TRIES):
+        receive(bench)
+        if len(bench.bridge.channels) == 3:
+            break
+    one.sendall(REQUEST)
+    receive(bench)
+    assert names(one.recv(4096)) == ["ATTITUDE", "COMMAND_ACK"]
+    two.setblocking(False)
+    with pytest.raises(BlockingIOError):
+        two.recv(1)
+    one.close()
+    for _ in range(TRIES):
+        receive(bench)
+        if len(bench.bridge.channels) == 2:
+            break
+    assert len(bench.bridge.channels) == 2
+    assert "closed" in bench.bridge.dropped[0]
+    two.close()
+    bench.bridge.close()
+
+
+def test_a_tcp_client_that_does_not_read_cannot_stall_the_vehicle(bench: Bench) -> None:
+    link = TcpServerLink(0)
+    bench.bridge.add_link(link)
+    deaf = socket.create_connection(link.local_address)
+    receive(bench)
+    peer = bench.bridge.channels[1].peer
+    bench.bridge.stream_to(link, {"EXTRA1": 400})
+    for _ in range(100):
+        bench.run(10.0)
+        bench.client.receive()
+        if peer.congested:
+            break
+    assert peer.congested and len(peer._pending) < 2 * CONGESTED_BYTES  # type: ignore[attr-defined]
+    say = bench.bridge.get(StatusTextService).say
+    for _ in range(200_000):
+        say(6, "word for word, until the queue of the client that does not read is full " * 3)
+        bench.bridge.flush()
+        bench.client.link.receive()
+        if peer.closed:
+            break
+    assert len(bench.bridge.channels) == 1
+    assert "does not read" in bench.bridge.dropped[0]
+    deaf.close()
+    bench.bridge.close()
+
+
+def test_udp_in_knows_many_peers(bench: Bench) -> None:
+    link = UdpInLink(LOCAL, 0)
+    bench.bridge.add_link(link)
+    clients = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(3)]
+    for c in clients:
+        c.settimeout(5.0)
+        c.sendto(REQUEST, link.local_address)
+    for _ in range(TRIES):
+        receive(bench)
+        if len(bench.bridge.channels) == 4:
+            break
+    for c in clients:
+        assert names(c.recv(4096)) == ["ATTITUDE", "COMMAND_ACK"]
+        c.close()
+    bench.bridge.close()
+
+
+def test_udp_out_speaks_first_and_hears_answers(bench: Bench) -> None:
+    ground = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    ground.bind((LOCAL, 0))
+    ground.settimeout(5.0)
+    bench.bridge.add_link(UdpOutLink(LOCAL, ground.getsockname()[1]))
+    bench.run(1.0)
+    found = []
+    while "HEARTBEAT" not in found:
+        data, vehicle = ground.recvfrom(4096)
+        found += names(data)
+    ground.sendto(REQUEST, vehicle)
+    receive(bench)
+    while "COMMAND_ACK" not in found:
+        found += names(ground.recv(4096))
+    assert len(bench.bridge.channels) == 2
+    ground.close()
+    bench.run(5.0)  # nobody listens any more: no error
+    bench.bridge.receive()
+    bench.bridge.close()
+
+
+@pytest.mark.parametrize(("text", "meaning"), [
+    ("udp:10.0.0.1:14550", ("udpout", "10.0.0.1", 14550)), ("udpout://host:1", ("udpout", "host", 1)),
+    ("udpin:14550", ("udpin", LOCAL, 14550)), ("udpin:0.0.0.0:14550", ("udpin", "0.0.0.0", 14550)),
+    ("tcp:5760", ("tcp", LOCAL, 5760)), ("tcpin:0.0.0.0:5760", ("tcp", "0.0.0.0", 5760)),
+])  # fmt: skip
+def test_addresses(text: str, meaning: tuple[str, str, int]) -> None:
+    assert parse(text) == meaning
+
+
+@pytest.mark.parametrize(
+    "text", ["", "udp", "udp:14550", "serial:/dev/x", "tcp:", "tcp:h:0", "udp:h:65536", "udp:h:x", "tcp:²"]
+)
+def test_bad_addresses_say_what_is_allowed(text: str) -> None:
+    with pytest.raises(LinkAddressError, match="allowed"):
+        parse(text)
+
+
+def test_a_port_in_use_is_named() -> None:
+    link = TcpServerLink(0)
+    port = link.local_address[1]
+    with pytest.raises(LinkAddressError, match=str(port)):
+        open_link(f"tcp:{port}")
+    link.close()

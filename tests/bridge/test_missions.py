@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The mission protocol: complete uploads replace, everything else leaves the old mission."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+import pytest
+from fakes import HOME, Bench, Client
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from sitl.autopilot.mission.item import MissionItem
+
+ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE = range(5)
+INVALID_PARAM1, INVALID_X, INVALID_SEQUENCE, DENIED, CANCELLED = 6, 10, 13, 14, 15
+SQUARE = [
+    MissionItem(16, 0, x=HOME[0], y=HOME[1], z=584.0),
+    MissionItem(22, 3, z=10.0),
+    *(MissionItem(16, 3, p1=k, x=HOME[0] + 2700 * k, y=HOME[1], z=10.0) for k in range(1, 5)),
+    MissionItem(177, 2, p1=2, p2=1),
+    MissionItem(21, 3),
+]
+
+
+def item_int(seq: int, i: MissionItem, current: int = 0, kind: int = 0) -> Any:
+    return mavlink.MAVLink_mission_item_int_message(
+        1, 1, seq, i.frame, i.command, current, 1, i.p1, i.p2, i.p3, i.p4, i.x, i.y, i.z, kind
+    )
+
+
+def item_float(seq: int, i: MissionItem, current: int = 0) -> Any:
+    scale = 1.0 if i.command == 177 else 1e-7
+    return mavlink.MAVLink_mission_item_message(
+        1, 1, seq, i.frame, i.command, current, 1, i.p1, i.p2, i.p3, i.p4, i.x * scale, i.y * scale, i.z
+    )
+
+
+def count(n: int, kind: int = 0) -> Any:
+    return mavlink.MAVLink_mission_count_message(1, 1, n, kind)
+
+
+def upload(bench: Bench, client: Client, items: list[MissionItem], pack: Any = item_int) -> int:
+    """As MAVSDK does: answer each request, repeat after half a second without one."""
+    client.send(count(len(items)))
+    last = count(len(items))
+    for _ in range(400):
+        bench.run(0.1)
+        answers = client.receive("MISSION_REQUEST", "MISSION_ACK")
+        for m in answers:
+            if m.get_type() == "MISSION_ACK":
+                return int(m.type)
+            last = pack(m.seq, items[m.seq])
+            client.send(last)
+        if not answers:
+            client.send(last)
+    raise AssertionError("no end")
+
+
+def download(bench: Bench, client: Client) -> list[Any]:
+    client.send(mavlink.MAVLink_mission_request_list_message(1, 1))
+    bench.bridge.receive()
+    (n,) = client.receive("MISSION_COUNT")
+    items = []
+    for seq in range(n.count):
+        client.send(mavlink.MAVLink_mission_request_int_message(1, 1, seq))
+        bench.bridge.receive()
+        items += client.receive("MISSION_ITEM_INT")
+    return items
+
+
+@pytest.mark.parametrize("drop", [0.0, 0.05])
+def test_upload_and_download(bench: Bench, drop: float) -> None:
+    for trial in range(20 if drop else 1):
+        rng = random.Random(trial)
+        lossy = bench.connect(
+            drop_to_client=lambda _: rng.random() < drop,  # noqa: B023
+            drop_to_vehicle=lambda _: rng.random() < drop,  # noqa: B023
+        )
+        bench.autopilot.items = ()
+        assert upload(bench, lossy, SQUARE) == ACCEPTED
+        assert list(bench.autopilot.items) == SQUARE
+    got = download(bench, bench.client)
+    fields = [(m.seq, m.command, m.frame, m.param1, m.x, m.y, m.z) for m in got]
+    assert fields == [(k, i.command, i.frame, i.p1, i.x, i.y, i.z) for k, i in enumerate(SQUARE)]
+
+
+def test_the_vehicle_asks_with_mission_request(bench: Bench) -> None:
+    answers = bench.ask(count(2))
+    assert [(m.get_type(), m.seq, m.target_system, m.target_component) for m in answers] == [
+        ("MISSION_REQUEST", 0, 255, 190)
+    ]
+    answers = bench.ask(item_int(0, SQUARE[0]))
+    assert [m.seq for m in answers] == [1]
+    answers = bench.ask(item_int(1, SQUARE[1]))
+    assert [m.text for m in answers if m.get_type() == "STATUSTEXT"] == ["Flight plan received"]
+
+
+def test_legacy_float_items(bench: Bench) -> None:
+    assert upload(bench, bench.client, SQUARE, item_float) == ACCEPTED
+    for ours, sent in zip(bench.autopilot.items, SQUARE, strict=True):
+        assert ours.x == pytest.approx(sent.x, abs=64) and ours.y == pytest.approx(sent.y, abs=64)
+        assert (ours.command, ours.p1, ours.p2, ours.z) == (sent.command, sent.p1, sent.p2, sent.z)
+    bench.client.send(mavlink.MAVLink_mission_request_message(1, 1, 2))
+    bench.bridge.receive()
+    (item,) = bench.client.receive("MISSION_ITEM")
+    assert item.x == pytest.approx(SQUARE[2].x * 1e-7, abs=1e-5)
+
+
+def test_the_int_frames_mean_the_same(bench: Bench) -> None:
+    assert upload(bench, bench.client, [SQUARE[0], SQUARE[2]._replace(frame=6)]) == ACCEPTED
+    assert bench.autopilot.items[1].frame == 3
+
+
+BAD = [
+    (SQUARE[2]._replace(p1=math.nan), INVALID_PARAM1),
+    (SQUARE[2]._replace(p3=math.inf), INVALID_PARAM1 + 2),
+    (SQUARE[2]._replace(frame=8), UNSUPPORTED_FRAME),
+    (SQUARE[2]._replace(command=31000), UNSUPPORTED),
+    (SQUARE[2]._replace(x=910_000_000), INVALID_X),
+    (SQUARE[2]._replace(z=math.nan), 12),
+]
+
+
+@pytest.mark.parametrize(("bad", "result"), BAD)
+def test_a_bad_item_ends_the_upload_and_leaves_the_old_mission(
+    bench: Bench, bad: MissionItem, result: int
+) -> None:
+    old = tuple(SQUARE)
+    bench.autopilot.items = old
+    assert upload(bench, bench.client, [SQUARE[0], SQUARE[1], bad]) == result
+    assert bench.autopilot.items is old and bench.bridge.next_due_us() < 10**7
+
+
+def test_a_wrong_number_ends_the_upload(bench: Bench) -> None:
+    bench.autopilot.items = old = tuple(SQUARE)
+    bench.ask(count(4))
+    bench.ask(item_int(0, SQUARE[0]))
+    (ack,) = bench.ask(item_int(3, SQUARE[1]), "MISSION_ACK")
+    assert ack.type == INVALID_SEQUENCE and bench.autopilot.items is old
+    (ack,) = bench.ask(item_int(1, SQUARE[1]), "MISSION_ACK")
+    assert ack.type == ERROR
+
+
+def test_a_repeated_item_is_asked_past(bench: Bench) -> None:
+    bench.ask(count(3))
+    bench.ask(item_int(0, SQUARE[0]))
+    (request,) = bench.ask(item_int(0, SQUARE[0]))
+    assert request.get_type() == "MISSION_REQUEST" and request.seq == 1
+
+
+def test_the_last_acknowledgement_is_repeated(bench: Bench) -> None:
+    assert upload(bench, bench.client, SQUARE[:2]) == ACCEPTED
+    (ack,) = bench.ask(item_int(1, SQUARE[1]), "MISSION_ACK")
+    assert ack.type == ACCEPTED
+
+
+def test_time_out_after_8_simulated_seconds(bench: Bench) -> None:
+    bench.autopilot.items = old = tuple(SQUARE)
+    bench.ask(count(3))
+    bench.run(7.9)
+    assert not bench.client.receive("MISSION_ACK")
+    bench.run(0.2)
+    (ack,) = bench.client.receive("MISSION_ACK")
+    assert ack.type == CANCELLED and bench.autopilot.items is old
+    bench.run(20.0)
+    assert not bench.client.receive("MISSION_ACK", "MISSION_REQUEST")
+
+
+def test_two_uploads_do_not_mix(bench: Bench) -> None:
+    other = bench.connect(system=250)
+    bench.ask(count(2))
+    for message in (count(3), item_int(0, SQUARE[3]), mavlink.MAVLink_mission_clear_all_message(1, 1)):
+        other.send(message)
+        bench.bridge.receive()
+        (ack,) = other.receive("MISSION_ACK")
+        assert ack.type == DENIED
+    bench.ask(item_int(0, SQUARE[0]))
+    bench.ask(item_int(1, SQUARE[1]))
+    assert bench.autopilot.items == (SQUARE[0], SQUARE[1])
+
+
+def test_partial_write(bench: Bench) -> None:
+    bench.autopilot.items = tuple(SQUARE)
+    new = SQUARE[3]._replace(z=33.0)
+    answers = bench.ask(mavlink.MAVLink_mission_write_partial_list_message(1, 1, 3, 3))
+    assert [m.seq for m in answers] == [3]
+    (ack,) = bench.ask(item_int(3, new), "MISSION_ACK")
+    assert ack.type == ACCEPTED
+    assert bench.autopilot.items == (*SQUARE[:3], new, *SQUARE[4:])
+    for first, last in ((3, 2), (0, 99), (-1, 2)):
+        (ack,) = bench.ask(
+            mavlink.MAVLink_mission_write_partial_list_message(1, 1, first, last), "MISSION_ACK"
+        )
+        assert ack.type == INVALID_SEQUENCE
+
+
+def test_clear_and_empty_upload(bench: Bench) -> None:
+    for message in (mavlink.MAVLink_mission_clear_all_message(1, 1), count(0),
+                    mavlink.MAVLink_mission_clear_all_message(1, 1, 255)):  # fmt: skip
+        bench.autopilot.items = tuple(SQUARE)
+        (ack,) = bench.ask(message, "MISSION_ACK")
+        assert ack.type == ACCEPTED and bench.autopilot.items == ()
+
+
+def test_too_many(bench: Bench) -> None:
+    (ack,) = bench.ask(count(60000), "MISSION_ACK")
+    assert ack.type == NO_SPACE
+
+
+@pytest.mark.parametrize("kind", [1, 2])
+def test_fence_and_rally_are_empty(bench: Bench, kind: int) -> None:
+    bench.autopilot.items = old = tuple(SQUARE)
+    (n,) = bench.ask(mavlink.MAVLink_mission_request_list_message(1, 1, kind))
+    assert (n.get_type(), n.count, n.mission_type) == ("MISSION_COUNT", 0, kind)
+    (ack,) = bench.ask(count(3, kind), "MISSION_ACK")
+    assert (ack.type, ack.mission_type) == (UNSUPPORTED, kind)
+    for message in (count(0, kind), mavlink.MAVLink_mission_clear_all_message(1, 1, kind)):
+        (ack,) = bench.ask(message, "MISSION_ACK")
+        assert (ack.type, ack.mission_type) == (ACCEPTED, kind)
+    assert bench.autopilot.items is old
+
+
+def test_set_current(bench: Bench) -> None:
+    bench.autopilot.items = tuple(SQUARE)
+    assert [
+        m.seq for m in bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 3), "MISSION_CURRENT")
+    ][0] == 3
+    assert bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 99)) == []
+    answers = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 3))
+    assert answers[0].current == 1
+    (ack,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 99))
+    assert ack.type == INVALID_SEQUENCE
+
+
+def test_a_client_that_leaves_frees_the_upload(bench: Bench) -> None:
+    other = bench.connect(system=250)
+    other.send(count(3))
+    bench.bridge.receive()
+    bench.bridge.remove_link(other.link)
+    assert [m.get_type() for m in bench.ask(count(2))] == ["MISSION_REQUEST"]
+
+
+def test_dronekit_goto(bench: Bench) -> None:
+    bench.vehicle.locate()
+    goto = item_float(0, MissionItem(16, 3, x=HOME[0] + 1000, y=HOME[1], z=7.0), current=2)
+    (ack,) = bench.ask(goto, "MISSION_ACK")
+    assert ack.type == ERROR  # not in GUIDED
+    bench.vehicle.v.autopilot.modes.number = 4
+    (ack,) = bench.ask(goto, "MISSION_ACK")
+    assert ack.type == ACCEPTED
+    name, place, _ = bench.autopilot.calls[-1]
+    assert name == "guided_position" and place == pytest.approx((11.1, 0.0, -7.0), abs=0.7)

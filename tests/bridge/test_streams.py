@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from collections import Counter
+from itertools import pairwise
+
+import pytest
+from fakes import Bench
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512
+ALL_GROUPS = {
+    "RAW_IMU", "SCALED_PRESSURE", "SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT",
+    "NAV_CONTROLLER_OUTPUT", "SERVO_OUTPUT_RAW", "RC_CHANNELS", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED",
+    "ATTITUDE", "SIMSTATE", "AHRS2", "VFR_HUD", "AHRS", "SYSTEM_TIME", "WIND", "BATTERY_STATUS", "EKF_STATUS_REPORT",
+    "VIBRATION",
+}  # fmt: skip
+
+
+def request_stream(group: int, rate: int, start: int = 1) -> object:
+    return mavlink.MAVLink_request_data_stream_message(1, 1, group, rate, start)
+
+
+def counts(bench: Bench, seconds: float) -> Counter[str]:
+    bench.client.receive()
+    bench.run(seconds)
+    return Counter(m.get_type() for m in bench.client.receive())
+
+
+def test_silence_but_for_heartbeat_and_timesync(bench: Bench) -> None:
+    bench.run(3.0)
+    bench.client.receive()
+    assert counts(bench, 20.0) == {"HEARTBEAT": 20, "TIMESYNC": 2}
+
+
+def test_all_streams_at_4_hz(bench: Bench) -> None:
+    bench.vehicle.locate()
+    bench.run(3.0)
+    bench.ask(request_stream(0, 4))
+    found = counts(bench, 10.0)
+    assert {name for name, n in found.items() if n == 40} == ALL_GROUPS
+    bench.ask(request_stream(0, 4, start=0))
+    assert set(counts(bench, 5.0)) <= {"HEARTBEAT", "TIMESYNC"}
+
+
+def test_each_client_has_its_own_streams_and_sequence(bench: Bench) -> None:
+    other = bench.connect(system=250)
+    assert bench.command(SET_INTERVAL, 30, 100_000) == 0
+    bench.run(5.0)
+    other_types = {m.get_type() for m in other.receive()}
+    mine = bench.client.receive()
+    assert "ATTITUDE" not in other_types
+    assert sum(m.get_type() == "ATTITUDE" for m in mine) == 50
+    numbers = [m.get_seq() for m in mine]
+    assert all((b - a) % 256 == 1 for a, b in pairwise(numbers))
+
+
+@pytest.mark.parametrize("hz", [1, 3, 7, 30, 50, 400])
+def test_rates_are_exact(bench: Bench, hz: int) -> None:
+    assert bench.command(SET_INTERVAL, 30, 1e6 / hz) == 0
+    assert abs(counts(bench, 10.0)["ATTITUDE"] - 10 * hz) <= 1
+
+
+def test_intervals_refused_and_told(bench: Bench) -> None:
+    say = mavlink.MAVLink_command_long_message(1, 1, SET_INTERVAL, 0, 30, 1000, 0, 0, 0, 0, 0)
+    answers = bench.ask(say)
+    assert [m.result for m in answers if m.get_type() == "COMMAND_ACK"] == [2]
+    pieces = [m.text for m in answers if m.get_type() == "STATUSTEXT"]
+    assert pieces == ["Requested rate for message ID 30 too fast. Increas", "e SCHED_LOOP_RATE"]
+    assert bench.command(SET_INTERVAL, 9999, 100_000) == 2
+    assert bench.command(REQUEST, 999) == 4
+    assert bench.command(REQUEST, 30) == 0
+
+
+def test_get_interval(bench: Bench) -> None:
+    def interval(number: int) -> int:
+        ask = mavlink.MAVLink_command_long_message(1, 1, GET_INTERVAL, 0, number, 0, 0, 0, 0, 0, 0)
+        return int(bench.ask(ask, "MESSAGE_INTERVAL")[0].interval_us)
+
+    assert (interval(0), interval(30), interval(9999)) == (1_000_000, -1, 0)
+    bench.command(SET_INTERVAL, 30, 40_000)
+    assert interval(30) == 40_000
+    bench.command(SET_INTERVAL, 30, -1)
+    assert interval(30) == -1
+    bench.command(SET_INTERVAL, 0, -1)
+    assert "HEARTBEAT" not in counts(bench, 3.0)
+    bench.command(SET_INTERVAL, 0, 0)
+    assert interval(0) == 1_000_000
+
+
+def test_a_rate_parameter_holds_for_every_client(bench: Bench) -> None:
+    bench.ask(mavlink.MAVLink_param_set_message(1, 1, b"MAV1_EXTRA1", 5.0, 4))
+    assert counts(bench, 2.0)["ATTITUDE"] == 10
+    late = bench.connect()
+    bench.run(2.0)
+    assert len(late.receive("ATTITUDE")) == 10
+
+
+def test_request_message_before_a_position_is_known(bench: Bench) -> None:
+    ask = mavlink.MAVLink_command_long_message(1, 1, REQUEST, 0, 242, 0, 0, 0, 0, 0, 0)
+    assert [m.get_type() for m in bench.ask(ask)] == ["COMMAND_ACK"]
+    bench.vehicle.locate()
+    assert [m.get_type() for m in bench.ask(ask)] == ["HOME_POSITION", "COMMAND_ACK"]
+
+
+def test_streams_wait_for_a_client_that_does_not_read(bench: Bench) -> None:
+    bench.command(SET_INTERVAL, 30, 100_000)
+    type(bench.bridge.channels[0].peer).congested = property(lambda self: True)  # type: ignore[assignment]
+    try:
+        assert not {"ATTITUDE", "HEARTBEAT"} & set(counts(bench, 2.0))
+    finally:
+        del type(bench.bridge.channels[0].peer).congested
+    assert counts(bench, 2.0)["ATTITUDE"] == 20

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every builder: units at the border, and numbers that do not fit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fakes import HOME, Bench
+
+
+def get(bench: Bench, name: str) -> object:
+    """One message, as a client decodes it."""
+    number = next(n for n, (kind, _) in bench.bridge.telemetry.items() if kind.name == name)
+    bench.bridge.send_now(bench.bridge.channels[0], number)
+    bench.bridge.flush()
+    found = bench.client.receive(name)
+    assert len(found) == 1
+    return found[0]
+
+
+def test_position_and_attitude(bench: Bench) -> None:
+    v = bench.vehicle.v
+    bench.vehicle.locate()
+    v.time_us = 12_345_678
+    v.autopilot.estimate.pos[:] = (100.0, -50.0, -20.0)
+    v.autopilot.estimate.vel[:] = (1.5, -2.5, 0.25)
+    v.autopilot.estimate.euler[:] = (0.1, -0.2, -math.pi / 2)
+    v.autopilot.estimate.rates[:] = (0.01, 0.02, 0.03)
+    where = get(bench, "GLOBAL_POSITION_INT")
+    assert where.time_boot_ms == 12345
+    assert where.lat == pytest.approx(HOME[0] + 100.0 / 0.0111318845, abs=1)
+    scale = math.cos(math.radians(HOME[0] * 1e-7))
+    assert where.lon == pytest.approx(HOME[1] - 50.0 / (0.0111318845 * scale), abs=1)
+    assert (where.alt, where.relative_alt, where.hdg) == (604_000, 20_000, 27_000)
+    assert (where.vx, where.vy, where.vz) == (150, -250, 25)
+    local = get(bench, "LOCAL_POSITION_NED")
+    assert (local.x, local.y, local.z, local.vx) == (100.0, -50.0, -20.0, 1.5)
+    attitude = get(bench, "ATTITUDE")
+    assert attitude.pitch == pytest.approx(-0.2) and attitude.yawspeed == pytest.approx(0.03)
+    hud = get(bench, "VFR_HUD")
+    assert hud.heading == 270 and hud.alt == pytest.approx(604.0) and hud.climb == -0.25
+    home = get(bench, "HOME_POSITION")
+    assert (home.latitude, home.longitude, home.altitude) == (HOME[0], HOME[1], 584_000)
+
+
+def test_imu_units(bench: Bench) -> None:
+    sensors = bench.vehicle.v.sensors
+    sensors.acc[:] = (0.0, 9.80665, -9.80665)
+    sensors.gyro[:] = (0.5, 0.0, -0.25)
+    sensors.mag[:] = (0.25, -0.05, 0.4)
+    sensors.abs_pressure, sensors.temperature = 945.0, 25.5
+    raw = get(bench, "RAW_IMU")
+    assert (raw.xacc, raw.zgyro, raw.xmag, raw.temperature) == (0, -250, 250, 2550)
+    assert raw.yacc in (999, 1000) and raw.zacc in (-999, -1000)
+    high = get(bench, "HIGHRES_IMU")
+    assert high.abs_pressure == 945.0 and high.pressure_alt == pytest.approx(584.0, abs=6.0)
+    assert get(bench, "SCALED_PRESSURE").press_abs == 945.0
+
+
+def test_heartbeat_and_status(bench: Bench) -> None:
+    ap = bench.vehicle.v.autopilot
+    beat = get(bench, "HEARTBEAT")
+    assert (beat.type, beat.autopilot, beat.base_mode, beat.custom_mode, beat.system_status) == (
+        2,
+        3,
+        81,
+        0,
+        3,
+    )
+    ap.modes.number, ap.arming.armed, ap.arming.landed = 4, 1, 0
+    beat = get(bench, "HEARTBEAT")
+    assert (beat.base_mode, beat.custom_mode, beat.system_status) == (81 | 8 | 128, 4, 4)
+    ap.arming.armed, ap.arming.prearm_ok, ap.battery.voltage, ap.battery.current = 0, 0, 12.6, 3.5
+    status = get(bench, "SYS_STATUS")
+    assert (status.voltage_battery, status.current_battery) == (12600, 350)
+    assert status.onboard_control_sensors_present & 0x10000000
+    assert not status.onboard_control_sensors_health & 0x10000000
+    ap.arming.prearm_ok = 1
+    assert get(bench, "SYS_STATUS").onboard_control_sensors_health & 0x10000000
+
+
+def test_landed_state(bench: Bench) -> None:
+    ap = bench.vehicle.v.autopilot
+    assert get(bench, "EXTENDED_SYS_STATE").landed_state == 1
+    ap.arming.landed, ap.modes.number, ap.modes.guided.submode = 0, 4, 0
+    assert get(bench, "EXTENDED_SYS_STATE").landed_state == 3
+    ap.modes.takeoff.complete = 1
+    assert get(bench, "EXTENDED_SYS_STATE").landed_state == 2
+    ap.modes.landing.landing = 1
+    assert get(bench, "EXTENDED_SYS_STATE").landed_state == 4
+
+
+@pytest.mark.parametrize("value", [0.0, math.nan, math.inf, -math.inf, 1e30, -1e300])
+def test_nothing_in_the_record_can_break_a_message(bench: Bench, value: float) -> None:
+    """A diverged simulation still speaks (or leaves out what the wire cannot carry)."""
+    bench.vehicle.locate()
+    words = bench.vehicle.fleet.view("f8")
+    keep = bench.vehicle.fleet.copy()
+    for name in ("estimate", "battery", "home", "control"):
+        offset = bench.vehicle.fleet.dtype["autopilot"].fields[name][1]
+        start = (
+            bench.vehicle.fleet.itemsize + bench.vehicle.fleet.dtype.fields["autopilot"][1] + offset
+        ) // 8
+        size = bench.vehicle.fleet.dtype["autopilot"][name].itemsize // 8
+        words[start : start + size] = value
+    estimate = bench.vehicle.v.autopilot.estimate
+    for name in estimate.dtype.names:
+        if estimate.dtype[name].base == np.dtype("i8"):
+            estimate[name] = keep[1]["autopilot"]["estimate"][name]
+    for number in bench.bridge.telemetry:
+        bench.bridge.send_now(bench.bridge.channels[0], number)
+    bench.bridge.flush()
+    assert "HEARTBEAT" in {m.get_type() for m in bench.client.receive()}
+
+
+def test_absent_position_is_not_invented(bench: Bench) -> None:
+    where = get(bench, "GLOBAL_POSITION_INT")
+    assert (where.lat, where.lon, where.relative_alt) == (0, 0, 0)
+    bench.vehicle.v.sensors.gps_fix, bench.vehicle.v.sensors.gps_lat = 3, 123
+    assert get(bench, "GLOBAL_POSITION_INT").lat == 123

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The mixer: total thrust kept, priorities, range, symmetry."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sitl.autopilot.control.mixer import PLUS, X, factors, mix
+
+demand = st.floats(-1.0, 1.0)
+unit = st.floats(0.0, 1.0)
+frame = st.sampled_from([PLUS, X])
+FLAGS = ("limit_roll", "limit_pitch", "limit_yaw", "limit_throttle_lower", "limit_throttle_upper")
+
+
+def run(frame_type, roll, pitch, yaw, throttle, avg_max=None, throttle_max=1.0, headroom=0.2):
+    motors = SimpleNamespace(thrust=[0.0] * 4, **{flag: 0 for flag in FLAGS})
+    avg = throttle if avg_max is None else avg_max
+    out = mix(motors, frame_type, roll, pitch, yaw, throttle, avg, throttle_max, headroom)
+    return motors, out
+
+
+def demands_met(frame_type, motors):
+    """(roll, pitch, yaw) that the four thrusts make."""
+    sums = [0.0, 0.0, 0.0]
+    weight = [0.0, 0.0, 0.0]
+    for k in range(4):
+        for j, f in enumerate(factors(frame_type, k)):
+            sums[j] += f * motors.thrust[k]
+            weight[j] += f * f
+    return [s / w for s, w in zip(sums, weight, strict=True)]
+
+
+@given(frame, demand, demand, demand, unit, unit, unit, unit)
+def test_thrusts_stay_within_range(frame_type, roll, pitch, yaw, throttle, avg_max, throttle_max, headroom):
+    motors, out = run(frame_type, roll, pitch, yaw, throttle, avg_max, throttle_max, headroom)
+    assert all(-1e-9 <= t <= 1.0 + 1e-9 for t in motors.thrust)
+    assert sum(motors.thrust) == pytest.approx(4 * out, abs=1e-9)
+
+
+@given(frame, demand, demand, demand, unit)
+def test_unsaturated_demands_come_out_unchanged(frame_type, roll, pitch, yaw, throttle):
+    motors, out = run(frame_type, roll, pitch, yaw, throttle)
+    if any(getattr(motors, flag) for flag in FLAGS) or out != pytest.approx(throttle):
+        return
+    assert demands_met(frame_type, motors) == pytest.approx([roll, pitch, yaw], abs=1e-9)
+
+
+def test_small_demands_are_unsaturated():
+    motors, out = run(X, 0.1, -0.1, 0.1, 0.4)
+    assert not any(getattr(motors, flag) for flag in FLAGS)
+    assert out == pytest.approx(0.4)
+
+
+@given(frame, demand, demand, demand, st.floats(0.3, 0.7))
+def test_roll_and_pitch_are_served_before_yaw(frame_type, roll, pitch, yaw, throttle):
+    motors, _ = run(frame_type, 0.28 * roll, 0.28 * pitch, yaw, throttle, headroom=0.0)
+    got = demands_met(frame_type, motors)
+    assert got[0] == pytest.approx(0.28 * roll, abs=1e-9) and got[1] == pytest.approx(0.28 * pitch, abs=1e-9)
+    assert abs(got[2]) <= abs(yaw) + 1e-9
+    if not motors.limit_yaw:
+        assert got[2] == pytest.approx(yaw, abs=1e-9)
+
+
+def test_yaw_keeps_its_headroom_against_full_roll():
+    with_room, _ = run(X, 1.0, 0.0, 1.0, 0.5, headroom=0.2)
+    without, _ = run(X, 1.0, 0.0, 1.0, 0.5, headroom=0.0)
+    assert demands_met(X, with_room)[2] > 0.1
+    assert demands_met(X, without)[2] == pytest.approx(0.0, abs=1e-9)
+    assert with_room.limit_yaw == 1 and without.limit_yaw == 1
+
+
+@given(frame, demand, demand, demand, unit)
+def test_left_and_right_are_mirror_images(frame_type, roll, pitch, yaw, throttle):
+    # Mirroring swaps the roles of clockwise and counter-clockwise motors: the sorted thrusts must agree.
+    a, out_a = run(frame_type, roll, pitch, yaw, throttle)
+    b, out_b = run(frame_type, -roll, pitch, -yaw, throttle)
+    if frame_type == X:
+        assert [b.thrust[k] for k in (2, 3, 0, 1)] == pytest.approx(list(a.thrust), abs=1e-9)
+    assert out_a == pytest.approx(out_b, abs=1e-9)
+
+
+def test_throttle_may_rise_for_attitude_only_as_far_as_allowed():
+    low, out_low = run(X, 0.4, 0.4, 0.0, 0.05, avg_max=0.05)
+    high, out_high = run(X, 0.4, 0.4, 0.0, 0.05, avg_max=0.4)
+    assert out_low == pytest.approx(0.05) and low.limit_roll == 1
+    assert out_high == pytest.approx(0.4) and high.limit_roll == 0
+
+
+def test_zero_and_full_throttle_raise_their_flags():
+    assert run(PLUS, 0.0, 0.0, 0.0, 0.0)[0].limit_throttle_lower == 1
+    assert run(PLUS, 0.0, 0.0, 0.0, 1.0)[0].limit_throttle_upper == 1
+
+
+@pytest.mark.parametrize(
+    ("frame_type", "roll", "pitch", "yaw", "strong"),
+    [
+        (PLUS, 0.2, 0.0, 0.0, {1}),  # to the right: the left motor pushes
+        (PLUS, 0.0, 0.2, 0.0, {2}),  # nose up: the front motor
+        (PLUS, 0.0, 0.0, 0.2, {0, 1}),  # clockwise: the counter-clockwise motors
+        (X, 0.2, 0.0, 0.0, {1, 2}),
+        (X, 0.0, 0.2, 0.0, {0, 2}),
+        (X, 0.0, 0.0, 0.2, {0, 1}),
+    ],
+)
+def test_motors_are_numbered_as_ardupilots(frame_type, roll, pitch, yaw, strong):
+    motors, out = run(frame_type, roll, pitch, yaw, 0.5)
+    assert {k for k in range(4) if motors.thrust[k] > out + 1e-9} == strong

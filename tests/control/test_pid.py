@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""PID: filters, anti-windup, inputs that are not numbers."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sitl.autopilot.control.pid import lowpass_gain, relax_integrator, update_directional, update_saturating
+
+DT = 0.0025
+
+
+def fresh(integrator=0.0):
+    return SimpleNamespace(
+        started=0, target=0.0, error=0.0, derivative=0.0, target_derivative=0.0, integrator=integrator
+    )
+
+
+def saturating(pid, target, measurement, saturated=False, kp=0.0, ki=0.0, kd=0.0, imax=0.5, hz_error=0.0, pd_max=0.0):
+    return update_saturating(
+        pid, target, measurement, DT, saturated, kp, ki, kd, 0.0, 0.0, imax, pd_max, 0.0, hz_error, 0.0
+    )
+
+
+def test_proportional_only():
+    assert saturating(fresh(), 1.0, 0.25, kp=2.0) == pytest.approx(1.5)
+
+
+def test_first_input_makes_no_derivative_kick():
+    assert saturating(fresh(), 100.0, 0.0, kd=1.0) == 0.0
+
+
+def test_derivative_of_a_ramp():
+    pid = fresh()
+    for k in range(4):
+        out = saturating(pid, 0.01 * k, 0.0, kd=1.0)
+    assert out == pytest.approx(0.01 / DT)
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-5.0, 5.0))
+def test_integrator_of_a_saturated_loop_only_shrinks(start, error):
+    pid = fresh(start)
+    for _ in range(50):
+        saturating(pid, error, 0.0, saturated=True, ki=1.0, imax=2.0)
+        assert abs(pid.integrator) <= abs(start) + 5.0 * DT
+
+
+def test_integrator_stays_within_imax():
+    pid = fresh()
+    for _ in range(2000):
+        saturating(pid, 10.0, 0.0, ki=1.0, imax=0.3)
+    assert pid.integrator == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(("error", "blocked"), [(1.0, True), (-1.0, False)])
+def test_directional_limit_blocks_one_direction(error, blocked):
+    pid = fresh()
+    update_directional(pid, error, 0.0, DT, False, True, 0.0, 1.0, 0.0, 0.0, 9.0, 0.0, 0.0)
+    assert (pid.integrator == 0.0) is blocked
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_bad_numbers_give_zero_and_leave_no_trace(bad):
+    pid = fresh(0.1)
+    saturating(pid, 1.0, 0.0, kp=1.0, ki=1.0)
+    before = dict(vars(pid))
+    assert saturating(pid, bad, 0.0, kp=1.0, ki=1.0) == 0.0
+    assert saturating(pid, 0.0, bad, kp=1.0, ki=1.0) == 0.0
+    assert vars(pid) == before
+
+
+def test_pd_limit():
+    assert saturating(fresh(), 10.0, 0.0, kp=1.0, pd_max=0.4) == 0.4
+
+
+def test_error_filter_follows_with_its_time_constant():
+    pid, hz = fresh(), 2.0
+    saturating(pid, 0.0, 0.0, hz_error=hz)
+    for _ in range(round(1.0 / (2 * math.pi * hz) / DT)):
+        saturating(pid, 1.0, 0.0, hz_error=hz)
+    assert pid.error == pytest.approx(1 - math.exp(-1), abs=0.02)
+
+
+def test_no_cut_off_means_no_filter():
+    assert lowpass_gain(0.0, DT) == 1.0
+    assert 0.0 < lowpass_gain(20.0, DT) < 1.0
+
+
+def test_relaxing_integrator_decays():
+    pid = fresh(1.0)
+    for _ in range(400):
+        relax_integrator(pid, 0.2, DT, 0.16)
+    assert pid.integrator == pytest.approx(0.2, abs=0.01)

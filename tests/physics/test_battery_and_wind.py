@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+from sitl.core import rng as random
+from sitl.physics.native import battery, wind
+
+
+@given(st.floats(-0.5, 1.5), st.floats(0.0, 0.5))
+def test_open_circuit_voltage_rises_with_charge(charge, more):
+    low, high = battery.open_circuit(charge), battery.open_circuit(charge + more)
+    assert 0.7 < low <= high <= 1.0
+
+
+def test_voltage_sags_under_load_and_falls_with_charge(rig):
+    r = rig("erle_copter")
+    battery.update(r.p)
+    idle = float(r.p.battery.voltage)
+    r.p.rotors.power = 150.0
+    for _ in range(400):
+        battery.update(r.p)
+    current = float(r.p.battery.current)
+    assert current == approx(0.8 + 150.0 / float(r.p.battery.voltage), rel=1e-6)
+    assert idle - float(r.p.battery.voltage) == approx(0.02 * (current - 0.8), abs=0.01)
+    assert 1.0 - r.p.battery.charge == approx(current * 1.0 / 3600.0 / 5.0, rel=0.01)
+    r.p.battery.charge = 0.0
+    battery.update(r.p)
+    assert r.p.battery.voltage < 9.0
+
+
+def test_empty_battery_limits_top_speed(rig):
+    r = rig("erle_copter")
+    r.p.battery.voltage = 9.0
+    r.command(0.838)
+    r.move(100)
+    assert r.p.rotors.speed[0] == approx(838.0 * 9.0 / 10.8, rel=1e-6)
+
+
+def test_ideal_source_keeps_its_voltage(rig):
+    r = rig()
+    r.p.rotors.power = 354.2
+    battery.update(r.p)
+    assert r.p.battery.voltage == 12.6
+    assert r.p.battery.current == approx(28.1, abs=0.05)
+
+
+def test_wind_follows_its_setting(rig):
+    w, rng = rig().p.wind, rig().v.rng
+    before = rng.s.tolist()
+    w.speed, w.direction, w.time_constant = 5.0, 90.0, 0.5
+    for _ in range(25):
+        wind.update(w, rng)
+    assert w.vel[1] == approx(-5.0 * (1.0 - math.exp(-1.0)), rel=0.02)
+    assert w.vel[0] == approx(0.0, abs=1e-12)
+    assert rng.s.tolist() == before  # without turbulence the random numbers stay as they are
+
+
+def test_turbulence_has_its_deviation_and_correlation_time(rig):
+    r = rig()
+    random.seed(r.v.rng, 3)
+    w = r.p.wind
+    w.turbulence, w.time_constant = 2.0, 0.2
+    gusts = np.empty(4000)
+    for k in range(len(gusts)):
+        wind.update(w, r.v.rng)
+        gusts[k] = w.gust[0]
+    assert gusts.std() == approx(2.0, rel=0.1)
+    after_tau = np.corrcoef(gusts[:-10], gusts[10:])[0, 1]  # 10 steps of 20 ms
+    assert after_tau == approx((1.0 - 0.1) ** 10, abs=0.08)
+
+
+@pytest.mark.parametrize("altitude, expected", [(0.0, 1.225), (593.0, 1.15682), (5000.0, 0.73612)])
+def test_standard_density(altitude, expected):
+    from sitl.physics.native.atmosphere import density
+
+    assert density(altitude) == approx(expected, rel=1e-4)

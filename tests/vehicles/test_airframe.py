@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+import math
+
+import numpy as np
+import pytest
+from pytest import approx
+
+from sitl import vehicles
+from sitl.autopilot.params import table
+from sitl.vehicles import AirframeError, ardupilot_quad
+from sitl.vehicles.figures import FIGURES_DTYPE
+
+
+@pytest.mark.parametrize("name", vehicles.names())
+def test_airframes_are_complete_and_their_parameters_accepted(name):
+    airframe = vehicles.load(name)
+    assert airframe.name == name
+    record = airframe.record()
+    assert record.dtype == FIGURES_DTYPE
+    assert record["mass"] == airframe.figures["mass"]
+    assert record["rotor_count"] == 4
+    assert sum(record["rotor_direction"]) == 0.0
+    for parameter, value in airframe.parameters.items():
+        assert parameter in table.BY_NAME
+        assert table.BY_NAME[parameter].refusal(value) is None
+
+
+@pytest.mark.parametrize("name", ["erle-copter", " Erle_Copter "])
+def test_names_are_forgiving(name):
+    assert vehicles.load(name).name == "erle_copter"
+
+
+def test_unknown_name_lists_the_known():
+    with pytest.raises(AirframeError, match=r"'hexa'.*erle_copter, ardupilot_quad"):
+        vehicles.load("hexa")
+
+
+@pytest.mark.parametrize(
+    ("figures", "message"),
+    [
+        ({"mass": -1.0}, r"mass = -1.0 is outside 0.001"),
+        ({"mass": math.nan}, r"mass = nan"),
+        ({"inertia": (1.0, 2.0)}, r"inertia = \(1.0, 2.0\); expected 3 numbers"),
+        ({"mas": 1.0}, r"unknown figure 'mas'"),
+        ({"rotor_x": 1.0}, r"unknown figure 'rotor_x'"),
+        ({"gps_rate": 0.0}, r"gps_rate"),
+        ({"gps_noise_vertical": -1.0}, r"gps_noise_vertical = -1.0"),
+        ({"control_min": 0.9, "control_max": 0.5}, r"control_min"),
+    ],
+)
+def test_bad_figures_are_named(figures, message):
+    with pytest.raises(AirframeError, match=message):
+        vehicles.load("erle_copter").changed(**figures)
+
+
+def test_missing_figures_are_named():
+    erle = vehicles.load("erle_copter")
+    figures = {k: v for k, v in erle.figures.items() if k not in ("mass", "speed_max")}
+    with pytest.raises(AirframeError, match=r"figures missing: mass, speed_max"):
+        vehicles.Airframe("x", "", erle.rotors, figures)
+
+
+def test_rotors_are_checked():
+    erle = vehicles.load("erle_copter")
+    with pytest.raises(AirframeError, match="rotor 1 turns 0"):
+        vehicles.Airframe("x", "", (vehicles.Rotor(0, 0, 0, 0.0),), erle.figures)
+    with pytest.raises(AirframeError, match="9 rotors"):
+        vehicles.Airframe("x", "", erle.rotors[:1] * 9, erle.figures)
+
+
+def test_ardupilot_quad_derivation():
+    q = ardupilot_quad
+    outflow, area = q.OUTFLOW_HOVER, q.OUTFLOW_AREA
+    assert outflow == approx(24.08, abs=0.01)
+    assert area == approx(0.0877, abs=1e-4)
+    full = 0.5 * q.REFERENCE_DENSITY * q.OUTFLOW_AREA * q.OUTFLOW_MAX**2
+    assert q.WEIGHT / full == approx(0.39)
+    # the recording hovers at 1590.7 us
+    c = (0.5907 - 0.15) / 0.8
+    assert 0.35 * c + 0.65 * c * c == approx(0.39, abs=1e-3)
+
+
+def test_apply_writes_one_vehicle_of_a_fleet():
+    fleet = np.zeros(2, [("physics", [("airframe", FIGURES_DTYPE)])])
+    vehicles.apply(vehicles.load("erle_copter"), fleet.view(np.recarray)[1])
+    assert fleet["physics"]["airframe"]["mass"].tolist() == [0.0, 1.14]
