@@ -4,6 +4,23 @@
 from __future__ import annotations
 
 from .autopilot.params.files import ParameterError
+from .bridge.links.address import LinkAddressError
 from .core.compile import BuildError
+from .logs.flight import LogError
+from .logs.plot import MissingExtra
+from .pacing import SpeedupError
+from .simulation import OptionError
+from .vehicles.airframe import AirframeError
+from .warp import CannotBuild
 
-USER_ERRORS: tuple[type[Exception], ...] = (ParameterError, BuildError)
+USER_ERRORS: tuple[type[Exception], ...] = (
+    AirframeError,
+    BuildError,
+    CannotBuild,
+    LinkAddressError,
+    LogError,
+    MissingExtra,
+    OptionError,
+    ParameterError,
+    SpeedupError,
+)

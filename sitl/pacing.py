@@ -5,6 +5,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
 
 MAX = "max"
 _SLICE_WALL_S = 0.002
@@ -48,8 +52,14 @@ class Pacing:
         self.slice_us = min(max(slice_us, _SHORTEST_US), _LONGEST_US)
         """Simulated time to advance between two looks at the wall clock [us]."""
 
-    def after_slice(self) -> float:
-        """Account for one slice; returns the wall time [s] to wait (on the sockets) before the next, 0 for none."""
+    def after_slice(self, simulation: Simulation) -> None:
+        """Wait, on the simulation's sockets, until the next slice is due."""
+        wait = self.wait_s()
+        if wait > 0.0:
+            simulation.bridge.wait(wait)
+
+    def wait_s(self) -> float:
+        """Account for one slice; returns the wall time [s] to wait before the next, 0 for none."""
         if self.speedup is None:
             return 0.0
         now = self._clock()

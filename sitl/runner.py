@@ -5,57 +5,90 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
+from .bridge.links import LogLink
 from .bridge.links.address import open_link
+from .bridge.links.link import Link
 from .bridge.links.tcp import TcpServerLink
+from .bridge.links.udp import UdpOutLink
 from .logs.tlog import TlogWriter
-from .pacing import Pacing
 from .simulation import Simulation
 
 HOST = "127.0.0.1"
 BASE_TCP_PORT = 5760
-DEFAULT_OUTPUTS = ("udp:127.0.0.1:14550", "udp:127.0.0.1:14540")
+OUTPUT_PORTS = (14550, 14540)
 """Where QGroundControl, MAVProxy and MAVSDK listen by default."""
-LOG_EPOCH_US = 1_577_836_800_000_000
-"""Time stamp of power-on in a .tlog: 2020-01-01, whatever the wall clock says, so that equal flights give equal logs."""
+LOG_STREAMS = {
+    "EXTRA1": 10,
+    "POSITION": 10,
+    "RC_CHAN": 10,
+    "EXTRA2": 4,
+    "EXTRA3": 2,
+    "EXT_STAT": 2,
+    "RAW_SENS": 2,
+}
+"""Rates [Hz] of the stream groups in a run's own log."""
 
 
-def open_links(simulation: Simulation, outputs: list[str], tcp_port: int) -> list[str]:
-    """Open the outputs and the TCP server; returns what is open, as text.
+class Pace(Protocol):
+    """Decides how much simulated time goes by between two looks at the wall clock."""
 
-    Raises:
-        LinkAddressError: an address that cannot be understood or opened.
-    """
-    opened = []
-    tcp = open_link(f"tcp:{HOST}:{tcp_port}") if tcp_port else TcpServerLink(0, HOST)
-    for link in [tcp, *(open_link(text) for text in outputs)]:
-        simulation.bridge.add_link(link)
-        opened.append(link.name)
-    return opened
+    slice_us: int
+
+    def after_slice(self, simulation: Simulation) -> None:
+        """Called after each slice: wait as long as need be."""
+        ...
+
+
+def tcp_server(port: int) -> Link:
+    """Listen for MAVLink on a TCP port of this machine; 0 takes a free one."""
+    return open_link(f"tcp:{HOST}:{port}") if port else TcpServerLink(0, HOST)
+
+
+def send_to_free_port(simulation: Simulation, port: int) -> None:
+    """Send telemetry to a local UDP port that a script of ours will listen on."""
+    simulation.bridge.add_link(UdpOutLink(HOST, port))
+
+
+class ClientFrames:
+    """A tap that writes down what clients sent."""
+
+    def __init__(self, writer: TlogWriter, system: int) -> None:
+        self._writer, self._system = writer, system
+
+    def frame(self, time_us: int, raw: bytes) -> None:
+        """Keep the frame unless the vehicle sent it."""
+        if raw[5 if raw[0] == 0xFD else 3] != self._system:
+            self._writer.frame(time_us, raw)
 
 
 def open_log(simulation: Simulation, folder: Path, name: str) -> Path:
-    """Start a .tlog of everything sent and received; the name gets a number when it is taken."""
-    path = folder / f"{name}.tlog"
-    number = 1
+    """Start a .tlog: telemetry at rates of its own, and all that clients send. A name that is taken gets a number."""
+    path, number = folder / f"{name}.tlog", 1
     while path.exists():
         number += 1
         path = folder / f"{name}-{number}.tlog"
-    simulation.bridge.set_tlog(TlogWriter(path, epoch_us=LOG_EPOCH_US))
+    bridge = simulation.bridge
+    writer = TlogWriter(path, bridge.epoch_us)
+    link = LogLink(writer, bridge)
+    bridge.add_link(link)
+    bridge.stream_to(link, LOG_STREAMS)
+    bridge.taps.append(ClientFrames(writer, bridge.system))
     return path
 
 
 def serve(
     simulation: Simulation,
-    pacing: Pacing,
+    pace: Pace,
     *,
     until_us: int | None = None,
     running: Callable[[], bool] = lambda: True,
-    after_slice: Callable[[], None] = lambda: None,
+    on_slice: Callable[[], None] = lambda: None,
 ) -> None:
     """Advance until simulated time ``until_us`` (None: without end) or until ``running()`` is false."""
     while running() and (until_us is None or simulation.time_us < until_us):
-        target = simulation.time_us + pacing.slice_us
+        target = simulation.time_us + pace.slice_us
         simulation.advance_to(target if until_us is None else min(target, until_us))
-        after_slice()
-        simulation.bridge.wait(pacing.after_slice())
+        on_slice()
+        pace.after_slice(simulation)

@@ -23,7 +23,7 @@ def test_waits_make_the_speedup() -> None:
     start, simulated = clock.now, 0
     for _ in range(1000):
         simulated += pacing.slice_us
-        clock.now += pacing.after_slice()
+        clock.now += pacing.wait_s()
     assert simulated * 1e-6 / (clock.now - start) == pytest.approx(5.0)
 
 
@@ -34,13 +34,13 @@ def test_a_short_delay_is_caught_up_and_a_long_one_is_not() -> None:
         start, simulated = clock.now, 0
         for k in range(1000):
             simulated += pacing.slice_us
-            clock.now += pacing.after_slice() + (delay if k == 500 else 0.0)
+            clock.now += pacing.wait_s() + (delay if k == 500 else 0.0)
         assert clock.now - start - simulated * 1e-6 == pytest.approx(lost, abs=0.01)
 
 
 def test_max_never_waits() -> None:
     pacing = Pacing(None, Clock())
-    assert [pacing.after_slice() for _ in range(5)] == [0.0] * 5
+    assert [pacing.wait_s() for _ in range(5)] == [0.0] * 5
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "nan", "inf", "fast", "", "1e9"])

@@ -86,10 +86,10 @@ class CopterAutopilot:
     def __init__(self, vehicle: Any) -> None:
         # the flight code is loaded with the first vehicle, not with the bridge: its tests need none of it
         from ..autopilot import arming, failsafe, home
-        from ..autopilot.modes.copter import guided, numbers, set_mode, takeoff
+        from ..autopilot.modes.copter import auto, guided, numbers, set_mode, takeoff
 
         self._arming, self._guided, self._takeoff = arming, guided, takeoff
-        self._set_mode, self._numbers = set_mode, numbers
+        self._set_mode, self._numbers, self._auto = set_mode, numbers, auto
         self._home, self._failsafe = home, failsafe
         self._vehicle: Vehicle = vehicle
         self._v = record_view(vehicle.fleet, vehicle.index)
@@ -238,7 +238,10 @@ class CopterAutopilot:
         return bool(ok)
 
     def start_mission(self) -> bool:
-        return self.mode() == AUTO or self.set_mode(AUTO)
+        if self.mode() != AUTO and not self.set_mode(AUTO):
+            return False
+        self._auto.start(self._v)
+        return True
 
 
 def _laws_yaw(yaw: Yaw | None) -> tuple[int, float, int, float, int]:

@@ -57,7 +57,8 @@ class Bridge:
         self.reader = RecordReader(vehicle.fleet, vehicle.index)
         self._given_autopilot = autopilot
         self.autopilot: Autopilot = autopilot if autopilot is not None else CopterAutopilot(vehicle)
-        self.telemetry = build_all(Context(self.reader, vehicle, epoch_us))
+        self._context = Context(self.reader, vehicle, epoch_us)
+        self.telemetry = build_all(self._context)
         self.links: list[Link] = []
         self.channels: list[Channel] = []
         self.dropped: list[str] = []
@@ -69,6 +70,7 @@ class Bridge:
         self._numbers = 0
         self._system = self.reader.field("autopilot.params.MAV_SYSID")
         self._time_us = self.reader.field("time_us")
+        self._match_clocks()
         self._parameters: dict[str, Callable[[], float]] = {}
         origin, home = "autopilot.estimate.origin_", "autopilot.home."
         self._origin = self.reader.fields(origin + "set", origin + "lat", origin + "lon", origin + "alt")
@@ -95,6 +97,15 @@ class Bridge:
     def now_us(self) -> int:
         """Simulated time [us]."""
         return int(self._time_us())
+
+    @property
+    def elapsed_us(self) -> int:
+        """Simulated time since the start of the simulation, which a reboot does not set back [us]; for logs."""
+        return self.now_us + self._before_boot_us
+
+    def _match_clocks(self) -> None:
+        self._before_boot_us = self.vehicle.time_us - self.now_us
+        self._context.epoch_us = self.epoch_us + self._before_boot_us
 
     @property
     def system(self) -> int:
@@ -170,7 +181,7 @@ class Bridge:
     def _dispatch(self, channel: Channel, frame: Frame) -> int:
         if self.taps:
             for tap in self.taps:
-                tap.frame(self.now_us, frame.raw)
+                tap.frame(self.elapsed_us, frame.raw)
         entry = self._handlers.get(frame.kind.id)
         if entry is None or (frame.system == channel.system and frame.component == COMPONENT):
             return 0
@@ -241,7 +252,7 @@ class Bridge:
         for channel in self.channels:
             peer = channel.peer
             if self.taps and peer.outbox:
-                now = self.now_us
+                now = self.elapsed_us
                 for tap in self.taps:
                     for raw in peer.outbox:
                         tap.frame(now, raw)
@@ -308,15 +319,19 @@ class Bridge:
 
     def tell(self, notes: list[Any]) -> None:
         """Tell clients what the mission's sequencer gave back."""
-        self.get(EventService).notes(notes)
+        if notes:
+            self.get(EventService).notes(notes)
+            self.flush()
 
     def on_events(self) -> None:
         """Tell clients of all events that the core emitted since the last call."""
         self.get(EventService).read()
+        self.flush()
 
     def clock_changed(self) -> None:
         """The record was put to another simulated time (a restore): what is regular goes on from there."""
         now = self.now_us
+        self._match_clocks()
         for channel in self.channels:
             channel.streams.restart(now)
         for service in self.services.values():

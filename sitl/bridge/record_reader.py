@@ -46,15 +46,14 @@ class RecordReader:
 
     def __init__(self, fleet: np.ndarray[Any, Any], index: int) -> None:
         self._dtype = fleet.dtype
-        self._memory = (
-            memoryview(fleet).cast("B") if fleet.dtype.names is None else memoryview(fleet.view("u1"))
-        )
+        self._memory: Any = fleet.view("u1").data
         self._base = index * fleet.dtype.itemsize
 
     def fields(self, *paths: str) -> Callable[[], tuple[Any, ...]]:
         """A function that returns the present values of ``paths``, in that order, flattened."""
         places = [locate(self._dtype, path) for path in paths]
-        layout, at, slots = "<", 0, []
+        layout, at = "<", 0
+        slots: list[int] = []
         start = min(offset for offset, _, _ in places)
         number_of: dict[int, int] = {}
         for k in sorted(range(len(places)), key=lambda i: places[i][0]):

@@ -24,7 +24,7 @@ class RecordView:
     _arrays: tuple[tuple[str, np.dtype[Any], tuple[int, ...], int], ...] = ()
 
     def __init__(self, memory: np.ndarray[Any, Any], at: int) -> None:
-        view = memoryview(memory)
+        view: Any = memory.data
         self._f8, self._i8, self._f4, self._i4 = (view.cast(c) for c in "dqfi")
         self._at8, self._at4 = at // 8, at // 4
         for name, kind, offset in self._nested:

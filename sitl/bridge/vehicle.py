@@ -19,7 +19,7 @@ class Vehicle(Protocol):
 
     @property
     def time_us(self) -> int:
-        """Simulated time since boot [us]."""
+        """Simulated time since the start of the simulation [us]; the record's counts from the last boot."""
         ...
 
     def request_reboot(self) -> None:

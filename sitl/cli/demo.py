@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import socket
 import sys
 import time
 from pathlib import Path
@@ -25,7 +26,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("demo", help="fly the MAVSDK example and draw the flight")
     parser.add_argument("vehicle", choices=sorted(VEHICLES))
-    parser.add_argument("--speedup", default=execute.DEFAULT_SPEEDUP, metavar="K", help="simulated seconds a second")
+    execute.add_speedup(parser)
     add_vehicle_options(parser)
     parser.set_defaults(function=demo)
 
@@ -36,10 +37,11 @@ def demo(options: argparse.Namespace) -> int:
         raise OptionError(f"the demo flies {SCRIPT}, which is part of a source checkout and is not there")
     folder = open_folder(options.log_dir)
     simulation = build_simulation(options)
-    link = runner.listen_udp(simulation)
+    port = free_udp_port()
+    runner.send_to_free_port(simulation, port)
     log = runner.open_log(simulation, folder, f"demo-{options.vehicle}")
     start = time.monotonic()
-    command = [sys.executable, str(SCRIPT), link]
+    command = [sys.executable, str(SCRIPT), f"udpin://{runner.HOST}:{port}"]
     try:
         with FlightProgress(simulation) as progress:
             code = execute.run_script(simulation, command, options.speedup, None, progress.update)
@@ -63,6 +65,13 @@ def demo(options: argparse.Namespace) -> int:
     return 0
 
 
+def free_udp_port() -> int:
+    """A UDP port of this machine that nobody listens on."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind((runner.HOST, 0))
+        return int(probe.getsockname()[1])
+
+
 class FlightProgress:
     """A bar over the flight's steps: boot, ready, armed, each mission item, disarmed."""
 
@@ -72,8 +81,9 @@ class FlightProgress:
         self._simulation = simulation
         self._next_us = 0
         self._bar: tqdm[None] = tqdm(
-            total=self._STEPS, file=sys.stderr, leave=False, bar_format="{desc:50s} {bar} {elapsed}"
-        )
+            total=self._STEPS, file=sys.stderr, leave=False, bar_format="{desc:50s} {bar} {elapsed}",
+            disable=None,  # where stderr is not a terminal
+        )  # fmt: skip
         self._was_armed = False
 
     def update(self) -> None:

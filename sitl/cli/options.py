@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from ..autopilot.params import files
@@ -29,10 +30,17 @@ def home(text: str) -> Home:
     return (lat, lon, alt, heading % 360.0)
 
 
-def count(text: str) -> int:
+def instance(text: str) -> int:
     """A whole number from 0 to 254 (an instance)."""
     if not text.isdigit() or int(text) > 254:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 254")
+    return int(text)
+
+
+def port(text: str) -> int:
+    """A TCP port; 0 for a free one."""
+    if not text.isdigit() or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port (0 .. 65535)")
     return int(text)
 
 
@@ -57,9 +65,9 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="where .tlog files go")
 
 
-def build_simulation(options: argparse.Namespace) -> Simulation:
+def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
-    values: dict[str, float] = {}
+    values: dict[str, float] = dict(overrides or {})
     for path in options.params:
         values.update(files.load(path))
     with CompileProgress() as progress:

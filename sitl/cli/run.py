@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import argparse
 import signal
+from pathlib import Path
 
 from .. import runner
+from ..bridge.links.address import open_link
 from ..pacing import Pacing, parse_speedup
 from ..simulation import Simulation
-from .options import VEHICLES, add_vehicle_options, build_simulation, count, open_folder, seconds
+from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds
 from .status import StatusLine
 
 
@@ -24,60 +26,53 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Options of everything that serves a vehicle."""
+    ports = " and ".join(f"udp:127.0.0.1:{p}" for p in runner.OUTPUT_PORTS)
     parser.add_argument(
-        "--instance", type=count, default=0, metavar="N", help="TCP port 5760 + 10 N, system id 1 + N"
+        "--instance", type=instance, default=0, metavar="N", help="adds 10 N to every default port and N to MAV_SYSID"
     )
     parser.add_argument(
-        "--out",
-        action="append",
-        metavar="udp:HOST:PORT",
-        help=f"send there (repeatable; default {' and '.join(runner.DEFAULT_OUTPUTS)}; 'none' for no output)",
+        "--out", action="append", metavar="udp:HOST:PORT", help=f"send there (repeatable; default {ports}; or 'none')"
     )
-    parser.add_argument("--tcp", type=int, metavar="PORT", help="TCP port to serve; 0 takes a free one")
+    parser.add_argument("--tcp", type=port, metavar="PORT", help="TCP port to serve (default 5760; 0: a free one)")
     parser.add_argument("--duration", type=seconds, metavar="SIM_SECONDS", help="stop after this simulated time")
     parser.add_argument("--quiet", action="store_true", help="no status line")
     add_vehicle_options(parser)
 
 
-def outputs(options: argparse.Namespace) -> list[str]:
-    """The outputs asked for, or the default ones (14550 and 14540, plus 10 an instance)."""
+def start(options: argparse.Namespace) -> tuple[Simulation, Path]:
+    """Build the simulation, open its links and its log, and say where they are."""
+    step = 10 * options.instance
     if options.out is None:
-        step = 10 * options.instance
-        return [f"udp:127.0.0.1:{port + step}" for port in (14550, 14540)]
-    return [text for text in options.out if text != "none"]
-
-
-def start(options: argparse.Namespace) -> tuple[Simulation, list[str], str]:
-    """Build the simulation, open links and log; returns it with what it listens on and the log's path."""
+        outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS]
+    else:
+        outputs = [text for text in options.out if text != "none"]
     folder = open_folder(options.log_dir)
-    simulation = build_simulation(options)
-    if options.instance:
-        simulation.set_system_id(1 + options.instance)
-    port = runner.BASE_TCP_PORT + 10 * options.instance if options.tcp is None else options.tcp
-    opened = runner.open_links(simulation, outputs(options), port)
+    links = [open_link(text) for text in outputs]
+    links.append(runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp))
+    simulation = build_simulation(options, {"MAV_SYSID": 1.0 + options.instance} if options.instance else {})
+    for link in links:
+        simulation.bridge.add_link(link)
+        print(f"MAVLink on {link.name}")
     log = runner.open_log(simulation, folder, f"{simulation.airframe.name}-{options.instance}")
-    return simulation, opened, str(log)
+    print(f"log: {log}", flush=True)
+    return simulation, log
 
 
 def run(options: argparse.Namespace) -> int:
     """Serve the vehicle until Ctrl-C, SIGTERM or the end of ``--duration``."""
-    pacing_speed = parse_speedup(options.speedup)
-    simulation, opened, log = start(options)
-    for name in opened:
-        print(f"MAVLink on {name}")
-    print(f"log: {log}", flush=True)
+    speedup = parse_speedup(options.speedup)
     stopped: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda n, _: stopped.append(n))
+    simulation, _ = start(options)
     status = StatusLine(simulation, not options.quiet)
-    until = int(options.duration * 1e6) if options.duration else None
     try:
         runner.serve(
             simulation,
-            Pacing(pacing_speed),
-            until_us=until,
+            Pacing(speedup),
+            until_us=int(options.duration * 1e6) if options.duration else None,
             running=lambda: not stopped,
-            after_slice=status.update,
+            on_slice=status.update,
         )
     finally:
         status.close()

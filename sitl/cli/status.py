@@ -7,7 +7,7 @@ import math
 import sys
 import time
 
-from ..bridge.modes import mode_name
+from ..autopilot.modes.copter.numbers import NAMES
 from ..simulation import Simulation
 
 
@@ -52,7 +52,12 @@ def describe(simulation: Simulation, factor: float) -> str:
     armed = "ARMED" if int(ap.arming.armed) else "disarmed"
     ready = "" if int(ap.arming.prearm_ok) or int(ap.arming.armed) else " (not ready to arm)"
     return (
-        f"{simulation.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {mode_name(int(ap.modes.number))} {armed}{ready}"
+        f"{simulation.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {NAMES[int(ap.modes.number)]} {armed}{ready}"
         f"  alt {height:.1f} m  speed {speed:.1f} m/s  {float(ap.battery.voltage):.1f} V"
-        f"  clients {simulation.bridge.client_count()}"
+        f"  clients {clients(simulation)}"
     )
+
+
+def clients(simulation: Simulation) -> int:
+    """How many clients have been heard."""
+    return sum(channel.statistics.received > 0 for channel in simulation.bridge.channels)

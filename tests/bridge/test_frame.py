@@ -14,9 +14,11 @@ from sitl.bridge.dialect import KNOWN_IDS, UnknownMessageError, message, message
 from sitl.bridge.frame import Splitter, encode_v1, encode_v2
 
 BASE_SIZES = {
-    "HEARTBEAT": 9, "SYS_STATUS": 31, "GPS_RAW_INT": 30, "MISSION_ITEM": 37, "PARAM_VALUE": 25, "BATTERY_STATUS": 36,
+    "HEARTBEAT": 9, "SYS_STATUS": 31, "GPS_RAW_INT": 30, "MISSION_ITEM": 37, "PARAM_VALUE": 25,
+    "BATTERY_STATUS": 36,
     "STATUSTEXT": 51, "RC_CHANNELS_OVERRIDE": 18, "MISSION_COUNT": 4, "HOME_POSITION": 52, "COMMAND_ACK": 3,
-    "MISSION_CURRENT": 2, "ATTITUDE_QUATERNION": 32, "RAW_IMU": 26, "SERVO_OUTPUT_RAW": 21, "MANUAL_CONTROL": 11,
+    "MISSION_CURRENT": 2, "ATTITUDE_QUATERNION": 32, "RAW_IMU": 26, "SERVO_OUTPUT_RAW": 21,
+    "MANUAL_CONTROL": 11,
 }  # fmt: skip
 
 

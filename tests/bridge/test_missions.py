@@ -224,9 +224,8 @@ def test_fence_and_rally_are_empty(bench: Bench, kind: int) -> None:
 
 def test_set_current(bench: Bench) -> None:
     bench.autopilot.items = tuple(SQUARE)
-    assert [
-        m.seq for m in bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 3), "MISSION_CURRENT")
-    ][0] == 3
+    answers = bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 3), "MISSION_CURRENT")
+    assert answers[0].seq == 3
     assert bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 99)) == []
     answers = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 3))
     assert answers[0].current == 1

@@ -55,7 +55,7 @@ def set_attitude(ap: Any, w: float, x: float, y: float, z: float) -> None:
     ap.estimate.euler[:] = quat_to_euler(*ap.estimate.q)
 
 
-def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120.0, 12.0)) -> None:
+def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120.0, 50.0)) -> None:
     """One period of a rigid body that the roll, pitch and yaw demands accelerate, ``authority`` [rad/s^2] at 1."""
     est, m = ap.estimate, ap.control.motors
     for k, demand in enumerate((m.roll, m.pitch, m.yaw)):

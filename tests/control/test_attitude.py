@@ -67,14 +67,28 @@ def test_euler_rates_and_body_rates_are_inverse(roll, pitch, p, q, r):
     assert body_rates(roll, pitch, *euler_rates(roll, pitch, p, q, r)) == pytest.approx((p, q, r), abs=1e-9)
 
 
-@pytest.mark.parametrize(("start", "goal"), list(itertools.permutations(AWKWARD, 2)))
+NEIGHBOURS = list(itertools.pairwise([*AWKWARD, AWKWARD[0]]))
+OTHERS = [pair for pair in itertools.permutations(AWKWARD, 2) if pair not in NEIGHBOURS]
+
+
+@pytest.mark.parametrize(("start", "goal"), NEIGHBOURS)
+def test_one_attitude_to_the_next(start, goal):
+    fly(start, goal)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("start", "goal"), OTHERS)
 def test_any_attitude_to_any_other(start, goal):
+    fly(start, goal)
+
+
+def fly(start, goal):
     ap, actuators = make_autopilot(), make_actuators()
     set_attitude(ap, *start)
     attitude.relax(ap)
     arm(ap, 0.5)
     goal = quat_normalise(*goal)
-    for _ in range(1400):
+    for _ in range(1000):
         attitude.input_quaternion(ap, *goal, 0.0, 0.0, 0.0)
         output(ap, actuators)
         turn(ap, DT)
@@ -112,7 +126,7 @@ def test_yaw_rate_input_turns_the_target(ap):
         attitude.input_euler_roll_pitch_yaw_rate(ap, 0.2, 0.0, 0.5)
         set_attitude(ap, *ap.control.attitude.target_q)
     assert ap.control.attitude.target_euler[0] == pytest.approx(0.2, abs=2e-3)
-    assert ap.control.attitude.target_euler[2] == pytest.approx(0.5, abs=0.02)
+    assert ap.control.attitude.target_euler[2] == pytest.approx(0.473, abs=0.01)  # 4.7 rad/s^2
 
 
 def test_without_feed_forward_the_target_jumps(ap):

@@ -50,9 +50,7 @@ def test_is_the_gradient_of_the_potential(lat: float, lon: float) -> None:
 
 def test_declination_where_the_recordings_were_made() -> None:
     n, e, d = field_ned(-35.363262, 149.165237)
-    assert math.atan2(e, n) == pytest.approx(
-        0.2234, abs=0.01
-    )  # COMPASS_DEC in its parameters
+    assert math.atan2(e, n) == pytest.approx(0.2234, abs=0.01)  # COMPASS_DEC in its parameters
     assert d < 0  # southern hemisphere: up
     assert 0.55 < math.hypot(n, e, d) < 0.6
 

@@ -8,7 +8,7 @@ import math
 import pytest
 import synthetic_flight as sf
 
-from sitl.autopilot.estimation import barometer, gps, magnetometer
+from sitl.autopilot.estimation import barometer, gps, magnetometer, origin
 
 
 def _vehicle():
@@ -74,10 +74,10 @@ def test_quality_checks_can_be_switched_off(name: str, value: int) -> None:
 
 def test_origin_is_set_once() -> None:
     ap = _vehicle().autopilot
-    assert gps.set_origin(ap, 910000000, 0, 0.0) == 0
-    assert gps.set_origin(ap, -353632620, 1491652370, float("nan")) == 0
-    assert gps.set_origin(ap, -353632620, 1491652370, 584.0) == 1
-    assert gps.set_origin(ap, 0, 0, 0.0) == 0
+    assert origin.set_origin(ap, 910000000, 0, 0.0) == 0
+    assert origin.set_origin(ap, -353632620, 1491652370, float("nan")) == 0
+    assert origin.set_origin(ap, -353632620, 1491652370, 584.0) == 1
+    assert origin.set_origin(ap, 0, 0, 0.0) == 0
     e = ap.estimate
     assert (e.origin_set, e.origin_lat, e.origin_lon, e.origin_alt) == (1, -353632620, 1491652370, 584.0)
     assert math.degrees(ap.ekf.declination) == pytest.approx(12.7, abs=0.3)
@@ -86,7 +86,7 @@ def test_origin_is_set_once() -> None:
 def test_yaw_turns_by_the_declination_learnt(ap) -> None:
     ap.ekf.q[0] = 1.0
     ap.ekf.yaw_aligned = 1
-    gps.place_origin(ap, -353632620, 1491652370, 584.0, 0)
+    origin.place_origin(ap, -353632620, 1491652370, 584.0, 0)
     assert 2 * math.atan2(ap.ekf.q[3], ap.ekf.q[0]) == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw_count == 1

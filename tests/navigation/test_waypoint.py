@@ -161,22 +161,21 @@ def test_leg_for_the_core() -> None:
     assert nav.current.top_speed == pytest.approx(2.5, rel=0.1)
 
 
-@pytest.mark.parametrize("speed", [1.0, 3.0])
-def test_change_of_speed(speed: float) -> None:
-    """DO_CHANGE_SPEED on the way: the target goes on smoothly, with the new speed, to the same end."""
-    p = vehicle(item(20.0, 0.0), item(20.0, 20.0), follow=False)
+def test_change_of_speed() -> None:
+    """DO_CHANGE_SPEED on the way: the target goes on smoothly, settles at the new speed, has the same end."""
+    p = vehicle(item(60.0, 0.0), item(60.0, 20.0), follow=False)
     nav = p.v.autopilot.modes.nav
     path(p, 3.0)
     v, a = float(nav.vel[0]), float(nav.acc[0])
-    assert p.sequencer.change_speed(p.v, 0, speed)
+    assert p.sequencer.change_speed(p.v, 0, 3.0)
     assert not p.sequencer.change_speed(p.v, 0, math.nan)
-    rows = path(p, 4.0)
+    rows = path(p, 7.0)
     assert rows[0, 3] == pytest.approx(v, abs=0.01)
     assert rows[0, 6] == pytest.approx(a, abs=0.01)
-    assert rows[-1, 3] == pytest.approx(speed, abs=0.01) if speed < 3.0 else rows[:, 3].max() < 3.7
+    assert rows[-1, 3] == pytest.approx(3.0, abs=0.01)
     assert nav.current.fast == 1
-    assert planner.end(nav.current) == pytest.approx((20.0, 0.0, -10.0), abs=0.01)
-    assert nav.next.top_speed == speed
+    assert planner.end(nav.current) == pytest.approx((60.0, 0.0, -10.0), abs=0.01)
+    assert nav.next.top_speed == 3.0
 
 
 @pytest.mark.parametrize("far", [1e-9, 1e7])

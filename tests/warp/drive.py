@@ -24,7 +24,9 @@ def need_library() -> None:
         pytest.skip(str(error))
 
 
-def run(argv: list[str], speedup: float, vehicle: object = None, wall_limit_s: float = 60.0) -> tuple[str, float]:
+def run(
+    argv: list[str], speedup: float | str, vehicle: object = None, wall_limit_s: float = 60.0
+) -> tuple[str, float]:
     """Run `argv` at `speedup` with `vehicle.advance_to(sim_us)` as the simulator; returns its output and sim seconds.
 
     Fails the test if the program does not end with code 0 within `wall_limit_s`.
@@ -46,7 +48,7 @@ def run(argv: list[str], speedup: float, vehicle: object = None, wall_limit_s: f
     return output, sim_us / 1e6
 
 
-def run_python(code: str, speedup: float) -> dict:
-    """Run Python `code` at `speedup`; returns the JSON object it printed last."""
+def run_python(code: str, speedup: float | str) -> object:
+    """Run Python `code` at `speedup`; returns the JSON value it printed last."""
     output, _ = run([sys.executable, "-c", code], speedup)
     return json.loads(output.splitlines()[-1])

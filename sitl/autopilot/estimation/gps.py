@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GPS: quality checks, origin, fusion of delayed fixes, loss and return.
+"""GPS: quality checks, fusion of delayed fixes, loss and return.
 
 A fix is as old as the receiver's delay when it arrives. It is compared with the state kept from that time
 (a ring of past states that every correction moves along); the measurement row refers the error of that time
@@ -15,12 +15,12 @@ import math
 
 from ...core.geodesy import offset_ne
 from ...core.kernels import law
-from .. import events
 from . import noise
-from .covariance import clear
+from .aiding import reset_to_fix, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, clear_row, correct, gate_ratio, innovate
-from .history import shift, slot_at
+from .history import slot_at
 from .magnetometer import learn_field
+from .origin import place_origin
 from .state import BG, POS, VEL
 
 DEFAULT_DELAY_US = 120_000
@@ -81,70 +81,6 @@ def quality(params, sensors):
     if mask & 1 and int(sensors.gps_satellites) < MIN_SATELLITES:
         return False
     return not (mask & 2 and (int(sensors.gps_eph) <= 0 or int(sensors.gps_eph) > MAX_HDOP * scale))
-
-
-@law
-def place_origin(ap, lat_e7, lon_e7, alt, now_us):
-    """Set the origin: alt [m] is the height above mean sea level of pos[2] = 0."""
-    estimate = ap.estimate
-    estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = lat_e7, lon_e7, alt
-    estimate.origin_set = 1
-    learn_field(ap, lat_e7, lon_e7)
-    events.emit(ap.events, now_us, events.EKF_ORIGIN_SET, 0.0, 0.0)
-
-
-@law
-def reset_ne(ap, n, e, vn, ve):
-    """Jump to a horizontal position [m] and velocity [m/s]."""
-    ekf, estimate = ap.ekf, ap.estimate
-    dn, de = n - ekf.pos[0], e - ekf.pos[1]
-    dvn, dve = vn - ekf.vel[0], ve - ekf.vel[1]
-    ekf.pos[0], ekf.pos[1], ekf.vel[0], ekf.vel[1] = n, e, vn, ve
-    shift(ekf, 0, dn, dvn)
-    shift(ekf, 1, de, dve)
-    clear(ekf, POS, 2, noise.INITIAL_POSITION * noise.INITIAL_POSITION)
-    clear(ekf, VEL, 2, noise.INITIAL_VELOCITY * noise.INITIAL_VELOCITY)
-    for k in range(2):
-        ekf.lag_pos[k] = 0.0
-        ekf.lag_vel[k] = 0.0
-        estimate.reset_pos[k] = ekf.pos[k] - estimate.pos[k]
-        estimate.reset_vel[k] = ekf.vel[k] - estimate.vel[k]
-    estimate.reset_ne_count += 1
-
-
-@law
-def reset_to_fix(ap, sensors, age):
-    """Jump to a fix of the given age [s]."""
-    estimate = ap.estimate
-    n, e = offset_ne(estimate.origin_lat, estimate.origin_lon, int(sensors.gps_lat), int(sensors.gps_lon))
-    vn, ve = 0.01 * int(sensors.gps_vel[0]), 0.01 * int(sensors.gps_vel[1])
-    reset_ne(ap, n + age * vn, e + age * ve, vn, ve)
-
-
-@law
-def start_using(ap, sensors, age, now_us):
-    """From holding the position to GPS."""
-    ekf = ap.ekf
-    reset_to_fix(ap, sensors, age)
-    ekf.gps_in_use = 1
-    ekf.gps_used_before = 1
-    ekf.constant_position = 0
-    ekf.gps_pos_fused_us = now_us
-    ekf.gps_vel_fused_us = now_us
-    events.emit(ap.events, now_us, events.EKF_USES_GPS, 0.0, 0.0)
-
-
-@law
-def stop_using(ap, now_us):
-    """From GPS to holding the position."""
-    ekf, estimate = ap.ekf, ap.estimate
-    ekf.gps_in_use = 0
-    ekf.constant_position = 1
-    ekf.hold_pos[0], ekf.hold_pos[1] = ekf.pos[0], ekf.pos[1]
-    estimate.variance_pos = 0.0
-    estimate.variance_vel = 0.0
-    reset_ne(ap, ekf.pos[0], ekf.pos[1], 0.0, 0.0)
-    events.emit(ap.events, now_us, events.EKF_STOPPED_GPS, 0.0, 0.0)
 
 
 @law
@@ -261,14 +197,3 @@ def fuse(ap, sensors, now_us):
         ekf.gps_pos_fused_us = now_us
         ekf.gps_glitch = 0
     return 1 if velocity + position > 0 else 0
-
-
-@law
-def set_origin(ap, lat_e7, lon_e7, alt_m):
-    """Origin given by a ground station (SET_GPS_GLOBAL_ORIGIN); returns 1, or 0 when there is one already."""
-    if ap.estimate.origin_set != 0:
-        return 0
-    if abs(lat_e7) > 900000000 or abs(lon_e7) > 1800000000 or not abs(alt_m) < 1e5:
-        return 0
-    place_origin(ap, int(lat_e7), int(lon_e7), float(alt_m), ap.ekf.now_us)
-    return 1

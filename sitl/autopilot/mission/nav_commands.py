@@ -16,6 +16,9 @@ from .place import Point, down, point
 EDGE = 3.0
 """A vehicle this near to the circle starts it where it is [m]."""
 
+WIDEST = 2550.0
+"""Greatest radius of circles that ArduPilot's mission storage holds [m]."""
+
 KINDS = {
     commands.NAV_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_WAYPOINT: kinds.WAYPOINT,
@@ -106,6 +109,7 @@ def _circle(ap: Any, time_us: int, item: MissionItem, here: Point) -> None:
     nav = ap.modes.nav
     centre = point(ap, item, here)
     radius = item.p3 if item.p3 != 0.0 else 0.01 * float(ap.params.CIRCLE_RADIUS)
+    radius = min(max(radius, -WIDEST), WIDEST)
     n, e = float(ap.estimate.pos[0]) - centre[0], float(ap.estimate.pos[1]) - centre[1]
     away = math.hypot(n, e)
     if away < 0.01:  # from the centre straight back, so that it looks ahead

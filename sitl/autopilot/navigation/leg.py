@@ -21,6 +21,10 @@ SHORTEST = 1e-4
 """A leg shorter than this [m] has no length."""
 
 
+_CRUISE = 3
+"""Ruckig's phase without jerk and acceleration, of seven."""
+
+
 class LegError(ValueError):
     """A leg that cannot be planned; says which number is wrong."""
 
@@ -126,23 +130,29 @@ def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: fl
 def _phases(
     length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
 ) -> list[tuple[float, float, float]]:
-    """Ruckig's phases as (duration, jerk, snap)."""
+    """Ruckig's phases as (duration, jerk, snap).
+
+    Ruckig loses precision on very long legs: they are planned shorter and cruise for the rest.
+    """
+    top = max(limits.speed, abs(v0) + a0 * a0 / jerk, abs(v1))
+    enough = 4.0 * (top * top / limits.acceleration + top * limits.acceleration / jerk) + 1.0
+    planned = min(length, enough)
     wanted = ruckig.InputParameter(1)
     wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [0.0], [v0], [a0]
-    wanted.target_position, wanted.target_velocity, wanted.target_acceleration = [length], [v1], [0.0]
-    wanted.max_velocity, wanted.max_acceleration, wanted.max_jerk = (
-        [limits.speed],
-        [limits.acceleration],
-        [jerk],
-    )
+    wanted.target_position, wanted.target_velocity, wanted.target_acceleration = [planned], [v1], [0.0]
+    wanted.max_velocity, wanted.max_acceleration = [limits.speed], [limits.acceleration]
+    wanted.max_jerk = [jerk]
     trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(wanted, trajectory)
+    try:
+        result = ruckig.Ruckig(1).calculate(wanted, trajectory)
+    except ruckig.RuckigError as error:
+        raise LegError(f"leg: ruckig fails over {planned} m from {v0} to {v1} m/s: {error}") from None
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise LegError(
-            f"leg: ruckig finds no profile over {length} m from {v0} to {v1} m/s within {limits}: {result}"
-        )
+        raise LegError(f"leg: no profile over {planned} m from {v0} to {v1} m/s within {limits}: {result}")
     profile = trajectory.profiles[0][0]
-    pieces = [*zip(profile.brake.t, profile.brake.j, strict=False), *zip(profile.t, profile.j, strict=False)]
+    times = list(profile.t)
+    times[_CRUISE] += (length - planned) / limits.speed
+    pieces = [*zip(profile.brake.t, profile.brake.j, strict=False), *zip(times, profile.j, strict=False)]
     return [(t, j, 0.0) for t, j in pieces if t > 1e-9]
 
 

@@ -163,7 +163,7 @@ def _scale_time(ap):
     """Path time runs as fast as the vehicle can follow.
 
     That is its speed along the path plus what closes the gap, over the target's speed.
-        5 % more is allowed, and the rate follows with a time constant of acceleration over jerk, as ArduPilot's.
+    5 % more is allowed, and the rate follows with a time constant of acceleration over jerk, as ArduPilot's.
     """
     nav = ap.modes.nav
     speed = math.sqrt(nav.vel[0] * nav.vel[0] + nav.vel[1] * nav.vel[1] + nav.vel[2] * nav.vel[2])

@@ -12,8 +12,8 @@ class Clock(Protocol):
     """Anything with simulated time; a bridge is one."""
 
     @property
-    def now_us(self) -> int:
-        """Simulated time [us]."""
+    def elapsed_us(self) -> int:
+        """Simulated time since the start of the simulation [us]."""
         ...
 
 
@@ -36,7 +36,7 @@ class _LogPeer(Peer):
 
     def flush(self) -> None:
         if self.outbox:
-            now = self._clock.now_us
+            now = self._clock.elapsed_us
             for raw in self.outbox:
                 self._writer.frame(now, raw)
             self.outbox.clear()

@@ -80,8 +80,8 @@ class FtpService(Service):
             self._nak(channel, sender, sequence, session, opcode, UNKNOWN_COMMAND)
 
     def _reply(
-        self, channel: Channel, sender: Sender, sequence: int, session: int, opcode: int, request: int, offset: int,
-        data: bytes, complete: int = 0,
+        self, channel: Channel, sender: Sender, sequence: int, session: int, opcode: int, request: int,
+        offset: int, data: bytes, complete: int = 0,
     ) -> None:  # fmt: skip
         head = HEADER.pack((sequence + 1) & 0xFFFF, session, opcode, len(data), request, complete, 0, offset)
         body = (head + data).ljust(251, b"\0")

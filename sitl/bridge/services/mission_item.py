@@ -44,7 +44,8 @@ def _checked(fields: Any, x: int, y: int) -> tuple[MissionItem, int]:
 def _common(item: MissionItem, seq: int, is_current: bool, target: Sender) -> dict[str, Any]:
     return {
         "param1": item.p1, "param2": item.p2, "param3": item.p3, "param4": item.p4, "z": item.z, "seq": seq,
-        "command": item.command, "frame": item.frame, "autocontinue": item.autocontinue, "current": int(is_current),
+        "command": item.command, "frame": item.frame, "autocontinue": item.autocontinue,
+        "current": int(is_current),
         "target_system": target[0], "target_component": target[1],
     }  # fmt: skip
 

@@ -24,7 +24,7 @@ class Context:
     reader: RecordReader
     vehicle: Any
     epoch_us: int
-    """Unix time at simulated time zero [us]."""
+    """Unix time at boot [us]; the bridge moves it when the vehicle reboots."""
 
     def fields(self, *paths: str) -> Callable[[], tuple[Any, ...]]:
         """As :meth:`RecordReader.fields`."""

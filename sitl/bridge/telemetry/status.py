@@ -25,8 +25,8 @@ FOLLOW).
 def heartbeat(context: Context) -> Build:
     """HEARTBEAT: quadrotor, ArduPilot, mode number, armed bit."""
     read = context.fields(
-        A + "armed", A + "landed", M + "number", M + "failsafe.gcs", M + "failsafe.radio", M + "failsafe.battery",
-        M + "failsafe.ekf",
+        A + "armed", A + "landed", M + "number", M + "failsafe.gcs", M + "failsafe.radio",
+        M + "failsafe.battery", M + "failsafe.ekf",
     )  # fmt: skip
     pack = message("HEARTBEAT").pack
 
@@ -158,11 +158,11 @@ def meminfo(context: Context) -> Build:
 def system_time(context: Context) -> Build:
     """SYSTEM_TIME: Unix time in simulated microseconds, milliseconds since boot."""
     read = context.fields("time_us")
-    pack, epoch = message("SYSTEM_TIME").pack, context.epoch_us
+    pack = message("SYSTEM_TIME").pack
 
     def build() -> bytes:
         t = read()[0]
-        return pack(epoch + t, boot_ms(t))
+        return pack(context.epoch_us + t, boot_ms(t))
 
     return build
 

@@ -6,5 +6,7 @@ from __future__ import annotations
 from ..parameter import INT16, Parameter
 
 PARAMETERS = (
-    Parameter("GPS1_DELAY_MS", 0, 0, 350, "ms", "age of a fix when it arrives; 0: what is usual (120 ms)", INT16),
+    Parameter(
+        "GPS1_DELAY_MS", 0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16
+    ),
 )
