@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from .autopilot import firmware
+from .autopilot.events import HIT_GROUND, emit
 from .core.kernels import unit
 from .physics.native.step import step
 from .truth_estimator import observe
@@ -19,6 +20,9 @@ def advance(fleet, index, ticks):
     vehicle = fleet[index]
     for _ in range(ticks):
         step(fleet, index)
+        ground = vehicle.physics.ground
+        if ground.hit_count > 0 and ground.hit_time_us == vehicle.time_us:
+            emit(vehicle.autopilot.events, vehicle.time_us, HIT_GROUND, ground.hit_speed, 0.0)
         if vehicle.autopilot.ekf.use_external != 0:
             observe(vehicle)
         firmware.update(fleet, index)

@@ -31,6 +31,14 @@ DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 
 ESTIMATORS = ("ekf", "truth")
 
+_WIND = {
+    "SIM_WIND_SPD": "speed",
+    "SIM_WIND_DIR": "direction",
+    "SIM_WIND_TURB": "turbulence",
+    "SIM_WIND_TC": "time_constant",
+}
+"""Parameters of the simulated world, and the fields of ``physics.wind`` that follow them."""
+
 Core = Callable[[Array, int, int], None]
 
 
@@ -155,12 +163,19 @@ class Simulation:
         """Restart vehicle and autopilot before the next tick; parameters and mission stay, links stay open."""
         self._reboot = True
 
+    def parameter_changed(self, name: str) -> None:
+        """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
+        if name in _WIND:
+            self.v.physics.wind[_WIND[name]] = float(self.v.autopilot.params[name])
+
     def close(self) -> None:
         """Close links and log."""
         self.bridge.close()
 
     def _power_on(self) -> None:
         boot.clear(self.v)
+        for name in _WIND:
+            self.parameter_changed(name)
         init_physics(self.v, self.airframe, self.home, self.seed)
         boot.power_on(self.v)
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")

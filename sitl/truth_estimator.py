@@ -27,4 +27,4 @@ def observe(v):
     e.origin_set = 1
     e.attitude_ok = 1
     e.position_ok = 1
-    e.flags = _ALL_WELL
+    e.status_flags = _ALL_WELL

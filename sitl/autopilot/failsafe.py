@@ -1,146 +1,54 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Failsafes: radio, ground station, battery, estimator. Each is told to the shell as FAILSAFE (which, 1 on or 0 off)."""
+"""Failsafes: radio, ground station, battery, estimator. FAILSAFE (which, 1 on or 0 off) tells the shell."""
 
 from __future__ import annotations
 
 from ..core.kernels import law
 from . import arming, pilot
-from .events import FAILSAFE, emit
+from .failsafe_actions import (
+    BATTERY_CRITICAL,
+    BATTERY_LOW,
+    DO_BRAKE,
+    DO_LAND,
+    DO_RTL,
+    DO_STOP,
+    EKF,
+    GCS,
+    NOTHING,
+    RADIO,
+    act,
+    battery_action,
+    gcs_action,
+    land_with_pause,
+    radio_action,
+    tell,
+    text,
+)
 from .modes.copter import ground, set_mode
 from .modes.copter.numbers import (
     ACCEPTED,
     ALT_HOLD,
     AUTO,
-    BRAKE,
     GUIDED,
     LAND,
     REASON_BATTERY_FAILSAFE,
     REASON_EKF_FAILSAFE,
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
-    RTL,
-    STABILIZE,
     is_autopilot,
     requires_position,
 )
 
-RADIO = 1
-GCS = 2
-BATTERY_LOW = 3
-BATTERY_CRITICAL = 4
-EKF = 5
-
-# What a failsafe does
-NOTHING = 0
-DO_LAND = 1
-DO_RTL = 2
-DO_STOP = 5
-DO_BRAKE = 7
+__all__ = ["DO_BRAKE", "DO_LAND", "DO_RTL", "DO_STOP", "NOTHING", "act", "terminate", "text"]
 
 # FS_OPTIONS bits
-_RADIO_AUTO, _GCS_AUTO, _RADIO_GUIDED, _LANDING, _GCS_PILOT = 1, 2, 4, 8, 16
+_RADIO_AUTO, _GCS_AUTO, _RADIO_GUIDED, _GCS_PILOT = 1, 2, 4, 16
 
 RADIO_FRAMES = 3
 """Bad (or good) frames in a row that count."""
 EKF_COUNT = 10
 """Tenths of a second of bad estimate that count."""
 _EKF_PERIOD_S = 0.1
-
-_ON = {
-    RADIO: "Radio Failsafe",
-    GCS: "GCS Failsafe",
-    BATTERY_LOW: "Battery 1 is low",
-    BATTERY_CRITICAL: "Battery 1 is critical",
-    EKF: "EKF Failsafe",
-}
-_OFF = {RADIO: "Radio Failsafe Cleared", GCS: "GCS Failsafe Cleared", EKF: "EKF Failsafe Cleared"}
-
-
-def text(which: int, on: bool) -> str | None:
-    """Status text (MAV_SEVERITY_WARNING) of a FAILSAFE event, None when there is none."""
-    return (_ON if on else _OFF).get(which)
-
-
-@law
-def tell(v, which, on):
-    """Emit FAILSAFE."""
-    emit(v.autopilot.events, v.time_us, FAILSAFE, float(which), float(on))
-
-
-@law
-def radio_action(choice):
-    """What FS_THR_ENABLE and FS_GCS_ENABLE mean; return paths that this firmware lacks become RTL or LAND."""
-    if choice <= 0:
-        return NOTHING
-    if choice == 3 or choice == 5:
-        return DO_LAND
-    if choice == 7:
-        return DO_BRAKE
-    return DO_RTL
-
-
-@law
-def gcs_action(choice):
-    """What FS_GCS_ENABLE means."""
-    if choice <= 0:
-        return NOTHING
-    if choice == 4 or choice == 5:
-        return DO_LAND
-    if choice == 7:
-        return DO_BRAKE
-    return DO_RTL
-
-
-@law
-def battery_action(choice):
-    """What BATT_FS_LOW_ACT and BATT_FS_CRT_ACT mean."""
-    if choice == 1 or choice == 4:
-        return DO_LAND
-    if choice == 2 or choice == 3 or choice == 6:
-        return DO_RTL
-    if choice == 5:
-        return DO_STOP
-    if choice == 7:
-        return DO_BRAKE
-    return NOTHING
-
-
-@law
-def is_idle(v):
-    """Whether disarming is safe: landed, or the pilot's own throttle is closed."""
-    ap = v.autopilot
-    if ap.modes.number == STABILIZE:
-        return ap.modes.pilot.throttle_zero != 0
-    return ap.arming.landed != 0
-
-
-@law
-def land_with_pause(v, reason):
-    """LAND, and wait 4 s before the descent."""
-    if set_mode.request(v, LAND, reason) == ACCEPTED:
-        v.autopilot.modes.land.pause = 1
-
-
-@law
-def act(v, action, reason, method):
-    """Do what a failsafe asks; on the ground it disarms."""
-    ap = v.autopilot
-    if action == NOTHING or ap.arming.armed == 0:
-        return
-    if is_idle(v) or action == DO_STOP:
-        arming.disarm(v, method, 1)
-        return
-    mode = ap.modes.number
-    if mode == LAND and (int(ap.params.FS_OPTIONS) & _LANDING) != 0:
-        return
-    if action == DO_RTL:
-        if mode != RTL and set_mode.request(v, RTL, reason) != ACCEPTED:
-            land_with_pause(v, reason)
-    elif action == DO_BRAKE:
-        if set_mode.request(v, BRAKE, reason) != ACCEPTED:
-            land_with_pause(v, reason)
-    elif mode != LAND:
-        land_with_pause(v, reason)
 
 
 @law
@@ -243,7 +151,10 @@ def update_battery(v):
 
 @law
 def is_estimate_bad(v):
-    """Whether two of the filtered test ratios are over FS_EKF_THRESH (velocity counts double when far over), or there is no position."""
+    """Whether two filtered test ratios are over FS_EKF_THRESH, or there is no position.
+
+    Velocity counts double when it is twice over.
+    """
     ap = v.autopilot
     fs = ap.modes.failsafe
     est = ap.estimate

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Home: set once the estimator has an origin, moved to where the vehicle is armed unless the user fixed it."""
+"""Home: set once the estimator has an origin, moved to where the vehicle is armed unless it is locked."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def set_place(v, lat, lon, alt, lock):
     """
     ap = v.autopilot
     est = ap.estimate
-    if est.origin_set == 0 or not (alt - alt == 0.0):
+    if est.origin_set == 0 or alt - alt != 0.0:
         return 0
     if lat < -900000000 or lat > 900000000 or lon < -1800000000 or lon > 1800000000:
         return 0

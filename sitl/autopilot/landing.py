@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Landing detector, and how much of the throttle attitude control may claim.
 
-Landed: for one second the motors are at their least, attitude has given the throttle back, nothing leans far, and the
-vehicle neither accelerates nor climbs nor sinks. It deliberately asks neither height nor position.
+Landed: for one second the motors are at their least, attitude has given the throttle back, nothing leans
+far, and the vehicle neither accelerates nor climbs nor sinks. It deliberately asks neither height nor
+position.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pilot's sticks: pulses of the receiver and of the ground station to what the flight modes understand.
 
-Sources: ArduPilot's parameters RCn_*, RCMAP_*, RC_OVERRIDE_TIME, PILOT_*, THR_DZ; RC_CHANNELS_OVERRIDE and MANUAL_CONTROL
-write ``rc.override``.
+Sources: ArduPilot's parameters RCn_*, RCMAP_*, RC_OVERRIDE_TIME, PILOT_*, THR_DZ; RC_CHANNELS_OVERRIDE and
+MANUAL_CONTROL write ``rc.override``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ RC_TICKS = 8
 _FRAME_S = RC_TICKS * 0.0025
 
 RECEIVER_PULSES = (1500, 1500, 1000, 1500, 1800, 1000, 1000, 1800)
-"""What the simulated transmitter sends, channel 1 first: sticks centred, throttle low, mode switch at position 6."""
+"""What the simulated transmitter sends: sticks centred, throttle low, mode switch at position 6."""
 
 THROTTLE_ZERO_US = 400_000
 """The throttle counts as zero when it was low for so long."""
@@ -199,7 +199,7 @@ def lean_angles(ap, angle_max, limit):
 
 @law
 def climb_rate(ap):
-    """Climb rate asked by the throttle stick [m/s], up positive; 0 in the dead zone of THR_DZ around the middle."""
+    """Climb rate of the throttle stick [m/s], up positive; 0 within THR_DZ of the middle."""
     if ap.modes.failsafe.radio != 0 or ap.rc.receiver_ok == 0:
         return 0.0
     dead = constrain(ap.params.THR_DZ * 0.001, 0.0, 0.4)

@@ -60,7 +60,7 @@ ESTIMATE_DTYPE = record(
     ("origin_lat", "i8"),  # [degE7]
     ("origin_lon", "i8"),
     ("origin_alt", "f8"),  # above mean sea level [m]
-    ("flags", "i8"),  # EKF_STATUS_FLAGS
+    ("status_flags", "i8"),  # EKF_STATUS_FLAGS
     ("variance_vel", "f8"),  # normalised test ratios as in EKF_STATUS_REPORT
     ("variance_pos", "f8"),
     ("variance_hgt", "f8"),

@@ -6,39 +6,29 @@ All times are simulated microseconds.
 
 from __future__ import annotations
 
-import math
-import selectors
 import struct
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any
 
 from ..autopilot.params.table import BY_NAME as PARAMETERS_BY_NAME
-from ..core.geodesy import offset_ne
-from .autopilot_api import Autopilot, CopterAutopilot, Vector
+from .autopilot_api import Autopilot, CopterAutopilot
 from .channel import COMPONENT, Channel
 from .dialect import MessageType, message
 from .frame import Frame
-from .links.link import Link, Peer
+from .links.link import Link
+from .places import Places
 from .record_reader import RecordReader
 from .services import ALL_SERVICES
-from .services.command import FRAMES_AMSL
 from .services.events import EventService
-from .services.service import Sender, Service
+from .services.service import Handler, Service
 from .services.streams import GROUPS, StreamService
 from .stream_table import NEVER
-from .telemetry import Context, build_all
+from .switchboard import Switchboard
+from .telemetry import Build, Context, build_all
 from .vehicle import Vehicle
 
 EPOCH_US = 1_767_225_600_000_000
 """Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
-
-
-class Tap(Protocol):
-    """Sees every frame of every channel (a telemetry log)."""
-
-    def frame(self, time_us: int, raw: bytes) -> None:
-        """One frame, sent or received at ``time_us``."""
-        ...
 
 
 class Bridge:
@@ -59,23 +49,19 @@ class Bridge:
         self.autopilot: Autopilot = autopilot if autopilot is not None else CopterAutopilot(vehicle)
         self._context = Context(self.reader, vehicle, epoch_us)
         self.telemetry = build_all(self._context)
-        self.links: list[Link] = []
-        self.channels: list[Channel] = []
-        self.dropped: list[str] = []
-        """Why channels were lost, for the command line to show."""
-        self.taps: list[Tap] = []
         self.failed_builds = 0
-        self._selector = selectors.DefaultSelector()
-        self._sockets = 0
-        self._numbers = 0
+        self.board = Switchboard(
+            lambda: self.system, lambda: self.elapsed_us, self._channel_added, self._channel_removed
+        )
+        self.channels = self.board.channels
+        self.taps = self.board.taps
+        """Get every frame, in and out: ``taps.append(writer)``."""
         self._system = self.reader.field("autopilot.params.MAV_SYSID")
         self._time_us = self.reader.field("time_us")
-        self._match_clocks()
         self._parameters: dict[str, Callable[[], float]] = {}
-        origin, home = "autopilot.estimate.origin_", "autopilot.home."
-        self._origin = self.reader.fields(origin + "set", origin + "lat", origin + "lon", origin + "alt")
-        self._heights = self.reader.fields(home + "is_set", home + "alt", origin + "alt")
-        self._handlers: dict[int, tuple[MessageType, int, Callable[[Channel, Any, Sender], None]]] = {}
+        self.places = Places(self.reader)
+        self._match_clocks()
+        self._handlers: dict[int, tuple[MessageType, int, Handler]] = {}
         self.services: dict[type, Service] = {}
         for kind in ALL_SERVICES:
             service = kind(self)
@@ -84,23 +70,23 @@ class Bridge:
                 self._add_handler(name, handler)
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
 
-    def _add_handler(self, name: str, handler: Callable[[Channel, Any, Sender], None]) -> None:
+    def _add_handler(self, name: str, handler: Handler) -> None:
         kind = message(name)
         if kind.id in self._handlers:
             raise ValueError(f"two services handle {name}")
         target = kind.fields.index("target_system") if "target_system" in kind.fields else -1
         self._handlers[kind.id] = (kind, target, handler)
 
-    # ------------------------------------------------------------------ links
+    # ------------------------------------------------------------------ time and identity
 
     @property
     def now_us(self) -> int:
-        """Simulated time [us]."""
+        """Simulated time since the last boot [us]."""
         return int(self._time_us())
 
     @property
     def elapsed_us(self) -> int:
-        """Simulated time since the start of the simulation, which a reboot does not set back [us]; for logs."""
+        """Simulated time since the start of the simulation [us]; a reboot does not set it back."""
         return self.now_us + self._before_boot_us
 
     def _match_clocks(self) -> None:
@@ -112,42 +98,47 @@ class Bridge:
         """Our system id (MAV_SYSID)."""
         return min(max(int(self._system()), 1), 255)
 
+    @property
+    def ground_station(self) -> int:
+        """System id of the pilot's ground station (MAV_GCS_SYSID)."""
+        return int(self.parameter("MAV_GCS_SYSID") or 0)
+
+    def refresh_identity(self) -> None:
+        """Take over a changed MAV_SYSID."""
+        for channel in self.channels:
+            channel.system = self.system
+
+    def parameter(self, name: str) -> float | None:
+        """Present value of a parameter, None when the firmware has none of this name."""
+        read = self._parameters.get(name)
+        if read is None:
+            if name not in PARAMETERS_BY_NAME:
+                return None
+            read = self._parameters[name] = self.reader.field(f"autopilot.params.{name}")
+        return float(read())
+
+    # ------------------------------------------------------------------ links
+
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
-        self.links.append(link)
-        link.attach(self._selector, self._add_channel)
-        self._sockets = len(self._selector.get_map())
+        self.board.add_link(link)
 
     def remove_link(self, link: Link) -> None:
         """Close a link and forget its clients."""
-        link.close()
-        self.links.remove(link)
-        self._forget_closed()
-        self._sockets = len(self._selector.get_map())
+        self.board.remove_link(link)
 
-    def _add_channel(self, peer: Peer) -> None:
-        channel = Channel(peer, self._numbers, self.system)
-        self._numbers += 1
-        self.channels.append(channel)
+    @property
+    def dropped(self) -> list[str]:
+        """Why channels were lost, for the command line to show."""
+        return self.board.dropped
+
+    def _channel_added(self, channel: Channel) -> None:
         for service in self.services.values():
             service.channel_added(channel)
 
-    def _forget_closed(self) -> None:
-        for channel in [c for c in self.channels if c.peer.closed]:
-            self.channels.remove(channel)
-            if channel.peer.why_closed:
-                self.dropped.append(f"{channel.name}: {channel.peer.why_closed}")
-            for service in self.services.values():
-                service.channel_removed(channel)
-
-    def close(self) -> None:
-        """Flush and close everything."""
-        self.flush()
-        for link in list(self.links):
-            self.remove_link(link)
-        self._selector.close()
-
-    # ------------------------------------------------------------------ in
+    def _channel_removed(self, channel: Channel) -> None:
+        for service in self.services.values():
+            service.channel_removed(channel)
 
     def stream_to(self, link: Link, rates_hz: Mapping[str, int]) -> None:
         """Send stream groups to every client of ``link``: {"EXTRA1": 10, ...}, names as in MAV1_EXTRA1.
@@ -161,27 +152,25 @@ class Bridge:
                 for name, rate in rates_hz.items():
                     self.get(StreamService).set_group(channel, groups[name], rate)
 
+    def close(self) -> None:
+        """Flush and close everything."""
+        self.board.close()
+
+    # ------------------------------------------------------------------ in
+
     def wait(self, seconds: float) -> bool:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
-        return bool(self._selector.select(seconds))
+        return self.board.wait(seconds)
 
     def receive(self) -> int:
         """Read all links and act on every frame. Returns the number of frames acted on."""
-        if self._sockets:
-            for key, _ in self._selector.select(0):
-                key.data()
         acted = 0
-        for channel in self.channels:
-            for frame in channel.receive():
-                acted += self._dispatch(channel, frame)
-        if acted or self._sockets:
-            self.flush()
+        for channel, frame in self.board.receive():
+            acted += self._dispatch(channel, frame)
+        self.flush()
         return acted
 
     def _dispatch(self, channel: Channel, frame: Frame) -> int:
-        if self.taps:
-            for tap in self.taps:
-                tap.frame(self.elapsed_us, frame.raw)
         entry = self._handlers.get(frame.kind.id)
         if entry is None or (frame.system == channel.system and frame.component == COMPONENT):
             return 0
@@ -195,7 +184,7 @@ class Bridge:
     # ------------------------------------------------------------------ out
 
     def next_due_us(self) -> int:
-        """Earliest simulated time at which something has to be sent."""
+        """Earliest simulated time (since boot) at which something has to be sent."""
         due = NEVER
         for channel in self.channels:
             if channel.streams.next_us < due:
@@ -220,22 +209,17 @@ class Bridge:
                         self._emit(channel, kind, build)
         self.flush()
 
-    def _emit(self, channel: Channel, kind: MessageType, build: Callable[[], bytes]) -> bool:
+    def _emit(self, channel: Channel, kind: MessageType, build: Build) -> None:
         try:
             payload = build()
-        except (
-            OverflowError,
-            ValueError,
-            struct.error,
-        ):  # a number that the wire cannot carry: leave this message out
+        except (OverflowError, ValueError, struct.error):  # a number that the wire cannot carry: leave it out
             self.failed_builds += 1
-            return False
+            return
         if payload:
             channel.send(kind, payload)
-        return bool(payload)
 
     def send_now(self, channel: Channel, number: int) -> bool:
-        """Send one telemetry message to one channel; False when it does not exist."""
+        """Send one telemetry message to one channel; False when there is none of this number."""
         entry = self.telemetry.get(number)
         if entry is not None:
             self._emit(channel, *entry)
@@ -248,74 +232,18 @@ class Bridge:
 
     def flush(self) -> None:
         """Hand everything queued to the links."""
-        closed = False
-        for channel in self.channels:
-            peer = channel.peer
-            if self.taps and peer.outbox:
-                now = self.elapsed_us
-                for tap in self.taps:
-                    for raw in peer.outbox:
-                        tap.frame(now, raw)
-            peer.flush()
-            closed = closed or peer.closed
-        if closed:
-            self._forget_closed()
+        self.board.flush()
 
-    # ------------------------------------------------------------------ what services share
+    # ------------------------------------------------------------------ what the autopilot says
 
     def get(self, kind: type[Any]) -> Any:
         """The service of this class."""
         return self.services[kind]
 
-    def parameter(self, name: str) -> float | None:
-        """Present value of a parameter, None when the firmware has none of this name."""
-        read = self._parameters.get(name)
-        if read is None:
-            if name not in PARAMETERS_BY_NAME:
-                return None
-            read = self._parameters[name] = self.reader.field(f"autopilot.params.{name}")
-        return float(read())
-
-    @property
-    def ground_station(self) -> int:
-        """System id of the pilot's ground station (MAV_GCS_SYSID)."""
-        return int(self.parameter("MAV_GCS_SYSID") or 0)
-
-    def home_alt(self) -> float:
-        """Altitude that "relative" heights count from.
-
-        Home's, or the origin's before home is set [m above sea level].
-        """
-        is_set, alt, origin_alt = self._heights()
-        return float(alt if is_set else origin_alt)
-
-    def place_ned(self, lat: int, lon: int, z: float, frame: int) -> Vector | None:
-        """NED [m] from the origin of a place [degE7, m in a MAV_FRAME].
-
-        None before there is an origin or off the globe.
-
-        Terrain frames count from home: the ground is flat.
-        """
-        is_set, lat0, lon0, _ = self._origin()
-        if not is_set or not (abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000 and math.isfinite(z)):
-            return None
-        n, e = offset_ne(lat0, lon0, lat, lon)
-        return self.over_origin(n, e, z if frame in FRAMES_AMSL else self.home_alt() + z)
-
-    def over_origin(self, north: float, east: float, alt: float) -> Vector | None:
-        """NED [m] of a point at ``alt`` [m above sea level]; None before there is an origin."""
-        is_set, _, _, origin_alt = self._origin()
-        return (north, east, origin_alt - alt) if is_set else None
-
-    def say_pending(self) -> None:
-        """Tell clients what the autopilot's laws gave back.
-
-        (``Autopilot.take_notes``) and what the core emitted meanwhile.
-        """
-        events = self.services[EventService]
-        assert isinstance(events, EventService)
-        events.read()
-        events.notes(self.autopilot.take_notes())
+    def on_events(self) -> None:
+        """Tell clients of all events that the core emitted since the last call."""
+        self.get(EventService).read()
+        self.flush()
 
     def tell(self, notes: list[Any]) -> None:
         """Tell clients what the mission's sequencer gave back."""
@@ -323,10 +251,12 @@ class Bridge:
             self.get(EventService).notes(notes)
             self.flush()
 
-    def on_events(self) -> None:
-        """Tell clients of all events that the core emitted since the last call."""
+    def say_pending(self) -> None:
+        """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""
         self.get(EventService).read()
-        self.flush()
+        self.get(EventService).notes(self.autopilot.take_notes())
+
+    # ------------------------------------------------------------------ other times, other boots
 
     def clock_changed(self) -> None:
         """The record was put to another simulated time (a restore): what is regular goes on from there."""
@@ -344,16 +274,6 @@ class Bridge:
         """
         self.flush()
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
-        new.taps = self.taps
-        new.dropped = self.dropped
-        new._selector.close()
-        new._selector, new._sockets = self._selector, self._sockets
-        new.links = self.links
-        for link in new.links:
-            link.reattach(new._add_channel)
+        new.board.take_over(self.board)
+        new.taps = new.board.taps
         return new
-
-    def refresh_identity(self) -> None:
-        """Take over a changed MAV_SYSID."""
-        for channel in self.channels:
-            channel.system = self.system

@@ -19,6 +19,8 @@ from typing import Any, cast
 from fastcrc import crc16
 from pymavlink.dialects.v20 import ardupilotmega
 
+from .newer_messages import NEWER
+
 crc_mcrf4xx = cast("Callable[..., int]", crc16.mcrf4xx)
 """CRC-16/MCRF4XX of bytes, optionally going on from an earlier value."""
 
@@ -123,7 +125,7 @@ class MessageType:
         return f"MessageType({self.name}, id {self.id})"
 
 
-_CLASSES: dict[int, Any] = ardupilotmega.mavlink_map
+_CLASSES: dict[int, Any] = {**NEWER, **ardupilotmega.mavlink_map}
 _BY_NAME: dict[str, int] = {cls.msgname: number for number, cls in _CLASSES.items()}
 KNOWN_IDS = frozenset(_CLASSES)
 

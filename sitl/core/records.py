@@ -13,7 +13,14 @@ def record(*fields: tuple[Any, ...]) -> np.dtype[Any]:
 
     Fields are 8-byte numbers ("f8", "i8") unless a protocol fixes another width: mixed widths cost
     conversions in the core and surprises in plain Python (float32 arithmetic, integer overflow).
+
+    Raises:
+        ValueError: a name that numpy's records have as an attribute of their own ("flags", "size", "data"):
+            reading it in plain Python would give numpy's, not the field.
     """
+    taken = [f[0] for f in fields if hasattr(np.void, f[0])]
+    if taken:
+        raise ValueError(f"record fields {taken} are attributes of numpy's own records; choose other names")
     return np.dtype([tuple(f) for f in fields], align=True)
 
 

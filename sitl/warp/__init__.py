@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Unmodified scripts in simulated time: their sleeps, dates and time-outs follow the simulation, not the wall.
+"""Unmodified scripts in simulated time: their sleeps, dates and time-outs follow the simulation, not the
+wall.
 
     with ClockPage() as page:                        # the clock; stands still until the first publish
         pacer = Pacer(page, speedup=50)              # or "max"

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compiles the preload library (``preload/*.c``) and the runtime for static programs (``static/*.c``) on the user's
-machine, once, into a cache folder.
+"""Compiles the preload library (``preload/*.c``) and the runtime for static programs (``static/*.c``) on
+the user's machine, once, into a cache folder.
 
-The name of the result holds a hash of the sources, the compiler and the machine, so a changed source is compiled again
-and two versions never meet. Compilers tried in this order: ``$CC``, ``cc``, ``gcc``, ``clang``, then the one in the
-PyPI package ``ziglang`` (a C compiler that pip can install where the system has none).
+The name of the result holds a hash of the sources, the compiler and the machine, so a changed source is
+compiled again and two versions never meet. Compilers tried in this order: ``$CC``, ``cc``, ``gcc``,
+``clang``, then the one in the PyPI package ``ziglang`` (a C compiler that pip can install where the system
+has none).
 """
 
 from __future__ import annotations
@@ -29,14 +30,18 @@ class CannotBuild(RuntimeError):
 
 
 def cache_folder() -> Path:
-    """Where compiled libraries are kept: ``$SITL_CACHE_DIR``, else ``$XDG_CACHE_HOME/gym-sitl``, else ~/.cache/gym-sitl."""
+    """Where compiled libraries are kept: ``$SITL_CACHE_DIR``, else ``$XDG_CACHE_HOME/gym-sitl``, else
+    ~/.cache/gym-sitl.
+    """
     if chosen := os.environ.get("SITL_CACHE_DIR"):
         return Path(chosen) / "warp"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gym-sitl" / "warp"
 
 
 def compiler() -> list[str]:
-    """The command that compiles C here, as the first words of a command line; raises CannotBuild if there is none."""
+    """The command that compiles C here, as the first words of a command line; raises CannotBuild if
+    there is none.
+    """
     if named := os.environ.get("CC"):
         return shlex.split(named)
     for name in ("cc", "gcc", "clang"):
@@ -45,18 +50,28 @@ def compiler() -> list[str]:
     if importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc"]
     raise CannotBuild(
-        "sitl exec needs a C compiler to put a script on simulated time, and found none of $CC, cc, gcc, clang. "
-        "Install one (Debian: apt install gcc; anywhere: pip install ziglang), or run the script at --speedup 1."
+        "sitl exec needs a C compiler to put a script on simulated time, and found none of $CC, cc, gcc, "
+        "clang. Install one (Debian: apt install gcc; anywhere: pip install ziglang), or run the script "
+        "without sitl exec against a vehicle at --speedup 1."
     )
 
 
 @functools.cache
 def preload_library() -> Path:
-    """The compiled preload library for this machine; compiles it if it is not in the cache. Raises CannotBuild."""
+    """The compiled preload library for this machine; compiles it if it is not in the cache. Raises
+    CannotBuild.
+    """
     if sys.platform != "linux":
         raise CannotBuild(
             f"sitl exec: scripts on simulated time are supported on Linux, not on {sys.platform}. "
-            "Run the script at --speedup 1, or on Linux (a container or WSL 2 will do)."
+            "Run the script without sitl exec against a vehicle at --speedup 1, or on Linux (a container "
+            "will do)."
+        )
+    folder = cache_folder()
+    if any(character in str(folder) for character in " :"):
+        raise CannotBuild(
+            f"the cache folder {str(folder)!r} has a space or a colon in its name, which the system's loader "
+            "(LD_PRELOAD) cannot take. Set SITL_CACHE_DIR to a folder without."
         )
     return _cached("libsitlclock.so", "preload", ["-fPIC"], ["-shared", "-ldl", "-pthread"])
 
@@ -67,10 +82,18 @@ def static_runtime() -> Path:
 
     Needs Linux on x86-64 or aarch64.
     """
-    flags = ["-ffreestanding", "-fno-builtin", "-fno-stack-protector", "-fno-asynchronous-unwind-tables", "-fPIE"]
+    flags = [
+        "-ffreestanding",
+        "-fno-builtin",
+        "-fno-stack-protector",
+        "-fno-asynchronous-unwind-tables",
+        "-fPIE",
+    ]
     if platform.machine() == "aarch64":
         flags.append("-mno-outline-atomics")  # those are in a library that this program does without
-    return _cached("sitl-static-runtime", "static", flags, ["-fPIE", "-pie", "-nostdlib", "-Wl,--no-dynamic-linker"])
+    return _cached(
+        "sitl-static-runtime", "static", flags, ["-fPIE", "-pie", "-nostdlib", "-Wl,--no-dynamic-linker"]
+    )
 
 
 def _cached(name: str, folder: str, compile_flags: list[str], link_flags: list[str]) -> Path:
@@ -104,6 +127,8 @@ def _compile(words: list[str]) -> None:
     try:
         done = subprocess.run(words, capture_output=True, text=True)
     except OSError as error:
-        raise CannotBuild(f"cannot run the C compiler {words[0]}: {error}. Set CC to one that works.") from error
+        raise CannotBuild(
+            f"cannot run the C compiler {words[0]}: {error}. Set CC to one that works."
+        ) from error
     if done.returncode:
         raise CannotBuild(f"the C compiler failed: {shlex.join(words)}\n{done.stderr.strip()}")

@@ -18,9 +18,11 @@ FORWARDED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def script_environment(page: ClockPage, env: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The environment that puts a program on the clock of `page`: `env` (this process's own by default) and a few more.
+    """The environment that puts a program on the clock of `page`: `env` (this process's own by default) and
+    a few more.
 
-    Raises CannotBuild if the preload library cannot be made on this machine. The first call compiles, some seconds.
+    Raises CannotBuild if the preload library cannot be made on this machine. The first call compiles, some
+    seconds.
     """
     result = dict(os.environ if env is None else env)
     others = [name for name in result.get("LD_PRELOAD", "").split(":") if name]
@@ -42,8 +44,8 @@ def start_script(
 def run_script(argv: Sequence[str], page: ClockPage, env: Mapping[str, str] | None = None) -> int:
     """Run `argv` on the clock of `page` to its end and return its exit code; 128 + n if signal n ended it.
 
-    The caller's simulator must go on publishing meanwhile, from another thread. Called in the main thread, this
-    leaves it to the script what to do about SIGINT, SIGTERM and SIGHUP: it forwards them.
+    The caller's simulator must go on publishing meanwhile, from another thread. Called in the main thread,
+    this leaves it to the script what to do about SIGINT, SIGTERM and SIGHUP: it forwards them.
     """
     child = start_script(argv, page, env)
 

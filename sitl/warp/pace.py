@@ -11,8 +11,9 @@ import time
 from sitl.warp.build import preload_library
 from sitl.warp.page import ClockPage
 
-# How late [s of wall time] the simulator may be and still catch up by running faster than asked for a moment. Small:
-# a script must never see more than a blink of simulated time go by while it had no chance to run.
+# How late [s of wall time] the simulator may be and still catch up by running faster than asked for a
+# moment. Small: a script must never see more than a blink of simulated time go by while it had no chance to
+# run.
 CATCH_UP_S = 0.002
 
 # "max": the fastest the clock runs while the script waits, and while it works.
@@ -26,12 +27,13 @@ LOOK_S = 0.00003
 class Pacer:
     """Keeps simulated time at `speedup` times wall time, and behind what the scripts can follow.
 
-    The caller advances its simulation by :attr:`slice_us`, then calls :meth:`pace`. Time lost (a slow slice, a busy
-    machine) is not made up beyond 2 ms: the simulation slows down, and the scripts' clock with it.
+    The caller advances its simulation by :attr:`slice_us`, then calls :meth:`pace`. Time lost (a slow
+    slice, a busy machine) is not made up beyond 2 ms: the simulation slows down, and the scripts' clock
+    with it.
 
-    With `busy_speedup`, simulated time goes no faster than that while any thread of a script is at work, and at
-    `speedup` while all of them wait. At 1 a script's own computing takes as much simulated time as it would at 1x, so
-    that it cannot tell the difference, and only its waits are short.
+    With `busy_speedup`, simulated time goes no faster than that while any thread of a script is at work,
+    and at `speedup` while all of them wait. At 1 a script's own computing takes as much simulated time as
+    it would at 1x, so that it cannot tell the difference, and only its waits are short.
     """
 
     def __init__(
@@ -41,10 +43,12 @@ class Pacer:
         slice_us: int | None = None,
         busy_speedup: float | None = None,
     ) -> None:
-        """`speedup`: simulated seconds per wall second, above 0, or "max": 200 while scripts wait, 1 while they work.
+        """`speedup`: simulated seconds per wall second, above 0, or "max": 200 while scripts wait, 1 while
+        they work.
 
-        `slice_us`: simulated time per slice [us]; by default 1 to 10 ms, as fits half a millisecond of wall time.
-        `busy_speedup`: see above; None for the same as `speedup`. Needs the compiled library: raises CannotBuild.
+        `slice_us`: simulated time per slice [us]; by default 1 to 10 ms, as fits half a millisecond of wall
+        time. `busy_speedup`: see above; None for the same as `speedup`. Needs the compiled library: raises
+        CannotBuild.
         """
         if speedup == "max":
             speedup = MAX_SPEEDUP
@@ -62,7 +66,8 @@ class Pacer:
         if self.busy_speedup < self.speedup:
             self._library = ctypes.CDLL(str(preload_library()))
         if sys.platform == "linux":
-            # Linux may end a sleep 50 us late to save power, a quarter of a slice at 50x; ask for no such favour.
+            # Linux may end a sleep 50 us late to save power, a quarter of a slice at 50x; ask for no such
+            # favour.
             ctypes.CDLL(None).prctl(29, 1, 0, 0, 0)
 
     def publish(self, sim_us: int) -> None:
@@ -73,7 +78,9 @@ class Pacer:
         self.page.publish(sim_us, self.speedup, self.slice_us)
 
     def remaining(self) -> float:
-        """Wall time [s] until the next slice is due; 0 when it is. For simulators that wait on sockets meanwhile."""
+        """Wall time [s] until the next slice is due; 0 when it is. For simulators that wait on
+        sockets meanwhile.
+        """
         now = time.monotonic()
         if now < self._due:
             return self._due - now

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The clock page: one small shared file through which a simulator tells scripts what time it is.
 
-The simulator writes straight pieces of a clock, "simulated time was `sim` at wall time `wall` and runs at `rate` up to
-`ceiling`". Every process of the script reads it (``preload/clock.h`` holds the same layout in C)::
+The simulator writes straight pieces of a clock, "simulated time was `sim` at wall time `wall` and runs at
+`rate` up to `ceiling`". Every process of the script reads it (``preload/line.h`` holds the same layout in
+C)::
 
     warped(wall) = min(sim + rate * (wall - wall_0), ceiling)
 
-The clock therefore *follows* the simulation: when the simulator cannot keep up, is paused, or has not started, the
-script's clock stops with it, and no time-out of the script can run out early.
+The clock therefore *follows* the simulation: when the simulator cannot keep up, is paused, or has not
+started, the script's clock stops with it, and no time-out of the script can run out early.
 
-All times in the page are integer nanoseconds: simulated time since the vehicle's boot, wall time as CLOCK_MONOTONIC.
+All times in the page are integer nanoseconds: simulated time since the vehicle's boot, wall time as
+CLOCK_MONOTONIC.
 """
 
 from __future__ import annotations
@@ -36,18 +38,21 @@ _PIDS = struct.Struct(f"<{PID_SLOTS}i")
 
 
 class ClockPage:
-    """The simulator's end of the clock page: creates the file, publishes the clock, and in the end releases it.
+    """The simulator's end of the clock page: creates the file, publishes the clock, and in the end releases
+    it.
 
-    Use as a context manager. On leaving, the clock is released (it goes on at 1x, so that no script is left waiting
-    for a simulator that is gone) and the file is removed.
+    Use as a context manager. On leaving, the clock is released (it goes on at 1x, so that no script is left
+    waiting for a simulator that is gone) and the file is removed.
     """
 
-    def __init__(self, epoch_ns: int | None = None, uptime_ns: int | None = None, folder: str | None = None) -> None:
+    def __init__(
+        self, epoch_ns: int | None = None, uptime_ns: int | None = None, folder: str | None = None
+    ) -> None:
         """Make a page whose clock stands at simulated time zero until the first :meth:`publish`.
 
-        `epoch_ns`: what scripts read as the date (CLOCK_REALTIME, ns) at simulated time zero; the present by default.
-        `uptime_ns`: what they read as CLOCK_MONOTONIC [ns] there; the machine's present by default.
-        `folder`: where the file is made; shared memory where the system has it.
+        `epoch_ns`: what scripts read as the date (CLOCK_REALTIME, ns) at simulated time zero; the present
+        by default. `uptime_ns`: what they read as CLOCK_MONOTONIC [ns] there; the machine's present by
+        default. `folder`: where the file is made; shared memory where the system has it.
         """
         if folder is None:
             folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
@@ -70,15 +75,17 @@ class ClockPage:
     def publish(self, sim_us: int, rate: float, grant_us: int = 0) -> None:
         """Say how far the simulation has come; call after each slice of simulated time.
 
-        `sim_us`: simulated time reached [us]. `rate`: simulated seconds per wall second the clock runs at from here;
-        0 pauses it. `grant_us`: how much further [us] the clock may run before the next call, usually the length of
-        the next slice: the clock is smooth and never more than this ahead of the simulation. With 0 it moves in
-        steps, at the calls.
+        `sim_us`: simulated time reached [us]. `rate`: simulated seconds per wall second the clock runs at
+        from here; 0 pauses it. `grant_us`: how much further [us] the clock may run before the next call,
+        usually the length of the next slice: the clock is smooth and never more than this ahead of the
+        simulation. With 0 it moves in steps, at the calls.
 
         The clock never goes back: where it has already passed `sim_us` it waits for the simulation.
         """
         if rate < 0 or grant_us < 0:
-            raise ValueError(f"clock page: rate {rate} and grant_us {grant_us} must be 0 or more; 0 stops the clock")
+            raise ValueError(
+                f"clock page: rate {rate} and grant_us {grant_us} must be 0 or more; 0 stops the clock"
+            )
         wall_ns = time.monotonic_ns()
         start_ns = max(self._at(wall_ns), sim_us * 1000)
         self._ceiling_ns = max(start_ns, (sim_us + grant_us) * 1000)
@@ -100,7 +107,9 @@ class ClockPage:
             struct.pack_into("<i", self._map, PIDS_OFFSET + 4 * slots.index(pid), 0)
 
     def release(self) -> None:
-        """Let the clock go on at 1x without the simulator, for good: scripts that still wait come to their end."""
+        """Let the clock go on at 1x without the simulator, for good: scripts that still wait come
+        to their end.
+        """
         wall_ns = time.monotonic_ns()
         self._sim_ns, self._wall_ns = self._at(wall_ns), wall_ns
         self._rate, self._ceiling_ns = 1.0, FOREVER_NS
@@ -127,8 +136,9 @@ class ClockPage:
     def _write(self, state: int) -> None:
         self._count += 1
         line = _LINE.pack(self._count, self._wall_ns, self._sim_ns, self._rate, self._ceiling_ns, state, 0)
-        # Readers do not lock. They retry until the last word is the exclusive-or of the others, so a page read in the
-        # middle of this write is noticed on any processor, whatever order it makes its stores visible in.
+        # Readers do not lock. They retry until the last word is the exclusive-or of the others, so a page
+        # read in the middle of this write is noticed on any processor, whatever order it makes its stores
+        # visible in.
         check = MAGIC
         for word in _WORDS.unpack(line):
             check ^= word
@@ -136,7 +146,9 @@ class ClockPage:
 
 
 class PageReader:
-    """A read-only view of a clock page from an ordinary, unwarped Python process: what time do the scripts have?"""
+    """A read-only view of a clock page from an ordinary, unwarped Python process: what time do the
+    scripts have?
+    """
 
     def __init__(self, path: str) -> None:
         """Open the page at `path`; raises ValueError if the file is not one."""
@@ -144,7 +156,9 @@ class PageReader:
             self._map = mmap.mmap(file.fileno(), PAGE_BYTES, access=mmap.ACCESS_READ)
         magic, size, self.epoch_ns, self.uptime_ns, self.writer = _HEADER.unpack_from(self._map, 0)
         if magic != MAGIC or size != PAGE_BYTES:
-            raise ValueError(f"clock page {path}: starts with {magic:#x}, not {MAGIC:#x}; pass the path of a ClockPage")
+            raise ValueError(
+                f"clock page {path}: starts with {magic:#x}, not {MAGIC:#x}; pass the path of a ClockPage"
+            )
 
     def line(self) -> tuple[int, int, int, float, int, int]:
         """The piece published last: (count, wall_ns, sim_ns, rate, ceiling_ns, state)."""

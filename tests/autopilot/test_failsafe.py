@@ -18,7 +18,9 @@ def lose_gcs(v):
     failsafe.update_gcs(v)
 
 
-@pytest.mark.parametrize(("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE)))
+@pytest.mark.parametrize(
+    ("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE))
+)
 def test_ground_station_lost(flying, choice, mode):
     flying.autopilot.params.FS_GCS_ENABLE = float(choice)
     lose_gcs(flying)
@@ -43,7 +45,10 @@ def test_the_ground_station_comes_back(flying):
     assert codes(flying).count(FAILSAFE) == 2
 
 
-@pytest.mark.parametrize(("mode", "options", "stays"), ((AUTO, 2, True), (AUTO, 0, False), (LOITER, 16, True), (LOITER, 0, False), (GUIDED, 18, False)))
+@pytest.mark.parametrize(
+    ("mode", "options", "stays"),
+    ((AUTO, 2, True), (AUTO, 0, False), (LOITER, 16, True), (LOITER, 0, False), (GUIDED, 18, False)),
+)
 def test_options_let_a_mode_go_on_without_ground_station(flying, mode, options, stays):
     fly(flying, mode)
     flying.autopilot.params.FS_GCS_ENABLE = 1.0
@@ -59,7 +64,9 @@ def test_on_the_ground_a_failsafe_disarms(flying):
     assert flying.autopilot.arming.armed == 0
 
 
-@pytest.mark.parametrize(("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, RTL), (5, LAND), (7, BRAKE)))
+@pytest.mark.parametrize(
+    ("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, RTL), (5, LAND), (7, BRAKE))
+)
 def test_radio_lost_after_three_frames(flying, choice, mode):
     fly(flying, LOITER)
     ap = flying.autopilot
@@ -97,7 +104,9 @@ def test_rtl_without_position_becomes_a_landing_that_waits(flying):
     assert flying.autopilot.modes.land.pause == 1
 
 
-@pytest.mark.parametrize(("action", "mode", "armed"), ((0, GUIDED, 1), (1, LAND, 1), (2, RTL, 1), (5, GUIDED, 0), (7, BRAKE, 1)))
+@pytest.mark.parametrize(
+    ("action", "mode", "armed"), ((0, GUIDED, 1), (1, LAND, 1), (2, RTL, 1), (5, GUIDED, 0), (7, BRAKE, 1))
+)
 def test_battery_low_for_its_timer(flying, action, mode, armed):
     ap = flying.autopilot
     ap.params.BATT_MONITOR, ap.params.BATT_FS_LOW_ACT = 4.0, float(action)
@@ -129,7 +138,16 @@ def test_charge_critical_at_once(flying):
     assert (ap.modes.failsafe.battery, ap.modes.number) == (2, LAND)
 
 
-@pytest.mark.parametrize(("mode", "action", "after"), ((GUIDED, 1, LAND), (GUIDED, 2, ALT_HOLD), (GUIDED, 0, GUIDED), (ALT_HOLD, 1, ALT_HOLD), (ALT_HOLD, 3, LAND)))
+@pytest.mark.parametrize(
+    ("mode", "action", "after"),
+    (
+        (GUIDED, 1, LAND),
+        (GUIDED, 2, ALT_HOLD),
+        (GUIDED, 0, GUIDED),
+        (ALT_HOLD, 1, ALT_HOLD),
+        (ALT_HOLD, 3, LAND),
+    ),
+)
 def test_estimator_lost_for_a_second(flying, mode, action, after):
     fly(flying, mode)
     ap = flying.autopilot
@@ -145,7 +163,14 @@ def test_estimator_lost_for_a_second(flying, mode, action, after):
 
 @pytest.mark.parametrize(
     ("vel", "pos", "mag", "bad"),
-    ((0.0, 5.0, 0.0, False), (0.9, 0.0, 0.0, False), (0.9, 0.9, 0.0, True), (0.9, 0.0, 0.9, True), (1.7, 0.0, 0.0, True), (0.0, 0.0, 0.9, False)),
+    (
+        (0.0, 5.0, 0.0, False),
+        (0.9, 0.0, 0.0, False),
+        (0.9, 0.9, 0.0, True),
+        (0.9, 0.0, 0.9, True),
+        (1.7, 0.0, 0.0, True),
+        (0.0, 0.0, 0.9, False),
+    ),
 )
 def test_two_test_ratios_count(flying, vel, pos, mag, bad):
     est = flying.autopilot.estimate

@@ -92,7 +92,11 @@ def test_throttle_above_half_of_hover_takes_off_but_not_while_a_take_off_ramps(f
 def test_throttle_priority(flying, mode, throttle, descent, mix):
     fly(flying, mode)
     ap = flying.autopilot
-    ap.modes.pilot.throttle, ap.control.pos_d.vel_desired, ap.control.pos_d.control_ratio = throttle, descent, 1.0
+    ap.modes.pilot.throttle, ap.control.pos_d.vel_desired, ap.control.pos_d.control_ratio = (
+        throttle,
+        descent,
+        1.0,
+    )
     landing.update(flying)
     landing.update_mix(flying)
     assert ap.control.attitude.mix_desired == pytest.approx(float(ap.params[mix]))

@@ -17,14 +17,22 @@ PULSES = st.integers(0, 3000)
 
 
 @pytest.mark.parametrize(
-    ("pulse", "value"), ((1500, 0.0), (1520, 0.0), (1480, 0.0), (1900, 1.0), (1100, -1.0), (1710, 0.5), (2100, 1.0))
+    ("pulse", "value"),
+    ((1500, 0.0), (1520, 0.0), (1480, 0.0), (1900, 1.0), (1100, -1.0), (1710, 0.5), (2100, 1.0)),
 )
 def test_centred_stick(pulse, value):
     assert pilot.centred(pulse, 1100.0, 1500.0, 1900.0, 0.0, 20.0) == pytest.approx(value)
     assert pilot.centred(pulse, 1100.0, 1500.0, 1900.0, 1.0, 20.0) == pytest.approx(-value)
 
 
-@given(PULSES, st.floats(800, 2200), st.floats(800, 2200), st.floats(800, 2200), st.sampled_from((0.0, 1.0)), st.floats(0, 200))
+@given(
+    PULSES,
+    st.floats(800, 2200),
+    st.floats(800, 2200),
+    st.floats(800, 2200),
+    st.sampled_from((0.0, 1.0)),
+    st.floats(0, 200),
+)
 def test_sticks_stay_in_range_whatever_the_calibration(pulse, low, trim, high, reverse, dead):
     assert -1.0 <= pilot.centred(pulse, low, trim, high, reverse, dead) <= 1.0
     assert 0.0 <= pilot.ranged(pulse, low, max(high, low), reverse, dead) <= 1.0
@@ -78,7 +86,10 @@ def test_throttle_counts_as_zero_only_after_a_while(vehicle):
         assert sticks.throttle_zero == zero
 
 
-@pytest.mark.parametrize(("throttle", "climb"), ((0.5, 0.0), (0.6, 0.0), (0.4, 0.0), (1.0, 2.5), (0.8, 1.25), (0.0, -2.5), (0.2, -1.25)))
+@pytest.mark.parametrize(
+    ("throttle", "climb"),
+    ((0.5, 0.0), (0.6, 0.0), (0.4, 0.0), (1.0, 2.5), (0.8, 1.25), (0.0, -2.5), (0.2, -1.25)),
+)
 def test_climb_rate(vehicle, throttle, climb):
     vehicle.autopilot.modes.pilot.throttle = throttle
     assert pilot.climb_rate(vehicle.autopilot) == pytest.approx(climb)
@@ -122,12 +133,18 @@ def test_mode_switch_changes_the_mode_when_it_moves_and_only_then(vehicle):
     assert ap.modes.number == 5
 
 
-@pytest.mark.parametrize(("pulse", "position"), ((900, -1), (1000, 0), (1231, 1), (1361, 2), (1491, 3), (1621, 4), (1750, 5), (2200, -1)))
+@pytest.mark.parametrize(
+    ("pulse", "position"),
+    ((900, -1), (1000, 0), (1231, 1), (1361, 2), (1491, 3), (1621, 4), (1750, 5), (2200, -1)),
+)
 def test_positions_of_the_mode_switch(pulse, position):
     assert switch.position(pulse) == position
 
 
-@pytest.mark.parametrize(("armed", "yaw", "rudder", "after"), ((0, 1900, 2, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)))
+@pytest.mark.parametrize(
+    ("armed", "yaw", "rudder", "after"),
+    ((0, 1900, 2, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)),
+)
 def test_yaw_stick_arms_and_disarms_after_two_seconds(vehicle, armed, yaw, rudder, after):
     ap = vehicle.autopilot
     ap.params.ARMING_RUDDER = float(rudder)

@@ -31,12 +31,13 @@ class FakeVehicle:
         self.index = 1
         self.v = records.view(self.fleet, 1)
         self.reboots = 0
+        self.before_boot_us = 0
         table.set_defaults(self.v.autopilot.params)
         self.v.autopilot.arming.landed = 1
 
     @property
     def time_us(self) -> int:
-        return int(self.v.time_us)
+        return self.before_boot_us + int(self.v.time_us)
 
     def request_reboot(self) -> None:
         self.reboots += 1

@@ -45,7 +45,7 @@ def random_values(kind: type, rng: random.Random) -> list[object]:
     return values
 
 
-@pytest.mark.parametrize("number", sorted(KNOWN_IDS))
+@pytest.mark.parametrize("number", sorted(mavlink.mavlink_map))
 def test_every_message_is_packed_and_unpacked_as_pymavlink_does(number: int) -> None:
     rng = random.Random(number)
     kind = message_by_id(number)
@@ -140,3 +140,15 @@ def test_a_truncated_frame_costs_nothing_but_itself() -> None:
     found = splitter.feed(good[0] + good[1][:20] + good[2] + good[3])
     assert [f.raw for f in found] == [good[0], good[2], good[3]]
     assert splitter.bad_checksums == 1
+
+
+def test_messages_newer_than_the_dialect_match_their_definition() -> None:
+    from pymavlink.dialects.v20 import development
+
+    kind = message("AVAILABLE_MODES")
+    raw = encode_v2(kind, kind.pack(17, 4, 8, 3, 0, b"BRAKE"), 1, 1, 1)
+    (found,) = development.MAVLink(None).parse_buffer(raw)
+    assert (found.get_type(), found.custom_mode, found.properties, found.number_modes, found.mode_index) == (
+        "AVAILABLE_MODES", 17, 4, 8, 3
+    )  # fmt: skip
+    assert found.mode_name == "BRAKE" and kind.base_size == kind.size

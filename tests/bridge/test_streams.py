@@ -8,6 +8,9 @@ import pytest
 from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from sitl.autopilot.modes.copter.numbers import NAMES
+from sitl.bridge.frame import Splitter
+
 SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512
 ALL_GROUPS = {
     "RAW_IMU", "SCALED_PRESSURE", "SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT",
@@ -111,3 +114,17 @@ def test_streams_wait_for_a_client_that_does_not_read(bench: Bench) -> None:
     finally:
         del type(bench.bridge.channels[0].peer).congested
     assert counts(bench, 2.0)["ATTITUDE"] == 20
+
+
+def test_available_modes(bench: Bench) -> None:
+    def modes(index: int) -> list[object]:
+        bench.client.send(mavlink.MAVLink_command_long_message(1, 1, REQUEST, 0, 435, index, 0, 0, 0, 0, 0))
+        bench.bridge.receive()
+        frames = Splitter().feed(bench.client.link.receive())
+        return [f.kind.decode(f.payload) for f in frames if f.kind.name == "AVAILABLE_MODES"]
+
+    every = modes(0)
+    assert [m.mode_index for m in every] == list(range(1, every[0].number_modes + 1))
+    assert {m.custom_mode: m.mode_name.decode() for m in every} == NAMES
+    assert modes(4) == every[3:4]
+    assert modes(99) == []

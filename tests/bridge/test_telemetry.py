@@ -120,3 +120,11 @@ def test_absent_position_is_not_invented(bench: Bench) -> None:
     assert (where.lat, where.lon, where.relative_alt) == (0, 0, 0)
     bench.vehicle.v.sensors.gps_fix, bench.vehicle.v.sensors.gps_lat = 3, 123
     assert get(bench, "GLOBAL_POSITION_INT").lat == 123
+
+
+def test_pulses_that_are_none(bench: Bench) -> None:
+    bench.vehicle.v.autopilot.rc.channels[:3] = (1500, -5, 70000)
+    bench.vehicle.v.actuators.pwm[:2] = (1600, 2**40)
+    rc, servo = get(bench, "RC_CHANNELS"), get(bench, "SERVO_OUTPUT_RAW")
+    assert (rc.chan1_raw, rc.chan2_raw, rc.chan3_raw) == (1500, 0, 65535)
+    assert (servo.servo1_raw, servo.servo2_raw) == (1600, 65535)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An autopilot that stands level at the origin with the firmware's defaults, and how to fly it in plain Python."""
+"""An autopilot that stands level at the origin with the firmware's defaults, and how to fly it in plain
+Python.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,9 @@ def set_attitude(ap: Any, w: float, x: float, y: float, z: float) -> None:
 
 
 def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120.0, 50.0)) -> None:
-    """One period of a rigid body that the roll, pitch and yaw demands accelerate, ``authority`` [rad/s^2] at 1."""
+    """One period of a rigid body that the roll, pitch and yaw demands accelerate, ``authority`` [rad/s^2] at
+    1.
+    """
     est, m = ap.estimate, ap.control.motors
     for k, demand in enumerate((m.roll, m.pitch, m.yaw)):
         limited = min(max(float(demand), -1.0), 1.0)

@@ -18,7 +18,7 @@ FLAGS = ("limit_roll", "limit_pitch", "limit_yaw", "limit_throttle_lower", "limi
 
 
 def run(frame_type, roll, pitch, yaw, throttle, avg_max=None, throttle_max=1.0, headroom=0.2):
-    motors = SimpleNamespace(thrust=[0.0] * 4, **{flag: 0 for flag in FLAGS})
+    motors = SimpleNamespace(thrust=[0.0] * 4, **dict.fromkeys(FLAGS, 0))
     avg = throttle if avg_max is None else avg_max
     out = mix(motors, frame_type, roll, pitch, yaw, throttle, avg, throttle_max, headroom)
     return motors, out

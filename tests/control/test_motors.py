@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from level_autopilot import arm, output
 
-from sitl.autopilot.control import attitude, motors, thrust_curve, throttle_mix
+from sitl.autopilot.control import attitude, motors, throttle_mix, thrust_curve
 from sitl.autopilot.control.state import DT
 
 

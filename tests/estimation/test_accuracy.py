@@ -110,7 +110,7 @@ def test_boot_takes_the_time_of_a_real_one(flown) -> None:
 def test_status_after_the_flight(flown) -> None:
     for fleet, _ in flown:
         e = fleet[0]["autopilot"]["estimate"]
-        assert e["flags"] == 831  # as ArduPilot reports with GPS in use
+        assert e["status_flags"] == 831  # as ArduPilot reports with GPS in use
         assert (e["attitude_ok"], e["position_ok"], e["origin_set"]) == (1, 1, 1)
         assert abs(e["origin_alt"] - sf.ALT) < 2.0
         assert e["reset_ne_count"] == 1  # from holding the position to GPS
@@ -123,6 +123,6 @@ def test_flags_before_gps(truth, tick) -> None:
     fleet = sf.new()
     flight = sf.sense(sf.fly(15.0, 99.0), 99.0, 0)
     sf.play(flight, fleet, tick)
-    flags = fleet[0]["autopilot"]["estimate"]["flags"]
+    flags = fleet[0]["autopilot"]["estimate"]["status_flags"]
     assert flags == status.ATTITUDE | status.VELOCITY_VERT | status.POS_VERT_ABS | status.CONST_POS_MODE
     assert fleet[0]["autopilot"]["estimate"]["position_ok"] == 0

@@ -35,7 +35,7 @@ def test_without_gps_from_the_start_it_holds_its_place(tick) -> None:
     out = sf.play(sf.sense(truth, 99.0, 1), fleet, tick, _no_gps(0.0, 99.0))
     e = fleet[0]["autopilot"]["estimate"]
     assert e["attitude_ok"] == 1 and e["position_ok"] == 0
-    assert e["flags"] & status.CONST_POS_MODE
+    assert e["status_flags"] & status.CONST_POS_MODE
     assert np.abs(out["pos"]).max() < 0.5 and np.abs(out["vel"]).max() < 0.3
     assert np.degrees(np.abs(out["euler"][-1, :2])).max() < 1.0
 
@@ -50,7 +50,7 @@ def test_loss_and_return_of_gps(truth, tick) -> None:
         spoil_gps(k, sensors)
         if k % 400 == 0:
             e = fleet[0]["autopilot"]["estimate"]
-            log[_seconds(k)] = (int(e["position_ok"]), int(e["flags"]))
+            log[_seconds(k)] = (int(e["position_ok"]), int(e["status_flags"]))
 
     out = sf.play(sf.sense(truth, TAKE_OFF, 2), fleet, tick, spoil)
     assert log[96.0][0] == 1 and log[98.0][0] == 0
@@ -78,7 +78,7 @@ def test_a_gps_glitch_is_gated_then_followed(truth, tick) -> None:
         if k % 400 == 0:
             e = fleet[0]["autopilot"]["estimate"]
             moved[_seconds(k)] = float(e["pos"][0] - truth.pos[k, 0])
-            flags[_seconds(k)] = int(e["flags"])
+            flags[_seconds(k)] = int(e["status_flags"])
 
     flight = sf.sense(truth, TAKE_OFF, 3)
     sf.play(flight, fleet, tick, spoil)

@@ -96,10 +96,9 @@ def test_any_item_has_a_result(item: MissionItem) -> None:
 
 def test_mission_names_what_it_refuses() -> None:
     """The error says which item, which command, and why."""
-    with pytest.raises(
-        MissionError, match="mission item 1 .command 999, frame 3.: unsupported command"
-    ) as caught:
+    with pytest.raises(MissionError) as caught:
         Mission.of([WP, WP._replace(command=999)])
+    assert str(caught.value) == "mission item 1 (command 999, frame 3): unsupported command"
     assert (caught.value.result, caught.value.seq) == (3, 1)
 
 

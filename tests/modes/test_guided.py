@@ -14,7 +14,7 @@ from sitl.autopilot.events import GUIDED_TIMEOUT
 from sitl.autopilot.modes.copter import auto_yaw, guided, guided_flight, takeoff
 from sitl.autopilot.modes.copter.guided_state import (
     ACCEL,
-    ANGLE,
+    LARGEST,
     NOT_FINITE,
     NOT_IN_GUIDED,
     OK,
@@ -78,8 +78,8 @@ def test_attitude_takes_unit_quaternions_and_finite_numbers_only(numbers):
     v = fly(make())
     before = snapshot(v)
     code = guided.set_attitude(v, 1, *numbers)
-    norm = math.sqrt(sum(x * x for x in numbers[:4])) if all(map(math.isfinite, numbers[:4])) else math.nan
-    if not all(map(math.isfinite, numbers)) or not math.isfinite(norm):
+    norm = math.sqrt(sum(x * x for x in numbers[:4])) if not any(map(math.isnan, numbers)) else math.nan
+    if math.isnan(norm) or not all(abs(x) <= LARGEST for x in numbers[4:]):
         assert code == NOT_FINITE
     elif not 0.5 <= norm <= 2.0:
         assert code == OUT_OF_RANGE
@@ -182,7 +182,9 @@ def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
     assert takeoff.start(vehicle, 10.0) == takeoff.ALREADY_FLYING
 
 
-@pytest.mark.parametrize(("mode", "answer"), ((3, takeoff.WRONG_MODE), (6, takeoff.WRONG_MODE), (2, takeoff.OK), (5, takeoff.OK)))
+@pytest.mark.parametrize(
+    ("mode", "answer"), ((3, takeoff.WRONG_MODE), (6, takeoff.WRONG_MODE), (2, takeoff.OK), (5, takeoff.OK))
+)
 def test_take_off_in_other_modes(vehicle, mode, answer):
     vehicle.autopilot.modes.number, vehicle.autopilot.arming.armed = mode, 1
     assert takeoff.start(vehicle, 10.0) == answer
@@ -197,7 +199,9 @@ def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
     assert ap.arming.auto_armed == 0
 
 
-@pytest.mark.parametrize(("speed", "answer"), ((3.0, OK), (-5.0, OUT_OF_RANGE), (0.0, OUT_OF_RANGE), (math.nan, NOT_FINITE)))
+@pytest.mark.parametrize(
+    ("speed", "answer"), ((3.0, OK), (-5.0, OUT_OF_RANGE), (0.0, OUT_OF_RANGE), (math.nan, NOT_FINITE))
+)
 def test_change_speed(flying, speed, answer):
     before = float(flying.autopilot.control.pos_ne.speed_max)
     assert guided.change_speed(flying, guided.HORIZONTAL, speed) == answer

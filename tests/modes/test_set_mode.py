@@ -110,5 +110,7 @@ def test_a_change_is_told(flying):
 def test_texts_are_those_that_users_know():
     assert numbers.refusal_texts(99, NO_SUCH_MODE) == ["No such mode 99"]
     assert numbers.refusal_texts(AUTO, INIT_FAILED) == ["Mode change to AUTO failed: init failed"]
-    assert numbers.refusal_texts(LOITER, REQUIRES_POSITION) == ["Mode change to LOITER failed: requires position"]
+    assert numbers.refusal_texts(LOITER, REQUIRES_POSITION) == [
+        "Mode change to LOITER failed: requires position"
+    ]
     assert numbers.refusal_texts(GUIDED, ACCEPTED) == []

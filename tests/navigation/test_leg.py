@@ -72,6 +72,15 @@ def test_from_the_middle_of_a_leg(length: float, v0: float, a0: float, speed: fl
     check(profile, length, within, v0 + 1.0)
 
 
+def test_slower_without_a_dip() -> None:
+    """A leg under way that is faster than its new limit comes down to the limit and stays there."""
+    profile = plan(60.0, DEFAULT._replace(speed=3.0), 3.5, 2.3)
+    leg = record(profile, 60.0)
+    speeds = np.array([evaluate(leg, t)[1] for t in np.arange(0.0, profile.turn_out, 0.01)])
+    assert speeds.min() >= 3.0 - 1e-6
+    assert speeds[-1] == pytest.approx(3.0)
+
+
 def test_thirty_metres_as_recorded() -> None:
     """ArduPilot's default limits over 30 m: it peaks below 6 m/s and takes just over 10 s."""
     profile = plan(30.0, DEFAULT)

@@ -169,7 +169,7 @@ def test_change_of_speed() -> None:
     v, a = float(nav.vel[0]), float(nav.acc[0])
     assert p.sequencer.change_speed(p.v, 0, 3.0)
     assert not p.sequencer.change_speed(p.v, 0, math.nan)
-    rows = path(p, 7.0)
+    rows = path(p, 9.0)
     assert rows[0, 3] == pytest.approx(v, abs=0.01)
     assert rows[0, 6] == pytest.approx(a, abs=0.01)
     assert rows[-1, 3] == pytest.approx(3.0, abs=0.01)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A vehicle that does nothing but talk MAVLink in simulated time and write down when it heard what.
 
-It stands in for the simulator where only the clock of the script matters: TCP server, 1 Hz heartbeat, a few telemetry
-streams, command acknowledgements, mission upload. All times are simulated.
+It stands in for the simulator where only the clock of the script matters: TCP server, 1 Hz heartbeat, a few
+telemetry streams, command acknowledgements, mission upload. All times are simulated.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import socket
 from collections import defaultdict
@@ -145,7 +146,7 @@ class FakeVehicle:
     def intervals(self, name: str) -> list[float]:
         """Simulated seconds between one `name` and the next."""
         times = self.heard[name]
-        return [(b - a) / 1e6 for a, b in zip(times, times[1:], strict=False)]
+        return [(b - a) / 1e6 for a, b in itertools.pairwise(times)]
 
     def close(self) -> None:
         """Close both sockets."""

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Static programs, which ignore preloaded libraries, on the clock: a small one compiled here under the expected name."""
+"""Static programs, which ignore preloaded libraries, on the clock: a small one compiled here under the
+expected name.
+"""
 
 import json
 import subprocess
@@ -81,6 +83,13 @@ def test_static_child_of_a_script_is_on_the_clock(program):
 def test_runtime_runs_other_programs_unchanged():
     with ClockPage() as page:
         page.publish(0, 1.0, 10**12)
-        words = [str(static_runtime()), sys.executable, "python", "-c", "import json, sys; print(json.dumps(sys.argv))", "x"]
+        words = [
+            str(static_runtime()),
+            sys.executable,
+            "python",
+            "-c",
+            "import json, sys; print(json.dumps(sys.argv))",
+            "x",
+        ]
         script = start_script(words, page, stdout=subprocess.PIPE, text=True)
         assert json.loads(script.communicate(timeout=60)[0]) == ["-c", "x"]

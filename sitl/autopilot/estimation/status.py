@@ -46,7 +46,7 @@ def publish_status(ap, now_us):
     """What changes slowly: flags and biases."""
     ekf, estimate = ap.ekf, ap.estimate
     value = flags(ekf, now_us)
-    estimate.flags = value
+    estimate.status_flags = value
     estimate.attitude_ok = 1 if ekf.tilt_aligned != 0 and ekf.yaw_aligned != 0 else 0
     estimate.position_ok = 1 if value & POS_HORIZ_ABS != 0 else 0
     for k in range(3):

@@ -84,7 +84,7 @@ def _boot(ap, now_us):
         return
     ekf.q[0] = 1.0
     estimate.q[0] = 1.0
-    estimate.flags = status.UNINITIALIZED
+    estimate.status_flags = status.UNINITIALIZED
     for k in range(3):
         estimate.rates[k] = ekf.good_gyro[k]
 

@@ -119,12 +119,37 @@ def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: fl
     if not at_rest:
         top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
         jerk = pulse_acceleration(top, limits) / top
-    phases = _phases(length, limits, jerk, v0, a0, v1)
+    phases = _slowing_phases(length, limits, jerk, v0, a0, v1) or _phases(length, limits, jerk, v0, a0, v1)
     if at_rest and limits.rise > 0.0:
         phases = [
             piece for phase in phases for piece in _soften(*phase, pulse, min(limits.rise, 0.5 * pulse))
         ]
     return _profile(phases, length, v0, a0, v1)
+
+
+def _slowing_phases(
+    length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
+) -> list[tuple[float, float, float]]:
+    """Phases of a leg begun too fast: to the speed limit without dipping below it, then as from there.
+
+    Empty when the start is within the limit or there is not room enough.
+    """
+    if v0 + 0.5 * a0 * abs(a0) / jerk <= limits.speed:
+        return []
+    wanted = ruckig.InputParameter(1)
+    wanted.control_interface = ruckig.ControlInterface.Velocity
+    wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [0.0], [v0], [a0]
+    wanted.target_velocity, wanted.target_acceleration = [limits.speed], [0.0]
+    wanted.max_acceleration, wanted.max_jerk = [limits.acceleration], [jerk]
+    trajectory = ruckig.Trajectory(1)
+    ruckig.Ruckig(1).calculate(wanted, trajectory)
+    profile = trajectory.profiles[0][0]
+    room = length - trajectory.at_time(trajectory.duration)[0][0]
+    if room < 0.5 * limits.speed * (limits.speed / limits.acceleration + limits.acceleration / jerk) + 1.0:
+        return []
+    pieces = [*zip(profile.brake.t, profile.brake.j, strict=False), *zip(profile.t, profile.j, strict=False)]
+    slowing = [(t, j, 0.0) for t, j in pieces if t > 1e-9]
+    return slowing + _phases(room, limits, jerk, limits.speed, 0.0, v1)
 
 
 def _phases(

@@ -9,10 +9,10 @@ from .link import Link, Peer
 
 
 class Clock(Protocol):
-    """Anything with simulated time; a bridge is one."""
+    """Anything with simulated time; a simulation is one (a bridge is not: a reboot replaces it)."""
 
     @property
-    def elapsed_us(self) -> int:
+    def time_us(self) -> int:
         """Simulated time since the start of the simulation [us]."""
         ...
 
@@ -36,7 +36,7 @@ class _LogPeer(Peer):
 
     def flush(self) -> None:
         if self.outbox:
-            now = self._clock.elapsed_us
+            now = self._clock.time_us
             for raw in self.outbox:
                 self._writer.frame(now, raw)
             self.outbox.clear()

@@ -72,7 +72,7 @@ def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
     in_guided = bridge.autopilot.mode() == GUIDED
     if not in_guided and not (0.0 <= command.p2 < 2.0**31 and int(command.p2) & CHANGE_MODE):
         return DENIED
-    place = bridge.place_ned(command.lat, command.lon, command.z, command.frame)
+    place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
     if place is None:
         return FAILED
     if not in_guided and set_mode(bridge, GUIDED) != ACCEPTED:
@@ -112,7 +112,7 @@ def set_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         bridge.autopilot.set_roi(None)
         return ACCEPTED
-    place = bridge.place_ned(command.lat, command.lon, command.z, command.frame)
+    place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
     if place is None:
         return FAILED
     bridge.autopilot.set_roi(place)
@@ -131,7 +131,7 @@ def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
         return _home_result(bridge, bridge.autopilot.set_home_here())
     if command.p1 != 0.0 or command.frame not in GLOBAL_FRAMES:
         return DENIED
-    alt = command.z if command.frame in FRAMES_AMSL else bridge.home_alt() + command.z
+    alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
 

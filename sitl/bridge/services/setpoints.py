@@ -80,7 +80,7 @@ class SetpointService(Service):
             if m.coordinate_frame not in GLOBAL_FRAMES or not math.isfinite(m.alt):
                 self.bridge.autopilot.guided_stop()
                 return
-            pos = self.bridge.place_ned(m.lat_int, m.lon_int, m.alt, m.coordinate_frame)
+            pos = self.bridge.places.ned(m.lat_int, m.lon_int, m.alt, m.coordinate_frame)
             if pos is None:
                 return
         vel = None if mask & VELOCITY_IGNORED else (m.vx, m.vy, m.vz)
@@ -143,11 +143,11 @@ class SetpointService(Service):
         if self._mode() != GUIDED_MODE or item.frame not in GLOBAL_FRAMES:
             return False
         if altitude_only:
-            height = item.z if item.frame in FRAMES_AMSL else self.bridge.home_alt() + item.z
+            height = item.z if item.frame in FRAMES_AMSL else self.bridge.places.home_alt() + item.z
             _, _, _, n, e, _ = self._pose()
-            place = self.bridge.over_origin(n, e, height)
+            place = self.bridge.places.over_origin(n, e, height)
         else:
-            place = self.bridge.place_ned(item.x, item.y, item.z, item.frame)
+            place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
         return place is not None and self.bridge.autopilot.guided_position(place, None)
 
 

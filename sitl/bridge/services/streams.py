@@ -11,6 +11,8 @@ from typing import Any
 from ..channel import Channel
 from ..dialect import message
 from .command import Command
+from .modes import KIND as MODES
+from .modes import send_modes
 from .results import ACCEPTED, DENIED, FAILED, WARNING
 from .service import Handler, Sender, Service
 from .statustext import StatusTextService
@@ -131,5 +133,7 @@ class StreamService(Service):
         return ACCEPTED if known else FAILED
 
     def request_message(self, channel: Channel, command: Command) -> int:
-        """MAV_CMD_REQUEST_MESSAGE: p1 message id."""
+        """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
+        if int(command.p1) == MODES.id:
+            return ACCEPTED if send_modes(channel, int(command.p2)) else DENIED
         return ACCEPTED if self.bridge.send_now(channel, int(command.p1)) else FAILED

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import struct
+
 from ..dialect import message
 from .builder import Build, Builder, Context
 from .units import uint16
@@ -15,7 +17,10 @@ def rc_channels(context: Context) -> Build:
 
     def build() -> bytes:
         t, *pulses = read()
-        return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), 16, 255)
+        try:
+            return pack(t // 1000 & 0xFFFFFFFF, *pulses, 16, 255)
+        except struct.error:  # not a pulse: rare, so that the usual case need not look at each
+            return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), 16, 255)
 
     return build
 
@@ -27,8 +32,11 @@ def servo_output_raw(context: Context) -> Build:
 
     def build() -> bytes:
         t, *pulses = read()
-        pulses = [uint16(p) for p in pulses]
-        return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
+        try:
+            return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
+        except struct.error:
+            pulses = [uint16(p) for p in pulses]
+            return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
 
     return build
 

@@ -116,7 +116,7 @@ def extended_sys_state(context: Context) -> Build:
 
 def ekf_status_report(context: Context) -> Build:
     """EKF_STATUS_REPORT: flags and normalised innovation test ratios."""
-    read = context.fields(*(E + "variance_" + x for x in ("vel", "pos", "hgt", "mag")), E + "flags")
+    read = context.fields(*(E + "variance_" + x for x in ("vel", "pos", "hgt", "mag")), E + "status_flags")
     pack = message("EKF_STATUS_REPORT").pack
 
     def build() -> bytes:

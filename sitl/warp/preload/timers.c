@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Timers the kernel keeps: set once in wall time for the rate of that moment. Where the clock slows down later they go
-// off early; event loops (asio, which MAVSDK is built on) then find nothing due and set the timer again.
+// off early: event loops (asio, which MAVSDK is built on) then find nothing due and set the timer again.
 #define _GNU_SOURCE
 #include "clock.h"
 

@@ -62,7 +62,8 @@ async def main() -> None:
             break
     measured["lost_s"] = time.monotonic() - start
     print(json.dumps(measured), flush=True)
-    # Without these two lines such a script hangs at its end, on simulated time or not: MAVSDK's own shutdown does.
+    # Without these two lines such a script hangs at its end, on simulated time or not: MAVSDK's own
+    # shutdown does.
     drone._server_process.kill()
     os._exit(0)
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An ordinary MAVSDK 4.x script: python native_mavsdk.py PORT. Prints what it measured, as JSON, all by its own clock."""
+"""An ordinary MAVSDK 4.x script: python native_mavsdk.py PORT. Prints what it measured, as JSON, all by
+its own clock.
+"""
 
 import json
 import sys
@@ -21,7 +23,9 @@ offboard, mission = Offboard(system), MissionRaw(system)
 
 action.arm()
 item = MissionItem
-items = [item(n, 3, 16, int(n == 0), 1, 0, 0, 0, float("nan"), 473977420, 85455940, 10.0, 0) for n in range(5)]
+items = [
+    item(n, 3, 16, int(n == 0), 1, 0, 0, 0, float("nan"), 473977420, 85455940, 10.0, 0) for n in range(5)
+]
 start = time.monotonic()
 mission.upload_mission(items)
 measured["upload_s"] = time.monotonic() - start

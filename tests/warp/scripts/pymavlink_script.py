@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An ordinary pymavlink script: python pymavlink_script.py PORT. Heartbeats from a thread, a question without answer."""
+"""An ordinary pymavlink script: python pymavlink_script.py PORT. Heartbeats from a thread, a question
+without answer.
+"""
 
 import json
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ALT_HOLD: lean angles and turn rate as STABILIZE, the throttle stick is a climb rate; and what LOITER shares with it."""
+"""ALT_HOLD: leans and turns as STABILIZE; the throttle stick is a climb rate, in LOITER as well."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def run(v):
     set_limits(ap)
     climb = climb_rate(ap)
     doing = state(v, climb)
-    if doing == STOPPED or doing == LANDED_IDLE:
+    if doing in (STOPPED, LANDED_IDLE):
         attitude.reset_yaw_target(ap)
     most = math.radians(ap.params.ANGLE_MAX * 0.01)
     roll, pitch = pilot.lean_angles(ap, most, min(most, lean_limit(ap)))

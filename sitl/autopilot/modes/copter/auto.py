@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """AUTO: flies the mission's navigation commands one after the other.
 
-The shell writes the command under way into ``modes.nav`` and counts it up; this mode begins it, flies it and says when it is done
-(``navigation.command.complete``), upon which the shell gives the next.
+The shell writes the command under way into ``modes.nav`` and counts it up; this mode begins it, flies it
+and says when it is done (``navigation.command.complete``), upon which the shell gives the next.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ DESCENDING = 1
 
 @law
 def enter(v, forced):
-    """Enter; refused without a mission, and on the ground when it does not begin with a take-off. ``forced``: disarmed."""
+    """Enter; needs a mission, on the ground one that begins with a take-off, unless ``forced`` (disarmed)."""
     ap = v.autopilot
     if forced == 0:
         if ap.modes.mission_count < 2:

@@ -52,8 +52,9 @@ def set_default(v, rtl):
 def fixed(v, angle, rate, direction, relative):
     """Turn to ``angle`` [rad] at ``rate`` [rad/s] (0: ATC_SLEW_YAW), then hold.
 
-    ``direction``: 1 clockwise, -1 counter-clockwise, 0 the shorter way. An absolute angle is reached in the direction
-    asked for, even if that is almost a full circle; a relative one is turned from the heading target.
+    ``direction``: 1 clockwise, -1 counter-clockwise, 0 the shorter way. An absolute angle is reached in the
+    direction asked for, even if that is almost a full circle; a relative one is turned from the heading
+    target.
     """
     ap = v.autopilot
     yaw = ap.modes.auto_yaw
@@ -106,7 +107,7 @@ def look_at(v, north, east, down):
 def stop_turning(v):
     """A set-point's turn rate is too old: keep the heading."""
     mode = v.autopilot.modes.auto_yaw.mode
-    if mode == RATE or mode == ANGLE_RATE:
+    if mode in (RATE, ANGLE_RATE):
         set_mode(v, HOLD)
 
 
@@ -167,7 +168,7 @@ def advance(v, dt):
 
 @law
 def pilot(v):
-    """Let the yaw stick take over, and keep the heading when it is released. Called by modes that allow it."""
+    """Let the yaw stick take over, and keep the heading when it is released."""
     ap = v.autopilot
     rate = float(ap.modes.pilot.yaw_rate)
     if abs(rate) > 1e-4 and ap.modes.failsafe.radio == 0:

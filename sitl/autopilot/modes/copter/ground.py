@@ -68,7 +68,9 @@ def set_waypoint_limits(v):
     ap = v.autopilot
     p = ap.params
     position.set_max_speed_accel_ne(ap, p.WPNAV_SPEED * 0.01, p.WPNAV_ACCEL * 0.01)
-    altitude.set_max_speed_accel_d(ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01)
+    altitude.set_max_speed_accel_d(
+        ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01
+    )
 
 
 @law

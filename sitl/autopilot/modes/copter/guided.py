@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Set-points of GUIDED, as the MAVLink services write them.
 
-Every law returns OK, or says why it left the record as it was (``guided_state``). Yaw arguments everywhere: ``use_yaw``
-with ``yaw`` [rad], ``use_rate`` with ``yaw_rate`` [rad/s], ``relative`` != 0 when ``yaw`` counts from the present heading;
-without either the heading follows WP_YAW_BEHAVIOR.
+Every law returns OK, or says why it left the record as it was (``guided_state``). Yaw arguments everywhere:
+``use_yaw`` with ``yaw`` [rad], ``use_rate`` with ``yaw_rate`` [rad/s], ``relative`` != 0 when ``yaw``
+counts from the present heading; without either the heading follows WP_YAW_BEHAVIOR.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from . import auto_yaw, guided_flight
 from .guided_state import (
     ACCEL,
     ANGLE,
+    LARGEST,
     NOT_FINITE,
     NOT_IN_GUIDED,
     OK,
@@ -36,8 +37,8 @@ HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
 
 @law
 def is_finite3(x, y, z):
-    """Whether none of them is NaN or infinite."""
-    return x - x == 0.0 and y - y == 0.0 and z - z == 0.0
+    """Whether all of them are usable numbers: neither NaN nor infinite nor absurdly large."""
+    return abs(x) <= LARGEST and abs(y) <= LARGEST and abs(z) <= LARGEST
 
 
 @law
@@ -146,16 +147,17 @@ def set_pos_vel_accel(v, n, e, d, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate
 
 @law
 def set_attitude(v, use_attitude, qw, qx, qy, qz, p, q, r, thrust):
-    """Fly an attitude (quaternion body to NED) that turns with body rates p, q, r [rad/s], or the rates alone.
+    """Fly an attitude (quaternion body to NED) turning with body rates p, q, r [rad/s], or the rates alone.
 
-    ``thrust`` 0 .. 1 is a climb rate around 0.5 (0: WPNAV_SPEED_DN down, 1: WPNAV_SPEED_UP up), or with GUID_OPTIONS bit 8 the thrust.
+    ``thrust`` 0 .. 1 is a climb rate around 0.5 (0: WPNAV_SPEED_DN down, 1: WPNAV_SPEED_UP up), or with
+    GUID_OPTIONS bit 8 the thrust.
     """
     ap = v.autopilot
     code = refusal(v, p, q, r, thrust, 0.0)
     norm = 1.0
     if code == OK and use_attitude != 0:
         norm = math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-        if not (norm - norm == 0.0):
+        if norm != norm:
             code = NOT_FINITE
         elif norm < 0.5 or norm > 2.0:
             code = OUT_OF_RANGE
@@ -219,7 +221,7 @@ def clear_roi(v):
 @law
 def change_speed(v, kind, speed):
     """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode changes."""
-    if not (speed - speed == 0.0):
+    if not is_finite3(speed, 0.0, 0.0):
         return NOT_FINITE
     if speed <= 0.0:
         return OUT_OF_RANGE

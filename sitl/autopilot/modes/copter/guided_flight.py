@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """GUIDED: flies the set-points of a companion computer or ground station.
 
-Set-points are written by the laws of ``guided``. Velocity, acceleration and attitude set-points older than GUID_TIMEOUT stop
-the vehicle: velocity and acceleration become zero, the attitude level at constant height.
+Set-points are written by the laws of ``guided``. Velocity, acceleration and attitude set-points older than
+GUID_TIMEOUT stop the vehicle: velocity and acceleration become zero, the attitude level at constant height.
 """
 
 from __future__ import annotations

@@ -11,6 +11,9 @@ ACCEL = 4
 ANGLE = 5
 
 OK = 0
-NOT_FINITE = 1
+NOT_FINITE = 1  # NaN, infinite or so large that arithmetic with it would be
 NOT_IN_GUIDED = 2
 OUT_OF_RANGE = 3
+
+LARGEST = 1e7
+"""Metres, metres a second, radians beyond this are refused."""

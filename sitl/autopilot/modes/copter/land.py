@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""LAND: descends where it is, fast down to LAND_ALT_LOW and then at LAND_SPEED, until the landing detector says landed.
+"""LAND: descends where it is, fast down to LAND_ALT_LOW and then at LAND_SPEED, until it has landed.
 
 ``descend`` is also the last part of RTL and of AUTO's land command.
 """
@@ -143,7 +143,7 @@ def sink(v, pause):
 
 @law
 def stick_velocity(ap):
-    """(north, east) [m/s] that the roll and pitch sticks ask for while landing; zero without LAND_REPOSITION."""
+    """(north, east) [m/s] that the sticks ask for while landing; zero without LAND_REPOSITION."""
     sticks = ap.modes.pilot
     if ap.params.LAND_REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
         return (0.0, 0.0)

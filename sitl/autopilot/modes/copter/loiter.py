@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """LOITER: holds the position; roll and pitch sticks accelerate it, drag and braking bring it to rest again.
 
-The sticks are a horizontal acceleration. The desired velocity follows what a lean that obeys the attitude controller's
-shaping would give, less a drag that balances a full stick at LOIT_SPEED; with the sticks centred for LOIT_BRK_DELAY it brakes
-with LOIT_BRK_JERK up to LOIT_BRK_ACCEL.
+The sticks are a horizontal acceleration. The desired velocity follows what a lean that obeys the attitude
+controller's shaping would give, less a drag that balances a full stick at LOIT_SPEED; with the sticks
+centred for LOIT_BRK_DELAY it brakes with LOIT_BRK_JERK up to LOIT_BRK_ACCEL.
 """
 
 from __future__ import annotations
@@ -114,7 +114,9 @@ def advance(v):
         brake = 0.0
         if v.time_us - loiter.brake_us > p.LOIT_BRK_DELAY * 1e6:
             gain = 0.5 * p.PSC_VELXY_P
-            brake = constrain(sqrt_controller(speed, gain, p.LOIT_BRK_JERK * 0.01, DT), 0.0, p.LOIT_BRK_ACCEL * 0.01)
+            brake = constrain(
+                sqrt_controller(speed, gain, p.LOIT_BRK_JERK * 0.01, DT), 0.0, p.LOIT_BRK_ACCEL * 0.01
+            )
         jerk = p.LOIT_BRK_JERK * 0.01 * DT
         loiter.brake_acc += constrain(brake - loiter.brake_acc, -jerk, jerk)
         slower = min(max(speed - (drag + loiter.brake_acc) * DT, 0.0), most)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers and names of the flight modes, and why a mode changed or did not.
 
-Numbers: ArduCopter's custom modes (https://ardupilot.org/copter/docs/flight-modes.html, COPTER_MODE of MAVLink).
+Numbers: ArduCopter's custom modes (https://ardupilot.org/copter/docs/flight-modes.html, COPTER_MODE of
+MAVLink).
 """
 
 from __future__ import annotations
@@ -62,16 +63,7 @@ _CAUSES = {
 @law
 def is_known(number):
     """Whether the firmware has this mode."""
-    return (
-        number == STABILIZE
-        or number == ALT_HOLD
-        or number == AUTO
-        or number == GUIDED
-        or number == LOITER
-        or number == RTL
-        or number == LAND
-        or number == BRAKE
-    )
+    return number in (STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 
 
 @law
@@ -83,13 +75,13 @@ def has_manual_throttle(number):
 @law
 def requires_position(number):
     """Whether the mode needs a horizontal position (LAND does without)."""
-    return number == AUTO or number == GUIDED or number == LOITER or number == RTL or number == BRAKE
+    return number in (AUTO, GUIDED, LOITER, RTL, BRAKE)
 
 
 @law
 def is_autopilot(number):
     """Whether the mode flies without the pilot's sticks."""
-    return number == AUTO or number == GUIDED or number == RTL or number == LAND or number == BRAKE
+    return number in (AUTO, GUIDED, RTL, LAND, BRAKE)
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:

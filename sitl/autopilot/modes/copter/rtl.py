@@ -47,13 +47,15 @@ def start(v, forced):
     auto_yaw.set_mode(v, auto_yaw.HOLD)
     n, e = position.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
-        waypoint.request_legs(ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d))
+        waypoint.request_legs(
+            ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d)
+        )
     return 0
 
 
 @law
 def build_path(v):
-    """Height of the way home from RTL_ALT, RTL_CLIMB_MIN and RTL_CONE_SLOPE; never below the present height."""
+    """Height of the way home: RTL_ALT, RTL_CLIMB_MIN, RTL_CONE_SLOPE; never below the present height."""
     ap = v.autopilot
     p = ap.params
     rtl = ap.modes.rtl

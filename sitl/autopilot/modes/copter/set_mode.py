@@ -11,7 +11,6 @@ from .numbers import (
     ACCEPTED,
     ALT_HOLD,
     AUTO,
-    BRAKE,
     GUIDED,
     INIT_FAILED,
     LAND,
@@ -30,7 +29,7 @@ from .numbers import (
 
 @law
 def refusal(v, number):
-    """ACCEPTED, or why the mode cannot be entered now, before its own conditions. Disarmed any mode may be selected."""
+    """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
     ap = v.autopilot
     if not is_known(number):
         return NO_SUCH_MODE
@@ -76,9 +75,10 @@ def enter(v, number):
 
 @law
 def request(v, number, reason):
-    """Change to a mode. Returns ACCEPTED (0; also when already there) or the cause of the refusal (``numbers``).
+    """Change to a mode. Returns ACCEPTED (0; also when already there) or the cause (``numbers``).
 
-    A change is told to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number, cause) with nothing changed.
+    A change is told to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number,
+    cause) with nothing changed.
     """
     ap = v.autopilot
     modes = ap.modes

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The record of the flight modes, of the pilot's sticks and of the failsafes.
 
-Positions are NED metres from the EKF origin (as ``estimate.pos``), velocities m/s, accelerations m/s^2, angles radians.
+Positions are NED metres from the EKF origin (as ``estimate.pos``), velocities m/s, accelerations m/s^2,
+angles radians.
 """
 
 from __future__ import annotations
@@ -10,7 +11,10 @@ from ....core.records import record
 from ...navigation.state import NAV_DTYPE
 
 AUTO_YAW_DTYPE = record(
-    ("mode", "i8"),  # auto_yaw.py: HOLD, LOOK_AT_NEXT_WP, ROI, FIXED, LOOK_AHEAD, RATE, ANGLE_RATE, PILOT_RATE
+    (
+        "mode",
+        "i8",
+    ),  # auto_yaw.py
     ("yaw", "f8"),  # heading under way [rad]
     ("rate", "f8"),  # [rad/s]
     ("offset", "f8"),  # FIXED: angle still to turn, signed [rad]
@@ -129,7 +133,10 @@ LANDING_DTYPE = record(
 )
 
 MODES_DTYPE = record(
-    ("number", "i8"),  # ArduPilot's custom mode: 0 STABILIZE, 2 ALT_HOLD, 3 AUTO, 4 GUIDED, 5 LOITER, 6 RTL, 9 LAND, 17 BRAKE
+    (
+        "number",
+        "i8",
+    ),  # ArduPilot's custom mode (numbers.py)
     ("previous", "i8"),
     ("reason", "i8"),  # ArduPilot's ModeReason of the last change
     ("entered_us", "i8"),

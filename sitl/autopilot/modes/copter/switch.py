@@ -50,7 +50,7 @@ def mode_at(p, k):
 
 @law
 def read_mode(v):
-    """After each frame: a new position that lasts changes the mode; an old one does not, whatever the ground station chose."""
+    """After each frame: a new position that lasts changes the mode; an old one changes nothing."""
     ap = v.autopilot
     pilot = ap.modes.pilot
     channel = int(ap.params.FLTMODE_CH)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Take-off: by command in GUIDED and AUTO, by the throttle stick or by command in ALT_HOLD and LOITER.
 
-The throttle rises from zero to full within TKOFF_SLEW_TIME until the vehicle moves, then the vertical controller takes over.
+The throttle rises from zero to full within TKOFF_SLEW_TIME until the vehicle moves, then the vertical
+controller takes over.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def start(v, altitude_m):
     """User's take-off (MAV_CMD_NAV_TAKEOFF) to ``altitude_m`` [m] above home. Returns OK or why not."""
     ap = v.autopilot
     mode = ap.modes.number
-    if not (altitude_m - altitude_m == 0.0):
+    if not abs(altitude_m) <= guided_state.LARGEST:
         return NOT_FINITE
     if ap.arming.armed == 0:
         return NOT_ARMED
@@ -119,7 +120,7 @@ def level(v):
 
 @law
 def ramp(ap):
-    """Raise the throttle by one tick of TKOFF_SLEW_TIME with the vertical controller following; returns the throttle."""
+    """Raise the throttle by one tick of TKOFF_SLEW_TIME, the vertical controller following. Returns it."""
     slew = max(float(ap.params.TKOFF_SLEW_TIME), 0.1)
     throttle = constrain(ap.control.attitude.throttle_in + 0.0025 / slew, 0.0, 1.0)
     throttle_mix.set_throttle_out(ap, throttle, 1, 0.0)
@@ -136,7 +137,7 @@ def has_thrust(ap, throttle):
 
 @law
 def is_done(ap):
-    """The path to the target height ends within the distance that a tenth of the climb speed needs to stop."""
+    """The path is as near to its end as a tenth of the climb speed needs to stop, and as slow."""
     control = ap.control.pos_d
     slow = _DONE_SPEED * control.speed_up
     stop = 0.5 * slow * slow / max(float(control.accel_max), 0.1)

@@ -22,7 +22,7 @@ from . import (
 from .numbers import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, has_manual_throttle
 
 _TENTH = 40  # ticks
-_SECOND = 400
+_QUARTER = 100
 _LEARN_TICKS = 4
 _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
@@ -37,7 +37,7 @@ def update(fleet, i):
         read_transmitter(v)
     if tick % _TENTH == 4:
         check_slowly(v)
-    if tick % _SECOND == 12:
+    if tick % _QUARTER == 12:
         home.update(v)
         arming.update(v)
     arming.update_armed(v)

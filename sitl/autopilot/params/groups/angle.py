@@ -5,6 +5,4 @@ from __future__ import annotations
 
 from ..parameter import INT16, Parameter
 
-PARAMETERS = (
-    Parameter("ANGLE_MAX", 3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16),
-)
+PARAMETERS = (Parameter("ANGLE_MAX", 3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16),)

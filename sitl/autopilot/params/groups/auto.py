@@ -6,5 +6,13 @@ from __future__ import annotations
 from ..parameter import INT32, Parameter
 
 PARAMETERS = (
-    Parameter("AUTO_OPTIONS", 0, 0, 255, "", "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw", INT32),
+    Parameter(
+        "AUTO_OPTIONS",
+        0,
+        0,
+        255,
+        "",
+        "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
+        INT32,
+    ),
 )

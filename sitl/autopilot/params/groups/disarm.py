@@ -6,5 +6,13 @@ from __future__ import annotations
 from ..parameter import INT8, Parameter
 
 PARAMETERS = (
-    Parameter("DISARM_DELAY", 10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8),
+    Parameter(
+        "DISARM_DELAY",
+        10,
+        0,
+        127,
+        "s",
+        "Armed on the ground with the throttle low for so long: disarms; 0 never",
+        INT8,
+    ),
 )

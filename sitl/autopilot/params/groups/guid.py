@@ -6,6 +6,21 @@ from __future__ import annotations
 from ..parameter import INT32, Parameter
 
 PARAMETERS = (
-    Parameter("GUID_OPTIONS", 0, 0, 1023, "", "Bits: 1 may be armed by the transmitter, 4 ignores the yaw stick, 8 thrust of SET_ATTITUDE_TARGET is thrust", INT32),
-    Parameter("GUID_TIMEOUT", 3.0, 0.1, 60.0, "s", "Velocity, acceleration and attitude set-points are good for so long"),
+    Parameter(
+        "GUID_OPTIONS",
+        0,
+        0,
+        1023,
+        "",
+        "1 armed by the transmitter, 4 ignores the yaw stick, 8 SET_ATTITUDE_TARGET has thrust",
+        INT32,
+    ),
+    Parameter(
+        "GUID_TIMEOUT",
+        3.0,
+        0.1,
+        60.0,
+        "s",
+        "Velocity, acceleration and attitude set-points are good for so long",
+    ),
 )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT16, INT8, Parameter
+from ..parameter import INT8, INT16, Parameter
 
 PARAMETERS = (
     Parameter("RC1_MIN", 1100, 800, 2200, "us", "Least pulse of channel 1", INT16),
@@ -46,6 +46,13 @@ PARAMETERS = (
     Parameter("RC8_MAX", 1900, 800, 2200, "us", "Greatest pulse of channel 8", INT16),
     Parameter("RC8_REVERSED", 0, 0, 1, "", "Channel 8 works the other way round", INT8),
     Parameter("RC8_DZ", 0, 0, 200, "us", "Dead zone of channel 8", INT16),
-    Parameter("RC_OVERRIDE_TIME", 3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"),
+    Parameter(
+        "RC_OVERRIDE_TIME",
+        3.0,
+        -1.0,
+        120.0,
+        "s",
+        "Overrides from the ground station are good for so long; -1 for ever, 0 never",
+    ),
     Parameter("RC_FS_TIMEOUT", 1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost"),
 )

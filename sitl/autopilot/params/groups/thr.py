@@ -6,5 +6,13 @@ from __future__ import annotations
 from ..parameter import INT16, Parameter
 
 PARAMETERS = (
-    Parameter("THR_DZ", 100, 0, 300, "us", "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height", INT16),
+    Parameter(
+        "THR_DZ",
+        100,
+        0,
+        300,
+        "us",
+        "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
+        INT16,
+    ),
 )

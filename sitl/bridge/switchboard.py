@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""All links and the clients on them: who is there, what came in, what goes out."""
+
+from __future__ import annotations
+
+import selectors
+from collections.abc import Callable, Iterator
+from typing import Protocol
+
+from .channel import Channel
+from .frame import Frame
+from .links.link import Link, Peer
+
+
+class Tap(Protocol):
+    """Sees every frame of every channel (a telemetry log)."""
+
+    def frame(self, time_us: int, raw: bytes) -> None:
+        """One frame, sent or received at simulated ``time_us`` since the start of the simulation."""
+        ...
+
+
+class Switchboard:
+    """Makes a channel of every peer that appears on a link, and forgets it when the peer is gone."""
+
+    def __init__(
+        self,
+        system: Callable[[], int],
+        clock: Callable[[], int],
+        added: Callable[[Channel], None],
+        removed: Callable[[Channel], None],
+    ) -> None:
+        self.links: list[Link] = []
+        self.channels: list[Channel] = []
+        self.dropped: list[str] = []
+        """Why channels were lost, for the command line to show."""
+        self.taps: list[Tap] = []
+        self._system, self._clock, self._added, self._removed = system, clock, added, removed
+        self._selector = selectors.DefaultSelector()
+        self._sockets = 0
+        self._numbers = 0
+
+    def take_over(self, old: Switchboard) -> None:
+        """Links, clients, sockets and taps of ``old``, which must not be used any more."""
+        self._selector.close()
+        self.links, self.taps, self.dropped = old.links, old.taps, old.dropped
+        self._selector, self._sockets = old._selector, old._sockets
+        for link in self.links:
+            link.reattach(self._add_channel)
+
+    def add_link(self, link: Link) -> None:
+        """Open a way for clients to reach the vehicle."""
+        self.links.append(link)
+        link.attach(self._selector, self._add_channel)
+        self._sockets = len(self._selector.get_map())
+
+    def remove_link(self, link: Link) -> None:
+        """Close a link and forget its clients."""
+        link.close()
+        self.links.remove(link)
+        self._forget_closed()
+        self._sockets = len(self._selector.get_map())
+
+    def _add_channel(self, peer: Peer) -> None:
+        channel = Channel(peer, self._numbers, self._system())
+        self._numbers += 1
+        self.channels.append(channel)
+        self._added(channel)
+
+    def _forget_closed(self) -> None:
+        for channel in [c for c in self.channels if c.peer.closed]:
+            self.channels.remove(channel)
+            if channel.peer.why_closed:
+                self.dropped.append(f"{channel.name}: {channel.peer.why_closed}")
+            self._removed(channel)
+
+    def wait(self, seconds: float) -> bool:
+        """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
+        return bool(self._selector.select(seconds))
+
+    def receive(self) -> Iterator[tuple[Channel, Frame]]:
+        """Read all links; every frame that came in, channel by channel."""
+        if self._sockets:
+            for key, _ in self._selector.select(0):
+                key.data()
+        for channel in self.channels:
+            for frame in channel.receive():
+                for tap in self.taps:
+                    tap.frame(self._clock(), frame.raw)
+                yield channel, frame
+
+    def flush(self) -> None:
+        """Hand everything queued to the links; notice who is gone."""
+        closed = False
+        for channel in self.channels:
+            peer = channel.peer
+            if self.taps and peer.outbox:
+                now = self._clock()
+                for tap in self.taps:
+                    for raw in peer.outbox:
+                        tap.frame(now, raw)
+            peer.flush()
+            closed = closed or peer.closed
+        if closed:
+            self._forget_closed()
+
+    def close(self) -> None:
+        """Flush and close everything."""
+        self.flush()
+        for link in list(self.links):
+            self.remove_link(link)
+        self._selector.close()
