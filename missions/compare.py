@@ -133,4 +133,4 @@ def table(found: list[Figure]) -> str:
 
 
 if __name__ == "__main__":
-    print(table(figures(*sys.argv[1:2])))
+    print(table(figures(sys.argv[1] if len(sys.argv) > 1 else "ekf")))

@@ -81,14 +81,17 @@ class Pilot:
     def boot(self) -> None:
         """Wait for a position and for the checks, 5 s more as the recordings did, then choose GUIDED."""
         if not self.fly(90.0, lambda: self.position and self.checked):
-            raise FlightError(f"not ready after {self.now:.0f} s (position {self.position}, checks {self.checked}): {self.texts[-5:]}")
+            state = f"position {self.position}, checks {self.checked}"
+            raise FlightError(f"not ready after {self.now:.0f} s ({state}): {self.texts[-5:]}")
         self.fly(5.0)
         self.client.command(SET_MODE, 1, GUIDED)
 
-    def arm(self) -> None:
-        """Arm; FlightError with the vehicle's texts when it refuses."""
+    def arm(self, wait: float = 2.0) -> None:
+        """Arm and let ``wait`` seconds pass; FlightError with the vehicle's texts when it refuses."""
+        self.acks.clear()
         self.client.command(ARM, 1)
-        if not self.fly(2.0, lambda: self.armed):
+        self.fly(wait)
+        if (ARM, 0) not in self.acks:
             raise FlightError(f"did not arm: {self.texts[-5:]}")
 
     def wait_disarmed(self, seconds: float) -> None:
@@ -96,7 +99,9 @@ class Pilot:
         if not self.fly(seconds, lambda: not self.armed):
             raise FlightError(f"still armed after {seconds} s: {self.texts[-5:]}")
 
-    def setpoint(self, mask: int, position: tuple[float, ...] = (0, 0, 0), velocity: tuple[float, ...] = (0, 0, 0)):
+    def setpoint(
+        self, mask: int, position: tuple[float, ...] = (0, 0, 0), velocity: tuple[float, ...] = (0, 0, 0)
+    ) -> None:
         """SET_POSITION_TARGET_LOCAL_NED in the local NED frame."""
         self.client.send(
             "SET_POSITION_TARGET_LOCAL_NED",
@@ -133,8 +138,7 @@ def guided(simulation: Simulation) -> Pilot:
     """Take-off 10 m, 20 m north, 3 m/s east for 10 s, stop, three yaw commands, RTL: the recorded GUIDED script."""
     pilot = Pilot(simulation)
     pilot.boot()
-    pilot.arm()
-    pilot.fly(2.0)
+    pilot.arm(2.08)
     pilot.phase("takeoff")
     pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)
     pilot.fly(25.0)
@@ -167,8 +171,7 @@ def auto(simulation: Simulation) -> Pilot:
     items = [(0, 16, -353632621, 1491652371, 584.0), (3, 22, 0, 0, 10.0)]
     items += [(3, 16, lat, lon, 10.0) for lat, lon in SQUARE] + [(3, 21, 0, 0, 0.0)]
     upload(pilot, items)
-    pilot.arm()
-    pilot.fly(1.0)
+    pilot.arm(1.08)
     pilot.phase("mission_start")
     pilot.client.command(SET_MODE, 1, AUTO)
     pilot.client.command(MISSION_START, 0, 0)

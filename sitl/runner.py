@@ -71,7 +71,7 @@ def open_log(simulation: Simulation, folder: Path, name: str) -> Path:
         path = folder / f"{name}-{number}.tlog"
     bridge = simulation.bridge
     writer = TlogWriter(path, bridge.epoch_us)
-    link = LogLink(writer, bridge)
+    link = LogLink(writer, simulation)
     bridge.add_link(link)
     bridge.stream_to(link, LOG_STREAMS)
     bridge.taps.append(ClientFrames(writer, bridge.system))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One simulated vehicle with its autopilot, mission and MAVLink bridge, and the clock that only this module advances."""
+"""One simulated vehicle with autopilot, mission and MAVLink bridge, and the clock that only this module advances."""
 
 from __future__ import annotations
 
@@ -120,6 +120,11 @@ class Simulation:
         """Simulated time since the start of the simulation [us]; reboots do not set it back."""
         return self.before_boot_us + int(self._clock[self.index])
 
+    @property
+    def elapsed_us(self) -> int:
+        """The same, under the name that logs use."""
+        return self.time_us
+
     def advance(self, seconds: float) -> None:
         """Advance by a simulated time, rounded to whole ticks of 2.5 ms."""
         self.advance_to(self.time_us + round(seconds * 1e6))
@@ -155,7 +160,7 @@ class Simulation:
     def restore(self, snapshot: Snapshot) -> None:
         """Put the vehicle, its autopilot and its mission back to a snapshot of this airframe."""
         self.fleet[self.index] = snapshot.record[0]
-        self.sequencer.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
+        self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen = int(self._event_count[self.index])
         self.bridge.clock_changed()
 

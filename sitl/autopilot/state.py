@@ -99,7 +99,6 @@ BATTERY_DTYPE = record(
     ("remaining_pct", "f8"),
 )
 
-EVENT_RING = 64
 EVENTS_DTYPE = record(
     ("count", "i8"),  # events so far; event k is at k % EVENT_RING
     ("attention", "i8"),  # not 0: the core returns to the shell at the end of this tick

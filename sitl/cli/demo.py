@@ -58,7 +58,8 @@ def demo(options: argparse.Namespace) -> int:
     for t, seq in flown.reached:
         print(f"  mission item {seq} reached {t - armed:6.1f} s after arming (t = {t:.1f} s)")
     if flown.armed and not flown.armed[-1][1]:
-        print(f"  disarmed               {flown.armed[-1][0] - armed:6.1f} s after arming (t = {flown.armed[-1][0]:.1f} s)")
+        disarmed = flown.armed[-1][0]
+        print(f"  disarmed               {disarmed - armed:6.1f} s after arming (t = {disarmed:.1f} s)")
     picture = log.with_suffix(".png")
     plot.draw(flown, picture, f"{simulation.airframe.name}: {SCRIPT.name}, {simulated / wall:.0f}x real time")
     print(f"log:     {log}\npicture: {picture}")

@@ -38,7 +38,7 @@ def add_speedup(parser: argparse.ArgumentParser) -> None:
         "--speedup",
         default=DEFAULT_SPEEDUP,
         metavar="K|max",
-        help=f"simulated seconds a second while the script waits (default {DEFAULT_SPEEDUP}); max: as fast as stays faithful",
+        help=f"simulated seconds a second (default {DEFAULT_SPEEDUP}); max: as fast as stays faithful",
     )
 
 

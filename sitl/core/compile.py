@@ -60,7 +60,8 @@ def toolchain() -> str:
     import llvmlite
     import numba
 
-    return f"{numba.__version__} {llvmlite.__version__} {np.__version__} {platform.python_version()} {platform.machine()}"
+    versions = (numba.__version__, llvmlite.__version__, np.__version__, platform.python_version())
+    return " ".join((*versions, platform.machine()))
 
 
 def unit_folder(unit: Unit, dtype: np.dtype[Any]) -> Path:

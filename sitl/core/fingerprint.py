@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a unit's machine code depends on, as one hash.
 
-Numba's own cache looks only at the file of the entry point, so an edit to a law in another file would leave stale code.
-Here the hash covers every function and constant that a unit reaches, to the last law (comments and docstrings left out),
-the record layout, and the versions of the compilers. Other units are a border: calling one does not depend on its inside.
+Numba's own cache looks only at the file of the entry point, so an edit to a law in another file would leave
+stale code. Here the hash covers every function and constant that a unit reaches, to the last law (comments and
+docstrings left out), the record layout, and the versions of the compilers. Other units are a border: calling one does
+not depend on its inside.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def _referenced(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
             yield name, value
 
 
-def _walk(function: types.FunctionType, seen: set[int], units: set[int], lines: list[str]) -> None:
+def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> None:
     if id(function) in seen:
         return
     seen.add(id(function))

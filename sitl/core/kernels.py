@@ -4,9 +4,9 @@
 *Law*: a plain function on records and floats. Outside the compiled core it stays plain Python (tests, the shell and a
 debugger call it as it is); inside a unit Numba compiles it into the caller.
 
-*Unit*: a law compiled on its own, with the C signature ``void(vehicles*, int64 count, int64 index, int64 ...)``, and called by
-other units through its address. Units are the grain of compilation: editing a law recompiles the units that reach it
-and no other, and units compile side by side in several processes.
+*Unit*: a law compiled on its own, with the C signature ``void(vehicles*, int64 count, int64 index, int64 ...)``, and
+called by other units through its address. Units are the grain of compilation: editing a law recompiles the units that
+reach it and no other, and units compile side by side in several processes.
 
 With ``NUMBA_DISABLE_JIT=1`` nothing is compiled and the same functions run as plain Python.
 """

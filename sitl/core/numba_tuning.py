@@ -2,9 +2,10 @@
 """Makes Numba compile a unit without work that is thrown away; the machine code of the unit is the same.
 
 Numba is built for functions that Python calls one by one: of every law that a unit contains it makes machine code and
-wrappers for Python and for C, and it names types by printing them, which for a record of records costs more than compiling. Of
-a unit only the entry is ever called. What is switched off here reaches into Numba's internals, so each step is guarded by
-what it needs: with a Numba that looks different inside, compilation is slower and nothing else changes.
+wrappers for Python and for C, and it names types by printing them, which for a record of records costs more than
+compiling. Of a unit only the entry is ever called. What is switched off here reaches into Numba's internals, so each
+step is guarded by what it needs: with a Numba that looks different inside, compilation is slower and nothing else
+changes.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def _remember_record_names(_: str) -> Callable[[], None]:
             known = self.__dict__["_sitl_repr"] = original(self)
         return str(known)
 
-    Record.__repr__ = remembered
+    Record.__repr__ = remembered  # type: ignore[method-assign]
     return lambda: setattr(Record, "__repr__", original)
 
 

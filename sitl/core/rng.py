@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random numbers whose whole state is in the record: xoshiro128++, and normal deviates from it.
 
-Source: Blackman and Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 47(4), 2021. The 32-bit member of
-the family is used because its arithmetic fits into int64, so that Numba and plain Python give the same bits.
+Source: Blackman and Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 47(4), 2021. The 32-bit member
+of the family is used because its arithmetic fits into int64, so that Numba and plain Python give the same bits.
 """
 
 from __future__ import annotations

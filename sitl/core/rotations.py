@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rotations as Hamilton quaternions (w, x, y, z), body (FRD) to NED, and Euler angles (roll, pitch, yaw; Z-Y-X, radians).
+"""Rotations: Hamilton quaternions (w, x, y, z), body (FRD) to NED, and Euler angles (roll, pitch, yaw; Z-Y-X, radians).
 
 Quaternions and vectors are tuples of floats: a law takes components and returns components, so nothing is allocated.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.core.worker ENTRY_MODULE DTYPE_PATH UNIT``: compile one unit into the cache (started by ``compile.build``)."""
+"""``python -m sitl.core.worker ENTRY_MODULE DTYPE_PATH UNIT``: compile one unit (started by ``compile.build``)."""
 
 from __future__ import annotations
 

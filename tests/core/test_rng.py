@@ -30,7 +30,7 @@ def test_uniform_and_normal_have_their_moments() -> None:
     r = generator(1)
     u = np.array([rng.uniform(r) for _ in range(20000)])
     n = np.array([rng.normal(r) for _ in range(20000)])
-    assert 0.0 <= u.min() and u.max() < 1.0
+    assert u.min() >= 0.0 and u.max() < 1.0
     assert u.mean() == pytest.approx(0.5, abs=0.01)
     assert n.mean() == pytest.approx(0.0, abs=0.03)
     assert n.std() == pytest.approx(1.0, abs=0.03)

@@ -12,8 +12,8 @@ def page() -> str:
     lines = [
         "# Parameters",
         "",
-        "Made by `sitl params --markdown` from `sitl/autopilot/params/groups/`. Names and defaults are ArduPilot's; the",
-        "range is what the firmware accepts.",
+        "Made by `sitl params --markdown` from `sitl/autopilot/params/groups/`. Names and defaults are ArduPilot's;",
+        "the range is what the firmware accepts.",
     ]
     section = ""
     for p in TABLE:

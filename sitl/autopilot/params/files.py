@@ -66,7 +66,7 @@ def apply(params: Any, values: Mapping[str, float], source: str = "parameters") 
 
 
 def format_value(name: str, value: float) -> str:
-    """A value as a .parm file shows it: whole for integers, else the shortest text that reads back as the same float32."""
+    """A value as a .parm file shows it: whole for integers, else the shortest text that reads back the same."""
     if BY_NAME[name].kind != FLOAT:
         return str(int(value))
     return next(text for digits in range(6, 18) if float(text := f"{value:.{digits}g}") == value or digits == 17)
