@@ -46,15 +46,19 @@ class Pilot:
         self.armed = False
         self.position = self.checked = False
         self._position = self._attitude = (0.0,) * 6
-        for name in ("LOCAL_POSITION_NED", "ATTITUDE"):
-            self.client.set_interval(name, 25.0)
-        for name in ("EKF_STATUS_REPORT", "SYS_STATUS"):
-            self.client.set_interval(name, 5.0)
+        self.ask_for_telemetry()
 
     @property
     def now(self) -> float:
         """Simulated time [s]."""
         return self.simulation.time_us * 1e-6
+
+    def ask_for_telemetry(self) -> None:
+        """Ask for what the pilot looks at; a reboot makes the vehicle forget it."""
+        for name in ("LOCAL_POSITION_NED", "ATTITUDE"):
+            self.client.set_interval(name, 25.0)
+        for name in ("EKF_STATUS_REPORT", "SYS_STATUS"):
+            self.client.set_interval(name, 5.0)
 
     def fly(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
         """Let time pass, up to ``seconds`` or until the condition holds; returns whether it held."""

@@ -148,6 +148,7 @@ def test_reboot_keeps_parameters_and_time_goes_on(core: Core) -> None:
     assert simulation.v.autopilot.params.WPNAV_SPEED == 300.0
     assert simulation.time_us == 5_000_000
     assert int(simulation.v.time_us) < 1_100_000
+    pilot.ask_for_telemetry()
     pilot.boot()
     pilot.arm()
 

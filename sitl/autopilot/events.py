@@ -28,6 +28,7 @@ HIT_GROUND = 17  # a: speed [m/s] (from physics)
 FAILSAFE = 18  # a: which (failsafe.py), b: 1 on, 0 off
 MODE_REFUSED = 19  # a: number, b: cause
 ARMING_REFUSED = 20  # a: bits of the failed checks (arming.py), b: method
+MOTOR_TEST = 21  # a: 1 begins, 0 has ended; b: motor
 
 
 @law

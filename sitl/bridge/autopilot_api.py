@@ -14,11 +14,12 @@ from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import CurrentChanged, ItemReached, Text
 from ..autopilot.mission.validate import check_all
-from .record_view import record_view
+from ..autopilot.navigation.state import RUNNING
+from ..core.records import view
 from .vehicle import Vehicle
 
 Vector = tuple[float, float, float]
-CRITICAL, WARNING = 2, 4
+CRITICAL, WARNING, INFO = 2, 4, 6
 """MAV_SEVERITY"""
 BY_MAVLINK = 1
 """Method of arming and disarming (ArduPilot's number)."""
@@ -52,6 +53,8 @@ class Autopilot(Protocol):
     def run_prearm_checks(self) -> None: ...
     def set_mode(self, number: int) -> bool: ...
     def takeoff(self, altitude: float) -> bool: ...
+    def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool: ...
+    def set_servo(self, number: int, pulse: int) -> bool: ...
     def change_speed(self, kind: int, speed: float) -> bool: ...
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool: ...
     def pause(self, on: bool) -> bool: ...
@@ -85,14 +88,16 @@ class CopterAutopilot:
 
     def __init__(self, vehicle: Any) -> None:
         # the flight code is loaded with the first vehicle, not with the bridge: its tests need none of it
-        from ..autopilot import arming, failsafe, home
+        from ..autopilot import arming, failsafe, home, motor_test
+        from ..autopilot.estimation import origin
         from ..autopilot.modes.copter import auto, guided, numbers, set_mode, takeoff
 
         self._arming, self._guided, self._takeoff = arming, guided, takeoff
         self._set_mode, self._numbers, self._auto = set_mode, numbers, auto
         self._home, self._failsafe = home, failsafe
+        self._motor_test, self._origin = motor_test, origin
         self._vehicle: Vehicle = vehicle
-        self._v = record_view(vehicle.fleet, vehicle.index)
+        self._v = view(vehicle.fleet, vehicle.index)
         self._sequencer = lambda: vehicle.sequencer
         self._notes: list[Note] = []
 
@@ -110,6 +115,8 @@ class CopterAutopilot:
         if code == events.FAILSAFE:
             text = self._failsafe.text(a, bool(b))
             return [Text(WARNING, text)] if text else []
+        if code == events.MOTOR_TEST:
+            return [Text(INFO, "starting motor test" if a else "finished motor test")]
         return []
 
     def _say(self, severity: int, texts: list[str]) -> None:
@@ -139,6 +146,24 @@ class CopterAutopilot:
 
     def takeoff(self, altitude: float) -> bool:
         return int(self._takeoff.start(self._v, altitude)) == 0
+
+    def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
+        motor = position - 1
+        if in_order and 0 <= motor < self._motor_test.MOTORS:
+            motor = self._motor_test.motor_in_order(int(self._v.autopilot.params.FRAME_TYPE), motor)
+        answer = int(self._motor_test.start(self._v, motor, throttle, seconds))
+        if answer == self._motor_test.NOT_LANDED:
+            self._say(CRITICAL, ["Motor Test: vehicle not landed"])
+        return answer == self._motor_test.OK
+
+    def set_servo(self, number: int, pulse: int) -> bool:
+        """Outputs behind the motors' are free; motors are the mixer's."""
+        actuators = self._v.actuators
+        if not self._motor_test.MOTORS < number <= len(actuators.pwm):
+            return False
+        actuators.pwm[number - 1] = pulse
+        actuators.controls[number - 1] = (pulse - 1500) / 500.0
+        return True
 
     def terminate(self) -> None:
         self._v.autopilot.modes.failsafe.terminated = 1
@@ -197,7 +222,7 @@ class CopterAutopilot:
         return bool(self._home.set_place(self._v, lat, lon, alt, 1))
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
-        return False  # the estimator takes its origin from GPS; ArduPilot refuses a second one as well
+        return int(self._origin.set_origin(self._v.autopilot, lat, lon, alt)) == 1
 
     def parameter_changed(self, name: str) -> None:
         changed = getattr(self._vehicle, "parameter_changed", None)
@@ -238,8 +263,14 @@ class CopterAutopilot:
         return bool(ok)
 
     def start_mission(self) -> bool:
-        if self.mode() != AUTO and not self.set_mode(AUTO):
-            return False
+        nav = self._v.autopilot.modes.nav
+        if self.mode() != AUTO:
+            if not self.set_mode(AUTO):
+                return False  # what enters AUTO starts the mission: MODE_CHANGED reaches the sequencer
+        elif nav.mission_state != RUNNING:
+            if not self._sequencer().mission.present:
+                return False
+            self._notes.extend(self._sequencer().start(self._v))
         self._auto.start(self._v)
         return True
 

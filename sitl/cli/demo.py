@@ -26,7 +26,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("demo", help="fly the MAVSDK example and draw the flight")
     parser.add_argument("vehicle", choices=sorted(VEHICLES))
-    execute.add_speedup(parser)
+    execute.add_speedup(parser, default="max")
     add_vehicle_options(parser)
     parser.set_defaults(function=demo)
 
@@ -35,6 +35,10 @@ def demo(options: argparse.Namespace) -> int:
     """Fly, print the figures, draw."""
     if not SCRIPT.exists():
         raise OptionError(f"the demo flies {SCRIPT}, which is part of a source checkout and is not there")
+    reason = execute.can_warp()
+    if reason:
+        print(f"{reason}\nThe demo flies in real time instead.", file=sys.stderr)
+        options.speedup = "1"
     folder = open_folder(options.log_dir)
     simulation = build_simulation(options)
     port = free_udp_port()

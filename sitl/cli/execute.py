@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import shutil
-from collections.abc import Callable
+import signal
+import subprocess
+from collections.abc import Callable, Iterator
 
 from .. import runner
-from ..pacing import parse_speedup
+from ..pacing import Pacing, parse_speedup
 from ..simulation import OptionError, Simulation
-from ..warp import ClockPage, Pacer, start_script
+from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
+from ..warp.build import static_runtime
 from . import run
 from .options import VEHICLES
 from .status import StatusLine
@@ -32,13 +36,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.set_defaults(function=execute)
 
 
-def add_speedup(parser: argparse.ArgumentParser) -> None:
+def add_speedup(parser: argparse.ArgumentParser, default: str = DEFAULT_SPEEDUP) -> None:
     """The option that says how fast a script's clock goes."""
     parser.add_argument(
         "--speedup",
-        default=DEFAULT_SPEEDUP,
+        default=default,
         metavar="K|max",
-        help=f"simulated seconds a second (default {DEFAULT_SPEEDUP}); max: as fast as stays faithful",
+        help=f"simulated seconds a second (default {default}); max: as fast as stays faithful",
     )
 
 
@@ -71,6 +75,16 @@ class ScriptPace:
         self._pacer.pace(simulation.time_us)
 
 
+def can_warp() -> str:
+    """Empty when scripts can run in simulated time here, else why not. Compiles the clock library on first use."""
+    try:
+        preload_library()
+        static_runtime()
+    except CannotBuild as error:
+        return str(error)
+    return ""
+
+
 def run_script(
     simulation: Simulation,
     command: list[str],
@@ -78,23 +92,55 @@ def run_script(
     duration_s: float | None = None,
     on_slice: Callable[[], None] = lambda: None,
 ) -> int:
-    """Run ``command`` on the simulation's clock until it ends; its exit code (128 + n for signal n)."""
+    """Run ``command`` on the simulation's clock until it ends; its exit code (128 + n for signal n).
+
+    At ``speedup`` "1" the script needs no clock of its own where none can be had.
+
+    Raises:
+        CannotBuild: this machine cannot run scripts in simulated time, and ``speedup`` is not 1.
+    """
     factor = parse_speedup(speedup)
     until = simulation.time_us + int(duration_s * 1e6) if duration_s else None
-    with ClockPage() as page:
-        pacer = Pacer(page, "max" if factor is None else factor)
-        script = start_script(command, page)
-        try:
-            runner.serve(
-                simulation,
-                ScriptPace(pacer),
-                until_us=until,
-                running=lambda: script.poll() is None,
-                on_slice=on_slice,
-            )
-        finally:
-            page.release()
-            if script.poll() is None:
-                script.terminate()
-            code = script.wait()
+    reason = can_warp()
+    if reason and factor != 1.0:
+        raise CannotBuild(reason)
+    with contextlib.ExitStack() as stack:
+        pace: runner.Pace
+        if reason:
+            pace, script = Pacing(1.0), subprocess.Popen(command)
+        else:
+            page = stack.enter_context(ClockPage())
+            pace = ScriptPace(Pacer(page, "max" if factor is None else factor))
+            script = start_script(command, page)
+        stack.callback(end, script)
+        stack.enter_context(terminable())
+        runner.serve(
+            simulation, pace, until_us=until, running=lambda: script.poll() is None, on_slice=on_slice
+        )
+    code = script.returncode
     return code if code >= 0 else 128 - code
+
+
+def end(script: subprocess.Popen[bytes]) -> None:
+    """Ask a script that still runs to end, and see that it does."""
+    if script.poll() is None:
+        script.terminate()
+    try:
+        script.wait(timeout=10.0)
+    except subprocess.TimeoutExpired:
+        script.kill()
+        script.wait()
+
+
+@contextlib.contextmanager
+def terminable() -> Iterator[None]:
+    """While it lasts, SIGTERM ends the command in an orderly way, as Ctrl-C does."""
+
+    def leave(number: int, _: object) -> None:
+        raise SystemExit(128 + number)
+
+    before = signal.signal(signal.SIGTERM, leave)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -35,7 +35,8 @@ ENTRY = "sitl_unit_entry"
 _KEEP_VERSIONS = 4
 _jitable: set[int] = set()
 _linked: set[str] = set()
-_loaded: dict[str, Any] = {}
+_loaded: dict[str, tuple[str, Any]] = {}
+"""Unit name -> (path of the record type, Numba's CFunc); a process has one core."""
 
 
 class BuildError(RuntimeError):
@@ -127,7 +128,10 @@ def _wrapper_source(unit: Unit) -> str:
 def load_unit(unit: Unit, dtype_path: str) -> Any:
     """Compile the unit or load it from the cache; returns Numba's CFunc and registers its symbol."""
     if unit.name in _loaded:
-        return _loaded[unit.name]
+        known = _loaded[unit.name]
+        if known[0] != dtype_path:
+            raise BuildError(f"unit {unit.name} is loaded for {known[0]}; it cannot be for {dtype_path} too")
+        return known[1]
     import llvmlite.binding
     import numba
     from numba import types
@@ -158,7 +162,7 @@ def load_unit(unit: Unit, dtype_path: str) -> Any:
         numba.config.CACHE_DIR = before
     llvmlite.binding.add_symbol(unit.symbol, function.address)
     (folder / "built").touch()
-    _loaded[unit.name] = function
+    _loaded[unit.name] = (dtype_path, function)
     return function
 
 
@@ -259,4 +263,4 @@ def load(dtype_path: str, dtype: np.dtype[Any], entry: Callable[..., Any], progr
     for unit in UNITS.values():
         load_unit(unit, dtype_path)
     found = next(u for u in UNITS.values() if u.function is entry)
-    return _loaded[found.name].ctypes
+    return _loaded[found.name][1].ctypes

@@ -7,6 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from .record_view import RecordView, view
+
+__all__ = ["RecordView", "as_dict", "first_difference", "record", "view"]
+
 
 def record(*fields: tuple[Any, ...]) -> np.dtype[Any]:
     """An aligned record type from ``(name, type)`` or ``(name, type, shape)`` fields.
@@ -24,14 +28,9 @@ def record(*fields: tuple[Any, ...]) -> np.dtype[Any]:
     return np.dtype([tuple(f) for f in fields], align=True)
 
 
-def view(fleet: np.ndarray[Any, Any], index: int) -> Any:
-    """Vehicle ``index`` of ``fleet`` with attribute access; writes go to the fleet."""
-    return fleet.view(np.recarray)[index]
-
-
 def as_dict(value: Any) -> Any:
     """A record as nested dictionaries and lists, for printing and comparing."""
-    if isinstance(value, np.void) and value.dtype.names:
+    if isinstance(value, np.void | RecordView) and value.dtype.names:
         return {name: as_dict(value[name]) for name in value.dtype.names}
     if isinstance(value, np.ndarray):
         return [as_dict(v) for v in value]

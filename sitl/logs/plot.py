@@ -47,6 +47,8 @@ def draw(flight: Flight, path: str | Path, title: str = "") -> None:
     plan.grid(alpha=0.3)
     plan.legend(loc="upper right")
 
+    armed = next((t for t, state in flight.armed if state), position[0, 0])
+    start = max(position[0, 0], armed - 5.0)
     altitude, angles, pulses = axes[0, 1], axes[1, 1], axes[2, 1]
     altitude.plot(position[:, 0], -position[:, 3])
     altitude.set(ylabel="altitude [m]")
@@ -58,7 +60,7 @@ def draw(flight: Flight, path: str | Path, title: str = "") -> None:
     pulses.set(ylabel="output [us]", xlabel="simulated time [s]")
     for axis in (altitude, angles, pulses):
         axis.grid(alpha=0.3)
-        axis.set_xlim(position[0, 0], position[-1, 0])
+        axis.set_xlim(start, position[-1, 0])
         for t, seq in flight.reached:
             axis.axvline(t, color="r", lw=0.6, alpha=0.6)
             if axis is altitude:

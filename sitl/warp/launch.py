@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from sitl.warp.build import CannotBuild, preload_library, static_runtime
 from sitl.warp.page import ClockPage
@@ -35,7 +36,7 @@ def script_environment(page: ClockPage, env: Mapping[str, str] | None = None) ->
 
 
 def start_script(
-    argv: Sequence[str], page: ClockPage, env: Mapping[str, str] | None = None, **options: object
+    argv: Sequence[str], page: ClockPage, env: Mapping[str, str] | None = None, **options: Any
 ) -> subprocess.Popen:
     """Start `argv` on the clock of `page` and return at once; `options` go to subprocess.Popen."""
     return subprocess.Popen(list(argv), env=script_environment(page, env), **options)

@@ -97,6 +97,8 @@ class Pacer:
 
     def busy(self) -> bool:
         """Whether any thread of a script on this clock is at work, not waiting. Only with `busy_speedup`."""
+        if self._library is None:
+            return False
         for pid in self.page.clients():
             state = self._library.sitl_clock_busy(pid)
             if state > 0:

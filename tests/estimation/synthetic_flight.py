@@ -12,45 +12,31 @@ from typing import Any
 
 import numpy as np
 
-from sitl.autopilot.arming_state import ARMING_DTYPE
 from sitl.autopilot.estimation import update
-from sitl.autopilot.estimation.state import EKF_DTYPE
 from sitl.autopilot.params import table
-from sitl.autopilot.state import ESTIMATE_DTYPE, EVENTS_DTYPE, SENSORS_DTYPE
 from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
-from sitl.core.kernels import UNITS, jit_disabled
-from sitl.core.records import record, view
+from sitl.core.records import view
+from sitl.vehicle import VEHICLE_DTYPE
 
 DT = 0.0025
 LAT, LON, ALT = -35.363262, 149.165237, 584.0
 GRAVITY = 9.80665
 
-AUTOPILOT = record(
-    ("params", table.PARAMS_DTYPE),
-    ("estimate", ESTIMATE_DTYPE),
-    ("ekf", EKF_DTYPE),
-    ("arming", ARMING_DTYPE),
-    ("events", EVENTS_DTYPE),
-)
-VEHICLE = record(("time_us", "i8"), ("sensors", SENSORS_DTYPE), ("autopilot", AUTOPILOT))
-
 
 def new() -> np.ndarray:
     """A fleet of one vehicle at power-on, with default parameters."""
-    fleet = np.zeros(1, VEHICLE)
+    fleet = np.zeros(1, VEHICLE_DTYPE)
     table.set_defaults(view(fleet, 0).autopilot.params)
     return fleet
 
 
 def updater() -> Any:
     """``f(fleet)``: one tick of the estimator, compiled unless Numba is switched off."""
-    if jit_disabled():
+    call = compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, update.update)
+    if call is None:
         return lambda fleet: update.update(fleet.view(np.recarray), 0)
-    for name in ("autopilot.estimation.update.step", "autopilot.estimation.update.update"):
-        unit = compiler.load_unit(UNITS[name], f"{__name__}.VEHICLE")
-    call = unit.ctypes
     return lambda fleet: call(fleet.ctypes.data, 1, 0)
 
 

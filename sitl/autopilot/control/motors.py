@@ -195,6 +195,9 @@ def update(ap, time_us):
         )
         motors.throttle_out = out / gain
     command_motors(ap)
+    if motors.test_motor != 0:
+        for k in range(MOTORS):
+            motors.actuator[k] = float(motors.test_actuator) if k + 1 == motors.test_motor else 0.0
 
 
 @law

@@ -117,6 +117,9 @@ MOTORS_DTYPE = record(
     ("current_most", "f8"),  # highest seen [A]
     ("voltage_reference", "f8"),  # highest voltage seen [V]
     ("current_reference", "f8"),  # at that moment [A]
+    ("test_motor", "i8"),  # motor test: 1 .. 4, 0 none
+    ("test_actuator", "f8"),  # of that motor
+    ("test_until_us", "i8"),
 )
 
 CONTROL_DTYPE = record(

@@ -65,7 +65,7 @@ class _TcpPeer(Peer):
 
 
 class TcpServerLink(Link):
-    """Listens on ``host:port`` (ArduPilot's SITL: 5760 + 10 x instance)."""
+    """Listens on ``host:port`` (ArduPilot's SITL: 5760 + 10 x instance); 0 takes a free port, told by ``name``."""
 
     def __init__(self, port: int = 5760, host: str = "127.0.0.1") -> None:
         super().__init__(f"tcp:{host}:{port}")
@@ -78,6 +78,7 @@ class TcpServerLink(Link):
         except OSError:
             self._socket.close()
             raise
+        self.name = f"tcp:{host}:{self.local_address[1]}"
         self._selector: Selector | None = None
 
     @property

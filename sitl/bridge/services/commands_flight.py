@@ -59,6 +59,37 @@ def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if bridge.autopilot.takeoff(command.z) else FAILED
 
 
+PERCENT, PULSE = 0.0, 1.0
+"""MOTOR_TEST_THROTTLE_TYPE"""
+BOARD_ORDER = 2.0
+"""MOTOR_TEST_ORDER: by motor number; the others go clockwise from the front."""
+
+
+def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """209: p1 motor, p2 0 percent or 1 pulse, p3 throttle, p4 seconds, p6 order. One motor at a time (p5 0 or 1)."""
+    if command.p2 not in (PERCENT, PULSE) or command.p5 not in (0.0, 1.0) or command.p1 != int(command.p1):
+        return FAILED
+    throttle = command.p3 * 0.01
+    if command.p2 == PULSE:
+        least, most = bridge.parameter("MOT_PWM_MIN") or 0.0, bridge.parameter("MOT_PWM_MAX") or 0.0
+        throttle = (command.p3 - least) / (most - least) if most > least else -1.0
+    ok = bridge.autopilot.test_motor(int(command.p1), command.p6 != BOARD_ORDER, throttle, command.p4)
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
+
+
+def set_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """183: p1 output (those of motors are refused), p2 pulse [us]."""
+    if command.p1 != int(command.p1) or not 0.0 <= command.p2 <= 3000.0:
+        return DENIED
+    return ACCEPTED if bridge.autopilot.set_servo(int(command.p1), int(command.p2)) else FAILED
+
+
+def set_relay(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """181: no relay is fitted."""
+    return FAILED
+
+
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
     """192: fly to a place in GUIDED.
 
@@ -154,7 +185,9 @@ def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> i
     """224: p1 number of the item (-1: keep), p2 1 resets the mission first."""
     if command.p1 != int(command.p1) or command.p2 not in (0.0, 1.0):
         return DENIED
-    return ACCEPTED if bridge.autopilot.set_current_item(int(command.p1), command.p2 == 1.0) else DENIED
+    ok = bridge.autopilot.set_current_item(int(command.p1), command.p2 == 1.0)
+    bridge.say_pending()
+    return ACCEPTED if ok else DENIED
 
 
 def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -162,6 +195,7 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
     if command.p1 <= 0.5:
         return FAILED
     bridge.autopilot.terminate()
+    bridge.say_pending()
     return ACCEPTED
 
 
@@ -174,12 +208,15 @@ COMMANDS: dict[int, Entry] = {
     176: Entry(do_set_mode, required=(1, 2)),
     178: Entry(change_speed, required=(1, 2)),
     179: Entry(set_home, required=(5, 6, 7), place=True, long_frame=0),
+    181: Entry(set_relay, required=(1, 2)),
+    183: Entry(set_servo, required=(1, 2)),
     185: Entry(terminate, required=(1,)),
     192: Entry(reposition, required=(5, 6, 7), place=True, int_only=True),
     193: Entry(pause_continue, required=(1,)),
     195: Entry(set_roi, required=(5, 6, 7), place=True),
     197: Entry(no_roi),
     201: Entry(set_roi, required=(5, 6, 7), place=True),
+    209: Entry(motor_test, required=(1, 2, 3, 4)),
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),
     400: Entry(arm_disarm, required=(1,)),

@@ -75,6 +75,7 @@ def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
         say(NOTICE, "Disarm to allow calibration")
         return FAILED
     if command.p1 == 1.0 or command.p5 == 2.0:
+        say(INFO, "Initialising ArduPilot")
         return ACCEPTED
     if command.p3 == 1.0:
         say(INFO, "Updating barometer calibration")

@@ -37,13 +37,17 @@ def start(v, altitude_m):
         return NOT_FINITE
     if ap.arming.armed == 0:
         return NOT_ARMED
-    if ap.arming.landed == 0:
+    climbs = mode == GUIDED and ap.modes.guided.submode == guided_state.TAKEOFF and ap.modes.takeoff.complete == 0
+    if ap.arming.landed == 0 and not climbs:
         return ALREADY_FLYING
     if mode != GUIDED and mode != LOITER and mode != ALT_HOLD:
         return WRONG_MODE
     target_d = float(ap.home.pos[2]) - altitude_m
     if target_d >= ap.estimate.pos[2]:
         return TOO_LOW
+    if ap.arming.landed == 0:  # repeated in the climb: a client that missed the acknowledgement
+        ap.modes.takeoff.target_d = target_d
+        return OK
     if mode == GUIDED:
         ap.modes.guided.submode = guided_state.TAKEOFF
         ap.modes.guided.paused = 0

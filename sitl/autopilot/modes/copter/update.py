@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law, unit
-from ... import arming, battery, crash, failsafe, home, landing, pilot
+from ... import arming, battery, crash, failsafe, home, landing, motor_test, pilot
 from ...control.motors import hover_throttle, learn_hover_throttle
 from . import (
     alt_hold,
@@ -42,6 +42,7 @@ def update(fleet, i):
         arming.update(v)
     arming.update_armed(v)
     run_mode(v)
+    motor_test.update(v)
     landing.update(v)
     crash.update(v)
     landing.update_mix(v)

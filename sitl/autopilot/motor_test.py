@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motor test (MAV_CMD_DO_MOTOR_TEST): one motor turns for a while on the ground.
+
+The vehicle counts as armed meanwhile, as in ArduPilot; ``control.motors`` drives the motor, the modes stand
+aside. The test ends by itself, or with a disarming.
+"""
+
+from __future__ import annotations
+
+from ..core.kernels import law
+from .arming import disarm
+from .control.motors import MOTORS
+from .events import MOTOR_TEST, emit
+
+BY_MOTOR_TEST = 3
+"""Method of disarming (ArduPilot's number)."""
+LONGEST_S = 600.0
+
+# Answers of start()
+OK = 0
+NOT_LANDED = 1
+ARMED = 2
+BAD_MOTOR = 3
+BAD_THROTTLE = 4
+BAD_TIME = 5
+
+_PLUS_ORDER = (2, 0, 3, 1)
+_X_ORDER = (0, 3, 1, 2)
+
+
+@law
+def motor_in_order(frame_type, position):
+    """Motor 0 .. 3 at ``position`` 0 .. 3 clockwise from the front (front right for X)."""
+    return _PLUS_ORDER[position] if frame_type == 0 else _X_ORDER[position]
+
+
+@law
+def start(v, motor, throttle, seconds):
+    """Turn motor 0 .. 3 at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
+
+    A test under way goes on with the new motor, throttle and time.
+    """
+    ap = v.autopilot
+    motors = ap.control.motors
+    if ap.arming.landed == 0:
+        return NOT_LANDED
+    if ap.arming.armed != 0 and motors.test_motor == 0:
+        return ARMED
+    if motor < 0 or motor >= MOTORS:
+        return BAD_MOTOR
+    if not 0.0 <= throttle <= 1.0:
+        return BAD_THROTTLE
+    if not 0.0 <= seconds <= LONGEST_S:
+        return BAD_TIME
+    if motors.test_motor == 0:
+        emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor + 1))
+    motors.test_motor = motor + 1
+    motors.test_actuator = throttle
+    motors.test_until_us = v.time_us + int(seconds * 1e6)
+    ap.arming.armed = 1
+    ap.arming.armed_us = v.time_us
+    return OK
+
+
+@law
+def update(v):
+    """Every tick of a test, behind the mode: keep the mode's hands off the motors; end in time."""
+    ap = v.autopilot
+    motors = ap.control.motors
+    if motors.test_motor == 0:
+        return
+    motors.desired_spool = 0
+    ap.arming.auto_armed = 0
+    ap.arming.idle_us = v.time_us
+    if v.time_us >= motors.test_until_us or ap.arming.landed == 0 or ap.arming.armed == 0:
+        motors.test_motor = 0
+        emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
+        disarm(v, BY_MOTOR_TEST, 1)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The acknowledgements and texts of a real ArduCopter (4.7-dev, July 2025), in the order in which it gave them.
+
+``data/acknowledgements.json`` has one row a command: what was sent, when (``at``: vehicle time [s]; ``wait``:
+seconds after the row before), the result, and mode, arming and status texts afterwards. It was recorded from
+an unmodified SITL; the commands' unrecorded parameters are those that the rows' results imply.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sitl.bridge.client import Client, Received
+from sitl.simulation import Core, Simulation
+
+ROWS: list[dict[str, Any]] = json.loads((Path(__file__).parent / "data/acknowledgements.json").read_text())
+RESULTS = ("ACCEPTED", "TEMPORARILY_REJECTED", "DENIED", "UNSUPPORTED", "FAILED", "IN_PROGRESS")
+TARGET = {"target_system": 1, "target_component": 1}
+ANSWER_S = 0.3
+"""The vehicle has so long to answer [simulated s]; ours answers at once."""
+UNASKED = ("PreArm: ", "EKF3 ", "AHRS: ", "Field Elevation", "ArduPilot Ready", "Barometer 1 calibration")
+"""Beginnings of texts that come by the clock, not by the command."""
+
+
+def send(client: Client, row: dict[str, Any]) -> None:
+    """Send a row's command or parameter message."""
+    if "long" in row:
+        client.command(*row["long"])
+    elif "int" in row:
+        command, frame, p1, p2, p3, p4, x, y, z = row["int"]
+        client.send(
+            "COMMAND_INT", **TARGET, command=command, frame=frame,
+            param1=p1, param2=p2, param3=p3, param4=p4, x=x, y=y, z=z,
+        )  # fmt: skip
+    elif "param_set" in row:
+        name, value = row["param_set"]
+        client.send("PARAM_SET", **TARGET, param_id=name.encode(), param_value=value, param_type=9)
+    else:
+        client.send("PARAM_REQUEST_READ", **TARGET, param_id=row["param_read"].encode(), param_index=-1)
+
+
+def seen(simulation: Simulation, row: dict[str, Any], heard: list[Received]) -> dict[str, Any]:
+    """What the vehicle answered and did, in the shape of a row."""
+    if "answer" in row:
+        values = [m.fields for m in heard if m.name == "PARAM_VALUE"]
+        answers = [[m.param_id.decode(), m.param_value, m.param_index] for m in values]
+        return {"answer": answers[0] if answers else None}
+    acks = [m.fields for m in heard if m.name == "COMMAND_ACK"]
+    number = (row.get("long") or row["int"])[0]
+    assert [(a.command, a.target_system, a.target_component) for a in acks] == [(number, 255, 190)], row["label"]
+    texts = [m.fields.text.decode() for m in heard if m.name == "STATUSTEXT"]
+    ap = simulation.v.autopilot
+    return {
+        "result": RESULTS[acks[0].result],
+        "mode": int(ap.modes.number),
+        "armed": int(ap.arming.armed),
+        "texts": [text for text in texts if not text.startswith(UNASKED)],
+    }
+
+
+@pytest.fixture(scope="module")
+def replay(core: Core) -> dict[str, dict[str, Any]]:
+    """Every row sent to one simulated vehicle, in order: label -> what it answered."""
+    simulation = Simulation("ardupilot_quad", core=core)
+    client = Client()
+    simulation.bridge.add_link(client.link)
+    answers = {}
+    for row in ROWS:
+        if "at" in row:
+            simulation.advance_to(round(row["at"] * 1e6))
+        simulation.advance(row.get("wait", 0.2))
+        client.receive()
+        send(client, row)
+        simulation.advance(ANSWER_S)
+        answers[row["label"]] = seen(simulation, row, client.receive())
+    return answers
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row["label"])
+def test_as_the_real_one(replay: dict[str, dict[str, Any]], row: dict[str, Any]) -> None:
+    answer = replay[row["label"]]
+    assert answer == {key: row[key] for key in answer}

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ``sitl`` command as a user types it, in processes of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sitl.cli import main
+from sitl.logs import flight, plot
+from sitl.simulation import Core
+
+ROOT = Path(__file__).parents[2]
+
+
+def sitl(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "sitl", *arguments]
+    return subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=300)
+
+
+RUN = ("run", "copter", "--out", "none", "--tcp", "0", "--speedup", "max")
+
+
+def test_a_run_says_where_it_listens_and_writes_a_log(core: Core, tmp_path: Path) -> None:
+    result = sitl(*RUN, "--duration", "60", folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    lines = result.stdout.splitlines()
+    assert lines[0].startswith("MAVLink on tcp:127.0.0.1:") and not lines[0].endswith(":0")
+    assert lines[1] == "log: logs/erle_copter-0.tlog"
+    flown = flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
+    assert flown["ATTITUDE"][-1, 0] == pytest.approx(60.0, abs=0.2)
+    assert any("is using GPS" in text for _, text in flown.texts)
+    plot.draw(flown, tmp_path / "flight.png")
+    assert (tmp_path / "flight.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_two_runs_write_the_same_log_and_none_is_overwritten(core: Core, tmp_path: Path) -> None:
+    for _ in range(2):
+        assert sitl(*RUN, "--duration", "10", "--seed", "5", folder=tmp_path).returncode == 0
+    first, second = (tmp_path / "logs" / f"erle_copter-0{n}.tlog" for n in ("", "-2"))
+    assert first.read_bytes() == second.read_bytes()
+    assert sitl(*RUN, "--duration", "10", "--seed", "6", folder=tmp_path).returncode == 0
+    assert (tmp_path / "logs" / "erle_copter-0-3.tlog").read_bytes() != first.read_bytes()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> None:
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "sitl", *RUN[:-2], "--speedup", "5"]
+    run = subprocess.Popen(command, cwd=tmp_path, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert run.stdout is not None
+    port = int(run.stdout.readline().rsplit(":", 1)[1])
+    with socket.create_connection(("127.0.0.1", port), timeout=60) as client:
+        assert client.recv(1)[0] in (0xFD, 0xFE), "the first byte is a MAVLink frame's"
+        run.send_signal(number)
+    out, err = run.communicate(timeout=60)
+    assert (run.returncode, err) == (0, ""), out
+    flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--frame", "nonsense"), "airframe 'nonsense' is not known; it is one of erle_copter, ardupilot_quad"),
+        (("--speedup", "0"), "speed-up '0' is not a number above 0"),
+        (("--params", "absent.parm"), "parameter file 'absent.parm' cannot be read"),
+        (("--out", "carrier:pigeon"), "'carrier' is not a kind of link; allowed: udp:HOST:PORT"),
+        (("--home", "1,2"), "is not LAT,LON,ALT,HEADING"),
+        (("--home", "95,0,0,0"), "latitude is within +-90"),
+        (("--instance", "-1"), "is not a whole number from 0 to 254"),
+        (("--duration", "-5"), "is not a positive number of simulated seconds"),
+        (("--tcp", "99999"), "is not a port"),
+        (("--estimator", "magic"), "invalid choice: 'magic'"),
+    ],
+)
+def test_a_bad_option_is_one_clear_line(core: Core, tmp_path: Path, arguments: tuple[str, ...], says: str) -> None:
+    result = sitl("run", "copter", "--duration", "1", "--log-dir", str(tmp_path / "x"), *arguments, folder=tmp_path)
+    assert result.returncode == 2
+    assert says in result.stderr
+    assert "Traceback" not in result.stderr
+    assert not list(tmp_path.glob("x/*.tlog")), "nothing was begun"
+
+
+def test_a_bad_parameter_file_names_the_line(core: Core, tmp_path: Path) -> None:
+    (tmp_path / "bad.parm").write_text("WPNAV_SPEED 500\nRTL_ALT abc\n")
+    result = sitl(*RUN, "--duration", "1", "--params", "bad.parm", folder=tmp_path)
+    assert result.returncode == 2
+    assert "bad.parm, line 2: 'abc' is not a number (RTL_ALT)" in result.stderr
+
+
+def test_unknown_parameters_of_a_file_are_mentioned(core: Core, tmp_path: Path) -> None:
+    (tmp_path / "other.parm").write_text("WPNAV_SPEED 500\nTERRAIN_ENABLE 1\n")
+    result = sitl(*RUN, "--duration", "1", "--params", "other.parm", folder=tmp_path)
+    assert result.returncode == 0
+    assert "1 parameters of the files are not in this firmware: TERRAIN_ENABLE" in result.stderr
+
+
+def test_a_taken_port_is_named(core: Core, tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        result = sitl("run", "copter", "--out", "none", "--tcp", str(port), "--duration", "1", folder=tmp_path)
+    assert result.returncode == 2
+    assert f"tcp:127.0.0.1:{port}" in result.stderr and "Traceback" not in result.stderr
+
+
+def test_params_lists_every_parameter(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["params", "--frame", "erle_copter"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "ANGLE_MAX,3000" in lines and len(lines) > 200
+
+
+def test_exec_needs_a_command_that_exists(tmp_path: Path) -> None:
+    assert "no command given" in sitl("exec", folder=tmp_path).stderr
+    result = sitl("exec", "--", "no-such-program", folder=tmp_path)
+    assert result.returncode == 2 and "'no-such-program' is not found" in result.stderr
+
+
+SLEEPER = """
+import sys, time
+start = time.monotonic()
+time.sleep(40.0)
+print(f"slept {time.monotonic() - start:.2f}")
+sys.exit(7)
+"""
+
+
+@pytest.mark.slow
+def test_exec_runs_a_script_on_the_vehicles_clock_and_returns_its_code(core: Core, tmp_path: Path) -> None:
+    (tmp_path / "sleeper.py").write_text(SLEEPER)
+    options = ("--out", "none", "--tcp", "0", "--speedup", "20")
+    result = sitl("exec", *options, "--", sys.executable, "sleeper.py", folder=tmp_path)
+    assert result.returncode == 7, result.stderr
+    slept = float(result.stdout.split("slept ")[1].split()[0])
+    assert slept == pytest.approx(40.0, abs=0.5)
+    flown = flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
+    assert flown["ATTITUDE"][-1, 0] > 39.0
+
+
+@pytest.mark.slow
+def test_the_demo_flies_its_mission_and_draws_it(core: Core, tmp_path: Path) -> None:
+    pytest.importorskip("mavsdk")
+    result = sitl("demo", "copter", folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "landed and disarmed" in result.stdout
+    for seq in range(1, 7):
+        assert f"mission item {seq} reached" in result.stdout
+    assert (tmp_path / "logs" / "demo-copter.png").read_bytes().startswith(b"\x89PNG")
+    flown = flight.read(tmp_path / "logs" / "demo-copter.tlog")
+    position = flown["LOCAL_POSITION_NED"]
+    assert -position[:, 3].min() == pytest.approx(10.0, abs=0.5)
+    assert position[:, 1].max() == pytest.approx(30.0, abs=1.5)
+    assert abs(position[-1, 1]) < 1.0 and abs(position[-1, 2]) < 1.0
