@@ -14,10 +14,12 @@ from .truth_estimator import observe
 def advance(fleet, index, ticks):
     """Advance one vehicle by up to ``ticks`` ticks of 2500 us.
 
-    Returns early, at the end of a tick, when ``events.attention`` is set. The border is crossed once a tick: physics
+    Returns early, at the end of a tick in which something happened (``autopilot.events``). The border is crossed once a tick: physics
     writes ``sensors``, the autopilot reads them and writes ``actuators``.
     """
     vehicle = fleet[index]
+    events = vehicle.autopilot.events
+    told = events.count
     for _ in range(ticks):
         step(fleet, index)
         ground = vehicle.physics.ground
@@ -26,5 +28,5 @@ def advance(fleet, index, ticks):
         if vehicle.autopilot.ekf.use_external != 0:
             observe(vehicle)
         firmware.update(fleet, index)
-        if vehicle.autopilot.events.attention != 0:
+        if events.attention != 0 or events.count != told:
             break

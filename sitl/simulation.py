@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,8 @@ from .autopilot import boot
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files, table
-from .bridge.bridge import Bridge
+from .bridge.bridge import Bridge, BridgeState
+from .bridge.record_reader import RecordReader
 from .core import compile as compiler
 from .core import records
 from .core.compile import Progress
@@ -39,19 +41,32 @@ _WIND = {
 }
 """Parameters of the simulated world, and the fields of ``physics.wind`` that follow them."""
 
-Core = Callable[[Array, int, int], None]
-
 
 class OptionError(ValueError):
     """An option of the simulation that cannot be taken."""
 
 
+class Core:
+    """``advance(fleet, index, ticks)``, compiled or (``NUMBA_DISABLE_JIT=1``) plain Python."""
+
+    def __init__(self, function: Callable[[int, int, int, int], None] | None) -> None:
+        self._function = function
+
+    def __call__(self, fleet: Array, index: int, ticks: int) -> None:
+        """Advance vehicle ``index`` by up to ``ticks`` ticks."""
+        self.bind(fleet, index)(ticks)
+
+    def bind(self, fleet: Array, index: int) -> Callable[[int], None]:
+        """The same for one vehicle, whose memory stays in place: cheaper to call."""
+        if self._function is None:
+            plain = fleet.view(np.recarray)
+            return lambda ticks: advance_unit(plain, index, ticks)
+        return partial(self._function, fleet.ctypes.data, len(fleet), index)
+
+
 def load_core(progress: Progress | None = None) -> Core:
-    """The core as ``advance(fleet, index, ticks)``; compiles what changed since it was last built."""
-    function = compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, advance_unit, progress)
-    if function is None:
-        return lambda fleet, index, ticks: advance_unit(fleet.view(np.recarray), index, ticks)
-    return lambda fleet, index, ticks: function(fleet.ctypes.data, len(fleet), index, ticks)
+    """The core; compiles what changed since it was last built."""
+    return Core(compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, advance_unit, progress))
 
 
 @dataclass(frozen=True)
@@ -60,7 +75,10 @@ class Snapshot:
 
     record: Array
     mission: Mission
+    bridge: BridgeState
     before_boot_us: int
+    events_seen: int
+    reboot: bool
 
 
 class Simulation:
@@ -97,9 +115,9 @@ class Simulation:
         self.fleet: Array = np.zeros(1, VEHICLE_DTYPE)
         self.index = 0
         self.v = records.view(self.fleet, self.index)
-        self._clock = self.fleet["time_us"]
-        self._attention = self.fleet["autopilot"]["events"]["attention"]
-        self._event_count = self.fleet["autopilot"]["events"]["count"]
+        reader = RecordReader(self.fleet, self.index)
+        self._clock = reader.field("time_us")
+        self._event_count = reader.field("autopilot.events.count")
         self._events_seen = 0
         self.before_boot_us = 0
         """Simulated time that passed before the last reboot [us]."""
@@ -110,6 +128,7 @@ class Simulation:
         self.unknown_parameters = files.apply(params_record, params or {}, "parameters")
         """Names in ``params`` that this firmware does not have."""
         self.core = core or load_core(progress)
+        self._run = self.core.bind(self.fleet, self.index)
         self.mission = Mission()
         self._power_on()
         self.sequencer = Sequencer(self)
@@ -118,7 +137,7 @@ class Simulation:
     @property
     def time_us(self) -> int:
         """Simulated time since the start of the simulation [us]; reboots do not set it back."""
-        return self.before_boot_us + int(self._clock[self.index])
+        return self.before_boot_us + int(self._clock())
 
     @property
     def elapsed_us(self) -> int:
@@ -137,32 +156,39 @@ class Simulation:
         bridge = self.bridge
         bridge.receive()
         while True:
-            if self._event_count[self.index] != self._events_seen:
+            if self._event_count() != self._events_seen:
                 self._follow_events()
             if self._reboot:
                 self._do_reboot()
                 bridge = self.bridge
-            now = int(self._clock[self.index])
+            now = int(self._clock())
             stop = time_us - self.before_boot_us
             if now >= stop:
                 return
             due = bridge.next_due_us()
             ticks = (min(stop, due) - now + TICK_US - 1) // TICK_US
-            self.core(self.fleet, self.index, ticks if ticks > 1 else 1)
-            if self._event_count[self.index] != self._events_seen:
+            self._run(ticks if ticks > 1 else 1)
+            if self._event_count() != self._events_seen:
                 self._follow_events()
             bridge.service()
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""
-        return Snapshot(self.fleet[self.index : self.index + 1].copy(), self.mission, self.before_boot_us)
+        record = self.fleet[self.index : self.index + 1].copy()
+        return Snapshot(
+            record, self.mission, self.bridge.snapshot(), self.before_boot_us, self._events_seen, self._reboot
+        )
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Put the vehicle, its autopilot and its mission back to a snapshot of this airframe."""
+        """Put the vehicle, its autopilot, mission and telemetry back to a snapshot of this airframe.
+
+        The same commands then give the same bytes again. Bytes that a client has sent but the vehicle not read
+        yet, and the other way round, stay where they are.
+        """
         self.fleet[self.index] = snapshot.record[0]
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
-        self._events_seen = int(self._event_count[self.index])
-        self.bridge.clock_changed()
+        self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
+        self.bridge.restore(snapshot.bridge)
 
     def request_reboot(self) -> None:
         """Restart vehicle and autopilot before the next tick; parameters and mission stay, links stay open."""
@@ -187,10 +213,10 @@ class Simulation:
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
-        self._attention[self.index] = 0
+        self.v.autopilot.events.attention = 0
         self.bridge.on_events()
         self.bridge.tell(self.sequencer.attend())
-        self._events_seen = int(self._event_count[self.index])
+        self._events_seen = int(self._event_count())
 
     def _do_reboot(self) -> None:
         self._reboot = False

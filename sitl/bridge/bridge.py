@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..autopilot.params.table import BY_NAME as PARAMETERS_BY_NAME
 from .autopilot_api import Autopilot, CopterAutopilot
-from .channel import COMPONENT, Channel
+from .channel import COMPONENT, Channel, ChannelState
 from .dialect import MessageType, message
 from .frame import Frame
 from .links.link import Link
@@ -29,6 +29,13 @@ from .vehicle import Vehicle
 
 EPOCH_US = 1_767_225_600_000_000
 """Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
+
+
+class BridgeState(NamedTuple):
+    """Everything that later bytes depend on and that is not in the vehicle's record. Immutable."""
+
+    channels: tuple[ChannelState, ...]
+    services: tuple[Any, ...]
 
 
 class Bridge:
@@ -69,6 +76,7 @@ class Bridge:
             for name, handler in service.handlers().items():
                 self._add_handler(name, handler)
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
+        self._stateful = [s for s in self.services.values() if type(s).snapshot is not Service.snapshot]
 
     def _add_handler(self, name: str, handler: Handler) -> None:
         kind = message(name)
@@ -258,14 +266,26 @@ class Bridge:
 
     # ------------------------------------------------------------------ other times, other boots
 
-    def clock_changed(self) -> None:
-        """The record was put to another simulated time (a restore): what is regular goes on from there."""
+    def snapshot(self) -> BridgeState:
+        """What ``restore`` needs to send the same bytes again from here; links and clients are not in it."""
+        channels = tuple([channel.snapshot() for channel in self.channels])
+        return BridgeState(channels, tuple([service.snapshot() for service in self._stateful]))
+
+    def restore(self, state: BridgeState) -> None:
+        """Go on from a snapshot; the vehicle's record has been put back before.
+
+        Channels that came since stay and keep what they asked for.
+        """
         now = self.now_us
         self._match_clocks()
+        self.autopilot.take_notes()
+        known = {channel.number: channel for channel in state.channels}
+        system = self.system
         for channel in self.channels:
-            channel.streams.restart(now)
-        for service in self.services.values():
-            service.clock_changed(now)
+            channel.system = system
+            channel.restore(known.get(channel.number), self.telemetry, now)
+        for service, of_service in zip(self._stateful, state.services, strict=True):
+            service.restore(of_service)
 
     def successor(self) -> Bridge:
         """A bridge for the same vehicle after a reboot.

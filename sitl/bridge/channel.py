@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from .dialect import MessageType
 from .frame import Frame, Splitter, encode_v1, encode_v2
 from .links.link import Peer
-from .stream_table import StreamTable
+from .stream_table import Entry, Layout, StreamTable
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1."""
@@ -22,6 +24,16 @@ class Statistics:
     sent: int = 0
     lost: int = 0
     """Gaps in the client's sequence numbers."""
+
+
+class ChannelState(NamedTuple):
+    """What a channel needs to go on from a snapshot."""
+
+    number: int
+    sequence: int
+    version: int
+    heard_v2: bool
+    streams: Layout
 
 
 class Channel:
@@ -47,6 +59,18 @@ class Channel:
     def name(self) -> str:
         """Link and address, for people."""
         return self.peer.name
+
+    def snapshot(self) -> ChannelState:
+        """Everything that later frames depend on; what is in transit is the client's."""
+        return ChannelState(self.number, self.sequence, self.version, self.heard_v2, self.streams.snapshot())
+
+    def restore(self, state: ChannelState | None, entries: Mapping[int, Entry], now_us: int) -> None:
+        """Go on from a snapshot; None: the channel is newer than the snapshot, only time has changed."""
+        if state is None:
+            self.streams.restore(None, entries, now_us)
+            return
+        _, self.sequence, self.version, self.heard_v2, streams = state
+        self.streams.restore(streams, entries, now_us)
 
     def send(self, kind: MessageType, payload: bytes) -> None:
         """Queue one message; the bridge flushes all channels when it is done."""

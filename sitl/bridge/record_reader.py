@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from operator import itemgetter
+from functools import partial
+from operator import getitem, itemgetter
 from typing import Any
 
 import numpy as np
@@ -69,11 +70,15 @@ class RecordReader:
         unpack_from = struct.Struct(layout).unpack_from
         memory, first = self._memory, self._base + start
         if order == list(range(len(order))):
-            return lambda: unpack_from(memory, first)
+            return partial(unpack_from, memory, first)  # no Python frame for a read
         pick = itemgetter(*order)
         return lambda: pick(unpack_from(memory, first))
 
     def field(self, path: str) -> Callable[[], Any]:
         """A function that returns one scalar."""
-        read = self.fields(path)
-        return lambda: read()[0]
+        offset, code, count = locate(self._dtype, path)
+        size = struct.calcsize("<" + code)
+        if count != 1 or len(self._memory) % size:
+            read = self.fields(path)
+            return lambda: read()[0]
+        return partial(getitem, self._memory.cast(code), (self._base + offset) // size)

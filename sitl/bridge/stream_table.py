@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from .dialect import MessageType
 
@@ -11,6 +11,8 @@ NEVER = 1 << 62
 """A time that does not come [us]."""
 
 Entry = tuple[MessageType, Callable[[], bytes]]
+Layout = tuple[tuple[int, tuple[int, ...]], ...]
+"""(interval [us], numbers of the messages sent at it), in the order in which they were asked for."""
 
 
 class _Bucket:
@@ -33,6 +35,7 @@ class StreamTable:
     def __init__(self) -> None:
         self._buckets: dict[int, _Bucket] = {}
         self._interval: dict[int, int] = {}
+        self._layout: Layout | None = ()
         self.next_us = NEVER
 
     def interval(self, number: int) -> int:
@@ -42,6 +45,7 @@ class StreamTable:
     def set(self, entry: Entry, interval_us: int, now_us: int) -> None:
         """Send ``entry`` every ``interval_us``, beginning at the next whole multiple; 0 stops it."""
         number = entry[0].id
+        self._layout = None
         old = self._interval.get(number, 0)
         if old == interval_us:
             return
@@ -57,8 +61,23 @@ class StreamTable:
             self._interval[number] = interval_us
         self._find_next()
 
-    def restart(self, now_us: int) -> None:
-        """Time was set to ``now_us``: everything is due at its next whole multiple from there."""
+    def snapshot(self) -> Layout:
+        """What is sent at which interval; when it is due follows from the time."""
+        if self._layout is None:
+            self._layout = tuple((interval, tuple(b.entries)) for interval, b in self._buckets.items())
+        return self._layout
+
+    def restore(self, layout: Layout | None, entries: Mapping[int, Entry], now_us: int) -> None:
+        """Time was set to ``now_us``.
+
+        Everything is due at its next whole multiple from there; ``layout`` replaces what is sent (None: keep).
+        """
+        if layout is not None and layout is not self._layout:
+            self._interval = {number: interval for interval, numbers in layout for number in numbers}
+            self._buckets = {interval: _Bucket(interval, now_us) for interval, _ in layout}
+            for interval, numbers in layout:
+                self._buckets[interval].entries = {number: entries[number] for number in numbers}
+            self._layout = layout
         for bucket in self._buckets.values():
             bucket.next_us = (now_us // bucket.interval_us + 1) * bucket.interval_us
         self._find_next()

@@ -39,12 +39,15 @@ class Switchboard:
         self._selector = selectors.DefaultSelector()
         self._sockets = 0
         self._numbers = 0
+        self._kept: dict[Peer, int] = {}
+        """Numbers of channels of before a reboot."""
 
     def take_over(self, old: Switchboard) -> None:
         """Links, clients, sockets and taps of ``old``, which must not be used any more."""
         self._selector.close()
         self.links, self.taps, self.dropped = old.links, old.taps, old.dropped
         self._selector, self._sockets = old._selector, old._sockets
+        self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
             link.reattach(self._add_channel)
 
@@ -62,8 +65,9 @@ class Switchboard:
         self._sockets = len(self._selector.get_map())
 
     def _add_channel(self, peer: Peer) -> None:
-        channel = Channel(peer, self._numbers, self._system())
-        self._numbers += 1
+        number = self._kept.pop(peer, self._numbers)
+        self._numbers = max(self._numbers, number + 1)
+        channel = Channel(peer, number, self._system())
         self.channels.append(channel)
         self._added(channel)
 

@@ -33,6 +33,8 @@ Progress = Callable[[str, int, int], None]
 
 ENTRY = "sitl_unit_entry"
 _KEEP_VERSIONS = 4
+_fingerprints: dict[str, tuple[np.dtype[Any], str]] = {}
+"""Unit name -> (record type, fingerprint): code does not change while a process runs."""
 _jitable: set[int] = set()
 _linked: set[str] = set()
 _loaded: dict[str, tuple[str, Any]] = {}
@@ -57,17 +59,20 @@ def clear_cache() -> int:
 
 
 def toolchain() -> str:
-    """Versions that machine code depends on."""
+    """Versions and options that machine code depends on."""
     import llvmlite
     import numba
 
     versions = (numba.__version__, llvmlite.__version__, np.__version__, platform.python_version())
-    return " ".join((*versions, platform.machine()))
+    return " ".join((*versions, platform.machine(), repr(law_options())))
 
 
 def unit_folder(unit: Unit, dtype: np.dtype[Any]) -> Path:
     """Where the unit's current machine code is or will be."""
-    return cache_folder() / f"{unit.name}-{fingerprint(unit, dtype, toolchain())}"
+    known = _fingerprints.get(unit.name)
+    if known is None or known[0] is not dtype:
+        known = _fingerprints[unit.name] = (dtype, fingerprint(unit, dtype, toolchain()))
+    return cache_folder() / f"{unit.name}-{known[1]}"
 
 
 def missing(dtype: np.dtype[Any]) -> list[Unit]:

@@ -9,12 +9,9 @@ not depend on its inside.
 
 from __future__ import annotations
 
-import ast
 import hashlib
-import inspect
-import textwrap
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -22,14 +19,11 @@ import numpy as np
 from .kernels import UNITS, Unit
 
 
-def _normal_source(function: Callable[..., Any]) -> str:
-    """The function's syntax tree without docstring, decorators, comments and layout."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
-    assert isinstance(tree, ast.FunctionDef)
-    tree.decorator_list = []
-    if ast.get_docstring(tree, clean=False) is not None:
-        tree.body = tree.body[1:]
-    return ast.dump(tree)
+def _code(function: types.FunctionType) -> str:
+    """The function's bytecode with its constants and names: no docstring, comments, layout or line numbers."""
+    code = function.__code__
+    constants = tuple(c for c in code.co_consts if c is None or c != function.__doc__)
+    return f"{code.co_code.hex()} {constants!r} {code.co_names} {code.co_varnames} {code.co_argcount}"
 
 
 def _referenced(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
@@ -51,7 +45,7 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
     if id(function) in seen:
         return
     seen.add(id(function))
-    lines.append(f"def {function.__module__}.{function.__qualname__} {_normal_source(function)}")
+    lines.append(f"def {function.__module__}.{function.__qualname__} {_code(function)}")
     for name, value in _referenced(function):
         if isinstance(value, types.FunctionType):
             if id(value) in units:

@@ -167,6 +167,7 @@ class Bench:
             stop = min(end, self.bridge.next_due_us())
             ticks = max(1, -(-(stop - int(v.time_us)) // TICK_US))
             v.time_us += ticks * TICK_US
+            self.bridge.on_events()
             self.bridge.service()
 
     def command(self, number: int, *p: float, **target: int) -> int:

@@ -17,9 +17,9 @@ OPEN, READ, BURST, LIST, ACK, NAK = 4, 5, 15, 3, 128, 129
 
 
 def request(
-    opcode: int, data: bytes = b"", offset: int = 0, size: int | None = None, sequence: int = 5
+    opcode: int, data: bytes = b"", offset: int = 0, size: int | None = None, sequence: int = 5, session: int = 0
 ) -> object:
-    head = HEADER.pack(sequence, 0, opcode, len(data) if size is None else size, 0, 0, 0, offset)
+    head = HEADER.pack(sequence, session, opcode, len(data) if size is None else size, 0, 0, 0, offset)
     return mavlink.MAVLink_file_transfer_protocol_message(0, 1, 1, list((head + data).ljust(251, b"\0")))
 
 
@@ -80,3 +80,15 @@ def test_refusals(bench: Bench, message: object, error: int) -> None:
     (answer,) = bench.ask(message)
     head, data = unpack(answer)
     assert head[2] == NAK and data == bytes((error,))
+
+
+def test_the_client_numbers_its_sessions(bench: Bench) -> None:
+    """MAVProxy begins anywhere, counts up and ignores answers under another number."""
+    (answer,) = bench.ask(request(OPEN, b"@PARAM/param.pck", session=147))
+    assert unpack(answer)[0][1:3] == (147, ACK)
+    (answer,) = bench.ask(request(1, session=146))
+    assert unpack(answer)[0][1:3] == (146, ACK)
+    (answer,) = bench.ask(request(READ, size=10, session=147))
+    assert unpack(answer)[0][1:3] == (147, ACK)
+    (answer,) = bench.ask(request(READ, size=10, session=148))
+    assert unpack(answer)[0][1:3] == (148, NAK)

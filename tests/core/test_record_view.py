@@ -74,10 +74,10 @@ def test_a_view_has_no_other_fields() -> None:
 
 
 def test_small_types() -> None:
-    fleet = np.zeros(2, record(("a", "f4"), ("b", "i4", 3), ("c", "i8")))
+    fleet = np.zeros(3, record(("a", "f4"), ("b", "i4", 3), ("c", "i8")))
     fleet["c"] = -4
     ours = view(fleet, 1)
     ours.a, ours.c = 2.5, 9.0
-    assert fleet["a"].tolist() == [0.0, 2.5] and fleet["c"].tolist() == [-4, 9]
+    assert fleet["a"].tolist() == [0.0, 2.5, 0.0] and fleet["c"].tolist() == [-4, 9, -4]
     with pytest.raises(ValueError, match="one block"):
         view(fleet[::2], 0)

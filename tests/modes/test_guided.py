@@ -179,6 +179,9 @@ def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
     assert takeoff.start(vehicle, 10.0) == takeoff.OK
     assert (ap.modes.guided.submode, ap.modes.takeoff.target_d, ap.arming.auto_armed) == (TAKEOFF, -8.5, 1)
     ap.arming.landed = 0
+    assert takeoff.start(vehicle, 12.0) == takeoff.OK, "repeated in the climb"
+    assert ap.modes.takeoff.target_d == -10.5
+    ap.modes.takeoff.complete = 1
     assert takeoff.start(vehicle, 10.0) == takeoff.ALREADY_FLYING
 
 

@@ -14,8 +14,6 @@ from .results import CRITICAL, INFO, WARNING
 from .service import Service
 from .statustext import StatusTextService
 
-LOOK_EVERY_US = 100_000
-"""Events that do not stop the core are looked for this often [simulated us]."""
 BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Ready"))
 """(simulated us after boot, text)"""
 
@@ -48,23 +46,22 @@ class EventService(Service):
         self._count = bridge.reader.field(E + "count")
         self._seen = 0
         self._boot_text = 0
-        self._next_us = 0
 
     def next_due_us(self) -> int:
-        return self._next_us if self.bridge.channels else NEVER
+        """Events stop the core; only the texts of booting come by the clock, once somebody listens."""
+        if self._boot_text == len(BOOT_TEXTS) or not self.bridge.channels:
+            return NEVER
+        return BOOT_TEXTS[self._boot_text][0]
 
     def service(self, now_us: int) -> None:
-        self._next_us = (now_us // LOOK_EVERY_US + 1) * LOOK_EVERY_US
-        while self._boot_text < len(BOOT_TEXTS) and BOOT_TEXTS[self._boot_text][0] <= now_us:
-            self.bridge.get(StatusTextService).say(INFO, BOOT_TEXTS[self._boot_text][1])
-            self._boot_text += 1
-        self.read()
+        self.bridge.get(StatusTextService).say(INFO, BOOT_TEXTS[self._boot_text][1])
+        self._boot_text += 1
 
-    def clock_changed(self, now_us: int) -> None:
-        """The record was put to another time: events up to there are old."""
-        self._seen = int(self._count())
-        self._next_us = now_us
-        self._boot_text = sum(at <= now_us for at, _ in BOOT_TEXTS)
+    def snapshot(self) -> tuple[int, int]:
+        return (self._seen, self._boot_text)
+
+    def restore(self, state: tuple[int, int]) -> None:
+        self._seen, self._boot_text = state
 
     def read(self) -> None:
         """Tell of every event since the last call."""

@@ -38,13 +38,13 @@ class _Burst:
 class _Session:
     """The one file that a client has open."""
 
-    def __init__(self, data: bytes, sender: Sender) -> None:
-        self.data, self.sender = data, sender
+    def __init__(self, data: bytes, sender: Sender, number: int) -> None:
+        self.data, self.sender, self.number = data, sender, number
         self.burst: _Burst | None = None
 
 
 class FtpService(Service):
-    """One session (number 0) for each channel."""
+    """One session for each channel, under the number that the client gives it, as in ArduPilot."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
@@ -72,7 +72,9 @@ class FtpService(Service):
             return
         data = payload[HEADER.size : HEADER.size + size]
         if opcode in (TERMINATE, RESET):
-            self._sessions.pop(channel, None)
+            found = self._sessions.get(channel)
+            if found is not None and (opcode == RESET or found.number == session):
+                del self._sessions[channel]
             self._reply(channel, sender, sequence, session, ACK, opcode, offset, b"")
         elif opcode in self._operations:
             self._operations[opcode](channel, sender, sequence, session, offset, size, data)
@@ -111,14 +113,14 @@ class FtpService(Service):
         packed = pack_parameters(
             [(p, value(p.name)) for p in TABLE], with_defaults="withdefaults=1" in query.split("&")
         )
-        self._sessions[channel] = _Session(packed, sender)
-        self._reply(channel, sender, sequence, 0, ACK, OPEN_READ, 0, struct.pack("<I", len(packed)))
+        self._sessions[channel] = _Session(packed, sender, session)
+        self._reply(channel, sender, sequence, session, ACK, OPEN_READ, 0, struct.pack("<I", len(packed)))
 
     def _open_session(
         self, channel: Channel, sender: Sender, sequence: int, session: int, opcode: int
     ) -> _Session | None:
         found = self._sessions.get(channel)
-        if found is None or session != 0 or found.sender != sender:
+        if found is None or session != found.number or found.sender != sender:
             self._nak(channel, sender, sequence, session, opcode, INVALID_SESSION)
             return None
         return found
@@ -161,8 +163,21 @@ class FtpService(Service):
         found.burst = _Burst(offset, size or DATA_BYTES, sequence)
         self._next_us = min(self._next_us, self.bridge.now_us)
 
-    def clock_changed(self, now_us: int) -> None:
-        self._next_us = now_us if self._sessions else NEVER
+    def snapshot(self) -> Any:
+        sessions = tuple(
+            (c.number, s.data, s.sender, s.number, None if s.burst is None else (s.burst.offset, s.burst.size, s.burst.sequence))
+            for c, s in self._sessions.items()
+        )
+        return (sessions, self._next_us)
+
+    def restore(self, state: Any) -> None:
+        sessions, self._next_us = state
+        self._sessions = {}
+        for number, data, sender, session, burst in sessions:
+            for channel in self.bridge.channels:
+                if channel.number == number:
+                    found = self._sessions[channel] = _Session(data, sender, session)
+                    found.burst = None if burst is None else _Burst(*burst)
 
     def next_due_us(self) -> int:
         return self._next_us
@@ -181,7 +196,7 @@ class FtpService(Service):
                     channel,
                     session.sender,
                     burst.sequence,
-                    0,
+                    session.number,
                     ACK,
                     BURST_READ,
                     burst.offset,

@@ -26,6 +26,12 @@ class HomeService(Service):
         self._told_home = self._home()
         self._told_origin = self._origin()
 
+    def snapshot(self) -> Any:
+        return (self._told_home, self._told_origin)
+
+    def restore(self, state: Any) -> None:
+        self._told_home, self._told_origin = state
+
     def handlers(self) -> dict[str, Handler]:
         return {"SET_GPS_GLOBAL_ORIGIN": self._set_origin, "SET_HOME_POSITION": self._set_home}
 

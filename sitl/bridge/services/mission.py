@@ -195,8 +195,18 @@ class MissionService(Service):
         ):
             self.upload = None
 
-    def clock_changed(self, now_us: int) -> None:
-        self.upload = None
+    def snapshot(self) -> Any:
+        last = self._last
+        return (
+            None if self.upload is None else self.upload.snapshot(),
+            None if last is None else (last[0].number, *last[1:]),
+        )
+
+    def restore(self, state: Any) -> None:
+        upload, last = state
+        by_number = {c.number: c for c in self.bridge.channels} if upload or last else {}
+        self.upload = Upload.restored(upload, by_number[upload[0]]) if upload and upload[0] in by_number else None
+        self._last = (by_number[last[0]], *last[1:]) if last and last[0] in by_number else None
 
     def next_due_us(self) -> int:
         return NEVER if self.upload is None else self.upload.due_us

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...autopilot.mission.item import MissionItem
 from ..channel import Channel
 from .service import Sender
@@ -33,6 +35,20 @@ class Upload:
         self._ask_us = now_us + ASK_AGAIN_US
         self._base = base
         self._items: list[MissionItem] = []
+
+    def snapshot(self) -> tuple[Any, ...]:
+        """Immutable; begins with the channel's number."""
+        times = (self.deadline_us, self._ask_us)
+        return (self.channel.number, self.sender, self.first, self.stop, self._base, tuple(self._items), *times)
+
+    @classmethod
+    def restored(cls, state: tuple[Any, ...], channel: Channel) -> Upload:
+        """The upload as it was."""
+        _, sender, first, stop, base, items, deadline_us, ask_us = state
+        upload = cls(channel, sender, first, stop, base, 0)
+        upload._items, upload.next = list(items), first + len(items)
+        upload.deadline_us, upload._ask_us = deadline_us, ask_us
+        return upload
 
     @property
     def due_us(self) -> int:

@@ -59,8 +59,12 @@ class ParameterService(Service):
         self._lists[channel] = 0
         self._next_us = min(self._next_us, self.bridge.now_us)
 
-    def clock_changed(self, now_us: int) -> None:
-        self._next_us = now_us if self._lists else NEVER
+    def snapshot(self) -> Any:
+        return (tuple((c.number, at) for c, at in self._lists.items()), self._next_us)
+
+    def restore(self, state: Any) -> None:
+        lists, self._next_us = state
+        self._lists = {c: at for number, at in lists for c in self.bridge.channels if c.number == number}
 
     def next_due_us(self) -> int:
         return self._next_us

@@ -41,8 +41,8 @@ class Service:
     def service(self, now_us: int) -> None:
         """Called at or after ``next_due_us``."""
 
-    def clock_changed(self, now_us: int) -> None:
-        """Simulated time was set to ``now_us``, back or forth.
+    def snapshot(self) -> Any:
+        """What it needs to go on from here: immutable, channels by their number. Both or none are overridden."""
 
-        Forget what was to happen at times of before.
-        """
+    def restore(self, state: Any) -> None:
+        """Go on from a snapshot. The record has been put back already."""

@@ -21,6 +21,12 @@ class StatusTextService(Service):
 
     _id = 0
 
+    def snapshot(self) -> int:
+        return self._id
+
+    def restore(self, state: int) -> None:
+        self._id = state
+
     def say(self, severity: int, text: str) -> None:
         """Send ``text`` with a MAV_SEVERITY to every channel."""
         data = text.encode("ascii", "replace")

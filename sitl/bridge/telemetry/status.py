@@ -43,7 +43,7 @@ def heartbeat(context: Context) -> Build:
 
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
-RECEIVER, AHRS, LOGGING, BATTERY, PREARM = 0x10000, 0x200000, 0x1000000, 0x2000000, 0x10000000
+RECEIVER, GEOFENCE, AHRS, LOGGING, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x1000000, 0x2000000, 0x10000000
 PRESENT = (
     GYRO
     | ACCEL
@@ -79,7 +79,7 @@ def sys_status(context: Context) -> Build:
         enabled |= POSITION if mode in POSITION_MODES else 0
         enabled |= ALTITUDE if mode in ALTITUDE_MODES else 0
         enabled |= MOTORS if armed else 0
-        health = present & ~(AHRS | GPS | PREARM)
+        health = present & ~(AHRS | GPS | PREARM) | GEOFENCE  # no fence is not a breached one
         health |= (AHRS if attitude_ok else 0) | (GPS if fix >= 3 else 0) | (PREARM if prearm or armed else 0)
         percent = min(max(int(remaining), 0), 100) if remaining == remaining else -1
         # the extension fields (three more words of sensor bits) stay zero

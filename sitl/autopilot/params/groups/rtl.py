@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..parameter import INT16, INT32, Parameter
 
 PARAMETERS = (
-    Parameter("RTL_ALT", 1500, 30, 300000, "cm", "Height of the way home, above home", INT32),
+    Parameter("RTL_ALT", 1500, 0, 300000, "cm", "Height of the way home, above home", INT32),
     Parameter("RTL_ALT_FINAL", 0, 0, 32767, "cm", "Height over home where it stays; 0 lands", INT16),
     Parameter("RTL_CLIMB_MIN", 0, 0, 3000, "cm", "Least climb before the way home", INT16),
     Parameter(
