@@ -13,7 +13,7 @@ from __future__ import annotations
 import struct
 from collections import namedtuple
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any, cast
 
 from fastcrc import crc16
@@ -55,7 +55,7 @@ class MessageType:
     """One message of the dialect."""
 
     __slots__ = (
-        "_arrays", "_is_text", "base_size", "crc_extra", "fields", "id", "id_bytes", "name", "pack", "size",
+        "_arrays", "_is_text", "_make", "_zeros", "base_size", "crc_extra", "fields", "id", "id_bytes", "name", "pack", "size",
         "tuple_type", "unpack",
     )  # fmt: skip
 
@@ -75,9 +75,11 @@ class MessageType:
         """``pack(*values in wire order)`` -> the full payload; arrays element by element."""
         self.unpack = layout.unpack
         self.tuple_type: Any = namedtuple(self.name, order)  # type: ignore[misc]
+        self._make = partial(tuple.__new__, self.tuple_type)  # three times as fast as its own _make
         self._is_text = [t == "char" and n > 0 for t, n in zip(types, cls.array_lengths, strict=True)]
         lengths = [1 if text else max(n, 1) for text, n in zip(self._is_text, cls.array_lengths, strict=True)]
         self._arrays = lengths if any(n > 1 for n in cls.array_lengths) else None
+        self._zeros = {name: b"" if text else 0 for name, text in zip(self.fields, self._is_text, strict=True)}
 
     def decode(self, payload: bytes) -> Any:
         """A named tuple of the fields (names as in MAVLink).
@@ -93,7 +95,7 @@ class MessageType:
             payload = payload[: self.size]
         values = self.unpack(payload)
         if self._arrays is None:
-            return self.tuple_type._make(values)
+            return self._make(values)
         out: list[Any] = []
         at = 0
         for length, text in zip(self._arrays, self._is_text, strict=True):
@@ -102,23 +104,23 @@ class MessageType:
             else:
                 out.append(values[at] if length == 1 else values[at : at + length])
             at += length
-        return self.tuple_type._make(out)
+        return self._make(out)
 
     def payload(self, **values: Any) -> bytes:
-        """Payload from named fields; those not given are zero. For messages that are not sent often."""
+        """Payload from named fields; those not given are zero."""
+        given = {**self._zeros, **values}
+        if len(given) != len(self.fields):
+            unknown = sorted(values.keys() - self._zeros.keys())
+            raise UnknownMessageError(f"{self.name} has no field {unknown}; it has {list(self.fields)}")
+        if self._arrays is None:
+            return self.pack(*given.values())
         flat: list[Any] = []
-        lengths = self._arrays or [1] * len(self.fields)
-        for name, length, text in zip(self.fields, lengths, self._is_text, strict=True):
-            value = values.pop(name, b"" if text else 0)
+        for length, value in zip(self._arrays, given.values(), strict=True):
             if length > 1:
                 value = tuple(value) if value else ()
                 flat.extend(value + (0,) * (length - len(value)))
             else:
                 flat.append(value)
-        if values:
-            raise UnknownMessageError(
-                f"{self.name} has no field {sorted(values)}; it has {list(self.fields)}"
-            )
         return self.pack(*flat)
 
     def __repr__(self) -> str:

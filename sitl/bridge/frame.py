@@ -6,12 +6,15 @@ Source: https://mavlink.io/en/guide/serialization.html (packet format, zero trun
 
 from __future__ import annotations
 
+import struct
+from functools import partial
 from typing import NamedTuple
 
 from .dialect import KNOWN_IDS, MessageType, crc_mcrf4xx, message_by_id
 
 MARK_V1, MARK_V2 = 0xFE, 0xFD
 HEADER_V1, HEADER_V2, CHECKSUM, SIGNATURE = 6, 10, 2, 13
+_write_v2 = struct.Struct("<BxxBBBHB").pack
 SIGNED = 0x01
 """Incompatibility flag: 13 bytes of signature follow the checksum."""
 
@@ -19,8 +22,8 @@ SIGNED = 0x01
 def encode_v2(kind: MessageType, payload: bytes, sequence: int, system: int, component: int) -> bytes:
     """A MAVLink 2 frame; trailing zeros of the payload are left out (one byte always stays)."""
     payload = payload.rstrip(b"\0") or b"\0"
-    body = bytes((len(payload), 0, 0, sequence, system, component)) + kind.id_bytes + payload
-    return b"\xfd" + body + crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little")
+    body = _write_v2(len(payload), sequence, system, component, kind.id & 0xFFFF, kind.id >> 16) + payload
+    return b"\xfd%b%b" % (body, crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little"))
 
 
 def encode_v1(kind: MessageType, payload: bytes, sequence: int, system: int, component: int) -> bytes:
@@ -45,6 +48,13 @@ class Frame(NamedTuple):
     component: int
     version: int
     raw: bytes
+
+
+_frame = partial(tuple.__new__, Frame)
+"""A Frame from a tuple of its fields; three times as fast as ``Frame(...)``."""
+_read_v2 = struct.Struct("<BBxBBBHB").unpack_from
+"""Behind the start mark: length, incompatibility flags, sequence, system, component, id (low 16 bits, high 8)."""
+_read_v1 = struct.Struct("<BBBBB").unpack_from
 
 
 class Splitter:
@@ -79,38 +89,28 @@ class Splitter:
                 continue
             if end - at < header:
                 break
-            size = buffer[at + 1]
             if header == HEADER_V2:
-                flags = buffer[at + 2]
-                number = buffer[at + 7] | buffer[at + 8] << 8 | buffer[at + 9] << 16
-                total = HEADER_V2 + size + CHECKSUM + (SIGNATURE if flags & SIGNED else 0)
-                plausible = flags & ~SIGNED == 0
+                size, flags, sequence, system, component, low, high = _read_v2(buffer, at + 1)
+                number = low | high << 16
+                total = HEADER_V2 + CHECKSUM + size + (SIGNATURE if flags & SIGNED else 0)
+                version = 2
             else:
-                number = buffer[at + 5]
-                total = HEADER_V1 + size + CHECKSUM
-                plausible = True
-            if not plausible or number not in KNOWN_IDS or size > (kind := message_by_id(number)).size:
+                size, sequence, system, component, number = _read_v1(buffer, at + 1)
+                flags, total, version = 0, HEADER_V1 + CHECKSUM + size, 1
+            if flags & ~SIGNED or number not in KNOWN_IDS or size > (kind := message_by_id(number)).size:
                 self.skipped_bytes += 1
                 at += 1
                 continue
             if end - at < total:
                 break
-            start = at + header
-            stop = start + size
-            if (
-                crc_mcrf4xx(buffer[at + 1 : stop] + kind.crc_extra, 0xFFFF)
-                != buffer[stop] | buffer[stop + 1] << 8
-            ):
+            stop = at + header + size
+            if crc_mcrf4xx(buffer[at + 1 : stop] + kind.crc_extra, 0xFFFF) != buffer[stop] | buffer[stop + 1] << 8:
                 self.bad_checksums += 1
                 self.skipped_bytes += 1
                 at += 1
                 continue
-            payload = buffer[start:stop]
-            raw = buffer[at : at + total]
-            if header == HEADER_V2:
-                frames.append(Frame(kind, payload, raw[4], raw[5], raw[6], 2, raw))
-            else:
-                frames.append(Frame(kind, payload, raw[2], raw[3], raw[4], 1, raw))
+            payload, raw = buffer[at + header : stop], buffer[at : at + total]
+            frames.append(_frame((kind, payload, sequence, system, component, version, raw)))
             at += total
         self._rest = buffer[at:]
         return frames

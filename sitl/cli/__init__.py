@@ -7,7 +7,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from .. import errors
+from .. import __version__, errors
 from . import cache, demo, execute, params, run
 
 COMMANDS = (run, execute, demo, params, cache)
@@ -16,6 +16,7 @@ COMMANDS = (run, execute, demo, params, cache)
 def parser() -> argparse.ArgumentParser:
     """The command line of every subcommand."""
     top = argparse.ArgumentParser(prog="sitl", description="Autopilot-in-the-loop simulator in simulated time.")
+    top.add_argument("--version", action="version", version=f"gym-sitl {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for module in COMMANDS:
         module.add_parser(commands)

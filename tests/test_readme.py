@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the documentation shows runs, and what it names exists."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from sitl.autopilot.params import docs
+from sitl.cli import parser
+from sitl.core import compile as compiler
+from sitl.simulation import Core
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
+
+
+def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
+    (program,) = blocks(ROOT / "README.md", "python")
+    scope: dict[str, object] = {}
+    exec(compile(program, "README.md", "exec"), scope)
+    printed = capsys.readouterr().out
+    assert "LOCAL_POSITION_NED" in printed
+    simulation = scope["simulation"]
+    assert -float(simulation.v.autopilot.estimate.pos[2]) == pytest.approx(10.0, abs=0.7)  # type: ignore[attr-defined]
+
+
+def test_the_commands_of_the_readme_are_understood() -> None:
+    text = "\n".join(blocks(ROOT / "README.md", ""))
+    lines = [line for line in text.splitlines() if line.startswith("sitl ")]
+    assert len(lines) > 4
+    for line in lines:
+        words = line.split("#")[0].split()[1:]
+        parser().parse_args(words)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
+        if "://" not in target:
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_the_parameter_page_is_up_to_date() -> None:
+    assert (ROOT / "docs" / "parameters.md").read_text() == docs.page(), "run: python docs/make_pages.py"
+
+
+def test_the_units_of_the_core_are_few_and_named_after_their_place() -> None:
+    assert {unit.function.__module__.removeprefix("sitl.") for unit in compiler.UNITS.values()} == {
+        "advance",
+        "autopilot.control.update",
+        "autopilot.estimation.update",
+        "autopilot.modes.copter.update",
+        "physics.native.step",
+    }
