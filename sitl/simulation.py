@@ -41,6 +41,8 @@ _WIND = {
 }
 """Parameters of the simulated world, and the fields of ``physics.wind`` that follow them."""
 
+_FAULTS = ("SIM_GPS1_ENABLE", "SIM_RC_FAIL", "SIM_ENGINE_FAIL", "SIM_ENGINE_MUL")
+
 
 class OptionError(ValueError):
     """An option of the simulation that cannot be taken."""
@@ -198,6 +200,8 @@ class Simulation:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
         if name in _WIND:
             self.v.physics.wind[_WIND[name]] = float(self.v.autopilot.params[name])
+        elif name in _FAULTS:
+            self._set_faults()
 
     def close(self) -> None:
         """Close links and log."""
@@ -209,7 +213,17 @@ class Simulation:
             self.parameter_changed(name)
         init_physics(self.v, self.airframe, self.home, self.seed)
         boot.power_on(self.v)
+        self._set_faults()
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
+
+    def _set_faults(self) -> None:
+        """Switch off what the parameters say: the GPS receiver, the transmitter, motors."""
+        params, physics = self.v.autopilot.params, self.v.physics
+        physics.sensors.gps_off = int(params.SIM_GPS1_ENABLE == 0)
+        self.v.autopilot.modes.pilot.has_receiver = int(params.SIM_RC_FAIL == 0)
+        for k in range(len(physics.rotors.efficiency)):
+            fails = int(params.SIM_ENGINE_FAIL) >> k & 1
+            physics.rotors.efficiency[k] = params.SIM_ENGINE_MUL if fails else 1.0
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""

@@ -198,16 +198,15 @@ class Bridge:
             if channel.streams.next_us < due:
                 due = channel.streams.next_us
         for service in self._timed:
-            at = service.next_due_us()
-            if at < due:
-                due = at
+            if service.due_us < due:
+                due = service.due_us
         return due
 
     def service(self) -> None:
         """Send what has fallen due by now."""
         now = self.now_us
         for service in self._timed:
-            if service.next_due_us() <= now:
+            if service.due_us <= now:
                 service.service(now)
         for channel in self.channels:
             if channel.streams.next_us <= now:

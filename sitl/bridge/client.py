@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 from .dialect import message
@@ -15,6 +16,9 @@ class Received(NamedTuple):
 
     name: str
     fields: Any
+
+
+_received = partial(tuple.__new__, Received)
 
 
 class Client:
@@ -55,4 +59,4 @@ class Client:
         data = self.link.receive()
         if not data:
             return []
-        return [Received(f.kind.name, f.kind.decode(f.payload)) for f in self._splitter.feed(data)]
+        return [_received((f.kind.name, f.kind.decode(f.payload))) for f in self._splitter.feed(data)]

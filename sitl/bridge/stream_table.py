@@ -36,6 +36,7 @@ class StreamTable:
         self._buckets: dict[int, _Bucket] = {}
         self._interval: dict[int, int] = {}
         self._layout: Layout | None = ()
+        self._in_order: list[_Bucket] = []
         self.next_us = NEVER
 
     def interval(self, number: int) -> int:
@@ -83,20 +84,21 @@ class StreamTable:
         self._find_next()
 
     def _find_next(self) -> None:
-        self.next_us = min((b.next_us for b in self._buckets.values()), default=NEVER)
+        self._in_order = [self._buckets[interval] for interval in sorted(self._buckets)]
+        self.next_us = min((bucket.next_us for bucket in self._in_order), default=NEVER)
 
     def take_due(self, now_us: int) -> list[Entry]:
         """All messages due by ``now_us``, in order of interval, then number of request.
 
         Each once, however late it is.
         """
-        if now_us < self.next_us:
-            return []
         due: list[Entry] = []
-        for interval in sorted(self._buckets):
-            bucket = self._buckets[interval]
+        later = NEVER
+        for bucket in self._in_order:
             if bucket.next_us <= now_us:
                 due.extend(bucket.entries.values())
-                bucket.next_us = (now_us // interval + 1) * interval
-        self._find_next()
+                bucket.next_us = (now_us // bucket.interval_us + 1) * bucket.interval_us
+            if bucket.next_us < later:
+                later = bucket.next_us
+        self.next_us = later
         return due

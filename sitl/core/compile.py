@@ -232,8 +232,12 @@ def _start_worker(entry_module: str, dtype_path: str, unit: Unit) -> subprocess.
 def _build_lock() -> Iterator[None]:
     """One building process at a time; the others wait and then find the units built."""
     folder = cache_folder()
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / "lock", "w") as handle:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = open(folder / "lock", "w")
+    except OSError as error:
+        raise BuildError(f"{folder}: {error.strerror}. Set SITL_CACHE_DIR to a folder that can be written") from None
+    with handle:
         try:
             import fcntl
         except ImportError:  # Windows: two builders repeat work but do not harm each other

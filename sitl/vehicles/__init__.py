@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import importlib
+import runpy
+from pathlib import Path
 
 from .airframe import Airframe, AirframeError, Rotor, apply
 
@@ -18,13 +20,29 @@ def names() -> tuple[str, ...]:
 
 
 def load(name: str) -> Airframe:
-    """An airframe by its name (hyphens and underscores are the same).
+    """An airframe by its name (hyphens and underscores are the same), or by the path of a Python file of the user's
+    own that defines ``AIRFRAME``.
 
     Raises:
-        AirframeError: no airframe of that name; the message lists those there are.
+        AirframeError: no airframe of that name (the message lists those there are), or the file cannot be used.
     """
+    if name.endswith(".py"):
+        return _load_file(Path(name))
     module = name.strip().lower().replace("-", "_")
     if module not in _MODULES:
-        raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(_MODULES)}")
+        raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(_MODULES)}, or a .py file")
     found: Airframe = importlib.import_module(f"{__name__}.{module}").AIRFRAME
+    return found
+
+
+def _load_file(path: Path) -> Airframe:
+    try:
+        scope = runpy.run_path(str(path))
+    except AirframeError:
+        raise
+    except Exception as error:  # whatever a user's file raises is a fault of the file
+        raise AirframeError(f"airframe file {str(path)!r}: {type(error).__name__}: {error}") from error
+    found = scope.get("AIRFRAME")
+    if not isinstance(found, Airframe):
+        raise AirframeError(f"airframe file {str(path)!r} does not define AIRFRAME = Airframe(...)")
     return found

@@ -84,3 +84,31 @@ def test_apply_writes_one_vehicle_of_a_fleet():
     fleet = np.zeros(2, [("physics", [("airframe", FIGURES_DTYPE)])])
     vehicles.apply(vehicles.load("erle_copter"), fleet.view(np.recarray)[1])
     assert fleet["physics"]["airframe"]["mass"].tolist() == [0.0, 1.14]
+
+
+def test_a_users_own_file(tmp_path) -> None:
+    file = tmp_path / "heavy.py"
+    file.write_text(
+        "from sitl import vehicles\nAIRFRAME = vehicles.load('erle_copter').changed(mass=1.4)\n"
+    )
+    assert vehicles.load(str(file)).figures["mass"] == 1.4
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("x = 1", "does not define AIRFRAME"),
+        ("1 / 0", "ZeroDivisionError"),
+        ("from sitl import vehicles\nAIRFRAME = vehicles.load('erle_copter').changed(mass=-1.0)", "mass"),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_named(tmp_path, text: str, says: str) -> None:
+    file = tmp_path / "odd.py"
+    file.write_text(text)
+    with pytest.raises(AirframeError, match=says):
+        vehicles.load(str(file))
+
+
+def test_a_file_that_is_not_there_is_named() -> None:
+    with pytest.raises(AirframeError, match="absent.py"):
+        vehicles.load("absent.py")

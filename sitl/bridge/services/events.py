@@ -47,21 +47,28 @@ class EventService(Service):
         self._seen = 0
         self._boot_text = 0
 
-    def next_due_us(self) -> int:
+    def channel_added(self, channel: Any) -> None:
+        self._find_due()
+
+    def channel_removed(self, channel: Any) -> None:
+        self._find_due()
+
+    def _find_due(self) -> None:
         """Events stop the core; only the texts of booting come by the clock, once somebody listens."""
-        if self._boot_text == len(BOOT_TEXTS) or not self.bridge.channels:
-            return NEVER
-        return BOOT_TEXTS[self._boot_text][0]
+        more = self._boot_text < len(BOOT_TEXTS) and self.bridge.channels
+        self.due_us = BOOT_TEXTS[self._boot_text][0] if more else NEVER
 
     def service(self, now_us: int) -> None:
         self.bridge.get(StatusTextService).say(INFO, BOOT_TEXTS[self._boot_text][1])
         self._boot_text += 1
+        self._find_due()
 
     def snapshot(self) -> tuple[int, int]:
         return (self._seen, self._boot_text)
 
     def restore(self, state: tuple[int, int]) -> None:
         self._seen, self._boot_text = state
+        self._find_due()
 
     def read(self) -> None:
         """Tell of every event since the last call."""

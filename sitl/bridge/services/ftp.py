@@ -49,7 +49,6 @@ class FtpService(Service):
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
-        self._next_us = NEVER
         self._operations: dict[int, Callable[[Channel, Sender, int, int, int, int, bytes], None]] = {
             OPEN_READ: self._open,
             READ: self._read,
@@ -161,26 +160,23 @@ class FtpService(Service):
             self._nak(channel, sender, sequence, session, BURST_READ, END_OF_FILE)
             return
         found.burst = _Burst(offset, size or DATA_BYTES, sequence)
-        self._next_us = min(self._next_us, self.bridge.now_us)
+        self.due_us = min(self.due_us, self.bridge.now_us)
 
     def snapshot(self) -> Any:
         sessions = tuple(
             (c.number, s.data, s.sender, s.number, None if s.burst is None else (s.burst.offset, s.burst.size, s.burst.sequence))
             for c, s in self._sessions.items()
         )
-        return (sessions, self._next_us)
+        return (sessions, self.due_us)
 
     def restore(self, state: Any) -> None:
-        sessions, self._next_us = state
+        sessions, self.due_us = state
         self._sessions = {}
         for number, data, sender, session, burst in sessions:
             for channel in self.bridge.channels:
                 if channel.number == number:
                     found = self._sessions[channel] = _Session(data, sender, session)
                     found.burst = None if burst is None else _Burst(*burst)
-
-    def next_due_us(self) -> int:
-        return self._next_us
 
     def service(self, now_us: int) -> None:
         running = False
@@ -209,4 +205,4 @@ class FtpService(Service):
                     session.burst = None
                     break
             running = running or session.burst is not None
-        self._next_us = now_us + BURST_EVERY_US if running else NEVER
+        self.due_us = now_us + BURST_EVERY_US if running else NEVER

@@ -208,7 +208,9 @@ class MissionService(Service):
         self.upload = Upload.restored(upload, by_number[upload[0]]) if upload and upload[0] in by_number else None
         self._last = (by_number[last[0]], *last[1:]) if last and last[0] in by_number else None
 
-    def next_due_us(self) -> int:
+    @property
+    def due_us(self) -> int:  # type: ignore[override]
+        """When to ask for an item again or to give the upload up."""
         return NEVER if self.upload is None else self.upload.due_us
 
     def service(self, now_us: int) -> None:

@@ -33,7 +33,6 @@ class ParameterService(Service):
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self._lists: dict[Channel, int] = {}
-        self._next_us = NEVER
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -57,17 +56,14 @@ class ParameterService(Service):
 
     def _request_list(self, channel: Channel, fields: Any, sender: Sender) -> None:
         self._lists[channel] = 0
-        self._next_us = min(self._next_us, self.bridge.now_us)
+        self.due_us = min(self.due_us, self.bridge.now_us)
 
     def snapshot(self) -> Any:
-        return (tuple((c.number, at) for c, at in self._lists.items()), self._next_us)
+        return (tuple((c.number, at) for c, at in self._lists.items()), self.due_us)
 
     def restore(self, state: Any) -> None:
-        lists, self._next_us = state
+        lists, self.due_us = state
         self._lists = {c: at for number, at in lists for c in self.bridge.channels if c.number == number}
-
-    def next_due_us(self) -> int:
-        return self._next_us
 
     def service(self, now_us: int) -> None:
         for channel, at in list(self._lists.items()):
@@ -79,7 +75,7 @@ class ParameterService(Service):
             self._lists[channel] = stop
             if stop == len(TABLE):
                 del self._lists[channel]
-        self._next_us = now_us + LIST_EVERY_US if self._lists else NEVER
+        self.due_us = now_us + LIST_EVERY_US if self._lists else NEVER
 
     def _request_read(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if fields.param_index >= 0:

@@ -21,6 +21,9 @@ Handler = Callable[[Channel, Any, Sender], None]
 class Service:
     """Base of all services; each overrides what it needs."""
 
+    due_us = NEVER
+    """When ``service`` wants to be called [simulated us since boot]; each service keeps its own."""
+
     def __init__(self, bridge: Bridge) -> None:
         self.bridge = bridge
 
@@ -34,12 +37,8 @@ class Service:
     def channel_removed(self, channel: Channel) -> None:
         """A client went away."""
 
-    def next_due_us(self) -> int:
-        """When ``service`` wants to be called [simulated us]."""
-        return NEVER
-
     def service(self, now_us: int) -> None:
-        """Called at or after ``next_due_us``."""
+        """Called at or after ``due_us``."""
 
     def snapshot(self) -> Any:
         """What it needs to go on from here: immutable, channels by their number. Both or none are overridden."""

@@ -92,8 +92,10 @@ class SetpointService(Service):
     ) -> None:
         autopilot, mask = self.bridge.autopilot, m.type_mask
         yaw = Yaw(not mask & YAW_IGNORED, m.yaw, not mask & YAW_RATE_IGNORED, m.yaw_rate, relative)
-        total = sum(pos or ZERO) + sum(vel or ZERO) + sum(acc or ZERO)
-        total += (yaw.yaw if yaw.use_yaw else 0.0) + (yaw.rate if yaw.use_rate else 0.0)
+        total = (yaw.yaw if yaw.use_yaw else 0.0) + (yaw.rate if yaw.use_rate else 0.0)
+        for vector in (pos, vel, acc):
+            if vector is not None:
+                total += vector[0] + vector[1] + vector[2]
         if mask & FORCE and acc is not None:
             return  # a force is not an acceleration
         if not math.isfinite(total):

@@ -103,6 +103,7 @@ SENSOR_STATE_DTYPE = record(  # hidden from the autopilot
     ("gyro_walk", "f8", 3),
     ("gyro_scale", "f8", 3),
     ("gps_drift", "f8", 3),  # in standard deviations
+    ("gps_off", "i8"),  # the receiver is switched off
     ("gps_head", "i8"),  # fixes taken so far
     ("gps_tail", "i8"),  # fixes delivered so far
     ("gps_due", "i8", GPS_RING),  # tick of delivery

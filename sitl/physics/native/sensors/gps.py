@@ -81,8 +81,13 @@ def deliver(p, sensors, tick, time_us):
 
 @law
 def update(p, sensors, tick, time_us, rng):
-    """Take and deliver fixes as they fall due."""
+    """Take and deliver fixes as they fall due; a receiver that is switched off is missed at once."""
     d = p.derived
+    if int(p.sensors.gps_off) != 0:
+        p.sensors.gps_tail = p.sensors.gps_head
+        sensors.gps_fix = 0
+        sensors.gps_satellites = 0
+        return
     if tick >= int(d.gps_start) and (tick - int(d.gps_start)) % int(d.gps_period) == 0:
         take(p, tick, rng)
     deliver(p, sensors, tick, time_us)
