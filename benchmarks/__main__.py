@@ -7,9 +7,11 @@ import argparse
 import statistics
 import tempfile
 import time
+import timeit
 from collections.abc import Callable
 
 from missions.flights import VELOCITY_ONLY, Pilot
+from sitl import vehicles
 from sitl.bridge.dialect import message
 from sitl.core import compile as compiler
 from sitl.simulation import Core, load_core
@@ -76,6 +78,15 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
     return run
 
 
+def snapshots(pilot: Pilot) -> None:
+    """Microseconds for a snapshot and for a restore of vehicle, mission and MAVLink state."""
+    simulation = pilot.simulation
+    kept = simulation.snapshot()
+    for name, run in (("snapshot", simulation.snapshot), ("restore", lambda: simulation.restore(kept))):
+        times = timeit.repeat(run, number=2000, repeat=REPEATS, timer=time.process_time)
+        print(f"{name:58s} {statistics.median(times) / 2000 * 1e6:9.1f} us", flush=True)
+
+
 def compile_times() -> None:
     """The whole core from nothing, and a warm start, in a cache folder of their own."""
     import os
@@ -93,9 +104,9 @@ def compile_times() -> None:
 
 
 def main() -> None:
-    """Print every figure, or those asked for."""
+    """Print every figure; compilation when asked for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--frame", default="erle_copter")
+    parser.add_argument("--frame", default="erle_copter", choices=vehicles.names())
     parser.add_argument("--compile", action="store_true", help="also measure compilation")
     options = parser.parse_args()
     print(f"one core, CPU time, median of {REPEATS} (lowest .. highest); units: {len(compiler.UNITS)}")
@@ -109,6 +120,7 @@ def main() -> None:
         name = f"{options.frame}, MAVLink in the loop at {rate} Hz ({len(messages)} messages)"
         factor = show(name, repeat(streaming(hovering(options.frame, core), rate, messages)))
         print(f"{'   of the core alone':58s} {factor / alone:9.2f}")
+    snapshots(pilot)
     if options.compile:
         compile_times()
 

@@ -10,7 +10,7 @@ import math
 import sys
 import time
 
-from mavsdk import ComponentType, Configuration, Mavsdk
+from mavsdk import ComponentType, Configuration, Mavsdk, log_subscribe
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
 from mavsdk.plugins.telemetry import Telemetry
@@ -61,6 +61,7 @@ def wait_for(what: str, condition, timeout_s: float) -> None:
 def main() -> None:
     """Fly the mission."""
     url = sys.argv[1] if len(sys.argv) > 1 else "udpin://0.0.0.0:14540"
+    log_subscribe(lambda *_: True)  # the library's own log is not shown
     mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
     mavsdk.add_any_connection(url)
     system = mavsdk.first_autopilot(30.0)

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 from dataclasses import dataclass
 
 import numpy as np
 
-from sitl.simulation import Simulation, load_core
+from sitl.simulation import ESTIMATORS, Simulation, load_core
 
 from . import flights
 from .recording import COLUMNS, Recording, recorded
@@ -68,8 +68,11 @@ def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
     add("20 m north: pitch down", "deg", "pos_step_20N", 25, lambda r: float(np.degrees(r[:, PITCH].min())))
     add("3 m/s east: 1 m/s", "s", "vel_3E_10s", 10, lambda r: crossing(r, VY, 1.0))
     add("3 m/s east: 2.85 m/s", "s", "vel_3E_10s", 10, lambda r: crossing(r, VY, 2.85))
+    add("3 m/s east: speed at 2.1 s", "m/s", "vel_3E_10s", 10, lambda r: float(np.interp(2.1, r[:, 0], r[:, VY])))
     add("3 m/s east: peak speed", "m/s", "vel_3E_10s", 10, lambda r: float(r[:, VY].max()))
     add("3 m/s east: covered in 10 s", "m", "vel_3E_10s", 10, lambda r: float(r[-1, Y] - r[0, Y]))
+    behind = [behind_velocity(r.since("vel_3E_10s", 5.0)) for r in (ours, theirs)]
+    figures.append(Figure("3 m/s east: estimated position behind its own velocity after 5 s", "m", *behind))
     add("3 m/s east: lean", "deg", "vel_3E_10s", 10, lambda r: float(np.degrees(r[:, ROLL].max())))
     add("stop: distance", "m", "vel_zero", 6, lambda r: float(r[-1, Y] - r[0, Y]))
     add("stop: below 0.2 m/s", "s", "vel_zero", 6, lambda r: crossing(r, VY, 0.2))
@@ -86,6 +89,13 @@ def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
         rms = path_rms(ours.since(phase, duration), theirs.since(phase, duration))
         figures.append(Figure(f"{phase}: RMS distance at equal times", "m", rms, 0.0))
     return figures
+
+
+def behind_velocity(rows: np.ndarray) -> float:
+    """How far [m] the estimated position is behind the integral of the estimated velocity, along east."""
+    t, v = rows[:, 0], rows[:, VY]
+    integral = float(np.sum(np.diff(t) * 0.5 * (v[1:] + v[:-1])))
+    return integral - float(rows[-1, Y] - rows[0, Y])
 
 
 def near_home(rows: np.ndarray) -> float:
@@ -132,5 +142,14 @@ def table(found: list[Figure]) -> str:
     return "\n".join(lines)
 
 
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(prog="python -m missions.compare", description=__doc__)
+    parser.add_argument("estimator", nargs="?", choices=ESTIMATORS, default="ekf")
+    parser.add_argument("--seed", type=int, default=0, help="of all sensor noise (default 0)")
+    options = parser.parse_args()
+    print(table(figures(options.estimator, options.seed)))
+
+
 if __name__ == "__main__":
-    print(table(figures(sys.argv[1] if len(sys.argv) > 1 else "ekf")))
+    main()

@@ -14,8 +14,8 @@ from .truth_estimator import observe
 def advance(fleet, index, ticks):
     """Advance one vehicle by up to ``ticks`` ticks of 2500 us.
 
-    Returns early, at the end of a tick in which something happened (``autopilot.events``). The border is crossed once a tick: physics
-    writes ``sensors``, the autopilot reads them and writes ``actuators``.
+    Returns early, at the end of a tick in which something happened (``autopilot.events``). The border is crossed
+    once a tick: physics writes ``sensors``, the autopilot reads them and writes ``actuators``.
     """
     vehicle = fleet[index]
     events = vehicle.autopilot.events

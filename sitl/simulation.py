@@ -61,7 +61,7 @@ class Core:
     def bind(self, fleet: Array, index: int) -> Callable[[int], None]:
         """The same for one vehicle, whose memory stays in place: cheaper to call."""
         if self._function is None:
-            plain = fleet.view(np.recarray)
+            plain = {index: records.view(fleet, index)}
             return lambda ticks: advance_unit(plain, index, ticks)
         return partial(self._function, fleet.ctypes.data, len(fleet), index)
 
@@ -75,7 +75,7 @@ def load_core(progress: Progress | None = None) -> Core:
 class Snapshot:
     """Everything that a later :meth:`Simulation.restore` needs to continue bit for bit."""
 
-    record: Array
+    record: bytes
     mission: Mission
     bridge: BridgeState
     before_boot_us: int
@@ -117,6 +117,8 @@ class Simulation:
         self.fleet: Array = np.zeros(1, VEHICLE_DTYPE)
         self.index = 0
         self.v = records.view(self.fleet, self.index)
+        size = VEHICLE_DTYPE.itemsize
+        self._record = memoryview(self.fleet.view("u1"))[self.index * size : (self.index + 1) * size]  # type: ignore[arg-type]
         reader = RecordReader(self.fleet, self.index)
         self._clock = reader.field("time_us")
         self._event_count = reader.field("autopilot.events.count")
@@ -176,9 +178,13 @@ class Simulation:
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""
-        record = self.fleet[self.index : self.index + 1].copy()
         return Snapshot(
-            record, self.mission, self.bridge.snapshot(), self.before_boot_us, self._events_seen, self._reboot
+            self._record.tobytes(),
+            self.mission,
+            self.bridge.snapshot(),
+            self.before_boot_us,
+            self._events_seen,
+            self._reboot,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -187,7 +193,7 @@ class Simulation:
         The same commands then give the same bytes again. Bytes that a client has sent but the vehicle not read
         yet, and the other way round, stay where they are.
         """
-        self.fleet[self.index] = snapshot.record[0]
+        self._record[:] = snapshot.record
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
         self.bridge.restore(snapshot.bridge)

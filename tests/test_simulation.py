@@ -82,7 +82,7 @@ def test_plain_python_gives_the_same_bits(core: Core) -> None:
     pilot.fly(0.1)
     compiled, plain = pilot.simulation.fleet.copy(), pilot.simulation.fleet.copy()
     core(compiled, 0, 80)
-    advance(plain.view(np.recarray), 0, 80)
+    advance({0: records.view(plain, 0)}, 0, 80)
     assert int(compiled["tick"][0]) == int(plain["tick"][0])
     assert records.first_difference(compiled[0], plain[0]) is None
 
@@ -90,7 +90,7 @@ def test_plain_python_gives_the_same_bits(core: Core) -> None:
 def test_plain_python_gives_the_same_bits_from_power_on(core: Core) -> None:
     compiled, plain = (Simulation(core=core, seed=3).fleet for _ in range(2))
     core(compiled, 0, 120)
-    advance(plain.view(np.recarray), 0, 120)
+    advance({0: records.view(plain, 0)}, 0, 120)
     assert records.first_difference(compiled[0], plain[0]) is None
 
 
@@ -154,7 +154,7 @@ def test_reboot_keeps_parameters_and_time_goes_on(core: Core) -> None:
 
 
 def test_truth_and_estimate_agree_after_a_flight(core: Core) -> None:
-    """Default noise: within 1 m and 1 degree RMS (the issue's figures), on the noisier airframe."""
+    """Default noise: within 1 m and 1 degree RMS on the airframe with noise."""
     pilot = take_off(core, seed=11)
     pilot.fly(8.0)
     position, tilt = [], []

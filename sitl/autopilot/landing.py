@@ -3,7 +3,8 @@
 
 Landed: for one second the motors are at their least, attitude has given the throttle back, nothing leans
 far, and the vehicle neither accelerates nor climbs nor sinks. It deliberately asks neither height nor
-position.
+position. Where the vehicle is meant to land, leaning does not count: in strong wind the position controller
+goes on asking for it on the ground.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from .control import throttle_mix
 from .control.motors import hover_throttle
 from .events import LANDED, emit
 from .modes.copter import auto, ground, guided_state, rtl
-from .modes.copter.numbers import AUTO, GUIDED, LAND, RTL, has_manual_throttle
+from .modes.copter.numbers import ALT_HOLD, AUTO, GUIDED, LAND, LOITER, RTL, has_manual_throttle
 
 TRIGGER_TICKS = 400
 """1 s."""
@@ -29,6 +30,7 @@ ACCEL_MOVING = 3.0  # [m/s^2]
 _FILTER = 0.0025 / (0.0025 + 1.0 / (2.0 * math.pi))
 """Gain of a 1 Hz low-pass at 400 Hz."""
 _MIX_AT_MIN = 1.25
+_STOPPED = 0.1  # [m/s]
 
 
 @law
@@ -100,6 +102,17 @@ def update(v):
 
 
 @law
+def is_meant_to_land(ap):
+    """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
+    if ap.modes.landing.landing != 0:
+        return True
+    if ap.modes.number != LOITER and ap.modes.number != ALT_HOLD:
+        return False
+    stopped = ap.control.motors.limit_throttle_lower != 0 and abs(ap.estimate.vel[2]) < _STOPPED
+    return ap.modes.pilot.throttle_zero != 0 and stopped
+
+
+@law
 def is_at_rest(v):
     """Whether everything in this tick speaks for the ground."""
     ap = v.autopilot
@@ -108,7 +121,7 @@ def is_at_rest(v):
     if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC_THR_MIX_MIN:
         return False
     asked, off = leans_far(ap)
-    if asked or off:
+    if (asked or off) and not is_meant_to_land(ap):
         return False
     return abs(ap.estimate.vel[2]) < SPEED_MAX and acceleration(v) <= ACCEL_MAX
 
@@ -128,7 +141,7 @@ def update_mix(v):
         asked, off = leans_far(ap)
         level = ap.control.pos_d.vel_desired <= 0.0
         busy = asked or off or level or acceleration(v) > ACCEL_MOVING
-        if busy and ap.modes.landing.landing == 0:
+        if busy and not is_meant_to_land(ap):
             throttle_mix.set_mix_max(ap, float(ap.control.pos_d.control_ratio))
         else:
             throttle_mix.set_mix_min(ap)

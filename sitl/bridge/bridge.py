@@ -11,8 +11,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from ..autopilot.params.table import BY_NAME as PARAMETERS_BY_NAME
-from .autopilot_api import Autopilot, CopterAutopilot
+from .autopilot_api import Autopilot
 from .channel import COMPONENT, Channel, ChannelState
+from .copter_autopilot import CopterAutopilot
 from .dialect import MessageType, message
 from .frame import Frame
 from .links.link import Link

@@ -55,7 +55,8 @@ class MessageType:
     """One message of the dialect."""
 
     __slots__ = (
-        "_arrays", "_is_text", "_make", "_zeros", "base_size", "crc_extra", "fields", "id", "id_bytes", "name", "pack", "size",
+        "_arrays", "_is_text", "_make", "_zeros",
+        "base_size", "crc_extra", "fields", "id", "id_bytes", "name", "pack", "size",
         "tuple_type", "unpack",
     )  # fmt: skip
 

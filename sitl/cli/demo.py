@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import socket
 import sys
 import time
@@ -33,8 +34,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def demo(options: argparse.Namespace) -> int:
     """Fly, print the figures, draw."""
-    if not SCRIPT.exists():
-        raise OptionError(f"the demo flies {SCRIPT}, which is part of a source checkout and is not there")
+    check_installed()
     reason = execute.can_warp()
     if reason:
         print(f"{reason}\nThe demo flies in real time instead.", file=sys.stderr)
@@ -57,7 +57,7 @@ def demo(options: argparse.Namespace) -> int:
         return code
     simulated = simulation.time_us * 1e-6
     print(f"simulated {simulated:.1f} s in {wall:.1f} s of wall time: {simulated / wall:.1f}x real time")
-    flown = flights.read(log)
+    flown = flights.read(log, simulation.bridge.system)
     armed = next((t for t, state in flown.armed if state), 0.0)
     for t, seq in flown.reached:
         print(f"  mission item {seq} reached {t - armed:6.1f} s after arming (t = {t:.1f} s)")
@@ -68,6 +68,23 @@ def demo(options: argparse.Namespace) -> int:
     plot.draw(flown, picture, f"{simulation.airframe.name}: {SCRIPT.name}, {simulated / wall:.0f}x real time")
     print(f"log:     {log}\npicture: {picture}")
     return 0
+
+
+def check_installed() -> None:
+    """What the demo needs besides the simulator.
+
+    Raises:
+        OptionError: the example is not there.
+        MissingExtra: the example's library, or that of the picture, is not installed.
+    """
+    if not SCRIPT.exists():
+        raise OptionError(
+            f"the demo flies examples/{SCRIPT.name} of a source checkout, and {SCRIPT.parent} has none: "
+            "run make demo in a checkout, or fly a script of your own: sitl exec -- python SCRIPT"
+        )
+    for module, extra in (("mavsdk", "mavsdk"), ("matplotlib", "viz")):
+        if importlib.util.find_spec(module) is None:
+            raise plot.MissingExtra(f"the demo needs {module}: pip install 'gym-sitl[{extra}]'")
 
 
 def free_udp_port() -> int:

@@ -57,7 +57,9 @@ def seconds(text: str) -> float:
 
 def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     """What describes the vehicle and where it stands."""
-    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)")
+    parser.add_argument(
+        "--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)"
+    )
     parser.add_argument("--home", type=home, default=DEFAULT_HOME, metavar="LAT,LON,ALT,HEADING", help="start")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
     parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")

@@ -59,12 +59,20 @@ def clear_cache() -> int:
 
 
 def toolchain() -> str:
-    """Versions and options that machine code depends on."""
-    import llvmlite
+    """Versions, options and processor that machine code depends on.
+
+    The processor belongs to it: Numba compiles for the one at hand and does not load what was made for another, so that
+    a cache folder carried between machines would be compiled anew at every change of machine, without a word.
+    """
+    import llvmlite.binding
     import numba
 
     versions = (numba.__version__, llvmlite.__version__, np.__version__, platform.python_version())
-    return " ".join((*versions, platform.machine(), repr(law_options())))
+    processor = numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()
+    features = numba.config.CPU_FEATURES
+    if features is None:
+        features = llvmlite.binding.get_host_cpu_features().flatten()
+    return " ".join((*versions, platform.machine(), processor, features, repr(law_options())))
 
 
 def unit_folder(unit: Unit, dtype: np.dtype[Any]) -> Path:
@@ -234,7 +242,7 @@ def _build_lock() -> Iterator[None]:
     folder = cache_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        handle = open(folder / "lock", "w")
+        handle = open(folder / "lock", "w")  # noqa: SIM115 (closed by the "with" below)
     except OSError as error:
         raise BuildError(f"{folder}: {error.strerror}. Set SITL_CACHE_DIR to a folder that can be written") from None
     with handle:

@@ -15,26 +15,27 @@ from typing import Any
 import numpy as np
 
 _NUMBERS = {"<f8": ("_f8", 8), "<i8": ("_i8", 8), "<f4": ("_f4", 4), "<i4": ("_i4", 4)}
+_CODES = {"_f8": "d", "_i8": "q", "_f4": "f", "_i4": "i"}
 
 
 class RecordView:
     """Base of the generated classes: one for each record type."""
 
-    __slots__ = ("_at", "_at4", "_at8", "_f4", "_f8", "_i4", "_i8", "_memory")
+    __slots__ = ("_bytes", "_f4", "_f8", "_i4", "_i8")
     dtype: np.dtype[Any]
     """Of the record."""
+    _stores: tuple[str, ...] = ()
     _nested: tuple[tuple[str, type[RecordView], int], ...] = ()
     _arrays: tuple[tuple[str, np.dtype[Any], tuple[int, ...], int], ...] = ()
 
-    def __init__(self, memory: np.ndarray[Any, Any], at: int) -> None:
-        view: Any = memory.data
-        self._memory, self._at = memory, at
-        self._f8, self._i8, self._f4, self._i4 = (view.cast(c) for c in "dqfi")
-        self._at8, self._at4 = at // 8, at // 4
+    def __init__(self, memory: Any) -> None:
+        self._bytes = memory
+        for store in self._stores:
+            setattr(self, store, memory.cast(_CODES[store]))
         for name, kind, offset in self._nested:
-            setattr(self, "_" + name, kind(memory, at + offset))
+            setattr(self, "_" + name, kind(memory[offset : offset + kind.dtype.itemsize]))
         for name, base, shape, offset in self._arrays:
-            setattr(self, "_" + name, np.ndarray(shape, base, memory.data, at + offset))
+            setattr(self, "_" + name, np.ndarray(shape, base, memory, offset))
 
     def __getitem__(self, name: str) -> Any:
         return getattr(self, name)
@@ -44,35 +45,34 @@ class RecordView:
 
     def assign(self, value: Any) -> None:
         """Copy a whole record of the same type (``numpy``'s or a view) into this one's memory."""
-        self._memory[self._at : self._at + self.dtype.itemsize] = as_bytes(value, self.dtype)
+        self._bytes[:] = as_bytes(value, self.dtype)
 
 
-def as_bytes(value: Any, dtype: np.dtype[Any]) -> np.ndarray[Any, Any]:
+def as_bytes(value: Any, dtype: np.dtype[Any]) -> Any:
     """The bytes of a record; TypeError when it is of another type."""
     if getattr(value, "dtype", None) != dtype:
         raise TypeError(f"a record of {dtype.names} cannot become one of {getattr(value, 'dtype', type(value))}")
-    if isinstance(value, RecordView):
-        return value._memory[value._at : value._at + value.dtype.itemsize]
-    return np.frombuffer(np.asarray(value, dtype).tobytes(), "u1")
+    return value._bytes if isinstance(value, RecordView) else np.asarray(value, dtype).tobytes()
 
 
 def _number(store: str, size: int, offset: int) -> property:
-    at, k = f"_at{size}", offset // size
-    whole = store in ("_i8", "_i4")
+    k = offset // size
+    if store in ("_i8", "_i4"):
 
-    def read(self: RecordView) -> Any:
-        return getattr(self, store)[getattr(self, at) + k]
+        def write(self: RecordView, value: Any) -> None:
+            getattr(self, store)[k] = int(value)
+    else:
 
-    def write(self: RecordView, value: Any) -> None:
-        getattr(self, store)[getattr(self, at) + k] = int(value) if whole else value
+        def write(self: RecordView, value: Any) -> None:
+            getattr(self, store)[k] = value
 
-    def read_f8(self: RecordView) -> Any:
-        return self._f8[self._at8 + k]
-
-    def read_i8(self: RecordView) -> Any:
-        return self._i8[self._at8 + k]
-
-    return property({"_f8": read_f8, "_i8": read_i8}.get(store, read), write)
+    reads = {
+        "_f8": lambda self: self._f8[k],
+        "_i8": lambda self: self._i8[k],
+        "_f4": lambda self: self._f4[k],
+        "_i4": lambda self: self._i4[k],
+    }
+    return property(reads[store], write)
 
 
 def _nested(name: str) -> property:
@@ -93,7 +93,7 @@ def _array(name: str) -> property:
 def _view_class(dtype: np.dtype[Any]) -> type[RecordView]:
     assert dtype.fields is not None
     members: dict[str, Any] = {"dtype": dtype}
-    nested, arrays = [], []
+    nested, arrays, stores = [], [], set()
     for name in dtype.names or ():
         field, offset = dtype.fields[name][:2]
         if field.names is not None:
@@ -103,9 +103,12 @@ def _view_class(dtype: np.dtype[Any]) -> type[RecordView]:
             arrays.append((name, *field.subdtype, offset))
             members[name] = _array(name)
         else:
-            members[name] = _number(*_NUMBERS[field.str], offset)
-    members["__slots__"] = tuple("_" + n[0] for n in (*nested, *arrays))
-    members["_nested"], members["_arrays"] = tuple(nested), tuple(arrays)
+            store, size = _NUMBERS[field.str]
+            members[name] = _number(store, size, offset)
+            stores.add(store)
+    stored = [name for name, _, _ in nested] + [name for name, *_ in arrays]
+    members["__slots__"] = tuple("_" + name for name in stored)
+    members["_stores"], members["_nested"], members["_arrays"] = tuple(stores), tuple(nested), tuple(arrays)
     return type("RecordView", (RecordView,), members)
 
 
@@ -117,5 +120,6 @@ def view(fleet: np.ndarray[Any, Any], index: int) -> Any:
     """
     if not fleet.flags.c_contiguous:
         raise ValueError("the fleet must be one block of memory")
-    memory = np.frombuffer(fleet.data, "u1")
-    return _view_class(fleet.dtype)(memory, range(len(fleet))[index] * fleet.dtype.itemsize)
+    size = fleet.dtype.itemsize
+    at = range(len(fleet))[index] * size
+    return _view_class(fleet.dtype)(np.frombuffer(fleet.data, "u1").data[at : at + size])

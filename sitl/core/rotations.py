@@ -16,13 +16,13 @@ TWO_PI = 2.0 * math.pi
 
 @law
 def wrap_pi(angle):
-    """Angle [rad] wrapped to [-pi, pi)."""
+    """Angle [rad] wrapped to [-pi, pi), the ends to rounding."""
     return angle - TWO_PI * math.floor((angle + PI) / TWO_PI)
 
 
 @law
 def wrap_2pi(angle):
-    """Angle [rad] wrapped to [0, 2 pi)."""
+    """Angle [rad] wrapped to [0, 2 pi), the ends to rounding."""
     return angle - TWO_PI * math.floor(angle / TWO_PI)
 
 
@@ -73,18 +73,6 @@ def quat_from_rotation_vector(rx, ry, rz):
         return quat_normalise(1.0, 0.5 * rx, 0.5 * ry, 0.5 * rz)
     s = math.sin(0.5 * angle) / angle
     return (math.cos(0.5 * angle), s * rx, s * ry, s * rz)
-
-
-@law
-def quat_to_rotation_vector(w, x, y, z):
-    """Rotation vector [rad] of the shorter way round, |r| <= pi."""
-    if w < 0.0:
-        w, x, y, z = -w, -x, -y, -z
-    n = math.sqrt(x * x + y * y + z * z)
-    if n < 1e-12:
-        return (2.0 * x, 2.0 * y, 2.0 * z)
-    k = 2.0 * math.atan2(n, w) / n
-    return (k * x, k * y, k * z)
 
 
 @law

@@ -19,13 +19,17 @@ def names() -> tuple[str, ...]:
     return _MODULES
 
 
-def load(name: str) -> Airframe:
+def load(name: str | Airframe) -> Airframe:
     """An airframe by its name (hyphens and underscores are the same), or by the path of a Python file of the user's
-    own that defines ``AIRFRAME``.
+    own that defines ``AIRFRAME``; an airframe is returned as it is.
 
     Raises:
         AirframeError: no airframe of that name (the message lists those there are), or the file cannot be used.
     """
+    if isinstance(name, Airframe):
+        return name
+    if not isinstance(name, str):
+        raise AirframeError(f"airframe {name!r} is neither a name, a .py file nor an Airframe")
     if name.endswith(".py"):
         return _load_file(Path(name))
     module = name.strip().lower().replace("-", "_")
@@ -40,6 +44,8 @@ def _load_file(path: Path) -> Airframe:
         scope = runpy.run_path(str(path))
     except AirframeError:
         raise
+    except OSError as error:
+        raise AirframeError(f"airframe file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except Exception as error:  # whatever a user's file raises is a fault of the file
         raise AirframeError(f"airframe file {str(path)!r}: {type(error).__name__}: {error}") from error
     found = scope.get("AIRFRAME")

@@ -105,7 +105,7 @@ _LIMITS: dict[str, tuple[float, float]] = {
     "mag_rate": (1.0, 200.0),
 }
 """Allowed range of each element; any other figure must be 0 or more, except offsets."""
-_SIGNED = ("mag_offset", "rotor_x", "rotor_y", "rotor_z", "rotor_direction")
+_SIGNED = ("mag_offset",)
 
 
 @dataclass(frozen=True)
@@ -135,6 +135,8 @@ class Airframe:
             count = len(self.rotors)
             raise AirframeError(f"airframe {self.name!r}: {count} rotors; allowed 1 .. {ROTORS_MAX}")
         for number, rotor in enumerate(self.rotors, 1):
+            if not all(isinstance(value, int | float) and math.isfinite(value) for value in rotor):
+                raise AirframeError(f"airframe {self.name!r}: rotor {number} is {tuple(rotor)}; expected four numbers")
             if rotor.direction not in (CCW, CW):
                 raise AirframeError(
                     f"airframe {self.name!r}: rotor {number} turns {rotor.direction}; CCW is 1.0, CW is -1.0"
@@ -177,7 +179,10 @@ class Airframe:
 
     def _check(self, name: str, value: float | Sequence[float]) -> None:
         shape = FIGURES_DTYPE[name].shape
-        elements = np.asarray(value, dtype=float)
+        try:
+            elements = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            elements = np.empty(0)
         if elements.shape != shape:
             wanted = f"{shape[0]} numbers" if shape else "one number"
             raise AirframeError(f"airframe {self.name!r}: {name} = {value!r}; expected {wanted}")

@@ -66,12 +66,13 @@ AIRFRAME = Airframe(
         "ATC_RAT_PIT_P": 0.80,
         "ATC_RAT_PIT_I": 0.80,
         "ATC_RAT_PIT_D": 0.024,
-        "ATC_RAT_YAW_P": 2.0,
-        "ATC_RAT_YAW_I": 0.2,
-        "ATC_ANG_YAW_P": 3.0,
+        "ATC_RAT_YAW_P": 4.0,  # crosses over at 8 rad/s
+        "ATC_RAT_YAW_I": 0.4,
+        "ATC_RAT_YAW_FLTE": 10.0,  # [Hz]
+        "ATC_ANG_YAW_P": 4.5,
         "ATC_ACCEL_R_MAX": 60000.0,  # [cdeg/s^2] half of what the rotors can do at hover thrust
         "ATC_ACCEL_P_MAX": 50000.0,
-        "ATC_ACCEL_Y_MAX": 5000.0,
+        "ATC_ACCEL_Y_MAX": 7000.0,
         "MOT_SPIN_MAX": 0.838,  # top speed at 1838 us
         "MOT_THST_EXPO": 0.7,  # thrust (0.15 + 0.688 x)^2 / 0.838^2 of output x
         "MOT_THST_HOVER": 0.45,  # thrust 11.2 N of 24.0 N through that curve

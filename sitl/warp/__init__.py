@@ -15,7 +15,7 @@ The simulator's own process is not warped: `time.monotonic` there is the wall cl
 """
 
 from sitl.warp.build import CannotBuild, preload_library
-from sitl.warp.launch import run_script, script_environment, start_script
+from sitl.warp.launch import script_environment, start_script
 from sitl.warp.pace import Pacer
 from sitl.warp.page import ClockPage, PageReader
 
@@ -25,7 +25,6 @@ __all__ = [
     "PageReader",
     "Pacer",
     "preload_library",
-    "run_script",
     "script_environment",
     "start_script",
 ]

@@ -51,7 +51,7 @@ def compiler() -> list[str]:
         return [sys.executable, "-m", "ziglang", "cc"]
     raise CannotBuild(
         "sitl exec needs a C compiler to put a script on simulated time, and found none of $CC, cc, gcc, "
-        "clang. Install one (Debian: apt install gcc; anywhere: pip install ziglang), or run the script "
+        "clang. Install one (Debian: apt install gcc; anywhere: pip install 'gym-sitl[exec]'), or run the script "
         "without sitl exec against a vehicle at --speedup 1."
     )
 

@@ -5,17 +5,12 @@ from __future__ import annotations
 
 import contextlib
 import os
-import signal
 import subprocess
-import sys
-import threading
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sitl.warp.build import CannotBuild, preload_library, static_runtime
 from sitl.warp.page import ClockPage
-
-FORWARDED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def script_environment(page: ClockPage, env: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -40,30 +35,3 @@ def start_script(
 ) -> subprocess.Popen:
     """Start `argv` on the clock of `page` and return at once; `options` go to subprocess.Popen."""
     return subprocess.Popen(list(argv), env=script_environment(page, env), **options)
-
-
-def run_script(argv: Sequence[str], page: ClockPage, env: Mapping[str, str] | None = None) -> int:
-    """Run `argv` on the clock of `page` to its end and return its exit code; 128 + n if signal n ended it.
-
-    The caller's simulator must go on publishing meanwhile, from another thread. Called in the main thread,
-    this leaves it to the script what to do about SIGINT, SIGTERM and SIGHUP: it forwards them.
-    """
-    child = start_script(argv, page, env)
-
-    def forward(number: int, _frame: object) -> None:
-        # A terminal sends its Ctrl-C to the whole group, so the script has that one already.
-        if child.poll() is None and not (number == signal.SIGINT and sys.stdin and sys.stdin.isatty()):
-            child.send_signal(number)
-
-    previous = {}
-    if threading.current_thread() is threading.main_thread():
-        previous = {number: signal.signal(number, forward) for number in FORWARDED}
-    try:
-        code = child.wait()
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
-        if child.poll() is None:
-            child.kill()
-            child.wait()
-    return code if code >= 0 else 128 - code

@@ -48,8 +48,6 @@ def test_landed_after_a_second_on_the_ground(flying):
         lambda ap: setattr(ap.control.attitude, "mix", 0.5),
         lambda ap: ap.estimate.vel.__setitem__(2, 1.1),
         lambda ap: ap.estimate.acc_ned.__setitem__(2, 9.8),
-        lambda ap: ap.control.attitude.target_euler.__setitem__(0, math.radians(16.0)),
-        lambda ap: setattr(ap.control.attitude, "thrust_error_angle", math.radians(31.0)),
     ),
 )
 def test_any_sign_of_flight_starts_the_second_again(flying, lift):
@@ -59,6 +57,26 @@ def test_any_sign_of_flight_starts_the_second_again(flying, lift):
     ticks(flying, 300)
     assert flying.autopilot.arming.landed == 0
     assert flying.autopilot.arming.landed_ticks < 300
+
+
+LEANS = (
+    lambda ap: ap.control.attitude.target_euler.__setitem__(0, math.radians(16.0)),
+    lambda ap: setattr(ap.control.attitude, "thrust_error_angle", math.radians(31.0)),
+)
+
+
+@pytest.mark.parametrize("lean", LEANS)
+@pytest.mark.parametrize(
+    ("mode", "throttle_zero", "landed"),
+    [(LAND, 0, 1), (GUIDED, 1, 0), (LOITER, 1, 1), (LOITER, 0, 0), (ALT_HOLD, 1, 1)],
+)
+def test_leaning_counts_as_flight_unless_it_is_meant_to_land(flying, lean, mode, throttle_zero, landed):
+    """On the ground the position controller leans against the wind."""
+    touch(fly(flying, mode))
+    flying.autopilot.modes.pilot.throttle_zero = throttle_zero
+    lean(flying.autopilot)
+    ticks(flying, 400)
+    assert flying.autopilot.arming.landed == landed
 
 
 def test_a_disarmed_vehicle_is_landed(flying):

@@ -8,6 +8,10 @@ import random
 from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from missions.flights import TAKEOFF, Pilot
+from sitl.bridge.client import Client
+from sitl.simulation import Core, Simulation
+
 
 def session(seed: int) -> bytes:
     """A busy minute with two clients; everything that was sent to them."""
@@ -77,3 +81,28 @@ def test_a_reboot_keeps_clients_and_forgets_their_streams() -> None:
     types = {m.get_type() for m in bench.client.receive()}
     assert "HEARTBEAT" in types and "ATTITUDE" not in types
     assert len(bench.bridge.channels) == 1
+
+
+def test_every_byte_of_a_flight_has_its_time_whatever_the_step(core: Core) -> None:
+    """Texts of take-off, landing and disarming included: the core stops for them."""
+    pilot = Pilot(Simulation(core=core))
+    pilot.boot()
+    pilot.arm()
+    listener = Client()
+    pilot.simulation.bridge.add_link(listener.link)
+    listener.set_interval("ATTITUDE", 4.0)
+    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 2.0)
+    pilot.fly(6.0)
+    pilot.client.command(21)
+    pilot.fly(0.1)
+    listener.link.receive()
+    start = pilot.simulation.snapshot()
+    heard = []
+    for step in (0.0025, 0.13, 20.0):
+        pilot.simulation.restore(start)
+        stop = pilot.simulation.time_us + 20_000_000
+        while pilot.simulation.time_us < stop:
+            pilot.simulation.advance_to(min(stop, pilot.simulation.time_us + round(step * 1e6)))
+        heard.append(listener.link.receive())
+    assert heard[0] == heard[1] == heard[2]
+    assert b"Disarming motors" in heard[0] and b"SIM Hit ground" in heard[0]

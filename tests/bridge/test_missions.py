@@ -251,3 +251,14 @@ def test_dronekit_goto(bench: Bench) -> None:
     assert ack.type == ACCEPTED
     name, place, _ = bench.autopilot.calls[-1]
     assert name == "guided_position" and place == pytest.approx((11.1, 0.0, -7.0), abs=0.7)
+
+
+def test_home_of_an_empty_mission(bench: Bench) -> None:
+    """DroneKit asks for item 0 of a mission of no items, and waits for it; ArduPilot gives home."""
+    home = bench.vehicle.v.autopilot.home
+    home.lat, home.lon, home.alt, home.is_set = -353632620, 1491652370, 584.0, 1
+    (item,) = bench.ask(mavlink.MAVLink_mission_request_message(1, 1, 0), "MISSION_ITEM")
+    assert (item.seq, item.command, item.z) == (0, 16, 584.0)
+    assert item.x == pytest.approx(-35.363262) and item.y == pytest.approx(149.165237)
+    (ack,) = bench.ask(mavlink.MAVLink_mission_request_message(1, 1, 1))
+    assert ack.type == INVALID_SEQUENCE

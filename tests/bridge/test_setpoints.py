@@ -40,7 +40,7 @@ def call(bench: Bench, message: Any) -> tuple[Any, ...]:
 
 
 def test_kinds(guided: Bench) -> None:
-    no_yaw = (False, 0.5, False, 0.25, False)
+    no_yaw = (False, 0.0, False, 0.0, False)
     assert call(guided, local(POSITION)) == ("guided_position", (1, 2, -3), no_yaw)
     assert call(guided, local(VELOCITY)) == ("guided_velocity", (4, 5, 6), (0, 0, 0), no_yaw)
     assert call(guided, local(0xC07)) == ("guided_velocity", (4, 5, 6), (7, 8, 9), no_yaw)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from sitl.cli import main
+from sitl.cli import demo, main
 from sitl.logs import flight, plot
 from sitl.simulation import Core
 
@@ -122,6 +122,18 @@ def test_exec_needs_a_command_that_exists(tmp_path: Path) -> None:
     assert "no command given" in sitl("exec", folder=tmp_path).stderr
     result = sitl("exec", "--", "no-such-program", folder=tmp_path)
     assert result.returncode == 2 and "'no-such-program' is not found" in result.stderr
+
+
+def test_the_demo_says_what_it_lacks(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr(demo.importlib.util, "find_spec", lambda name: None)
+        assert main(["demo", "copter"]) == 2
+    assert "pip install 'gym-sitl[mavsdk]'" in capsys.readouterr().err
+    monkeypatch.setattr(demo, "SCRIPT", tmp_path / "mavsdk_mission.py")
+    assert main(["demo", "copter"]) == 2
+    assert "run make demo in a checkout" in capsys.readouterr().err
 
 
 SLEEPER = """

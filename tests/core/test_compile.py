@@ -9,7 +9,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
+
+from sitl.core import compile as compiler
 
 LAWS = """
 from sitl.core.kernels import law
@@ -128,6 +131,13 @@ def test_fingerprint_follows_code_and_constants_but_not_comments(
     toy.write(LAWS.replace(old, new))
     after = toy.run()["prints"]
     assert {name for name in before if before[name] != after[name]} == changed
+
+
+def test_machine_code_belongs_to_a_processor(monkeypatch: pytest.MonkeyPatch) -> None:
+    here = compiler.toolchain()
+    monkeypatch.setattr(numba.config, "CPU_NAME", "generic")
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", "")
+    assert compiler.toolchain() != here
 
 
 def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:

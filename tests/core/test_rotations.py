@@ -32,22 +32,26 @@ def test_rotation_keeps_length_and_inverts(roll, pitch, yaw, x, y, z) -> None:
 
 
 @given(st.floats(-3.1, 3.1), component, component, component)
-def test_rotation_vector_and_back(length: float, x: float, y: float, z: float) -> None:
+def test_rotation_vector(length: float, x: float, y: float, z: float) -> None:
     n = math.hypot(x, y, z)
     if n < 1e-3:
         return
-    vector = (length * x / n, length * y / n, length * z / n)
-    assert rot.quat_to_rotation_vector(*rot.quat_from_rotation_vector(*vector)) == pytest.approx(vector, abs=1e-9)
+    axis = (x / n, y / n, z / n)
+    whole, half = (rot.quat_from_rotation_vector(*(k * length * c for c in axis)) for k in (1.0, 0.5))
+    assert rot.quat_multiply(*half, *half) == pytest.approx(whole, abs=1e-9)
+    assert rot.quat_rotate(*whole, *axis) == pytest.approx(axis, abs=1e-9)
+    assert 2.0 * math.acos(min(abs(whole[0]), 1.0)) == pytest.approx(abs(length), abs=1e-6)
 
 
 @given(st.floats(-1e6, 1e6))
 def test_wraps(a: float) -> None:
     assert -math.pi <= rot.wrap_pi(a) < math.pi + 1e-9
-    assert 0.0 <= rot.wrap_2pi(a) < 2.0 * math.pi + 1e-9
+    assert -1e-9 < rot.wrap_2pi(a) < 2.0 * math.pi + 1e-9
     assert math.cos(rot.wrap_pi(a)) == pytest.approx(math.cos(a), abs=1e-6)
 
 
 def test_conventions() -> None:
+    assert rot.quat_from_rotation_vector(0.0, 0.0, 0.5) == pytest.approx(rot.quat_from_euler(0.0, 0.0, 0.5))
     nose_up = rot.quat_from_euler(0.0, 0.1, 0.0)
     assert rot.quat_rotate(*nose_up, 1.0, 0.0, 0.0)[2] < 0.0, "nose up: the body's x axis points up, which is -down"
     right = rot.quat_from_euler(0.0, 0.0, math.pi / 2)

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from missions.flights import ARM, SET_MODE, TAKEOFF, Pilot
+from sitl.core.geodesy import add_offset
 from sitl.physics.native import truth
 from sitl.simulation import Core, Simulation
 
@@ -17,6 +18,30 @@ STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
 MIDDLE, LOW = 1500, 1000
 KEEP = 65535
+ABSOLUTE, RELATIVE, TERRAIN = 5, 6, 11
+
+WAYPOINT, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, RETURN, LAND_ITEM, TAKEOFF_ITEM, DELAY = (
+    16,
+    17,
+    18,
+    19,
+    20,
+    21,
+    22,
+    93,
+)
+CONDITION_DELAY, CONDITION_DISTANCE, CONDITION_YAW = 112, 114, 115
+JUMP, CHANGE_SPEED, ROI, ROI_NONE = 177, 178, 195, 197
+
+
+class Item(NamedTuple):
+    """A mission item; the place in metres north and east of the origin, None for none."""
+
+    command: int
+    place: tuple[float, float] | None = None
+    z: float = 0.0
+    p: tuple[float, ...] = ()
+    frame: int = RELATIVE
 
 
 class Aviator(Pilot):
@@ -24,8 +49,9 @@ class Aviator(Pilot):
 
     def __init__(self, core: Core, frame: str = "erle_copter", *, seed: int = 0, **params: float) -> None:
         self.track: list[tuple[float, ...]] = []
+        self.items: tuple[Item, ...] = ()
+        self.answers: list[int] = []
         self._pulses: tuple[int, ...] | None = None
-        self._next_stick_us = 0
         super().__init__(Simulation(frame, seed=seed, core=core, params=params))
 
     # ------------------------------------------------------------------ what is true
@@ -155,3 +181,43 @@ class Aviator(Pilot):
     def disarm_result(self) -> int:
         """MAV_RESULT of disarming now."""
         return self.ask(ARM, 0)
+
+    # ------------------------------------------------------------------ missions
+
+    def lat_lon(self, north: float, east: float) -> tuple[int, int]:
+        """A place, metres from the origin [degE7]."""
+        estimate = self.ap.estimate
+        lat, lon = add_offset(int(estimate.origin_lat), int(estimate.origin_lon), north, east)
+        return round(lat), round(lon)
+
+    def upload(self, *items: Item) -> int:
+        """Upload items (home is put in front) by the mission protocol; the MAV_MISSION_RESULT."""
+        self.items = (Item(WAYPOINT, (0.0, 0.0), 584.0, frame=ABSOLUTE), *items)
+        self.answers.clear()
+        self.client.send("MISSION_COUNT", target_system=1, target_component=1, count=len(self.items))
+        assert self.fly(10.0, lambda: bool(self.answers)), "no MISSION_ACK"
+        return self.answers[0]
+
+    def start_mission(self, *items: Item) -> None:
+        """Upload, arm in GUIDED, AUTO, MISSION_START."""
+        assert self.upload(*items) == 0
+        self.arm()
+        assert self.set_mode(AUTO)
+        assert self.ask(300, 0, 0) == 0
+
+    def reached_at(self, seq: int) -> float:
+        """When MISSION_ITEM_REACHED first came for an item [s]; NaN when it did not."""
+        return next((time for time, number in self.reached if number == seq), math.nan)
+
+    def _take(self, name: str, fields: Any) -> None:
+        super()._take(name, fields)
+        if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
+            item = self.items[fields.seq]
+            x, y = self.lat_lon(*item.place) if item.place else (0, 0)
+            p = {f"param{k + 1}": value for k, value in enumerate(item.p)}
+            self.client.send(
+                "MISSION_ITEM_INT", target_system=1, target_component=1, seq=fields.seq, frame=item.frame,
+                command=item.command, autocontinue=1, x=x, y=y, z=item.z, **p,
+            )  # fmt: skip
+        elif name == "MISSION_ACK":
+            self.answers.append(fields.type)

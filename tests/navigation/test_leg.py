@@ -140,3 +140,18 @@ def test_axis_limits() -> None:
     assert axis_limits((0.0, 0.0, 1.0), 10.0, 2.5, 1.5) == 1.5
     assert axis_limits((0.6, 0.0, -0.8), 10.0, 2.5, 1.5) == pytest.approx(2.5 / 0.8)
     assert axis_limits((0.995, 0.0, 0.0999), 10.0, 2.5, 1.5) == pytest.approx(10.0 / 0.995)
+
+
+@given(st.floats(0.5, 8.0), st.floats(0.0, 2.5), st.floats(0.5, 4.0), st.floats(1.05, 3.0))
+@settings(max_examples=60, deadline=None)
+def test_slowing_down_never_turns_back(speed: float, acceleration: float, limit: float, spare: float) -> None:
+    """A limit lowered on the way, with little room: as slow as it can be and still stop at the end, not before it."""
+    within = Limits(limit, 2.5, 1.0, 0.3)
+    peak = speed + 0.5 * acceleration * abs(acceleration)
+    length = spare * (peak * (peak / 2.5 + 2.5) + 4.0 * speed + 8.0)  # enough to stop
+    leg = record(plan(length, within, speed, acceleration), length)
+    for t in np.linspace(0.0, leg.duration, 200):
+        p, v, _ = evaluate(leg, float(t))
+        assert v > -1e-6
+        assert p < length + 1e-6
+    assert evaluate(leg, float(leg.duration)) == (length, 0.0, 0.0)

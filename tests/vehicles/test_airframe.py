@@ -41,6 +41,8 @@ def test_unknown_name_lists_the_known():
         ({"mass": -1.0}, r"mass = -1.0 is outside 0.001"),
         ({"mass": math.nan}, r"mass = nan"),
         ({"inertia": (1.0, 2.0)}, r"inertia = \(1.0, 2.0\); expected 3 numbers"),
+        ({"mass": "heavy"}, r"mass = 'heavy'; expected one number"),
+        ({"mag_offset": (0.0, None, 0.0)}, r"mag_offset = \(0.0, None, 0.0\)"),
         ({"mas": 1.0}, r"unknown figure 'mas'"),
         ({"rotor_x": 1.0}, r"unknown figure 'rotor_x'"),
         ({"gps_rate": 0.0}, r"gps_rate"),
@@ -51,6 +53,20 @@ def test_unknown_name_lists_the_known():
 def test_bad_figures_are_named(figures, message):
     with pytest.raises(AirframeError, match=message):
         vehicles.load("erle_copter").changed(**figures)
+
+
+@pytest.mark.parametrize("rotor", [(math.nan, 0.0, 0.0, 1.0), (0.0, math.inf, 0.0, 1.0), (0.0, "left", 0.0, 1.0)])
+def test_rotors_stand_at_numbers(rotor):
+    erle = vehicles.load("erle_copter")
+    with pytest.raises(AirframeError, match=r"rotor 2 is .*; expected four numbers"):
+        vehicles.Airframe("x", "", (erle.rotors[0], vehicles.Rotor(*rotor)), erle.figures)
+
+
+def test_an_airframe_is_taken_as_it_is():
+    heavier = vehicles.load("erle_copter").changed(mass=1.4)
+    assert vehicles.load(heavier) is heavier
+    with pytest.raises(AirframeError, match="airframe None is neither"):
+        vehicles.load(None)
 
 
 def test_missing_figures_are_named():
@@ -110,5 +126,5 @@ def test_a_file_that_cannot_be_used_is_named(tmp_path, text: str, says: str) -> 
 
 
 def test_a_file_that_is_not_there_is_named() -> None:
-    with pytest.raises(AirframeError, match="absent.py"):
+    with pytest.raises(AirframeError, match=r"absent\.py.*cannot be read: No such file"):
         vehicles.load("absent.py")

@@ -17,7 +17,7 @@ def test_no_compiler_says_what_to_install(monkeypatch):
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setattr(build.shutil, "which", lambda _name: None)
     monkeypatch.setattr(build.importlib.util, "find_spec", lambda _name: None)
-    with pytest.raises(CannotBuild, match="pip install ziglang"):
+    with pytest.raises(CannotBuild, match=r"pip install .gym-sitl\[exec\]"):
         build.preload_library()
 
 

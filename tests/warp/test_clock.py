@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-from sitl.warp import ClockPage, run_script, script_environment, start_script
+from sitl.warp import ClockPage, script_environment, start_script
 from tests.warp.drive import need_library, run, run_python
 
 SPEEDUP = 20.0
@@ -105,14 +105,6 @@ threads = [threading.Thread(target=look) for _ in range(4)]
 print(json.dumps(back))
 """
     assert run_python(code, 50.0) == []
-
-
-def test_run_script_returns_the_exit_code():
-    need_library()
-    with ClockPage() as page:
-        page.publish(0, 1.0, 10**12)
-        assert run_script([sys.executable, "-c", "raise SystemExit(7)"], page) == 7
-        assert run_script([sys.executable, "-c", "import os; os.kill(os.getpid(), 15)"], page) == 128 + 15
 
 
 def test_other_preloaded_libraries_are_kept():

@@ -42,9 +42,7 @@ def learn_hover_throttle(ap, dt):
     if ap.params.MOT_HOVER_LEARN == 0.0 or throttle <= 0.0:
         return
     hover = float(ap.params.MOT_THST_HOVER)
-    ap.params.MOT_THST_HOVER = constrain(
-        hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX
-    )
+    ap.params.MOT_THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
 
 
 @law
@@ -213,4 +211,4 @@ def write_actuators(ap, actuators):
     for k in range(MOTORS):
         pulse = least + int(span * float(ap.control.motors.actuator[k]))
         actuators.pwm[k] = pulse
-        actuators.controls[k] = (pulse - 1000) * 0.001 if armed else 0.0
+        actuators.controls[k] = constrain((pulse - 1000) * 0.001, 0.0, 1.0) if armed else 0.0

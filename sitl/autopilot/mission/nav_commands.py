@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..modes.copter import auto
 from ..navigation import planner
 from ..navigation import state as kinds
 from ..navigation.profile import clear
@@ -36,6 +37,7 @@ def give(v: Any, seq: int, item: MissionItem) -> None:
     ap, time_us = v.autopilot, int(v.time_us)
     nav = ap.modes.nav
     kind = KINDS[item.command]
+    auto.face(v, kind)
     here, _ = planner.origin_of_next(ap, time_us)
     if kind in (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME):
         planner.begin(ap, time_us, point(ap, item, here))

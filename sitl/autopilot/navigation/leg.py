@@ -21,6 +21,8 @@ SHORTEST = 1e-4
 """A leg shorter than this [m] has no length."""
 
 
+_HALVINGS = 12
+_NO_ACCELERATION = 1e-9
 _CRUISE = 3
 """Ruckig's phase without jerk and acceleration, of seven."""
 
@@ -108,9 +110,9 @@ def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: fl
         if not (math.isfinite(value) and value > 0.0):
             raise LegError(f"leg: {name} limit {value} must be a positive number")
     if not math.isfinite(length + v0 + a0 + v1 + limits.rise) or length < 0.0 or limits.rise < 0.0:
-        raise LegError(
-            f"leg: length {length}, rise {limits.rise} must be 0 or more and speeds {v0}, {v1} finite"
-        )
+        raise LegError(f"leg: length {length}, rise {limits.rise} must be 0 or more and speeds {v0}, {v1} finite")
+    if abs(a0) < _NO_ACCELERATION:
+        a0 = 0.0  # a number next to nothing spoils ruckig's phases
     at_rest = v0 == 0.0 and a0 == 0.0 and v1 == 0.0
     if at_rest and length < SHORTEST:
         return Profile((Segment(0.0, length, 0.0, 0.0, 0.0, 0.0),), 0.0, 0.0, 0.0)
@@ -119,23 +121,37 @@ def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: fl
     if not at_rest:
         top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
         jerk = pulse_acceleration(top, limits) / top
-    phases = _slowing_phases(length, limits, jerk, v0, a0, v1) or _phases(length, limits, jerk, v0, a0, v1)
+    phases = _hasty_phases(length, limits, jerk, v0, a0, v1) or _phases(length, limits, jerk, v0, a0, v1)
     if at_rest and limits.rise > 0.0:
-        phases = [
-            piece for phase in phases for piece in _soften(*phase, pulse, min(limits.rise, 0.5 * pulse))
-        ]
+        phases = [piece for phase in phases for piece in _soften(*phase, pulse, min(limits.rise, 0.5 * pulse))]
     return _profile(phases, length, v0, a0, v1)
+
+
+def _hasty_phases(
+    length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
+) -> list[tuple[float, float, float]]:
+    """Phases of a leg begun too fast, empty when it is not.
+
+    Where the room is too short for slowing down to the limit and stopping after, it slows down as far as it
+    can: bringing the speed below the limit first would mean to stop early or to fly backwards.
+    """
+    peak = v0 + 0.5 * a0 * abs(a0) / jerk
+    if peak <= limits.speed:
+        return []
+    phases = _slowing_phases(length, limits, jerk, v0, a0, v1)
+    low, high = limits.speed, peak
+    for _ in range(0 if phases else _HALVINGS):
+        middle = 0.5 * (low + high)
+        slowed = _slowing_phases(length, limits._replace(speed=middle), jerk, v0, a0, v1)
+        low, high = (low, middle) if slowed else (middle, high)
+        phases = slowed or phases
+    return phases or _phases(length, limits._replace(speed=1.001 * peak), jerk, v0, a0, v1)
 
 
 def _slowing_phases(
     length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
 ) -> list[tuple[float, float, float]]:
-    """Phases of a leg begun too fast: to the speed limit without dipping below it, then as from there.
-
-    Empty when the start is within the limit or there is not room enough.
-    """
-    if v0 + 0.5 * a0 * abs(a0) / jerk <= limits.speed:
-        return []
+    """Phases to the speed limit without dipping below it, then as from there; empty without room enough."""
     wanted = ruckig.InputParameter(1)
     wanted.control_interface = ruckig.ControlInterface.Velocity
     wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [0.0], [v0], [a0]
@@ -181,9 +197,7 @@ def _phases(
     return [(t, j, 0.0) for t, j in pieces if t > 1e-9]
 
 
-def _soften(
-    duration: float, jerk: float, _snap: float, pulse: float, rise: float
-) -> list[tuple[float, float, float]]:
+def _soften(duration: float, jerk: float, _snap: float, pulse: float, rise: float) -> list[tuple[float, float, float]]:
     """A constant-jerk phase as one or two pulses of rise, hold and fall, with the same duration and area.
 
     Where a leg turns from accelerating to braking without cruise, ruckig's phase is two pulses long.
@@ -197,9 +211,7 @@ def _soften(
     return [piece for piece in pieces if piece[0] > 1e-9] * count
 
 
-def _profile(
-    phases: Sequence[tuple[float, float, float]], length: float, v0: float, a0: float, v1: float
-) -> Profile:
+def _profile(phases: Sequence[tuple[float, float, float]], length: float, v0: float, a0: float, v1: float) -> Profile:
     """Integrates phases to segments and finds where the start's acceleration ends and the final
     deceleration begins.
     """
@@ -240,9 +252,7 @@ def axis_limits(direction: Sequence[float], horizontal: float, up: float, down: 
     return min(horizontal / ne if ne > 1e-9 else math.inf, vertical / d if d > 1e-9 else math.inf)
 
 
-def write(
-    leg: Any, profile: Profile, origin: Sequence[float], direction: Sequence[float], length: float
-) -> None:
+def write(leg: Any, profile: Profile, origin: Sequence[float], direction: Sequence[float], length: float) -> None:
     """Put a profile into a leg record, at its start and not started."""
     leg.segments = len(profile.segments)
     leg.started = leg.k = leg.fast = 0

@@ -26,6 +26,8 @@ class Parameter(NamedTuple):
     doc: str
     """One line, our own words."""
     kind: str = FLOAT
+    read_only: bool = False
+    """The firmware's own: users read it."""
 
     def refusal(self, value: float) -> str | None:
         """Why ``value`` cannot be set, or None when it can."""

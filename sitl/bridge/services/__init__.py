@@ -9,6 +9,7 @@ from .home import HomeService
 from .mission import MissionService
 from .parameters import ParameterService
 from .ping import PingService
+from .prearm import PreArmService
 from .rc import RcService
 from .setpoints import SetpointService
 from .statustext import StatusTextService
@@ -28,6 +29,7 @@ ALL_SERVICES = (
     TimesyncService,
     PingService,
     EventService,
+    PreArmService,
     FtpService,
 )
 """In the order in which they act when several are due at the same time."""

@@ -23,7 +23,7 @@ TABLE: dict[int, Entry] = {**commands_flight.COMMANDS, **commands_system.COMMAND
 
 
 class CommandService(Service):
-    """COMMAND_LONG, COMMAND_INT and the old SET_MODE."""
+    """Commands, and the old way to set the mode."""
 
     def handlers(self) -> dict[str, Handler]:
         return {"COMMAND_LONG": self._long, "COMMAND_INT": self._int, "SET_MODE": self._set_mode}

@@ -44,7 +44,7 @@ def set_mode(bridge: Bridge, number: int) -> int:
 
 
 def do_set_mode(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """176: p1 must have MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, p2 is the mode's number."""
+    """176: p1 must have MAV_MODE_FLAG_CUSTOM_MODE_ENABLED (else DENIED), p2 is the mode's number (else FAILED)."""
     if not 0.0 <= command.p1 < 256.0 or not int(command.p1) & 1:
         return DENIED
     if not (0.0 <= command.p2 < 2.0**32 and command.p2 == int(command.p2)):
@@ -52,8 +52,23 @@ def do_set_mode(bridge: Bridge, channel: Channel, command: Command) -> int:
     return set_mode(bridge, int(command.p2))
 
 
+def loiter(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """17: changes to LOITER; FAILED when the mode cannot be entered."""
+    return set_mode(bridge, LOITER)
+
+
+def return_to_launch(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """20: changes to RTL; FAILED when the mode cannot be entered."""
+    return set_mode(bridge, RTL)
+
+
+def land(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """21: changes to LAND, where the vehicle is; the command's place is not used (as in ArduCopter)."""
+    return set_mode(bridge, LAND)
+
+
 def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """22: p7 height above home [m]."""
+    """22: p7 height above home [m]. In GUIDED, LOITER, ALT_HOLD, armed, on the ground or in the climb; else FAILED."""
     if command.frame != GLOBAL_RELATIVE_ALT:
         return DENIED
     return ACCEPTED if bridge.autopilot.takeoff(command.z) else FAILED
@@ -91,9 +106,9 @@ def set_relay(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """192: fly to a place in GUIDED.
+    """192: fly to a place in GUIDED; p1 speed, p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
-    P2 bit 1 changes to GUIDED first. The place is refused before the mode is changed.
+    The place is refused before the mode is changed.
     """
     if command.frame not in GLOBAL_FRAMES:
         bridge.get(StatusTextService).say(WARNING, f"Unknown mavlink coordinate frame {command.frame}")
@@ -200,9 +215,9 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 COMMANDS: dict[int, Entry] = {
-    17: Entry(lambda b, c, m: set_mode(b, LOITER)),
-    20: Entry(lambda b, c, m: set_mode(b, RTL)),
-    21: Entry(lambda b, c, m: set_mode(b, LAND)),
+    17: Entry(loiter),
+    20: Entry(return_to_launch),
+    21: Entry(land),
     22: Entry(takeoff, required=(7,)),
     115: Entry(condition_yaw, required=(1,)),
     176: Entry(do_set_mode, required=(1, 2)),

@@ -19,17 +19,17 @@ HOME_POSITION, AUTOPILOT_VERSION = message("HOME_POSITION").id, message("AUTOPIL
 
 
 def set_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """511"""
+    """511: p1 message, p2 interval [us]: -1 stops, 0 default. DENIED with a text: unknown, or above SCHED_LOOP_RATE."""
     return int(bridge.get(StreamService).set_interval(channel, command))
 
 
 def get_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """510"""
+    """510: answers MESSAGE_INTERVAL for message p1."""
     return int(bridge.get(StreamService).get_interval(channel, command))
 
 
 def request_message(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """512"""
+    """512: sends message p1 once; FAILED when there is none."""
     return int(bridge.get(StreamService).request_message(channel, command))
 
 

@@ -44,7 +44,7 @@ class _Session:
 
 
 class FtpService(Service):
-    """One session for each channel, under the number that the client gives it, as in ArduPilot."""
+    """MAVLink FTP: one session for each channel, under the number that the client gives it, as in ArduPilot."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
@@ -164,7 +164,7 @@ class FtpService(Service):
 
     def snapshot(self) -> Any:
         sessions = tuple(
-            (c.number, s.data, s.sender, s.number, None if s.burst is None else (s.burst.offset, s.burst.size, s.burst.sequence))
+            (c.number, (s.data, s.sender, s.number), s.burst and (s.burst.offset, s.burst.size, s.burst.sequence))
             for c, s in self._sessions.items()
         )
         return (sessions, self.due_us)
@@ -172,11 +172,11 @@ class FtpService(Service):
     def restore(self, state: Any) -> None:
         sessions, self.due_us = state
         self._sessions = {}
-        for number, data, sender, session, burst in sessions:
+        for number, session, burst in sessions:
             for channel in self.bridge.channels:
                 if channel.number == number:
-                    found = self._sessions[channel] = _Session(data, sender, session)
-                    found.burst = None if burst is None else _Burst(*burst)
+                    found = self._sessions[channel] = _Session(*session)
+                    found.burst = burst and _Burst(*burst)
 
     def service(self, now_us: int) -> None:
         running = False

@@ -10,7 +10,7 @@ from .service import Handler, Sender, Service
 
 
 class HeartbeatService(Service):
-    """https://mavlink.io/en/services/heartbeat.html (our own heartbeat is a stream)."""
+    """Heartbeats of ground stations (https://mavlink.io/en/services/heartbeat.html); our own is a stream."""
 
     def handlers(self) -> dict[str, Handler]:
         return {"HEARTBEAT": self._heartbeat}

@@ -17,7 +17,7 @@ H, E = "autopilot.home.", "autopilot.estimate.origin_"
 
 
 class HomeService(Service):
-    """https://mavlink.io/en/services/mission.html has no home service of its own; this is common.xml's."""
+    """Home, and the estimator's origin as long as it has none."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)

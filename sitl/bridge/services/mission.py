@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...autopilot.mission.item import MissionItem
+from ...autopilot.mission.item import MissionItem, home_item
 from ...autopilot.mission.validate import MAX_ITEMS
 from ..channel import Channel
 from ..dialect import message
@@ -39,13 +39,14 @@ GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
 
 
 class MissionService(Service):
-    """Upload, download, clear, set current, partial write; fences and rally points are answered as empty."""
+    """Missions: upload, download, clear, set current, partial write; fences and rally points are answered as empty."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self.upload: Upload | None = None
         self._last: tuple[Channel, Sender, int] | None = None
         """Who uploaded last, and the number of the last item: its acknowledgement may have been lost."""
+        self._home = bridge.reader.fields("autopilot.home.lat", "autopilot.home.lon", "autopilot.home.alt")
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -239,7 +240,10 @@ class MissionService(Service):
         self._send_item(channel, fields, sender, to_float)
 
     def _send_item(self, channel: Channel, fields: Any, sender: Sender, pack: Any) -> None:
-        items = self.bridge.autopilot.mission_items() if fields.mission_type == MISSION else ()
+        items: tuple[MissionItem, ...] = ()
+        if fields.mission_type == MISSION:
+            # item 0 is home, which can be read even of an empty mission (DroneKit's download waits for it)
+            items = self.bridge.autopilot.mission_items() or (home_item(*self._home()),)
         if fields.mission_type not in (MISSION, FENCE, RALLY):
             self._ack(channel, sender, UNSUPPORTED, fields.mission_type)
         elif fields.seq >= len(items):

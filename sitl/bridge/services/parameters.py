@@ -28,7 +28,7 @@ LIST_AT_ONCE = 10
 
 
 class ParameterService(Service):
-    """List, read by name or index, set."""
+    """Parameters: list, read by name or index, set."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
@@ -105,7 +105,7 @@ class ParameterService(Service):
             KeyError: there is no such parameter.
         """
         parameter = BY_NAME[name]
-        refusal = parameter.refusal(value)
+        refusal = f"Param write denied ({name})" if parameter.read_only else parameter.refusal(value)
         if refusal is not None:
             return refusal
         self.bridge.vehicle.v.autopilot.params[name] = stored(parameter, value)

@@ -13,7 +13,7 @@ KIND = message("PING")
 
 
 class PingService(Service):
-    """A request has target 0/0; the answer carries its time and number back to the sender."""
+    """Ping: a request has target 0/0; the answer carries its time and number back to the sender."""
 
     def handlers(self) -> dict[str, Handler]:
         return {"PING": self._ping}

@@ -21,7 +21,7 @@ LOWEST, HIGHEST = 800, 2200
 
 
 class RcService(Service):
-    """Writes ``rc.override``; the firmware forgets an override after RC_OVERRIDE_TIME."""
+    """The ground station's sticks; the firmware forgets them after RC_OVERRIDE_TIME."""
 
     def handlers(self) -> dict[str, Handler]:
         return {"RC_CHANNELS_OVERRIDE": self._override, "MANUAL_CONTROL": self._manual}

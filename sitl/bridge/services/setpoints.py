@@ -13,13 +13,14 @@ import math
 from typing import Any
 
 from ...autopilot.mission.item import MissionItem
-from ..autopilot_api import Vector, Yaw
+from ..autopilot_api import NO_YAW, Vector, Yaw
 from ..channel import Channel
 from .command import FRAMES_AMSL, GLOBAL_FRAMES
 from .service import Handler, Sender, Service
 
 POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
 FORCE, YAW_IGNORED, YAW_RATE_IGNORED = 0x200, 0x400, 0x800
+YAWS_IGNORED = YAW_IGNORED | YAW_RATE_IGNORED
 LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED = 1, 7, 8, 9
 BODY_FRAMES = (BODY_NED, BODY_OFFSET_NED)
 
@@ -29,14 +30,10 @@ THRUST_IGNORED, ATTITUDE_IGNORED = 0x40, 0x80
 GUIDED_MODE = 4
 E_ = "autopilot.estimate."
 ZERO: Vector = (0.0, 0.0, 0.0)
-NO_YAW = Yaw(False, 0.0, False, 0.0, False)
 
 
 class SetpointService(Service):
-    """SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT, SET_ATTITUDE_TARGET.
-
-    And mission items with current=2.
-    """
+    """Set-points for GUIDED, and mission items with ``current`` 2 or 3."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
@@ -91,7 +88,9 @@ class SetpointService(Service):
         self, m: Any, pos: Vector | None, vel: Vector | None, acc: Vector | None, relative: bool
     ) -> None:
         autopilot, mask = self.bridge.autopilot, m.type_mask
-        yaw = Yaw(not mask & YAW_IGNORED, m.yaw, not mask & YAW_RATE_IGNORED, m.yaw_rate, relative)
+        yaw = NO_YAW
+        if mask & YAWS_IGNORED != YAWS_IGNORED:
+            yaw = Yaw(not mask & YAW_IGNORED, m.yaw, not mask & YAW_RATE_IGNORED, m.yaw_rate, relative)
         total = (yaw.yaw if yaw.use_yaw else 0.0) + (yaw.rate if yaw.use_rate else 0.0)
         for vector in (pos, vel, acc):
             if vector is not None:

@@ -29,7 +29,7 @@ GROUPS: dict[int, tuple[str, tuple[str, ...]]] = {
     6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
     10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
     11: ("EXTRA2", ("VFR_HUD",)),
-    12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "WIND", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION")),
+    12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
 }  # fmt: skip
 """MAV_DATA_STREAM -> (ending of the MAV1_ rate parameter, messages)."""
 ALL_STREAMS = 0
@@ -43,7 +43,7 @@ INTERVAL = message("MESSAGE_INTERVAL")
 
 
 class StreamService(Service):
-    """Decides each channel's intervals; ``StreamTable`` keeps them."""
+    """What is sent regularly: decides each channel's intervals; ``StreamTable`` keeps them."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)

@@ -16,7 +16,7 @@ KIND = message("TIMESYNC")
 
 
 class TimesyncService(Service):
-    """A request has tc1 = 0; the answer repeats its ts1."""
+    """Time: a request has tc1 = 0; the answer repeats its ts1 and gives simulated nanoseconds in tc1."""
 
     def handlers(self) -> dict[str, Handler]:
         return {"TIMESYNC": self._timesync}

@@ -16,10 +16,7 @@ STEERED_MODES = frozenset((3, 4, 6))
 
 
 def nav_controller_output(context: Context) -> Build:
-    """NAV_CONTROLLER_OUTPUT.
-
-    Lean targets and bearings [deg], distance to the target [m], altitude error [m].
-    """
+    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m]."""
     read = context.fields(
         C + "attitude.target_euler", E + "pos", E + "euler", M + "number", M + "nav.target", M + "guided.pos",
         C + "pos_d.pos_error", "autopilot.home.pos",
@@ -97,10 +94,7 @@ def position_target_local(context: Context) -> Build:
 
 
 def position_target_global(context: Context) -> Build:
-    """POSITION_TARGET_GLOBAL_INT: where GUIDED and AUTO fly to (degE7, above mean sea level).
-
-    Nothing in other modes.
-    """
+    """POSITION_TARGET_GLOBAL_INT: where GUIDED and AUTO fly to (degE7, m above sea level); nothing in other modes."""
     origin = [E + "origin_" + x for x in ("set", "lat", "lon", "alt")]
     read = context.fields("time_us", M + "number", M + "guided.pos", M + "nav.target", *origin)
     pack = message("POSITION_TARGET_GLOBAL_INT").pack

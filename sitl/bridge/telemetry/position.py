@@ -72,10 +72,7 @@ def local_position_ned(context: Context) -> Build:
 
 
 def vfr_hud(context: Context) -> Build:
-    """VFR_HUD: speeds m/s (no airspeed sensor.
-
-    Ground speed in both), heading deg, throttle %, altitude above sea level m.
-    """
+    """VFR_HUD: ground speed in both speeds [m/s], heading [deg], throttle [%], altitude above sea level [m]."""
     where = global_position(context)
     read = context.fields(E + "euler", E + "vel", "autopilot.control.motors.throttle_out")
     pack = message("VFR_HUD").pack
@@ -115,17 +112,8 @@ def gps_global_origin(context: Context) -> Build:
     return build
 
 
-def wind(context: Context) -> Build:
-    """WIND: the estimator does not estimate wind: zero, as ArduCopter without EK3_DRAG_* parameters."""
-    payload = message("WIND").pack(0.0, 0.0, 0.0)
-    return lambda: payload
-
-
 def gps_raw_int(context: Context) -> Build:
-    """GPS_RAW_INT: the receiver's fix.
-
-    Course in centidegrees, speed cm/s, accuracies from the dilution of precision.
-    """
+    """GPS_RAW_INT: the receiver's fix, course [cdeg], speed [cm/s], accuracies from the dilution of precision."""
     names = ("fix", "lat", "lon", "alt", "eph", "epv", "vel", "satellites")
     read = context.fields(S + "gps_time_us", *(S + "gps_" + name for name in names))
     pack = message("GPS_RAW_INT").pack
@@ -149,6 +137,5 @@ BUILDERS: dict[str, Builder] = {
     "VFR_HUD": vfr_hud,
     "HOME_POSITION": home_position,
     "GPS_GLOBAL_ORIGIN": gps_global_origin,
-    "WIND": wind,
     "GPS_RAW_INT": gps_raw_int,
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sensors as measured: RAW_IMU, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE, VIBRATION; and truth: SIMSTATE."""
+"""Sensors as measured: RAW_IMU, SCALED_IMU, HIGHRES_IMU, SCALED_PRESSURE; and truth: SIMSTATE."""
 
 from __future__ import annotations
 
@@ -22,10 +22,7 @@ def _scaled(values: tuple[float, ...]) -> list[int]:
 
 
 def raw_imu(context: Context) -> Build:
-    """RAW_IMU.
-
-    MG, mrad/s, mgauss (ArduPilot sends scaled values here), temperature in centidegrees Celsius.
-    """
+    """RAW_IMU: mG, mrad/s, mgauss (ArduPilot sends scaled values here), centidegrees Celsius."""
     read = context.fields("time_us", *_IMU, S + "temperature")
     pack = message("RAW_IMU").pack
 
@@ -76,18 +73,8 @@ def scaled_pressure(context: Context) -> Build:
     return build
 
 
-def vibration(context: Context) -> Build:
-    """VIBRATION: m/s^2 and clipping counts; the simulated frame does not shake and nothing clips."""
-    read = context.fields("time_us")
-    pack = message("VIBRATION").pack
-    return lambda: pack(read()[0], 0.0, 0.0, 0.0, 0, 0, 0)
-
-
 def simstate(context: Context) -> Build:
-    """SIMSTATE: the simulator's truth.
-
-    Angles [rad], specific force, body [m/s^2], body rates [rad/s], degE7.
-    """
+    """SIMSTATE: the simulator's truth: angles [rad], specific force [m/s^2] and rates [rad/s] of the body, degE7."""
     body, place = "physics.body.", "physics.place."
     read = context.fields(
         body + "q", body + "specific_force", body + "rates", body + "pos", place + "lat", place + "lon"
@@ -107,6 +94,5 @@ BUILDERS: dict[str, Builder] = {
     "SCALED_IMU": scaled_imu,
     "HIGHRES_IMU": highres_imu,
     "SCALED_PRESSURE": scaled_pressure,
-    "VIBRATION": vibration,
     "SIMSTATE": simstate,
 }

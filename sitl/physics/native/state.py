@@ -15,7 +15,7 @@ DERIVED_DTYPE = record(  # follows from the figures (prepare.py), so that a tick
     ("inverse_mass", "f8"),
     ("inverse_inertia", "f8", 3),
     ("control_scale", "f8"),  # 1 / (control_max - control_min)
-    ("command_step", "f8"),  # largest change of command a substep
+    ("command_step", "f8"),  # largest change of command a tick
     ("decay_up", "f8"),  # what is left of a speed error after a substep
     ("decay_down", "f8"),
     ("speed_per_volt", "f8"),  # speed_max / speed_voltage, 0 without limit

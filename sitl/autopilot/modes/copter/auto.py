@@ -75,16 +75,20 @@ def begin(v):
     ap.arming.landed_maybe = ap.arming.landed
     command.begin(ap, v.time_us)
     if auto.submode == TAKEOFF:
-        auto_yaw.set_mode(v, auto_yaw.HOLD)
         takeoff.begin(v, float(nav.target[2]))
     elif auto.submode == RTL:
         rtl.start(v, 1)
-    elif auto.submode == LAND:
-        if nav.has_place == 0:
-            begin_descent(v)
-        else:
-            auto_yaw.set_default(v, 0)
-    elif ap.modes.auto_yaw.mode != auto_yaw.ROI and ap.modes.auto_yaw.mode != auto_yaw.FIXED:
+    elif auto.submode == LAND and nav.has_place == 0:
+        begin_descent(v)
+
+
+@law
+def face(v, kind):
+    """Heading of a new command; the shell calls it before the do-commands that follow, which may change it."""
+    yaw = v.autopilot.modes.auto_yaw
+    if kind == TAKEOFF:
+        auto_yaw.set_mode(v, auto_yaw.HOLD)
+    elif yaw.mode != auto_yaw.ROI and (yaw.mode != auto_yaw.FIXED or v.autopilot.params.WP_YAW_BEHAVIOR != 0.0):
         auto_yaw.set_default(v, 0)
 
 

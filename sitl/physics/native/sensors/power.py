@@ -5,12 +5,9 @@ from __future__ import annotations
 
 from ....core.kernels import law
 
-PERIOD_TICKS = 40
-"""Samples every 0.1 s, as ArduPilot's battery monitor reads it."""
-
 
 @law
 def sample(p, sensors):
-    """Write battery_voltage [V] and battery_current [A]."""
+    """Write battery_voltage [V] and battery_current [A]; called every 0.1 s, as ArduPilot's battery monitor reads."""
     sensors.battery_voltage = float(p.battery.voltage)
     sensors.battery_current = float(p.battery.current)

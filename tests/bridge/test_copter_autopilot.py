@@ -13,8 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
-from sitl.bridge.autopilot_api import CopterAutopilot
 from sitl.bridge.bridge import Bridge
+from sitl.bridge.copter_autopilot import CopterAutopilot
 
 SQUARE = (
     MissionItem(16, 0, x=HOME[0], y=HOME[1], z=584.0), MissionItem(22, 3, z=10.0),

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Client scripts in simulated time (``sitl exec``), and vehicles for clients of the test process (``sitl run``)."""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SCRIPTS = Path(__file__).parent / "scripts"
+EXAMPLES = ROOT / "examples"
+SPEEDUP = "20"
+WALL_S = 120
+"""A script that takes longer has hung: on two cores it takes 3 to 10 s."""
+
+Fly = Callable[..., str]
+
+
+def free_udp_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def fly(logs: Path, script: Path, url: str, *options: str) -> str:
+    """Run a script against a vehicle of its own; what it printed.
+
+    Fails when the script does. ``PORT`` in ``url`` becomes the UDP port that the vehicle sends to.
+    """
+    port = str(free_udp_port())
+    command = [sys.executable, "-m", "sitl", "exec", "--quiet", "--speedup", SPEEDUP, "--tcp", "0"]
+    command += ["--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
+    command += ["--", sys.executable, str(script), url.replace("PORT", port)]
+    done = subprocess.run(
+        command, cwd=ROOT, env=environment(), text=True, timeout=WALL_S,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@contextmanager
+def serve(logs: Path, *options: str) -> Iterator[int]:
+    """A vehicle served in real time on a TCP port of this machine, which is given."""
+    command = [sys.executable, "-m", "sitl", "run", "copter", "--quiet", "--tcp", "0", "--out", "none"]
+    command += ["--log-dir", str(logs), *options]
+    process = subprocess.Popen(command, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        found = re.search(r"tcp:127\.0\.0\.1:(\d+)", said)
+        assert found is not None, said
+        yield int(found.group(1))
+    finally:
+        process.terminate()
+        process.wait(30)

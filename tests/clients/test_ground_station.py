@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What QGroundControl asks on connecting, in its order: every step is answered or refused, so that it goes on.
+
+Steps: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/communication_flow.html and the initial connect
+sequence that QGroundControl shows as its progress bar.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pymavlink import mavutil
+
+from sitl.simulation import Core
+from tests.clients.drive import serve
+
+pytestmark = pytest.mark.slow
+
+ACCEPTED, UNSUPPORTED, FAILED = 0, 3, 4
+REQUEST_MESSAGE = 512
+FTP_HEADER = struct.Struct("<HBBBBBBI")
+
+
+class GroundStation:
+    """255/190 with a heartbeat, on TCP."""
+
+    def __init__(self, port: int) -> None:
+        self.link = mavutil.mavlink_connection(f"tcp:127.0.0.1:{port}", source_system=255, source_component=190)
+        assert self.link.wait_heartbeat(timeout=20) is not None  # pymavlink speaks MAVLink 2 once it has heard it
+        self.mav = self.link.mav
+        self.mav.heartbeat_send(6, 8, 0, 0, 4)
+
+    def receive(self, *kinds: str, until: Callable[[Any], bool] = lambda m: True) -> Any:
+        while True:
+            message = self.link.recv_match(type=list(kinds), blocking=True, timeout=5.0)
+            assert message is not None, f"no {' or '.join(kinds)}"
+            if until(message):
+                return message
+
+    def command(self, number: int, *params: float, component: int = 1) -> int:
+        self.mav.command_long_send(1, component, number, 0, *params, *(0,) * (7 - len(params)))
+        return int(self.receive("COMMAND_ACK", until=lambda m: m.command == number).result)
+
+    def request(self, number: int, kind: str, p2: float = 0.0) -> Any:
+        """A message asked for, which comes with its acknowledgement, in either order."""
+        self.mav.command_long_send(1, 1, REQUEST_MESSAGE, 0, number, p2, 0, 0, 0, 0, 0)
+        got = [self.receive("COMMAND_ACK", kind), self.receive("COMMAND_ACK", kind)]
+        answers = {m.get_type(): m for m in got}
+        assert answers["COMMAND_ACK"].result == ACCEPTED
+        return answers[kind]
+
+    def ftp(
+        self, opcode: int, data: bytes = b"", size: int | None = None, session: int = 0
+    ) -> Iterator[tuple[int, bytes]]:
+        """Opcodes and data of the answers to one FTP request."""
+        head = FTP_HEADER.pack(1, session, opcode, len(data) if size is None else size, 0, 0, 0, 0)
+        self.mav.file_transfer_protocol_send(0, 1, 1, list((head + data).ljust(251, b"\0")))
+        while True:
+            payload = bytes(self.receive("FILE_TRANSFER_PROTOCOL").payload)
+            _, _, answer, length, _, complete, _, _ = FTP_HEADER.unpack_from(payload)
+            yield answer, payload[FTP_HEADER.size : FTP_HEADER.size + length]
+            if complete:
+                return
+
+
+def test_initial_connect(core: Core, tmp_path: Path) -> None:
+    with serve(tmp_path) as port:
+        station = GroundStation(port)
+        for stream, rate in ((1, 2), (2, 2), (3, 2), (6, 3), (10, 10), (11, 10), (12, 3)):
+            station.mav.request_data_stream_send(1, 1, stream, rate, 1)
+
+        version = station.request(148, "AUTOPILOT_VERSION")
+        assert version.flight_sw_version >> 24 == 4
+        modes = [station.request(435, "AVAILABLE_MODES", 1)]
+        modes += [station.request(435, "AVAILABLE_MODES", k) for k in range(2, modes[0].number_modes + 1)]
+        assert {"STABILIZE", "GUIDED", "AUTO", "RTL"} <= {m.mode_name for m in modes}
+        for number in (300, 397, 395, 436):  # protocol version, component metadata and information, current mode
+            assert station.command(REQUEST_MESSAGE, number) == FAILED
+
+        station.mav.param_request_list_send(1, 0)
+        seen: dict[int, str] = {}
+        total = 1
+        while len(seen) < total:
+            value = station.receive("PARAM_VALUE")
+            seen[value.param_index], total = value.param_id, value.param_count
+        assert len(set(seen.values())) == total
+
+        for kind in (0, 1, 2):  # mission, fence, rally points
+            station.mav.mission_request_list_send(1, 1, kind)
+            count = station.receive("MISSION_COUNT")
+            assert (count.count, count.mission_type) == (0, kind)
+            station.mav.mission_ack_send(1, 1, 0, kind)
+
+        assert {"ATTITUDE", "SYS_STATUS", "VFR_HUD", "GPS_RAW_INT"} <= {
+            station.receive(kind).get_type() for kind in ("ATTITUDE", "SYS_STATUS", "VFR_HUD", "GPS_RAW_INT")
+        }
+
+
+def test_parameters_by_ftp(core: Core, tmp_path: Path) -> None:
+    with serve(tmp_path) as port:
+        station = GroundStation(port)
+        ((answer, size),) = [next(station.ftp(4, b"@PARAM/param.pck?withdefaults=1", session=200))]
+        assert answer == 128
+        pieces = list(station.ftp(15, size=239, session=200))
+        assert all(answer == 128 for answer, _ in pieces)
+        assert len(b"".join(data for _, data in pieces)) == struct.unpack("<I", size)[0]
+        assert next(station.ftp(1, session=200))[0] == 128
+
+
+def test_questions_to_what_is_not_there_are_refused(core: Core, tmp_path: Path) -> None:
+    with serve(tmp_path) as port:
+        station = GroundStation(port)
+        for number in (259, 280, 411):  # camera, gimbal manager, events
+            assert station.command(REQUEST_MESSAGE, number) == FAILED
+        for number in (521, 527, 31000):  # camera information (old), storage, a command that nobody has
+            assert station.command(number, 1) == UNSUPPORTED
+        assert station.command(511, 24, 500_000) == ACCEPTED
+        station.mav.timesync_send(0, 123456789)
+        assert station.receive("TIMESYNC", until=lambda m: m.tc1 != 0).ts1 == 123456789
+        station.mav.ping_send(1, 7, 0, 0)
+        assert station.receive("PING").seq == 7

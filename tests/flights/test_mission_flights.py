@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""AUTO: every kind of mission item, flown."""
+
+from __future__ import annotations
+
+import math
+
+import aviator
+import numpy as np
+import pytest
+from aviator import (
+    ABSOLUTE,
+    AIRFRAMES,
+    AUTO,
+    CHANGE_SPEED,
+    CONDITION_DELAY,
+    CONDITION_DISTANCE,
+    CONDITION_YAW,
+    DELAY,
+    JUMP,
+    LAND_ITEM,
+    LOITER_TIME,
+    LOITER_TURNS,
+    LOITER_UNLIMITED,
+    RETURN,
+    ROI,
+    ROI_NONE,
+    TERRAIN,
+    WAYPOINT,
+    Aviator,
+    Item,
+)  # fmt: skip
+
+from sitl.simulation import Core
+
+BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
+UP = Item(aviator.TAKEOFF_ITEM, None, 10.0)
+DOWN = Item(LAND_ITEM)
+
+
+def fly(core: Core, frame: str, *items: Item, seconds: float = 200.0, **params: float) -> tuple[Aviator, float]:
+    """(the pilot after the mission, when it began); ends when disarmed."""
+    p = Aviator(core, frame, **params).ready()
+    p.start_mission(*items)
+    start = p.now
+    p.fly(seconds, lambda: not p.armed)
+    return p, start
+
+
+def heading_at(p: Aviator, time: float) -> float:
+    """True heading at a time [deg]."""
+    rows = p.since(0.0)
+    return float(rows[np.argmin(np.abs(rows[:, 0] - time)), 9])
+
+
+@BOTH
+def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
+    p, start = fly(
+        core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 15.0, (5.0,)), Item(WAYPOINT, (20.0, 20.0), 10.0),
+        Item(LAND_ITEM, (0.0, 20.0)),
+    )  # fmt: skip
+    assert not p.armed
+    assert [seq for _, seq in p.reached] == [1, 2, 3]
+    assert -p.since(start)[:, 3].min() == pytest.approx(15.0, abs=0.5)
+    assert p.pos[:2] == pytest.approx([0.0, 20.0], abs=1.2)
+    rows = p.since(start)
+    at_rest = rows[(rows[:, 0] < p.reached_at(2)) & (np.linalg.norm(rows[:, 1:4] - [20, 0, -15], axis=1) < 1.5)]
+    assert np.ptp(at_rest[:, 0]) > 5.0
+
+
+@BOTH
+def test_return_lands_at_home(core: Core, frame: str) -> None:
+    p, start = fly(core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 10.0), Item(RETURN))
+    assert not p.armed
+    assert [seq for _, seq in p.reached] == [1, 2, 3]
+    assert -p.since(start)[:, 3].min() == pytest.approx(15.0, abs=0.5)
+    assert np.linalg.norm(p.pos[:2]) < 1.2
+
+
+@BOTH
+def test_loiter_turns_both_ways_and_loiter_time(core: Core, frame: str) -> None:
+    p, start = fly(
+        core, frame, UP, Item(LOITER_TIME, (15.0, 0.0), 10.0, (5.0,)),
+        Item(LOITER_TURNS, (30.0, 0.0), 12.0, (2.0, 0.0, 8.0, 1.0)),
+        Item(LOITER_TURNS, (30.0, 30.0), 12.0, (1.0, 0.0, -6.0, 1.0)), DOWN,
+    )  # fmt: skip
+    assert [seq for _, seq in p.reached] == [1, 2, 3, 4]
+    rows = p.since(start)
+    for seq, centre, radius, turns in ((3, (30.0, 0.0), 8.0, 2.0), (4, (30.0, 30.0), 6.0, -1.0)):
+        times = (p.reached_at(seq) - abs(turns) * 14.0, p.reached_at(seq))
+        part = rows[(rows[:, 0] > times[0]) & (rows[:, 0] < times[1])]
+        away = np.hypot(part[:, 1] - centre[0], part[:, 2] - centre[1])
+        assert away == pytest.approx(radius, abs=1.0)
+        angle = np.unwrap(np.arctan2(part[:, 2] - centre[1], part[:, 1] - centre[0]))
+        assert np.sign(angle[-1] - angle[0]) == np.sign(turns)
+        assert abs(angle[-1] - angle[0]) > 1.4 * math.pi * abs(turns)
+
+
+def test_unlimited_loiter_ends_by_set_current(core: Core) -> None:
+    p, _ = fly(core, "erle_copter", UP, Item(LOITER_UNLIMITED, (15.0, 0.0), 10.0), DOWN, seconds=60.0)
+    assert p.armed
+    assert p.pos[0] == pytest.approx(15.0, abs=1.5)
+    p.client.send("MISSION_SET_CURRENT", target_system=1, target_component=1, seq=3)
+    p.wait_disarmed(40.0)
+
+
+def test_delay_command(core: Core) -> None:
+    p, _ = fly(core, "erle_copter", UP, Item(DELAY, None, 0.0, (7.0, -1.0, -1.0, -1.0)), DOWN)
+    assert p.reached_at(2) - p.reached_at(1) == pytest.approx(7.0, abs=0.2)
+
+
+@pytest.mark.parametrize(("times", "seconds"), [(2, 200.0), (-1, 120.0)])
+def test_jump(core: Core, times: int, seconds: float) -> None:
+    p, _ = fly(
+        core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), Item(WAYPOINT, (0.0, 0.0), 10.0),
+        Item(JUMP, None, 0.0, (2.0, times)), DOWN, seconds=seconds,
+    )  # fmt: skip
+    rounds = [seq for _, seq in p.reached].count(3)
+    assert (rounds == 3 and not p.armed) if times == 2 else (rounds > 8 and p.armed)
+
+
+@BOTH
+def test_speed_and_conditions(core: Core, frame: str) -> None:
+    p, start = fly(
+        core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 10.0), Item(CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)),
+        Item(WAYPOINT, (40.0, 0.0), 10.0), Item(CONDITION_DISTANCE, None, 0.0, (8.0,)),
+        Item(CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)), Item(WAYPOINT, (40.0, 20.0), 10.0),
+        Item(CONDITION_DELAY, None, 0.0, (3.0,)), Item(CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), DOWN,
+    )  # fmt: skip
+    rows = p.since(start)
+    speed = np.linalg.norm(rows[:, 4:6], axis=1)
+    assert speed[rows[:, 0] < p.reached_at(4)].max() == pytest.approx(2.0, abs=0.25)
+    assert speed.max() > 2.8
+    away = rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(5))), 1]
+    assert 40.0 - away == pytest.approx(8.0, abs=1.5)
+    assert heading_at(p, p.reached_at(4)) > 30.0
+    assert p.reached_at(8) - p.reached_at(4) == pytest.approx(3.0, abs=0.2)
+
+
+@BOTH
+def test_roi_behind_a_take_off_holds_until_it_is_ended(core: Core, frame: str) -> None:
+    """It was lost: the take-off began, and turned it off, after the do-command had run."""
+    p, _ = fly(
+        core, frame, UP, Item(ROI, (0.0, 50.0), 0.0), Item(WAYPOINT, (30.0, 0.0), 10.0),
+        Item(WAYPOINT, (30.0, 10.0), 10.0), Item(ROI_NONE), Item(WAYPOINT, (0.0, 10.0), 10.0), DOWN,
+    )  # fmt: skip
+    assert heading_at(p, p.reached_at(1)) == pytest.approx(90.0, abs=4.0)
+    assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(121.0, abs=6.0)
+    assert abs(heading_at(p, p.reached_at(6) - 2.0)) > 170.0
+
+
+def test_a_fixed_yaw_lasts_one_leg(core: Core) -> None:
+    """As in ArduPilot the next waypoint points the nose along the path again (WP_YAW_BEHAVIOR not 0)."""
+    for behaviour, heading in ((2, 0.0), (0, 90.0)):
+        p, _ = fly(
+            core, "erle_copter", UP, Item(WAYPOINT, (30.0, 0.0), 10.0),
+            Item(CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)), Item(WAYPOINT, (70.0, 0.0), 10.0), DOWN,
+            WP_YAW_BEHAVIOR=behaviour,
+        )  # fmt: skip
+        assert heading_at(p, p.reached_at(2) - 1.0) == pytest.approx(90.0, abs=5.0)
+        assert heading_at(p, p.reached_at(4) - 2.0) == pytest.approx(heading, abs=5.0)
+
+
+@BOTH
+def test_frames_of_altitude(core: Core, frame: str) -> None:
+    p = Aviator(core, frame).ready()
+    ground = float(p.ap.estimate.origin_alt)
+    p.start_mission(
+        UP, Item(WAYPOINT, (10.0, 0.0), ground + 20.0, (2.0,), ABSOLUTE),
+        Item(WAYPOINT, (10.0, 10.0), 15.0, (2.0,), TERRAIN), Item(WAYPOINT, (0.0, 0.0), 5.0, (2.0,)), DOWN,
+    )  # fmt: skip
+    start = p.now
+    p.wait_disarmed(120.0)
+    rows = p.since(start)
+    for seq, height in ((2, 20.0), (3, 15.0), (4, 5.0)):
+        assert -rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(seq))), 3] == pytest.approx(height, abs=0.8)
+
+
+def test_a_mission_that_ends_in_the_air_hovers(core: Core) -> None:
+    p, _ = fly(core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), seconds=40.0)
+    assert p.armed
+    assert p.mode == AUTO
+    here = p.pos
+    p.fly(10.0)
+    assert np.linalg.norm(p.pos - here) < 0.6
