@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from .bridge.links import LogLink
-from .bridge.links.address import open_link
-from .bridge.links.link import Link
+from .bridge.links.address import LinkAddressError
 from .bridge.links.tcp import TcpServerLink
 from .bridge.links.udp import UdpOutLink
 from .logs.tlog import TlogWriter
@@ -41,9 +40,16 @@ class Pace(Protocol):
         ...
 
 
-def tcp_server(port: int) -> Link:
-    """Listen for MAVLink on a TCP port of this machine; 0 takes a free one."""
-    return open_link(f"tcp:{HOST}:{port}") if port else TcpServerLink(0, HOST)
+def tcp_server(port: int) -> TcpServerLink:
+    """Listen for MAVLink on a TCP port of this machine; 0 takes a free one.
+
+    Raises:
+        LinkAddressError: the port is taken or not allowed.
+    """
+    try:
+        return TcpServerLink(port, HOST)
+    except OSError as error:
+        raise LinkAddressError(f"link tcp:{HOST}:{port} cannot be opened: {error.strerror}") from None
 
 
 def send_to_free_port(simulation: Simulation, port: int) -> None:

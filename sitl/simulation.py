@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 
-from . import vehicles
+from . import sim_parameters, vehicles
 from .advance import advance as advance_unit
 from .autopilot import boot
 from .autopilot.mission.mission import Mission
@@ -23,6 +25,7 @@ from .core import records
 from .core.compile import Progress
 from .physics.native.init import init as init_physics
 from .vehicle import TICK_US, VEHICLE_DTYPE
+from .vehicles import Airframe, AirframeError
 
 Array = np.ndarray[Any, Any]
 Home = tuple[float, float, float, float]
@@ -32,17 +35,6 @@ DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 """Canberra model aircraft club, ArduPilot's default SITL location."""
 
 ESTIMATORS = ("ekf", "truth")
-
-_WIND = {
-    "SIM_WIND_SPD": "speed",
-    "SIM_WIND_DIR": "direction",
-    "SIM_WIND_TURB": "turbulence",
-    "SIM_WIND_TC": "time_constant",
-}
-"""Parameters of the simulated world, and the fields of ``physics.wind`` that follow them."""
-
-_FAULTS = ("SIM_GPS1_ENABLE", "SIM_RC_FAIL", "SIM_ENGINE_FAIL", "SIM_ENGINE_MUL")
-
 
 class OptionError(ValueError):
     """An option of the simulation that cannot be taken."""
@@ -75,6 +67,8 @@ def load_core(progress: Progress | None = None) -> Core:
 class Snapshot:
     """Everything that a later :meth:`Simulation.restore` needs to continue bit for bit."""
 
+    airframe: str
+    """Name of the airframe that it is of."""
     record: bytes
     mission: Mission
     bridge: BridgeState
@@ -87,7 +81,7 @@ class Simulation:
     """A vehicle from power-on, advanced in simulated time.
 
     Args:
-        frame: airframe name (``sitl.vehicles.names()``).
+        frame: airframe name (``sitl.vehicles.names()``), path of a file that defines one, or an Airframe.
         home: where it stands at power-on.
         seed: seed of all sensor noise and turbulence.
         estimator: "ekf", or "truth" for work on controllers.
@@ -100,7 +94,7 @@ class Simulation:
 
     def __init__(
         self,
-        frame: str = "erle_copter",
+        frame: str | Airframe = "erle_copter",
         *,
         home: Home = DEFAULT_HOME,
         seed: int = 0,
@@ -111,9 +105,8 @@ class Simulation:
     ) -> None:
         if estimator not in ESTIMATORS:
             raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
-        check_home(home)
         self.airframe = vehicles.load(frame)
-        self.home, self.seed, self.estimator = home, seed, estimator
+        self.home, self.seed, self.estimator = checked_home(home), checked_seed(seed), estimator
         self.fleet: Array = np.zeros(1, VEHICLE_DTYPE)
         self.index = 0
         self.v = records.view(self.fleet, self.index)
@@ -128,7 +121,10 @@ class Simulation:
         self._reboot = False
         params_record = self.v.autopilot.params
         table.set_defaults(params_record)
-        files.apply(params_record, self.airframe.parameters, f"airframe {frame}")
+        label = f"airframe {self.airframe.name}"
+        unknown = files.apply(params_record, self.airframe.parameters, label)
+        if unknown:
+            raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
         self.unknown_parameters = files.apply(params_record, params or {}, "parameters")
         """Names in ``params`` that this firmware does not have."""
         self.core = core or load_core(progress)
@@ -149,7 +145,13 @@ class Simulation:
         return self.time_us
 
     def advance(self, seconds: float) -> None:
-        """Advance by a simulated time, rounded to whole ticks of 2.5 ms."""
+        """Advance by a simulated time, rounded up to whole ticks of 2.5 ms.
+
+        Raises:
+            OptionError: ``seconds`` is negative or not a finite number.
+        """
+        if not (isinstance(seconds, Real) and 0.0 <= seconds < math.inf):
+            raise OptionError(f"cannot advance by {seconds!r} s: a number from 0 on is needed")
         self.advance_to(self.time_us + round(seconds * 1e6))
 
     def advance_to(self, time_us: int) -> None:
@@ -179,6 +181,7 @@ class Simulation:
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""
         return Snapshot(
+            self.airframe.name,
             self._record.tobytes(),
             self.mission,
             self.bridge.snapshot(),
@@ -193,6 +196,8 @@ class Simulation:
         The same commands then give the same bytes again. Bytes that a client has sent but the vehicle not read
         yet, and the other way round, stay where they are.
         """
+        if snapshot.airframe != self.airframe.name:
+            raise OptionError(f"the snapshot is of airframe {snapshot.airframe}, this is {self.airframe.name}")
         self._record[:] = snapshot.record
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
@@ -204,10 +209,8 @@ class Simulation:
 
     def parameter_changed(self, name: str) -> None:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
-        if name in _WIND:
-            self.v.physics.wind[_WIND[name]] = float(self.v.autopilot.params[name])
-        elif name in _FAULTS:
-            self._set_faults()
+        if name.startswith(sim_parameters.PREFIX):
+            sim_parameters.apply(self.v)
 
     def close(self) -> None:
         """Close links and log."""
@@ -215,21 +218,11 @@ class Simulation:
 
     def _power_on(self) -> None:
         boot.clear(self.v)
-        for name in _WIND:
-            self.parameter_changed(name)
+        sim_parameters.apply(self.v)  # first the wind that blows at power-on
         init_physics(self.v, self.airframe, self.home, self.seed)
         boot.power_on(self.v)
-        self._set_faults()
+        sim_parameters.apply(self.v)
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
-
-    def _set_faults(self) -> None:
-        """Switch off what the parameters say: the GPS receiver, the transmitter, motors."""
-        params, physics = self.v.autopilot.params, self.v.physics
-        physics.sensors.gps_off = int(params.SIM_GPS1_ENABLE == 0)
-        self.v.autopilot.modes.pilot.has_receiver = int(params.SIM_RC_FAIL == 0)
-        for k in range(len(physics.rotors.efficiency)):
-            fails = int(params.SIM_ENGINE_FAIL) >> k & 1
-            physics.rotors.efficiency[k] = params.SIM_ENGINE_MUL if fails else 1.0
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
@@ -247,8 +240,20 @@ class Simulation:
         self.bridge = self.bridge.successor()
 
 
-def check_home(home: Home) -> None:
-    """OptionError when ``home`` is not on the globe."""
-    lat, lon, alt, heading = home
-    if not (abs(lat) <= 90 and abs(lon) <= 180 and np.isfinite(alt) and np.isfinite(heading)):
+def checked_home(home: Home) -> Home:
+    """``home`` as floats; OptionError when it is not four numbers or not on the globe."""
+    try:
+        lat, lon, alt, heading = (float(number) for number in home)
+    except (TypeError, ValueError):
+        wanted = "(latitude, longitude, altitude, heading) in degrees and metres"
+        raise OptionError(f"home {home!r} is not {wanted}") from None
+    if not (abs(lat) <= 90 and abs(lon) <= 180 and math.isfinite(alt) and math.isfinite(heading)):
         raise OptionError(f"home {home}: latitude is within +-90, longitude within +-180 degrees, the rest finite")
+    return (lat, lon, alt, heading)
+
+
+def checked_seed(seed: int) -> int:
+    """``seed``; OptionError when it is not a whole number."""
+    if not isinstance(seed, Integral):
+        raise OptionError(f"seed {seed!r} is not a whole number")
+    return int(seed)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import os
 import subprocess
@@ -13,11 +14,13 @@ import numpy as np
 import pytest
 
 from missions.flights import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl import vehicles
 from sitl.advance import advance
 from sitl.core import records
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicle import TICK_US
+from sitl.vehicles import AirframeError
 
 
 def take_off(core: Core, frame: str = "erle_copter", seed: int = 0) -> Pilot:
@@ -177,9 +180,36 @@ def test_truth_and_estimate_agree_after_a_flight(core: Core) -> None:
         ({"frame": "no_such_frame"}, "no_such_frame.*erle_copter"),
         ({"estimator": "magic"}, "magic.*ekf, truth"),
         ({"home": (91.0, 0.0, 0.0, 0.0)}, "latitude"),
+        ({"home": (1.0, 2.0, 3.0)}, "is not .latitude, longitude, altitude, heading"),
+        ({"home": "here"}, "is not .latitude, longitude"),
+        ({"seed": 1.5}, "seed 1.5 is not a whole number"),
         ({"params": {"WPNAV_SPEED": float("nan")}}, "WPNAV_SPEED.*finite"),
+        ({"params": {"WPNAV_SPEED": "fast"}}, "WPNAV_SPEED: 'fast' is not a number"),
     ],
 )
 def test_bad_arguments_are_named(core: Core, arguments: dict, says: str) -> None:
     with pytest.raises((OptionError, ValueError), match=says):
         Simulation(core=core, **arguments)
+
+
+def test_an_airframe_with_a_parameter_that_does_not_exist_is_refused(core: Core) -> None:
+    airframe = vehicles.load("erle_copter")
+    odd = dataclasses.replace(airframe, parameters={**airframe.parameters, "ATC_TYPO": 1.0})
+    with pytest.raises(AirframeError, match="no parameters ATC_TYPO"):
+        Simulation(odd, core=core)
+
+
+@pytest.mark.parametrize("seconds", [-1.0, float("nan"), float("inf"), "5"])
+def test_time_that_cannot_pass_is_refused(core: Core, seconds: object) -> None:
+    simulation = Simulation(core=core)
+    with pytest.raises(OptionError, match="cannot advance"):
+        simulation.advance(seconds)  # type: ignore[arg-type]
+    assert simulation.time_us == 0
+
+
+def test_a_snapshot_of_another_airframe_is_refused(core: Core) -> None:
+    simulation = Simulation(core=core)
+    before = simulation.fleet.copy()
+    with pytest.raises(OptionError, match="ardupilot_quad, this is erle_copter"):
+        simulation.restore(Simulation("ardupilot_quad", core=core).snapshot())
+    assert records.first_difference(before[0], simulation.fleet[0]) is None

@@ -28,6 +28,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "exec",
         help="run a script in simulated time against a vehicle of its own",
         usage="sitl exec [options] -- COMMAND [ARGUMENT ...]",
+        epilog="{tcp} in an argument of the command becomes the TCP port that is served.",
     )
     parser.add_argument("--vehicle", choices=sorted(VEHICLES), default="copter")
     add_speedup(parser)
@@ -54,7 +55,8 @@ def execute(options: argparse.Namespace) -> int:
     if shutil.which(command[0]) is None:
         raise OptionError(f"command {command[0]!r} is not found or cannot be run")
     parse_speedup(options.speedup)
-    simulation, _ = run.start(options)
+    simulation, tcp_port, _ = run.start(options)
+    command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
     try:
         return run_script(simulation, command, options.speedup, options.duration, status.update)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .. import runner
 from ..bridge.links.address import open_link
+from ..bridge.links.link import Link
 from ..pacing import Pacing, parse_speedup
 from ..simulation import Simulation
 from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds
@@ -39,23 +40,24 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     add_vehicle_options(parser)
 
 
-def start(options: argparse.Namespace) -> tuple[Simulation, Path]:
-    """Build the simulation, open its links and its log, and say where they are."""
+def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
+    """Build the simulation, open its links and its log, and say where they are; also gives the TCP port and the log."""
     step = 10 * options.instance
     if options.out is None:
         outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS]
     else:
         outputs = [text for text in options.out if text != "none"]
     folder = open_folder(options.log_dir)
-    links = [open_link(text) for text in outputs]
-    links.append(runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp))
+    links: list[Link] = [open_link(text) for text in outputs]
+    tcp = runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp)
+    links.append(tcp)
     simulation = build_simulation(options, {"MAV_SYSID": 1.0 + options.instance} if options.instance else {})
     for link in links:
         simulation.bridge.add_link(link)
         print(f"MAVLink on {link.name}")
     log = runner.open_log(simulation, folder, f"{simulation.airframe.name}-{options.instance}")
     print(f"log: {log}", flush=True)
-    return simulation, log
+    return simulation, tcp.local_address[1], log
 
 
 def run(options: argparse.Namespace) -> int:
@@ -64,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
     stopped: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda n, _: stopped.append(n))
-    simulation, _ = start(options)
+    simulation, _, _ = start(options)
     status = StatusLine(simulation, not options.quiet)
     try:
         runner.serve(

@@ -43,8 +43,10 @@ def load(path: str | Path) -> dict[str, float]:
     """Names and values of a .parm file; ParameterError when it cannot be read or parsed."""
     try:
         return parse(Path(path).read_text(encoding="utf-8"), str(path))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ParameterError(f"parameter file {str(path)!r} cannot be read: {error}") from None
+    except OSError as error:
+        raise ParameterError(f"parameter file {str(path)!r} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"parameter file {str(path)!r} is not text: {error}") from None
 
 
 def apply(params: Any, values: Mapping[str, float], source: str = "parameters") -> list[str]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 from typing import NamedTuple
 
 FLOAT, INT8, INT16, INT32 = "float", "int8", "int16", "int32"
@@ -31,6 +32,8 @@ class Parameter(NamedTuple):
 
     def refusal(self, value: float) -> str | None:
         """Why ``value`` cannot be set, or None when it can."""
+        if not isinstance(value, Real):
+            return f"{self.name}: {value!r} is not a number"
         if not math.isfinite(value):
             return f"{self.name}: {value} is not a finite number"
         if not self.low <= value <= self.high:

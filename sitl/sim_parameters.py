@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the SIM_ parameters do to the simulated world: wind and faults, at power-on and in flight."""
+
+from __future__ import annotations
+
+from typing import Any
+
+PREFIX = "SIM_"
+
+
+def apply(v: Any) -> None:
+    """Bring the physics of vehicle ``v`` in line with its SIM_ parameters."""
+    params, physics, wind = v.autopilot.params, v.physics, v.physics.wind
+    wind.speed, wind.direction = params.SIM_WIND_SPD, params.SIM_WIND_DIR
+    wind.turbulence, wind.time_constant = params.SIM_WIND_TURB, params.SIM_WIND_TC
+    physics.sensors.gps_off = int(params.SIM_GPS1_ENABLE == 0)
+    v.autopilot.modes.pilot.has_receiver = int(params.SIM_RC_FAIL == 0)
+    for k in range(len(physics.rotors.efficiency)):
+        fails = int(params.SIM_ENGINE_FAIL) >> k & 1
+        physics.rotors.efficiency[k] = params.SIM_ENGINE_MUL if fails else 1.0
