@@ -33,6 +33,12 @@ class Soak(Aviator):
     def check(self) -> None:
         """What must hold at any time."""
         assert self.mode in MODES, self.story()
+        self.check_numbers()
+        off = np.linalg.norm(np.array(self.ap.estimate.pos) - self.pos)
+        assert off < 5.0, (off, self.story())
+
+    def check_numbers(self) -> None:
+        """Finite, above the ground, neither too fast nor overturned."""
         t = self.track[-1]
         assert np.isfinite(t).all(), self.story()
         assert t[3] < 0.01, self.story()
@@ -44,8 +50,6 @@ class Soak(Aviator):
                 value = record[field]
                 if value.dtype.kind == "f":
                     assert np.isfinite(value).all(), (name, field, self.story())
-        off = np.linalg.norm(np.array(self.ap.estimate.pos) - self.pos)
-        assert off < 5.0, (off, self.story())
 
     def story(self) -> str:
         """What was done last."""

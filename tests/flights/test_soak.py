@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 from aviator import AIRFRAMES
+from chaos import Chaos
 from soak import Soak
 
 from sitl.simulation import Core
@@ -16,6 +17,14 @@ def test_ten_minutes(core: Core, frame: str, seed: int) -> None:
     soak = Soak(core, frame, seed)
     soak.go(600.0)
     assert soak.landings >= 4
+
+
+@pytest.mark.parametrize("frame", AIRFRAMES)
+@pytest.mark.parametrize("seed", range(3))
+def test_ten_minutes_in_which_things_fail(core: Core, frame: str, seed: int) -> None:
+    chaos = Chaos(core, frame, seed)
+    chaos.go(600.0)
+    assert chaos.landings >= 3
 
 
 @pytest.mark.slow
