@@ -33,9 +33,9 @@ airframe `ardupilot_quad`; both sides are the autopilot's own estimate (LOCAL_PO
 
 - *take-off: 0.1 m.* The recorded vehicle lifts its first 10 cm more slowly, in its own ground truth too; from 5 m on
   the times agree.
-- *3 m/s east: 2.85 m/s* (95 % of the step). Both curves are almost level there: the speeds at 2.1 s differ by little, and
-  little speed is much time. The likely cause is the recorded estimator: its position falls behind its own velocity (last
-  but one figure of the step in the table), and the position loop (PSC_POSXY_P 1 per second) makes that up as speed.
+- *3 m/s east: 2.85 m/s* (95 % of the step). Both curves are almost level there: the speeds at 2.1 s differ by
+  little, and little speed is much time. The likely cause is the recorded estimator: its position falls behind its own
+  velocity (a figure of its own in the table), and the position loop (PSC_POSXY_P 1) makes that up as speed.
 - *3 m/s east: 1 m/s* is 0.04 s later: one telemetry sample of the recording.
 """
 

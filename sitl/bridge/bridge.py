@@ -57,7 +57,7 @@ class Bridge:
         self.autopilot: Autopilot = autopilot if autopilot is not None else CopterAutopilot(vehicle)
         self._context = Context(self.reader, vehicle, epoch_us)
         self.telemetry = build_all(self._context)
-        self.failed_builds = 0
+        self._left_out: set[str] = set()
         self.board = Switchboard(
             lambda: self.system, lambda: self.elapsed_us, self._channel_added, self._channel_removed
         )
@@ -138,7 +138,7 @@ class Bridge:
 
     @property
     def dropped(self) -> list[str]:
-        """Why channels were lost, for the command line to show."""
+        """Why channels were lost or refused and messages left out, for people."""
         return self.board.dropped
 
     def _channel_added(self, channel: Channel) -> None:
@@ -221,7 +221,9 @@ class Bridge:
         try:
             payload = build()
         except (OverflowError, ValueError, struct.error):  # a number that the wire cannot carry: leave it out
-            self.failed_builds += 1
+            if kind.name not in self._left_out:
+                self._left_out.add(kind.name)
+                self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
             return
         if payload:
             channel.send(kind, payload)

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import Any, NamedTuple
 
-from .dialect import message
+from .dialect import FieldError, message
 from .frame import Splitter, encode_v2
 from .links.inprocess import InProcessLink
 
@@ -36,7 +37,12 @@ class Client:
         self._sequence = 0
 
     def send(self, name: str, **fields: Any) -> None:
-        """Encode and send one message; fields not given are zero."""
+        """Encode and send one message; fields not given are zero.
+
+        Raises:
+            UnknownMessageError: no such message, or it has no such field.
+            FieldError: a value that its field cannot carry.
+        """
         kind = message(name)
         self.send_payload(kind, kind.payload(**fields))
 
@@ -47,11 +53,15 @@ class Client:
 
     def command(self, number: int, *params: float, target: int = 1) -> None:
         """Send a COMMAND_LONG with up to seven parameters."""
+        if len(params) > 7:
+            raise FieldError("COMMAND_LONG", f"param{len(params)}", params[-1], "param1 .. param7")
         values = dict(zip(("param1", "param2", "param3", "param4", "param5", "param6", "param7"), params))
         self.send("COMMAND_LONG", target_system=target, target_component=1, command=number, **values)
 
     def set_interval(self, name: str, rate_hz: float) -> None:
-        """Ask for a message at a rate (MAV_CMD_SET_MESSAGE_INTERVAL)."""
+        """Ask for a message at a rate (MAV_CMD_SET_MESSAGE_INTERVAL); 0 stops it."""
+        if not (math.isfinite(rate_hz) and rate_hz >= 0.0):
+            raise FieldError(name, "rate_hz", rate_hz, "finite numbers from 0 (stop) on")
         self.command(511, message(name).id, 1e6 / rate_hz if rate_hz > 0 else -1)
 
     def receive(self) -> list[Received]:

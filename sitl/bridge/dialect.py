@@ -28,6 +28,20 @@ _TYPE_SIZES = {"int8_t": 1, "uint8_t": 1, "char": 1, "int16_t": 2, "uint16_t": 2
 _TYPE_SIZES |= {"float": 4, "double": 8, "int64_t": 8, "uint64_t": 8}
 
 
+_CODES = {"int8_t": "b", "uint8_t": "B", "char": "c", "int16_t": "h", "uint16_t": "H", "int32_t": "i", "uint32_t": "I"}
+_CODES |= {"float": "f", "double": "d", "int64_t": "q", "uint64_t": "Q"}
+_INTEGER_BITS = {"b": 8, "h": 16, "i": 32, "q": 64}
+"""By struct code in lower case."""
+
+
+class FieldError(ValueError):
+    """A value that a field of a message cannot carry."""
+
+    def __init__(self, message: str, field: str, value: Any, allowed: str) -> None:
+        super().__init__(f"{message}.{field} cannot be {value!r}; allowed: {allowed}")
+        self.message, self.field, self.value, self.allowed = message, field, value, allowed
+
+
 class UnknownMessageError(KeyError):
     """A message name or number that is not in the dialect."""
 
@@ -51,12 +65,27 @@ def _base_size(cls: Any, types: list[str]) -> int:
     return int(found)
 
 
+def _allowed(code: str, length: int) -> str:
+    """What a field of this struct code takes, in words; ``length`` 0 is no array."""
+    bits = _INTEGER_BITS.get(code.lower())
+    if code.endswith("s"):
+        return f"at most {code[:-1]} bytes"
+    if code == "c":
+        return "one byte"
+    if bits is None:
+        one = f"numbers in {'single' if code == 'f' else 'double'} precision"
+    else:
+        low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if code.islower() else (0, (1 << bits) - 1)
+        one = f"whole numbers {low} .. {high}"
+    return f"a sequence of at most {length} {one}" if length else one
+
+
 class MessageType:
     """One message of the dialect."""
 
     __slots__ = (
-        "_arrays", "_is_text", "_make", "_zeros",
-        "base_size", "crc_extra", "fields", "id", "id_bytes", "name", "pack", "size",
+        "_arrays", "_codes", "_is_text", "_make", "_zeros",
+        "base_size", "crc_extra", "fields", "id", "name", "pack", "size",
         "tuple_type", "unpack",
     )  # fmt: skip
 
@@ -69,7 +98,6 @@ class MessageType:
         self.size: int = cls.unpacker.size
         self.base_size = _base_size(cls, types)
         self.crc_extra = bytes((cls.crc_extra,))
-        self.id_bytes = self.id.to_bytes(3, "little")
         self.fields: tuple[str, ...] = tuple(order)
         layout = struct.Struct(cls.unpacker.format)
         self.pack: Callable[..., bytes] = layout.pack
@@ -80,6 +108,10 @@ class MessageType:
         self._is_text = [t == "char" and n > 0 for t, n in zip(types, cls.array_lengths, strict=True)]
         lengths = [1 if text else max(n, 1) for text, n in zip(self._is_text, cls.array_lengths, strict=True)]
         self._arrays = lengths if any(n > 1 for n in cls.array_lengths) else None
+        self._codes = [
+            (f"{n}s" if text else _CODES[t], n)
+            for t, text, n in zip(types, self._is_text, cls.array_lengths, strict=True)
+        ]
         self._zeros = {name: b"" if text else 0 for name, text in zip(self.fields, self._is_text, strict=True)}
 
     def decode(self, payload: bytes) -> Any:
@@ -108,21 +140,45 @@ class MessageType:
         return self._make(out)
 
     def payload(self, **values: Any) -> bytes:
-        """Payload from named fields; those not given are zero."""
+        """Payload from named fields; those not given are zero.
+
+        Raises:
+            UnknownMessageError: a name that is none of its fields.
+            FieldError: a value that its field cannot carry.
+        """
         given = {**self._zeros, **values}
         if len(given) != len(self.fields):
             unknown = sorted(values.keys() - self._zeros.keys())
             raise UnknownMessageError(f"{self.name} has no field {unknown}; it has {list(self.fields)}")
-        if self._arrays is None:
-            return self.pack(*given.values())
+        try:
+            return self.pack(*(given.values() if self._arrays is None else self._flat(given)))
+        except (struct.error, OverflowError, TypeError, ValueError) as error:
+            raise self._culprit(given) from error
+
+    def _flat(self, given: dict[str, Any]) -> list[Any]:
         flat: list[Any] = []
-        for length, value in zip(self._arrays, given.values(), strict=True):
+        for length, value in zip(self._arrays or (), given.values(), strict=True):
             if length > 1:
                 value = tuple(value) if value else ()
                 flat.extend(value + (0,) * (length - len(value)))
             else:
                 flat.append(value)
-        return self.pack(*flat)
+        return flat
+
+    def _culprit(self, given: dict[str, Any]) -> FieldError:
+        """The first field whose value does not pack, for the error message."""
+        for (name, value), (code, length) in zip(given.items(), self._codes, strict=True):
+            is_array = length > 1 and not code.endswith("s")
+            try:
+                values = (tuple(value) if value else ()) if is_array else (value,)
+                for element in values:
+                    struct.pack("<" + code, element)
+                if len(values) <= max(length, 1):
+                    continue
+            except (struct.error, OverflowError, TypeError, ValueError):
+                pass
+            return FieldError(self.name, name, value, _allowed(code, length if is_array else 0))
+        raise AssertionError(f"{self.name}: every field packs alone, but not all together")
 
     def __repr__(self) -> str:
         return f"MessageType({self.name}, id {self.id})"

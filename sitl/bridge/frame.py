@@ -68,7 +68,6 @@ class Splitter:
 
     def __init__(self) -> None:
         self._rest = b""
-        self.skipped_bytes = 0
         self.bad_checksums = 0
 
     def feed(self, data: bytes) -> list[Frame]:
@@ -83,9 +82,7 @@ class Splitter:
             elif mark == MARK_V1:
                 header = HEADER_V1
             else:
-                found = self._next_mark(buffer, at + 1)
-                self.skipped_bytes += found - at
-                at = found
+                at = self._next_mark(buffer, at + 1)
                 continue
             if end - at < header:
                 break
@@ -98,7 +95,6 @@ class Splitter:
                 size, sequence, system, component, number = _read_v1(buffer, at + 1)
                 flags, total, version = 0, HEADER_V1 + CHECKSUM + size, 1
             if flags & ~SIGNED or number not in KNOWN_IDS or size > (kind := message_by_id(number)).size:
-                self.skipped_bytes += 1
                 at += 1
                 continue
             if end - at < total:
@@ -106,7 +102,6 @@ class Splitter:
             stop = at + header + size
             if crc_mcrf4xx(buffer[at + 1 : stop] + kind.crc_extra, 0xFFFF) != buffer[stop] | buffer[stop + 1] << 8:
                 self.bad_checksums += 1
-                self.skipped_bytes += 1
                 at += 1
                 continue
             payload, raw = buffer[at + header : stop], buffer[at : at + total]

@@ -33,7 +33,7 @@ class Switchboard:
         self.links: list[Link] = []
         self.channels: list[Channel] = []
         self.dropped: list[str] = []
-        """Why channels were lost, for the command line to show."""
+        """Why channels were lost or refused, for people."""
         self.taps: list[Tap] = []
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
@@ -87,6 +87,10 @@ class Switchboard:
         if self._sockets:
             for key, _ in self._selector.select(0):
                 key.data()
+            for link in self.links:
+                if link.refusals:
+                    self.dropped += link.refusals
+                    link.refusals.clear()
         for channel in self.channels:
             for frame in channel.receive():
                 for tap in self.taps:

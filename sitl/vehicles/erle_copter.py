@@ -70,8 +70,10 @@ AIRFRAME = Airframe(
         "ATC_RAT_YAW_I": 0.4,
         "ATC_RAT_YAW_FLTE": 10.0,  # [Hz]
         "ATC_ANG_YAW_P": 4.5,
-        "ATC_ACCEL_R_MAX": 60000.0,  # [cdeg/s^2] half of what the rotors can do at hover thrust
-        "ATC_ACCEL_P_MAX": 50000.0,
+        # [cdeg/s^2] Yaw: two thirds of what the rotors can do at hover thrust. The more roll and pitch have over
+        # it, the more a reversal of a full diagonal lean overshoots (the shaping trades one axis for another).
+        "ATC_ACCEL_R_MAX": 30000.0,
+        "ATC_ACCEL_P_MAX": 30000.0,
         "ATC_ACCEL_Y_MAX": 7000.0,
         "MOT_SPIN_MAX": 0.838,  # top speed at 1838 us
         "MOT_THST_EXPO": 0.7,  # thrust (0.15 + 0.688 x)^2 / 0.838^2 of output x

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 
 import pytest
@@ -10,7 +11,7 @@ from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.frame import Splitter
-from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOutLink, open_link
+from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOutLink, open_link, tcp
 from sitl.bridge.links.address import parse
 from sitl.bridge.links.tcp import CONGESTED_BYTES
 from sitl.bridge.services.statustext import StatusTextService
@@ -87,6 +88,77 @@ def test_a_tcp_client_that_does_not_read_cannot_stall_the_vehicle(bench: Bench) 
     assert "does not read" in bench.bridge.dropped[0]
     deaf.close()
     bench.bridge.close()
+
+
+def test_tcp_refuses_more_clients_than_it_takes(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tcp, "MOST_CONNECTIONS", 2)
+    link = TcpServerLink(0)
+    bench.bridge.add_link(link)
+    clients = []
+    for _ in range(4):
+        clients.append(socket.create_connection(link.local_address, timeout=5.0))
+        receive(bench)
+    assert len(bench.bridge.channels) == 3
+    assert clients[2].recv(1) == b"" and clients[3].recv(1) == b""
+    assert len(bench.bridge.dropped) == 1 and "there are 2" in bench.bridge.dropped[0]
+    clients[0].close()
+    receive(bench)
+    assert len(bench.bridge.channels) == 2
+    clients.append(socket.create_connection(link.local_address, timeout=5.0))
+    receive(bench)
+    assert len(bench.bridge.channels) == 3
+    bench.bridge.close()
+    for c in clients:
+        c.close()
+
+
+class _NoRoom:
+    """A listening socket that has no descriptor for ``failures`` of the next connections."""
+
+    def __init__(self, sock: socket.socket, failures: int) -> None:
+        self._sock, self.failures = sock, failures
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._sock, name)
+
+    def fileno(self) -> int:
+        return self._sock.fileno()
+
+    def accept(self) -> object:
+        if self.failures > 0:
+            self.failures -= 1
+            raise OSError(errno.EMFILE, "Too many open files")
+        return self._sock.accept()
+
+
+@pytest.mark.parametrize("failures", [1, 2])
+def test_no_descriptors_left_does_not_keep_the_vehicle_awake(bench: Bench, failures: int) -> None:
+    link = TcpServerLink(0)
+    bench.bridge.add_link(link)
+    first = socket.create_connection(link.local_address, timeout=5.0)
+    receive(bench)
+    link._socket = _NoRoom(link._socket, failures)  # type: ignore[assignment]
+    second = socket.create_connection(link.local_address, timeout=5.0)
+    receive(bench)
+    assert len(bench.bridge.channels) == 2
+    assert len(bench.bridge.dropped) == 1 and "Too many open files" in bench.bridge.dropped[0]
+    assert not bench.bridge.wait(0.0), "what cannot be accepted must not be reported again and again"
+    if failures == 1:
+        assert second.recv(1) == b""
+    first.close()
+    for _ in range(TRIES):
+        receive(bench)
+        if len(bench.bridge.channels) == 1:
+            break
+    third = socket.create_connection(link.local_address, timeout=5.0)
+    for _ in range(TRIES):
+        receive(bench)
+        if len(bench.bridge.channels) == 3 - (failures == 1):
+            break
+    assert len(bench.bridge.channels) == 3 - (failures == 1), "those that wait are taken when there is room again"
+    bench.bridge.close()
+    second.close()
+    third.close()
 
 
 def test_udp_in_knows_many_peers(bench: Bench) -> None:

@@ -73,6 +73,7 @@ def test_heartbeat_and_status(bench: Bench) -> None:
     beat = get(bench, "HEARTBEAT")
     assert (beat.base_mode, beat.custom_mode, beat.system_status) == (81 | 8 | 128, 4, 4)
     ap.arming.armed, ap.arming.prearm_ok, ap.battery.voltage, ap.battery.current = 0, 0, 12.6, 3.5
+    ap.params.BATT_MONITOR = 4
     status = get(bench, "SYS_STATUS")
     assert (status.voltage_battery, status.current_battery) == (12600, 350)
     assert status.onboard_control_sensors_present & 0x10000000
@@ -131,3 +132,87 @@ def test_pulses_that_are_none(bench: Bench) -> None:
     rc, servo = get(bench, "RC_CHANNELS"), get(bench, "SERVO_OUTPUT_RAW")
     assert (rc.chan1_raw, rc.chan2_raw, rc.chan3_raw) == (1500, 0, 65535)
     assert (servo.servo1_raw, servo.servo2_raw) == (1600, 65535)
+
+
+@pytest.mark.parametrize(("monitor", "millivolts", "centiamperes", "used"), [
+    (0, 65535, -1, -1), (3, 12600, -1, -1), (4, 12600, 350, 100),
+])  # fmt: skip
+def test_what_the_battery_monitor_does_not_measure_is_unknown(
+    bench: Bench, monitor: int, millivolts: int, centiamperes: int, used: int
+) -> None:
+    ap = bench.vehicle.v.autopilot
+    ap.params.BATT_MONITOR = monitor
+    ap.battery.voltage, ap.battery.current, ap.battery.consumed_mah, ap.battery.remaining_pct = 12.6, 3.5, 100, -1
+    status, battery = get(bench, "SYS_STATUS"), get(bench, "BATTERY_STATUS")
+    assert (status.voltage_battery, status.current_battery, status.battery_remaining) == (millivolts, centiamperes, -1)
+    assert (battery.voltages[0], battery.current_battery, battery.battery_remaining) == (millivolts, centiamperes, -1)
+    assert battery.current_consumed == used
+    assert bool(status.onboard_control_sensors_present & 0x2000000) == (monitor > 0)
+
+
+@pytest.mark.parametrize(
+    ("remaining", "sent"), [(-1.0, -1), (0.0, 0), (0.9, 0), (57.9, 57), (250.0, 100), (math.nan, -1)]
+)
+def test_charge_left(bench: Bench, remaining: float, sent: int) -> None:
+    bench.vehicle.v.autopilot.battery.remaining_pct = remaining
+    assert get(bench, "SYS_STATUS").battery_remaining == sent
+    assert get(bench, "BATTERY_STATUS").battery_remaining == sent
+
+
+def test_sensor_health_is_what_the_firmware_knows(bench: Bench) -> None:
+    gyro, compass, barometer, gps, ahrs, battery = 0x1, 0x4, 0x8, 0x20, 0x200000, 0x2000000
+    v = bench.vehicle.v
+    ekf, sensors = v.autopilot.ekf, v.sensors
+
+    def health() -> int:
+        return get(bench, "SYS_STATUS").onboard_control_sensors_health & (
+            gyro | compass | barometer | gps | ahrs | battery
+        )
+
+    assert health() == 0
+    v.time_us = sensors.time_us = sensors.gps_time_us = 30_000_000
+    sensors.mag_count = sensors.baro_count = 1
+    sensors.gps_fix = 3
+    assert health() == gyro | compass | barometer | gps
+    v.autopilot.estimate.attitude_ok = ekf.yaw_aligned = 1
+    assert health() == gyro | gps | ahrs, "the filter has seen no sane sample for 30 s"
+    ekf.mag_us = ekf.baro_us = v.time_us - 100_000
+    ekf.bad_imu = 3
+    assert health() == compass | barometer | gps | ahrs
+    v.time_us += 5_000_000
+    ekf.use_external = v.autopilot.params.BATT_MONITOR = 4
+    assert health() == gyro | compass | barometer | ahrs | battery, "the truth needs no filter; the GPS is silent"
+    v.autopilot.modes.failsafe.battery = 1
+    assert not health() & battery
+
+
+def test_gps_accuracies(bench: Bench) -> None:
+    sensors = bench.vehicle.v.sensors
+    sensors.gps_eph, sensors.gps_epv = 120, 200
+    raw = get(bench, "GPS_RAW_INT")
+    assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (65535, 65535, 0, 0, 0)
+    sensors.gps_fix = 3
+    raw = get(bench, "GPS_RAW_INT")
+    assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (120, 200, 360, 1000, 0)
+
+
+def test_no_channels_without_receiver_or_override(bench: Bench) -> None:
+    v = bench.vehicle.v
+    assert get(bench, "RC_CHANNELS").chancount == 0
+    v.autopilot.rc.channels[:4] = 1500
+    assert get(bench, "RC_CHANNELS").chancount == 16
+    v.time_us += 10_000_000
+    assert get(bench, "RC_CHANNELS").chancount == 0
+    v.autopilot.modes.failsafe.receiver_us = v.time_us
+    assert get(bench, "RC_CHANNELS").chancount == 16
+
+
+def test_a_message_that_is_left_out_is_told_once(bench: Bench) -> None:
+    kind, _ = bench.bridge.telemetry[0]
+
+    def broken() -> bytes:
+        return kind.pack(-1, 2, 3, 4, 5, 6)
+
+    for _ in range(3):
+        bench.bridge._emit(bench.bridge.channels[0], kind, broken)
+    assert len(bench.bridge.dropped) == 1 and "HEARTBEAT" in bench.bridge.dropped[0]

@@ -156,3 +156,18 @@ def test_battery_of_a_ten_minute_hover(core: Core) -> None:
     assert battery.remaining_pct == pytest.approx(100.0 - battery.consumed_mah / 50.0, abs=1.0)
     assert 0.5 < volts - battery.voltage < 1.5
     assert np.linalg.norm(p.pos - [0.0, 0.0, -10.0]) < 1.5
+
+
+@BOTH
+@pytest.mark.parametrize("yaw", [1500, 2000])
+def test_reversal_of_a_full_diagonal_lean_keeps_to_the_lean_limit(core: Core, frame: str, yaw: int) -> None:
+    """The Erle-Copter went to 40 degrees: its limits of angular acceleration were too unlike."""
+    p = Aviator(core, frame).hover(30.0)
+    p.sticks(0.5)
+    p.set_mode(ALT_HOLD)
+    p.sticks(1.0)
+    start = p.now
+    p.sticks(1.5, roll=2000, pitch=1000, yaw=yaw)
+    p.sticks(1.0, roll=1000, pitch=2000, yaw=3000 - yaw)
+    roll, pitch = np.radians(p.since(start)[:, 7:9]).T
+    assert np.degrees(np.arccos(np.cos(roll) * np.cos(pitch))).max() < 33.0

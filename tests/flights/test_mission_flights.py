@@ -183,3 +183,50 @@ def test_a_mission_that_ends_in_the_air_hovers(core: Core) -> None:
     here = p.pos
     p.fly(10.0)
     assert np.linalg.norm(p.pos - here) < 0.6
+
+
+@BOTH
+def test_auto_on_the_ground_waits_for_a_raised_throttle(core: Core, frame: str) -> None:
+    p = Aviator(core, frame).ready()
+    assert p.upload(UP, DOWN) == 0
+    p.set_mode(aviator.STABILIZE)
+    p.sticks(0.5, throttle=aviator.LOW)
+    p.arm()
+    assert p.set_mode(AUTO)
+    p.fly(4.0)
+    assert p.on_ground
+    p.sticks(9.0)
+    assert p.height == pytest.approx(10.0, abs=1.5)
+    p.wait_disarmed(60.0)
+
+
+def test_auto_on_the_ground_needs_a_take_off(core: Core) -> None:
+    p = Aviator(core).ready()
+    assert p.upload(Item(WAYPOINT, (15.0, 0.0), 10.0), DOWN) == 0
+    p.arm()
+    assert not p.set_mode(AUTO)
+    assert p.ask(300, 0, 0) == 4
+
+
+def test_a_mission_is_flown_again_after_its_landing(core: Core) -> None:
+    p, _ = fly(core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), DOWN)
+    assert p.set_mode(aviator.GUIDED)
+    p.arm()
+    assert p.set_mode(AUTO)
+    assert p.ask(300, 0, 0) == 0
+    p.wait_disarmed(90.0)
+    assert [seq for _, seq in p.reached] == [1, 2, 1, 2]
+
+
+@BOTH
+def test_rtl_in_a_corner_and_back(core: Core, frame: str) -> None:
+    p = Aviator(core, frame).ready()
+    p.start_mission(UP, Item(WAYPOINT, (30.0, 0.0), 10.0), Item(WAYPOINT, (30.0, 30.0), 10.0), DOWN)
+    assert p.fly(60.0, lambda: not math.isnan(p.reached_at(2)))
+    start = p.now
+    assert p.set_mode(aviator.RTL)
+    p.fly(3.0)
+    assert p.set_mode(AUTO)
+    p.wait_disarmed(90.0)
+    assert np.abs(p.since(start)[:, 7:9]).max() < 31.0
+    assert p.pos[:2] == pytest.approx([30.0, 30.0], abs=1.2)

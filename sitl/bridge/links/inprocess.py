@@ -50,9 +50,3 @@ class InProcessLink(Link):
         data = b"".join(self._end.sent)
         self._end.sent.clear()
         return data
-
-    def receive_frames(self) -> list[bytes]:
-        """The same, frame by frame."""
-        frames = self._end.sent
-        self._end.sent = []
-        return frames

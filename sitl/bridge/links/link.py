@@ -54,6 +54,8 @@ class Link:
     def __init__(self, name: str) -> None:
         self.name = name
         self.peers: list[Peer] = []
+        self.refusals: list[str] = []
+        """Why clients were turned away; the switchboard takes them."""
         self._on_peer: Callable[[Peer], None] | None = None
 
     def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:

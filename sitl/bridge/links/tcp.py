@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink over TCP: the vehicle listens, any number of clients connect; none of them can stall it."""
+"""MAVLink over TCP: the vehicle listens, up to 64 clients connect; none of them can stall it."""
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import os
 import selectors
 import socket
 from collections.abc import Callable
@@ -13,7 +16,19 @@ CONGESTED_BYTES = 1 << 18
 """With this much unsent, telemetry to the client waits (``Peer.congested``)."""
 QUEUE_BYTES = 1 << 22
 """With this much unsent, the client is dropped."""
+MOST_CONNECTIONS = 64
 _READ_BYTES = 1 << 16
+
+
+_NO_ROOM = frozenset((errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM))
+
+
+def _reserve() -> int:
+    """A descriptor of nothing, -1 when there is none to be had."""
+    try:
+        return os.open(os.devnull, os.O_RDONLY)
+    except OSError:
+        return -1
 
 
 class _TcpPeer(Peer):
@@ -80,6 +95,10 @@ class TcpServerLink(Link):
             raise
         self.name = f"tcp:{host}:{self.local_address[1]}"
         self._selector: Selector | None = None
+        self._listens = False
+        self._refuses = False
+        self._reserve = _reserve()
+        """A descriptor to give up when there are no more, so that a connection can be taken and closed."""
 
     @property
     def local_address(self) -> tuple[str, int]:
@@ -89,16 +108,52 @@ class TcpServerLink(Link):
 
     def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
         self._selector = selector
-        selector.register(self._socket, selectors.EVENT_READ, self._accept)
+        self._listen(True)
         super().attach(selector, on_peer)
+
+    def _listen(self, on: bool) -> None:
+        if self._selector is None or on == self._listens:
+            return
+        if on:
+            self._selector.register(self._socket, selectors.EVENT_READ, self._accept)
+        else:
+            self._selector.unregister(self._socket)
+        self._listens = on
+
+    def _refuse(self, why: str) -> None:
+        if not self._refuses:  # one note, however often the refused try again
+            self.refusals.append(f"{self.name}: connections are refused: {why}")
+        self._refuses = True
+
+    def _make_room(self, error: OSError) -> None:
+        """No descriptor or memory for a connection that waits, and that would be reported for ever.
+
+        Close it in the place of the reserve; if that fails as well, do not look again before a client leaves.
+        """
+        self._refuse(error.strerror or str(error))
+        if self._reserve >= 0:
+            os.close(self._reserve)
+        try:
+            self._socket.accept()[0].close()
+        except OSError as again:
+            if again.errno in _NO_ROOM:
+                self._listen(False)
+        self._reserve = _reserve()
 
     def _accept(self) -> None:
         try:
             sock, address = self._socket.accept()
-        except OSError:
-            return  # gone again before we looked
+        except OSError as error:
+            if error.errno in _NO_ROOM:
+                self._make_room(error)
+            return  # else gone again before we looked
+        if len(self.peers) >= MOST_CONNECTIONS:
+            self._refuse(f"there are {MOST_CONNECTIONS}, as many as are taken")
+            sock.close()
+            return
         sock.setblocking(False)
-        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        with contextlib.suppress(OSError):  # some systems refuse it when the client has gone already
+            sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         peer = _TcpPeer(f"{self.name} {address[0]}:{address[1]}", sock, self)
         if self._selector is not None:
             self._selector.register(sock, selectors.EVENT_READ, peer.readable)
@@ -111,6 +166,8 @@ class TcpServerLink(Link):
         sock.close()
         if peer in self.peers:
             self.peers.remove(peer)
+        self._refuses = False
+        self._listen(True)
 
     def close(self) -> None:
         for peer in list(self.peers):
@@ -118,7 +175,10 @@ class TcpServerLink(Link):
                 peer.flush()
                 peer.drop("vehicle closed")
         if self._selector is not None:
-            self._selector.unregister(self._socket)
+            self._listen(False)
             self._selector = None
+        if self._reserve >= 0:
+            os.close(self._reserve)
+            self._reserve = -1
         self._socket.close()
         super().close()

@@ -34,7 +34,6 @@ class Command(NamedTuple):
     z: float
     """p7: altitude [m] or whatever the command makes of it."""
     frame: int
-    is_int: bool
     p5: float
     """As given, for commands that are not about a place."""
     p6: float
@@ -78,7 +77,7 @@ def from_long(fields: Any, entry: Entry) -> Command | None:
         if not (abs(p5) <= 90.0 and abs(p6) <= 180.0):
             return None
         lat, lon = round(p5 * 1e7), round(p6 * 1e7)
-    return Command(fields.command, p1, p2, p3, p4, lat, lon, p7, entry.long_frame, False, p5, p6)
+    return Command(fields.command, p1, p2, p3, p4, lat, lon, p7, entry.long_frame, p5, p6)
 
 
 def from_int(fields: Any, entry: Entry) -> Command | None:
@@ -98,7 +97,7 @@ def from_int(fields: Any, entry: Entry) -> Command | None:
     p1, p2, p3, p4, p5, p6, p7 = clean
     if entry.place and not (abs(fields.x) <= 900_000_000 and abs(fields.y) <= 1_800_000_000):
         return None
-    return Command(fields.command, p1, p2, p3, p4, fields.x, fields.y, p7, fields.frame, True, p5, p6)
+    return Command(fields.command, p1, p2, p3, p4, fields.x, fields.y, p7, fields.frame, p5, p6)
 
 
 def _clean(values: tuple[float, ...], entry: Entry) -> list[float] | None:

@@ -50,7 +50,7 @@ class CommandService(Service):
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
         as_command = Command(
-            DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, False, 0.0, 0.0
+            DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0
         )
         result = commands_flight.do_set_mode(self.bridge, channel, as_command)
         self._ack(channel, message("SET_MODE").id, result, sender)

@@ -9,18 +9,24 @@ from ..dialect import message
 from .builder import Build, Builder, Context
 from .units import uint16
 
+CHANNELS = 16
+"""chancount of a receiver, as ArduPilot tells it."""
+
 
 def rc_channels(context: Context) -> Build:
-    """RC_CHANNELS: pulses in use [us], 0 where there is none."""
+    """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
     read = context.fields("time_us", "autopilot.rc.channels")
+    read_heard = context.fields("autopilot.modes.failsafe.receiver_us", "autopilot.params.RC_FS_TIMEOUT")
     pack = message("RC_CHANNELS").pack
 
     def build() -> bytes:
         t, *pulses = read()
+        heard_us, timeout_s = read_heard()
+        count = CHANNELS if any(pulses) and t - heard_us < timeout_s * 1e6 else 0
         try:
-            return pack(t // 1000 & 0xFFFFFFFF, *pulses, 16, 255)
+            return pack(t // 1000 & 0xFFFFFFFF, *pulses, count, 255)
         except struct.error:  # not a pulse: rare, so that the usual case need not look at each
-            return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), 16, 255)
+            return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), count, 255)
 
     return build
 

@@ -113,7 +113,9 @@ def gps_global_origin(context: Context) -> Build:
 
 
 def gps_raw_int(context: Context) -> Build:
-    """GPS_RAW_INT: the receiver's fix, course [cdeg], speed [cm/s], accuracies from the dilution of precision."""
+    """GPS_RAW_INT: the receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] are 0.3 m x HDOP
+    and 0.5 m x VDOP, other accuracies are not known (0).
+    """
     names = ("fix", "lat", "lon", "alt", "eph", "epv", "vel", "satellites")
     read = context.fields(S + "gps_time_us", *(S + "gps_" + name for name in names))
     pack = message("GPS_RAW_INT").pack
@@ -122,8 +124,9 @@ def gps_raw_int(context: Context) -> Build:
         t, fix, lat, lon, alt, eph, epv, vn, ve, _, satellites = read()
         speed = uint16(math.hypot(vn, ve))
         course = uint16(math.atan2(ve, vn) * DEG * 100.0 % 36000.0)
-        eph, epv = (uint16(eph), uint16(epv)) if fix >= 2 else (65535, 65535)
-        accuracies = (alt, eph * 3, epv * 5, 200, 0, 0)  # mm and mm/s
+        has_fix = fix >= 2
+        eph, epv = (uint16(eph), uint16(epv)) if has_fix else (65535, 65535)
+        accuracies = (alt, eph * 3, epv * 5, 0, 0, 0) if has_fix else (alt, 0, 0, 0, 0, 0)
         return pack(
             t, lat, lon, alt, eph, epv, speed, course, fix & 0xFF, min(max(satellites, 0), 255), *accuracies
         )

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ..dialect import message
 from .builder import Build, Builder, Context
-from .units import boot_ms, int16, int32, uint16
+from .units import boot_ms, int16, int32, percent, uint16
 
 E = "autopilot.estimate."
 A = "autopilot.arming."
@@ -43,7 +45,7 @@ def heartbeat(context: Context) -> Build:
 
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
-RECEIVER, GEOFENCE, AHRS, LOGGING, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x1000000, 0x2000000, 0x10000000
+RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
 PRESENT = (
     GYRO
     | ACCEL
@@ -57,33 +59,66 @@ PRESENT = (
     | POSITION
     | MOTORS
     | AHRS
-    | BATTERY
     | PREARM
 )
 POSITION_MODES = frozenset((3, 4, 5, 6, 7, 9, 16, 17))
 ALTITUDE_MODES = POSITION_MODES | {2}
+SAMPLE_US = 500_000
+"""A sensor is healthy while the filter's last sane sample of it is no older."""
+GPS_US = 4_000_000
+"""So for the GPS receiver's messages."""
+VOLTAGE_MONITOR, CURRENT_MONITOR = 3, 4
+"""BATT_MONITOR: what is measured from this number on; the rest is unknown."""
+
+
+def sensor_health(context: Context) -> Callable[[], int]:
+    """Health bits of IMU, compass, barometer, GPS and attitude, as the firmware knows them.
+
+    Samples must have come; once the filter is aligned, sane ones must keep coming.
+    """
+    ekf, s = "autopilot.ekf.", "sensors."
+    read = context.fields(
+        "time_us", s + "time_us", s + "mag_count", s + "baro_count", s + "gps_fix", s + "gps_time_us",
+        ekf + "use_external", ekf + "yaw_aligned", ekf + "bad_imu", ekf + "mag_us", ekf + "baro_us",
+        E + "attitude_ok",
+    )  # fmt: skip
+
+    def build() -> int:
+        t, imu_us, mags, baros, fix, gps_us, external, aligned, bad_imu, mag_us, baro_us, attitude_ok = read()
+        watched = aligned and not external
+        health = GYRO | ACCEL if imu_us > 0 and (external or bad_imu == 0) else 0
+        health |= MAG if mags > 0 and not (watched and t - mag_us > SAMPLE_US) else 0
+        health |= BARO if baros > 0 and not (watched and t - baro_us > SAMPLE_US) else 0
+        health |= GPS if fix >= 3 and t - gps_us <= GPS_US else 0
+        return health | (AHRS if attitude_ok else 0)
+
+    return build
 
 
 def sys_status(context: Context) -> Build:
-    """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %."""
+    """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
     read = context.fields(
         B + "voltage", B + "current", B + "remaining_pct", M + "number", A + "armed", A + "prearm_ok",
-        E + "attitude_ok", "sensors.gps_fix", "autopilot.rc.receiver_ok",
+        "autopilot.rc.receiver_ok", M + "failsafe.battery", "autopilot.params.BATT_MONITOR",
     )  # fmt: skip
+    sensors = sensor_health(context)
     pack = message("SYS_STATUS").pack
 
     def build() -> bytes:
-        voltage, current, remaining, mode, armed, prearm, attitude_ok, fix, receiver = read()
-        present = PRESENT | (RECEIVER if receiver else 0)
+        voltage, current, remaining, mode, armed, prearm, receiver, battery_low, monitor = read()
+        present = PRESENT | (RECEIVER if receiver else 0) | (BATTERY if monitor >= VOLTAGE_MONITOR else 0)
         enabled = present & ~(POSITION | ALTITUDE | MOTORS)
         enabled |= POSITION if mode in POSITION_MODES else 0
         enabled |= ALTITUDE if mode in ALTITUDE_MODES else 0
         enabled |= MOTORS if armed else 0
-        health = present & ~(AHRS | GPS | PREARM) | GEOFENCE  # no fence is not a breached one
-        health |= (AHRS if attitude_ok else 0) | (GPS if fix >= 3 else 0) | (PREARM if prearm or armed else 0)
-        percent = min(max(int(remaining), 0), 100) if remaining == remaining else -1
+        health = present & (RATE | ATTITUDE | YAW | ALTITUDE | POSITION | MOTORS | RECEIVER)  # cannot fail
+        health |= GEOFENCE | sensors()  # no fence is not a breached one
+        health |= 0 if battery_low else present & BATTERY
+        health |= PREARM if prearm or armed else 0
+        millivolts = uint16(voltage * 1e3) if monitor >= VOLTAGE_MONITOR else 65535
+        centiamperes = int16(current * 100.0) if monitor >= CURRENT_MONITOR else -1
         # the extension fields (three more words of sensor bits) stay zero
-        power = (0, uint16(voltage * 1e3), int16(current * 100.0), 0, 0, 0, 0, 0, 0, percent)
+        power = (0, millivolts, centiamperes, 0, 0, 0, 0, 0, 0, percent(remaining))
         return pack(present, enabled, health, *power, 0, 0, 0)
 
     return build
@@ -127,18 +162,19 @@ def ekf_status_report(context: Context) -> Build:
 
 
 def battery_status(context: Context) -> Build:
-    """BATTERY_STATUS: mV, cA, mAh, hJ, %; cell voltages are not measured (65535)."""
-    read = context.fields(
-        *(B + x for x in ("voltage", "current", "consumed_mah", "consumed_wh", "remaining_pct"))
-    )
+    """BATTERY_STATUS: mV, cA, mAh, hJ, %; what BATT_MONITOR does not measure is 65535 (cells, too) or -1."""
+    names = ("voltage", "current", "consumed_mah", "consumed_wh", "remaining_pct")
+    read = context.fields(*(B + name for name in names), "autopilot.params.BATT_MONITOR")
     pack = message("BATTERY_STATUS").pack
 
     def build() -> bytes:
-        voltage, current, mah, wh, remaining = read()
-        percent = min(max(int(remaining), 0), 100) if remaining == remaining else -1
-        cells = (uint16(voltage * 1e3), *(65535,) * 9)
-        rest = (int16(current * 100.0), 0, 0, 0, percent, 0, 1, 0, 0, 0, 0, 0, 0)
-        return pack(int32(mah), int32(wh * 36.0), 32767, *cells, *rest)
+        voltage, current, mah, wh, remaining, monitor = read()
+        millivolts = uint16(voltage * 1e3) if monitor >= VOLTAGE_MONITOR else 65535
+        used, centiamperes = (-1, -1), -1
+        if monitor >= CURRENT_MONITOR:
+            used, centiamperes = (int32(mah), int32(wh * 36.0)), int16(current * 100.0)
+        rest = (centiamperes, 0, 0, 0, percent(remaining), 0, 1, 0, 0, 0, 0, 0, 0)
+        return pack(*used, 32767, millivolts, *(65535,) * 9, *rest)
 
     return build
 

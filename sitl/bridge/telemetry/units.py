@@ -29,6 +29,11 @@ def int32(x: float) -> int:
     return 2147483647 if x >= 2147483647.0 else -2147483648
 
 
+def percent(x: float) -> int:
+    """Truncated to 0 .. 100; -1 ("unknown") for what is below 0 or not a number."""
+    return int(min(x, 100.0)) if x >= 0.0 else -1
+
+
 def heading_cdeg(yaw: float) -> int:
     """Angle [rad] as 0 .. 35999 centidegrees; 0 for what is not a number."""
     c = yaw * CDEG
