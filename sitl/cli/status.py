@@ -12,7 +12,7 @@ from ..simulation import Simulation
 
 
 class StatusLine:
-    """One line on a terminal, rewritten a few times a second; nothing where stderr is not a terminal."""
+    """One line on a terminal, rewritten a few times a second; elsewhere only what happened to clients."""
 
     _PERIOD_S = 0.25
 
@@ -23,9 +23,14 @@ class StatusLine:
         self._last_us = simulation.time_us
         self._factor = 0.0
         self._width = 0
+        self._told = 0
 
     def update(self) -> None:
-        """Rewrite the line when it is time to."""
+        """Rewrite the line when it is time to; say which clients were lost and why."""
+        dropped = self._simulation.bridge.dropped
+        for text in dropped[self._told :]:
+            print(f"\r{text}".ljust(self._width), file=sys.stderr)
+        self._told = len(dropped)
         if not self._enabled or time.monotonic() < self._next:
             return
         now, time_us = time.monotonic(), self._simulation.time_us

@@ -123,9 +123,11 @@ def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
         return FAILED
     if not in_guided and set_mode(bridge, GUIDED) != ACCEPTED:
         return FAILED
-    if command.p1 > 0.0:
+    if not bridge.autopilot.guided_position(place, None):
+        return FAILED
+    if command.p1 > 0.0:  # after the target: a new kind of set-point begins with the default speed
         bridge.autopilot.change_speed(1, command.p1)
-    return ACCEPTED if bridge.autopilot.guided_position(place, None) else FAILED
+    return ACCEPTED
 
 
 def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
