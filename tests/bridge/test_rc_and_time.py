@@ -79,3 +79,10 @@ def test_home_and_origin(bench: Bench) -> None:
     assert {m.get_type() for m in bench.client.receive()} == {"HOME_POSITION", "GPS_GLOBAL_ORIGIN"}
     bench.ask(mavlink.MAVLink_set_gps_global_origin_message(1, 2**31 - 1, 0, 0))
     assert len(bench.autopilot.calls) == 1
+
+
+def test_there_are_no_logs_on_board(bench: Bench) -> None:
+    (entry,) = bench.ask(mavlink.MAVLink_log_request_list_message(1, 1, 0, 0xFFFF), "LOG_ENTRY")
+    assert (entry.num_logs, entry.size) == (0, 0)
+    (data,) = bench.ask(mavlink.MAVLink_log_request_data_message(1, 1, 3, 90, 90), "LOG_DATA")
+    assert (data.ofs, data.count) == (90, 0)

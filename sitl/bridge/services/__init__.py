@@ -6,6 +6,7 @@ from .events import EventService
 from .ftp import FtpService
 from .heartbeat import HeartbeatService
 from .home import HomeService
+from .log_download import LogDownloadService
 from .mission import MissionService
 from .parameters import ParameterService
 from .ping import PingService
@@ -31,5 +32,6 @@ ALL_SERVICES = (
     EventService,
     PreArmService,
     FtpService,
+    LogDownloadService,
 )
 """In the order in which they act when several are due at the same time."""
