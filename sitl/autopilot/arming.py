@@ -31,7 +31,6 @@ ARMING_DELAY_US = 2_000_000
 def update(v):
     """Keep ``arming.prearm_ok`` up to date; called four times a second."""
     failed = check(v)
-    v.autopilot.modes.arming_failures = failed
     v.autopilot.arming.prearm_ok = 1 if failed == 0 else 0
 
 
@@ -42,7 +41,6 @@ def try_arm(v, method, force):
     if ap.arming.armed != 0:
         return 0
     failed = check_now(v, method)
-    ap.modes.arming_failures = failed
     if (force == 0 and failed != 0) or (failed & MANDATORY) != 0:
         emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
         return failed
@@ -82,7 +80,6 @@ def disarm(v, method, force):
     if force == 0 and not may_disarm(v, method):
         return 0
     ap.arming.armed = 0
-    ap.arming.disarmed_us = v.time_us
     ap.arming.auto_armed = 0
     ap.arming.landed = 1
     ap.arming.landed_maybe = 1

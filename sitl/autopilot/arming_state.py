@@ -8,7 +8,6 @@ from ..core.records import record
 ARMING_DTYPE = record(
     ("armed", "i8"),
     ("armed_us", "i8"),  # when last armed
-    ("disarmed_us", "i8"),
     ("auto_armed", "i8"),  # throttle raised or take-off commanded since arming
     ("landed", "i8"),
     ("landed_maybe", "i8"),

@@ -178,6 +178,10 @@ def is_estimate_bad(v):
     return count >= 2 or est.position_ok == 0
 
 
+EKF_ACTED = 2
+"""``failsafe.ekf``: the estimate is bad and the mode was ended for it (1: bad, but the mode needs no position)."""
+
+
 @law
 def update_ekf(v):
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
@@ -196,8 +200,9 @@ def update_ekf(v):
     elif not bad and fs.ekf_count > 0:
         fs.ekf_count -= 1
         if fs.ekf_count == 0 and fs.ekf != 0:
+            if fs.ekf == EKF_ACTED:
+                tell(v, EKF, 0)
             fs.ekf = 0
-            tell(v, EKF, 0)
 
 
 @law
@@ -206,11 +211,12 @@ def start_ekf(v):
     ap = v.autopilot
     action = int(ap.params.FS_EKF_ACTION)
     mode = int(ap.modes.number)
+    if mode != LAND and (action == 0 or (not requires_position(mode) and action != 3)):
+        return
+    ap.modes.failsafe.ekf = EKF_ACTED
     tell(v, EKF, 1)
     if mode == LAND:
         ap.modes.land.with_position = 0
-        return
-    if action == 0 or (not requires_position(mode) and action != 3):
         return
     if action == 2 and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
         return
@@ -221,6 +227,5 @@ def start_ekf(v):
 @law
 def terminate(v):
     """MAV_CMD_DO_FLIGHTTERMINATION: stop the motors."""
-    v.autopilot.modes.failsafe.terminated = 1
     arming.disarm(v, arming.BY_TERMINATION, 1)
     ground.set_landed(v, 1)

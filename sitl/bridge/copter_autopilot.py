@@ -19,7 +19,6 @@ CRITICAL, WARNING, INFO = 2, 4, 6
 """MAV_SEVERITY"""
 BY_MAVLINK = 1
 """Method of arming and disarming (ArduPilot's number)."""
-BY_TERMINATION = 5
 BY_GROUND_STATION = 2
 """Reason of a mode change (ArduPilot's number)."""
 AUTO = 3
@@ -108,8 +107,7 @@ class CopterAutopilot:
         return True
 
     def terminate(self) -> None:
-        self._v.autopilot.modes.failsafe.terminated = 1
-        self._arming.disarm(self._v, BY_TERMINATION, 1)
+        self._failsafe.terminate(self._v)
 
     # ------------------------------------------------------------------ GUIDED
 

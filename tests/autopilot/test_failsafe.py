@@ -156,7 +156,7 @@ def test_estimator_lost_for_a_second(flying, mode, action, after):
         failsafe.update_ekf(flying)
     assert ap.modes.number == mode
     failsafe.update_ekf(flying)
-    assert (ap.modes.number, ap.modes.failsafe.ekf) == (after, 1)
+    assert (ap.modes.number, ap.modes.failsafe.ekf) == (after, 1 if after == mode else failsafe.EKF_ACTED)
     if after == LAND:
         assert ap.modes.land.with_position == 0
 

@@ -113,7 +113,7 @@ def test_gps_lost(core: Core, frame: str, mode: int, then: int) -> None:
     p.set_parameter("SIM_GPS1_ENABLE", 0)
     p.sticks(12.0)
     assert p.mode == then
-    assert p.said("EKF Failsafe")
+    assert bool(p.said("EKF Failsafe")) == (then != mode), "said when something is done about it"
     assert p.set_mode(LAND)
     p.wait_disarmed(60.0)
     p.let_go()

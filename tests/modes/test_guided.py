@@ -32,7 +32,6 @@ SETTERS = (
     (guided.set_velocity, 3, VELOCITY_ACCEL),
     (guided.set_velocity_accel, 6, VELOCITY_ACCEL),
     (guided.set_accel, 3, ACCEL),
-    (guided.set_pos_vel, 6, POS_VEL_ACCEL),
     (guided.set_pos_vel_accel, 9, POS_VEL_ACCEL),
 )
 

@@ -8,11 +8,11 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from steady_copter import codes, fly, wait
+from steady_copter import codes, wait
 
 from sitl.autopilot.events import DISARMED, LEG_ENDING
-from sitl.autopilot.modes.copter import brake, land, rtl, set_mode
-from sitl.autopilot.modes.copter.numbers import ALT_HOLD, LAND, LOITER, REASON_GCS, RTL
+from sitl.autopilot.modes.copter import land, rtl, set_mode
+from sitl.autopilot.modes.copter.numbers import LAND, LOITER, REASON_GCS, RTL
 
 
 @pytest.mark.parametrize(
@@ -121,16 +121,3 @@ def test_a_high_throttle_cancels_the_landing_only_with_the_option(flying):
     ap.params.PILOT_THR_BHV = 2.0
     land.run(flying)
     assert ap.modes.wanted == LOITER + 1
-
-
-@pytest.mark.parametrize(("position", "after"), ((1, LOITER), (0, ALT_HOLD)))
-def test_brake_can_end_after_a_time(flying, position, after):
-    fly(flying, 17)
-    brake.start(flying)
-    brake.leave_after(flying, 2.0)
-    flying.autopilot.estimate.position_ok = position
-    brake.run(flying)
-    assert flying.autopilot.modes.wanted == 0
-    wait(flying, 2.0)
-    brake.run(flying)
-    assert flying.autopilot.modes.wanted == after + 1

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from .pid import relax_integrator, reset_filter, update_saturating
+from .pid import reset_filter, update_saturating
 from .state import DT
 
 RELAX_TIME = 0.16
@@ -52,11 +52,3 @@ def reset_integrators(ap):
     ap.control.rate.roll.integrator = 0.0
     ap.control.rate.pitch.integrator = 0.0
     ap.control.rate.yaw.integrator = 0.0
-
-
-@law
-def relax_integrators(ap):
-    """Let the trim decay (landed but spooled up)."""
-    relax_integrator(ap.control.rate.roll, 0.0, DT, RELAX_TIME)
-    relax_integrator(ap.control.rate.pitch, 0.0, DT, RELAX_TIME)
-    relax_integrator(ap.control.rate.yaw, 0.0, DT, RELAX_TIME)

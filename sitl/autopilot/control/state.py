@@ -34,7 +34,6 @@ ATTITUDE_DTYPE = record(
     ("thrust_error_angle", "f8"),  # between the thrust axis and its target [rad]
     ("cos_lean", "f8"),  # cosine of the body's lean
     ("throttle_in", "f8"),  # last throttle asked for, before the angle boost
-    ("angle_boost", "f8"),  # throttle added for the lean
     ("lean_max", "f8"),  # lean at which altitude can still be held, filtered [rad]
     ("mix", "f8"),  # priority of attitude over throttle, ATC_THR_MIX_*
     ("mix_desired", "f8"),

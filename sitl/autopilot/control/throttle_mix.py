@@ -36,7 +36,6 @@ def set_throttle_out(ap, throttle, angle_boost, filter_hz):
     if angle_boost != 0 and ap.params.ATC_ANGLE_BOOST != 0.0:
         cos_lean = float(attitude.cos_lean)
         out = throttle * constrain(10.0 * cos_lean, 0.0, 1.0) / constrain(cos_lean, 0.1, 1.0)
-    attitude.angle_boost = constrain(out - throttle, -1.0, 1.0)
     motors.throttle_in = out
     mix = float(attitude.mix)
     avg = constrain(max(out, throttle), 0.0, 1.0)

@@ -47,7 +47,6 @@ def start_using(ap, sensors, age, now_us):
     reset_to_fix(ap, sensors, age)
     ekf.gps_in_use = 1
     ekf.gps_used_before = 1
-    ekf.constant_position = 0
     ekf.gps_pos_fused_us = now_us
     ekf.gps_vel_fused_us = now_us
     events.emit(ap.events, now_us, events.EKF_USES_GPS, 0.0, 0.0)
@@ -58,7 +57,6 @@ def stop_using(ap, now_us):
     """From GPS to holding the position."""
     ekf, estimate = ap.ekf, ap.estimate
     ekf.gps_in_use = 0
-    ekf.constant_position = 1
     ekf.hold_pos[0], ekf.hold_pos[1] = ekf.pos[0], ekf.pos[1]
     estimate.variance_pos = 0.0
     estimate.variance_vel = 0.0

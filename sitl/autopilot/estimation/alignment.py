@@ -107,7 +107,6 @@ def initialise(ekf, now_us):
     ekf.tilt_aligned = 0
     ekf.yaw_aligned = 0
     ekf.gps_in_use = 0
-    ekf.constant_position = 1
     ekf.baro_fused_us = now_us
     ekf.mag_fused_us = now_us
 

@@ -95,7 +95,6 @@ EKF_DTYPE = record(
     ("gps_glitch", "i8"),  # last fix was beyond the gates
     ("gps_pos_fused_us", "i8"),
     ("gps_vel_fused_us", "i8"),
-    ("constant_position", "i8"),  # no aiding: position is held
     ("hold_us", "i8"),  # last zero-velocity or held-position fusion
     ("hold_pos", "f8", 2),  # NE position held [m]
     # consistency: normalised innovation squared, sums and counts since the filter started

@@ -72,7 +72,6 @@ NAV_DTYPE = record(
     ("has_place", "i8"),  # LAND, LOITER: target was given
     ("delay", "f8"),  # [s]
     ("turns", "f8"),
-    ("radius", "f8"),  # of the circle, negative counter-clockwise; 0 as CIRCLE_RADIUS [m]
     ("completed", "i8"),  # COMMAND_COMPLETE was sent for this command
     ("since_us", "i8"),  # when it arrived (start of the delay); 0 not yet
     # waypoint follower

@@ -208,7 +208,7 @@ def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> i
 
 
 def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """185: p1 above 0.5 stops the motors for good."""
+    """185: p1 above 0.5 stops the motors, in flight too."""
     if command.p1 <= 0.5:
         return FAILED
     bridge.autopilot.terminate()

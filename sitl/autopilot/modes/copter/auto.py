@@ -42,7 +42,6 @@ def enter(v, forced):
     ap.modes.nav.command_kind = NONE
     auto.submode = NONE
     auto.started = 0
-    auto.begin_us = v.time_us
     if ap.modes.auto_yaw.mode == auto_yaw.ROI:
         auto_yaw.set_mode(v, auto_yaw.HOLD)
     auto_yaw.set_default(v, 0)
@@ -70,7 +69,6 @@ def begin(v):
     auto = ap.modes.auto
     auto.command = int(nav.command_count)
     auto.submode = int(nav.command_kind)
-    auto.begin_us = v.time_us
     auto.land_state = FLYING
     ap.arming.landed_maybe = ap.arming.landed
     command.begin(ap, v.time_us)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import TWO_PI, wrap_2pi, wrap_pi
+from ....core.rotations import TWO_PI, wrap_pi
 from ...control import attitude
 
 HOLD = 0  # heading as it is
@@ -188,9 +188,3 @@ def apply(v, tx, ty, tz):
         attitude.input_thrust_vector_heading(ap, tx, ty, tz, heading, rate)
     else:
         attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, rate)
-
-
-@law
-def heading_target(v):
-    """Heading under way [rad], 0 .. 2 pi, for telemetry."""
-    return wrap_2pi(float(v.autopilot.control.attitude.target_euler[2]))

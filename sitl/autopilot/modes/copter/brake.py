@@ -8,7 +8,6 @@ import math
 from ....core.kernels import law
 from ...control import altitude, attitude, position
 from . import ground
-from .numbers import ALT_HOLD, LOITER, REASON_BRAKE_TIMEOUT
 
 DECELERATION = 7.5
 """[m/s^2]"""
@@ -25,14 +24,8 @@ def start(v):
     position.init_ne(ap)
     altitude.set_max_speed_accel_d(ap, max(SPEED_D, vd), max(SPEED_D, -vd), DECELERATION)
     altitude.init_d(ap)
-    ap.modes.brake.until_us = 0
     return 0
 
-
-@law
-def leave_after(v, seconds):
-    """Leave to LOITER (or ALT_HOLD) after so many seconds."""
-    v.autopilot.modes.brake.until_us = v.time_us + int(seconds * 1e6)
 
 
 @law
@@ -49,6 +42,3 @@ def run(v):
         altitude.update_d(ap)
         tx, ty, tz = position.thrust_vector(ap)
         attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, 0.0)
-    if ap.modes.brake.until_us != 0 and v.time_us >= ap.modes.brake.until_us:
-        ap.modes.wanted = (LOITER if ap.estimate.position_ok != 0 else ALT_HOLD) + 1
-        ap.modes.wanted_reason = REASON_BRAKE_TIMEOUT

@@ -122,13 +122,6 @@ def set_accel(v, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
     return code
 
 
-@law
-def set_pos_vel(v, n, e, d, vn, ve, vd, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Follow a point (NED [m]) that moves with a velocity [m/s]."""
-    return set_pos_vel_accel(
-        v, n, e, d, vn, ve, vd, 0.0, 0.0, 0.0, use_yaw, yaw, use_rate, yaw_rate, relative
-    )
-
 
 @law
 def set_pos_vel_accel(v, n, e, d, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):

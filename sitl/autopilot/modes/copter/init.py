@@ -16,7 +16,6 @@ def init(v):
     ap.modes.number = number if is_known(number) else STABILIZE
     ap.modes.previous = ap.modes.number
     ap.modes.reason = REASON_INITIALISED
-    ap.modes.entered_us = v.time_us
     ap.arming.landed = 1
     ap.arming.landed_maybe = 1
     ap.battery.remaining_pct = -1.0

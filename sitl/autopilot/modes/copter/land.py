@@ -47,7 +47,6 @@ def begin(v):
         altitude.init_d(ap)
     land.start_us = v.time_us
     land.pause = 0
-    land.repositioned = 0
     land.with_position = 1
     auto_yaw.set_mode(v, auto_yaw.HOLD)
 
@@ -99,8 +98,6 @@ def descend(v, pause):
     """One tick of a landing with position control; the sticks move the landing place (LAND_REPOSITION)."""
     ap = v.autopilot
     vn, ve = stick_velocity(ap)
-    if vn != 0.0 or ve != 0.0:
-        ap.modes.land.repositioned = 1
     if ap.arming.landed_maybe != 0:
         position.soften_for_landing_ne(ap)
     position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)

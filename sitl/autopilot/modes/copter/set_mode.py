@@ -94,7 +94,6 @@ def request(v, number, reason):
     modes.previous = int(modes.number)
     modes.number = number
     modes.reason = reason
-    modes.entered_us = v.time_us
     modes.takeoff.user_active = 0
     modes.wanted = 0
     if modes.previous == LOITER:

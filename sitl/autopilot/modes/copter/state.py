@@ -67,28 +67,20 @@ RTL_DTYPE = record(
     ("descent_d", "f8"),  # where RTL_ALT_FINAL ends, NED [m]
     ("home", "f8", 2),  # NE [m]
     ("loiter_us", "i8"),  # when the wait over home began
-    ("leg_pending", "i8"),  # the shell was asked for a leg and has not given it yet
 )
 
 LAND_DTYPE = record(
     ("start_us", "i8"),
     ("with_position", "i8"),
     ("pause", "i8"),  # wait 4 s before descending, after a failsafe
-    ("repositioned", "i8"),  # the pilot moved the landing point
-    ("hold", "f8", 2),  # where to land, NE [m]
 )
 
 AUTO_DTYPE = record(
     ("submode", "i8"),  # auto.py
     ("started", "i8"),  # by MISSION_START, or by raising the throttle
     ("command", "i8"),  # count of the command that is begun (nav.command_count)
-    ("begin_us", "i8"),
     ("loiter_us", "i8"),  # when the loiter timer began; 0 not yet
     ("land_state", "i8"),  # 0 flying to the place, 1 descending
-)
-
-BRAKE_DTYPE = record(
-    ("until_us", "i8"),  # leave to LOITER then; 0 never
 )
 
 PILOT_DTYPE = record(
@@ -117,19 +109,16 @@ FAILSAFE_DTYPE = record(
     ("battery", "i8"),  # 0 none, 1 low, 2 critical
     ("battery_low_us", "i8"),  # since when below the low limit; 0 not
     ("battery_critical_us", "i8"),
-    ("ekf", "i8"),
+    ("ekf", "i8"),  # 1 the estimate is bad, 2 and the mode was ended for it
     ("ekf_count", "i8"),  # tenths of a second of bad variance
     ("ekf_vel", "f8"),  # filtered variances
     ("ekf_pos", "f8"),
     ("ekf_mag", "f8"),
-    ("terminated", "i8"),
 )
 
 LANDING_DTYPE = record(
     ("acc", "f8", 3),  # acceleration NED, low-passed at 1 Hz [m/s^2]
-    ("last_us", "i8"),  # last tick of not landed
     ("landing", "i8"),  # a mode is descending to land
-    ("lean_error", "f8"),  # tilt error, low-passed [rad]
 )
 
 MODES_DTYPE = record(
@@ -139,7 +128,6 @@ MODES_DTYPE = record(
     ),  # ArduPilot's custom mode (numbers.py)
     ("previous", "i8"),
     ("reason", "i8"),  # ArduPilot's ModeReason of the last change
-    ("entered_us", "i8"),
     ("last_tick", "i8"),  # last tick run
     ("auto_yaw", AUTO_YAW_DTYPE),
     ("takeoff", TAKEOFF_DTYPE),
@@ -148,12 +136,10 @@ MODES_DTYPE = record(
     ("rtl", RTL_DTYPE),
     ("land", LAND_DTYPE),
     ("auto", AUTO_DTYPE),
-    ("brake", BRAKE_DTYPE),
     ("pilot", PILOT_DTYPE),
     ("failsafe", FAILSAFE_DTYPE),
     ("landing", LANDING_DTYPE),
     ("arming_delay", "i8"),  # armed less than 2 s ago: motors wait
-    ("arming_failures", "i8"),  # bits of the checks that failed last (arming.py)
     ("wanted", "i8"),  # a mode asks for another one: its number + 1, 0 none
     ("wanted_reason", "i8"),
     ("mission_count", "i8"),  # items of the mission, home included (written by the shell)
