@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The compiled core and the same functions as plain Python give the same bits, in every mode and phase of flight."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from aviator import (
+    ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, LOITER_TURNS, RTL, STABILIZE, TAKEOFF_ITEM, WAYPOINT, Aviator, Item,
+)  # fmt: skip
+
+from missions.flights import VELOCITY_ONLY
+from sitl.core import records
+from sitl.simulation import Core
+
+TICKS = 60
+
+
+def by_sticks(mode: int) -> Callable[[Aviator], None]:
+    def fly(p: Aviator) -> None:
+        p.sticks(0.5)
+        p.set_mode(mode)
+        p.sticks(1.0, roll=1700, pitch=1400, throttle=1600, yaw=1550)
+
+    return fly
+
+
+def then(mode: int, seconds: float) -> Callable[[Aviator], None]:
+    def fly(p: Aviator) -> None:
+        for _ in range(20):
+            p.setpoint(VELOCITY_ONLY, velocity=(4.0, 1.0, -0.5))
+            p.fly(0.1)
+        p.set_mode(mode)
+        p.fly(seconds)
+
+    return fly
+
+
+def mission(*items: Item, seconds: float) -> Callable[[Aviator], None]:
+    def fly(p: Aviator) -> None:
+        assert p.upload(Item(TAKEOFF_ITEM, z=10.0), *items) == 0
+        p.set_mode(AUTO)
+        p.fly(seconds)
+        assert p.mode == AUTO
+
+    return fly
+
+
+def attitude(p: Aviator) -> None:
+    p.client.send(
+        "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=7, q=(0.98, 0.1, -0.15, 0.05), thrust=0.55
+    )
+    p.fly(0.3)
+
+
+def in_wind(p: Aviator) -> None:
+    p.set_parameter("SIM_WIND_SPD", 6.0)
+    p.set_parameter("SIM_WIND_TURB", 1.5)
+    p.fly(2.0)
+
+
+CORNER = (Item(WAYPOINT, (15.0, 0.0), 10.0), Item(WAYPOINT, (15.0, 15.0), 12.0))
+PHASES: dict[str, Callable[[Aviator], None]] = {
+    "stabilize": by_sticks(STABILIZE),
+    "alt_hold": by_sticks(ALT_HOLD),
+    "loiter": by_sticks(LOITER),
+    "brake": then(BRAKE, 0.5),
+    "rtl, on the way": then(RTL, 3.0),
+    "land, descending": then(LAND, 2.0),
+    "land, touching down": then(LAND, 22.6),
+    "guided, velocity": then(GUIDED, 0.2),
+    "guided, attitude": attitude,
+    "guided, in wind": in_wind,
+    "auto, at a corner": mission(*CORNER, seconds=5.0),
+    "auto, circling": mission(Item(LOITER_TURNS, (0.0, 0.0), 10.0, (3.0, 0.0, 5.0)), seconds=8.0),
+}
+
+
+@pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad"])
+@pytest.mark.parametrize("phase", PHASES)
+def test_bits_are_the_same(core: Core, frame: str, phase: str) -> None:
+    p = Aviator(core, frame, seed=4).hover()
+    PHASES[phase](p)
+    compiled, plain = p.simulation.fleet.copy(), p.simulation.fleet.copy()
+    core(compiled, 0, TICKS)
+    Core(None)(plain, 0, TICKS)
+    assert int(compiled["tick"][0]) == int(plain["tick"][0]) > int(p.simulation.fleet["tick"][0])
+    assert records.first_difference(compiled[0], plain[0]) is None
