@@ -7,7 +7,19 @@ from collections.abc import Callable
 
 import pytest
 from aviator import (
-    ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, LOITER_TURNS, RTL, STABILIZE, TAKEOFF_ITEM, WAYPOINT, Aviator, Item,
+    ALT_HOLD,
+    AUTO,
+    BRAKE,
+    GUIDED,
+    LAND,
+    LOITER,
+    LOITER_TURNS,
+    RTL,
+    STABILIZE,
+    TAKEOFF_ITEM,
+    WAYPOINT,
+    Aviator,
+    Item,
 )  # fmt: skip
 
 from missions.flights import VELOCITY_ONLY
