@@ -10,6 +10,8 @@ import time
 import timeit
 from collections.abc import Callable
 
+import numpy as np
+
 from missions.flights import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
@@ -18,13 +20,14 @@ from sitl.simulation import Core, load_core
 
 from .hover import hovering
 
-REPEATS = 7
+FLEET = 256
+"""Vehicles."""
 
 
-def repeat(run: Callable[[], float]) -> list[float]:
+def repeat(run: Callable[[], float], repeats: int) -> list[float]:
     """Real-time factors: simulated seconds that ``run`` passes, per second of this process's CPU time."""
     factors = []
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         start = time.process_time()
         simulated = run()
         factors.append(simulated / (time.process_time() - start))
@@ -45,6 +48,19 @@ def kernel(pilot: Pilot, core: Core) -> Callable[[], float]:
     def run() -> float:
         core(simulation.fleet, simulation.index, 4000)
         return 10.0
+
+    return run
+
+
+def fleet(pilot: Pilot, core: Core, size: int) -> Callable[[], float]:
+    """Copies of the vehicle in one array, a tenth of a second each in turn; the simulated seconds of all."""
+    vehicles = np.repeat(pilot.simulation.fleet, size)
+
+    def run() -> float:
+        for _ in range(5):
+            for index in range(size):
+                core(vehicles, index, 40)
+        return 0.5 * size
 
     return run
 
@@ -78,12 +94,12 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
     return run
 
 
-def snapshots(pilot: Pilot) -> None:
+def snapshots(pilot: Pilot, repeats: int) -> None:
     """Microseconds for a snapshot and for a restore of vehicle, mission and MAVLink state."""
     simulation = pilot.simulation
     kept = simulation.snapshot()
     for name, run in (("snapshot", simulation.snapshot), ("restore", lambda: simulation.restore(kept))):
-        times = timeit.repeat(run, number=2000, repeat=REPEATS, timer=time.process_time)
+        times = timeit.repeat(run, number=2000, repeat=repeats, timer=time.process_time)
         print(f"{name:58s} {statistics.median(times) / 2000 * 1e6:9.1f} us", flush=True)
 
 
@@ -108,19 +124,24 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
     parser.add_argument("--frame", default="erle_copter", choices=vehicles.names())
     parser.add_argument("--compile", action="store_true", help="also measure compilation")
+    parser.add_argument("--repeats", type=int, default=7, metavar="N", help="runs of each, of which the median counts")
     options = parser.parse_args()
-    print(f"one core, CPU time, median of {REPEATS} (lowest .. highest); units: {len(compiler.UNITS)}")
+    if options.repeats < 1:
+        parser.error(f"--repeats {options.repeats} must be 1 or more")
+    print(f"one core, CPU time, median of {options.repeats} (lowest .. highest); units: {len(compiler.UNITS)}")
     core = load_core()
     pilot = hovering(options.frame, core)
-    alone = show(f"{options.frame}, EKF and all loops: compiled core alone", repeat(kernel(pilot, core)))
+    alone = show(f"{options.frame}, EKF and all loops: compiled core alone", repeat(kernel(pilot, core), options.repeats))
+    name = f"{options.frame}, a fleet of {FLEET} in steps of 0.1 s: sum of all"
+    show(name, repeat(fleet(pilot, core, FLEET), options.repeats))
     truth = hovering(options.frame, core, "truth")
-    show(f"{options.frame}, --estimator truth: compiled core alone", repeat(kernel(truth, core)))
+    show(f"{options.frame}, --estimator truth: compiled core alone", repeat(kernel(truth, core), options.repeats))
     two = ("LOCAL_POSITION_NED", "ATTITUDE")
     for rate, messages in ((10, two), (50, two)):
         name = f"{options.frame}, MAVLink in the loop at {rate} Hz ({len(messages)} messages)"
-        factor = show(name, repeat(streaming(hovering(options.frame, core), rate, messages)))
+        factor = show(name, repeat(streaming(hovering(options.frame, core), rate, messages), options.repeats))
         print(f"{'   of the core alone':58s} {factor / alone:9.2f}")
-    snapshots(pilot)
+    snapshots(pilot, options.repeats)
     if options.compile:
         compile_times()
 
