@@ -131,7 +131,8 @@ def main() -> None:
     print(f"one core, CPU time, median of {options.repeats} (lowest .. highest); units: {len(compiler.UNITS)}")
     core = load_core()
     pilot = hovering(options.frame, core)
-    alone = show(f"{options.frame}, EKF and all loops: compiled core alone", repeat(kernel(pilot, core), options.repeats))
+    name = f"{options.frame}, EKF and all loops: compiled core alone"
+    alone = show(name, repeat(kernel(pilot, core), options.repeats))
     name = f"{options.frame}, a fleet of {FLEET} in steps of 0.1 s: sum of all"
     show(name, repeat(fleet(pilot, core, FLEET), options.repeats))
     truth = hovering(options.frame, core, "truth")
