@@ -6,8 +6,8 @@ from __future__ import annotations
 from .autopilot.params.files import ParameterError
 from .bridge.links.address import LinkAddressError
 from .core.compile import BuildError
-from .logs.flight import LogError
 from .logs.plot import MissingExtra
+from .logs.tlog import LogError
 from .pacing import SpeedupError
 from .simulation import OptionError
 from .vehicles.airframe import AirframeError

@@ -53,10 +53,12 @@ class Pacing:
         """Simulated time to advance between two looks at the wall clock [us]."""
 
     def after_slice(self, simulation: Simulation) -> None:
-        """Wait, on the simulation's sockets, until the next slice is due."""
+        """Wait until the next slice is due, and answer clients meanwhile: none of them can hurry the clock."""
         wait = self.wait_s()
-        if wait > 0.0:
-            simulation.bridge.wait(wait)
+        while wait > 0.0:
+            if simulation.bridge.wait(wait):
+                simulation.bridge.receive()
+            wait = self._due - self._clock()
 
     def wait_s(self) -> float:
         """Account for one slice; returns the wall time [s] to wait before the next, 0 for none."""

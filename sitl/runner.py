@@ -11,7 +11,7 @@ from .bridge.links import LogLink
 from .bridge.links.address import LinkAddressError
 from .bridge.links.tcp import TcpServerLink
 from .bridge.links.udp import UdpOutLink
-from .logs.tlog import TlogWriter
+from .logs.tlog import LogError, TlogWriter
 from .simulation import Simulation
 
 HOST = "127.0.0.1"
@@ -69,12 +69,28 @@ class ClientFrames:
             self._writer.frame(time_us, raw)
 
 
+def new_file(folder: Path, name: str) -> Path:
+    """Make an empty .tlog under a name that nobody else has, not even a run that begins at the same moment."""
+    number = 1
+    while True:
+        path = folder / (f"{name}.tlog" if number == 1 else f"{name}-{number}.tlog")
+        try:
+            path.open("xb").close()
+        except FileExistsError:
+            number += 1
+        except OSError as error:
+            raise LogError(f"log {str(path)!r} cannot be written: {error.strerror or error}") from None
+        else:
+            return path
+
+
 def open_log(simulation: Simulation, folder: Path, name: str) -> Path:
-    """Start a .tlog: telemetry at rates of its own, and all that clients send. A name that is taken gets a number."""
-    path, number = folder / f"{name}.tlog", 1
-    while path.exists():
-        number += 1
-        path = folder / f"{name}-{number}.tlog"
+    """Start a .tlog: telemetry at rates of its own, and all that clients send. A name that is taken gets a number.
+
+    Raises:
+        LogError: the folder cannot be written to.
+    """
+    path = new_file(folder, name)
     bridge = simulation.bridge
     writer = TlogWriter(path, bridge.epoch_us)
     link = LogLink(writer, simulation)

@@ -53,3 +53,29 @@ def test_reads_speedups() -> None:
     assert parse_speedup("20") == 20.0
     assert parse_speedup("0.5") == 0.5
     assert parse_speedup("max") is None
+
+
+def test_a_busy_client_is_answered_and_does_not_hurry_the_clock() -> None:
+    clock = Clock()
+
+    class Busy:
+        """A bridge whose sockets always have something to read, after a tenth of a millisecond."""
+
+        answered = 0
+
+        def wait(self, seconds: float) -> bool:
+            clock.now += min(1e-4, seconds)
+            return True
+
+        def receive(self) -> None:
+            self.answered += 1
+
+    class Vehicle:
+        bridge = Busy()
+
+    pacing, vehicle = Pacing(1.0, clock), Vehicle()
+    start = clock.now
+    for _ in range(100):
+        pacing.after_slice(vehicle)  # type: ignore[arg-type]
+    assert clock.now - start == pytest.approx(100 * pacing.slice_us * 1e-6, rel=0.01)
+    assert vehicle.bridge.answered > 1000

@@ -100,6 +100,7 @@ def run_script(
 
     Raises:
         CannotBuild: this machine cannot run scripts in simulated time, and ``speedup`` is not 1.
+        OptionError: the command cannot be started.
     """
     factor = parse_speedup(speedup)
     until = simulation.time_us + int(duration_s * 1e6) if duration_s else None
@@ -107,15 +108,16 @@ def run_script(
     if reason and factor != 1.0:
         raise CannotBuild(reason)
     with contextlib.ExitStack() as stack:
-        pace: runner.Pace
-        if reason:
-            pace, script = Pacing(1.0), subprocess.Popen(command)
-        else:
-            page = stack.enter_context(ClockPage())
-            pace = ScriptPace(Pacer(page, "max" if factor is None else factor))
-            script = start_script(command, page)
-        stack.callback(end, script)
         stack.enter_context(terminable())
+        page = None if reason else stack.enter_context(ClockPage())
+        pace: runner.Pace = Pacing(1.0)
+        if page is not None:
+            pace = ScriptPace(Pacer(page, "max" if factor is None else factor))
+        try:
+            script = subprocess.Popen(command) if page is None else start_script(command, page)
+        except OSError as error:
+            raise OptionError(f"command {command[0]!r} cannot be started: {error.strerror or error}") from None
+        stack.callback(end, script)
         runner.serve(
             simulation, pace, until_us=until, running=lambda: script.poll() is None, on_slice=on_slice
         )
@@ -124,14 +126,16 @@ def run_script(
 
 
 def end(script: subprocess.Popen[bytes]) -> None:
-    """Ask a script that still runs to end, and see that it does."""
+    """Ask a script that still runs to end, and see that it does, in 10 s or when we are told to end once more."""
     if script.poll() is None:
         script.terminate()
     try:
-        script.wait(timeout=10.0)
-    except subprocess.TimeoutExpired:
-        script.kill()
-        script.wait()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            script.wait(timeout=10.0)
+    finally:
+        if script.poll() is None:
+            script.kill()
+            script.wait()
 
 
 @contextlib.contextmanager

@@ -63,10 +63,10 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
 def run(options: argparse.Namespace) -> int:
     """Serve the vehicle until Ctrl-C, SIGTERM or the end of ``--duration``."""
     speedup = parse_speedup(options.speedup)
-    stopped: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda n, _: stopped.append(n))
     simulation, _, _ = start(options)
+    stopped: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
+        signal.signal(number, lambda n, _: stopped.append(n))
     status = StatusLine(simulation, not options.quiet)
     try:
         runner.serve(

@@ -23,14 +23,13 @@ class StatusLine:
         self._last_us = simulation.time_us
         self._factor = 0.0
         self._width = 0
-        self._told = 0
 
     def update(self) -> None:
         """Rewrite the line when it is time to; say which clients were lost and why."""
         dropped = self._simulation.bridge.dropped
-        for text in dropped[self._told :]:
+        for text in dropped:
             print(f"\r{text}".ljust(self._width), file=sys.stderr)
-        self._told = len(dropped)
+        dropped.clear()  # told; a run may last for months
         if not self._enabled or time.monotonic() < self._next:
             return
         now, time_us = time.monotonic(), self._simulation.time_us

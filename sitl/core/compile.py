@@ -193,27 +193,30 @@ def build(
         jobs = jobs or min(len(todo), os.cpu_count() or 1)
         running: list[tuple[Unit, subprocess.Popen[str]]] = []
         done, total = 0, len(todo)
-        while todo or running:
-            while todo and len(running) < jobs:
-                unit = todo.pop(0)
-                if progress:
-                    progress(unit.name, done, total)
-                running.append((unit, _start_worker(entry.__module__, dtype_path, unit)))
-            running[0][1].poll()
-            finished = [(u, p) for u, p in running if p.poll() is not None]
-            if not finished:
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    running[0][1].wait(0.05)
-                continue
-            for unit, process in finished:
-                running.remove((unit, process))
-                if process.returncode != 0:
-                    for _, other in running:
-                        other.kill()
-                    raise BuildError(f"compiling unit {unit.name} failed:\n{process.communicate()[1][-4000:]}")
-                done += 1
-                if progress:
-                    progress(unit.name, done, total)
+        try:
+            while todo or running:
+                while todo and len(running) < jobs:
+                    unit = todo.pop(0)
+                    if progress:
+                        progress(unit.name, done, total)
+                    running.append((unit, _start_worker(entry.__module__, dtype_path, unit)))
+                running[0][1].poll()
+                finished = [(u, p) for u, p in running if p.poll() is not None]
+                if not finished:
+                    with contextlib.suppress(subprocess.TimeoutExpired):
+                        running[0][1].wait(0.05)
+                    continue
+                for unit, process in finished:
+                    running.remove((unit, process))
+                    if process.returncode != 0:
+                        raise BuildError(f"compiling unit {unit.name} failed:\n{process.communicate()[1][-4000:]}")
+                    done += 1
+                    if progress:
+                        progress(unit.name, done, total)
+        finally:  # a failure or Ctrl-C leaves no compiler behind
+            for _, process in running:
+                process.kill()
+                process.communicate()
         if total:
             _drop_old_versions()
     return time.monotonic() - start

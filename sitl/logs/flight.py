@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from .tlog import read_tlog
+from .tlog import LogError, read_tlog
 
 Series = np.ndarray[Any, Any]
 
@@ -21,10 +21,6 @@ COLUMNS = {
     "SERVO_OUTPUT_RAW": ("servo1_raw", "servo2_raw", "servo3_raw", "servo4_raw"),
     "VFR_HUD": ("throttle", "groundspeed"),
 }
-
-
-class LogError(ValueError):
-    """A file that is not a telemetry log, or a log without the messages that were asked for."""
 
 
 @dataclass

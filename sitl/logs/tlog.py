@@ -9,6 +9,7 @@ plus simulated time, so the same run gives the same file.
 
 from __future__ import annotations
 
+import contextlib
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +18,10 @@ from typing import BinaryIO
 
 _TIME = struct.Struct(">Q")
 _FLUSH_BYTES = 1 << 16
+
+
+class LogError(ValueError):
+    """A log that cannot be written, a file that is none, or a log without the messages that were asked for."""
 
 
 class TlogWriter:
@@ -44,12 +49,24 @@ class TlogWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Write out what is collected."""
-        if self._file is not None and self._pending:
-            self._file.write(b"".join(self._pending))
+        """Write out what is collected.
+
+        Raises:
+            LogError: that cannot be done (a full disk); what was written stays, and nothing is added to it.
+        """
+        if self._file is None or not self._pending:
+            return
+        data = b"".join(self._pending)
+        self._pending.clear()
+        self._size = 0
+        try:
+            self._file.write(data)
             self._file.flush()
-            self._pending.clear()
-            self._size = 0
+        except OSError as error:
+            file, self._file = self._file, None
+            with contextlib.suppress(OSError):
+                file.close()
+            raise LogError(f"log {str(self.path)!r} cannot be written: {error.strerror or error}") from None
 
     def close(self) -> None:
         """Write everything and close the file."""

@@ -16,6 +16,7 @@ CLOCK_MONOTONIC.
 
 from __future__ import annotations
 
+import contextlib
 import mmap
 import os
 import struct
@@ -121,7 +122,8 @@ class ClockPage:
             return
         self.release()
         self._map.close()
-        os.unlink(self.path)
+        with contextlib.suppress(FileNotFoundError):  # somebody has tidied up
+            os.unlink(self.path)
 
     def __enter__(self) -> ClockPage:
         return self

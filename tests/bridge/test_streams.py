@@ -91,6 +91,12 @@ def test_get_interval(bench: Bench) -> None:
     assert interval(0) == 1_000_000
 
 
+def test_the_longest_interval_can_be_told(bench: Bench) -> None:
+    assert bench.command(SET_INTERVAL, 30, 3.0e9) == 0
+    ask = mavlink.MAVLink_command_long_message(1, 1, GET_INTERVAL, 0, 30, 0, 0, 0, 0, 0, 0)
+    assert bench.ask(ask, "MESSAGE_INTERVAL")[0].interval_us == 2**31 - 1
+
+
 def test_a_rate_parameter_holds_for_every_client(bench: Bench) -> None:
     bench.ask(mavlink.MAVLink_param_set_message(1, 1, b"MAV1_EXTRA1", 5.0, 4))
     assert counts(bench, 2.0)["ATTITUDE"] == 10

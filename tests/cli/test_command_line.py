@@ -60,7 +60,7 @@ def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> N
     with socket.create_connection(("127.0.0.1", port), timeout=60) as client:
         assert client.recv(1)[0] in (0xFD, 0xFE), "the first byte is a MAVLink frame's"
         run.send_signal(number)
-    out, err = run.communicate(timeout=60)
+    out, err = run.communicate(timeout=120)
     assert (run.returncode, err) == (0, ""), out
     flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
 
@@ -149,10 +149,14 @@ sys.exit(7)
 def test_exec_runs_a_script_on_the_vehicles_clock_and_returns_its_code(core: Core, tmp_path: Path) -> None:
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     options = ("--out", "none", "--tcp", "0", "--speedup", "20")
-    result = sitl("exec", *options, "--", sys.executable, "sleeper.py", folder=tmp_path)
-    assert result.returncode == 7, result.stderr
-    slept = float(result.stdout.split("slept ")[1].split()[0])
-    assert slept == pytest.approx(40.0, abs=0.5)
+    for _ in range(3):  # half a second is 25 ms of wall time, which a busy machine may take away
+        result = sitl("exec", *options, "--", sys.executable, "sleeper.py", folder=tmp_path)
+        assert result.returncode == 7, result.stderr
+        slept = float(result.stdout.split("slept ")[1].split()[0])
+        assert slept >= 39.99
+        if slept < 40.5:
+            break
+    assert slept < 40.5
     flown = flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
     assert flown["ATTITUDE"][-1, 0] > 39.0
 

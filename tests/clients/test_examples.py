@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from sitl.simulation import Core
-from tests.clients.drive import EXAMPLES, ROOT, Fly
+from tests.clients.drive import EXAMPLES, ROOT, WALL_S, Fly
 
 pytestmark = pytest.mark.slow
 
@@ -30,7 +30,7 @@ def test_mavsdk(fly: Fly, name: str) -> None:
 def test_lockstep_client(core: Core) -> None:
     command = [sys.executable, str(EXAMPLES / "lockstep_client.py")]
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=WALL_S)
     assert done.returncode == 0, done.stderr
     first, second, verdict = done.stdout.splitlines()
     assert verdict == "the same numbers"

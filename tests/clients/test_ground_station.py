@@ -30,13 +30,13 @@ class GroundStation:
 
     def __init__(self, port: int) -> None:
         self.link = mavutil.mavlink_connection(f"tcp:127.0.0.1:{port}", source_system=255, source_component=190)
-        assert self.link.wait_heartbeat(timeout=20) is not None  # pymavlink speaks MAVLink 2 once it has heard it
+        assert self.link.wait_heartbeat(timeout=60) is not None  # pymavlink speaks MAVLink 2 once it has heard it
         self.mav = self.link.mav
         self.mav.heartbeat_send(6, 8, 0, 0, 4)
 
     def receive(self, *kinds: str, until: Callable[[Any], bool] = lambda m: True) -> Any:
         while True:
-            message = self.link.recv_match(type=list(kinds), blocking=True, timeout=5.0)
+            message = self.link.recv_match(type=list(kinds), blocking=True, timeout=30.0)
             assert message is not None, f"no {' or '.join(kinds)}"
             if until(message):
                 return message

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import pytest
 import synthetic_flight as sf
-
-TAKE_OFF = 50.0
+from synthetic_flight import TAKE_OFF
 
 
 @pytest.fixture(scope="session")

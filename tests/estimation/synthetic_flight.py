@@ -18,9 +18,12 @@ from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
 from sitl.core.records import view
+from sitl.simulation import load_core
 from sitl.vehicle import VEHICLE_DTYPE
 
 DT = 0.0025
+TAKE_OFF = 50.0
+"""When the flight that most tests share leaves the ground [s]."""
 LAT, LON, ALT = -35.363262, 149.165237, 584.0
 GRAVITY = 9.80665
 
@@ -34,6 +37,7 @@ def new() -> np.ndarray:
 
 def updater() -> Any:
     """``f(fleet)``: one tick of the estimator, compiled unless Numba is switched off."""
+    load_core()  # builds every unit where the cache is empty: the build of one entry knows only what that imports
     call = compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, update.update)
     if call is None:
         return lambda fleet: update.update(fleet.view(np.recarray), 0)

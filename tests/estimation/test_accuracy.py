@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import synthetic_flight as sf
-from conftest import TAKE_OFF
+from synthetic_flight import TAKE_OFF
 
 from sitl.autopilot import events
 from sitl.autopilot.estimation import status

@@ -6,9 +6,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import synthetic_flight as sf
-from conftest import TAKE_OFF
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from synthetic_flight import TAKE_OFF
 
 from sitl.autopilot import events
 from sitl.autopilot.estimation import status

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 
 import pytest
 
@@ -34,6 +36,17 @@ def test_paths_agree_within_half_a_metre(figures: list[compare.Figure]) -> None:
     paths = [f for f in figures if "RMS" in f.name]
     assert len(paths) == 5
     assert all(f.ours < 0.5 for f in paths), paths
+
+
+@pytest.mark.parametrize("estimator", ["ekf", "truth"])
+def test_the_page_shows_what_is_flown(core: Core, estimator: str) -> None:
+    """Close, not equal: another processor's mathematics may round another way."""
+    page = (Path(__file__).parents[2] / "docs" / "comparison.md").read_text(encoding="utf-8")
+    section = page.split("\n## ")[{"ekf": 1, "truth": 2}[estimator]]
+    rows = re.findall(r"^\| (.+?) \| \S+ \| (-?[\d.]+) \|", section, re.MULTILINE)
+    shown = {name: float(ours) for name, ours in rows}
+    flown = {f.name: f.ours for f in compare.figures(estimator)}
+    assert shown == pytest.approx(flown, rel=0.01, abs=0.03), "run: python docs/make_pages.py"
 
 
 def test_a_recording_that_does_not_exist_is_named() -> None:

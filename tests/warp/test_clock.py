@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plain Python programs on a warped clock: every way to wait takes the simulated time it should.
 
-Waits may end late on a busy machine, never early; so lower bounds are tight and upper bounds wide.
+Waits may end late on a busy machine, never early; so lower bounds are tight and hold at every try, upper
+bounds are wide and may be missed twice.
 """
 
 import json
@@ -11,7 +12,7 @@ import sys
 import pytest
 
 from sitl.warp import ClockPage, script_environment, start_script
-from tests.warp.drive import need_library, run, run_python
+from tests.warp.drive import need_library, patiently, run, run_python
 
 SPEEDUP = 20.0
 LATE_S = 1.0  # 50 ms of wall time at this speed-up
@@ -55,15 +56,28 @@ print(json.dumps([time.monotonic() - monotonic, time.time() - date, time.process
 
 @pytest.mark.parametrize("name", WAITS)
 def test_wait_lasts_as_long_in_simulated_time(name):
-    monotonic, date, cpu = run_python(PROGRAM.replace("WAIT", WAITS[name]), SPEEDUP)
-    assert (1.0 if name in KEPT_BY_KERNEL else 1.99) <= monotonic <= 2.0 + LATE_S
-    assert abs(monotonic - date) < 0.1
-    assert cpu < 1.0  # the processor-time clock is not warped
+    shortest = 2.0
+
+    def check() -> None:
+        nonlocal shortest
+        monotonic, date, cpu = run_python(PROGRAM.replace("WAIT", WAITS[name]), SPEEDUP)
+        if name not in KEPT_BY_KERNEL:
+            shortest = min(shortest, monotonic)
+        assert 1.0 <= monotonic <= 2.0 + LATE_S
+        assert abs(monotonic - date) < 0.1
+        assert cpu < 1.0  # the processor-time clock is not warped
+
+    patiently(check)
+    assert shortest >= 1.99
 
 
 def test_whole_run_agrees_with_the_simulator():
-    _, simulated = run([sys.executable, "-c", "import time; [time.sleep(0.1) for _ in range(100)]"], SPEEDUP)
-    assert 10.0 <= simulated <= 13.0
+    def check() -> None:
+        code = "import time; [time.sleep(0.1) for _ in range(100)]"
+        _, simulated = run([sys.executable, "-c", code], SPEEDUP)
+        assert 10.0 <= simulated <= 13.0
+
+    patiently(check)
 
 
 def test_script_waits_with_a_paused_simulator_and_ends_when_it_is_released():

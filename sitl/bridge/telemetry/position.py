@@ -23,7 +23,7 @@ def global_position(context: Context) -> Callable[[], tuple[int, int, float]]:
     """
     read = context.fields(E + "pos", E + "origin_set", E + "origin_lat", E + "origin_lon", E + "origin_alt")
     read_gps = context.fields(S + "gps_fix", S + "gps_lat", S + "gps_lon", S + "gps_alt")
-    scaled_at = 0
+    scaled_at = 1 << 62  # nowhere
     scale = 1.0
 
     def where() -> tuple[int, int, float]:
