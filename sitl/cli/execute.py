@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import os
 import shutil
 import signal
 import subprocess
@@ -96,6 +97,7 @@ def run_script(
 ) -> int:
     """Run ``command`` on the simulation's clock until it ends; its exit code (128 + n for signal n).
 
+    After ``duration_s`` simulated seconds it is ended, which is no failure: 0.
     At ``speedup`` "1" the script needs no clock of its own where none can be had.
 
     Raises:
@@ -117,16 +119,23 @@ def run_script(
             script = subprocess.Popen(command) if page is None else start_script(command, page)
         except OSError as error:
             raise OptionError(f"command {command[0]!r} cannot be started: {error.strerror or error}") from None
-        stack.callback(end, script)
+        stack.callback(end, script, page)
         runner.serve(
             simulation, pace, until_us=until, running=lambda: script.poll() is None, on_slice=on_slice
         )
+        if script.poll() is None:
+            return 0
     code = script.returncode
     return code if code >= 0 else 128 - code
 
 
-def end(script: subprocess.Popen[bytes]) -> None:
-    """Ask a script that still runs to end, and see that it does, in 10 s or when we are told to end once more."""
+def end(script: subprocess.Popen[bytes], page: ClockPage | None) -> None:
+    """Ask a script that still runs to end, and see that it does, in 10 s or when we are told to end once more.
+
+    What it has started and left on the simulation's clock is ended too: its vehicle is gone.
+    """
+    if page is not None:
+        page.release()  # or a script that sleeps before it ends would wait for ever
     if script.poll() is None:
         script.terminate()
     try:
@@ -136,6 +145,9 @@ def end(script: subprocess.Popen[bytes]) -> None:
         if script.poll() is None:
             script.kill()
             script.wait()
+        for pid in page.clients() if page is not None else ():
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, signal.SIGTERM)
 
 
 @contextlib.contextmanager

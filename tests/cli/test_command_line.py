@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -175,3 +176,26 @@ def test_the_demo_flies_its_mission_and_draws_it(core: Core, tmp_path: Path) -> 
     assert -position[:, 3].min() == pytest.approx(10.0, abs=0.5)
     assert position[:, 1].max() == pytest.approx(30.0, abs=1.5)
     assert abs(position[-1, 1]) < 1.0 and abs(position[-1, 2]) < 1.0
+
+
+LEAVER = """
+import subprocess, sys, time
+child = subprocess.Popen(["sleep", "1000"])
+print("child", child.pid, flush=True)
+time.sleep(float(sys.argv[1]))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sleeps", ["5", "1000"])
+def test_exec_leaves_no_process_behind_and_an_end_by_duration_is_no_failure(
+    core: Core, tmp_path: Path, sleeps: str
+) -> None:
+    (tmp_path / "leaver.py").write_text(LEAVER)
+    options = ("--out", "none", "--tcp", "0", "--duration", "20")
+    result = sitl("exec", *options, "--", sys.executable, "leaver.py", sleeps, folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    child = int(result.stdout.split("child ")[1].split()[0])
+    deadline = time.monotonic() + 10.0
+    while Path(f"/proc/{child}").exists() and "Z" not in Path(f"/proc/{child}/stat").read_text().split()[2]:
+        assert time.monotonic() < deadline, "the script's child still runs"
