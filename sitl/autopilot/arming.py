@@ -8,6 +8,7 @@ from typing import Any
 from ..core.kernels import law
 from . import home
 from .arming_checks import BY_MAVLINK, BY_RUDDER, MANDATORY, TEXTS, check, check_now, mode_allows, texts
+from .control.motors import ARMING_DELAY_US
 from .events import ARMED, ARMING_REFUSED, DISARMED, emit, emit_and_return
 from .modes.copter.numbers import has_manual_throttle
 
@@ -22,9 +23,6 @@ BY_MISSION_EXIT = 14
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
-
-ARMING_DELAY_US = 2_000_000
-"""Motors stay off for so long after arming."""
 
 
 @law

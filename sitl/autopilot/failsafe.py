@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..core.kernels import law
+from ..core.rotations import TWO_PI
 from . import arming, pilot
 from .failsafe_actions import (
     BATTERY_CRITICAL,
@@ -45,7 +46,7 @@ __all__ = ["DO_BRAKE", "DO_LAND", "DO_RTL", "DO_STOP", "NOTHING", "act", "termin
 _RADIO_AUTO, _GCS_AUTO, _RADIO_GUIDED, _GCS_PILOT = 1, 2, 4, 16
 
 RADIO_FRAMES = 3
-"""Bad (or good) frames in a row that count."""
+"""Bad frames in a row that set the radio failsafe; as many good ones, not needing to be in a row, clear it."""
 EKF_COUNT = 10
 """Tenths of a second of bad estimate that count."""
 _EKF_PERIOD_S = 0.1
@@ -150,6 +151,14 @@ def update_battery(v):
 
 
 @law
+def follow(filtered, value, gain):
+    """A low-pass; a value that is not a number (a filter about to restart) is passed over."""
+    if value != value:
+        return filtered
+    return filtered + gain * (value - filtered)
+
+
+@law
 def is_estimate_bad(v):
     """Whether two filtered test ratios are over FS_EKF_THRESH, or there is no position.
 
@@ -161,10 +170,10 @@ def is_estimate_bad(v):
     cutoff = ap.params.FS_EKF_FILT
     gain = 1.0
     if cutoff > 0.0:
-        gain = _EKF_PERIOD_S / (_EKF_PERIOD_S + 1.0 / (6.283185307179586 * cutoff))
-    fs.ekf_vel += gain * (est.variance_vel - fs.ekf_vel)
-    fs.ekf_pos += gain * (est.variance_pos - fs.ekf_pos)
-    fs.ekf_mag += gain * (est.variance_mag - fs.ekf_mag)
+        gain = _EKF_PERIOD_S / (_EKF_PERIOD_S + 1.0 / (TWO_PI * cutoff))
+    fs.ekf_vel = follow(float(fs.ekf_vel), float(est.variance_vel), gain)
+    fs.ekf_pos = follow(float(fs.ekf_pos), float(est.variance_pos), gain)
+    fs.ekf_mag = follow(float(fs.ekf_mag), float(est.variance_mag), gain)
     limit = ap.params.FS_EKF_THRESH
     count = 0
     if fs.ekf_mag >= limit:

@@ -189,6 +189,7 @@ def build(
     """
     start = time.monotonic()
     with _build_lock():
+        modules = ",".join(dict.fromkeys([entry.__module__, *(u.function.__module__ for u in UNITS.values())]))
         todo = sorted(missing(dtype), key=lambda u: -_weight(u))
         jobs = jobs or min(len(todo), os.cpu_count() or 1)
         running: list[tuple[Unit, subprocess.Popen[str]]] = []
@@ -199,7 +200,7 @@ def build(
                     unit = todo.pop(0)
                     if progress:
                         progress(unit.name, done, total)
-                    running.append((unit, _start_worker(entry.__module__, dtype_path, unit)))
+                    running.append((unit, _start_worker(modules, dtype_path, unit)))
                 running[0][1].poll()
                 finished = [(u, p) for u, p in running if p.poll() is not None]
                 if not finished:
@@ -231,8 +232,8 @@ def _weight(unit: Unit) -> int:
     return sum(len(line) for line in lines)
 
 
-def _start_worker(entry_module: str, dtype_path: str, unit: Unit) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "sitl.core.worker", entry_module, dtype_path, unit.name]
+def _start_worker(modules: str, dtype_path: str, unit: Unit) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "sitl.core.worker", modules, dtype_path, unit.name]
     root = str(Path(__file__).resolve().parents[2])
     path = os.pathsep.join(p for p in (root, os.environ.get("PYTHONPATH", "")) if p)
     environment = {**os.environ, "PYTHONPATH": path}

@@ -2,7 +2,7 @@
 """Latitude and longitude to metres and back, on the flat earth around a point that ArduPilot uses.
 
 Longitude is scaled by the cosine of the mean latitude of the two points; 1e-7 degree of latitude is
-0.011131884502145034 m (WGS-84 equatorial radius 6378100 m, ArduPilot's LOCATION_SCALING_FACTOR).
+0.011131884502145034 m (ArduPilot's LOCATION_SCALING_FACTOR, a radius of 6378100 m; WGS-84's is 6378137 m).
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.core.worker ENTRY_MODULE DTYPE_PATH UNIT``: compile one unit (started by ``compile.build``)."""
+"""``python -m sitl.core.worker MODULES DTYPE_PATH UNIT``: compile one unit (started by ``compile.build``)."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ def main() -> int:
     from .compile import load_unit
     from .kernels import UNITS
 
-    entry_module, dtype_path, name = sys.argv[1:4]
-    importlib.import_module(entry_module)  # registers every unit
+    modules, dtype_path, name = sys.argv[1:4]
+    for module in modules.split(","):
+        importlib.import_module(module)  # registers its units
     for unit in UNITS.values():
         if unit.name != name:  # never called here: any address lets the linker finish
             llvmlite.binding.add_symbol(unit.symbol, 1)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from steady_copter import codes, fly, wait
 
@@ -184,3 +186,13 @@ def test_texts():
     assert failsafe.text(failsafe.RADIO, True) == "Radio Failsafe"
     assert failsafe.text(failsafe.GCS, False) == "GCS Failsafe Cleared"
     assert failsafe.text(failsafe.BATTERY_LOW, False) is None
+
+
+def test_a_variance_that_is_no_number_does_not_blind_the_failsafe(flying):
+    ap = flying.autopilot
+    ap.estimate.variance_vel = math.nan
+    failsafe.update_ekf(flying)
+    ap.estimate.variance_vel = ap.estimate.variance_mag = 5.0
+    for _ in range(40):
+        failsafe.update_ekf(flying)
+    assert ap.modes.failsafe.ekf != 0

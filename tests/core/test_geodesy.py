@@ -25,3 +25,8 @@ def test_across_the_date_line() -> None:
     north, east = geodesy.offset_ne(0, 1799999000, 0, -1799999000)
     assert north == 0.0
     assert east == pytest.approx(2000 * geodesy.METRES_PER_DEGE7)
+
+
+def test_a_place_across_the_date_line_has_a_longitude_of_its_own_side() -> None:
+    assert geodesy.add_offset(0.0, 1799999000.0, 0.0, 2000 * geodesy.METRES_PER_DEGE7)[1] == pytest.approx(-1799999000)
+    assert geodesy.add_offset(0.0, -1799999000.0, 0.0, -2000 * geodesy.METRES_PER_DEGE7)[1] == pytest.approx(1799999000)

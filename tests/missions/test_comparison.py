@@ -14,9 +14,9 @@ from missions.recording import RecordingError, recorded
 from sitl.simulation import Core
 
 LOOSER = {  # percent, where docs/comparison.md says why
-    "take-off: 0.1 m": 15.0,
-    "3 m/s east: 1 m/s": 8.0,
-    "3 m/s east: 2.85 m/s": 40.0,
+    "take-off: 0.1 m": 10.0,
+    "3 m/s east: 1 m/s": 7.0,
+    "3 m/s east: 2.85 m/s": 35.0,
 }
 
 

@@ -56,6 +56,12 @@ def test_turn_rate_is_the_one_asked_for_up_to_the_slew_limit(flying, rate, secon
     assert turned(flying, 0.0)[1] == pytest.approx(seconds, abs=0.01)
 
 
+def test_without_a_slew_limit_it_turns_at_once(flying):
+    flying.autopilot.params.ATC_SLEW_YAW = 0.0
+    guided.condition_yaw(flying, 90.0 * DEG, 0.0, 1, 0)
+    assert turned(flying, 0.0, 1.0)[0] == pytest.approx(90.0)
+
+
 @given(st.floats(-50.0, 50.0), st.floats(-3.1, 3.1), st.sampled_from((-1, 0, 1)))
 def test_absolute_turns_end_at_the_angle_within_one_circle(angle, start, direction):
     v = fly(make())

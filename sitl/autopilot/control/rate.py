@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from .pid import reset_filter, update_saturating
+from .motors import GROUND_IDLE, SHUT_DOWN
+from .pid import relax_integrator, reset_filter, update_saturating
 from .state import DT
 
 RELAX_TIME = 0.16
@@ -14,10 +15,14 @@ RELAX_TIME = 0.16
 @law
 def update(ap):
     """Demands from ``attitude.rate_target`` and ``estimate.rates``; the mixer's limit flags of the last tick
-    hold integrators.
+    hold integrators. The trim of the last flight is forgotten while the motors stand or idle on the ground.
     """
     p = ap.params
     motors = ap.control.motors
+    if motors.spool_state == SHUT_DOWN:
+        reset_integrators(ap)
+    elif motors.spool_state == GROUND_IDLE:
+        relax_integrators(ap)
     rate = ap.control.rate
     rates = ap.estimate.rates
     target = ap.control.attitude.rate_target
@@ -47,8 +52,16 @@ def reset_filters(ap):
 
 
 @law
+def relax_integrators(ap):
+    """Let the trim of all three loops decay (motors idle on the ground)."""
+    relax_integrator(ap.control.rate.roll, 0.0, DT, RELAX_TIME)
+    relax_integrator(ap.control.rate.pitch, 0.0, DT, RELAX_TIME)
+    relax_integrator(ap.control.rate.yaw, 0.0, DT, RELAX_TIME)
+
+
+@law
 def reset_integrators(ap):
-    """Forget the trim of all three loops (disarmed, spooled down)."""
+    """Forget the trim of all three loops (motors stand, attitude relaxed)."""
     ap.control.rate.roll.integrator = 0.0
     ap.control.rate.pitch.integrator = 0.0
     ap.control.rate.yaw.integrator = 0.0

@@ -30,7 +30,7 @@ GIVE_UP_US = 30_000_000
 """After this long the window need not be still: the biases start from zero with what the filter learns."""
 TILT_VARIANCE = 3.05e-4
 """Tilt is aligned when the variances about north and east together are below this [rad^2]: 1 degree."""
-_SMOOTH = 0.05  # of a 20 Hz low-pass at 400 Hz, about
+_SMOOTH = 0.05  # gain of a 3.4 Hz low-pass at 400 Hz
 
 
 @law

@@ -16,14 +16,14 @@ FUSE_SAMPLES = 5
 """Samples averaged into one measurement (10 Hz from 50 Hz)."""
 TIMEOUT_US = 5_000_000
 """After this long without an accepted height the filter takes the barometer's."""
-_FIELDS = 44330.769  # 288.15 K / 0.0065 K/m
+_TEMPERATURE_BY_LAPSE = 44330.769  # [m]: 288.15 K / 0.0065 K/m
 _EXPONENT = 0.190263  # R L / g
 
 
 @law
 def standard_altitude(pressure):
     """Altitude [m] in the ISA standard atmosphere (ISO 2533) of a pressure [hPa]."""
-    return _FIELDS * (1.0 - math.exp(_EXPONENT * math.log(pressure / 1013.25)))
+    return _TEMPERATURE_BY_LAPSE * (1.0 - math.exp(_EXPONENT * math.log(pressure / 1013.25)))
 
 
 @law
@@ -57,7 +57,7 @@ def set_ground(ekf):
 
 @law
 def fuse(ap, now_us):
-    """Fuse the mean of the samples when there are enough; returns 1 when something was fused or reset."""
+    """Fuse the mean of the samples when there are enough; returns 1 when something was fused."""
     ekf, params = ap.ekf, ap.params
     if ekf.baro_n < FUSE_SAMPLES:
         return 0

@@ -161,7 +161,7 @@ def fuse(ap, sensors, now_us):
     ekf.gps_us = now_us
     ekf.gps_fixes += 1
     alt = 0.001 * int(sensors.gps_alt)
-    if ekf.gps_fixes == 1:
+    if ekf.gps_fixes == 1 or ekf.gps_alt_filter != ekf.gps_alt_filter:  # the first, or after a filter step gone bad
         ekf.gps_alt_filter = alt + ekf.pos[2]
     ekf.gps_alt_filter += 0.1 * (alt + ekf.pos[2] - ekf.gps_alt_filter)
     if not quality(params, sensors):

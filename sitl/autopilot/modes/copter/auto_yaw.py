@@ -128,7 +128,7 @@ def advance(v, dt):
     yaw = ap.modes.auto_yaw
     if yaw.mode == FIXED:
         step = float(yaw.offset)
-        most = yaw.slew * dt
+        most = yaw.slew * dt if yaw.slew > 0.0 else abs(step)
         if step > most:
             step = most
         elif step < -most:

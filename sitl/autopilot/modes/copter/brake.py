@@ -10,9 +10,9 @@ from ...control import altitude, attitude, position
 from . import ground
 
 DECELERATION = 7.5
-"""[m/s^2]"""
+"""[m/s^2] (ArduPilot's)."""
 SPEED_D = 2.5
-"""[m/s]"""
+"""Least climb and descent limit [m/s] (ArduPilot's)."""
 
 
 @law
@@ -25,7 +25,6 @@ def start(v):
     altitude.set_max_speed_accel_d(ap, max(SPEED_D, vd), max(SPEED_D, -vd), DECELERATION)
     altitude.init_d(ap)
     return 0
-
 
 
 @law

@@ -122,7 +122,6 @@ def set_accel(v, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
     return code
 
 
-
 @law
 def set_pos_vel_accel(v, n, e, d, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
     """Follow a point (NED [m]) that moves with a velocity [m/s] and an acceleration [m/s^2]."""
@@ -213,7 +212,9 @@ def clear_roi(v):
 
 @law
 def change_speed(v, kind, speed):
-    """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode changes."""
+    """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode or the
+    kind of set-point changes.
+    """
     if not is_finite3(speed, 0.0, 0.0):
         return NOT_FINITE
     if speed <= 0.0:

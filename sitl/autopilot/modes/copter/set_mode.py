@@ -85,10 +85,13 @@ def request(v, number, reason):
     if number == modes.number:
         modes.reason = reason
         return ACCEPTED
+    pending = int(modes.nav.request_pending)
     cause = refusal(v, number)
     if cause == ACCEPTED:
+        modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = enter(v, number)
     if cause != ACCEPTED:
+        modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     modes.previous = int(modes.number)

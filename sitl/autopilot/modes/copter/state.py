@@ -18,7 +18,7 @@ AUTO_YAW_DTYPE = record(
     ("yaw", "f8"),  # heading under way [rad]
     ("rate", "f8"),  # [rad/s]
     ("offset", "f8"),  # FIXED: angle still to turn, signed [rad]
-    ("slew", "f8"),  # FIXED: greatest turn rate [rad/s]
+    ("slew", "f8"),  # FIXED: greatest turn rate [rad/s], 0 no limit
     ("look_ahead", "f8"),  # last course flown faster than 1 m/s [rad]
     ("roi", "f8", 3),  # point to look at, NED [m]
     ("tick", "i8"),  # last tick on which it ran
@@ -61,7 +61,7 @@ LOITER_DTYPE = record(
 )
 
 RTL_DTYPE = record(
-    ("state", "i8"),  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LAND
+    ("state", "i8"),  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING
     ("complete", "i8"),  # the state is done
     ("return_d", "f8"),  # height of the way home, NED [m]
     ("descent_d", "f8"),  # where RTL_ALT_FINAL ends, NED [m]
