@@ -209,7 +209,6 @@ def test_bad_targets_brake(ap, bad):
         (altitude.input_pos_vel_accel_d, 3),
         (altitude.set_pos_vel_accel_d, 3),
         (altitude.input_vel_accel_d, 2),
-        (altitude.input_accel_d, 1),
         (position_ned.input_pos_ned, 3),
     ):
         for k in range(count):

@@ -28,7 +28,6 @@ from .shaping import (
     advance,
     finite,
     inverse_sqrt_controller,
-    shape_accel,
     shape_pos_vel_accel,
     shape_vel_accel,
     sign,
@@ -41,7 +40,6 @@ __all__ = [
     "init_d",
     "init_d_no_descent",
     "init_d_stopping_point",
-    "input_accel_d",
     "input_pos_vel_accel_d",
     "input_vel_accel_d",
     "is_active_d",
@@ -121,16 +119,6 @@ def input_vel_accel_d(ap, v, a):
         -up, min(up, _FALL_ACCEL_MAX), float(c.jerk_max) * gain, DT, 0,
     )  # fmt: skip
 
-
-@law
-def input_accel_d(ap, a):
-    """Accelerate with ``a`` [m/s^2, down positive], jerk-limited."""
-    c = ap.control.pos_d
-    if not finite(a):
-        a = 0.0
-    gain = overspeed_gain(ap)
-    advance_d(ap)
-    c.accel_desired = shape_accel(a, float(c.accel_desired), float(c.jerk_max) * gain, DT)
 
 
 @law

@@ -45,18 +45,8 @@ def set_correction_speed_accel_ne(ap, speed, accel):
 
 
 @law
-def set_lean_max_ne(ap, angle):
-    """Lean limit of the present mode [rad]; 0 goes back to PSC_ANGLE_MAX or ANGLE_MAX."""
-    ap.control.pos_ne.angle_max = angle
-    renew_accel_limit(ap)
-
-
-@law
 def lean_max_ne(ap):
-    """Greatest lean [rad]: the mode's, else PSC_ANGLE_MAX, else ANGLE_MAX."""
-    angle = float(ap.control.pos_ne.angle_max)
-    if angle > 0.0:
-        return angle
+    """Greatest lean [rad]: PSC_ANGLE_MAX, or ANGLE_MAX where that is 0."""
     if ap.params.PSC_ANGLE_MAX > 0.0:
         return float(ap.params.PSC_ANGLE_MAX) * 100.0 * _CDEG
     return float(ap.params.ANGLE_MAX) * _CDEG
@@ -99,7 +89,6 @@ def init_ne(ap):
     c = ap.control.pos_ne
     est = ap.estimate
     euler = ap.control.attitude.target_euler
-    c.angle_max = 0.0
     if not is_active_ne(ap):
         an, ae = lean_accel(float(euler[0]), float(euler[1]), float(est.euler[2]))
         c.accel_target[0], c.accel_target[1] = an, ae

@@ -50,7 +50,6 @@ POS_NE_DTYPE = record(
     ("jerk_max", "f8"),  # [m/s^3]
     ("correction_speed", "f8"),  # most that the position loop adds [m/s]
     ("correction_accel", "f8"),  # [m/s^2]
-    ("angle_max", "f8"),  # lean limit of the mode [rad], 0: the parameters'
     ("pos_desired", "f8", 2),  # the shaped path
     ("vel_desired", "f8", 2),
     ("accel_desired", "f8", 2),

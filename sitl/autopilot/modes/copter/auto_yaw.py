@@ -183,7 +183,6 @@ def apply(v, tx, ty, tz):
     """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
     ap = v.autopilot
     heading, rate, absolute = advance(v, 0.0025)
-    ap.modes.auto_yaw.tick = v.tick
     if absolute != 0:
         attitude.input_thrust_vector_heading(ap, tx, ty, tz, heading, rate)
     else:

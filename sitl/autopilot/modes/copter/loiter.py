@@ -124,7 +124,6 @@ def advance(v):
         ae -= ve / speed * loiter.brake_acc
         vn *= slower / speed
         ve *= slower / speed
-    loiter.vel[0], loiter.vel[1] = vn, ve
     position.set_pos_vel_accel_ne(
         ap, ne.pos_desired[0] + vn * DT, ne.pos_desired[1] + ve * DT, vn, ve, an, ae
     )

@@ -20,7 +20,6 @@ LANDING = 5
 _LEAST_CLIMB = 0.3
 """Home is approached at least this high [m]."""
 _LEAST_SLOPE = 0.5
-_DESCENT_DONE = 0.2  # [m]
 
 
 @law
@@ -42,7 +41,6 @@ def start(v, forced):
         altitude.init_d(ap)
     build_path(v)
     rtl.state = CLIMB
-    rtl.complete = 0
     rtl.loiter_us = 0
     auto_yaw.set_mode(v, auto_yaw.HOLD)
     n, e = position.stopping_point_ne(ap)
@@ -156,8 +154,6 @@ def run_descent(v):
     position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)
     altitude.input_pos_vel_accel_d(ap, float(rtl.descent_d), 0.0, 0.0)
     ground.fly(v)
-    if abs(rtl.descent_d - ap.estimate.pos[2]) < _DESCENT_DONE:
-        rtl.complete = 1
 
 
 @law

@@ -99,8 +99,6 @@ def request(v, number, reason):
     modes.reason = reason
     modes.takeoff.user_active = 0
     modes.wanted = 0
-    if modes.previous == LOITER:
-        ap.control.pos_ne.angle_max = 0.0
     if number == AUTO or modes.previous == AUTO:
         emit_and_return(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
     else:

@@ -21,7 +21,6 @@ AUTO_YAW_DTYPE = record(
     ("slew", "f8"),  # FIXED: greatest turn rate [rad/s], 0 no limit
     ("look_ahead", "f8"),  # last course flown faster than 1 m/s [rad]
     ("roi", "f8", 3),  # point to look at, NED [m]
-    ("tick", "i8"),  # last tick on which it ran
 )
 
 TAKEOFF_DTYPE = record(
@@ -51,7 +50,6 @@ GUIDED_DTYPE = record(
 )
 
 LOITER_DTYPE = record(
-    ("vel", "f8", 2),  # desired velocity NE
     ("acc", "f8", 2),  # what the sticks ask, NE [m/s^2]
     ("predicted_acc", "f8", 2),  # what the lean of the sticks would do, NE
     ("predicted_euler", "f8", 2),  # roll, pitch that follow the sticks [rad]
@@ -62,7 +60,6 @@ LOITER_DTYPE = record(
 
 RTL_DTYPE = record(
     ("state", "i8"),  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING
-    ("complete", "i8"),  # the state is done
     ("return_d", "f8"),  # height of the way home, NED [m]
     ("descent_d", "f8"),  # where RTL_ALT_FINAL ends, NED [m]
     ("home", "f8", 2),  # NE [m]
@@ -79,7 +76,6 @@ AUTO_DTYPE = record(
     ("submode", "i8"),  # auto.py
     ("started", "i8"),  # by MISSION_START, or by raising the throttle
     ("command", "i8"),  # count of the command that is begun (nav.command_count)
-    ("loiter_us", "i8"),  # when the loiter timer began; 0 not yet
     ("land_state", "i8"),  # 0 flying to the place, 1 descending
 )
 
@@ -128,7 +124,6 @@ MODES_DTYPE = record(
     ),  # ArduPilot's custom mode (numbers.py)
     ("previous", "i8"),
     ("reason", "i8"),  # ArduPilot's ModeReason of the last change
-    ("last_tick", "i8"),  # last tick run
     ("auto_yaw", AUTO_YAW_DTYPE),
     ("takeoff", TAKEOFF_DTYPE),
     ("guided", GUIDED_DTYPE),

@@ -90,7 +90,6 @@ def run_mode(v):
         brake.run(v)
     else:
         stabilize.run(v)
-    ap.modes.last_tick = v.tick
     if ap.modes.wanted != 0:
         wanted = int(ap.modes.wanted) - 1
         ap.modes.wanted = 0
