@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 import platformdirs
 
-from .fingerprint import fingerprint
+from .fingerprint import fingerprint, reached
 from .kernels import LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import law_options, quick
 
@@ -33,12 +33,14 @@ Progress = Callable[[str, int, int], None]
 
 ENTRY = "sitl_unit_entry"
 _KEEP_VERSIONS = 4
-_fingerprints: dict[str, tuple[np.dtype[Any], str]] = {}
-"""Unit name -> (record type, fingerprint): code does not change while a process runs."""
+_fingerprints: dict[tuple[str, str], str] = {}
+"""(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
 _jitable: set[int] = set()
 _linked: set[str] = set()
-_loaded: dict[str, tuple[str, Any]] = {}
-"""Unit name -> (path of the record type, Numba's CFunc); a process has one core."""
+_records: dict[Any, str] = {}
+"""Numba's record type -> its path."""
+_loaded: dict[tuple[str, str], Any] = {}
+"""(Unit name, path of the record type) -> Numba's CFunc."""
 
 
 class BuildError(RuntimeError):
@@ -75,17 +77,29 @@ def toolchain() -> str:
     return " ".join((*versions, platform.machine(), processor, features, repr(law_options())))
 
 
-def unit_folder(unit: Unit, dtype: np.dtype[Any]) -> Path:
-    """Where the unit's current machine code is or will be."""
-    known = _fingerprints.get(unit.name)
-    if known is None or known[0] is not dtype:
-        known = _fingerprints[unit.name] = (dtype, fingerprint(unit, dtype, toolchain()))
-    return cache_folder() / f"{unit.name}-{known[1]}"
+def record_type(path: str) -> np.dtype[Any]:
+    """The record type at ``package.module.NAME``."""
+    module, name = path.rsplit(".", 1)
+    found: np.dtype[Any] = getattr(importlib.import_module(module), name)
+    return found
 
 
-def missing(dtype: np.dtype[Any]) -> list[Unit]:
-    """Units that have no machine code for their present source, longest source first."""
-    return [u for u in UNITS.values() if not (unit_folder(u, dtype) / "built").exists()]
+def symbol(unit: Unit, path: str) -> str:
+    """Name under which other units link to this one, compiled for the record type at ``path``."""
+    return f"{unit.symbol}__{path.rsplit('.', 1)[1].lower()}"
+
+
+def unit_folder(unit: Unit, path: str) -> Path:
+    """Where the unit's current machine code for the record type at ``path`` is or will be."""
+    key = (unit.name, path)
+    if key not in _fingerprints:
+        _fingerprints[key] = fingerprint(unit, record_type(path), f"{toolchain()} {path}")
+    return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
+
+
+def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
+    """Units of the core of ``entry`` that have no machine code for their present source."""
+    return [u for u in reached(entry) if not (unit_folder(u, path) / "built").exists()]
 
 
 def _make_jitable() -> None:
@@ -103,19 +117,24 @@ def _make_jitable() -> None:
 
 
 def _link(unit: Unit) -> None:
-    """Make a call of the unit's function, inside another unit, a call of its C symbol."""
+    """Make a call of the unit's function, inside another unit, a call of its C symbol for the caller's record type."""
     from numba import types
     from numba.extending import overload
 
     integers = [types.int64] * unit.integers
-    external = types.ExternalFunction(unit.symbol, types.void(types.uintp, types.int64, types.int64, *integers))
+
+    def external(fleet: Any) -> Any:
+        name = symbol(unit, _records[fleet.dtype])
+        return types.ExternalFunction(name, types.void(types.uintp, types.int64, types.int64, *integers))
 
     # No annotations here: Numba compares these signatures with those of the lambdas.
     def plain(fleet, index):  # type: ignore[no-untyped-def]
-        return lambda fleet, index: external(fleet.ctypes.data, len(fleet), index)
+        call = external(fleet)
+        return lambda fleet, index: call(fleet.ctypes.data, len(fleet), index)
 
     def with_integer(fleet, index, n):  # type: ignore[no-untyped-def]
-        return lambda fleet, index, n: external(fleet.ctypes.data, len(fleet), index, n)
+        call = external(fleet)
+        return lambda fleet, index, n: call(fleet.ctypes.data, len(fleet), index, n)
 
     overload(unit.function)(with_integer if unit.integers else plain)
 
@@ -138,21 +157,23 @@ def _wrapper_source(unit: Unit) -> str:
     )
 
 
-def load_unit(unit: Unit, dtype_path: str) -> Any:
-    """Compile the unit or load it from the cache; returns Numba's CFunc and registers its symbol."""
-    if unit.name in _loaded:
-        known = _loaded[unit.name]
-        if known[0] != dtype_path:
-            raise BuildError(f"unit {unit.name} is loaded for {known[0]}; it cannot be for {dtype_path} too")
-        return known[1]
+def load_unit(unit: Unit, path: str) -> Any:
+    """Compile the unit for the record type at ``path``, or load it from the cache.
+
+    Returns Numba's CFunc and registers its symbol.
+    """
+    if (unit.name, path) in _loaded:
+        return _loaded[unit.name, path]
     import llvmlite.binding
     import numba
     from numba import types
 
     _make_jitable()
-    module_name, dtype_name = dtype_path.rsplit(".", 1)
-    dtype = getattr(importlib.import_module(module_name), dtype_name)
-    folder = unit_folder(unit, dtype)
+    dtype = record_type(path)
+    record = numba.from_dtype(dtype)
+    if _records.setdefault(record, path) != path:
+        raise BuildError(f"{path} and {_records[record]} are the same record type; one of them will do")
+    folder, name = unit_folder(unit, path), symbol(unit, path)
     folder.mkdir(parents=True, exist_ok=True)
     source = folder / "unit.py"
     if not source.exists():
@@ -160,37 +181,32 @@ def load_unit(unit: Unit, dtype_path: str) -> Any:
         temporary.write_text(_wrapper_source(unit))
         os.utime(temporary, (0, 0))
         os.replace(temporary, source)
-    module = ModuleType(unit.symbol)  # in sys.modules, because Numba's cache looks the entry's module up by name
-    sys.modules[unit.symbol] = module
+    module = ModuleType(name)  # in sys.modules, because Numba's cache looks the entry's module up by name
+    sys.modules[name] = module
     vars(module).update(carray=numba.carray, DTYPE=dtype, body=_body(unit))
     exec(compile(source.read_text(), str(source), "exec"), vars(module))
-    signature = types.void(
-        types.CPointer(numba.from_dtype(dtype)), types.int64, types.int64, *[types.int64] * unit.integers
-    )
+    signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
     try:
         with quick(ENTRY):
             function = numba.cfunc(signature, cache=True, error_model="numpy")(vars(module)[ENTRY])
     finally:
         numba.config.CACHE_DIR = before
-    llvmlite.binding.add_symbol(unit.symbol, function.address)
+    llvmlite.binding.add_symbol(name, function.address)
     (folder / "built").touch()
-    _loaded[unit.name] = (dtype_path, function)
+    _loaded[unit.name, path] = function
     return function
 
 
-def build(
-    entry: Callable[..., Any], dtype_path: str, dtype: np.dtype[Any], progress: Progress | None = None, jobs: int = 0
-) -> float:
-    """Compile the units that are missing in the cache; returns the seconds it took.
+def build(entry: Callable[..., Any], path: str, progress: Progress | None = None, jobs: int = 0) -> float:
+    """Compile what the core of ``entry``, for the record type at ``path``, misses in the cache; returns the seconds.
 
     Raises:
         BuildError: a unit failed to compile; the message holds Numba's own.
     """
     start = time.monotonic()
     with _build_lock():
-        modules = ",".join(dict.fromkeys([entry.__module__, *(u.function.__module__ for u in UNITS.values())]))
-        todo = sorted(missing(dtype), key=lambda u: -_weight(u))
+        todo = sorted(missing(entry, path), key=lambda u: -_weight(u))
         jobs = jobs or min(len(todo), os.cpu_count() or 1)
         running: list[tuple[Unit, subprocess.Popen[str]]] = []
         done, total = 0, len(todo)
@@ -200,7 +216,7 @@ def build(
                     unit = todo.pop(0)
                     if progress:
                         progress(unit.name, done, total)
-                    running.append((unit, _start_worker(modules, dtype_path, unit)))
+                    running.append((unit, _start_worker(entry, path, unit)))
                 running[0][1].poll()
                 finished = [(u, p) for u, p in running if p.poll() is not None]
                 if not finished:
@@ -232,8 +248,8 @@ def _weight(unit: Unit) -> int:
     return sum(len(line) for line in lines)
 
 
-def _start_worker(modules: str, dtype_path: str, unit: Unit) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "sitl.core.worker", modules, dtype_path, unit.name]
+def _start_worker(entry: Callable[..., Any], record: str, unit: Unit) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "sitl.core.worker", entry.__module__, record, unit.name]
     root = str(Path(__file__).resolve().parents[2])
     path = os.pathsep.join(p for p in (root, os.environ.get("PYTHONPATH", "")) if p)
     environment = {**os.environ, "PYTHONPATH": path}
@@ -271,17 +287,21 @@ def _drop_old_versions() -> None:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def load(dtype_path: str, dtype: np.dtype[Any], entry: Callable[..., Any], progress: Progress | None = None) -> Any:
+def load(entry: Callable[..., Any], path: str, progress: Progress | None = None) -> Any:
     """The compiled form of unit ``entry`` as a C function ``(address, count, index, *integers)``.
 
     Builds what is missing. With Numba's JIT disabled, returns None: call ``entry`` itself.
+
+    Args:
+        entry: a unit.
+        path: of the record type of the fleets that it is for, ``package.module.NAME``.
+        progress: told of each unit that is compiled.
     """
     if jit_disabled():
         return None
-    if missing(dtype):
-        build(entry, dtype_path, dtype, progress)
-    # Units register in the order of their definition, callees before callers, so symbols exist when needed.
-    for unit in UNITS.values():
-        load_unit(unit, dtype_path)
-    found = next(u for u in UNITS.values() if u.function is entry)
-    return _loaded[found.name][1].ctypes
+    if missing(entry, path):
+        build(entry, path, progress)
+    units = reached(entry)  # callees before callers, so that symbols exist when needed
+    for unit in units:
+        load_unit(unit, path)
+    return _loaded[units[-1].name, path].ctypes

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import types
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -73,3 +73,23 @@ def fingerprint(unit: Unit, dtype: np.dtype[Any], toolchain: str) -> str:
     lines: list[str] = [toolchain, layout(dtype)]
     _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
+
+
+def reached(entry: Callable[..., Any]) -> list[Unit]:
+    """The units that ``entry``, a unit itself, calls, directly or not: callees before callers, ``entry`` last."""
+    by_function = {id(u.function): u for u in UNITS.values()}
+    found: dict[str, Unit] = {}
+
+    def visit(function: Any, seen: set[int]) -> None:
+        if id(function) in seen:
+            return
+        seen.add(id(function))
+        for _, value in _referenced(function):
+            if isinstance(value, types.FunctionType):
+                visit(value, seen)
+        unit = by_function.get(id(function))
+        if unit is not None:
+            found[unit.name] = unit
+
+    visit(entry, set())
+    return list(found.values())

@@ -60,7 +60,7 @@ fleet = np.zeros(2, toy.DTYPE)
 fleet["x"] = 1.0
 built = []
 if len(sys.argv) > 1:
-    call = compile.load("toy.DTYPE", toy.DTYPE, toy.entry, lambda name, done, total: built.append(name))
+    call = compile.load(toy.entry, "toy.DTYPE", lambda name, done, total: built.append(name))
     call(fleet.ctypes.data, 2, 1, 5)
 else:
     toy.entry(fleet.view(np.recarray), 1, 5)

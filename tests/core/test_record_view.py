@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from sitl.core.records import RecordView, as_dict, record, view
-from sitl.vehicle import VEHICLE_DTYPE
+from sitl.vehicle import COPTER_DTYPE
 
 
 def filled() -> np.ndarray[Any, Any]:
-    fleet = np.zeros(2, VEHICLE_DTYPE)
+    fleet = np.zeros(2, COPTER_DTYPE)
     words = fleet.view("u1").reshape(-1)
     words[:] = np.random.default_rng(1).integers(0, 63, words.size, dtype="u1")
     return fleet
@@ -59,7 +59,7 @@ def test_writes_go_to_the_fleet() -> None:
 def test_whole_records_are_copied() -> None:
     fleet = filled()
     ours = view(fleet, 0)
-    ours.physics = np.zeros((), VEHICLE_DTYPE["physics"])
+    ours.physics = np.zeros((), COPTER_DTYPE["physics"])
     ours["autopilot"].home = view(fleet, 1).autopilot.home
     assert not fleet[0]["physics"].tobytes().strip(b"\0")
     assert fleet[0]["autopilot"]["home"] == fleet[1]["autopilot"]["home"]
