@@ -7,16 +7,22 @@ import importlib
 import runpy
 from pathlib import Path
 
-from .airframe import Airframe, AirframeError, Rotor, apply
+from .airframe import Airframe, AirframeError, apply
+from .copter_airframe import CopterAirframe, Rotor
+from .rover_airframe import RoverAirframe
 
-__all__ = ["Airframe", "AirframeError", "Rotor", "apply", "load", "names"]
+__all__ = ["Airframe", "AirframeError", "CopterAirframe", "Rotor", "RoverAirframe", "apply", "load", "names"]
 
-_MODULES = ("erle_copter", "ardupilot_quad")
+_MODULES = {
+    "copter": ("erle_copter", "ardupilot_quad"),
+    "rover": ("erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover"),
+}
+"""Kind of vehicle -> its airframes, the one that is taken when none is named first."""
 
 
-def names() -> tuple[str, ...]:
-    """Names of the airframes that ``load`` knows."""
-    return _MODULES
+def names(kind: str | None = None) -> tuple[str, ...]:
+    """Names of the airframes that ``load`` knows: all, or those of a kind ("copter", "rover")."""
+    return tuple(name for k, of_kind in _MODULES.items() if kind in (None, k) for name in of_kind)
 
 
 def load(name: str | Airframe) -> Airframe:
@@ -33,8 +39,8 @@ def load(name: str | Airframe) -> Airframe:
     if name.endswith(".py"):
         return _load_file(Path(name))
     module = name.strip().lower().replace("-", "_")
-    if module not in _MODULES:
-        raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(_MODULES)}, or a .py file")
+    if module not in names():
+        raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(names())}, or a .py file")
     found: Airframe = importlib.import_module(f"{__name__}.{module}").AIRFRAME
     return found
 
@@ -50,5 +56,5 @@ def _load_file(path: Path) -> Airframe:
         raise AirframeError(f"airframe file {str(path)!r}: {type(error).__name__}: {error}") from error
     found = scope.get("AIRFRAME")
     if not isinstance(found, Airframe):
-        raise AirframeError(f"airframe file {str(path)!r} does not define AIRFRAME = Airframe(...)")
+        raise AirframeError(f"airframe file {str(path)!r} does not define AIRFRAME, a CopterAirframe or RoverAirframe")
     return found

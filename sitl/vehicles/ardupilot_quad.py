@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 from . import sensor_sets
-from .airframe import CCW, CW, Airframe, Rotor
-from .figures import THRUST_MOMENTUM
+from .copter_airframe import CCW, CW, CopterAirframe, Rotor
+from .figures.copter import THRUST_MOMENTUM
 
 MASS = 3.0  # [kg]
 ARM = 0.35  # [m] rotors from the centre
@@ -43,7 +43,7 @@ def drag_area() -> float:
     return (total - momentum) / (0.5 * REFERENCE_DENSITY * REFERENCE_SPEED * REFERENCE_SPEED)
 
 
-AIRFRAME = Airframe(
+AIRFRAME = CopterAirframe(
     name="ardupilot_quad",
     description="ArduPilot's default SITL quad, plus frame, 3.0 kg",
     rotors=(

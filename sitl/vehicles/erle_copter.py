@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 
 from . import sensor_sets
-from .airframe import CCW, CW, Airframe, Rotor
-from .figures import THRUST_SPEED_SQUARED
+from .copter_airframe import CCW, CW, CopterAirframe, Rotor
+from .figures.copter import THRUST_SPEED_SQUARED
 
 REACH = 0.141  # [m] rotors from the centre along x and y [model]
 ABOVE = -0.030  # [m] rotors 3 cm above the centre [model]
 
-AIRFRAME = Airframe(
+AIRFRAME = CopterAirframe(
     name="erle_copter",
     description="Erle-Copter, X frame, 1.14 kg",
     rotors=(

@@ -19,17 +19,16 @@ def test_open_circuit_voltage_rises_with_charge(charge, more):
 
 def test_voltage_sags_under_load_and_falls_with_charge(rig):
     r = rig("erle_copter")
-    battery.update(r.p)
+    battery.update(r.p, 0.0)
     idle = float(r.p.battery.voltage)
-    r.p.rotors.power = 150.0
     for _ in range(400):
-        battery.update(r.p)
+        battery.update(r.p, 150.0)
     current = float(r.p.battery.current)
     assert current == approx(0.8 + 150.0 / float(r.p.battery.voltage), rel=1e-6)
     assert idle - float(r.p.battery.voltage) == approx(0.02 * (current - 0.8), abs=0.01)
     assert 1.0 - r.p.battery.charge == approx(current * 1.0 / 3600.0 / 5.0, rel=0.01)
     r.p.battery.charge = 0.0
-    battery.update(r.p)
+    battery.update(r.p, 150.0)
     assert r.p.battery.voltage < 9.0
 
 
@@ -43,8 +42,7 @@ def test_empty_battery_limits_top_speed(rig):
 
 def test_ideal_source_keeps_its_voltage(rig):
     r = rig()
-    r.p.rotors.power = 354.2
-    battery.update(r.p)
+    battery.update(r.p, 354.2)
     assert r.p.battery.voltage == 12.6
     assert r.p.battery.current == approx(28.1, abs=0.05)
 

@@ -5,7 +5,7 @@ import pytest
 from pytest import approx
 
 from sitl.core.rotations import quat_from_euler, quat_to_euler
-from sitl.physics.native.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 
 
 @pytest.mark.parametrize("frame", ["ardupilot_quad", "erle_copter"])

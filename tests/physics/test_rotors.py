@@ -6,7 +6,8 @@ import pytest
 from pytest import approx
 
 from sitl.core.rotations import quat_from_euler, quat_rotate
-from sitl.physics.native.body import GRAVITY, wrench
+from sitl.physics.native.body import GRAVITY
+from sitl.physics.native.copter.wrench import wrench
 
 
 def spin(r, command):

@@ -5,17 +5,16 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sitl.core import compile as compiler
 from sitl.core import records
-from sitl.core.kernels import UNITS, jit_disabled
+from sitl.core.kernels import jit_disabled
 from sitl.physics.native import truth
 
 
 @pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
 @pytest.mark.parametrize("frame", ["ardupilot_quad", "erle_copter"])
 def test_compiled_and_plain_python_give_the_same_bits(rig, frame):
-    unit = compiler.load_unit(UNITS["physics.native.step.step"], "sitl.vehicle.VEHICLE_DTYPE").ctypes
     plain, compiled = rig(frame), rig(frame)
+    unit = compiled.compiled()
     for r in (plain, compiled):
         r.fly(0.3)
         r.p.wind.speed, r.p.wind.direction, r.p.wind.turbulence, r.p.wind.time_constant = 4.0, 30.0, 1.0, 1.0
@@ -44,13 +43,11 @@ def test_same_seed_same_sensors_other_seed_others(rig):
 
 
 def test_init_again_forgets_everything_but_the_wind_setting(rig):
-    from sitl.physics.native.init import init
-
     r, fresh = rig("erle_copter", seed=2), rig("erle_copter", seed=2)
     r.p.wind.speed = 3.0
     r.fly()
     r.step(10)
-    init(r.v, r.airframe, (-35.363262, 149.165237, 584.0, 0.0), 2)
+    r.power_on(seed=2)
     assert r.p.wind.speed == 3.0
     r.p.wind.speed = 0.0
     r.p.wind.steady = r.p.wind.vel = 0.0

@@ -6,12 +6,12 @@ import pytest
 from pytest import approx
 
 from sitl import vehicles
-from sitl.autopilot.params import table
+from sitl.autopilot.copter.table import TABLE
 from sitl.vehicles import AirframeError, ardupilot_quad
-from sitl.vehicles.figures import FIGURES_DTYPE
+from sitl.vehicles.figures.copter import FIGURES_DTYPE
 
 
-@pytest.mark.parametrize("name", vehicles.names())
+@pytest.mark.parametrize("name", vehicles.names("copter"))
 def test_airframes_are_complete_and_their_parameters_accepted(name):
     airframe = vehicles.load(name)
     assert airframe.name == name
@@ -21,8 +21,8 @@ def test_airframes_are_complete_and_their_parameters_accepted(name):
     assert record["rotor_count"] == 4
     assert sum(record["rotor_direction"]) == 0.0
     for parameter, value in airframe.parameters.items():
-        assert parameter in table.BY_NAME
-        assert table.BY_NAME[parameter].refusal(value) is None
+        assert parameter in TABLE
+        assert TABLE[parameter].refusal(value) is None
 
 
 @pytest.mark.parametrize("name", ["erle-copter", " Erle_Copter "])
@@ -59,7 +59,11 @@ def test_bad_figures_are_named(figures, message):
 def test_rotors_stand_at_numbers(rotor):
     erle = vehicles.load("erle_copter")
     with pytest.raises(AirframeError, match=r"rotor 2 is .*; expected four numbers"):
-        vehicles.Airframe("x", "", (erle.rotors[0], vehicles.Rotor(*rotor)), erle.figures)
+        copter((erle.rotors[0], vehicles.Rotor(*rotor)), erle.figures)
+
+
+def copter(rotors, figures):
+    return vehicles.CopterAirframe(name="x", description="", rotors=rotors, figures=figures)
 
 
 def test_an_airframe_is_taken_as_it_is():
@@ -73,15 +77,15 @@ def test_missing_figures_are_named():
     erle = vehicles.load("erle_copter")
     figures = {k: v for k, v in erle.figures.items() if k not in ("mass", "speed_max")}
     with pytest.raises(AirframeError, match=r"figures missing: mass, speed_max"):
-        vehicles.Airframe("x", "", erle.rotors, figures)
+        copter(erle.rotors, figures)
 
 
 def test_rotors_are_checked():
     erle = vehicles.load("erle_copter")
     with pytest.raises(AirframeError, match="rotor 1 turns 0"):
-        vehicles.Airframe("x", "", (vehicles.Rotor(0, 0, 0, 0.0),), erle.figures)
+        copter((vehicles.Rotor(0, 0, 0, 0.0),), erle.figures)
     with pytest.raises(AirframeError, match="9 rotors"):
-        vehicles.Airframe("x", "", erle.rotors[:1] * 9, erle.figures)
+        copter(erle.rotors[:1] * 9, erle.figures)
 
 
 def test_ardupilot_quad_derivation():
@@ -104,9 +108,7 @@ def test_apply_writes_one_vehicle_of_a_fleet():
 
 def test_a_users_own_file(tmp_path) -> None:
     file = tmp_path / "heavy.py"
-    file.write_text(
-        "from sitl import vehicles\nAIRFRAME = vehicles.load('erle_copter').changed(mass=1.4)\n"
-    )
+    file.write_text("from sitl import vehicles\nAIRFRAME = vehicles.load('erle_copter').changed(mass=1.4)\n")
     assert vehicles.load(str(file)).figures["mass"] == 1.4
 
 

@@ -18,17 +18,15 @@ def open_circuit(charge):
 
 
 @law
-def update(p):
-    """Draw the load's power for one tick."""
+def update(p, power):
+    """Draw the motors' power [W] for one tick."""
     a, b = p.airframe, p.battery
     full = float(a.battery_voltage_full)
     voltage = max(float(b.voltage), 0.1 * full)
-    current = float(a.avionics_current) + float(p.rotors.power) / voltage
+    current = float(a.avionics_current) + power / voltage
     b.current = current
     if a.battery_capacity > 0.0:
         b.charge = max(float(b.charge) - current * float(p.derived.charge_per_amp), 0.0)
-        b.voltage = max(
-            full * open_circuit(float(b.charge)) - current * float(a.battery_resistance), 0.1 * full
-        )
+        b.voltage = max(full * open_circuit(float(b.charge)) - current * float(a.battery_resistance), 0.1 * full)
     else:
         b.voltage = full  # as ArduPilot's simulator without SIM_BATT_CAP_AH

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rigid body in the air: aerodynamic drag and one integration step.
+"""The free rigid body: one integration step.
 
 Rotation: the rate at mid-step turns the attitude by an exact rotation, and the angular momentum is carried
 over in the world frame, so that a torque-free body keeps it to rounding (second order otherwise).
@@ -12,8 +12,6 @@ import math
 
 from ...core.kernels import law
 from ...core.rotations import quat_multiply, quat_rotate, quat_rotate_inverse
-from ...vehicles.figures import THRUST_MOMENTUM
-from .rotors import lag, momentum_wrench, speed_squared_wrench
 
 GRAVITY = 9.80665
 """Standard gravity [m/s^2]."""
@@ -25,37 +23,6 @@ def small_rotation(x, y, z):
     s = 0.25 * (x * x + y * y + z * z)
     k = 0.5 * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s / 5040.0)))
     return (1.0 - s * (0.5 - s * (1.0 / 24.0 - s / 720.0)), k * x, k * y, k * z)
-
-
-@law
-def wrench(p):
-    """(fx, fy, fz, mx, my, mz) [N, N m], body frame, but gravity and ground; rotors move on by a substep."""
-    a, b = p.airframe, p.body
-    spin_up = lag(p)
-    wind = p.wind.vel
-    vx, vy, vz = quat_rotate_inverse(
-        float(b.q[0]),
-        float(b.q[1]),
-        float(b.q[2]),
-        float(b.q[3]),
-        float(b.vel[0]) - float(wind[0]),
-        float(b.vel[1]) - float(wind[1]),
-        float(b.vel[2]) - float(wind[2]),
-    )
-    roll_rate, pitch_rate, yaw_rate = float(b.rates[0]), float(b.rates[1]), float(b.rates[2])
-    if int(a.thrust_model) == THRUST_MOMENTUM:
-        fx, fy, fz, mx, my, mz = momentum_wrench(p, vx, vy, vz, roll_rate, pitch_rate, yaw_rate)
-    else:
-        fx, fy, fz, mx, my, mz = speed_squared_wrench(p, vx, vy, roll_rate, pitch_rate, yaw_rate)
-    half = 0.5 * float(p.air.density)
-    fx -= half * float(a.drag_area[0]) * vx * abs(vx)
-    fy -= half * float(a.drag_area[1]) * vy * abs(vy)
-    fz -= half * float(a.drag_area[2]) * vz * abs(vz)
-    damping = float(a.angular_damping)
-    mx -= damping * float(a.inertia[0]) * roll_rate
-    my -= damping * float(a.inertia[1]) * pitch_rate
-    mz += spin_up - damping * float(a.inertia[2]) * yaw_rate
-    return (fx, fy, fz, mx, my, mz)
 
 
 @law

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures that follow from an airframe's figures; call again after changing any of them in the record."""
+"""Figures that follow from those that all airframes have; and how the kinds compute theirs."""
 
 from __future__ import annotations
 
@@ -7,18 +7,17 @@ import math
 
 from ...core.kernels import law
 from .sensors.imu import WALK_TICKS
-
-TICK_S = 0.0025
+from .tick import TICK_S
 
 
 @law
-def _ticks(seconds):
+def whole_ticks(seconds):
     """Seconds as a whole number of ticks, at least 1."""
     return max(math.floor(seconds / TICK_S + 0.5), 1)
 
 
 @law
-def _decay(time_constant, dt):
+def decay(time_constant, dt):
     """What is left of a first-order error after dt [s]; nothing without a time constant."""
     if time_constant <= 0.0:
         return 0.0
@@ -35,26 +34,12 @@ def _walk(random_walk, correlation_time, dt):
 
 
 @law
-def prepare(p):
-    """Fill ``p.derived`` from ``p.airframe``."""
+def prepare_shared(p):
+    """Fill the part of ``p.derived`` that follows from battery and sensors in ``p.airframe``."""
     a, d = p.airframe, p.derived
-    dt = TICK_S / max(int(a.substeps), 1)
-    d.dt = dt
-    d.inverse_mass = 1.0 / float(a.mass)
-    for j in range(3):
-        d.inverse_inertia[j] = 1.0 / float(a.inertia[j])
-    d.control_scale = 1.0 / (float(a.control_max) - float(a.control_min))
-    d.command_step = float(a.command_slew) * TICK_S
-    d.decay_up = _decay(float(a.time_constant_up), dt)
-    d.decay_down = _decay(float(a.time_constant_down), dt)
-    d.speed_per_volt = 0.0
-    if a.speed_voltage > 0.0:
-        d.speed_per_volt = float(a.speed_max) / float(a.speed_voltage)
-    d.voltage_scale = 1.0 / float(a.battery_voltage_full)
     d.charge_per_amp = 0.0
     if a.battery_capacity > 0.0:
         d.charge_per_amp = TICK_S / (3600.0 * float(a.battery_capacity))
-    d.leg_release = 1.0 - _decay(float(a.leg_time_constant), TICK_S)
     scale = float(a.noise_scale)
     per_sample = math.sqrt(1.0 / TICK_S)
     d.acc_noise = scale * float(a.acc_noise_density) * per_sample
@@ -63,13 +48,13 @@ def prepare(p):
     d.acc_bias_decay, d.acc_bias_step = left, scale * added
     left, added = _walk(float(a.gyro_random_walk), float(a.gyro_bias_time), WALK_TICKS * TICK_S)
     d.gyro_bias_decay, d.gyro_bias_step = left, scale * added
-    d.gps_period = _ticks(1.0 / float(a.gps_rate))
+    d.gps_period = whole_ticks(1.0 / float(a.gps_rate))
     d.gps_delay = math.floor(float(a.gps_delay) / TICK_S + 0.5)
-    d.gps_start = _ticks(float(a.gps_start))
-    d.gps_fix = _ticks(float(a.gps_fix_time))
-    left = _decay(float(a.gps_drift_time), float(d.gps_period) * TICK_S)
+    d.gps_start = whole_ticks(float(a.gps_start))
+    d.gps_fix = whole_ticks(float(a.gps_fix_time))
+    left = decay(float(a.gps_drift_time), float(d.gps_period) * TICK_S)
     d.gps_drift_decay, d.gps_drift_step = left, math.sqrt(1.0 - left * left)
-    d.baro_period = max(_ticks(1.0 / float(a.baro_rate)), 2)
-    left = _decay(float(a.baro_drift_time), float(d.baro_period) * TICK_S)
+    d.baro_period = max(whole_ticks(1.0 / float(a.baro_rate)), 2)
+    left = decay(float(a.baro_drift_time), float(d.baro_period) * TICK_S)
     d.baro_drift_decay, d.baro_drift_step = left, math.sqrt(1.0 - left * left)
-    d.mag_period = max(_ticks(1.0 / float(a.mag_rate)), 2)
+    d.mag_period = max(whole_ticks(1.0 / float(a.mag_rate)), 2)

@@ -52,5 +52,5 @@ def read(v: Any) -> Truth:
         quat_to_euler(w, x, y, z),
         _three(b.rates),
         _three(b.specific_force),
-        int(p.ground.state) != 0,
+        not hasattr(p, "ground") or int(p.ground.state) != 0,  # a rover never leaves it
     )

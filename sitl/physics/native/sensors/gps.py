@@ -12,7 +12,7 @@ import math
 from ....core.geodesy import add_offset
 from ....core.kernels import law
 from ....core.rng import normal
-from ..state import GPS_RING
+from ..records import GPS_RING
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...vehicles.figures import THRUST_MOMENTUM
+from ....core.kernels import law
+from ....vehicles.figures.copter import THRUST_MOMENTUM
 
 
 @law

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import quat_multiply, quat_normalise, quat_rotate, quat_rotate_inverse
-from .body import GRAVITY, small_rotation
+from ....core.kernels import law
+from ....core.rotations import quat_multiply, quat_normalise, quat_rotate, quat_rotate_inverse
+from ..body import GRAVITY, small_rotation
 from .state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 
 _LEVEL = 1e-5

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Power-on of a multicopter that stands on the ground at its home."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ....vehicles import CopterAirframe
+from ..power_on import Home, clear, place, wake
+from .prepare import prepare
+from .state import GROUND_STANDING
+
+
+def init(v: Any, airframe: CopterAirframe, home: Home, seed: int) -> None:
+    """Set physics, sensors, clock and random numbers of a vehicle to power-on; the wind's settings stay.
+
+    Args:
+        v: a view of one vehicle (``sitl.core.records.view``).
+        airframe: what it is.
+        home: where it stands; altitude is that of the ground.
+        seed: of all sensor errors and turbulence; any integer.
+    """
+    clear(v, airframe, seed)
+    p = v.physics
+    p.rotors.efficiency = 1.0
+    p.ground.state = GROUND_STANDING
+    prepare(p)
+    place(p, home)
+    wake(v)

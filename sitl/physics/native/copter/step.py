@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One tick of a multicopter's world: wind, rotors, body, ground, battery, sensors."""
+
+from __future__ import annotations
+
+from ....core.kernels import law, unit
+from ....core.rotations import quat_rotate, quat_rotate_inverse
+from .. import battery, wind
+from ..body import GRAVITY, fly
+from ..sensors.sense import sense
+from ..tick import TICK_S, TICK_US
+from . import rotors
+from .ground import absorb, leaves, rest, touch
+from .state import GROUND_AIRBORNE, GROUND_STANDING
+from .wrench import wrench
+
+
+@law
+def move(p, time_us):
+    """Advance the body by one tick; sets its means over the tick."""
+    b = p.body
+    b.rates_mean[0], b.rates_mean[1], b.rates_mean[2] = 0.0, 0.0, 0.0
+    sx, sy, sz = 0.0, 0.0, 0.0
+    n = int(p.airframe.substeps)
+    for _ in range(n):
+        fx, fy, fz, mx, my, mz = wrench(p)
+        standing = p.ground.state == GROUND_STANDING
+        if p.ground.state == GROUND_AIRBORNE or (standing and leaves(p, fx, fy, fz)):
+            fly(p, fx, fy, fz, mx, my, mz)
+            touch(p, time_us)
+            k = float(p.derived.inverse_mass)
+            ax, ay, az = fx * k, fy * k, fz * k
+        else:
+            ax, ay, az = rest(p, fx, fy, fz)
+        sx += ax
+        sy += ay
+        sz += az
+    k = 1.0 / n
+    for j in range(3):
+        b.rates_mean[j] *= k
+    sx, sy, sz = sx * k, sy * k, sz * k
+    q = b.q
+    w, x, y, z = float(q[0]), float(q[1]), float(q[2]), float(q[3])
+    if p.ground.impulse != 0.0:
+        ax, ay, az = quat_rotate_inverse(w, x, y, z, 0.0, 0.0, -absorb(p, TICK_S))
+        sx, sy, sz = sx + ax, sy + ay, sz + az
+    b.specific_force[0], b.specific_force[1], b.specific_force[2] = sx, sy, sz
+    an, ae, ad = quat_rotate(w, x, y, z, sx, sy, sz)
+    b.acc_ned[0], b.acc_ned[1], b.acc_ned[2] = an, ae, ad + GRAVITY
+
+
+@unit
+def step(fleet, i):
+    """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
+    v = fleet[i]
+    p = v.physics
+    v.time_us += TICK_US
+    v.tick += 1
+    tick, time_us = int(v.tick), int(v.time_us)
+    if tick % wind.PERIOD_TICKS == 0:
+        wind.update(p.wind, v.rng)
+    rotors.command(p, v.actuators.controls)
+    move(p, time_us)
+    battery.update(p, float(p.rotors.power))
+    sense(p, v.sensors, tick, time_us, v.rng)

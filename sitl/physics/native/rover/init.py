@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Power-on of a rover that stands at its home."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ....vehicles import RoverAirframe
+from ..power_on import Home, clear, place, wake
+from .prepare import prepare
+
+
+def init(v: Any, airframe: RoverAirframe, home: Home, seed: int) -> None:
+    """Set physics, sensors, clock and random numbers of a vehicle to power-on; the wind's settings stay.
+
+    Args:
+        v: a view of one vehicle (``sitl.core.records.view``).
+        airframe: what it is.
+        home: where it stands; altitude is that of the ground.
+        seed: of all sensor errors; any integer.
+    """
+    clear(v, airframe, seed)
+    prepare(v.physics)
+    place(v.physics, home)
+    wake(v)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures that follow from a rover's figures; call again after changing any of them in the record."""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
+from ..body import GRAVITY
+from ..prepare import decay, prepare_shared, whole_ticks
+from ..tick import TICK_S
+
+UNLIMITED = 1e9
+"""A step that nothing reaches."""
+
+
+@law
+def _step(rate):
+    """Largest change in a tick at a rate a second; 0 is no limit."""
+    return rate * TICK_S if rate > 0.0 else UNLIMITED
+
+
+@law
+def yaw_acceleration(a):
+    """Greatest yaw acceleration [rad/s^2] that the tyres can give.
+
+    Front wheels: the side force of the front axle about the centre of mass, which is (1 - front_load) of the
+    wheelbase behind it. Skid steering: one side pushes, the other brakes, half a track from the middle.
+    """
+    force = float(a.grip) * GRAVITY * float(a.mass)
+    if int(a.steering_model) == STEERING_FRONT_WHEELS:
+        torque = force * float(a.front_load) * (1.0 - float(a.front_load)) * float(a.wheelbase)
+    elif int(a.steering_model) == STEERING_SKID:
+        torque = 0.5 * force * float(a.track)
+    else:
+        return 0.0
+    return torque / float(a.inertia[2])
+
+
+@law
+def prepare(p):
+    """Fill ``p.derived`` from ``p.airframe``."""
+    a, d = p.airframe, p.derived
+    d.control_scale = 1.0 / float(a.control_full)
+    d.speed_decay = decay(float(a.time_constant), TICK_S)
+    d.speed_step = _step(float(a.drive_accel))
+    lag = float(a.time_constant)
+    resisting = lag * (1.0 - float(d.speed_decay)) if lag > 0.0 else TICK_S  # exact for a motor of first order
+    d.rolling_step = float(a.rolling_resistance) * GRAVITY * resisting
+    d.grip = float(a.grip) * GRAVITY
+    d.drive_grip = float(d.grip) * float(a.driven_load)
+    d.yaw_step = _step(yaw_acceleration(a))
+    d.steering_step = _step(float(a.steering_rate))
+    d.inverse_wheelbase, d.circle_scale, d.inverse_track = 0.0, 0.0, 0.0
+    if int(a.steering_model) == STEERING_FRONT_WHEELS:
+        d.inverse_wheelbase = 1.0 / float(a.wheelbase)
+    elif int(a.steering_model) == STEERING_TURNING_CIRCLE:
+        d.circle_scale = 2.0 / (float(a.turning_diameter) * math.sin(float(a.steering_angle)))
+    else:
+        d.inverse_track = 1.0 / (float(a.track) * float(a.track_slip))
+    d.power_by_accel = 0.0
+    if a.efficiency > 0.0:
+        d.power_by_accel = float(a.mass) / float(a.efficiency)
+    d.encoder_period = 0
+    if a.encoder_rate > 0.0:
+        d.encoder_period = max(whole_ticks(1.0 / float(a.encoder_rate)), 2)
+    prepare_shared(p)

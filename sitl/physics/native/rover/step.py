@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One tick of a rover's world: motors, steering, motion, wheels, battery, sensors. Wind does not move it."""
+
+from __future__ import annotations
+
+from ....core.kernels import law, unit
+from ....vehicles.figures.rover import STEERING_SKID
+from .. import battery
+from ..sensors.sense import sense
+from ..tick import TICK_S, TICK_US
+from . import encoders
+from .drive import commanded, grip_along, run
+from .motion import roll
+from .steering import curvature, grip_across, turn_wheels
+
+STEERING_OUTPUT = 0
+"""Output of the steering servo, or of the left motors."""
+THROTTLE_OUTPUT = 2
+"""Output of the motor, or of the right motors."""
+
+
+@law
+def move(p, controls):
+    """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
+    w, rolled, scale = p.wheels, p.wheels.distance, float(p.derived.control_scale)
+    first = commanded(float(controls[STEERING_OUTPUT]), scale)
+    second = commanded(float(controls[THROTTLE_OUTPUT]), scale)
+    before = float(w.forward)
+    if int(p.airframe.steering_model) == STEERING_SKID:
+        w.power = 0.5 * (run(p, 0, first) + run(p, 1, second))
+        left, right = float(w.speed[0]), float(w.speed[1])
+        accel = grip_along(p, 0.5 * (left + right))
+        rate = (left - right) * float(p.derived.inverse_track)
+        roll(p, before, grip_across(p, rate, accel))
+    else:
+        turn_wheels(p, first)
+        w.power = run(p, 0, second)
+        speed = float(w.speed[0])
+        accel = grip_along(p, speed)
+        roll(p, before, grip_across(p, float(w.forward) * curvature(p), accel))
+        differ = 0.5 * float(p.airframe.track) * float(p.body.rates_mean[2])  # the outer wheel rolls further
+        left, right = speed + differ, speed - differ
+    rolled[0] += TICK_S * left
+    rolled[1] += TICK_S * right
+
+
+@unit
+def step(fleet, i):
+    """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
+    v = fleet[i]
+    p = v.physics
+    v.time_us += TICK_US
+    v.tick += 1
+    tick, time_us = int(v.tick), int(v.time_us)
+    move(p, v.actuators.controls)
+    battery.update(p, float(p.wheels.power))
+    sense(p, v.sensors, tick, time_us, v.rng)
+    encoders.update(p, v.sensors, tick)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Erle-Rover as the gym-gazebo paper's environments drove it: five times as large as the real one, 882 kg.
+
+Sources: [model] erlerobot/gym-gazebo, urdf/erlerover/rover.urdf; [derived] from it; [estimate] this project's, where
+nothing was published.
+"""
+
+from __future__ import annotations
+
+from . import sensor_sets
+from .figures.rover import STEERING_FRONT_WHEELS
+from .rover_airframe import RoverAirframe
+
+MASS = 882.0  # [kg] chassis 800, wheels 4 x 20, steering blocks 2 x 1 [model]
+WHEELBASE = 1.95222  # [m] axles at x = +1.20222 and -0.75 [model]
+CENTRE = 0.114  # [m] centre of mass ahead of base_link, wheels included [derived]
+REAR_AXLE = 0.75 + CENTRE  # [m]
+SPEED = 5.0 * 0.3175  # [m/s] wheels of 0.3175 m turn at 5 rad/s at PWM 1900 [model]
+TIME_CONSTANT = 0.3  # [s] the model's wheels take any speed at once; a drive of this weight does not [estimate]
+ROLLING = 0.015  # tyres on hard ground [estimate]
+
+AIRFRAME = RoverAirframe(
+    name="erle_rover",
+    description="Erle-Rover at five times its size, as the paper's environments have it, 882 kg",
+    figures={
+        "mass": MASS,
+        # [kg m^2] chassis 140, 550, 550; about z also wheels and blocks at their axles [model, derived]
+        "inertia": (200.0, 610.0, 677.0),
+        "control_full": 0.8,  # 1100 and 1900 us are the ends [model]
+        "speed_max": SPEED + TIME_CONSTANT * ROLLING * 9.80665,  # [m/s] so that it drives at SPEED under its load
+        "time_constant": TIME_CONSTANT,
+        "drive_accel": 2.5,  # [m/s^2] 2.2 kN at the rims [estimate]
+        "rolling_resistance": ROLLING,
+        "efficiency": 0.7,  # motor, controller and gears [estimate]
+        "grip": 1.0,  # [model]
+        "driven_load": 0.56,  # rear axle [derived]
+        "steering_model": STEERING_FRONT_WHEELS,
+        "rear_axle": REAR_AXLE,
+        "wheelbase": WHEELBASE,
+        "front_load": REAR_AXLE / WHEELBASE,  # 0.44 [derived]
+        "track": 1.50,  # [m] rear wheels, which drive [model]
+        "steering_angle": 0.7727,  # [rad] both front wheels alike [model]
+        "steering_rate": 7.5,  # [rad/s] a servo of 0.14 s for 60 degrees; the model's has no limit [estimate]
+        "battery_voltage_full": 50.4,  # [V] twelve lithium-polymer cells [estimate]
+        "battery_capacity": 40.0,  # [Ah] [estimate]
+        "battery_resistance": 0.02,  # [ohm] [estimate]
+        "avionics_current": 0.8,  # [A] Erle-Brain, receiver, lidar [estimate]
+        "encoder_rate": 50.0,  # [Hz] [estimate]
+        "encoder_step": 0.002,  # [m] 1000 counts a turn of the wheel [estimate]
+        **sensor_sets.ADIS16448,
+        **sensor_sets.UBLOX_M8,
+        **sensor_sets.MS5611,
+        **sensor_sets.HMC5883,
+    },
+    parameters={
+        "CRUISE_SPEED": 1.2,  # [m/s]
+        "CRUISE_THROTTLE": 76,  # [%] for it: (1.2 + 0.044) / 1.632
+        "WP_SPEED": 1.2,  # [m/s]
+        "WP_RADIUS": 2.0,  # [m] the airframe's own parameter file
+        "TURN_RADIUS": 2.0,  # [m] wheelbase / tan(0.7727 rad) [derived]
+        # Steering of one rad/s at speed v: wheelbase / 0.7727 rad / v, and less for large angles (a tangent). The
+        # firmware multiplies it by MOT_SPD_SCA_BASE / v above that speed; below it the loop does not learn.
+        "MOT_SPD_SCA_BASE": 0.5,  # [m/s]
+        "ATC_STR_RAT_FF": 4.8,
+        "ATC_STR_RAT_P": 0.6,
+        "ATC_STR_RAT_I": 1.0,
+        "ATC_STR_RAT_MAX": 45.0,  # [deg/s] what full steering gives at top speed
+        "ATC_TURN_MAX_G": 0.1,  # full steering at 1.2 m/s gives 0.07, so that legs are planned with wide corners
+        # A course of two straights and two half circles of 3 m at 1.2 m/s is held to 0.13 m (0.25 m with the defaults).
+        "PSC_POS_P": 0.4,
+        "PSC_VEL_P": 1.5,
+        "ATC_SPEED_P": 0.4,
+        "ATC_SPEED_I": 0.4,
+        "BATT_MONITOR": 4,  # voltage and current
+        "BATT_CAPACITY": 40000,  # [mAh]
+        "GPS1_DELAY_MS": 120,  # as gps_delay
+    },
+)

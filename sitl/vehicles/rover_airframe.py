@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A ground vehicle as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from .airframe import Airframe
+from .figures.rover import FIGURES, FIGURES_DTYPE, MODEL
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoverAirframe(Airframe):
+    """A rover: ``figures.rover``."""
+
+    kind: ClassVar[str] = "rover"
+    known = FIGURES
+    dtype = FIGURES_DTYPE
+    model = MODEL

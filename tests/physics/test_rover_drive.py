@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+import math
+
+import pytest
+from pytest import approx
+
+from sitl.physics.native.rover.drive import commanded
+
+ROVERS = ["erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover"]
+
+
+@pytest.mark.parametrize("frame", ROVERS)
+def test_stands_still_without_throttle(rig, frame):
+    r = rig(frame, heading=30.0)
+    r.command(0.0, 0.0)
+    r.move(100)
+    assert r.p.body.pos.tolist() == [0.0, 0.0, 0.0]
+    assert r.p.body.specific_force.tolist() == [0.0, 0.0, -9.80665]
+    assert r.p.wheels.distance.tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(("frame", "speed"), [("erle_rover", 1.5875), ("erle_rover_small", 0.3175)])
+def test_erle_rovers_drive_at_5_rad_s_at_1900_us(rig, frame, speed):
+    r = rig(frame)
+    for sign in (1.0, -1.0):
+        r.command(0.0, 0.8 * sign)
+        r.move(4000)
+        assert r.p.body.vel.tolist() == approx([sign * speed, 0.0, 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("throttle", [1.0, 0.3, -0.5])
+def test_ardupilots_rover_accelerates_by_its_law(rig, throttle):
+    r = rig("ardupilot_rover")
+    r.command(0.0, throttle)
+    for _ in range(100):
+        before = float(r.p.body.vel[0])
+        r.move()
+        mid = 0.5 * (before + float(r.p.body.vel[0]))
+        assert r.p.body.acc_ned[0] == approx(10.0 * (throttle * 20.0 - mid) / 20.0, rel=1e-5)
+
+
+def test_wheels_follow_as_first_order_and_within_the_motors_pull(rig):
+    r = rig("skid_rover", rolling_resistance=0.0, drive_accel=0.0, grip=100.0)
+    r.command(0.8, 0.8)
+    r.move(80)  # 0.2 s: one time constant
+    assert r.p.wheels.forward == approx(2.1 * (1.0 - math.exp(-1.0)), rel=1e-6)
+    r = rig("skid_rover", rolling_resistance=0.0, drive_accel=1.0)
+    r.command(0.8, 0.8)
+    r.move(80)
+    assert r.p.wheels.forward == approx(0.2)
+
+
+def test_rolling_resistance_holds_against_little_throttle_and_stops_without(rig):
+    r = rig("erle_rover")
+    r.command(0.0, 0.8 * 0.025)  # less than the 2.7 % that it takes
+    r.move(400)
+    assert r.p.wheels.forward == 0.0
+    assert r.p.wheels.power > 0.0  # the motor pulls all the same
+    r.command(0.0, 0.8)
+    r.move(1000)
+    r.command(0.0, 0.0)
+    r.move(800)
+    assert r.p.wheels.forward == 0.0
+    assert r.p.wheels.power == 0.0
+
+
+def test_wheels_spin_when_the_tyres_do_not_hold(rig):
+    r = rig("erle_rover", grip=0.1, drive_accel=0.0)
+    r.command(0.0, 0.8)
+    r.move(40)
+    assert r.p.body.specific_force[0] == approx(0.1 * 0.56 * 9.80665, rel=1e-4)
+    assert r.p.wheels.distance[0] > 2.0 * r.p.body.pos[0] > 0.0  # the encoder counts the spin
+    r.move(4000)
+    assert r.p.wheels.forward == approx(r.p.wheels.speed[0])
+
+
+@pytest.mark.parametrize(("control", "command"), [(0.4, 0.5), (2.0, 1.0), (-2.0, -1.0), (math.nan, 0.0)])
+def test_controls_are_limited_and_nan_is_none(control, command):
+    assert commanded(control, 1.0 / 0.8) == command
+
+
+def test_power_is_force_by_speed_at_no_load(rig):
+    r = rig("erle_rover")
+    r.command(0.0, 0.8)
+    r.move(4000)
+    no_load = 1.5875 + 0.3 * 0.015 * 9.80665
+    assert r.p.wheels.power == approx(882.0 * 0.015 * 9.80665 * no_load / 0.7, rel=0.01)
+    r.command(0.0, 0.2)
+    r.move(1)
+    assert r.p.wheels.power == 0.0  # braking gives nothing back
+
+
+def test_ardupilots_battery_gives_50_a_at_full_throttle(rig):
+    r = rig("ardupilot_rover")
+    r.command(0.0, -1.0)
+    r.step(1)
+    assert r.p.battery.current == approx(50.0)
+    assert r.p.battery.voltage == 12.6
