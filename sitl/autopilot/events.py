@@ -29,6 +29,12 @@ FAILSAFE = 18  # a: which (failsafe.py), b: 1 on, 0 off
 MODE_REFUSED = 19  # a: number, b: cause
 ARMING_REFUSED = 20  # a: bits of the failed checks (arming.py), b: method
 MOTOR_TEST = 21  # a: 1 begins, 0 has ended; b: motor
+DESTINATION_REACHED = 22  # rover, end of a way home; a: mode
+GUIDED_REACHED = 23  # rover: the position target of GUIDED
+CRASH_HOLD = 24  # rover: crashed or blocked
+PATH_LOST = 25  # rover: SMART_RTL has no path any more; a: reason (smart_rtl_path.py)
+CIRCLE_ADAPTED = 26  # rover; a: what (circle.py), b: the value now
+COMMAND_ARRIVED = 27  # rover: the navigation command under way is at its place, b: its count (nav.command_count)
 
 
 @law

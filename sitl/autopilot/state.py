@@ -7,13 +7,14 @@ HIL_ACTUATOR_CONTROLS carry, at that precision (https://mavlink.io/en/messages/c
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from ..core.records import record
 from .arming_state import ARMING_DTYPE
-from .control.state import CONTROL_DTYPE
 from .estimation.state import EKF_DTYPE
 from .events import EVENT_RING
-from .modes.copter.state import MODES_DTYPE
-from .params.table import PARAMS_DTYPE
 
 SENSORS_DTYPE = record(
     # HIL_SENSOR, one a tick
@@ -39,10 +40,13 @@ SENSORS_DTYPE = record(
     # BATTERY_STATUS
     ("battery_voltage", "f4"),  # [V]
     ("battery_current", "f4"),  # [A]
+    # WHEEL_DISTANCE, of a vehicle with encoders
+    ("wheel_count", "i8"),  # samples so far
+    ("wheel_distance", "f8", 2),  # rolled by the left and right driven wheel since power-on, forward positive [m]
 )
 
 ACTUATORS_DTYPE = record(
-    ("controls", "f4", 16),  # 0 .. 1 a motor, -1 .. 1 a servo; zero when disarmed
+    ("controls", "f4", 16),  # 0 .. 1 a rotor (zero when disarmed), -1 .. 1 a servo or a wheel's motor
     ("pwm", "i8", 16),  # the same as pulses [us], whole microseconds
     ("armed", "i8"),
 )
@@ -79,6 +83,8 @@ RC_DTYPE = record(
     ("channels", "i8", 18),  # pulses in use [us]; 0 unknown
     ("override", "i8", 18),  # 0 none
     ("override_us", "i8", 18),  # when the override was last given
+    ("has_receiver", "i8"),  # a receiver is fitted
+    ("receiver_us", "i8"),  # last good frame
     ("receiver_ok", "i8"),
 )
 
@@ -108,15 +114,18 @@ EVENTS_DTYPE = record(
     ("b", "f8", EVENT_RING),
 )
 
-AUTOPILOT_DTYPE = record(
-    ("params", PARAMS_DTYPE),
-    ("estimate", ESTIMATE_DTYPE),
-    ("ekf", EKF_DTYPE),
-    ("rc", RC_DTYPE),
-    ("home", HOME_DTYPE),
-    ("battery", BATTERY_DTYPE),
-    ("arming", ARMING_DTYPE),
-    ("modes", MODES_DTYPE),
-    ("control", CONTROL_DTYPE),
-    ("events", EVENTS_DTYPE),
-)
+
+def autopilot_dtype(params: np.dtype[Any], modes: np.dtype[Any], control: np.dtype[Any]) -> np.dtype[Any]:
+    """The record of a firmware: what all firmwares share, and its own parameters, modes and controllers."""
+    return record(
+        ("params", params),
+        ("estimate", ESTIMATE_DTYPE),
+        ("ekf", EKF_DTYPE),
+        ("rc", RC_DTYPE),
+        ("home", HOME_DTYPE),
+        ("battery", BATTERY_DTYPE),
+        ("arming", ARMING_DTYPE),
+        ("modes", modes),
+        ("control", control),
+        ("events", EVENTS_DTYPE),
+    )

@@ -9,20 +9,20 @@ from typing import Any
 import numpy as np
 
 from sitl.autopilot import home
-from sitl.autopilot.control.init import init as init_control
-from sitl.autopilot.modes.copter.init import init as init_modes
-from sitl.autopilot.params import table
+from sitl.autopilot.copter.control.init import init as init_control
+from sitl.autopilot.copter.modes.init import init as init_modes
+from sitl.autopilot.copter.table import TABLE
 from sitl.core import records
-from sitl.vehicle import VEHICLE_DTYPE
+from sitl.vehicle import COPTER_DTYPE
 
 READY_US = 60_000_000
 
 
 def make() -> Any:
     """A healthy vehicle, disarmed at home a minute after boot, in STABILIZE."""
-    v = records.view(np.zeros(1, VEHICLE_DTYPE), 0)
+    v = records.view(np.zeros(1, COPTER_DTYPE), 0)
     ap = v.autopilot
-    table.set_defaults(ap.params)
+    TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0
     v.time_us, v.tick = READY_US, READY_US // 2500
     est = ap.estimate
@@ -36,7 +36,7 @@ def make() -> Any:
     ap.control.attitude.cos_lean = 1.0
     ap.rc.channels[:8] = (1500, 1500, 1000, 1500, 1800, 1000, 1000, 1800)
     ap.rc.receiver_ok = 1
-    ap.modes.failsafe.receiver_us = v.time_us
+    ap.rc.receiver_us = v.time_us
     home.set_here(v)
     return v
 

@@ -8,7 +8,9 @@ import math
 import pytest
 from steady_copter import codes, fly, wait
 
-from sitl.autopilot import arming, failsafe, pilot
+from sitl.autopilot import failsafe_checks
+from sitl.autopilot.arming_checks import BY_RADIO_FAILSAFE
+from sitl.autopilot.copter import failsafe, pilot
 from sitl.autopilot.events import FAILSAFE
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
@@ -20,9 +22,7 @@ def lose_gcs(v):
     failsafe.update_gcs(v)
 
 
-@pytest.mark.parametrize(
-    ("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE))
-)
+@pytest.mark.parametrize(("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE)))
 def test_ground_station_lost(flying, choice, mode):
     flying.autopilot.params.FS_GCS_ENABLE = float(choice)
     lose_gcs(flying)
@@ -66,9 +66,7 @@ def test_on_the_ground_a_failsafe_disarms(flying):
     assert flying.autopilot.arming.armed == 0
 
 
-@pytest.mark.parametrize(
-    ("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, RTL), (5, LAND), (7, BRAKE))
-)
+@pytest.mark.parametrize(("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, RTL), (5, LAND), (7, BRAKE)))
 def test_radio_lost_after_three_frames(flying, choice, mode):
     fly(flying, LOITER)
     ap = flying.autopilot
@@ -84,16 +82,16 @@ def test_radio_lost_after_three_frames(flying, choice, mode):
 def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
     fly(flying, LOITER)
     ap = flying.autopilot
-    ap.modes.pilot.has_receiver = 0
+    ap.rc.has_receiver = 0
     wait(flying, 1.1)
     for _ in range(3):
-        pilot.receive(flying)
+        pilot.read(flying)
         failsafe.update_radio(flying)
     assert ap.modes.failsafe.radio == 1
     assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap)) == (RTL, 0.0, 0.0)
-    ap.modes.pilot.has_receiver = 1
+    ap.rc.has_receiver = 1
     for _ in range(4):
-        pilot.receive(flying)
+        pilot.read(flying)
         failsafe.update_radio(flying)
     assert ap.modes.failsafe.radio == 0
 
@@ -101,7 +99,7 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
 def test_rtl_without_position_becomes_a_landing_that_waits(flying):
     fly(flying, ALT_HOLD)
     flying.autopilot.estimate.position_ok = 0
-    failsafe.act(flying, failsafe.DO_RTL, 3, arming.BY_RADIO_FAILSAFE)
+    failsafe.act(flying, failsafe.DO_RTL, 3, BY_RADIO_FAILSAFE)
     assert flying.autopilot.modes.number == LAND
     assert flying.autopilot.modes.land.pause == 1
 
@@ -178,14 +176,14 @@ def test_two_test_ratios_count(flying, vel, pos, mag, bad):
     est = flying.autopilot.estimate
     est.variance_vel, est.variance_pos, est.variance_mag = vel, pos, mag
     for _ in range(20):
-        found = failsafe.is_estimate_bad(flying)
+        found = failsafe_checks.is_estimate_bad(flying, flying.autopilot.params.FS_EKF_FILT)
     assert found == bad
 
 
 def test_texts():
-    assert failsafe.text(failsafe.RADIO, True) == "Radio Failsafe"
-    assert failsafe.text(failsafe.GCS, False) == "GCS Failsafe Cleared"
-    assert failsafe.text(failsafe.BATTERY_LOW, False) is None
+    assert failsafe_checks.text(failsafe_checks.RADIO, True) == "Radio Failsafe"
+    assert failsafe_checks.text(failsafe_checks.GCS, False) == "GCS Failsafe Cleared"
+    assert failsafe_checks.text(failsafe_checks.BATTERY_LOW, False) is None
 
 
 def test_a_variance_that_is_no_number_does_not_blind_the_failsafe(flying):

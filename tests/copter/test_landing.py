@@ -8,7 +8,7 @@ import math
 import pytest
 from steady_copter import codes, fly
 
-from sitl.autopilot import crash, landing
+from sitl.autopilot.copter import crash, landing
 from sitl.autopilot.events import CRASH_DISARM, LANDED
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from steady_copter import make, wait
 
-from sitl.autopilot import pilot
-from sitl.autopilot.modes.copter import switch
+from sitl.autopilot import mode_switch, radio
+from sitl.autopilot.copter import pilot
+from sitl.autopilot.copter.modes import switch
 
 PULSES = st.integers(0, 3000)
 
@@ -21,8 +22,8 @@ PULSES = st.integers(0, 3000)
     ((1500, 0.0), (1520, 0.0), (1480, 0.0), (1900, 1.0), (1100, -1.0), (1710, 0.5), (2100, 1.0)),
 )
 def test_centred_stick(pulse, value):
-    assert pilot.centred(pulse, 1100.0, 1500.0, 1900.0, 0.0, 20.0) == pytest.approx(value)
-    assert pilot.centred(pulse, 1100.0, 1500.0, 1900.0, 1.0, 20.0) == pytest.approx(-value)
+    assert radio.centred(pulse, 1100.0, 1500.0, 1900.0, 0.0, 20.0) == pytest.approx(value)
+    assert radio.centred(pulse, 1100.0, 1500.0, 1900.0, 1.0, 20.0) == pytest.approx(-value)
 
 
 @given(
@@ -34,8 +35,8 @@ def test_centred_stick(pulse, value):
     st.floats(0, 200),
 )
 def test_sticks_stay_in_range_whatever_the_calibration(pulse, low, trim, high, reverse, dead):
-    assert -1.0 <= pilot.centred(pulse, low, trim, high, reverse, dead) <= 1.0
-    assert 0.0 <= pilot.ranged(pulse, low, max(high, low), reverse, dead) <= 1.0
+    assert -1.0 <= radio.centred(pulse, low, trim, high, reverse, dead) <= 1.0
+    assert 0.0 <= radio.ranged(pulse, low, max(high, low), reverse, dead) <= 1.0
 
 
 def send(v, *pulses):
@@ -47,13 +48,13 @@ def send(v, *pulses):
 def test_overrides_last_three_seconds(vehicle):
     rc = vehicle.autopilot.rc
     send(vehicle, 1700, 1500, 1600)
-    pilot.receive(vehicle)
+    pilot.read(vehicle)
     assert list(rc.channels[:3]) == [1700, 1500, 1600]
     wait(vehicle, 2.9)
-    pilot.receive(vehicle)
+    pilot.read(vehicle)
     assert rc.channels[0] == 1700
     wait(vehicle, 0.2)
-    pilot.receive(vehicle)
+    pilot.read(vehicle)
     assert list(rc.channels[:3]) == [1500, 1500, 1000]
 
 
@@ -62,14 +63,14 @@ def test_overrides_for_ever_or_never(vehicle, time, kept):
     vehicle.autopilot.params.RC_OVERRIDE_TIME = time
     send(vehicle, 1700)
     wait(vehicle, 1000.0 if kept else 0.0)
-    pilot.receive(vehicle)
+    pilot.read(vehicle)
     assert (vehicle.autopilot.rc.channels[0] == 1700) == kept
 
 
 def test_sticks_can_be_mapped_to_other_channels(vehicle):
     vehicle.autopilot.params.RCMAP_ROLL, vehicle.autopilot.params.RCMAP_YAW = 4.0, 1.0
     send(vehicle, 1900, 1500, 1000, 1100)
-    pilot.receive(vehicle)
+    pilot.read(vehicle)
     sticks = vehicle.autopilot.modes.pilot
     assert (sticks.roll, sticks.yaw) == (-1.0, 1.0)
 
@@ -77,12 +78,12 @@ def test_sticks_can_be_mapped_to_other_channels(vehicle):
 def test_throttle_counts_as_zero_only_after_a_while(vehicle):
     sticks = vehicle.autopilot.modes.pilot
     send(vehicle, 1500, 1500, 1500)
-    pilot.receive(vehicle)
+    pilot.read(vehicle)
     assert sticks.throttle_zero == 0
     send(vehicle, 1500, 1500, 1000)
     for seconds, zero in ((0.3, 0), (0.2, 1)):
         wait(vehicle, seconds)
-        pilot.receive(vehicle)
+        pilot.read(vehicle)
         assert sticks.throttle_zero == zero
 
 
@@ -118,7 +119,7 @@ def test_mode_switch_changes_the_mode_when_it_moves_and_only_then(vehicle):
     def frames(pulse, n=20):
         for _ in range(n):
             send(vehicle, 1500, 1500, 1000, 1500, pulse)
-            pilot.receive(vehicle)
+            pilot.read(vehicle)
             switch.read_mode(vehicle)
             wait(vehicle, 0.02)
 
@@ -138,7 +139,7 @@ def test_mode_switch_changes_the_mode_when_it_moves_and_only_then(vehicle):
     ((900, -1), (1000, 0), (1231, 1), (1361, 2), (1491, 3), (1621, 4), (1750, 5), (2200, -1)),
 )
 def test_positions_of_the_mode_switch(pulse, position):
-    assert switch.position(pulse) == position
+    assert mode_switch.position(pulse) == position
 
 
 @pytest.mark.parametrize(
@@ -151,7 +152,7 @@ def test_yaw_stick_arms_and_disarms_after_two_seconds(vehicle, armed, yaw, rudde
     ap.arming.armed = armed
     for _ in range(110):
         send(vehicle, 1500, 1500, 1000, yaw)
-        pilot.receive(vehicle)
+        pilot.read(vehicle)
         switch.read_rudder(vehicle)
         wait(vehicle, 0.02)
     assert ap.arming.armed == after

@@ -110,9 +110,7 @@ def plan(**changes: object) -> str:
         "params": [0, 0, 0, None, -35.0, 149.0, 10],
         **changes,
     }
-    return json.dumps(
-        {"fileType": "Plan", "mission": {"items": [entry], "plannedHomePosition": [1.0, 2.0, 3.0]}}
-    )
+    return json.dumps({"fileType": "Plan", "mission": {"items": [entry], "plannedHomePosition": [1.0, 2.0, 3.0]}})
 
 
 @pytest.mark.parametrize(

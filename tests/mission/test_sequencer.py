@@ -14,14 +14,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot import events
+from sitl.autopilot.copter.mission import COMMANDS as COPTER
+from sitl.autopilot.copter.navigation import command as path_command
+from sitl.autopilot.copter.navigation import waypoint
+from sitl.autopilot.copter.table import TABLE
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission import jumps
-from sitl.autopilot.mission.item import COMMANDS, MissionItem, home_item
+from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.notes import CurrentChanged, ItemReached, Text
-from sitl.autopilot.mission.sequencer import AUTO, Sequencer
+from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.mission.validate import check
-from sitl.autopilot.navigation import command, waypoint
+from sitl.autopilot.navigation import command, path
 from sitl.autopilot.navigation.state import (
     COMPLETE,
     CONDITION_DELAY,
@@ -33,9 +37,8 @@ from sitl.autopilot.navigation.state import (
     STOPPED,
     WAYPOINT,
 )
-from sitl.autopilot.params.table import set_defaults
 from sitl.core import records
-from sitl.vehicle import VEHICLE_DTYPE
+from sitl.vehicle import COPTER_DTYPE
 
 LAT, LON, ALT = -353632621, 1491652371, 584.0
 WP = MissionItem(c.NAV_WAYPOINT, x=LAT + 1000, y=LON, z=10.0)
@@ -52,16 +55,16 @@ class Vehicle:
     """A vehicle in AUTO, 10 m over home, whose commands complete when the test says so."""
 
     def __init__(self, *items: MissionItem) -> None:
-        self.fleet = np.zeros(1, VEHICLE_DTYPE)
+        self.fleet = np.zeros(1, COPTER_DTYPE)
         self.v: Any = records.view(self.fleet, 0)
         ap = self.v.autopilot
-        set_defaults(ap.params)
+        TABLE.set_defaults(ap.params)
         ap.estimate.origin_set = 1
         ap.estimate.origin_lat, ap.estimate.origin_lon, ap.estimate.origin_alt = LAT, LON, ALT
         ap.estimate.pos[2] = -10.0
-        ap.modes.number = AUTO
+        ap.modes.number = COPTER.auto
         self.mission = Mission((home_item(LAT, LON, ALT), *items)) if items else Mission()
-        self.sequencer = Sequencer(self)
+        self.sequencer = Sequencer(self, COPTER)
         self.nav = ap.modes.nav
         self.told: list[Any] = []
 
@@ -72,7 +75,7 @@ class Vehicle:
 
     def complete(self) -> int:
         """The command under way is done; returns the number of the next."""
-        command.begin(self.v.autopilot, int(self.v.time_us))
+        path_command.begin(self.v.autopilot, int(self.v.time_us))
         command.complete(self.v.autopilot, int(self.v.time_us))
         self.told += self.sequencer.attend()
         return int(self.nav.command_seq) if self.nav.mission_state == RUNNING else 0
@@ -220,7 +223,7 @@ def test_leaving_keeps_the_new_modes_legs() -> None:
     ap = p.v.autopilot
     waypoint.stop(ap)
     ap.modes.number, ap.modes.nav.speed_ne = 6, 4.0
-    waypoint.request_leg(ap, 0, 0.0, 0.0, -15.0)
+    path.request_leg(ap, 0, 0.0, 0.0, -15.0)
     events.emit(ap.events, 0, events.MODE_CHANGED, 6.0, 0.0)
     p.sequencer.attend()
     assert p.nav.current.segments > 0
@@ -303,7 +306,7 @@ small = st.integers(-2, 8).map(float)
 anything = st.one_of(small, st.floats(allow_nan=False, allow_infinity=False, width=32))
 items = st.builds(
     MissionItem,
-    st.sampled_from(sorted(COMMANDS)),
+    st.sampled_from(sorted(COPTER.taken)),
     st.sampled_from([0, 3, 10]),
     anything,
     anything,
@@ -315,9 +318,7 @@ items = st.builds(
     st.just(1),
     st.just(0),
 )
-acts = st.lists(
-    st.sampled_from(["complete", "wait", "leave", "start", "set", "disarm", "speed"]), max_size=12
-)
+acts = st.lists(st.sampled_from(["complete", "wait", "leave", "start", "set", "disarm", "speed"]), max_size=12)
 
 
 @given(st.lists(items.filter(lambda i: check(i) == 0), max_size=8), st.lists(acts, max_size=12))

@@ -147,8 +147,9 @@ def test_axis_limits() -> None:
 def test_slowing_down_never_turns_back(speed: float, acceleration: float, limit: float, spare: float) -> None:
     """A limit lowered on the way, with little room: as slow as it can be and still stop at the end, not before it."""
     within = Limits(limit, 2.5, 1.0, 0.3)
-    peak = speed + 0.5 * acceleration * abs(acceleration)
-    length = spare * (peak * (peak / 2.5 + 2.5) + 4.0 * speed + 8.0)  # enough to stop
+    jerk = 0.6  # what the rise of 0.3 s leaves of 1, at the least
+    peak = speed + 0.5 * acceleration * acceleration / jerk
+    length = spare * (peak * (peak / 2.5 + 2.5 / jerk) + 4.0 * speed + 8.0)  # enough to stop
     leg = record(plan(length, within, speed, acceleration), length)
     for t in np.linspace(0.0, leg.duration, 200):
         p, v, _ = evaluate(leg, float(t))

@@ -5,24 +5,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.kernels import law
-from . import home
-from .arming_checks import BY_MAVLINK, BY_RUDDER, MANDATORY, TEXTS, check, check_now, mode_allows, texts
+from ...core.kernels import law
+from .. import home
+from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
+from ..events import ARMED, ARMING_REFUSED, DISARMED, emit, emit_and_return
+from .arming_checks import MANDATORY, check, check_now, mode_allows
 from .control.motors import ARMING_DELAY_US
-from .events import ARMED, ARMING_REFUSED, DISARMED, emit, emit_and_return
-from .modes.copter.numbers import has_manual_throttle
+from .modes.numbers import has_manual_throttle
 
 __all__ = ["TEXTS", "arm", "check", "disarm", "mode_allows", "texts", "try_arm"]
-
-# Who arms or disarms (ArduPilot's AP_Arming::Method)
-BY_TERMINATION = 5
-BY_BATTERY_FAILSAFE = 7
-BY_CRASH = 12
-BY_LANDING = 13
-BY_MISSION_EXIT = 14
-BY_RADIO_FAILSAFE = 16
-BY_DELAY = 17
-BY_GCS_FAILSAFE = 18
 
 
 @law

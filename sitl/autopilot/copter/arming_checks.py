@@ -1,78 +1,38 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arming checks and their texts.
-
-Bits of failed checks are this firmware's own; texts and their order are those that ArduPilot's users know.
-ARMING_CHECK selects which optional checks count; forcing skips all but the estimate that the mode itself
-cannot do without.
-"""
+"""The copter's arming checks. Forcing skips all but the estimate that the mode itself cannot do without."""
 
 from __future__ import annotations
 
 import math
 
-from ..core.kernels import law
+from ...core.kernels import law
+from ..arming_checks import (
+    BY_MAVLINK,
+    BY_RUDDER,
+    CHECK_GPS,
+    CHECK_RC,
+    FRAME,
+    GPS_FIX,
+    LEANING,
+    MODE,
+    NEED_ALTITUDE,
+    NEED_POSITION,
+    RC_MISSING,
+    RUDDER_DISABLED,
+    THROTTLE_FAILSAFE,
+    THROTTLE_HIGH,
+    WAITING_FOR_HOME,
+    battery_checks,
+    sensor_checks,
+    wants,
+)
+from ..radio import stick_channel
 from . import pilot
-from .modes.copter.numbers import AUTO, BRAKE, GUIDED, LAND, RTL, has_manual_throttle, requires_position
-
-# Who arms or disarms (ArduPilot's AP_Arming::Method)
-BY_RUDDER = 0
-BY_MAVLINK = 1
-
-# Checks
-NOT_INITIALISED = 1
-BAROMETER = 2
-COMPASS = 4
-ACCELS = 8
-GYROS = 16
-ATTITUDE = 32
-LEANING = 64
-GPS_FIX = 128
-WAITING_FOR_HOME = 256
-NEED_POSITION = 512
-NEED_ALTITUDE = 1024
-RC_MISSING = 2048
-THROTTLE_FAILSAFE = 4096
-THROTTLE_HIGH = 8192
-BATTERY_VOLTAGE = 16384
-BATTERY_CAPACITY = 32768
-BATTERY_FAILSAFE = 65536
-FRAME = 131072
-MODE = 262144
-RUDDER_DISABLED = 524288
+from .modes.numbers import AUTO, BRAKE, GUIDED, LAND, RTL, has_manual_throttle, requires_position
 
 MANDATORY = NEED_POSITION | NEED_ALTITUDE
 """What forcing does not skip."""
 
-TEXTS = {
-    NOT_INITIALISED: "System not initialised",
-    BAROMETER: "Barometer not healthy",
-    COMPASS: "Compass not healthy",
-    ACCELS: "Accels inconsistent",
-    GYROS: "Gyros inconsistent",
-    ATTITUDE: "EKF attitude is bad",
-    LEANING: "Leaning",
-    GPS_FIX: "GPS 1: Bad fix",
-    WAITING_FOR_HOME: "AHRS: waiting for home",
-    NEED_POSITION: "Need Position Estimate",
-    NEED_ALTITUDE: "Need Alt Estimate",
-    RC_MISSING: "RC not found",
-    THROTTLE_FAILSAFE: "Throttle below failsafe",
-    THROTTLE_HIGH: "Throttle too high",
-    BATTERY_VOLTAGE: "Battery 1 below minimum arming voltage",
-    BATTERY_CAPACITY: "Battery 1 below minimum arming capacity",
-    BATTERY_FAILSAFE: "Battery 1 low voltage failsafe",
-    FRAME: "Motors: Check frame class and type",
-    MODE: "Mode not armable",
-    RUDDER_DISABLED: "Rudder arming disabled",
-}
-
-# ARMING_CHECK bits
-_ALL, _BARO, _COMPASS, _GPS, _INS, _RC, _BATTERY = 1, 2, 4, 8, 16, 64, 256
-
-_READY_US = 2_450_000
-_ACCELS_US = 13_400_000
-_GYROS_US = 23_400_000
-"""Inertial sensors count as consistent from here on: ten seconds of agreement each, as a real one boots."""
 _ARM_ONLY = 1  # AUTO_OPTIONS and GUID_OPTIONS: arming in AUTO; arming by transmitter in GUIDED
 
 
@@ -91,37 +51,18 @@ def mode_allows(v, method):
 
 
 @law
-def sensor_checks(v):
-    """Failed checks of sensors and attitude."""
+def lean_check(v):
+    """A vehicle must stand upright."""
     ap = v.autopilot
-    p = ap.params
-    selected = int(p.ARMING_CHECK)
-    every = (selected & _ALL) != 0
-    failed = 0
-    if v.time_us < _READY_US:
-        failed |= NOT_INITIALISED
-    if (every or (selected & _BARO) != 0) and v.sensors.baro_count == 0:
-        failed |= BAROMETER
-    if (every or (selected & _COMPASS) != 0) and v.sensors.mag_count == 0:
-        failed |= COMPASS
-    if every or (selected & _INS) != 0:
-        if v.time_us < _ACCELS_US:
-            failed |= ACCELS
-        elif v.time_us < _GYROS_US:
-            failed |= GYROS
-        elif ap.estimate.attitude_ok == 0:
-            failed |= ATTITUDE
-    if ap.control.attitude.cos_lean < math.cos(math.radians(p.ANGLE_MAX * 0.01)):
-        failed |= LEANING
-    return failed
+    level = ap.control.attitude.cos_lean >= math.cos(math.radians(ap.params.ANGLE_MAX * 0.01))
+    return 0 if level else LEANING
 
 
 @law
 def estimate_checks(v):
     """Failed checks of position, height and home, as far as the mode needs them."""
     ap = v.autopilot
-    selected = int(ap.params.ARMING_CHECK)
-    gps = (selected & (_ALL | _GPS)) != 0
+    gps = wants(v, CHECK_GPS)
     failed = 0
     mode = int(ap.modes.number)
     if requires_position(mode):
@@ -141,22 +82,12 @@ def equipment_checks(v):
     """Failed checks of radio, battery and frame."""
     ap = v.autopilot
     p = ap.params
-    selected = int(p.ARMING_CHECK)
-    every = (selected & _ALL) != 0
-    failed = 0
-    if (every or (selected & _RC) != 0) and p.FS_THR_ENABLE > 0.0:
+    failed = battery_checks(v)
+    if p.FS_THR_ENABLE > 0.0 and wants(v, CHECK_RC):
         if ap.rc.receiver_ok == 0:
             failed |= RC_MISSING
-        elif ap.rc.channels[pilot.stick_channel(p, 2) - 1] < p.FS_THR_VALUE:
+        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS_THR_VALUE:
             failed |= THROTTLE_FAILSAFE
-    if (every or (selected & _BATTERY) != 0) and p.BATT_MONITOR > 0.0:
-        if ap.battery.voltage < p.BATT_ARM_VOLT:
-            failed |= BATTERY_VOLTAGE
-        left = p.BATT_CAPACITY - ap.battery.consumed_mah
-        if p.BATT_ARM_MAH > 0.0 and left < p.BATT_ARM_MAH:
-            failed |= BATTERY_CAPACITY
-        if ap.modes.failsafe.battery != 0:
-            failed |= BATTERY_FAILSAFE
     if p.FRAME_CLASS != 1.0:
         failed |= FRAME
     return failed
@@ -165,7 +96,7 @@ def equipment_checks(v):
 @law
 def check(v):
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
-    return sensor_checks(v) | estimate_checks(v) | equipment_checks(v)
+    return sensor_checks(v) | lean_check(v) | estimate_checks(v) | equipment_checks(v)
 
 
 @law
@@ -191,11 +122,3 @@ def arm_checks(v, method):
 def check_now(v, method):
     """All failed checks of arming at this moment by ``method``."""
     return check(v) | arm_checks(v, method)
-
-
-def texts(failed: int, prefix: str = "") -> list[str]:
-    """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
-    shown = failed
-    if shown & WAITING_FOR_HOME:
-        shown &= ~NEED_POSITION  # said only when it is what is missing
-    return [prefix + text for bit, text in TEXTS.items() if shown & bit]

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import math
 
-from ..core.kernels import law
+from ...core.kernels import law
+from ..arming_checks import BY_CRASH
+from ..events import CRASH_DISARM, emit
 from . import arming, landing
-from .events import CRASH_DISARM, emit
 
 TRIGGER_TICKS = 800
 """2 s."""
@@ -43,7 +44,7 @@ def update(v):
     if ap.arming.crash_ticks >= TRIGGER_TICKS:
         error = math.degrees(ap.control.attitude.thrust_error_angle)
         emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(v))
-        arming.disarm(v, arming.BY_CRASH, 1)
+        arming.disarm(v, BY_CRASH, 1)
 
 
 def text(angle_error_deg: float, acceleration: float) -> str:

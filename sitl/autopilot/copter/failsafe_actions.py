@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What failsafes do, and what they say."""
+"""What failsafes do."""
 
 from __future__ import annotations
 
-from ..core.kernels import law
+from ...core.kernels import law
 from . import arming
-from .events import FAILSAFE, emit
-from .modes.copter import set_mode
-from .modes.copter.numbers import ACCEPTED, BRAKE, LAND, RTL, STABILIZE
-
-RADIO = 1
-GCS = 2
-BATTERY_LOW = 3
-BATTERY_CRITICAL = 4
-EKF = 5
+from .modes import set_mode
+from .modes.numbers import ACCEPTED, BRAKE, LAND, RTL, STABILIZE
 
 # What a failsafe does
 NOTHING = 0
@@ -24,26 +17,6 @@ DO_BRAKE = 7
 
 CONTINUE_LANDING = 8
 """FS_OPTIONS: a landing under way goes on."""
-
-_ON = {
-    RADIO: "Radio Failsafe",
-    GCS: "GCS Failsafe",
-    BATTERY_LOW: "Battery 1 is low",
-    BATTERY_CRITICAL: "Battery 1 is critical",
-    EKF: "EKF Failsafe",
-}
-_OFF = {RADIO: "Radio Failsafe Cleared", GCS: "GCS Failsafe Cleared", EKF: "EKF Failsafe Cleared"}
-
-
-def text(which: int, on: bool) -> str | None:
-    """Status text (MAV_SEVERITY_WARNING) of a FAILSAFE event, None when there is none."""
-    return (_ON if on else _OFF).get(which)
-
-
-@law
-def tell(v, which, on):
-    """Emit FAILSAFE."""
-    emit(v.autopilot.events, v.time_us, FAILSAFE, float(which), float(on))
 
 
 @law

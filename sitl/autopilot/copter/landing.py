@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import math
 
-from ..core.kernels import law
+from ...core.kernels import law
+from ..events import LANDED, emit
 from .control import throttle_mix
 from .control.motors import hover_throttle
-from .events import LANDED, emit
-from .modes.copter import auto, ground, guided_state, rtl
-from .modes.copter.numbers import ALT_HOLD, AUTO, GUIDED, LAND, LOITER, RTL, has_manual_throttle
+from .modes import auto, ground, guided_state, rtl
+from .modes.numbers import ALT_HOLD, AUTO, GUIDED, LAND, LOITER, RTL, has_manual_throttle
 
 TRIGGER_TICKS = 400
 """1 s."""

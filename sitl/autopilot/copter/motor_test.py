@@ -7,10 +7,10 @@ aside. The test ends by itself, or with a disarming.
 
 from __future__ import annotations
 
-from ..core.kernels import law
+from ...core.kernels import law
+from ..events import MOTOR_TEST, emit
 from .arming import disarm
 from .control.motors import MOTORS
-from .events import MOTOR_TEST, emit
 
 BY_MOTOR_TEST = 3
 """Method of disarming (ArduPilot's number)."""

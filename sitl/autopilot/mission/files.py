@@ -16,6 +16,8 @@ from .mission import Mission, MissionError
 from .validate import ACCEPTED, check
 
 HEADER = "QGC WPL 110"
+QUADROTOR, GROUND_ROVER = 2, 10
+"""MAV_TYPE"""
 _COLUMNS = ("index", "current", "frame", "command", "p1", "p2", "p3", "p4", "x", "y", "z", "autocontinue")
 
 
@@ -37,10 +39,10 @@ def load(path: str | Path) -> Mission:
     return parse_plan(text, str(path)) if path.suffix.lower() == ".plan" else parse_wpl(text, str(path))
 
 
-def save(mission: Mission, path: str | Path) -> None:
-    """Write a mission; the suffix chooses the format as in ``load``."""
+def save(mission: Mission, path: str | Path, vehicle_type: int = QUADROTOR) -> None:
+    """Write a mission; the suffix chooses the format as in ``load``, plans say for which MAV_TYPE they are."""
     path = Path(path)
-    text = format_plan(mission) if path.suffix.lower() == ".plan" else format_wpl(mission)
+    text = format_plan(mission, vehicle_type) if path.suffix.lower() == ".plan" else format_wpl(mission)
     path.write_text(text, encoding="utf-8")
 
 
@@ -83,13 +85,10 @@ def parse_wpl(text: str, name: str = "mission") -> Mission:
             continue
         where = f"{name}:{number}"
         if len(words) != len(_COLUMNS):
-            raise MissionFileError(
-                f"{where}: {len(words)} columns, expected {len(_COLUMNS)} ({' '.join(_COLUMNS)})"
-            )
+            raise MissionFileError(f"{where}: {len(words)} columns, expected {len(_COLUMNS)} ({' '.join(_COLUMNS)})")
         cells = dict(zip(_COLUMNS, words, strict=True))
         seq, current, frame, command, autocontinue = (
-            _whole(cells[k], f"{where}: {k}")
-            for k in ("index", "current", "frame", "command", "autocontinue")
+            _whole(cells[k], f"{where}: {k}") for k in ("index", "current", "frame", "command", "autocontinue")
         )
         if seq != len(items):
             raise MissionFileError(f"{where}: index {seq}, expected {len(items)}")
@@ -124,9 +123,7 @@ def format_wpl(mission: Mission) -> str:
         place = [_shown(i.x, i.command), _shown(i.y, i.command), f"{i.z:.6f}"]
         current = 1 if seq == 0 else 0
         rows.append(
-            "\t".join(
-                [str(seq), str(current), str(i.frame), str(i.command), *values, *place, str(i.autocontinue)]
-            )
+            "\t".join([str(seq), str(current), str(i.frame), str(i.command), *values, *place, str(i.autocontinue)])
         )
     return "\n".join(rows) + "\n"
 
@@ -142,9 +139,7 @@ def parse_plan(text: str, name: str = "mission") -> Mission:
     mission = plan.get("mission") if isinstance(plan, dict) else None
     if not isinstance(mission, dict) or not isinstance(mission.get("items"), list):
         raise MissionFileError(f"{name}: no 'mission' with a list of 'items'")
-    home = _plan_values(
-        mission.get("plannedHomePosition", [0.0, 0.0, 0.0]), 3, f"{name}: plannedHomePosition"
-    )
+    home = _plan_values(mission.get("plannedHomePosition", [0.0, 0.0, 0.0]), 3, f"{name}: plannedHomePosition")
     items = [_item(NAV_WAYPOINT, GLOBAL, (0.0, 0.0, 0.0, 0.0, *home), 1, f"{name}: plannedHomePosition")]
     for k, entry in enumerate(mission["items"]):
         where = f"{name}: mission.items[{k}]"
@@ -154,9 +149,7 @@ def parse_plan(text: str, name: str = "mission") -> Mission:
         values = _plan_values(entry.get("params"), 7, f"{where}.params")
         command, frame = (_plan_integer(entry.get(key), f"{where}.{key}") for key in ("command", "frame"))
         place = tuple(0.0 if math.isnan(v) else v for v in values[4:])
-        items.append(
-            _item(command, frame, (*values[:4], *place), 1 if entry.get("autoContinue", True) else 0, where)
-        )
+        items.append(_item(command, frame, (*values[:4], *place), 1 if entry.get("autoContinue", True) else 0, where))
     return Mission.of(items)
 
 
@@ -178,8 +171,8 @@ def _plan_values(values: Any, count: int, where: str) -> tuple[float, ...]:
     return tuple(found)
 
 
-def format_plan(mission: Mission) -> str:
-    """A QGroundControl plan of a mission."""
+def format_plan(mission: Mission, vehicle_type: int = QUADROTOR) -> str:
+    """A QGroundControl plan of a mission for a MAV_TYPE."""
     home = mission.items[0] if mission.items else home_item(0, 0, 0.0)
     entries = []
     for seq, i in enumerate(mission.items[1:], start=1):
@@ -204,7 +197,7 @@ def format_plan(mission: Mission) -> str:
         "mission": {
             "version": 2,
             "firmwareType": 3,
-            "vehicleType": 2,
+            "vehicleType": vehicle_type,
             "cruiseSpeed": 10,
             "hoverSpeed": 5,
             "plannedHomePosition": [round(home.x * 1e-7, 8), round(home.y * 1e-7, 8), home.z],

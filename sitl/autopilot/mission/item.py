@@ -16,6 +16,7 @@ NAV_LOITER_TIME = 19
 NAV_RETURN_TO_LAUNCH = 20
 NAV_LAND = 21
 NAV_TAKEOFF = 22
+NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
 CONDITION_DELAY = 112
 CONDITION_DISTANCE = 114
@@ -23,9 +24,12 @@ CONDITION_YAW = 115
 DO_JUMP = 177
 DO_CHANGE_SPEED = 178
 DO_SET_HOME = 179
+DO_SET_REVERSE = 194
 DO_SET_ROI_LOCATION = 195
 DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
+NAV_SET_YAW_SPEED = 213
+DO_GUIDED_LIMITS = 222
 
 GLOBAL, MISSION, RELATIVE, GLOBAL_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT = 0, 2, 3, 5, 6, 10, 11
 """MAV_FRAMEs; MISSION counts as GLOBAL for a command with a place."""
@@ -49,18 +53,22 @@ COMMANDS = {
     NAV_RETURN_TO_LAUNCH: Command("RTL", True, False),
     NAV_LAND: Command("Land", True, True),
     NAV_TAKEOFF: Command("Takeoff", True, True),
+    NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
+    NAV_SET_YAW_SPEED: Command("SetYawSpd", True, False),
     CONDITION_DELAY: Command("CondDelay", False, False),
     CONDITION_DISTANCE: Command("CondDist", False, False),
     CONDITION_YAW: Command("CondYaw", False, False),
     DO_JUMP: Command("Jump", False, False),
     DO_CHANGE_SPEED: Command("ChangeSpeed", False, False),
     DO_SET_HOME: Command("SetHome", False, True),
+    DO_SET_REVERSE: Command("SetReverse", False, False),
     DO_SET_ROI_LOCATION: Command("SetROI", False, True),
     DO_SET_ROI_NONE: Command("SetROI", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
+    DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
 }
-"""Every command that this firmware takes."""
+"""Every command that a firmware takes; ``commands.Commands.taken`` says which does."""
 
 RELATIVE_FRAMES = (RELATIVE, RELATIVE_INT)
 TERRAIN_FRAMES = (TERRAIN, TERRAIN_INT)

@@ -7,10 +7,10 @@ its mission by reference.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
-from .item import MissionItem, home_item
+from .item import COMMANDS, MissionItem, home_item
 from .validate import ACCEPTED, check_all
 
 RESULT_NAMES = {
@@ -43,20 +43,16 @@ class Mission:
     items: tuple[MissionItem, ...] = ()
 
     @classmethod
-    def of(cls, items: Iterable[MissionItem]) -> Mission:
-        """A mission of valid items, home first.
+    def of(cls, items: Iterable[MissionItem], taken: Container[int] = COMMANDS) -> Mission:
+        """A mission of valid items, home first; ``taken``: the commands that a firmware takes.
 
         Raises:
             MissionError: names the first item that is refused and why.
         """
         all_items = tuple(items)
-        result, seq = check_all(all_items)
+        result, seq = check_all(all_items, taken)
         if result != ACCEPTED:
-            item = (
-                f" (command {all_items[seq].command}, frame {all_items[seq].frame})"
-                if seq < len(all_items)
-                else ""
-            )
+            item = f" (command {all_items[seq].command}, frame {all_items[seq].frame})" if seq < len(all_items) else ""
             raise MissionError(f"mission item {seq}{item}: {RESULT_NAMES.get(result, result)}", result, seq)
         return cls(all_items)
 

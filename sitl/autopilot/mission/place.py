@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where an item is, in NED metres from the EKF origin."""
+"""Where an item is, in NED metres from the EKF origin; home as an item sets it."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from ...core.geodesy import offset_ne
+from ...core.geodesy import add_offset, offset_ne
 from .item import RELATIVE_FRAMES, TERRAIN_FRAMES, MissionItem
 
 Point = tuple[float, float, float]
@@ -29,3 +29,20 @@ def point(ap: Any, item: MissionItem, default: Point) -> Point:
     if not item.no_place:
         north, east = offset_ne(int(ap.estimate.origin_lat), int(ap.estimate.origin_lon), item.x, item.y)
     return (float(north), float(east), default[2] if item.z == 0.0 else down(ap, item))
+
+
+def set_home(ap: Any, item: MissionItem) -> None:
+    """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no place), else to the item's place."""
+    home, estimate = ap.home, ap.estimate
+    if estimate.origin_set == 0:
+        return
+    if item.p1 == 1.0 or (item.no_place and item.z == 0.0):
+        n, e, d = (float(x) for x in estimate.pos)
+        lat, lon = add_offset(int(estimate.origin_lat), int(estimate.origin_lon), n, e)
+    else:
+        d = down(ap, item)
+        n, e, _ = point(ap, item, (0.0, 0.0, d))
+        lat, lon = item.x, item.y
+    home.lat, home.lon, home.alt = round(lat), round(lon), float(estimate.origin_alt) - d
+    home.pos[0], home.pos[1], home.pos[2] = n, e, d
+    home.is_set = home.locked = 1

@@ -13,11 +13,9 @@ the mission. Every method takes the vehicle's record view ``v`` and returns what
 
 from __future__ import annotations
 
-import math
 from typing import Any, Protocol
 
 from .. import events
-from ..navigation import planner, waypoint
 from ..navigation.state import (
     COMPLETE,
     CONDITION_NONE,
@@ -25,16 +23,15 @@ from ..navigation.state import (
     JUMPS,
     LEG_REQUEST,
     RUNNING,
+    SPEED_REQUEST,
     STOPPED,
 )
-from . import do_commands, jumps, nav_commands
-from .item import NAV_LOITER_TIME, NAV_TAKEOFF, NAV_WAYPOINT
+from . import jumps
+from .commands import Commands
+from .item import NAV_TAKEOFF
 from .mission import Mission
 from .notes import INFO, CurrentChanged, ItemReached, Note, Text
-
-AUTO = 3
-"""Custom mode number."""
-SAYS_REACHED = (NAV_WAYPOINT, NAV_LOITER_TIME)
+from .under_way import write_none
 
 
 class Holder(Protocol):
@@ -45,10 +42,11 @@ class Holder(Protocol):
 
 
 class Sequencer:
-    """Runs one vehicle's mission."""
+    """Runs one vehicle's mission with the commands of its firmware."""
 
-    def __init__(self, holder: Holder) -> None:
+    def __init__(self, holder: Holder, commands: Commands) -> None:
         self._holder = holder
+        self.commands = commands
         self._publish(holder.v)
         holder.v.autopilot.modes.nav.mission_events = holder.v.autopilot.events.count
 
@@ -78,8 +76,12 @@ class Sequencer:
         ap.modes.mission_takes_off = 1 if first is not None and first.command == NAV_TAKEOFF else 0
 
     def set_mission(self, v: Any, mission: Mission) -> list[Note]:
-        """Take a new mission. One under way goes on with its present command, then with the new items."""
-        self._holder.mission = mission
+        """Take a new mission. One under way goes on with its present command, then with the new items.
+
+        Raises:
+            MissionError: it holds a command that this firmware does not take.
+        """
+        self._holder.mission = Mission.of(mission.items, self.commands.taken)
         self._publish(v)
         nav = v.autopilot.modes.nav
         jumps.keep(nav, {})
@@ -108,8 +110,7 @@ class Sequencer:
             jumps.keep(nav, {})
             nav.mission_current = 0
         nav.mission_resume = 0
-        nav.speed_ne = nav.speed_up = nav.speed_down = 0.0
-        waypoint.stop(ap)
+        self.commands.enter(v)
         self._run_from(v, max(int(nav.mission_current), 1), notes)
         return notes
 
@@ -122,7 +123,7 @@ class Sequencer:
         if nav.mission_state == RUNNING:
             nav.mission_state = STOPPED
         nav.condition_kind = CONDITION_NONE
-        nav_commands.give_none(nav)
+        write_none(nav)
         return []
 
     def reset(self, v: Any) -> list[Note]:
@@ -131,8 +132,8 @@ class Sequencer:
         notes: list[Note] = []
         jumps.keep(nav, {})
         if nav.mission_state == RUNNING and self.mission.present:
-            nav_commands.give_none(nav)
-            waypoint.stop(v.autopilot)
+            write_none(nav)
+            self.commands.reset(v)
             self._run_from(v, 1, notes)
         else:
             self._set_current(nav, 0, notes)
@@ -148,7 +149,7 @@ class Sequencer:
         if not self.mission.present or not 0 <= seq < len(self.mission):
             return (False, notes)
         jumps.keep(nav, {})
-        in_auto = v.autopilot.modes.number == AUTO
+        in_auto = v.autopilot.modes.number == self.commands.auto
         if nav.mission_state == RUNNING or (nav.mission_state == COMPLETE and in_auto):
             self._run_from(v, max(seq, 1), notes)
         else:
@@ -159,10 +160,7 @@ class Sequencer:
 
     def change_speed(self, v: Any, kind: int, speed: float) -> bool:
         """DO_CHANGE_SPEED from outside while the mission runs: legs under way go on with the new limit."""
-        if v.autopilot.modes.nav.mission_state != RUNNING or not 0.0 < speed < math.inf:
-            return False
-        do_commands.change_speed(v.autopilot, kind, speed)
-        return True
+        return v.autopilot.modes.nav.mission_state == RUNNING and self.commands.change_speed(v, kind, speed)
 
     def on_event(self, v: Any, code: int, a: float, b: float) -> list[Note]:
         """What an event of the core means for the mission."""
@@ -172,10 +170,14 @@ class Sequencer:
             if a == DO_COMMAND:
                 return self._condition_met(v, int(b))
             return self._complete(v) if int(b) == nav.command_count else []
+        if code == events.COMMAND_ARRIVED and running:
+            return self._arrived(v) if int(b) == nav.command_count else []
         if code == events.LEG_ENDING and a == LEG_REQUEST:
-            planner.serve(v.autopilot, int(v.time_us))
+            self.commands.planner.serve(v.autopilot, int(v.time_us))
+        elif code == events.LEG_ENDING and a == SPEED_REQUEST:
+            self.commands.planner.change_speed(v.autopilot)
         elif code == events.MODE_CHANGED:
-            in_auto = int(a) == AUTO
+            in_auto = int(a) == self.commands.auto
             if in_auto and not running:
                 return self.start(v)
             if not in_auto and running:
@@ -205,11 +207,17 @@ class Sequencer:
         item = self.mission.get(seq)
         nav.mission_reached = seq
         notes: list[Note] = [ItemReached(seq)]
-        if item is not None and item.command in SAYS_REACHED:
-            notes.append(Text(INFO, f"Reached command #{seq}"))
+        if item is not None:
+            notes += self.commands.completed(v, seq, item)
         nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
         self._advance(v, seq + 1, notes, run_do=False)
         return notes
+
+    def _arrived(self, v: Any) -> list[Note]:
+        """The navigation command under way has come to its place."""
+        seq = int(v.autopilot.modes.nav.command_seq)
+        item = self.mission.get(seq)
+        return [] if item is None else self.commands.arrived(v, seq, item)
 
     def _advance(self, v: Any, seq: int, notes: list[Note], run_do: bool) -> None:
         """Go on to the next navigation command from ``seq`` on;
@@ -233,7 +241,9 @@ class Sequencer:
                 nav.condition_kind = CONDITION_NONE  # nothing is flown yet that a condition could wait for
             seq += 1
         jumps.keep(nav, counts)
-        self._finish(v)
+        nav.mission_state = COMPLETE
+        nav.condition_kind = CONDITION_NONE
+        notes += self.commands.finish(v)
 
     def _give(self, v: Any, seq: int, notes: list[Note]) -> None:
         """Begin navigation command ``seq`` and the do-commands behind it."""
@@ -241,7 +251,7 @@ class Sequencer:
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
         self._set_current(nav, seq, notes)
-        nav_commands.give(v, seq, item)
+        notes += self.commands.give(v, seq, item)
         self._look_ahead(v)
         nav.mission_do_next = seq + 1
         self._run_do(v, notes)
@@ -250,7 +260,7 @@ class Sequencer:
         """Plan the leg after the current one."""
         nav = v.autopilot.modes.nav
         seq = jumps.next_nav(self.mission, int(nav.command_seq) + 1, jumps.runs(nav), JUMPS)
-        nav_commands.look_ahead(v.autopilot, self.mission.get(seq))
+        self.commands.look_ahead(v, self.mission.get(seq))
 
     def _run_do(self, v: Any, notes: list[Note]) -> None:
         """Run do-commands up to the next navigation command or a condition."""
@@ -273,7 +283,7 @@ class Sequencer:
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
         v.autopilot.modes.nav.mission_do = seq
-        do_commands.run(v, item)
+        notes += self.commands.run(v, item)
         if v.autopilot.modes.nav.condition_kind == CONDITION_NONE:
             notes.append(ItemReached(seq))
 
@@ -284,13 +294,3 @@ class Sequencer:
         notes: list[Note] = [ItemReached(seq)]
         self._run_do(v, notes)
         return notes
-
-    def _finish(self, v: Any) -> None:
-        """The mission has come to its end: AUTO disarms on the ground and stays where it is in the air."""
-        nav = v.autopilot.modes.nav
-        nav.mission_state = COMPLETE
-        nav.condition_kind = CONDITION_NONE
-        if v.autopilot.arming.landed != 0:
-            nav_commands.give_none(nav)
-        else:
-            nav_commands.give_hold(v)

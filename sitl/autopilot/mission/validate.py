@@ -6,7 +6,7 @@ as MAV_MISSION_RESULT (https://mavlink.io/en/messages/common.html#MAV_MISSION_RE
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 from .item import (
     COMMANDS,
@@ -46,8 +46,8 @@ PLACE_FRAMES = (GLOBAL, GLOBAL_INT, MISSION, *RELATIVE_FRAMES, *TERRAIN_FRAMES)
 _YAW_MAY_BE_NAN = (NAV_WAYPOINT, NAV_LOITER_UNLIM, NAV_LAND, NAV_TAKEOFF)
 
 
-def check(item: MissionItem) -> int:
-    """Result for one item: parameters are numbers, the command and frame known, the place on earth.
+def check(item: MissionItem, taken: Container[int] = COMMANDS) -> int:
+    """Result for one item: parameters are numbers, the command ``taken`` and the frame known, the place on earth.
 
     NaN as parameter 4 means "keep the heading" in some navigation commands; elsewhere it is refused. Commands
     without a place take any frame.
@@ -56,7 +56,7 @@ def check(item: MissionItem) -> int:
         keep_yaw = k == 3 and item.command in _YAW_MAY_BE_NAN and math.isnan(value)
         if not math.isfinite(value) and not keep_yaw:
             return INVALID_PARAM1 + k
-    if item.command not in COMMANDS:
+    if item.command not in COMMANDS or item.command not in taken:
         return UNSUPPORTED
     if COMMANDS[item.command].has_place:
         if not -900000000 <= item.x <= 900000000:
@@ -81,12 +81,12 @@ def check_count(count: int) -> int:
     return NO_SPACE if count > MAX_ITEMS else ACCEPTED
 
 
-def check_all(items: Sequence[MissionItem]) -> tuple[int, int]:
+def check_all(items: Sequence[MissionItem], taken: Container[int] = COMMANDS) -> tuple[int, int]:
     """(result, number of the first item refused or -1) for a whole mission."""
     if check_count(len(items)) != ACCEPTED:
         return (NO_SPACE, MAX_ITEMS)
     for seq, item in enumerate(items):
-        result = check(item)
+        result = check(item, taken)
         if result != ACCEPTED:
             return (result, seq)
     return (ACCEPTED, -1)

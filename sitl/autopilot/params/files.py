@@ -7,12 +7,12 @@ The format of Mission Planner, MAVProxy and ArduPilot's default-parameter files.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from .parameter import FLOAT
-from .table import BY_NAME, TABLE, stored
+from .parameter import FLOAT, Parameter
+from .table import Table, stored
 
 
 class ParameterError(ValueError):
@@ -49,7 +49,7 @@ def load(path: str | Path) -> dict[str, float]:
         raise ParameterError(f"parameter file {str(path)!r} is not text: {error}") from None
 
 
-def apply(params: Any, values: Mapping[str, float], source: str = "parameters") -> list[str]:
+def apply(table: Table, params: Any, values: Mapping[str, float], source: str = "parameters") -> list[str]:
     """Set all values in a params record, or none of them; returns the names that this firmware does not have.
 
     Files of a whole ArduPilot vehicle name a thousand parameters of drivers that do not exist here; they are
@@ -58,27 +58,27 @@ def apply(params: Any, values: Mapping[str, float], source: str = "parameters") 
     Raises:
         ParameterError: a known parameter's value is refused; nothing was set.
     """
-    refused = [text for name, value in values.items() if name in BY_NAME and (text := BY_NAME[name].refusal(value))]
+    refused = [text for name, value in values.items() if name in table and (text := table[name].refusal(value))]
     if refused:
         raise ParameterError(f"{source}: " + "; ".join(refused))
     for name, value in values.items():
-        if name in BY_NAME:
-            params[name] = stored(BY_NAME[name], value)
-    return [name for name in values if name not in BY_NAME]
+        if name in table:
+            params[name] = stored(table[name], value)
+    return [name for name in values if name not in table]
 
 
-def format_value(name: str, value: float) -> str:
+def format_value(parameter: Parameter, value: float) -> str:
     """A value as a .parm file shows it: whole for integers, else the shortest text that reads back the same."""
-    if BY_NAME[name].kind != FLOAT:
+    if parameter.kind != FLOAT:
         return str(int(value))
     return next(text for digits in range(6, 18) if float(text := f"{value:.{digits}g}") == value or digits == 17)
 
 
-def dump(params: Any, names: Iterable[str] | None = None) -> str:
+def dump(table: Table, params: Any) -> str:
     """A params record as .parm text, in the table's order."""
-    return "".join(f"{n},{format_value(n, float(params[n]))}\n" for n in (names or (p.name for p in TABLE)))
+    return "".join(f"{p.name},{format_value(p, float(params[p.name]))}\n" for p in table)
 
 
-def save(params: Any, path: str | Path) -> None:
+def save(table: Table, params: Any, path: str | Path) -> None:
     """Write all parameters to a .parm file."""
-    Path(path).write_text(dump(params), encoding="utf-8")
+    Path(path).write_text(dump(table, params), encoding="utf-8")

@@ -11,14 +11,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.params import docs, files, table
+from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.params import docs, files
+from sitl.autopilot.params.table import Table, stored
 from sitl.core.records import record
+from sitl.kinds import KINDS
 
 
 @pytest.fixture
 def params():
-    holder = np.zeros(1, record(("params", table.PARAMS_DTYPE))).view(np.recarray)[0].params
-    table.set_defaults(holder)
+    holder = np.zeros(1, record(("params", TABLE.dtype))).view(np.recarray)[0].params
+    TABLE.set_defaults(holder)
     return holder
 
 
@@ -48,21 +51,21 @@ def test_a_file_that_is_not_there_is_named(tmp_path) -> None:
 def test_a_refused_value_leaves_everything_as_it_was(params, value: float) -> None:
     before = params.tobytes()
     with pytest.raises(files.ParameterError, match="ANGLE_MAX"):
-        files.apply(params, {"WPNAV_SPEED": 300.0, "ANGLE_MAX": value})
+        files.apply(TABLE, params, {"WPNAV_SPEED": 300.0, "ANGLE_MAX": value})
     assert params.tobytes() == before
 
 
 def test_unknown_names_are_returned_and_the_rest_is_set(params) -> None:
-    assert files.apply(params, {"WPNAV_SPEED": 300.0, "NO_SUCH": 1.0}) == ["NO_SUCH"]
+    assert files.apply(TABLE, params, {"WPNAV_SPEED": 300.0, "NO_SUCH": 1.0}) == ["NO_SUCH"]
     assert params.WPNAV_SPEED == 300.0
 
 
 def test_saved_and_loaded_is_the_same_bits(params, tmp_path) -> None:
-    params.ATC_RAT_RLL_P = table.stored(table.BY_NAME["ATC_RAT_RLL_P"], 0.1234567)
+    params.ATC_RAT_RLL_P = stored(TABLE["ATC_RAT_RLL_P"], 0.1234567)
     before = params.tobytes()
-    files.save(params, tmp_path / "all.parm")
-    table.set_defaults(params)
-    files.apply(params, files.load(tmp_path / "all.parm"))
+    files.save(TABLE, params, tmp_path / "all.parm")
+    TABLE.set_defaults(params)
+    files.apply(TABLE, params, files.load(tmp_path / "all.parm"))
     assert params.tobytes() == before
 
 
@@ -76,31 +79,44 @@ def test_any_text_is_read_or_refused_by_name(text: str) -> None:
         assert all(isinstance(v, float) for v in values.values())
 
 
-def test_every_parameter_accepts_its_default_and_fits_the_wire() -> None:
-    for p in table.TABLE:
+@pytest.fixture(params=KINDS)
+def table(request: pytest.FixtureRequest) -> Table:
+    """Of each firmware."""
+    return KINDS[request.param].firmware.table
+
+
+def test_every_parameter_accepts_its_default_and_fits_the_wire(table: Table) -> None:
+    for p in table:
         assert p.refusal(p.default) is None, p
         assert 1 <= len(p.name) <= 16, p
         assert p.low <= p.high, p
         assert p.doc, p
 
 
-def test_the_documentation_page_has_every_parameter() -> None:
-    page = docs.page()
-    assert all(f"| {p.name} |" in page for p in table.TABLE)
+def test_the_documentation_page_has_every_parameter(table: Table) -> None:
+    page = docs.page("copter", table)
+    assert all(f"| {p.name} |" in page for p in table)
 
 
-KINDS = {"2": "int8", "4": "int16", "6": "int32", "9": "float"}
+def test_a_name_that_is_there_twice_is_refused() -> None:
+    parameter = TABLE["RTL_ALT"]
+    with pytest.raises(ValueError, match="RTL_ALT"):
+        Table((parameter, parameter))
 
 
-def test_defaults_and_types_are_those_of_arducopter() -> None:
-    """ardupilot_defaults.csv: names, defaults and MAV_PARAM_TYPE that a real ArduCopter 4.7-dev reports.
+WIRE = {"2": "int8", "4": "int16", "6": "int32", "9": "float"}
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_defaults_and_types_are_those_of_ardupilot(name: str) -> None:
+    """ardu*_defaults.csv: names, defaults and MAV_PARAM_TYPE that a real ArduPilot 4.7-dev reports.
 
     What it does not have (BATT_ with the monitor off) is from the same firmware with its SITL settings.
     """
-    rows = csv.DictReader((Path(__file__).parent / "ardupilot_defaults.csv").read_text().splitlines())
-    theirs = {row["name"]: (float(row["default"]), KINDS[row["mav_param_type"]]) for row in rows}
-    for p in table.TABLE:
+    rows = csv.DictReader((Path(__file__).parent / f"ardu{name}_defaults.csv").read_text().splitlines())
+    theirs = {row["name"]: (float(row["default"]), WIRE[row["mav_param_type"]]) for row in rows}
+    for p in KINDS[name].firmware.table:
         if not p.name.startswith("SIM_"):
             assert p.name in theirs, p.name
         if p.name in theirs:
-            assert (table.stored(p, p.default), p.kind) == (pytest.approx(theirs[p.name][0]), theirs[p.name][1]), p.name
+            assert (stored(p, p.default), p.kind) == (pytest.approx(theirs[p.name][0]), theirs[p.name][1]), p.name

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from sitl.autopilot.control import motors, rate, throttle_mix
-from sitl.autopilot.control.init import init
-from sitl.autopilot.params import table
-from sitl.autopilot.state import ACTUATORS_DTYPE, AUTOPILOT_DTYPE
+from sitl.autopilot.copter.control import motors, rate, throttle_mix
+from sitl.autopilot.copter.control.init import init
+from sitl.autopilot.copter.state import AUTOPILOT_DTYPE
+from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.state import ACTUATORS_DTYPE
 from sitl.core import records
 from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_normalise, quat_to_euler
 
@@ -20,7 +21,7 @@ from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_n
 def make_autopilot() -> Any:
     """A view of one autopilot record; controllers initialised, disarmed."""
     ap = records.view(np.zeros(1, AUTOPILOT_DTYPE), 0)
-    table.set_defaults(ap.params)
+    TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0
     ap.estimate.q[0] = 1.0
     init(ap)

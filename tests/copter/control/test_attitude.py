@@ -11,14 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from level_autopilot import arm, make_actuators, make_autopilot, output, set_attitude, turn
 
-from sitl.autopilot.control import attitude
-from sitl.autopilot.control.attitude_error import (
-    body_rates,
-    euler_rates,
-    split_error,
-    thrust_quaternion,
-)
-from sitl.autopilot.control.state import DT
+from sitl.autopilot.copter.control import attitude
+from sitl.autopilot.copter.control.attitude_error import body_rates, euler_rates, split_error, thrust_quaternion
+from sitl.autopilot.copter.control.state import DT
 from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_normalise, quat_rotate
 
 R = math.sqrt(0.5)
@@ -49,9 +44,7 @@ def test_split_error_is_thrust_turn_after_heading_turn(w, x, y, z):
     assert math.hypot(rx, ry) == pytest.approx(angle, abs=1e-9)
     again = quat_multiply(*quat_from_rotation_vector(rx, ry, 0.0), *quat_from_rotation_vector(0.0, 0.0, rz))
     if w * w + z * z > 1e-12:
-        assert abs(sum(a * b for a, b in zip(again, (w, x, y, z), strict=True))) == pytest.approx(
-            1.0, abs=1e-9
-        )
+        assert abs(sum(a * b for a, b in zip(again, (w, x, y, z), strict=True))) == pytest.approx(1.0, abs=1e-9)
         assert tw * tw + tx * tx + ty * ty == pytest.approx(1.0)
 
 
@@ -166,9 +159,7 @@ BAD_INPUTS = [
     lambda ap, bad: attitude.input_quaternion(ap, 1.0, 0.0, 0.0, 0.0, bad, 0.0, 0.0),
     lambda ap, bad: attitude.input_rates(ap, 0.0, bad, 0.0),
     lambda ap, bad: attitude.set_throttle_out(ap, bad, 1, 2.0),
-    lambda ap, bad: (
-        ap.control.attitude.target_q.__setitem__(0, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0)
-    ),
+    lambda ap, bad: ap.control.attitude.target_q.__setitem__(0, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
     lambda ap, bad: ap.estimate.q.__setitem__(1, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
     lambda ap, bad: ap.estimate.rates.__setitem__(1, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
 ]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.control.mixer import PLUS, X, factors, mix
+from sitl.autopilot.copter.control.mixer import PLUS, X, factors, mix
 
 demand = st.floats(-1.0, 1.0)
 unit = st.floats(0.0, 1.0)

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from level_autopilot import arm, output
 
-from sitl.autopilot.control import attitude, motors, throttle_mix, thrust_curve
-from sitl.autopilot.control.state import DT
+from sitl.autopilot.copter.control import attitude, motors, throttle_mix, thrust_curve
+from sitl.autopilot.copter.control.state import DT
 
 
 def run_until(ap, actuators, state, most=2000):

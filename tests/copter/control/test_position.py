@@ -9,9 +9,9 @@ import math
 
 import pytest
 
-from sitl.autopilot.control import altitude, position, position_ned
-from sitl.autopilot.control.motors import hover_throttle
-from sitl.autopilot.control.state import DT, GRAVITY
+from sitl.autopilot.copter.control import altitude, position, position_ned
+from sitl.autopilot.copter.control.motors import hover_throttle
+from sitl.autopilot.copter.control.state import DT, GRAVITY
 
 LAG = 0.12  # of lean and of thrust [s]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.control import motors, rate
+from sitl.autopilot.copter.control import motors, rate
 
 
 def integrators(ap) -> list[float]:

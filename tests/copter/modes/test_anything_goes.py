@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from steady_copter import fly, make
 
-from sitl.autopilot import arming
-from sitl.autopilot.modes.copter import auto, guided, set_mode, takeoff, update
-from sitl.autopilot.modes.copter.numbers import NAMES
+from sitl.autopilot.copter import arming
+from sitl.autopilot.copter.modes import auto, guided, set_mode, takeoff, update
+from sitl.autopilot.copter.modes.numbers import NAMES
 
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
 ACTIONS = st.one_of(

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from steady_copter import fly, make, turn_to
 
-from sitl.autopilot.modes.copter import auto_yaw, guided
+from sitl.autopilot.copter.modes import auto_yaw, guided
 from sitl.core.rotations import wrap_pi
 
 DEG = math.pi / 180.0

@@ -10,9 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from steady_copter import codes, fly, make, snapshot, turn_to, wait
 
-from sitl.autopilot.events import GUIDED_TIMEOUT
-from sitl.autopilot.modes.copter import auto_yaw, guided, guided_flight, takeoff
-from sitl.autopilot.modes.copter.guided_state import (
+from sitl.autopilot.copter.modes import auto_yaw, guided, guided_flight, takeoff
+from sitl.autopilot.copter.modes.guided_state import (
     ACCEL,
     LARGEST,
     NOT_FINITE,
@@ -24,6 +23,7 @@ from sitl.autopilot.modes.copter.guided_state import (
     TAKEOFF,
     VELOCITY_ACCEL,
 )
+from sitl.autopilot.events import GUIDED_TIMEOUT
 
 NO_YAW = (0, 0.0, 0, 0.0, 0)
 GOOD = (1.0, 2.0, -3.0)

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from steady_copter import codes, wait
 
+from sitl.autopilot.copter.modes import land, rtl, set_mode
+from sitl.autopilot.copter.modes.numbers import LAND, LOITER, REASON_GCS, RTL
 from sitl.autopilot.events import DISARMED, LEG_ENDING
-from sitl.autopilot.modes.copter import land, rtl, set_mode
-from sitl.autopilot.modes.copter.numbers import LAND, LOITER, REASON_GCS, RTL
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,8 @@ from __future__ import annotations
 import pytest
 from steady_copter import codes, fly, snapshot
 
-from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
-from sitl.autopilot.modes.copter import numbers, set_mode
-from sitl.autopilot.modes.copter.numbers import (
+from sitl.autopilot.copter.modes import numbers, set_mode
+from sitl.autopilot.copter.modes.numbers import (
     ACCEPTED,
     ALT_HOLD,
     AUTO,
@@ -27,6 +26,7 @@ from sitl.autopilot.modes.copter.numbers import (
     STABILIZE,
     THROTTLE_TOO_HIGH,
 )
+from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
 
 ALL = tuple(NAMES)
 
@@ -110,7 +110,5 @@ def test_a_change_is_told(flying):
 def test_texts_are_those_that_users_know():
     assert numbers.refusal_texts(99, NO_SUCH_MODE) == ["No such mode 99"]
     assert numbers.refusal_texts(AUTO, INIT_FAILED) == ["Mode change to AUTO failed: init failed"]
-    assert numbers.refusal_texts(LOITER, REQUIRES_POSITION) == [
-        "Mode change to LOITER failed: requires position"
-    ]
+    assert numbers.refusal_texts(LOITER, REQUIRES_POSITION) == ["Mode change to LOITER failed: requires position"]
     assert numbers.refusal_texts(GUIDED, ACCEPTED) == []

@@ -9,8 +9,18 @@ is 0.1 of throttle for 1 m/s^2. A mode calls one ``input_*`` (or ``set_pos_vel_a
 
 from __future__ import annotations
 
-from ...core.kernels import law
-from ...core.rotations import constrain
+from ....core.kernels import law
+from ....core.rotations import constrain
+from ...control.pid import update_directional, update_saturating
+from ...control.shaping import (
+    advance,
+    finite,
+    inverse_sqrt_controller,
+    shape_pos_vel_accel,
+    shape_vel_accel,
+    sign,
+    sqrt_controller,
+)
 from .altitude_start import (
     ACCZ_UNIT,
     init_d,
@@ -23,16 +33,6 @@ from .altitude_start import (
     stopping_point_d,
 )
 from .motors import hover_throttle
-from .pid import update_directional, update_saturating
-from .shaping import (
-    advance,
-    finite,
-    inverse_sqrt_controller,
-    shape_pos_vel_accel,
-    shape_vel_accel,
-    sign,
-    sqrt_controller,
-)
 from .state import DT
 from .throttle_mix import set_throttle_out
 
@@ -118,7 +118,6 @@ def input_vel_accel_d(ap, v, a):
         v, a, float(c.vel_desired), float(c.accel_desired),
         -up, min(up, _FALL_ACCEL_MAX), float(c.jerk_max) * gain, DT, 0,
     )  # fmt: skip
-
 
 
 @law

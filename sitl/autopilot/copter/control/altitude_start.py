@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from ...core.kernels import law
-from ...core.rotations import TWO_PI, constrain
+from ....core.kernels import law
+from ....core.rotations import TWO_PI, constrain
+from ...control.pid import relax_integrator, reset_filter
+from ...control.shaping import finite, inverse_sqrt_controller
 from .motors import hover_throttle
-from .pid import relax_integrator, reset_filter
-from .shaping import finite, inverse_sqrt_controller
 from .state import DT, GRAVITY
 
 RELAX_TIME = 0.16

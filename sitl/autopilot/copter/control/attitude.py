@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import constrain, quat_from_euler, quat_from_rotation_vector, quat_multiply, wrap_pi
+from ....core.kernels import law
+from ....core.rotations import constrain, quat_from_euler, quat_from_rotation_vector, quat_multiply, wrap_pi
+from ...control.shaping import finite, shape_angle, shape_rate
 from . import rate
 from .attitude_error import body_rates, euler_accel_limits, euler_rates, split_error, thrust_quaternion
 from .attitude_target import (
@@ -26,7 +27,6 @@ from .attitude_target import (
     set_target_rate,
     slew_yaw_max,
 )
-from .shaping import finite, shape_angle, shape_rate
 from .state import DT
 from .throttle_mix import lean_limit, set_mix_man, set_mix_max, set_mix_min, set_throttle_out
 

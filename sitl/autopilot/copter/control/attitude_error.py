@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import constrain, quat_multiply
+from ....core.kernels import law
+from ....core.rotations import constrain, quat_multiply
 
 
 @law

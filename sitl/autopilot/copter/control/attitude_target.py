@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import constrain, quat_multiply, quat_rotate, quat_to_euler
+from ....core.kernels import law
+from ....core.rotations import constrain, quat_multiply, quat_rotate, quat_to_euler
+from ...control.shaping import finite, inverse_sqrt_controller, sqrt_controller
 from .attitude_error import split_error
-from .shaping import finite, inverse_sqrt_controller, sqrt_controller
 from .state import DT
 
 CDEG = math.radians(0.01)
@@ -135,9 +135,7 @@ def correct(ap):
     wz = sqrt_controller(rz, yaw_p, accel_yaw if accel_y > 0.0 else 0.0, DT)
     wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
 
-    fx, fy, fz = quat_rotate(
-        ew, ex, ey, ez, float(a.target_rate[0]), float(a.target_rate[1]), float(a.target_rate[2])
-    )
+    fx, fy, fz = quat_rotate(ew, ex, ey, ez, float(a.target_rate[0]), float(a.target_rate[1]), float(a.target_rate[2]))
     if angle > 2.0 * _ERROR_FREE:
         wz = float(est.rates[2])
     elif angle > _ERROR_FREE:

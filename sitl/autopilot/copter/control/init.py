@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.kernels import law
+from ....core.kernels import law
 from .altitude import set_max_speed_accel_d
 from .attitude import relax
 from .position import set_max_speed_accel_ne

@@ -11,8 +11,19 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from .pid import lowpass_gain
+from ....core.kernels import law
+from ...control.pid import lowpass_gain
+from ...control.shaping import (
+    advance_2d,
+    finite,
+    inverse_sqrt_controller,
+    limit_accel,
+    limit_length,
+    shape_accel_2d,
+    shape_pos_vel_accel_2d,
+    shape_vel_accel_2d,
+    sqrt_controller_2d,
+)
 from .position_start import (
     accel_limit_ne,
     init_ne,
@@ -27,17 +38,6 @@ from .position_start import (
     stop_pos_ne,
     stop_vel_ne,
     stopping_point_ne,
-)
-from .shaping import (
-    advance_2d,
-    finite,
-    inverse_sqrt_controller,
-    limit_accel,
-    limit_length,
-    shape_accel_2d,
-    shape_pos_vel_accel_2d,
-    shape_vel_accel_2d,
-    sqrt_controller_2d,
 )
 from .state import DT, GRAVITY
 
@@ -122,9 +122,7 @@ def input_accel_ne(ap, ax, ay):
     if not finite(ax + ay):
         ax, ay = 0.0, 0.0
     advance_ne(ap)
-    an, ae = shape_accel_2d(
-        ax, ay, float(c.accel_desired[0]), float(c.accel_desired[1]), float(c.jerk_max), DT
-    )
+    an, ae = shape_accel_2d(ax, ay, float(c.accel_desired[0]), float(c.accel_desired[1]), float(c.jerk_max), DT)
     c.accel_desired[0], c.accel_desired[1] = an, ae
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
+from ....core.kernels import law
+from ...control.shaping import finite, kinematic_limit
 from .altitude import advance_d, input_vel_accel_d, shape_pos_d
 from .position import advance_ne, input_vel_accel_ne, shape_pos_ne
-from .shaping import finite, kinematic_limit
 
 
 @law

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import constrain
-from .shaping import inverse_sqrt_controller, limit_length
+from ....core.kernels import law
+from ....core.rotations import constrain
+from ...control.shaping import inverse_sqrt_controller, limit_length
 from .state import DT, GRAVITY
 from .throttle_mix import LEAN_TICKS, lean_limit
 
@@ -165,8 +165,6 @@ def stopping_point_ne(ap):
     speed = math.sqrt(vn * vn + ve * ve)
     if not speed > 1e-6:
         return (n, e)
-    distance = inverse_sqrt_controller(
-        min(speed, float(c.speed_max)), float(ap.params.PSC_POSXY_P), float(c.accel_max)
-    )
+    distance = inverse_sqrt_controller(min(speed, float(c.speed_max)), float(ap.params.PSC_POSXY_P), float(c.accel_max))
     k = distance / speed
     return (n + vn * k, e + ve * k)

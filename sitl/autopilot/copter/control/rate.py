@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from ...core.kernels import law
+from ....core.kernels import law
+from ...control.pid import relax_integrator, reset_filter, update_saturating
 from .motors import GROUND_IDLE, SHUT_DOWN
-from .pid import relax_integrator, reset_filter, update_saturating
 from .state import DT
 
 RELAX_TIME = 0.16

@@ -8,21 +8,13 @@ the rest.
 
 from __future__ import annotations
 
-from ...core.records import record
+from ....core.records import record
+from ...control.pid_state import PID_DTYPE
 
 DT = 0.0025
 """Period of every law in this room [s]: one autopilot tick."""
 GRAVITY = 9.80665
 """[m/s^2]"""
-
-PID_DTYPE = record(
-    ("started", "i8"),  # 0: the filters take the next input as it is
-    ("target", "f8"),  # filtered; the unit of the controlled quantity
-    ("error", "f8"),  # filtered
-    ("derivative", "f8"),  # of the error, filtered [1/s]
-    ("target_derivative", "f8"),  # [1/s]
-    ("integrator", "f8"),  # in the unit of the output
-)
 
 ATTITUDE_DTYPE = record(
     ("target_q", "f8", 4),  # target frame to NED

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import constrain
+from ....core.kernels import law
+from ....core.rotations import constrain
+from ...control.shaping import finite
 from .motors import hover_throttle
-from .shaping import finite
 from .state import DT
 
 LEAN_TICKS = 8

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
-from ...core.rotations import constrain
-from .pid import lowpass_gain
+from ....core.kernels import law
+from ....core.rotations import constrain
+from ...control.pid import lowpass_gain
 
 SLOW_DT = 0.1
 """Period of ``update_slow`` [s]."""

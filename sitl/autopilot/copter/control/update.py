@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.kernels import unit
+from ....core.kernels import unit
 from . import motors, rate, throttle_mix
 
 

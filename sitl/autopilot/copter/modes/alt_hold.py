@@ -7,9 +7,9 @@ import math
 
 from ....core.kernels import law
 from ....core.rotations import constrain
-from ... import pilot
-from ...control import altitude, attitude
-from ...control.throttle_mix import lean_limit
+from .. import pilot
+from ..control import altitude, attitude
+from ..control.throttle_mix import lean_limit
 from . import ground, takeoff
 
 # What the vertical part is doing

@@ -8,10 +8,12 @@ and says when it is done (``navigation.command.complete``), upon which the shell
 from __future__ import annotations
 
 from ....core.kernels import law
-from ... import arming
-from ...control import altitude, position
-from ...navigation import command, waypoint
+from ...arming_checks import BY_MISSION_EXIT
+from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
+from .. import arming
+from ..control import altitude, position
+from ..navigation import command, waypoint
 from . import auto_yaw, ground, land, rtl, takeoff
 from .numbers import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 
@@ -115,11 +117,11 @@ def run(v):
     elif kind == RTL:
         rtl.run(v)
         if ap.arming.landed != 0 and ap.modes.rtl.state == rtl.LANDING:
-            command.complete(ap, v.time_us)
+            complete(ap, v.time_us)
     elif ground.is_grounded(v):
         ground.handle(v)
         if ap.arming.armed != 0 and ap.arming.landed != 0 and nav.mission_state == COMPLETE:
-            arming.disarm(v, arming.BY_MISSION_EXIT, 0)
+            arming.disarm(v, BY_MISSION_EXIT, 0)
     else:
         ap.control.motors.desired_spool = ground.UNLIMITED
         if command.follows_path(kind) != 0:
@@ -128,7 +130,7 @@ def run(v):
             position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
             altitude.input_vel_accel_d(ap, 0.0, 0.0)
         ground.fly(v)
-    command.check_condition(ap, v.time_us, 1 if auto_yaw.reached(v) else 0)
+    check_condition(ap, v.time_us, 1 if auto_yaw.reached(v) else 0)
 
 
 @law
@@ -140,7 +142,7 @@ def run_takeoff(v):
             ap.arming.auto_armed = 1
     takeoff.run(v)
     if ap.modes.takeoff.complete != 0:
-        command.complete(ap, v.time_us)
+        complete(ap, v.time_us)
 
 
 @law
@@ -149,7 +151,7 @@ def run_land(v):
     ap = v.autopilot
     land.finish(v)
     if ap.arming.landed != 0 and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
-        command.complete(ap, v.time_us)
+        complete(ap, v.time_us)
     if ground.is_grounded(v):
         ground.handle(v)
         return

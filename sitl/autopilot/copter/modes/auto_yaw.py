@@ -10,7 +10,7 @@ import math
 
 from ....core.kernels import law
 from ....core.rotations import TWO_PI, wrap_pi
-from ...control import attitude
+from ..control import attitude
 
 HOLD = 0  # heading as it is
 LOOK_AT_NEXT_WP = 1  # along the desired velocity
@@ -154,9 +154,7 @@ def advance(v, dt):
         rate = 0.0
         if speed2 > least * least and speed2 > 1e-6:
             yaw.yaw = math.atan2(east, north)
-            rate = (
-                north * ap.control.pos_ne.accel_desired[1] - east * ap.control.pos_ne.accel_desired[0]
-            ) / speed2
+            rate = (north * ap.control.pos_ne.accel_desired[1] - east * ap.control.pos_ne.accel_desired[0]) / speed2
         return (float(yaw.yaw), rate, 1)
     if yaw.mode == ANGLE_RATE:
         yaw.yaw = wrap_pi(yaw.yaw + yaw.rate * dt)

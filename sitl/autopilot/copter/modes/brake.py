@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ...control import altitude, attitude, position
+from ..control import altitude, attitude, position
 from . import ground
 
 DECELERATION = 7.5

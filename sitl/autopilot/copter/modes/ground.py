@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...control import altitude, attitude, position
+from ..control import altitude, attitude, position
 from . import auto_yaw
 
 # Spool states wanted by a mode (control/motors.py)
@@ -68,9 +68,7 @@ def set_waypoint_limits(v):
     ap = v.autopilot
     p = ap.params
     position.set_max_speed_accel_ne(ap, p.WPNAV_SPEED * 0.01, p.WPNAV_ACCEL * 0.01)
-    altitude.set_max_speed_accel_d(
-        ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01
-    )
+    altitude.set_max_speed_accel_d(ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01)
 
 
 @law

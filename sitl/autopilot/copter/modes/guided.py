@@ -12,7 +12,7 @@ import math
 
 from ....core.kernels import law
 from ....core.rotations import constrain
-from ...control import altitude, position
+from ..control import altitude, position
 from . import auto_yaw, guided_flight
 from .guided_state import (
     ACCEL,

@@ -11,8 +11,8 @@ import math
 
 from ....core.kernels import law
 from ....core.rotations import constrain, quat_from_euler, quat_to_euler
-from ...control import altitude, attitude, position, position_ned, throttle_mix
 from ...events import GUIDED_TIMEOUT, emit
+from ..control import altitude, attitude, position, position_ned, throttle_mix
 from . import auto_yaw, ground, takeoff
 from .guided_state import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ... import pilot
+from .. import pilot
 from .numbers import REASON_INITIALISED, STABILIZE, is_known
 
 

@@ -10,9 +10,10 @@ import math
 
 from ....core.kernels import law
 from ....core.rotations import constrain
-from ... import arming, pilot
-from ...control import altitude, attitude, position
+from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
+from .. import arming, pilot
+from ..control import altitude, attitude, position
 from . import auto_yaw, ground
 from .numbers import ALT_HOLD, LOITER, REASON_THROTTLE_LAND_ESCAPE
 
@@ -79,7 +80,7 @@ def finish(v):
     """Disarm when landed and the motors have come down to idle."""
     ap = v.autopilot
     if ap.arming.landed != 0 and ap.control.motors.spool_state == ground.IS_GROUND_IDLE:
-        arming.disarm(v, arming.BY_LANDING, 0)
+        arming.disarm(v, BY_LANDING, 0)
 
 
 @law

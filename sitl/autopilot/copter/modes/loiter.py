@@ -12,9 +12,9 @@ import math
 
 from ....core.kernels import law
 from ....core.rotations import constrain, wrap_pi
-from ... import pilot
-from ...control import attitude, position
 from ...control.shaping import shape_angle, sqrt_controller
+from .. import pilot
+from ..control import attitude, position
 from . import alt_hold
 
 DT = 0.0025
@@ -114,9 +114,7 @@ def advance(v):
         brake = 0.0
         if v.time_us - loiter.brake_us > p.LOIT_BRK_DELAY * 1e6:
             gain = 0.5 * p.PSC_VELXY_P
-            brake = constrain(
-                sqrt_controller(speed, gain, p.LOIT_BRK_JERK * 0.01, DT), 0.0, p.LOIT_BRK_ACCEL * 0.01
-            )
+            brake = constrain(sqrt_controller(speed, gain, p.LOIT_BRK_JERK * 0.01, DT), 0.0, p.LOIT_BRK_ACCEL * 0.01)
         jerk = p.LOIT_BRK_JERK * 0.01 * DT
         loiter.brake_acc += constrain(brake - loiter.brake_acc, -jerk, jerk)
         slower = min(max(speed - (drag + loiter.brake_acc) * DT, 0.0), most)
@@ -124,9 +122,7 @@ def advance(v):
         ae -= ve / speed * loiter.brake_acc
         vn *= slower / speed
         ve *= slower / speed
-    position.set_pos_vel_accel_ne(
-        ap, ne.pos_desired[0] + vn * DT, ne.pos_desired[1] + ve * DT, vn, ve, an, ae
-    )
+    position.set_pos_vel_accel_ne(ap, ne.pos_desired[0] + vn * DT, ne.pos_desired[1] + ve * DT, vn, ve, an, ae)
 
 
 @law

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...control.motors import hover_throttle
 from ...events import MODE_CHANGED, MODE_REFUSED, emit, emit_and_return
+from ..control.motors import hover_throttle
 from . import alt_hold, auto, brake, guided_flight, land, loiter, rtl, stabilize
 from .numbers import (
     ACCEPTED,

@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ... import pilot
-from ...control import attitude, throttle_mix
-from ...control.motors import hover_throttle
+from .. import pilot
+from ..control import attitude, throttle_mix
+from ..control.motors import hover_throttle
 from . import ground
 
 

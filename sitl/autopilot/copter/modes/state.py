@@ -8,13 +8,11 @@ angles radians.
 from __future__ import annotations
 
 from ....core.records import record
-from ...navigation.state import NAV_DTYPE
+from ...failsafe_state import FAILSAFE_DTYPE
+from ..navigation.state import NAV_DTYPE
 
 AUTO_YAW_DTYPE = record(
-    (
-        "mode",
-        "i8",
-    ),  # auto_yaw.py
+    ("mode", "i8"),  # auto_yaw.py
     ("yaw", "f8"),  # heading under way [rad]
     ("rate", "f8"),  # [rad/s]
     ("offset", "f8"),  # FIXED: angle still to turn, signed [rad]
@@ -93,23 +91,6 @@ PILOT_DTYPE = record(
     ("rudder_done", "i8"),  # the stick must return before it counts again
     ("throttle_zero", "i8"),  # low, for at least 0.4 s
     ("throttle_zero_us", "i8"),  # when last above zero
-    ("has_receiver", "i8"),  # a receiver is fitted
-)
-
-FAILSAFE_DTYPE = record(
-    ("gcs_us", "i8"),  # last heartbeat of the ground station; 0 none so far (written by the bridge)
-    ("gcs", "i8"),  # failsafe is on
-    ("radio", "i8"),
-    ("radio_count", "i8"),  # consecutive frames with a throttle below FS_THR_VALUE
-    ("receiver_us", "i8"),  # last good frame
-    ("battery", "i8"),  # 0 none, 1 low, 2 critical
-    ("battery_low_us", "i8"),  # since when below the low limit; 0 not
-    ("battery_critical_us", "i8"),
-    ("ekf", "i8"),  # 1 the estimate is bad, 2 and the mode was ended for it
-    ("ekf_count", "i8"),  # tenths of a second of bad variance
-    ("ekf_vel", "f8"),  # filtered variances
-    ("ekf_pos", "f8"),
-    ("ekf_mag", "f8"),
 )
 
 LANDING_DTYPE = record(
@@ -118,10 +99,7 @@ LANDING_DTYPE = record(
 )
 
 MODES_DTYPE = record(
-    (
-        "number",
-        "i8",
-    ),  # ArduPilot's custom mode (numbers.py)
+    ("number", "i8"),  # ArduPilot's custom mode (numbers.py)
     ("previous", "i8"),
     ("reason", "i8"),  # ArduPilot's ModeReason of the last change
     ("auto_yaw", AUTO_YAW_DTYPE),

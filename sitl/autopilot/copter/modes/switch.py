@@ -4,32 +4,15 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ... import arming
+from ...arming_checks import BY_RUDDER
+from ...mode_switch import moved_to
+from .. import arming
 from .numbers import REASON_RC
 from .set_mode import request
 
-DEBOUNCE_US = 200_000
 RUDDER_US = 2_000_000
 """The yaw stick arms or disarms when held for so long with the throttle closed."""
 _FULL_STICK = 4000.0 / 4500.0
-
-
-@law
-def position(pulse):
-    """Position 0 .. 5 of the mode channel, -1 for a pulse that means nothing."""
-    if pulse <= 900 or pulse >= 2200:
-        return -1
-    if pulse < 1231:
-        return 0
-    if pulse < 1361:
-        return 1
-    if pulse < 1491:
-        return 2
-    if pulse < 1621:
-        return 3
-    if pulse < 1750:
-        return 4
-    return 5
 
 
 @law
@@ -50,21 +33,11 @@ def mode_at(p, k):
 
 @law
 def read_mode(v):
-    """After each frame: a new position that lasts changes the mode; an old one changes nothing."""
-    ap = v.autopilot
-    pilot = ap.modes.pilot
-    channel = int(ap.params.FLTMODE_CH)
-    if channel < 1 or ap.rc.receiver_ok == 0 or ap.modes.failsafe.radio != 0:
-        return
-    now = position(int(ap.rc.channels[channel - 1]))
-    if now < 0:
-        return
-    if now != pilot.switch_candidate:
-        pilot.switch_candidate = now
-        pilot.switch_us = v.time_us
-    elif now != pilot.switch_position and v.time_us - pilot.switch_us >= DEBOUNCE_US:
-        pilot.switch_position = now
-        request(v, mode_at(ap.params, now), REASON_RC)
+    """After each frame: a new position of the switch changes the mode."""
+    params = v.autopilot.params
+    now = moved_to(v, int(params.FLTMODE_CH))
+    if now >= 0:
+        request(v, mode_at(params, now), REASON_RC)
 
 
 @law
@@ -88,6 +61,6 @@ def read_rudder(v):
     elif v.time_us - pilot.rudder_us >= RUDDER_US:
         pilot.rudder_done = 1
         if wanted > 0:
-            arming.try_arm(v, arming.BY_RUDDER, 0)
+            arming.try_arm(v, BY_RUDDER, 0)
         else:
-            arming.disarm(v, arming.BY_RUDDER, 0)
+            arming.disarm(v, BY_RUDDER, 0)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.rotations import constrain
-from ...control import altitude, attitude, position, throttle_mix
 from ...events import TAKEOFF_COMPLETE, emit
+from ..control import altitude, attitude, position, throttle_mix
 from . import auto_yaw, ground, guided_state
 from .numbers import ALT_HOLD, GUIDED, LOITER
 

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from ....core.kernels import law, unit
-from ... import arming, battery, crash, failsafe, home, landing, motor_test, pilot
-from ...control.motors import hover_throttle, learn_hover_throttle
+from ... import battery, home
+from ...radio import RC_TICKS
+from .. import arming, crash, failsafe, landing, motor_test, pilot
+from ..control.motors import hover_throttle, learn_hover_throttle
 from . import (
     alt_hold,
     auto,
@@ -33,7 +35,7 @@ def update(fleet, i):
     """One tick of vehicle ``i``: reads the estimate, writes targets of the controllers."""
     v = fleet[i]
     tick = v.tick
-    if tick % pilot.RC_TICKS == 0:
+    if tick % RC_TICKS == 0:
         read_transmitter(v)
     if tick % _TENTH == 4:
         check_slowly(v)
@@ -53,7 +55,7 @@ def update(fleet, i):
 @law
 def read_transmitter(v):
     """50 times a second."""
-    pilot.receive(v)
+    pilot.read(v)
     failsafe.update_radio(v)
     switch.read_mode(v)
     switch.read_rudder(v)

@@ -3,6 +3,6 @@
 
 from __future__ import annotations
 
-from ..parameter import INT16, Parameter
+from ...params.parameter import INT16, Parameter
 
 PARAMETERS = (Parameter("ANGLE_MAX", 3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16),)

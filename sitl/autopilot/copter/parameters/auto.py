@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT32, Parameter
+from ...params.parameter import INT32, Parameter
 
 PARAMETERS = (
     Parameter(

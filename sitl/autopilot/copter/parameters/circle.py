@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Circles."""
 
-from ..parameter import Parameter
+from ...params.parameter import Parameter
 
 PARAMETERS = (
     Parameter("CIRCLE_RADIUS", 1000.0, 0.0, 200000.0, "cm", "Radius when a mission gives none"),

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT8, Parameter
+from ...params.parameter import INT8, Parameter
 
 PARAMETERS = (
     Parameter("FLTMODE1", 0, 0, 127, "", "Mode at position 1 of the mode channel", INT8),

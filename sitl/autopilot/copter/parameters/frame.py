@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT8, Parameter
+from ...params.parameter import INT8, Parameter
 
 PARAMETERS = (
     Parameter("FRAME_TYPE", 1, 0, 18, "", "0: plus, 1: X", INT8),

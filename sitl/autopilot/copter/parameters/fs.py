@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT8, INT16, INT32, Parameter
+from ...params.parameter import INT8, INT16, INT32, Parameter
 
 PARAMETERS = (
     Parameter(
@@ -26,9 +26,7 @@ PARAMETERS = (
         INT8,
     ),
     Parameter("FS_THR_VALUE", 975, 900, 1100, "us", "Throttle pulse below which the radio is lost", INT16),
-    Parameter(
-        "FS_EKF_ACTION", 1, 0, 3, "", "Bad estimate: 0 report, 1 LAND, 2 ALT_HOLD, 3 LAND from any mode", INT8
-    ),
+    Parameter("FS_EKF_ACTION", 1, 0, 3, "", "Bad estimate: 0 report, 1 LAND, 2 ALT_HOLD, 3 LAND from any mode", INT8),
     Parameter(
         "FS_EKF_THRESH",
         0.8,

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT16, Parameter
+from ...params.parameter import INT16, Parameter
 
 PARAMETERS = (
     Parameter("PILOT_THR_FILT", 0.0, 0.0, 10.0, "Hz", "Low-pass of the throttle in STABILIZE; 0 none"),

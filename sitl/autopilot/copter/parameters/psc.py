@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import Parameter
+from ...params.parameter import Parameter
 
 PARAMETERS = (
     Parameter("PSC_POSZ_P", 1.0, 0.0, 10.0, "1/s", "Climb rate asked for per altitude error"),
@@ -19,18 +19,10 @@ PARAMETERS = (
     Parameter("PSC_ACCZ_D", 0.0, 0.0, 1.0, "", "Vertical thrust loop: derivative gain"),
     Parameter("PSC_ACCZ_FF", 0.0, 0.0, 5.0, "", "Vertical thrust loop: feed-forward of the target"),
     Parameter("PSC_ACCZ_IMAX", 800.0, 0.0, 1000.0, "d%", "Vertical thrust loop: limit of the integrator"),
-    Parameter(
-        "PSC_ACCZ_FLTT", 0.0, 0.0, 400.0, "Hz", "Vertical thrust loop: low-pass of the target; 0: none"
-    ),
-    Parameter(
-        "PSC_ACCZ_FLTE", 20.0, 0.0, 400.0, "Hz", "Vertical thrust loop: low-pass of the error; 0: none"
-    ),
-    Parameter(
-        "PSC_ACCZ_FLTD", 0.0, 0.0, 400.0, "Hz", "Vertical thrust loop: low-pass of the derivative; 0 none"
-    ),
-    Parameter(
-        "PSC_ACCZ_PDMX", 0.0, 0.0, 1000.0, "d%", "Vertical thrust loop: limit of P and D together; 0: none"
-    ),
+    Parameter("PSC_ACCZ_FLTT", 0.0, 0.0, 400.0, "Hz", "Vertical thrust loop: low-pass of the target; 0: none"),
+    Parameter("PSC_ACCZ_FLTE", 20.0, 0.0, 400.0, "Hz", "Vertical thrust loop: low-pass of the error; 0: none"),
+    Parameter("PSC_ACCZ_FLTD", 0.0, 0.0, 400.0, "Hz", "Vertical thrust loop: low-pass of the derivative; 0 none"),
+    Parameter("PSC_ACCZ_PDMX", 0.0, 0.0, 1000.0, "d%", "Vertical thrust loop: limit of P and D together; 0: none"),
     Parameter("PSC_ACCZ_D_FF", 0.0, 0.0, 1.0, "", "Vertical thrust loop: feed-forward of the target's rate"),
     Parameter("PSC_POSXY_P", 1.0, 0.0, 10.0, "1/s", "Speed asked for per position error"),
     Parameter("PSC_VELXY_P", 2.0, 0.0, 20.0, "1/s", "Acceleration asked for per speed error"),

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT16, INT32, Parameter
+from ...params.parameter import INT16, INT32, Parameter
 
 PARAMETERS = (
     Parameter("RTL_ALT", 1500, 0, 300000, "cm", "Height of the way home, above home", INT32),

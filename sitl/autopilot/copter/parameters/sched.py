@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT16, Parameter
+from ...params.parameter import INT16, Parameter
 
 PARAMETERS = (
     Parameter(

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import Parameter
+from ...params.parameter import Parameter
 
 PARAMETERS = (
     Parameter("TKOFF_SLEW_TIME", 2.0, 0.25, 5.0, "s", "From zero to full throttle on the ground"),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Flight along legs."""
 
-from ..parameter import Parameter
+from ...params.parameter import Parameter
 
 PARAMETERS = (
     Parameter("WPNAV_SPEED", 1000.0, 10.0, 10000.0, "cm/s", "Horizontal speed limit in missions"),

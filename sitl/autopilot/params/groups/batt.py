@@ -13,16 +13,6 @@ PARAMETERS = (
     Parameter("BATT_LOW_MAH", 0.0, 0.0, 2000000.0, "mAh", "Low when less is left; 0 off"),
     Parameter("BATT_CRT_VOLT", 0.0, 0.0, 120.0, "V", "Critical; 0 off"),
     Parameter("BATT_CRT_MAH", 0.0, 0.0, 2000000.0, "mAh", "Critical when less is left; 0 off"),
-    Parameter(
-        "BATT_FS_LOW_ACT",
-        0,
-        0,
-        7,
-        "",
-        "When low: 0 nothing, 1 LAND, 2 RTL, 3 4 return or land, 5 stops the motors, 7 BRAKE or LAND",
-        INT8,
-    ),
-    Parameter("BATT_FS_CRT_ACT", 0, 0, 7, "", "When critical: as BATT_FS_LOW_ACT", INT8),
     Parameter("BATT_ARM_VOLT", 0.0, 0.0, 120.0, "V", "Least voltage for arming; 0 off"),
     Parameter("BATT_ARM_MAH", 0, 0, 2000000, "mAh", "Least charge left for arming; 0 off", INT32),
 )

@@ -32,7 +32,7 @@ PARAMETERS = (
     _rate("RAW_SENS", "RAW_IMU, SCALED_PRESSURE"),
     _rate("EXT_STAT", "SYS_STATUS, POWER_STATUS, MEMINFO, MISSION_CURRENT, GPS_RAW_INT, NAV_CONTROLLER_OUTPUT"),
     _rate("RC_CHAN", "SERVO_OUTPUT_RAW, RC_CHANNELS"),
-    _rate("RAW_CTRL", "nothing in this firmware"),
+    _rate("RAW_CTRL", "RC_CHANNELS_SCALED (rovers only)"),
     _rate("POSITION", "GLOBAL_POSITION_INT, LOCAL_POSITION_NED"),
     _rate("EXTRA1", "ATTITUDE, SIMSTATE, AHRS2"),
     _rate("EXTRA2", "VFR_HUD"),

@@ -54,5 +54,4 @@ PARAMETERS = (
         "s",
         "Overrides from the ground station are good for so long; -1 for ever, 0 never",
     ),
-    Parameter("RC_FS_TIMEOUT", 1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost"),
 )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..parameter import INT8, INT32, Parameter
+from ..parameter import INT8, Parameter
 
 PARAMETERS = (
     Parameter("SIM_WIND_SPD", 0, 0, 50, "m/s", "Speed of the steady wind"),
@@ -12,6 +12,4 @@ PARAMETERS = (
     Parameter("SIM_WIND_TC", 5, 0.1, 300, "s", "Correlation time of the turbulence and lag of wind changes"),
     Parameter("SIM_GPS1_ENABLE", 1, 0, 1, "", "0 switches the GPS receiver off", INT8),
     Parameter("SIM_RC_FAIL", 0, 0, 1, "", "1 switches the pilot's transmitter off", INT8),
-    Parameter("SIM_ENGINE_FAIL", 0, 0, 255, "", "Motors that fail: 1 motor 1, 2 motor 2, 4 motor 3, ...", INT32),
-    Parameter("SIM_ENGINE_MUL", 0, 0, 1, "", "Share of their thrust that failing motors keep"),
 )

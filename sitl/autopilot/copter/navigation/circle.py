@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from ...core.kernels import law
+from ....core.kernels import law
 from ..control.altitude import set_pos_vel_accel_d
 from ..control.position import set_pos_vel_accel_ne
 from .waypoint import CM, DT, speed_ne

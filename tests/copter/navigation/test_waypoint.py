@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from pointmass import DT, ORIGIN, PointMass
 
+from sitl.autopilot.copter.navigation import waypoint
+from sitl.autopilot.copter.navigation.planner import PLANNER
 from sitl.autopilot.mission.item import (
     NAV_LOITER_TURNS,
     NAV_TAKEOFF,
@@ -19,8 +21,9 @@ from sitl.autopilot.mission.item import (
 )
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.notes import ItemReached
-from sitl.autopilot.navigation import planner, waypoint
+from sitl.autopilot.navigation import path as paths
 from sitl.autopilot.navigation.leg import LegError, Limits, plan
+from sitl.autopilot.navigation.planner import end
 from sitl.core.geodesy import add_offset
 
 
@@ -84,9 +87,7 @@ def test_delay_stops_and_waits() -> None:
 
 def test_places_take_the_default() -> None:
     """Latitude and longitude zero: where it was; altitude zero: as high as it was."""
-    p = vehicle(
-        MissionItem(NAV_WAYPOINT, RELATIVE, z=12.0), MissionItem(NAV_WAYPOINT, RELATIVE), follow=False
-    )
+    p = vehicle(MissionItem(NAV_WAYPOINT, RELATIVE, z=12.0), MissionItem(NAV_WAYPOINT, RELATIVE), follow=False)
     path(p, 5.5)
     assert list(p.v.autopilot.modes.nav.target) == pytest.approx([0.0, 0.0, -12.0], abs=0.02)
 
@@ -149,15 +150,15 @@ def test_leg_for_the_core() -> None:
     path(p, 1.0)
     ap = p.v.autopilot
     waypoint.stop(ap)
-    waypoint.request_legs(ap, int(p.v.time_us), 0.0, 0.0, -15.0, 30.0, 0.0, -15.0)
+    paths.request_legs(ap, int(p.v.time_us), 0.0, 0.0, -15.0, 30.0, 0.0, -15.0)
     assert ap.events.attention == 1
     assert waypoint.advance(ap, int(p.v.time_us)) == 0
     p.sequencer.attend()
     nav = ap.modes.nav
     assert nav.request_pending == 0
     assert nav.current.fast == 1
-    assert planner.end(nav.current) == pytest.approx((0.0, 0.0, -15.0), abs=1e-6)
-    assert planner.end(nav.next) == pytest.approx((30.0, 0.0, -15.0), abs=1e-6)
+    assert end(nav.current) == pytest.approx((0.0, 0.0, -15.0), abs=1e-6)
+    assert end(nav.next) == pytest.approx((30.0, 0.0, -15.0), abs=1e-6)
     assert nav.current.top_speed == pytest.approx(2.5, rel=0.1)
 
 
@@ -174,7 +175,7 @@ def test_change_of_speed() -> None:
     assert rows[0, 6] == pytest.approx(a, abs=0.01)
     assert rows[-1, 3] == pytest.approx(3.0, abs=0.01)
     assert nav.current.fast == 1
-    assert planner.end(nav.current) == pytest.approx((60.0, 0.0, -10.0), abs=0.01)
+    assert end(nav.current) == pytest.approx((60.0, 0.0, -10.0), abs=0.01)
     assert nav.next.top_speed == 3.0
 
 
@@ -183,10 +184,10 @@ def test_odd_lengths(far: float) -> None:
     """Legs of no length and huge ones neither fail nor stand still."""
     p = vehicle(item(1.0, 0.0), follow=False)
     ap = p.v.autopilot
-    planner.begin(ap, int(p.v.time_us), (far, 0.0, -10.0))
+    PLANNER.begin(ap, int(p.v.time_us), (far, 0.0, -10.0))
     assert math.isfinite(ap.modes.nav.current.duration)
     with pytest.raises(LegError):
-        planner.begin(ap, int(p.v.time_us), (math.nan, 0.0, -10.0))
+        PLANNER.begin(ap, int(p.v.time_us), (math.nan, 0.0, -10.0))
 
 
 @pytest.mark.slow

@@ -10,14 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from sitl.autopilot.control import position
+from sitl.autopilot.copter.control import position
+from sitl.autopilot.copter.mission import COMMANDS
+from sitl.autopilot.copter.navigation import command
+from sitl.autopilot.copter.table import TABLE
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
-from sitl.autopilot.navigation import command
+from sitl.autopilot.navigation.command import check_condition, complete
 from sitl.autopilot.navigation.state import LAND, NONE, TAKEOFF
-from sitl.autopilot.params.table import set_defaults
 from sitl.core import records
-from sitl.vehicle import TICK_US, VEHICLE_DTYPE
+from sitl.vehicle import COPTER_DTYPE, TICK_US
 
 ORIGIN = (-353632621, 1491652371, 584.0)
 DT = TICK_US * 1e-6
@@ -33,7 +35,7 @@ class PointMass:
         lag: float = 0.25,
         follow: bool = True,
     ) -> None:
-        self.fleet = np.zeros(1, VEHICLE_DTYPE)
+        self.fleet = np.zeros(1, COPTER_DTYPE)
         self.v: Any = records.view(self.fleet, 0)
         self.lag = lag
         self.follow = follow
@@ -44,7 +46,7 @@ class PointMass:
         self.begun = -1
         self.notes: list[tuple[float, Any]] = []
         ap = self.v.autopilot
-        set_defaults(ap.params)
+        TABLE.set_defaults(ap.params)
         ap.estimate.origin_set = 1
         ap.estimate.origin_lat, ap.estimate.origin_lon, ap.estimate.origin_alt = ORIGIN
         ap.estimate.pos[:] = pos
@@ -53,7 +55,7 @@ class PointMass:
         ap.home.lat, ap.home.lon, ap.home.alt = ORIGIN
         ap.modes.number = 3
         self.mission = mission
-        self.sequencer = Sequencer(self)
+        self.sequencer = Sequencer(self, COMMANDS)
 
     @property
     def time(self) -> float:
@@ -78,7 +80,7 @@ class PointMass:
         kind = int(nav.command_kind)
         if kind == TAKEOFF:
             self._jump_to(nav.target)
-            command.complete(ap, now)
+            complete(ap, now)
         elif kind in (NONE, LAND):
             self.acc = [0.0, 0.0, 0.0]
         elif command.follows_path(kind):
@@ -88,7 +90,7 @@ class PointMass:
                 self._move()
             elif not self.stuck:
                 ap.estimate.pos[:], ap.estimate.vel[:] = nav.pos, nav.vel
-        command.check_condition(ap, now, 1)
+        check_condition(ap, now, 1)
         self.note(self.sequencer.attend())
         ap.events.attention = 0
 

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arming: who may ask, the checks that every firmware makes, and the texts of all.
+
+Bits of failed checks are this autopilot's own; texts and their order are those that ArduPilot's users know.
+ARMING_CHECK selects which optional checks count.
+"""
+
+from __future__ import annotations
+
+from ..core.kernels import law
+
+# Who arms or disarms (ArduPilot's AP_Arming::Method)
+BY_RUDDER = 0
+BY_MAVLINK = 1
+BY_TERMINATION = 5
+BY_BATTERY_FAILSAFE = 7
+BY_CRASH = 12
+BY_LANDING = 13
+BY_MISSION_EXIT = 14
+BY_RADIO_FAILSAFE = 16
+BY_DELAY = 17
+BY_GCS_FAILSAFE = 18
+
+# Checks
+NOT_INITIALISED = 1
+BAROMETER = 2
+COMPASS = 4
+ACCELS = 8
+GYROS = 16
+ATTITUDE = 32
+LEANING = 64
+GPS_FIX = 128
+WAITING_FOR_HOME = 256
+NEED_POSITION = 512
+NEED_ALTITUDE = 1024
+RC_MISSING = 2048
+THROTTLE_FAILSAFE = 4096
+THROTTLE_HIGH = 8192
+BATTERY_VOLTAGE = 16384
+BATTERY_CAPACITY = 32768
+BATTERY_FAILSAFE = 65536
+FRAME = 131072
+MODE = 262144
+RUDDER_DISABLED = 524288
+AHRS_TYPE = 1048576
+EKF_FAILSAFE = 2097152
+NO_OUTPUTS = 4194304
+WAYPOINT_SPEED = 8388608
+THROTTLE_OFF_CENTRE = 16777216
+STEERING_OFF_CENTRE = 33554432
+MODE_BY_RUDDER = 67108864
+
+
+TEXTS = {
+    NOT_INITIALISED: "System not initialised",
+    BAROMETER: "Barometer not healthy",
+    COMPASS: "Compass not healthy",
+    ACCELS: "Accels inconsistent",
+    GYROS: "Gyros inconsistent",
+    ATTITUDE: "EKF attitude is bad",
+    LEANING: "Leaning",
+    GPS_FIX: "GPS 1: Bad fix",
+    WAITING_FOR_HOME: "AHRS: waiting for home",
+    NEED_POSITION: "Need Position Estimate",
+    NEED_ALTITUDE: "Need Alt Estimate",
+    RC_MISSING: "RC not found",
+    THROTTLE_FAILSAFE: "Throttle below failsafe",
+    THROTTLE_HIGH: "Throttle too high",
+    BATTERY_VOLTAGE: "Battery 1 below minimum arming voltage",
+    BATTERY_CAPACITY: "Battery 1 below minimum arming capacity",
+    BATTERY_FAILSAFE: "Battery 1 low voltage failsafe",
+    FRAME: "Motors: Check frame class and type",
+    MODE: "Mode not armable",
+    RUDDER_DISABLED: "Rudder arming disabled",
+    AHRS_TYPE: "AHRS: not using configured AHRS type",
+    EKF_FAILSAFE: "EKF failsafe",
+    NO_OUTPUTS: "no motor, sail or scripting outputs defined",
+    WAYPOINT_SPEED: "WP_SPEED too low",
+    THROTTLE_OFF_CENTRE: "Throttle (RC3) is not neutral",
+    STEERING_OFF_CENTRE: "Roll (RC1) is not neutral",
+    MODE_BY_RUDDER: "Mode not rudder-armable",
+}
+
+# ARMING_CHECK
+CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
+
+_READY_US = 2_450_000
+_ACCELS_US = 13_400_000
+_GYROS_US = 23_400_000
+"""Inertial sensors count as consistent from here on: ten seconds of agreement each, as a real one boots."""
+
+
+@law
+def wants(v, check):
+    """Whether ARMING_CHECK asks for a check (CHECK_*)."""
+    return (int(v.autopilot.params.ARMING_CHECK) & (CHECK_ALL | check)) != 0
+
+
+@law
+def sensor_checks(v):
+    """Failed checks of sensors and attitude."""
+    failed = 0
+    if v.time_us < _READY_US:
+        failed |= NOT_INITIALISED
+    if v.sensors.baro_count == 0 and wants(v, CHECK_BARO):
+        failed |= BAROMETER
+    if v.sensors.mag_count == 0 and wants(v, CHECK_COMPASS):
+        failed |= COMPASS
+    if wants(v, CHECK_INS):
+        if v.time_us < _ACCELS_US:
+            failed |= ACCELS
+        elif v.time_us < _GYROS_US:
+            failed |= GYROS
+        elif v.autopilot.estimate.attitude_ok == 0:
+            failed |= ATTITUDE
+    return failed
+
+
+@law
+def battery_checks(v):
+    """Failed checks of the battery."""
+    ap = v.autopilot
+    p = ap.params
+    failed = 0
+    if p.BATT_MONITOR > 0.0 and wants(v, CHECK_BATTERY):
+        if ap.battery.voltage < p.BATT_ARM_VOLT:
+            failed |= BATTERY_VOLTAGE
+        left = p.BATT_CAPACITY - ap.battery.consumed_mah
+        if p.BATT_ARM_MAH > 0.0 and left < p.BATT_ARM_MAH:
+            failed |= BATTERY_CAPACITY
+        if ap.modes.failsafe.battery != 0:
+            failed |= BATTERY_FAILSAFE
+    return failed
+
+
+def texts(failed: int, prefix: str = "") -> list[str]:
+    """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
+    shown = failed
+    if shown & WAITING_FOR_HOME:
+        shown &= ~NEED_POSITION  # said only when it is what is missing
+    return [prefix + text for bit, text in TEXTS.items() if shown & bit]

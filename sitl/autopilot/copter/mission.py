@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter's mission commands (https://ardupilot.org/copter/docs/mission-command-list.html)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..mission import item as commands
+from ..mission.commands import Commands, is_speed, whole_seconds
+from ..mission.item import MissionItem
+from ..mission.notes import INFO, Note, Text
+from ..mission.place import Point, down, point
+from ..mission.under_way import end_path, write, write_none
+from ..navigation import state as kinds
+from ..navigation.planner import end
+from .modes import auto, auto_yaw
+from .modes.numbers import AUTO
+from .navigation import waypoint
+from .navigation.planner import PLANNER
+
+EDGE = 3.0
+"""A vehicle this near to the circle starts it where it is [m]."""
+WIDEST = 2550.0
+"""Greatest radius of circles that ArduPilot's mission storage holds [m]."""
+CLIMB_SPEED, DESCENT_SPEED = 2, 3
+"""SPEED_TYPE of DO_CHANGE_SPEED; 0 and 1 are both horizontal."""
+
+KINDS = {
+    commands.NAV_TAKEOFF: kinds.TAKEOFF,
+    commands.NAV_WAYPOINT: kinds.WAYPOINT,
+    commands.NAV_LOITER_UNLIM: kinds.LOITER_UNLIMITED,
+    commands.NAV_LOITER_TURNS: kinds.LOITER_TURNS,
+    commands.NAV_LOITER_TIME: kinds.LOITER_TIME,
+    commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
+    commands.NAV_LAND: kinds.LAND,
+    commands.NAV_DELAY: kinds.DELAY,
+}
+OTHERS = (
+    commands.CONDITION_DELAY,
+    commands.CONDITION_DISTANCE,
+    commands.CONDITION_YAW,
+    commands.DO_JUMP,
+    commands.DO_CHANGE_SPEED,
+    commands.DO_SET_HOME,
+    commands.DO_SET_ROI_LOCATION,
+    commands.DO_SET_ROI_NONE,
+    commands.DO_SET_ROI,
+)
+LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
+SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME)
+
+
+class CopterCommands(Commands):
+    """Take-off, legs, circles, return and landing; heading and region of interest."""
+
+    auto = AUTO
+    taken = frozenset((*KINDS, *OTHERS))
+    planner = PLANNER
+
+    def enter(self, v: Any) -> None:
+        """Speeds are the parameters' again."""
+        nav = v.autopilot.modes.nav
+        nav.speed_ne = nav.speed_up = nav.speed_down = 0.0
+        waypoint.stop(v.autopilot)
+
+    def reset(self, v: Any) -> None:
+        """Forget the legs."""
+        waypoint.stop(v.autopilot)
+
+    def give(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+        """Make ``item`` the command under way."""
+        ap, time_us = v.autopilot, int(v.time_us)
+        nav = ap.modes.nav
+        kind = KINDS[item.command]
+        auto.face(v, kind)
+        here, _ = PLANNER.origin_of_next(ap, time_us)
+        if kind in LEGS:
+            PLANNER.begin(ap, time_us, point(ap, item, here))
+        elif kind == kinds.DELAY:
+            PLANNER.begin(ap, time_us, here)
+        elif kind == kinds.LOITER_TURNS:
+            _circle(ap, time_us, item, here)
+        elif kind == kinds.LAND and not item.no_place:
+            north, east, _ = point(ap, item, here)
+            PLANNER.begin(ap, time_us, (north, east, here[2]))  # at the present height
+        else:
+            end_path(nav)
+            height = down(ap, item) if kind == kinds.TAKEOFF else here[2]
+            nav.target[0], nav.target[1], nav.target[2] = here[0], here[1], height
+        write(nav, kind, seq)
+        nav.circle_running = 0
+        nav.has_place = 0 if item.no_place else 1
+        if kind in (kinds.WAYPOINT, kinds.LOITER_TIME):
+            nav.delay = whole_seconds(item)
+        elif kind == kinds.DELAY:
+            nav.delay = max(item.p1, 0.0)
+        elif kind == kinds.LOITER_TURNS:
+            nav.turns = max(item.p1, 0.0)
+        return []
+
+    def look_ahead(self, v: Any, item: MissionItem | None) -> None:
+        """Plan the leg to the following command when the vehicle flies through without a stop.
+
+        The current one must be a waypoint without delay, the next one a leg to a place.
+        """
+        ap = v.autopilot
+        nav = ap.modes.nav
+        if nav.command_kind != kinds.WAYPOINT or nav.delay > 0.0:
+            return
+        through = item is not None and KINDS[item.command] in LEGS
+        corner = end(nav.current)
+        PLANNER.look_ahead(ap, point(ap, item, corner) if item is not None and through else None)
+
+    def completed(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+        """Some say so."""
+        return [Text(INFO, f"Reached command #{seq}")] if item.command in SAYS_REACHED else []
+
+    def finish(self, v: Any) -> list[Note]:
+        """AUTO disarms on the ground and stays where it would come to rest in the air."""
+        ap, time_us = v.autopilot, int(v.time_us)
+        nav = ap.modes.nav
+        if ap.arming.landed != 0:
+            write_none(nav)
+        else:
+            PLANNER.begin(ap, time_us, PLANNER.origin_of_next(ap, time_us)[0])
+            write(nav, kinds.LOITER_UNLIMITED, int(nav.command_seq))
+        nav.circle_running = 0
+        return []
+
+    def run(self, v: Any, item: MissionItem) -> list[Note]:
+        """Speeds and where to look; the rest is common."""
+        ap = v.autopilot
+        if item.command == commands.DO_CHANGE_SPEED:
+            self.change_speed(v, int(item.p1), item.p2)
+        elif item.command == commands.CONDITION_YAW:
+            direction = int(math.copysign(1.0, item.p3)) if item.p3 else 0
+            auto_yaw.fixed(v, math.radians(item.p1), math.radians(item.p2), direction, 1 if item.p4 > 0.0 else 0)
+            ap.modes.nav.condition_kind = kinds.CONDITION_YAW
+        elif item.command in (commands.DO_SET_ROI, commands.DO_SET_ROI_LOCATION):
+            set_roi(v, item)
+        elif item.command == commands.DO_SET_ROI_NONE:
+            auto_yaw.set_default(v, 0)
+        return super().run(v, item)
+
+    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+        """Limits of the legs from now on, until AUTO is left."""
+        if not is_speed(speed):
+            return False
+        nav = v.autopilot.modes.nav
+        if kind == CLIMB_SPEED:
+            nav.speed_up = speed
+        elif kind == DESCENT_SPEED:
+            nav.speed_down = speed
+        else:
+            nav.speed_ne = speed
+        PLANNER.change_speed(v.autopilot)
+        return True
+
+
+def set_roi(v: Any, item: MissionItem) -> None:
+    """Keep the nose on a place; a place of zeros ends that."""
+    if item.no_place and item.z == 0.0:
+        auto_yaw.set_default(v, 0)
+        return
+    here = tuple(float(x) for x in v.autopilot.estimate.pos)
+    auto_yaw.look_at(v, *point(v.autopilot, item, here))  # type: ignore[arg-type]
+
+
+def _circle(ap: Any, time_us: int, item: MissionItem, here: Point) -> None:
+    """The leg to the nearest point of the circle, none when it is near."""
+    nav = ap.modes.nav
+    centre = point(ap, item, here)
+    radius = item.p3 if item.p3 != 0.0 else 0.01 * float(ap.params.CIRCLE_RADIUS)
+    radius = min(max(radius, -WIDEST), WIDEST)
+    n, e = float(ap.estimate.pos[0]) - centre[0], float(ap.estimate.pos[1]) - centre[1]
+    away = math.hypot(n, e)
+    if away < 0.01:  # from the centre straight back, so that it looks ahead
+        yaw = float(ap.estimate.euler[2]) + math.pi
+        n, e, away = math.cos(yaw), math.sin(yaw), 1.0
+        distance = abs(radius)
+    else:
+        distance = abs(away - abs(radius))
+    edge = (centre[0] + n / away * abs(radius), centre[1] + e / away * abs(radius), centre[2])
+    if max(distance, abs(centre[2] - here[2])) > EDGE:
+        PLANNER.begin(ap, time_us, edge)
+    else:
+        PLANNER.begin(ap, time_us, here)
+        nav.reached = 1
+    nav.circle_radius = radius
+    for k in range(3):
+        nav.circle_centre[k] = centre[k]
+        nav.target[k] = centre[k]
+
+
+COMMANDS = CopterCommands()

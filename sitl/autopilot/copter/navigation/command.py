@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Flies the navigation commands that follow legs and circles.
+
+AUTO calls ``begin`` when ``nav.command_count`` changes, ``run`` on every tick for the kinds that ``follows_path``, and
+``navigation.command.complete`` when it finds a take-off, landing or return done. ``run`` says so itself.
+"""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+from ...navigation.command import complete
+from ...navigation.state import DELAY, LOITER_TIME, LOITER_TURNS, LOITER_UNLIMITED, WAYPOINT
+from . import circle, waypoint
+
+
+@law
+def follows_path(kind):
+    """1 for the kinds that ``run`` flies."""
+    return 1 if kind in (WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LOITER_TURNS, DELAY) else 0
+
+
+@law
+def begin(ap, time_us):
+    """Begin the command that the shell has written."""
+    nav = ap.modes.nav
+    nav.completed = 0
+    nav.since_us = 0
+    nav.circle_running = 0
+    waypoint.start(ap, time_us)
+
+
+@law
+def run(ap, time_us):
+    """One tick of a command that follows a path: writes position targets.
+
+    1 when it is done (and was said so).
+    """
+    nav = ap.modes.nav
+    kind = nav.command_kind
+    if kind == LOITER_TURNS and (nav.circle_running != 0 or nav.reached != 0):
+        if nav.circle_running == 0:
+            circle.start(ap)
+        nav.active_us = time_us
+        if circle.advance(ap) >= nav.turns:
+            complete(ap, time_us)
+    elif waypoint.advance(ap, time_us) != 0:
+        if nav.since_us == 0:
+            nav.since_us = time_us
+        waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
+        if waited and kind in (WAYPOINT, LOITER_TIME, DELAY):
+            complete(ap, time_us)
+    return int(nav.completed)

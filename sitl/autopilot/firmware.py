@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the shell needs to know of a firmware. The copter's and the rover's are in their folders."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .mission.commands import Commands
+from .params.table import Table
+
+
+@dataclass(frozen=True)
+class Firmware:
+    """One of the firmwares that the autopilot is."""
+
+    name: str
+    """"copter" or "rover"."""
+    table: Table
+    """Its parameters."""
+    dtype: np.dtype[Any]
+    """Its record: the field ``autopilot`` of a vehicle."""
+    mode_names: Mapping[int, str]
+    """ArduPilot's custom mode number -> name."""
+    power_on: Callable[[Any], None]
+    """Starts its rooms on the cleared record of a vehicle whose parameters are set."""
+    commands: Commands
+    """What its missions may hold and how that is run."""

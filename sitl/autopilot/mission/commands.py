@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a firmware's missions may hold and how each item is run; ``mission`` of each firmware fills it in."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from typing import Any
+
+from ..navigation.planner import Planner
+from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
+from . import item as commands
+from .item import MissionItem
+from .notes import Note
+from .place import set_home
+
+
+class Commands(ABC):
+    """The commands of a firmware's missions. All state is in the record view ``v`` of the vehicle."""
+
+    auto: int
+    """Number of the mode that runs missions."""
+    taken: frozenset[int]
+    """MAV_CMDs that missions may hold."""
+    planner: Planner
+    """Plans the legs of missions and of modes."""
+
+    @abstractmethod
+    def enter(self, v: Any) -> None:
+        """AUTO was entered: limits that an earlier mission set and its legs are forgotten."""
+
+    @abstractmethod
+    def reset(self, v: Any) -> None:
+        """The mission starts again from its first item: legs are forgotten."""
+
+    @abstractmethod
+    def give(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+        """Make a navigation command the one under way (``navigation.state``: ``command_*``), with the legs it needs."""
+
+    @abstractmethod
+    def look_ahead(self, v: Any, item: MissionItem | None) -> None:
+        """The navigation command after the one under way, None at the end: plan a leg that is joined without a stop."""
+
+    def arrived(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+        """The command under way has come to its place and waits there (COMMAND_ARRIVED)."""
+        return []
+
+    def completed(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+        """The command under way is done."""
+        return []
+
+    @abstractmethod
+    def finish(self, v: Any) -> list[Note]:
+        """The mission has come to its end."""
+
+    def run(self, v: Any, item: MissionItem) -> list[Note]:
+        """Run a do-command, or start a condition: then ``nav.condition_kind`` is not zero until it is met."""
+        nav = v.autopilot.modes.nav
+        if item.command == commands.CONDITION_DELAY:
+            nav.condition_kind = CONDITION_DELAY
+            nav.condition_until_us = int(v.time_us) + round(min(max(item.p1, 0.0), 1e9) * 1e6)
+        elif item.command == commands.CONDITION_DISTANCE:
+            nav.condition_kind = CONDITION_DISTANCE
+            nav.condition_distance = item.p1
+        elif item.command == commands.DO_SET_HOME:
+            set_home(v.autopilot, item)
+        return []
+
+    @abstractmethod
+    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+        """DO_CHANGE_SPEED (SPEED_TYPE, m/s); whether it was taken."""
+
+
+def whole_seconds(item: MissionItem) -> float:
+    """The delay in parameter 1 as ArduPilot stores it [s]."""
+    return float(int(min(max(item.p1, 0.0), 65535.0)))
+
+
+def is_speed(speed: float) -> bool:
+    """Whether a limit can be set to it."""
+    return 0.0 < speed < math.inf

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rover's firmware: what only a ground vehicle has."""

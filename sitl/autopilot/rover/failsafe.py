@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Failsafes: radio and ground station (FS_ACTION after FS_TIMEOUT), battery, estimator.
+
+FAILSAFE (which, 1 on or 0 off) tells the shell. The pilot's sticks count as centred as soon as the radio is lost.
+"""
+
+from __future__ import annotations
+
+from ...core.kernels import law
+from .. import failsafe_checks
+from ..arming_checks import BY_BATTERY_FAILSAFE
+from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, tell
+from ..radio import stick_channel
+from . import motor_test
+from .failsafe_actions import act
+from .modes import set_mode
+from .modes.numbers import (
+    AUTO,
+    HOLD,
+    REASON_BATTERY_FAILSAFE,
+    REASON_EKF_FAILSAFE,
+    REASON_FAILSAFE,
+    RTL,
+    requires_position,
+)
+
+CONTINUES, VARIANCE = 6, 7
+"""More kinds of FAILSAFE: AUTO goes on; the estimate is bad (said in all modes)."""
+
+# Bits of ``modes.links``
+BIT_RADIO, BIT_GCS = 1, 2
+
+_ENABLED_BUT_IN_AUTO = 2.0
+"""FS_THR_ENABLE, FS_GCS_ENABLE: missions go on."""
+_ACTIVE_IN_HOLD = 1
+"""FS_OPTIONS"""
+EKF_COUNT = 10
+"""Tenths of a second of bad estimate that count."""
+EKF_NOTHING, EKF_HOLD, EKF_REPORT = 0, 1, 2
+"""FS_EKF_ACTION"""
+
+_TEXTS = {
+    (CONTINUES, True): "Failsafe - Continuing Auto Mode",
+    (VARIANCE, True): "EKF variance",
+    (EKF, True): "EKF failsafe",
+    (EKF, False): "EKF failsafe cleared",
+}
+
+
+def text(which: int, on: bool) -> str | None:
+    """Status text of a FAILSAFE event, None when there is none."""
+    return _TEXTS.get((which, on)) or failsafe_checks.text(which, on)
+
+
+@law
+def update_radio(v):
+    """After each frame of the receiver."""
+    ap = v.autopilot
+    p = ap.params
+    pulse = ap.rc.channels[stick_channel(p, 2) - 1]
+    heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver != 0
+    bad = p.FS_THR_ENABLE > 0.0 and heard and (ap.rc.receiver_ok == 0 or pulse < p.FS_THR_VALUE)
+    ap.modes.failsafe.radio = 1 if bad else 0
+    watch(v, BIT_RADIO, bad)
+
+
+@law
+def update_gcs(v):
+    """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
+    lost = is_gcs_lost(v)
+    v.autopilot.modes.failsafe.gcs = 1 if lost else 0
+    watch(v, BIT_GCS, lost)
+
+
+@law
+def kind_of(bit):
+    """FAILSAFE's name of a link."""
+    return RADIO if bit == BIT_RADIO else GCS
+
+
+@law
+def watch(v, bit, bad):
+    """Note that a link is there or not; a loss that lasts is acted upon once, whichever link it is."""
+    ap = v.autopilot
+    links = ap.modes.links
+    before = int(links.bad)
+    links.bad = (before | bit) if bad else (before & ~bit)
+    if before == 0 and links.bad != 0:
+        links.since_us = v.time_us
+    if links.acted != 0 and links.bad == 0:
+        tell(v, kind_of(bit), 0)
+    links.acted = int(links.acted) & int(links.bad)
+    if links.acted != 0 or not bad or v.time_us - links.since_us <= ap.params.FS_TIMEOUT * 1e6:
+        return
+    mode = ap.modes.number
+    in_hold = mode == HOLD and (int(ap.params.FS_OPTIONS) & _ACTIVE_IN_HOLD) == 0
+    if mode != RTL and not in_hold and not motor_test.is_running(ap):
+        links.acted = links.bad
+        begin(v, bit)
+
+
+@law
+def begin(v, bit):
+    """FS_ACTION, unless the mission may go on."""
+    ap = v.autopilot
+    p = ap.params
+    tell(v, kind_of(bit), 1)
+    for k in range(18):
+        ap.rc.override[k] = 0
+    enabled = p.FS_THR_ENABLE if bit == BIT_RADIO else p.FS_GCS_ENABLE
+    if ap.modes.number == AUTO and enabled == _ENABLED_BUT_IN_AUTO:
+        tell(v, CONTINUES, 1)
+    else:
+        act(v, int(p.FS_ACTION), REASON_FAILSAFE, BY_BATTERY_FAILSAFE)
+
+
+@law
+def update_battery(v):
+    """Ten times a second: act on a battery that has become low or critical."""
+    p = v.autopilot.params
+    level = battery_fell_to(v)
+    if level != 0:
+        choice = int(p.BATT_FS_CRT_ACT) if level == 2 else int(p.BATT_FS_LOW_ACT)
+        act(v, choice, REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
+
+
+@law
+def update_ekf(v):
+    """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION).
+
+    Only once the estimate has been good: a rover may drive without a position.
+    """
+    ap = v.autopilot
+    fs = ap.modes.failsafe
+    if ap.estimate.origin_set == 0:
+        return
+    bad = is_estimate_bad(v, 0.0)
+    if ap.params.FS_EKF_THRESH <= 0.0 or ap.arming.armed == 0:
+        fs.ekf_count = 0
+        clear_ekf(v)
+        return
+    if not bad:
+        ap.modes.ekf_was_good = 1
+    if ap.modes.ekf_was_good == 0:
+        return
+    if bad and fs.ekf_count < EKF_COUNT:
+        fs.ekf_count += 1
+        if fs.ekf_count >= EKF_COUNT and fs.ekf == 0:
+            fs.ekf = 1
+            tell(v, VARIANCE, 1)
+            begin_ekf(v)
+    elif not bad and fs.ekf_count > 0:
+        fs.ekf_count -= 1
+        if fs.ekf_count == 0:
+            clear_ekf(v)
+
+
+@law
+def clear_ekf(v):
+    """The failsafe is over."""
+    fs = v.autopilot.modes.failsafe
+    if fs.ekf != 0:
+        fs.ekf = 0
+        tell(v, EKF, 0)
+
+
+@law
+def begin_ekf(v):
+    """Act on the bad estimate in a mode that needs a good one."""
+    ap = v.autopilot
+    action = int(ap.params.FS_EKF_ACTION)
+    if not requires_position(int(ap.modes.number)) or action == EKF_NOTHING:
+        return
+    if action != EKF_REPORT:
+        set_mode.request(v, HOLD, REASON_EKF_FAILSAFE)
+    tell(v, EKF, 1)

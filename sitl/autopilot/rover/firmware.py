@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rover firmware: its main loop, and what the shell needs to know of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...core.kernels import law
+from ..estimation.update import update as estimate
+from ..firmware import Firmware
+from .control.init import init as init_control
+from .control.update import update as control
+from .mission import COMMANDS
+from .modes.init import init as init_modes
+from .modes.numbers import NAMES
+from .modes.update import update as decide
+from .state import AUTOPILOT_DTYPE
+from .table import TABLE
+
+PERIOD_TICKS = 8
+"""Modes and control run at 50 Hz (SCHED_LOOP_RATE), the estimator at every tick of 400 Hz."""
+
+
+@law
+def update(fleet, index):
+    """One tick of vehicle ``index``, from ``sensors`` to ``actuators``; 400 times a simulated second."""
+    estimate(fleet, index)
+    if fleet[index].tick % PERIOD_TICKS == 0:
+        decide(fleet, index)
+        control(fleet, index)
+
+
+def power_on(v: Any) -> None:
+    """Start the rooms of the firmware on a cleared record whose parameters are set."""
+    init_control(v.autopilot)
+    init_modes(v)
+
+
+FIRMWARE = Firmware("rover", TABLE, AUTOPILOT_DTYPE, NAMES, power_on, COMMANDS)

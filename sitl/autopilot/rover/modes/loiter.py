@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""LOITER: stops and stays; drives back when it has drifted further than LOIT_RADIUS (LOIT_TYPE, LOIT_SPEED_GAIN)."""
+
+from __future__ import annotations
+
+import math
+
+from ....core.kernels import law
+from ....core.rotations import constrain, wrap_pi
+from ..control import speed
+from ..navigation import waypoint
+from . import drive
+from .numbers import ACCEPTED, INIT_FAILED
+
+EITHER_WAY, FORWARDS, BACKWARDS = 0, 1, 2
+"""LOIT_TYPE"""
+
+
+@law
+def start(v):
+    """Enter; needs an origin."""
+    ap = v.autopilot
+    if ap.estimate.origin_set == 0:
+        return INIT_FAILED
+    loiter = ap.modes.loiter
+    loiter.place[0], loiter.place[1] = waypoint.stopping_point(ap)
+    known, forward = speed.forward_speed(v)
+    loiter.speed = forward if known != 0 else 0.0
+    loiter.heading = ap.estimate.euler[2]
+    loiter.distance = 0.0
+    return ACCEPTED
+
+
+@law
+def aim(v):
+    """Heading and speed back to the place, from beyond LOIT_RADIUS."""
+    ap = v.autopilot
+    p = ap.params
+    loiter = ap.modes.loiter
+    wanted = min((loiter.distance - p.LOIT_RADIUS) * p.LOIT_SPEED_GAIN, float(p.WP_SPEED))
+    heading = math.atan2(loiter.place[1] - ap.estimate.pos[1], loiter.place[0] - ap.estimate.pos[0])
+    error = wrap_pi(heading - float(ap.estimate.euler[2]))
+    behind = abs(error) > 0.5 * math.pi
+    if p.LOIT_TYPE == BACKWARDS or (behind and p.LOIT_TYPE == EITHER_WAY):
+        heading = wrap_pi(heading + math.pi)
+        error = wrap_pi(heading - float(ap.estimate.euler[2]))
+        wanted = -wanted
+    loiter.heading = heading
+    # slower while it still has to turn: half the speed at a right angle
+    loiter.speed = wanted * (1.0 - 0.5 * constrain(abs(error) / (0.5 * math.pi), 0.0, 1.0))
+
+
+@law
+def run(v):
+    """One period."""
+    ap = v.autopilot
+    loiter = ap.modes.loiter
+    north = float(loiter.place[0]) - float(ap.estimate.pos[0])
+    east = float(loiter.place[1]) - float(ap.estimate.pos[1])
+    loiter.distance = math.sqrt(north * north + east * east)
+    if loiter.distance <= ap.params.LOIT_RADIUS:
+        loiter.speed = speed.desired_speed_accel_limited(ap, 0.0)
+    else:
+        aim(v)
+    drive.to_heading(v, float(loiter.heading))
+    speed.drive(v, float(loiter.speed))

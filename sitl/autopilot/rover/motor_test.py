@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motor test (MAV_CMD_DO_MOTOR_TEST): one output works for a while, all others rest.
+
+As in ArduRover the vehicle is armed for it, with all arming checks, and radio, GCS and crash checks wait meanwhile.
+``control.motors`` drives the output, the modes stand aside. The test ends by itself, or with a disarming.
+"""
+
+from __future__ import annotations
+
+from ...core.kernels import law
+from ..events import MOTOR_TEST, emit
+from .arming import disarm, try_arm
+from .control.motors import TEST_RIGHT, TEST_THROTTLE, is_skid
+
+BY_MOTOR_TEST = 3
+"""Method of arming and disarming (ArduPilot's number)."""
+LONGEST_S = 30.0
+LARGEST_PULSE = 2200  # [us]
+
+# Answers of start()
+OK = 0
+NOT_ARMABLE = 1
+BAD_MOTOR = 2
+BAD_THROTTLE = 3
+BAD_TIME = 4
+
+
+@law
+def start(v, motor, throttle, pulse, seconds):
+    """Drive an output: motor 1 throttle, 2 steering, 3 left, 4 right (MOTOR_TEST_ORDER). OK, or why not.
+
+    Args:
+        v: the vehicle.
+        motor: 1 .. 4; left and right only of a skid-steered vehicle, throttle and steering only of a car.
+        throttle: -1 .. 1.
+        pulse: pulse to give instead [us], 0 for ``throttle``.
+        seconds: at most 30 are given.
+    """
+    ap = v.autopilot
+    motors = ap.control.motors
+    if motor < TEST_THROTTLE or motor > TEST_RIGHT or is_skid(ap) != (motor > 2):
+        return BAD_MOTOR
+    if not -1.0 <= throttle <= 1.0 or pulse < 0 or pulse > LARGEST_PULSE:
+        return BAD_THROTTLE
+    if not seconds >= 0.0:
+        return BAD_TIME
+    if motors.test_motor == 0:
+        if ap.arming.armed == 0 and try_arm(v, BY_MOTOR_TEST, 0) != 0:
+            return NOT_ARMABLE
+        emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor))
+    motors.test_motor = motor
+    motors.test_value = throttle
+    motors.test_pulse = pulse
+    motors.test_until_us = v.time_us + int(min(seconds, LONGEST_S) * 1e6)
+    return OK
+
+
+@law
+def is_running(ap):
+    """Whether a test is under way."""
+    return ap.control.motors.test_motor != 0
+
+
+@law
+def update(v):
+    """Every period, behind the mode: keep the mode's hands off the motors; end in time."""
+    ap = v.autopilot
+    motors = ap.control.motors
+    if motors.test_motor == 0:
+        return
+    motors.throttle = 0.0
+    motors.steering = 0.0
+    if v.time_us >= motors.test_until_us or ap.arming.armed == 0:
+        motors.test_motor = 0
+        motors.test_pulse = 0
+        emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
+        disarm(v, BY_MOTOR_TEST, 1)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the rover says of the core's events: ArduRover's status texts with their severities (shell side)."""
+
+from __future__ import annotations
+
+from .. import events
+from ..arming_checks import BY_MAVLINK
+from ..arming_checks import texts as arming_texts
+from ..failsafe_checks import EKF
+from . import failsafe, smart_rtl_path
+from .modes import circle
+from .modes.numbers import ACCEPTED, NO_MISSION, refusal_texts
+
+EMERGENCY, CRITICAL, WARNING, NOTICE, INFO = 0, 2, 4, 5, 6
+"""MAV_SEVERITY"""
+
+_PATH_LOST = {smart_rtl_path.BAD_POSITION: "bad position", smart_rtl_path.FULL: "buffer full"}
+_CIRCLE = {
+    circle.SPEED_LIMITED: "Circle: max speed is {:4.1f}",
+    circle.RADIUS_ENLARGED: "Circle: radius increased to TURN_RADIUS ({:4.1f})",
+    circle.FELL_BEHIND: "Circle: cannot keep up, slowing to {:.1f}m/s",
+}
+_PLAIN = {
+    events.ARMED: (INFO, "Throttle armed"),
+    events.DISARMED: (INFO, "Throttle disarmed"),
+    events.GUIDED_TIMEOUT: (WARNING, "target not received last 3secs, stopping"),
+    events.DESTINATION_REACHED: (INFO, "Reached destination"),
+    events.CRASH_HOLD: (EMERGENCY, "Crash: Going to HOLD"),
+}
+
+
+def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
+    """(MAV_SEVERITY, text) of what is said of an event; empty for most.
+
+    ARMING_REFUSED by MAVLink says nothing here: ``arming.arm`` has given those texts already.
+    """
+    if code in _PLAIN:
+        return [_PLAIN[code]]
+    if code == events.MODE_REFUSED:
+        return _refusal(int(a), int(b))
+    if code == events.ARMING_REFUSED and int(b) != BY_MAVLINK:
+        return [(CRITICAL, text) for text in arming_texts(int(a), "Arm: ")]
+    if code == events.FAILSAFE:
+        return _failsafe(int(a), bool(b))
+    if code == events.PATH_LOST:
+        return [(WARNING, f"SmartRTL deactivated: {_PATH_LOST[int(a)]}")]
+    if code == events.CIRCLE_ADAPTED:
+        return [(WARNING, _CIRCLE[int(a)].format(b))]
+    return []
+
+
+def _refusal(number: int, cause: int) -> list[tuple[int, str]]:
+    said = refusal_texts(number, cause)
+    if cause == ACCEPTED or cause != NO_MISSION:
+        return [(WARNING, text) for text in said]
+    return [(NOTICE, said[0]), *((WARNING, text) for text in said[1:])]
+
+
+def _failsafe(which: int, on: bool) -> list[tuple[int, str]]:
+    text = failsafe.text(which, on)
+    if text is None:
+        return []
+    if which in (EKF, failsafe.VARIANCE):
+        return [(CRITICAL, text)]
+    return [(WARNING if on else INFO, text)]
