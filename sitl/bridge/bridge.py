@@ -10,19 +10,19 @@ import struct
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from ..autopilot.params.table import BY_NAME as PARAMETERS_BY_NAME
 from .autopilot_api import Autopilot
 from .channel import COMPONENT, Channel, ChannelState
-from .copter_autopilot import CopterAutopilot
 from .dialect import MessageType, message
 from .frame import Frame
 from .links.link import Link
 from .places import Places
+from .profile import load
 from .record_reader import RecordReader
 from .services import ALL_SERVICES
 from .services.events import EventService
 from .services.service import Handler, Service
-from .services.streams import GROUPS, StreamService
+from .services.setpoints import SetpointService
+from .services.streams import StreamService
 from .stream_table import NEVER
 from .switchboard import Switchboard
 from .telemetry import Build, Context, build_all
@@ -53,9 +53,10 @@ class Bridge:
         self.vehicle = vehicle
         self.epoch_us = epoch_us
         self.reader = RecordReader(vehicle.fleet, vehicle.index)
+        self.profile = load(vehicle.firmware.name)
         self._given_autopilot = autopilot
-        self.autopilot: Autopilot = autopilot if autopilot is not None else CopterAutopilot(vehicle)
-        self._context = Context(self.reader, vehicle, epoch_us)
+        self.autopilot: Autopilot = autopilot if autopilot is not None else self.profile.autopilot(vehicle)
+        self._context = Context(self.reader, vehicle, self.profile, epoch_us)
         self.telemetry = build_all(self._context)
         self._left_out: set[str] = set()
         self.board = Switchboard(
@@ -72,7 +73,7 @@ class Bridge:
         self._handlers: dict[int, tuple[MessageType, int, Handler]] = {}
         self.services: dict[type, Service] = {}
         for kind in ALL_SERVICES:
-            service = kind(self)
+            service = self.profile.set_points(self) if kind is SetpointService else kind(self)
             self.services[kind] = service
             for name, handler in service.handlers().items():
                 self._add_handler(name, handler)
@@ -121,7 +122,7 @@ class Bridge:
         """Present value of a parameter, None when the firmware has none of this name."""
         read = self._parameters.get(name)
         if read is None:
-            if name not in PARAMETERS_BY_NAME:
+            if name not in self.vehicle.firmware.table:
                 return None
             read = self._parameters[name] = self.reader.field(f"autopilot.params.{name}")
         return float(read())
@@ -155,7 +156,7 @@ class Bridge:
         Raises:
             KeyError: there is no such group.
         """
-        groups = {ending: number for number, (ending, _) in GROUPS.items()}
+        groups = {ending: number for number, (ending, _) in self.profile.groups.items()}
         for channel in self.channels:
             if channel.peer in link.peers:
                 for name, rate in rates_hz.items():

@@ -3,23 +3,23 @@
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega
 
+from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import COMMANDS as MISSION_COMMANDS
 from ..core.records import view
-from ..vehicle import VEHICLE_DTYPE
 from .bridge import Bridge
 from .dialect import message
+from .profile import NAMES, Profile, load
 from .services import ALL_SERVICES
-from .services.commands import TABLE as COMMANDS
-from .services.modes import MODES
-from .services.streams import GROUPS, RATE_PREFIX
+from .services.streams import RATE_PREFIX
 from .telemetry.builder import builders
 
 
@@ -29,6 +29,11 @@ def page(text: str) -> str:
     for name, table in tables.items():
         text = text.replace(f"{{{name}}}", table())
     return text
+
+
+def profiles() -> dict[str, Profile]:
+    """Every firmware's profile by the firmware's name."""
+    return {name: load(name) for name in NAMES}
 
 
 def first_sentence(thing: Any) -> str:
@@ -47,13 +52,31 @@ def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> str:
     return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
 
 
+def _by_firmware(tables: dict[str, Any]) -> Iterable[tuple[Any, Any, str]]:
+    """(key, value, whose) of tables by firmware; what all of them have alike comes once, as "both"."""
+    for key in sorted({key for table in tables.values() for key in table}):
+        owners: dict[int, list[str]] = {}
+        for name, table in tables.items():
+            if key in table:
+                owners.setdefault(id(table[key]), []).append(name)
+        for names in owners.values():
+            yield key, tables[names[0]][key], "both" if len(names) == len(NAMES) else ", ".join(names)
+
+
 def commands() -> str:
     """Commands by number."""
     rows = []
-    for number, entry in sorted(COMMANDS.items()):
-        what = re.sub(r"^[\d, ]+(\(old\))?: *", "", first_sentence(entry.run))
-        rows.append((number, command_name(number), "INT only" if entry.int_only else "LONG, INT", what))
-    return _table(("number", "command", "as", "what it does"), rows)
+    tables = {name: {n: e.run for n, e in profile.commands.items()} for name, profile in profiles().items()}
+    for number, run, whose in _by_firmware(tables):
+        entry = next(p.commands[number] for p in profiles().values() if number in p.commands)
+        what = re.sub(r"^[\d, ]+(\(old\))?: *", "", first_sentence(run))
+        rows.append((number, command_name(number), whose, "INT only" if entry.int_only else "LONG, INT", what))
+    return _table(("number", "command", "vehicle", "as", "what it does"), rows)
+
+
+def _firmware(name: str) -> Firmware:
+    found: Firmware = importlib.import_module(f"sitl.autopilot.{name}.firmware").FIRMWARE
+    return found
 
 
 class _Nobody:
@@ -61,15 +84,16 @@ class _Nobody:
 
     index, time_us = 0, 0
 
-    def __init__(self) -> None:
-        self.fleet = np.zeros(1, VEHICLE_DTYPE)
+    def __init__(self, name: str) -> None:
+        self.firmware = _firmware(name)
+        self.fleet = np.zeros(1, getattr(importlib.import_module("sitl.vehicle"), f"{name.upper()}_DTYPE"))
         self.v = view(self.fleet, 0)
 
 
-def handled() -> dict[str, type]:
-    """Messages that a service acts on, by name."""
-    services = Bridge(_Nobody()).services  # type: ignore[arg-type]
-    return {name: kind for kind, service in services.items() for name in service.handlers()}
+def handled(name: str = "copter") -> dict[str, type]:
+    """Messages that a service acts on, by name; every firmware has the same."""
+    services = Bridge(_Nobody(name)).services  # type: ignore[arg-type]
+    return {message: kind for kind, service in services.items() for message in service.handlers()}
 
 
 def received() -> str:
@@ -82,11 +106,18 @@ def received() -> str:
 
 def sent() -> str:
     """Telemetry by name: stream group and content."""
-    group_of = {name: f"{RATE_PREFIX}{ending}" for ending, names in GROUPS.values() for name in names}
+    group_of = {
+        (vehicle, name): f"{RATE_PREFIX}{ending}"
+        for vehicle, profile in profiles().items()
+        for ending, names in profile.groups.values()
+        for name in names
+    }
     rows = []
-    for name, builder in sorted(builders().items()):
-        rows.append((message(name).id, name, group_of.get(name, "-"), _content(builder, name)))
-    return _table(("id", "message", "stream group", "content"), rows)
+    for name, builder, whose in _by_firmware({vehicle: builders(p) for vehicle, p in profiles().items()}):
+        vehicle = NAMES[0] if whose == "both" else whose
+        group = group_of.get((vehicle, name), "-")
+        rows.append((message(name).id, name, whose, group, _content(builder, name)))
+    return _table(("id", "message", "vehicle", "stream group", "content"), rows)
 
 
 def _content(builder: Callable[..., Any], name: str) -> str:
@@ -95,10 +126,15 @@ def _content(builder: Callable[..., Any], name: str) -> str:
 
 def modes() -> str:
     """Flight modes by number."""
-    return _table(("number", "mode"), [(number, name) for number, name, *_ in MODES])
+    tables = {vehicle: {mode.number: mode.name for mode in p.modes} for vehicle, p in profiles().items()}
+    numbers = sorted({number for table in tables.values() for number in table})
+    return _table(
+        ("number", *tables), [(number, *(table.get(number, "-") for table in tables.values())) for number in numbers]
+    )
 
 
 def missions() -> str:
     """Mission items by number."""
-    rows = [(n, command_name(n), "yes" if c.is_nav else "no") for n, c in sorted(MISSION_COMMANDS.items())]
-    return _table(("number", "command", "flown"), rows)
+    tables = {name: {n: MISSION_COMMANDS[n] for n in _firmware(name).commands.taken} for name in NAMES}
+    rows = [(n, command_name(n), whose, "yes" if c.is_nav else "no") for n, c, whose in _by_firmware(tables)]
+    return _table(("number", "command", "vehicle", "navigation"), rows)

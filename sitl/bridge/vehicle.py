@@ -7,15 +7,19 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..autopilot.firmware import Firmware
+
 
 class Vehicle(Protocol):
     """One simulated vehicle."""
 
     fleet: np.ndarray[Any, Any]
-    """Array of records (``sitl.vehicle.VEHICLE_DTYPE``); its memory stays in place for the vehicle's life."""
+    """Array of records (``sitl.vehicle``); its memory stays in place for the vehicle's life."""
     index: int
     v: Any
     """Record view of ``fleet[index]`` with attribute access."""
+    firmware: Firmware
+    """What flies it: its parameters, modes and name."""
 
     @property
     def time_us(self) -> int:

@@ -2,10 +2,16 @@
 from __future__ import annotations
 
 import pytest
-from fakes import Bench
+from fakes import Bench, FakeRover
 
 
 @pytest.fixture
 def bench() -> Bench:
-    """A fresh bench; no time has passed."""
+    """A fresh bench with a copter; no time has passed."""
     return Bench()
+
+
+@pytest.fixture
+def rover_bench() -> Bench:
+    """The same with a rover."""
+    return Bench(FakeRover())

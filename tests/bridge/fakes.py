@@ -11,13 +11,15 @@ from typing import Any
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from sitl.autopilot.copter.firmware import FIRMWARE as COPTER
+from sitl.autopilot.firmware import Firmware
 from sitl.autopilot.mission.notes import CurrentChanged, Text
 from sitl.autopilot.mission.validate import check_all
-from sitl.autopilot.params import table
+from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
 from sitl.core import records
-from sitl.vehicle import VEHICLE_DTYPE
+from sitl.vehicle import COPTER_DTYPE, ROVER_DTYPE
 
 TICK_US = 2500
 HOME = (-353632620, 1491652370, 584.0)
@@ -26,13 +28,16 @@ HOME = (-353632620, 1491652370, 584.0)
 class FakeVehicle:
     """A record whose clock the test advances."""
 
+    firmware: Firmware = COPTER
+    dtype: Any = COPTER_DTYPE
+
     def __init__(self) -> None:
-        self.fleet = np.zeros(2, VEHICLE_DTYPE)
+        self.fleet = np.zeros(2, self.dtype)
         self.index = 1
         self.v = records.view(self.fleet, 1)
         self.reboots = 0
         self.before_boot_us = 0
-        table.set_defaults(self.v.autopilot.params)
+        self.firmware.table.set_defaults(self.v.autopilot.params)
         self.v.autopilot.arming.landed = 1
 
     @property
@@ -49,6 +54,13 @@ class FakeVehicle:
         estimate.origin_set = estimate.position_ok = 1
         home.lat, home.lon, home.alt, home.is_set = (*HOME, 1)
         sensors.gps_fix, sensors.gps_lat, sensors.gps_lon, sensors.gps_alt = 3, HOME[0], HOME[1], 584000
+
+
+class FakeRover(FakeVehicle):
+    """The same with the rover's record."""
+
+    firmware: Firmware = ROVER
+    dtype: Any = ROVER_DTYPE
 
 
 class FakeAutopilot:
@@ -79,11 +91,14 @@ class FakeAutopilot:
 
     def set_mode(self, number: int) -> bool:
         self.calls.append(("set_mode", number))
-        if number not in (0, 2, 3, 4, 5, 6, 9, 17):
+        if number not in self.vehicle.firmware.mode_names:
             self.notes.append(Text(4, f"No such mode {number}"))
             return False
         self.vehicle.v.autopilot.modes.number = number
         return True
+
+    def is_guided_in_auto(self) -> bool:
+        return False
 
     def take_notes(self) -> list[Any]:
         notes, self.notes = self.notes, []
@@ -99,7 +114,7 @@ class FakeAutopilot:
         return int(self.vehicle.v.autopilot.modes.nav.mission_current)
 
     def replace_mission(self, items: tuple[Any, ...]) -> int:
-        result = check_all(items)[0]
+        result = check_all(items, self.vehicle.firmware.commands.taken)[0]
         if result == 0:
             self.items = items
         return result
@@ -140,8 +155,8 @@ class Client:
 class Bench:
     """Vehicle, bridge and clients on one clock."""
 
-    def __init__(self) -> None:
-        self.vehicle = FakeVehicle()
+    def __init__(self, vehicle: FakeVehicle | None = None) -> None:
+        self.vehicle = vehicle or FakeVehicle()
         self.autopilot = FakeAutopilot(self.vehicle)
         self.bridge = Bridge(self.vehicle, autopilot=self.autopilot)  # type: ignore[arg-type]
         self.client = self.connect()

@@ -8,20 +8,19 @@ import random
 import struct
 from typing import Any
 
-from fakes import Bench
+from fakes import Bench, FakeRover, FakeVehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.bridge import Bridge
+from sitl.bridge.copter.commands import COMMANDS as OF_COPTERS
 from sitl.bridge.dialect import MessageType, message, message_by_id
 from sitl.bridge.frame import encode_v1, encode_v2
-from sitl.bridge.services.commands import TABLE as COMMANDS
+from sitl.bridge.rover.commands import COMMANDS as OF_ROVERS
 
 HANDLED = sorted(Bench().bridge._handlers)
-FLOATS = st.sampled_from(
-    [0.0, 1.0, -1.0, math.nan, math.inf, -math.inf, 3e38, -3e38, 1e-40, 90.0, 400.0, 65536.0]
-)
+FLOATS = st.sampled_from([0.0, 1.0, -1.0, math.nan, math.inf, -math.inf, 3e38, -3e38, 1e-40, 90.0, 400.0, 65536.0])
 SAFE_RESULTS = range(6)
 
 
@@ -54,11 +53,17 @@ def _codes(text: str) -> list[str]:
 
 @settings(max_examples=150, deadline=None)
 @given(
-    st.integers(0, 2**32), st.lists(FLOATS, min_size=1, max_size=4), st.sampled_from([0, 4]), st.booleans()
+    st.integers(0, 2**32),
+    st.lists(FLOATS, min_size=1, max_size=4),
+    st.sampled_from([(FakeVehicle, 0), (FakeVehicle, 4), (FakeRover, 0), (FakeRover, 15)]),
+    st.booleans(),
 )
-def test_awkward_numbers_in_every_message(seed: int, floats: list[float], mode: int, located: bool) -> None:
+def test_awkward_numbers_in_every_message(
+    seed: int, floats: list[float], what: tuple[type[FakeVehicle], int], located: bool
+) -> None:
     rng = random.Random(seed)
-    bench = Bench()
+    kind_of_vehicle, mode = what
+    bench = Bench(kind_of_vehicle())
     if located:
         bench.vehicle.locate()
     bench.vehicle.v.autopilot.modes.number = mode
@@ -81,15 +86,16 @@ def _numbers(value: Any) -> list[float]:
 
 @settings(max_examples=300, deadline=None)
 @given(
-    st.sampled_from([*sorted(COMMANDS), 16, 999]),
+    st.sampled_from([FakeVehicle, FakeRover]),
+    st.sampled_from(sorted({*OF_COPTERS, *OF_ROVERS, 16, 999})),
     st.lists(FLOATS, min_size=7, max_size=7),
     st.booleans(),
     st.integers(0, 255),
 )
 def test_every_command_is_answered_once_and_a_refusal_changes_nothing(
-    number: int, p: list[float], as_int: bool, frame: int
+    vehicle: type[FakeVehicle], number: int, p: list[float], as_int: bool, frame: int
 ) -> None:
-    bench = Bench()
+    bench = Bench(vehicle())
     bench.vehicle.locate()
     bench.autopilot.ok = False
     before = bench.vehicle.fleet.tobytes()

@@ -14,7 +14,7 @@ from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.bridge.bridge import Bridge
-from sitl.bridge.copter_autopilot import CopterAutopilot
+from sitl.bridge.copter.autopilot import CopterAutopilot
 
 SQUARE = (
     MissionItem(16, 0, x=HOME[0], y=HOME[1], z=584.0), MissionItem(22, 3, z=10.0),
@@ -26,7 +26,7 @@ class Vehicle(FakeVehicle):
     def __init__(self) -> None:
         super().__init__()
         self.mission = Mission()
-        self.sequencer = Sequencer(self)
+        self.sequencer = Sequencer(self, self.firmware.commands)
 
 
 class CopterBench(Bench):

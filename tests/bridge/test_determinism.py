@@ -8,7 +8,7 @@ import random
 from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.flights import TAKEOFF, Pilot
+from missions.pilot import TAKEOFF, Pilot
 from sitl.bridge.client import Client
 from sitl.simulation import Core, Simulation
 

@@ -31,4 +31,4 @@ def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
 
 def test_every_command_says_what_it_does() -> None:
     for line in docs.commands().splitlines()[2:]:
-        assert len(line.split("|")[4].strip()) > 10, line
+        assert len(line.split("|")[5].strip()) > 10, line

@@ -8,7 +8,7 @@ import pytest
 from fakes import Bench, Client
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.params.table import BY_NAME, INDEX, TABLE
+from sitl.autopilot.copter.table import TABLE
 
 
 def read(bench: Bench, name: str = "", index: int = -1) -> list[object]:
@@ -23,8 +23,8 @@ def test_read_by_name_and_index(bench: Bench) -> None:
     (answer,) = read(bench, "MAV_GCS_SYSID")
     assert (answer.param_id, answer.param_value, answer.param_type) == ("MAV_GCS_SYSID", 255.0, 4)
     assert (answer.param_index, answer.param_count) == (65535, len(TABLE))
-    (answer,) = read(bench, index=INDEX["MAV_GCS_SYSID"])
-    assert (answer.param_id, answer.param_index) == ("MAV_GCS_SYSID", INDEX["MAV_GCS_SYSID"])
+    (answer,) = read(bench, index=TABLE.names().index("MAV_GCS_SYSID"))
+    assert (answer.param_id, answer.param_index) == ("MAV_GCS_SYSID", TABLE.names().index("MAV_GCS_SYSID"))
     assert read(bench, "NO_SUCH") == read(bench, index=len(TABLE)) == read(bench, index=32767) == []
 
 
@@ -80,7 +80,7 @@ def test_the_whole_list_even_over_a_lossy_link(bench: Bench, drop: float) -> Non
         drop_to_client=lambda _: rng.random() < drop, drop_to_vehicle=lambda _: rng.random() < drop
     )
     values = fetch_all(bench, client)
-    assert values.keys() == BY_NAME.keys()
+    assert values.keys() == set(TABLE.names())
     for name, value in values.items():
         assert value == pytest.approx(bench.vehicle.v.autopilot.params[name], rel=1e-6)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from missions.flights import MISSION_START, SET_MODE, Pilot, upload
+from missions.pilot import MISSION_START, SET_MODE, Pilot, upload
 from sitl.bridge.client import Client
 from sitl.simulation import Core, Simulation
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from missions.flights import TAKEOFF, VELOCITY_ONLY, Pilot
+from missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.bridge.client import Client
 from sitl.simulation import Core, Simulation
 

@@ -8,7 +8,7 @@ import pytest
 from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.modes.copter.numbers import NAMES
+from sitl.autopilot.copter.modes.numbers import NAMES
 from sitl.bridge.frame import Splitter
 
 SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512

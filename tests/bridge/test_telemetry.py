@@ -203,7 +203,7 @@ def test_no_channels_without_receiver_or_override(bench: Bench) -> None:
     assert get(bench, "RC_CHANNELS").chancount == 16
     v.time_us += 10_000_000
     assert get(bench, "RC_CHANNELS").chancount == 0
-    v.autopilot.modes.failsafe.receiver_us = v.time_us
+    v.autopilot.rc.receiver_us = v.time_us
     assert get(bench, "RC_CHANNELS").chancount == 16
 
 

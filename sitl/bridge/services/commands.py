@@ -10,7 +10,7 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import message
-from . import commands_flight, commands_system
+from . import commands_vehicle
 from .command import Command, Entry, from_int, from_long
 from .results import DENIED, UNSUPPORTED
 from .service import Handler, Sender, Service
@@ -18,25 +18,26 @@ from .service import Handler, Sender, Service
 ACK = message("COMMAND_ACK")
 DO_SET_MODE = 176
 
-TABLE: dict[int, Entry] = {**commands_flight.COMMANDS, **commands_system.COMMANDS}
-"""MAV_CMD number -> how it is carried out. A number that is not here is answered UNSUPPORTED."""
-
 
 class CommandService(Service):
     """Commands, and the old way to set the mode."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._table = bridge.profile.commands
 
     def handlers(self) -> dict[str, Handler]:
         return {"COMMAND_LONG": self._long, "COMMAND_INT": self._int, "SET_MODE": self._set_mode}
 
     def _long(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        entry = TABLE.get(fields.command)
+        entry = self._table.get(fields.command)
         if entry is None or entry.int_only:
             self._ack(channel, fields.command, UNSUPPORTED, sender)
             return
         self._run(channel, entry, from_long(fields, entry), fields.command, sender)
 
     def _int(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        entry = TABLE.get(fields.command)
+        entry = self._table.get(fields.command)
         if entry is None:
             self._ack(channel, fields.command, UNSUPPORTED, sender)
             return
@@ -52,7 +53,7 @@ class CommandService(Service):
         as_command = Command(
             DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0
         )
-        result = commands_flight.do_set_mode(self.bridge, channel, as_command)
+        result = commands_vehicle.do_set_mode(self.bridge, channel, as_command)
         self._ack(channel, message("SET_MODE").id, result, sender)
 
     @staticmethod

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the core tells (``autopilot.events``) as texts and messages for clients. Texts are ArduCopter's."""
+"""What the core tells (``autopilot.events``) as texts and messages for clients. Texts are ArduPilot's."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
@@ -10,7 +11,7 @@ from ...autopilot.mission.notes import CurrentChanged, ItemReached, Text
 from ..dialect import message
 from ..stream_table import NEVER
 from .home import HomeService
-from .results import CRITICAL, INFO, WARNING
+from .results import INFO, WARNING
 from .service import Service
 from .statustext import StatusTextService
 
@@ -18,8 +19,6 @@ BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Re
 """(simulated us after boot, text)"""
 
 TEXTS = {
-    core.ARMED: (INFO, "Arming motors"),
-    core.DISARMED: (INFO, "Disarming motors"),
     core.EKF_INITIALISED: (INFO, "EKF3 IMU0 initialised"),
     core.EKF_TILT_ALIGNED: (INFO, "EKF3 IMU0 tilt alignment complete"),
     core.EKF_YAW_ALIGNED: (INFO, "EKF3 IMU0 MAG0 initial yaw alignment complete"),
@@ -27,10 +26,8 @@ TEXTS = {
     core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
     core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
-    core.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
-    core.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
 }
-"""Event code -> (severity, text with the event's numbers a and b)."""
+"""Event code -> (severity, text with the event's numbers a and b), of every firmware."""
 
 HEARTBEAT = message("HEARTBEAT").id
 MISSION_CURRENT = message("MISSION_CURRENT").id
@@ -43,6 +40,7 @@ class EventService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
+        self._texts = {**TEXTS, **bridge.profile.texts}
         self._count = bridge.reader.field(E + "count")
         self._seen = 0
         self._boot_text = 0
@@ -84,8 +82,8 @@ class EventService(Service):
 
     def _tell(self, code: int, a: float, b: float) -> None:
         say = self.bridge.get(StatusTextService).say
-        if code in TEXTS:
-            severity, text = TEXTS[code]
+        if code in self._texts:
+            severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
         if code == core.EKF_INITIALISED:
             say(INFO, "AHRS: EKF3 active")
@@ -96,9 +94,9 @@ class EventService(Service):
             for channel in self.bridge.channels:
                 self.bridge.send_now(channel, HEARTBEAT)
         else:
-            self.notes(self.bridge.autopilot.texts_of(code, int(a), int(b)))
+            self.notes(self.bridge.autopilot.texts_of(code, a, b))
 
-    def notes(self, notes: list[Any]) -> None:
+    def notes(self, notes: Sequence[Any]) -> None:
         """Texts and progress that the mission's sequencer or a law gave back."""
         for note in notes:
             if isinstance(note, Text):

@@ -10,7 +10,6 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
-from ...autopilot.params.table import TABLE
 from ..channel import Channel
 from ..dialect import message
 from ..stream_table import NEVER
@@ -108,9 +107,9 @@ class FtpService(Service):
         if path.lstrip("/") != PARAMETERS:
             self._nak(channel, sender, sequence, session, OPEN_READ, FILE_NOT_FOUND)
             return
-        value = self.bridge.get(ParameterService).value
+        value, table = self.bridge.get(ParameterService).value, self.bridge.vehicle.firmware.table
         packed = pack_parameters(
-            [(p, value(p.name)) for p in TABLE], with_defaults="withdefaults=1" in query.split("&")
+            [(p, value(p.name)) for p in table], with_defaults="withdefaults=1" in query.split("&")
         )
         self._sessions[channel] = _Session(packed, sender, session)
         self._reply(channel, sender, sequence, session, ACK, OPEN_READ, 0, struct.pack("<I", len(packed)))

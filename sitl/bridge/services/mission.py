@@ -43,6 +43,7 @@ class MissionService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
+        self._taken = bridge.vehicle.firmware.commands.taken
         self.upload: Upload | None = None
         self._last: tuple[Channel, Sender, int] | None = None
         """Who uploaded last, and the number of the last item: its acknowledgement may have been lost."""
@@ -127,7 +128,7 @@ class MissionService(Service):
         upload.channel.send(REQUEST, REQUEST.payload(**fields))
 
     def _item_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        self._item(channel, fields, sender, *from_int(fields))
+        self._item(channel, fields, sender, *from_int(fields, self._taken))
 
     def _item_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if (
@@ -137,7 +138,7 @@ class MissionService(Service):
         ):
             say = self.bridge.get(StatusTextService).say
             say(WARNING, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")
-        self._item(channel, fields, sender, *from_float(fields))
+        self._item(channel, fields, sender, *from_float(fields, self._taken))
 
     def _item(self, channel: Channel, fields: Any, sender: Sender, item: MissionItem, result: int) -> None:
         kind = fields.mission_type

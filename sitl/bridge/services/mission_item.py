@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Container
 from typing import Any
 
 from ...autopilot.mission.item import COMMANDS, MissionItem
@@ -16,12 +17,12 @@ _SAME_FRAME = {5: 0, 6: 3, 11: 10}
 """The _INT frames mean the same as the frames without; they are kept (and given back) as those."""
 
 
-def from_int(fields: Any) -> tuple[MissionItem, int]:
-    """Item of a MISSION_ITEM_INT and its MAV_MISSION_RESULT."""
-    return _checked(fields, fields.x, fields.y)
+def from_int(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
+    """Item of a MISSION_ITEM_INT and its MAV_MISSION_RESULT; ``taken`` are the commands that missions may hold."""
+    return _checked(fields, fields.x, fields.y, taken)
 
 
-def from_float(fields: Any) -> tuple[MissionItem, int]:
+def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
     """Item of a MISSION_ITEM (degrees) and its MAV_MISSION_RESULT."""
     known = COMMANDS.get(fields.command)
     scale = 1e7 if known is not None and known.has_place else 1.0
@@ -29,16 +30,16 @@ def from_float(fields: Any) -> tuple[MissionItem, int]:
     for value, refusal in ((fields.x, INVALID_PARAM5_X), (fields.y, INVALID_PARAM6_Y)):
         scaled = value * scale
         if not (math.isfinite(scaled) and abs(scaled) < 2.0**31):
-            return _checked(fields, 0, 0)[0], refusal
+            return _checked(fields, 0, 0, taken)[0], refusal
         whole.append(round(scaled))
-    return _checked(fields, whole[0], whole[1])
+    return _checked(fields, whole[0], whole[1], taken)
 
 
-def _checked(fields: Any, x: int, y: int) -> tuple[MissionItem, int]:
+def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[MissionItem, int]:
     frame = _SAME_FRAME.get(fields.frame, fields.frame)
     p1, p2, p3, p4 = fields.param1, fields.param2, fields.param3, fields.param4
     item = MissionItem(fields.command, frame, p1, p2, p3, p4, x, y, fields.z, fields.autocontinue)
-    return item, check(item)
+    return item, check(item, taken)
 
 
 def _common(item: MissionItem, seq: int, is_current: bool, target: Sender) -> dict[str, Any]:

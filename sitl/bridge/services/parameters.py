@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32
-from ...autopilot.params.table import BY_NAME, TABLE, stored
+from ...autopilot.params.table import stored
 from ..channel import Channel
 from ..dialect import message
 from ..stream_table import NEVER
@@ -32,6 +32,7 @@ class ParameterService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
+        self._table = bridge.vehicle.firmware.table
         self._lists: dict[Channel, int] = {}
 
     def handlers(self) -> dict[str, Handler]:
@@ -49,8 +50,8 @@ class ParameterService(Service):
         return float(self.bridge.vehicle.v.autopilot.params[name])
 
     def _payload(self, name: str, index: int) -> bytes:
-        kind = WIRE_TYPES[BY_NAME[name].kind]
-        return VALUE.pack(self.value(name), len(TABLE), index, name.encode(), kind)
+        kind = WIRE_TYPES[self._table[name].kind]
+        return VALUE.pack(self.value(name), len(self._table), index, name.encode(), kind)
 
     # ------------------------------------------------------------------ reading
 
@@ -69,29 +70,29 @@ class ParameterService(Service):
         for channel, at in list(self._lists.items()):
             if channel.peer.congested:
                 continue
-            stop = min(at + LIST_AT_ONCE, len(TABLE))
+            stop = min(at + LIST_AT_ONCE, len(self._table))
             for k in range(at, stop):
-                channel.send(VALUE, self._payload(TABLE[k].name, k))
+                channel.send(VALUE, self._payload(self._table.at(k).name, k))
             self._lists[channel] = stop
-            if stop == len(TABLE):
+            if stop == len(self._table):
                 del self._lists[channel]
         self.due_us = now_us + LIST_EVERY_US if self._lists else NEVER
 
     def _request_read(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if fields.param_index >= 0:
-            if fields.param_index < len(TABLE):
-                name = TABLE[fields.param_index].name
+            if fields.param_index < len(self._table):
+                name = self._table.at(fields.param_index).name
                 channel.send(VALUE, self._payload(name, fields.param_index))
             return
         name = fields.param_id.decode("ascii", "replace")
-        if name in BY_NAME:
+        if name in self._table:
             channel.send(VALUE, self._payload(name, NO_INDEX))
 
     # ------------------------------------------------------------------ writing
 
     def _set(self, channel: Channel, fields: Any, sender: Sender) -> None:
         name = fields.param_id.decode("ascii", "replace")
-        if name not in BY_NAME:
+        if name not in self._table:
             return
         refusal = self.set(name, fields.param_value)
         if refusal is not None:
@@ -104,7 +105,7 @@ class ParameterService(Service):
         Raises:
             KeyError: there is no such parameter.
         """
-        parameter = BY_NAME[name]
+        parameter = self._table[name]
         refusal = f"Param write denied ({name})" if parameter.read_only else parameter.refusal(value)
         if refusal is not None:
             return refusal

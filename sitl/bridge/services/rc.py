@@ -15,6 +15,8 @@ IGNORE, RELEASE_EXTENDED = 65535, 65534
 """Channels 1..8: 0 gives the channel back; channels 9..18: 65534 does, and 0 means nothing."""
 CHANNELS = 18
 INVALID = 32767
+FULL = 1000
+"""Axes of MANUAL_CONTROL: greatest value."""
 DEFAULT_RANGE = (1100.0, 1900.0)
 LOWEST, HIGHEST = 800, 2200
 """Pulses outside cannot come from a receiver and are ignored [us]."""
@@ -49,18 +51,17 @@ class RcService(Service):
         self._heard()
 
     def _manual(self, channel: Channel, m: Any, sender: Sender) -> None:
-        """x pitch (forward positive), y roll, r yaw: -1000..1000; z throttle 0..1000."""
+        """The firmware's profile says which axis drives which channel."""
         if sender[0] != self.bridge.ground_station or m.target != channel.system:
             return
-        sticks = (("RCMAP_ROLL", 1, m.y, 1000), ("RCMAP_PITCH", 2, -m.x, 1000))
-        sticks += (("RCMAP_THROTTLE", 3, 2 * m.z - 1000, 1000), ("RCMAP_YAW", 4, m.r, 1000))  # type: ignore[assignment]
-        given = (m.y, m.x, m.z, m.r)
-        for (name, default, value, full), raw in zip(sticks, given, strict=True):
-            number = int(self.bridge.parameter(name) or default)
-            if raw == INVALID or not 1 <= number <= CHANNELS:
+        for stick in self.bridge.profile.sticks:
+            value = getattr(m, stick.axis)
+            number = int(self.bridge.parameter(stick.parameter) or stick.channel)
+            if value == INVALID or not 1 <= number <= CHANNELS:
                 continue
+            value = min(max(value, stick.lowest), FULL)
+            share = (FULL - value if stick.is_reversed else value - stick.lowest) / (FULL - stick.lowest)
             low, high = self._range(number)
-            share = (min(max(value, -full), full) + full) / (2.0 * full)
             self._put(number - 1, int(low + (high - low) * share))
         self._heard()
 

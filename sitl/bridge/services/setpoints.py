@@ -3,8 +3,8 @@
 
 Positions, velocities, accelerations, attitudes (https://mavlink.io/en/services/offboard_control.html).
 
-They are not acknowledged. In another mode than GUIDED they are ignored; a combination, frame or number that
-cannot be flown stops the vehicle where it is, as ArduCopter does.
+They are not acknowledged. In another mode than GUIDED they are ignored. Here they become north, east, down; what is
+made of each kind is the firmware's (``copter/setpoints.py``, ``rover/setpoints.py``).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from ...autopilot.mission.item import MissionItem
-from ..autopilot_api import NO_YAW, Vector, Yaw
+from ..autopilot_api import Vector
 from ..channel import Channel
 from .command import FRAMES_AMSL, GLOBAL_FRAMES
 from .service import Handler, Sender, Service
@@ -21,15 +21,16 @@ from .service import Handler, Sender, Service
 POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
 FORCE, YAW_IGNORED, YAW_RATE_IGNORED = 0x200, 0x400, 0x800
 YAWS_IGNORED = YAW_IGNORED | YAW_RATE_IGNORED
+"""POSITION_TARGET_TYPEMASK"""
 LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED = 1, 7, 8, 9
+LOCAL_FRAMES = (LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED)
 BODY_FRAMES = (BODY_NED, BODY_OFFSET_NED)
 
 ROLL_RATE_IGNORED, PITCH_RATE_IGNORED, BODY_YAW_RATE_IGNORED = 0x01, 0x02, 0x04
 THRUST_IGNORED, ATTITUDE_IGNORED = 0x40, 0x80
+"""ATTITUDE_TARGET_TYPEMASK"""
 
-GUIDED_MODE = 4
 E_ = "autopilot.estimate."
-ZERO: Vector = (0.0, 0.0, 0.0)
 
 
 class SetpointService(Service):
@@ -39,6 +40,7 @@ class SetpointService(Service):
         super().__init__(bridge)
         self._mode = bridge.reader.field("autopilot.modes.number")
         self._pose = bridge.reader.fields(E_ + "euler", E_ + "pos")
+        self._guided = bridge.profile.guided
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -47,14 +49,42 @@ class SetpointService(Service):
             "SET_ATTITUDE_TARGET": self._attitude,
         }
 
+    # ------------------------------------------------------------------ what a firmware makes of it
+
+    def _listens(self) -> bool:
+        """Whether set-points count now."""
+        return bool(self._mode() == self._guided)
+
+    def _unknown_frame(self) -> None:
+        """A position in a frame that there is not."""
+        raise NotImplementedError
+
+    def _place(self, m: Any) -> Vector | None:
+        """NED [m] of a position on the globe; None: leave the message alone."""
+        raise NotImplementedError
+
+    def _set(self, m: Any, pos: Vector | None, vel: Vector | None, acc: Vector | None, body: bool) -> None:
+        """Follow what of a message its mask does not ignore (north, east, down).
+
+        ``body``: it came in a body frame, so that its yaw counts from the vehicle's.
+        """
+        raise NotImplementedError
+
+    def _attitude(self, channel: Channel, m: Any, sender: Sender) -> None:
+        raise NotImplementedError
+
+    def _height_target(self, item: MissionItem) -> bool:
+        """Go to the height of a mission item (``current`` = 3)."""
+        raise NotImplementedError
+
     # ------------------------------------------------------------------ position, velocity, acceleration
 
     def _local(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if self._mode() != GUIDED_MODE:
+        if not self._listens():
             return
         mask, frame = m.type_mask, m.coordinate_frame
-        if frame not in (LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED):
-            self.bridge.autopilot.guided_stop()
+        if frame not in LOCAL_FRAMES:
+            self._unknown_frame()
             return
         pos = None if mask & POSITION_IGNORED else (m.x, m.y, m.z)
         vel = None if mask & VELOCITY_IGNORED else (m.vx, m.vy, m.vz)
@@ -69,87 +99,35 @@ class SetpointService(Service):
         self._set(m, pos, vel, acc, frame in BODY_FRAMES)
 
     def _global(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if self._mode() != GUIDED_MODE:
+        if not self._listens():
             return
         mask = m.type_mask
         pos: Vector | None = None
         if not mask & POSITION_IGNORED:
-            if m.coordinate_frame not in GLOBAL_FRAMES or not math.isfinite(m.alt):
-                self.bridge.autopilot.guided_stop()
-                return
-            pos = self.bridge.places.ned(m.lat_int, m.lon_int, m.alt, m.coordinate_frame)
+            pos = self._place(m)
             if pos is None:
                 return
         vel = None if mask & VELOCITY_IGNORED else (m.vx, m.vy, m.vz)
         acc = None if mask & ACCELERATION_IGNORED else (m.afx, m.afy, m.afz)
         self._set(m, pos, vel, acc, False)
 
-    def _set(
-        self, m: Any, pos: Vector | None, vel: Vector | None, acc: Vector | None, relative: bool
-    ) -> None:
-        autopilot, mask = self.bridge.autopilot, m.type_mask
-        yaw = NO_YAW
-        if mask & YAWS_IGNORED != YAWS_IGNORED:
-            yaw = Yaw(not mask & YAW_IGNORED, m.yaw, not mask & YAW_RATE_IGNORED, m.yaw_rate, relative)
-        total = (yaw.yaw if yaw.use_yaw else 0.0) + (yaw.rate if yaw.use_rate else 0.0)
-        for vector in (pos, vel, acc):
-            if vector is not None:
-                total += vector[0] + vector[1] + vector[2]
-        if mask & FORCE and acc is not None:
-            return  # a force is not an acceleration
-        if not math.isfinite(total):
-            autopilot.guided_stop()
-        elif vel is not None:
-            if pos is not None:
-                autopilot.guided_position_velocity(pos, vel, acc or ZERO, yaw)
-            else:
-                autopilot.guided_velocity(vel, acc or ZERO, yaw)
-        elif acc is not None:
-            if pos is None:
-                autopilot.guided_acceleration(acc, yaw)
-            else:
-                autopilot.guided_stop()
-        elif pos is not None:
-            autopilot.guided_position(pos, yaw)
-        else:
-            autopilot.guided_stop()
-
-    # ------------------------------------------------------------------ attitude
-
-    def _attitude(self, channel: Channel, m: Any, sender: Sender) -> None:
-        mask = m.type_mask
-        if self._mode() != GUIDED_MODE or mask & THRUST_IGNORED:
-            return
-        rates = (
-            0.0 if mask & ROLL_RATE_IGNORED else m.body_roll_rate,
-            0.0 if mask & PITCH_RATE_IGNORED else m.body_pitch_rate,
-            0.0 if mask & BODY_YAW_RATE_IGNORED else m.body_yaw_rate,
-        )
-        q: tuple[float, ...] | None = None
-        if not mask & ATTITUDE_IGNORED:
-            norm = math.sqrt(sum(x * x for x in m.q))
-            if not (math.isfinite(norm) and norm > 1e-3):
-                return  # not a rotation
-            q = tuple(x / norm for x in m.q)
-        if math.isfinite(sum(rates) + m.thrust):
-            self.bridge.autopilot.guided_attitude(q, rates, m.thrust)
-
     # ------------------------------------------------------------------ mission items as targets
 
     def mission_item_target(self, item: MissionItem, altitude_only: bool) -> bool:
-        """Fly to a mission item's place (``current`` = 2).
+        """Go to a mission item's place (``current`` = 2).
 
         Or to its height over the present place (3), in GUIDED.
         """
-        if self._mode() != GUIDED_MODE or item.frame not in GLOBAL_FRAMES:
+        if not self._listens() or item.frame not in GLOBAL_FRAMES:
             return False
         if altitude_only:
-            height = item.z if item.frame in FRAMES_AMSL else self.bridge.places.home_alt() + item.z
-            _, _, _, n, e, _ = self._pose()
-            place = self.bridge.places.over_origin(n, e, height)
-        else:
-            place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
+            return self._height_target(item)
+        place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
         return place is not None and self.bridge.autopilot.guided_position(place, None)
+
+    def _height(self, item: MissionItem) -> float:
+        """Height of a mission item [m above sea level]."""
+        return item.z if item.frame in FRAMES_AMSL else self.bridge.places.home_alt() + item.z
 
 
 def _turn(v: Vector | None, c: float, s: float) -> Vector | None:

@@ -17,21 +17,6 @@ from .results import ACCEPTED, DENIED, FAILED, WARNING
 from .service import Handler, Sender, Service
 from .statustext import StatusTextService
 
-GROUPS: dict[int, tuple[str, tuple[str, ...]]] = {
-    1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
-    2: (
-        "EXT_STAT",
-        ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
-         "POSITION_TARGET_GLOBAL_INT"),
-    ),
-    3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
-    4: ("RAW_CTRL", ()),
-    6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
-    10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
-    11: ("EXTRA2", ("VFR_HUD",)),
-    12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
-}  # fmt: skip
-"""MAV_DATA_STREAM -> (ending of the MAV1_ rate parameter, messages)."""
 ALL_STREAMS = 0
 RATE_PREFIX = "MAV1_"
 HEARTBEAT_US = 1_000_000
@@ -48,7 +33,8 @@ class StreamService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._group_of = {message(n).id: group for group, (_, names) in GROUPS.items() for n in names}
+        self._groups = bridge.profile.groups
+        self._group_of = {message(n).id: group for group, (_, names) in self._groups.items() for n in names}
 
     def handlers(self) -> dict[str, Handler]:
         return {"REQUEST_DATA_STREAM": self._request_data_stream}
@@ -56,26 +42,26 @@ class StreamService(Service):
     def channel_added(self, channel: Channel) -> None:
         self._set(channel, HEARTBEAT, HEARTBEAT_US)
         self._set(channel, TIMESYNC, TIMESYNC_US)
-        for group in GROUPS:
+        for group in self._groups:
             rate = self._rate_parameter(group)
             if rate:
                 self.set_group(channel, group, rate)
 
     def parameter_changed(self, name: str) -> None:
         """A MAV1_ rate parameter was set: it holds for every channel from now on."""
-        for group, (ending, _) in GROUPS.items():
+        for group, (ending, _) in self._groups.items():
             if name == RATE_PREFIX + ending:
                 for channel in self.bridge.channels:
                     self.set_group(channel, group, self._rate_parameter(group))
 
     def _rate_parameter(self, group: int) -> int:
-        rate = self.bridge.parameter(RATE_PREFIX + GROUPS[group][0])
+        rate = self.bridge.parameter(RATE_PREFIX + self._groups[group][0])
         return int(rate) if rate is not None and rate > 0 else 0
 
     def set_group(self, channel: Channel, group: int, rate_hz: int) -> None:
         """Send a group's messages at ``rate_hz`` (0: stop), whatever was asked for them singly before."""
         rate_hz = min(rate_hz, self._loop_rate())
-        for name in GROUPS[group][1]:
+        for name in self._groups[group][1]:
             self._set(channel, message(name).id, 1_000_000 // rate_hz if rate_hz > 0 else 0)
 
     def _set(self, channel: Channel, number: int, interval_us: int) -> None:
@@ -90,9 +76,9 @@ class StreamService(Service):
         rate = fields.req_message_rate if fields.start_stop == 1 else 0
         if fields.start_stop > 1:
             return
-        wanted = GROUPS if fields.req_stream_id == ALL_STREAMS else (fields.req_stream_id,)
+        wanted = self._groups if fields.req_stream_id == ALL_STREAMS else (fields.req_stream_id,)
         for group in wanted:
-            if group in GROUPS:
+            if group in self._groups:
                 self.set_group(channel, group, rate)
 
     # ------------------------------------------------------------------ commands
@@ -136,5 +122,5 @@ class StreamService(Service):
     def request_message(self, channel: Channel, command: Command) -> int:
         """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
         if int(command.p1) == MODES.id:
-            return ACCEPTED if send_modes(channel, int(command.p2)) else DENIED
+            return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
         return ACCEPTED if self.bridge.send_now(channel, int(command.p1)) else FAILED

@@ -7,10 +7,13 @@ import importlib
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..dialect import MessageType, message
 from ..record_reader import RecordReader
+
+if TYPE_CHECKING:
+    from ..profile import Profile
 
 Build = Callable[[], bytes]
 """Gives the payload now; empty when the vehicle has nothing to say (no position yet)."""
@@ -23,6 +26,7 @@ class Context:
 
     reader: RecordReader
     vehicle: Any
+    profile: Profile
     epoch_us: int
     """Unix time at boot [us]; the bridge moves it when the vehicle reboots."""
 
@@ -31,17 +35,18 @@ class Context:
         return self.reader.fields(*paths)
 
 
-def builders() -> dict[str, Builder]:
-    """All builders of this package by message name (each module lists its own in ``BUILDERS``)."""
+def builders(profile: Profile) -> dict[str, Builder]:
+    """All builders by message name: this package's (each module lists its own in ``BUILDERS``) and the firmware's."""
     package = importlib.import_module(__package__)
     found: dict[str, Builder] = {}
     for module in sorted(m.name for m in pkgutil.iter_modules(package.__path__)):
         found.update(getattr(importlib.import_module(f"{__package__}.{module}"), "BUILDERS", {}))
-    return found
+    return found | dict(profile.builders)
 
 
 def build_all(context: Context) -> dict[int, tuple[MessageType, Build]]:
     """Every builder bound to ``context``, by message number."""
     return {
-        message(name).id: (message(name), builder(context)) for name, builder in sorted(builders().items())
+        message(name).id: (message(name), builder(context))
+        for name, builder in sorted(builders(context.profile).items())
     }

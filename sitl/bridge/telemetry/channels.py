@@ -16,13 +16,14 @@ CHANNELS = 16
 def rc_channels(context: Context) -> Build:
     """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
     read = context.fields("time_us", "autopilot.rc.channels")
-    read_heard = context.fields("autopilot.modes.failsafe.receiver_us", "autopilot.params.RC_FS_TIMEOUT")
+    read_heard = context.fields("autopilot.rc.receiver_us")
+    timeout = context.profile.receiver_timeout
+    read_timeout = context.fields(f"autopilot.params.{timeout}") if isinstance(timeout, str) else lambda: (timeout,)
     pack = message("RC_CHANNELS").pack
 
     def build() -> bytes:
         t, *pulses = read()
-        heard_us, timeout_s = read_heard()
-        count = CHANNELS if any(pulses) and t - heard_us < timeout_s * 1e6 else 0
+        count = CHANNELS if any(pulses) and t - read_heard()[0] < read_timeout()[0] * 1e6 else 0
         try:
             return pack(t // 1000 & 0xFFFFFFFF, *pulses, count, 255)
         except struct.error:  # not a pulse: rare, so that the usual case need not look at each

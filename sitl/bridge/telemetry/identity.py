@@ -15,8 +15,8 @@ SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = (
     0x2000,
 )
 CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
-CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | TERMINATION | MAVLINK2
-"""Of ArduCopter's 0xFBEF those that exist here (no terrain, compass calibration, fence, rally)."""
+CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2
+"""What every firmware can; ArduPilot's 0xF1EF without what does not exist here (compass calibration, fence, rally)."""
 
 FLIGHT_VERSION = (4, 7, 0, 0)
 """Major, minor, patch, type (0: development).
@@ -30,7 +30,10 @@ def autopilot_version(context: Context) -> Build:
     major, minor, patch, kind = FLIGHT_VERSION
     version = major << 24 | minor << 16 | patch << 8 | kind
     payload = message("AUTOPILOT_VERSION").payload(
-        capabilities=CAPABILITIES, flight_sw_version=version, flight_custom_version=tuple(b"gym-sitl"), uid=1
+        capabilities=context.profile.capabilities,
+        flight_sw_version=version,
+        flight_custom_version=tuple(b"gym-sitl"),
+        uid=1,
     )
     return lambda: payload
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Position and velocity as estimated: GLOBAL_POSITION_INT, LOCAL_POSITION_NED, VFR_HUD, home and origin."""
+"""Position and velocity as estimated: GLOBAL_POSITION_INT, LOCAL_POSITION_NED, home and origin; half of VFR_HUD."""
 
 from __future__ import annotations
 
@@ -71,17 +71,17 @@ def local_position_ned(context: Context) -> Build:
     return build
 
 
-def vfr_hud(context: Context) -> Build:
-    """VFR_HUD: ground speed in both speeds [m/s], heading [deg], throttle [%], altitude above sea level [m]."""
+def vfr_hud(context: Context, throttle: str) -> Build:
+    """VFR_HUD of a firmware whose throttle -1 .. 1 is the field ``throttle``."""
     where = global_position(context)
-    read = context.fields(E + "euler", E + "vel", "autopilot.control.motors.throttle_out")
+    read = context.fields(E + "euler", E + "vel", throttle)
     pack = message("VFR_HUD").pack
 
     def build() -> bytes:
-        _, _, yaw, vn, ve, vd, throttle = read()
+        _, _, yaw, vn, ve, vd, share = read()
         speed = math.hypot(vn, ve)
         alt = where()[2]
-        return pack(speed, speed, alt, -vd, heading_cdeg(yaw) // 100, uint16(throttle * 100.0 + 0.5))
+        return pack(speed, speed, alt, -vd, heading_cdeg(yaw) // 100, uint16(abs(share) * 100.0 + 0.5))
 
     return build
 
@@ -137,7 +137,6 @@ def gps_raw_int(context: Context) -> Build:
 BUILDERS: dict[str, Builder] = {
     "GLOBAL_POSITION_INT": global_position_int,
     "LOCAL_POSITION_NED": local_position_ned,
-    "VFR_HUD": vfr_hud,
     "HOME_POSITION": home_position,
     "GPS_GLOBAL_ORIGIN": gps_global_origin,
     "GPS_RAW_INT": gps_raw_int,

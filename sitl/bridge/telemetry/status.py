@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the vehicle is: HEARTBEAT, SYS_STATUS, EXTENDED_SYS_STATE, EKF_STATUS_REPORT, power, memory, time."""
+"""How the vehicle is: SYS_STATUS, EKF_STATUS_REPORT, power, memory, time."""
 
 from __future__ import annotations
 
@@ -14,55 +14,11 @@ A = "autopilot.arming."
 M = "autopilot.modes."
 B = "autopilot.battery."
 
-QUADROTOR, ARDUPILOTMEGA = 2, 3
-CUSTOM_MODE, GUIDED, STABILIZED, MANUAL_INPUT, ARMED = 1, 8, 16, 64, 128
-STANDBY, ACTIVE, CRITICAL = 3, 4, 5
-GUIDED_MODES = frozenset((3, 4, 5, 6, 7, 16, 17, 21, 23))
-"""Copter modes that steer by themselves (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE, SMART_RTL.
-
-FOLLOW).
-"""
-
-
-def heartbeat(context: Context) -> Build:
-    """HEARTBEAT: quadrotor, ArduPilot, mode number, armed bit."""
-    read = context.fields(
-        A + "armed", A + "landed", M + "number", M + "failsafe.gcs", M + "failsafe.radio",
-        M + "failsafe.battery", M + "failsafe.ekf",
-    )  # fmt: skip
-    pack = message("HEARTBEAT").pack
-
-    def build() -> bytes:
-        armed, landed, mode, gcs, radio, battery, ekf = read()
-        base = CUSTOM_MODE | STABILIZED | MANUAL_INPUT
-        base |= (GUIDED if mode in GUIDED_MODES else 0) | (ARMED if armed else 0)
-        failsafe = gcs or radio or battery or ekf
-        state = CRITICAL if failsafe else STANDBY if landed else ACTIVE
-        return pack(mode & 0xFFFFFFFF, QUADROTOR, ARDUPILOTMEGA, base, state, 3)
-
-    return build
-
-
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
 RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
-PRESENT = (
-    GYRO
-    | ACCEL
-    | MAG
-    | BARO
-    | GPS
-    | RATE
-    | ATTITUDE
-    | YAW
-    | ALTITUDE
-    | POSITION
-    | MOTORS
-    | AHRS
-    | PREARM
-)
-POSITION_MODES = frozenset((3, 4, 5, 6, 7, 9, 16, 17))
-ALTITUDE_MODES = POSITION_MODES | {2}
+PRESENT = GYRO | ACCEL | MAG | BARO | GPS | AHRS | PREARM
+"""In every firmware, besides its controllers."""
 SAMPLE_US = 500_000
 """A sensor is healthy while the filter's last sane sample of it is no older."""
 GPS_US = 4_000_000
@@ -102,17 +58,16 @@ def sys_status(context: Context) -> Build:
         "autopilot.rc.receiver_ok", M + "failsafe.battery", "autopilot.params.BATT_MONITOR",
     )  # fmt: skip
     sensors = sensor_health(context)
+    controllers, at_work, healthy_at_rest = context.profile.controllers
     pack = message("SYS_STATUS").pack
 
     def build() -> bytes:
         voltage, current, remaining, mode, armed, prearm, receiver, battery_low, monitor = read()
-        present = PRESENT | (RECEIVER if receiver else 0) | (BATTERY if monitor >= VOLTAGE_MONITOR else 0)
-        enabled = present & ~(POSITION | ALTITUDE | MOTORS)
-        enabled |= POSITION if mode in POSITION_MODES else 0
-        enabled |= ALTITUDE if mode in ALTITUDE_MODES else 0
-        enabled |= MOTORS if armed else 0
-        health = present & (RATE | ATTITUDE | YAW | ALTITUDE | POSITION | MOTORS | RECEIVER)  # cannot fail
+        common = PRESENT | (RECEIVER if receiver else 0) | (BATTERY if monitor >= VOLTAGE_MONITOR else 0)
+        enabled = at_work(mode, armed)
+        health = (controllers if healthy_at_rest else enabled) | (common & RECEIVER)  # cannot fail
         health |= GEOFENCE | sensors()  # no fence is not a breached one
+        present, enabled = common | controllers, common | enabled
         health |= 0 if battery_low else present & BATTERY
         health |= PREARM if prearm or armed else 0
         millivolts = uint16(voltage * 1e3) if monitor >= VOLTAGE_MONITOR else 65535
@@ -120,31 +75,6 @@ def sys_status(context: Context) -> Build:
         # the extension fields (three more words of sensor bits) stay zero
         power = (0, millivolts, centiamperes, 0, 0, 0, 0, 0, 0, percent(remaining))
         return pack(present, enabled, health, *power, 0, 0, 0)
-
-    return build
-
-
-ON_GROUND, IN_AIR, TAKING_OFF, LANDING = 1, 2, 3, 4
-
-
-def extended_sys_state(context: Context) -> Build:
-    """EXTENDED_SYS_STATE: on the ground, taking off, in the air, landing."""
-    read = context.fields(
-        A + "landed", M + "number", M + "guided.submode", M + "takeoff.user_active", M + "landing.landing",
-        M + "nav.command_kind", M + "takeoff.complete",
-    )  # fmt: skip
-    pack = message("EXTENDED_SYS_STATE").pack
-
-    def build() -> bytes:
-        landed, mode, guided_submode, user_takeoff, landing, kind, takeoff_complete = read()
-        if landed:
-            state = ON_GROUND
-        elif landing:
-            state = LANDING
-        else:
-            climbs = (mode == 4 and guided_submode == 0) or (mode == 3 and kind == 1)
-            state = TAKING_OFF if user_takeoff or (climbs and not takeoff_complete) else IN_AIR
-        return pack(0, state)
 
     return build
 
@@ -204,9 +134,7 @@ def system_time(context: Context) -> Build:
 
 
 BUILDERS: dict[str, Builder] = {
-    "HEARTBEAT": heartbeat,
     "SYS_STATUS": sys_status,
-    "EXTENDED_SYS_STATE": extended_sys_state,
     "EKF_STATUS_REPORT": ekf_status_report,
     "BATTERY_STATUS": battery_status,
     "POWER_STATUS": power_status,

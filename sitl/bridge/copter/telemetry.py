@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where it is going: NAV_CONTROLLER_OUTPUT, MISSION_CURRENT, the position and attitude targets."""
+"""Telemetry that the copter has in its own way: HEARTBEAT, EXTENDED_SYS_STATE, VFR_HUD, where it is going."""
 
 from __future__ import annotations
 
@@ -7,11 +7,84 @@ import math
 
 from ...core.geodesy import add_offset
 from ..dialect import message
-from .builder import Build, Builder, Context
-from .units import DEG, int16, int32, uint16
+from ..telemetry import position
+from ..telemetry.builder import Build, Builder, Context
+from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW
+from ..telemetry.units import DEG, int16, int32, uint16
 
-M, C, E = "autopilot.modes.", "autopilot.control.", "autopilot.estimate."
+A, M, C, E = "autopilot.arming.", "autopilot.modes.", "autopilot.control.", "autopilot.estimate."
 AUTO, GUIDED = 3, 4
+QUADROTOR, ARDUPILOTMEGA = 2, 3
+CUSTOM_MODE, IS_GUIDED, STABILIZED, MANUAL_INPUT, ARMED = 1, 8, 16, 64, 128
+STANDBY, ACTIVE, CRITICAL = 3, 4, 5
+GUIDED_MODES = frozenset((3, 4, 5, 6, 7, 16, 17, 21, 23))
+"""Copter modes that steer by themselves (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE, SMART_RTL.
+
+FOLLOW).
+"""
+
+
+def heartbeat(context: Context) -> Build:
+    """HEARTBEAT: quadrotor, ArduPilot, mode number, armed bit."""
+    read = context.fields(
+        A + "armed", A + "landed", M + "number", M + "failsafe.gcs", M + "failsafe.radio",
+        M + "failsafe.battery", M + "failsafe.ekf",
+    )  # fmt: skip
+    pack = message("HEARTBEAT").pack
+
+    def build() -> bytes:
+        armed, landed, mode, gcs, radio, battery, ekf = read()
+        base = CUSTOM_MODE | STABILIZED | MANUAL_INPUT
+        base |= (IS_GUIDED if mode in GUIDED_MODES else 0) | (ARMED if armed else 0)
+        failsafe = gcs or radio or battery or ekf
+        state = CRITICAL if failsafe else STANDBY if landed else ACTIVE
+        return pack(mode & 0xFFFFFFFF, QUADROTOR, ARDUPILOTMEGA, base, state, 3)
+
+    return build
+
+
+POSITION_MODES = frozenset((3, 4, 5, 6, 7, 9, 16, 17))
+ALTITUDE_MODES = POSITION_MODES | {2}
+CONTROLLERS = RATE | ATTITUDE | YAW | ALTITUDE | POSITION | MOTORS
+"""Bits of SYS_STATUS"""
+
+
+def controllers_at_work(mode: int, armed: bool) -> int:
+    """Bits of the controllers that a mode uses."""
+    bits = RATE | ATTITUDE | YAW | (POSITION if mode in POSITION_MODES else 0)
+    return bits | (ALTITUDE if mode in ALTITUDE_MODES else 0) | (MOTORS if armed else 0)
+
+
+ON_GROUND, IN_AIR, TAKING_OFF, LANDING = 1, 2, 3, 4
+
+
+def extended_sys_state(context: Context) -> Build:
+    """EXTENDED_SYS_STATE: on the ground, taking off, in the air, landing."""
+    read = context.fields(
+        A + "landed", M + "number", M + "guided.submode", M + "takeoff.user_active", M + "landing.landing",
+        M + "nav.command_kind", M + "takeoff.complete",
+    )  # fmt: skip
+    pack = message("EXTENDED_SYS_STATE").pack
+
+    def build() -> bytes:
+        landed, mode, guided_submode, user_takeoff, landing, kind, takeoff_complete = read()
+        if landed:
+            state = ON_GROUND
+        elif landing:
+            state = LANDING
+        else:
+            climbs = (mode == 4 and guided_submode == 0) or (mode == 3 and kind == 1)
+            state = TAKING_OFF if user_takeoff or (climbs and not takeoff_complete) else IN_AIR
+        return pack(0, state)
+
+    return build
+
+
+def vfr_hud(context: Context) -> Build:
+    """VFR_HUD: ground speed in both speeds [m/s], heading [deg], throttle [%], altitude above sea level [m]."""
+    return position.vfr_hud(context, C + "motors.throttle_out")
+
+
 STEERED_MODES = frozenset((3, 4, 6))
 
 
@@ -38,37 +111,11 @@ def nav_controller_output(context: Context) -> Build:
     return build
 
 
-NO_MISSION, NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 1, 2, 3, 4, 5
-
-
-def mission_current(context: Context) -> Build:
-    """MISSION_CURRENT: number of the item, number of items without home, state."""
-    read = context.fields(
-        M + "number", M + "nav.mission_state", M + "nav.mission_current",
-        "autopilot.params.MIS_TOTAL",
-    )  # fmt: skip
-    pack = message("MISSION_CURRENT").pack
-
-    def build() -> bytes:
-        mode, state, seq, total = read()
-        if total <= 1.0:
-            shown = NO_MISSION
-        elif state == 2:
-            shown = COMPLETE
-        elif state == 1:
-            shown = ACTIVE
-        else:
-            shown = PAUSED if seq > 0 else NOT_STARTED
-        return pack(uint16(seq), uint16(total - 1.0), shown, 1 if mode == AUTO else 0)
-
-    return build
-
-
-POSITION, POS_VEL_ACCEL, VELOCITY_ACCEL, ACCEL, ANGLE = 1, 2, 3, 4, 5
+TO_POSITION, POS_VEL_ACCEL, VELOCITY_ACCEL, ACCEL, ANGLE = 1, 2, 3, 4, 5
 IGNORE_POS, IGNORE_VEL, IGNORE_ACC, IGNORE_YAW, IGNORE_YAW_RATE = 0x007, 0x038, 0x1C0, 0x400, 0x800
 TARGET_MASKS = {
     0: IGNORE_VEL | IGNORE_ACC | IGNORE_YAW | IGNORE_YAW_RATE,
-    POSITION: IGNORE_VEL | IGNORE_ACC | IGNORE_YAW | IGNORE_YAW_RATE,
+    TO_POSITION: IGNORE_VEL | IGNORE_ACC | IGNORE_YAW | IGNORE_YAW_RATE,
     POS_VEL_ACCEL: IGNORE_YAW | IGNORE_YAW_RATE,
     VELOCITY_ACCEL: IGNORE_POS | IGNORE_YAW | IGNORE_YAW_RATE,
     ACCEL: IGNORE_POS | IGNORE_VEL | IGNORE_YAW | IGNORE_YAW_RATE,
@@ -79,9 +126,7 @@ TARGET_MASKS = {
 def position_target_local(context: Context) -> Build:
     """POSITION_TARGET_LOCAL_NED: the target of GUIDED; nothing in other modes."""
     guided = M + "guided."
-    read = context.fields(
-        "time_us", M + "number", guided + "submode", guided + "pos", guided + "vel", guided + "acc"
-    )
+    read = context.fields("time_us", M + "number", guided + "submode", guided + "pos", guided + "vel", guided + "acc")
     pack = message("POSITION_TARGET_LOCAL_NED").pack
 
     def build() -> bytes:
@@ -114,9 +159,7 @@ def position_target_global(context: Context) -> Build:
 def attitude_target(context: Context) -> Build:
     """ATTITUDE_TARGET: quaternion, body rates [rad/s], throttle 0..1 that the controllers follow."""
     attitude = C + "attitude."
-    read = context.fields(
-        "time_us", attitude + "target_q", attitude + "rate_target", C + "motors.throttle_in"
-    )
+    read = context.fields("time_us", attitude + "target_q", attitude + "rate_target", C + "motors.throttle_in")
     pack = message("ATTITUDE_TARGET").pack
 
     def build() -> bytes:
@@ -127,8 +170,10 @@ def attitude_target(context: Context) -> Build:
 
 
 BUILDERS: dict[str, Builder] = {
+    "HEARTBEAT": heartbeat,
+    "EXTENDED_SYS_STATE": extended_sys_state,
+    "VFR_HUD": vfr_hud,
     "NAV_CONTROLLER_OUTPUT": nav_controller_output,
-    "MISSION_CURRENT": mission_current,
     "POSITION_TARGET_LOCAL_NED": position_target_local,
     "POSITION_TARGET_GLOBAL_INT": position_target_global,
     "ATTITUDE_TARGET": attitude_target,

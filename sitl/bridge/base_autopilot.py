@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The part of a firmware behind the MAVLink services that all firmwares share; each adds its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..autopilot import events, home
+from ..autopilot.estimation import origin
+from ..autopilot.mission.item import MissionItem, home_item
+from ..autopilot.mission.mission import Mission
+from ..autopilot.mission.notes import Text
+from ..autopilot.mission.validate import check_all
+from ..autopilot.navigation.state import RUNNING
+from ..core.records import view
+from .autopilot_api import Note
+from .vehicle import Vehicle
+
+CRITICAL, WARNING, INFO = 2, 4, 6
+"""MAV_SEVERITY"""
+BY_MAVLINK = 1
+"""Method of arming and disarming (ArduPilot's number)."""
+BY_GROUND_STATION = 2
+"""Reason of a mode change (ArduPilot's number)."""
+
+
+class BaseAutopilot:
+    """The firmware's laws, called on the vehicle's record."""
+
+    _arming: Any
+    """The firmware's module of arming,"""
+    _failsafe: Any
+    """of failsafes,"""
+    _set_mode: Any
+    """of changing the mode,"""
+    _numbers: Any
+    """and of the modes' numbers."""
+
+    def __init__(self, vehicle: Any) -> None:
+        self._vehicle: Vehicle = vehicle
+        self._v = view(vehicle.fleet, vehicle.index)
+        self._sequencer = lambda: vehicle.sequencer
+        self._notes: list[Note] = []
+
+    def take_notes(self) -> list[Note]:
+        """What there is to tell, once."""
+        notes, self._notes = self._notes, []
+        return notes
+
+    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
+        """What only the firmware can tell of an event of the core; nothing for most."""
+        if code == events.MODE_REFUSED:
+            return [Text(WARNING, text) for text in self._numbers.refusal_texts(int(a), int(b))]
+        if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
+            return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
+        if code == events.FAILSAFE:
+            text = self._failsafe.text(int(a), bool(b))
+            return [Text(WARNING, text)] if text else []
+        return []
+
+    def _say(self, severity: int, texts: list[str]) -> None:
+        self._notes.extend(Text(severity, text) for text in texts)
+
+    # ------------------------------------------------------------------ arming and modes
+
+    def armed(self) -> bool:
+        return bool(self._v.autopilot.arming.armed)
+
+    def mode(self) -> int:
+        return int(self._v.autopilot.modes.number)
+
+    def arm(self, force: bool) -> bool:
+        ok, texts = self._arming.arm(self._v, BY_MAVLINK, force)
+        self._say(CRITICAL, texts)
+        return bool(ok)
+
+    def disarm(self, force: bool) -> bool:
+        return bool(self._arming.disarm(self._v, BY_MAVLINK, int(force)))
+
+    def run_prearm_checks(self) -> None:
+        self._say(CRITICAL, self._arming.texts(self._arming.check(self._v), "PreArm: "))
+
+    def set_mode(self, number: int) -> bool:
+        return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events
+
+    # ------------------------------------------------------------------ home, origin, parameters
+
+    def set_home_here(self) -> bool:
+        if not self._v.autopilot.estimate.position_ok or not home.set_here(self._v):
+            return False
+        self._v.autopilot.home.locked = 1
+        return True
+
+    def set_home(self, lat: int, lon: int, alt: float) -> bool:
+        return bool(home.set_place(self._v, lat, lon, alt, 1))
+
+    def set_origin(self, lat: int, lon: int, alt: float) -> bool:
+        return int(origin.set_origin(self._v.autopilot, lat, lon, alt)) == 1
+
+    def parameter_changed(self, name: str) -> None:
+        changed = getattr(self._vehicle, "parameter_changed", None)
+        if changed is not None:
+            changed(name)
+
+    # ------------------------------------------------------------------ mission
+
+    def mission_items(self) -> tuple[MissionItem, ...]:
+        items = tuple(self._sequencer().mission.items)
+        home_record = self._v.autopilot.home
+        if not items or not home_record.is_set:
+            return items
+        return (home_item(int(home_record.lat), int(home_record.lon), float(home_record.alt)), *items[1:])
+
+    def current_item(self) -> int:
+        return int(self._v.autopilot.modes.nav.mission_current)
+
+    def replace_mission(self, items: tuple[MissionItem, ...]) -> int:
+        result, _ = check_all(items, self._vehicle.firmware.commands.taken)
+        if result == 0:
+            self._notes.extend(self._sequencer().set_mission(self._v, Mission(items)))
+        return int(result)
+
+    def clear_mission(self) -> bool:
+        if not self._sequencer().may_clear(self._v):
+            return False
+        self._notes.extend(self._sequencer().set_mission(self._v, Mission()))
+        return True
+
+    def set_current_item(self, seq: int, reset: bool) -> bool:
+        if reset:
+            self._notes.extend(self._sequencer().reset(self._v))
+        if seq == -1:
+            return reset
+        ok, notes = self._sequencer().set_current(self._v, seq)
+        self._notes.extend(notes)
+        return bool(ok)
+
+    def start_mission(self) -> bool:
+        nav = self._v.autopilot.modes.nav
+        if self.mode() != self._numbers.AUTO:
+            return self.set_mode(self._numbers.AUTO)  # it starts the mission: MODE_CHANGED reaches the sequencer
+        if nav.mission_state != RUNNING:
+            if not self._sequencer().mission.present:
+                return False
+            self._notes.extend(self._sequencer().start(self._v))
+        return True

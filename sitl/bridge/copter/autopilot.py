@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter firmware behind the MAVLink services, in one place: a changed law is a changed line here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...autopilot import events
+from ...autopilot.copter import arming, failsafe, motor_test
+from ...autopilot.copter.modes import auto, guided, numbers, set_mode, takeoff
+from ...autopilot.mission.notes import Text
+from ..autopilot_api import NO_YAW, Note, Vector, Yaw
+from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
+
+
+class CopterAutopilot(BaseAutopilot):
+    """The copter firmware's laws, called on the vehicle's record."""
+
+    _arming, _failsafe, _set_mode, _numbers = arming, failsafe, set_mode, numbers
+
+    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
+        if code == events.MOTOR_TEST:
+            return [Text(INFO, "starting motor test" if a else "finished motor test")]
+        return super().texts_of(code, a, b)
+
+    def start_mission(self) -> bool:
+        if not super().start_mission():
+            return False
+        auto.start(self._v)
+        return True
+
+    # ------------------------------------------------------------------ take-off and motors
+
+    def takeoff(self, altitude: float) -> bool:
+        """Climb to a height above home [m]."""
+        return int(takeoff.start(self._v, altitude)) == 0
+
+    def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
+        """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front."""
+        motor = position - 1
+        if in_order and 0 <= motor < motor_test.MOTORS:
+            motor = motor_test.motor_in_order(int(self._v.autopilot.params.FRAME_TYPE), motor)
+        answer = int(motor_test.start(self._v, motor, throttle, seconds))
+        if answer == motor_test.NOT_LANDED:
+            self._say(CRITICAL, ["Motor Test: vehicle not landed"])
+        return answer == motor_test.OK
+
+    def set_servo(self, number: int, pulse: int) -> bool:
+        """Outputs behind the motors' are free; motors are the mixer's."""
+        actuators = self._v.actuators
+        if not motor_test.MOTORS < number <= len(actuators.pwm):
+            return False
+        actuators.pwm[number - 1] = pulse
+        actuators.controls[number - 1] = (pulse - 1500) / 500.0
+        return True
+
+    def terminate(self) -> None:
+        """Stop the motors, in flight too."""
+        failsafe.terminate(self._v)
+
+    # ------------------------------------------------------------------ GUIDED
+
+    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
+        return int(guided.set_position(self._v, *place, *_laws_yaw(yaw))) == 0
+
+    def guided_position_velocity(self, pos: Vector, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
+        return int(guided.set_pos_vel_accel(self._v, *pos, *vel, *acc, *_laws_yaw(yaw))) == 0
+
+    def guided_velocity(self, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
+        return int(guided.set_velocity_accel(self._v, *vel, *acc, *_laws_yaw(yaw))) == 0
+
+    def guided_acceleration(self, acc: Vector, yaw: Yaw) -> bool:
+        return int(guided.set_accel(self._v, *acc, *_laws_yaw(yaw))) == 0
+
+    def guided_attitude(self, q: tuple[float, ...] | None, rates: Vector, thrust: float) -> bool:
+        w, x, y, z = q or (1.0, 0.0, 0.0, 0.0)
+        return int(guided.set_attitude(self._v, int(q is not None), w, x, y, z, *rates, thrust)) == 0
+
+    def guided_stop(self) -> bool:
+        return int(guided.stop(self._v)) == 0
+
+    def change_speed(self, kind: int, speed: float) -> bool:
+        kinds = (guided.HORIZONTAL, guided.HORIZONTAL, guided.CLIMB, guided.DESCENT)
+        if not numbers.requires_position(self.mode()):
+            return False
+        if self.mode() == numbers.AUTO:
+            return bool(self._sequencer().change_speed(self._v, kind, speed))
+        return int(guided.change_speed(self._v, kinds[kind], speed)) == 0
+
+    def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
+        return int(guided.condition_yaw(self._v, angle, rate, direction, int(relative))) == 0
+
+    def pause(self, on: bool) -> bool:
+        return int((guided.pause if on else guided.resume)(self._v)) == 0
+
+    def set_roi(self, place: Vector | None) -> None:
+        if place is None:
+            guided.clear_roi(self._v)
+        else:
+            guided.set_roi(self._v, *place)
+
+
+def _laws_yaw(yaw: Yaw | None) -> tuple[int, float, int, float, int]:
+    """Yaw arguments of the GUIDED laws: a field that is not used must still be a number."""
+    if yaw is None or yaw is NO_YAW:
+        return (0, 0.0, 0, 0.0, 0)
+    use_yaw, angle, use_rate, rate, relative = yaw
+    return (int(use_yaw), angle if use_yaw else 0.0, int(use_rate), rate if use_rate else 0.0, int(relative))

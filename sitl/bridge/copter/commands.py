@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Commands that only the copter knows, or in its own way: take-off, landing, heading, speeds, motors.
+
+Results as ArduCopter gives them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, cast
+
+from ..channel import Channel
+from ..services import commands_system, commands_vehicle
+from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry
+from ..services.commands_vehicle import set_mode
+from ..services.results import ACCEPTED, DENIED, FAILED
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+    from .autopilot import CopterAutopilot
+
+LOITER, LAND = 5, 9
+
+
+def _copter(bridge: Bridge) -> CopterAutopilot:
+    return cast("CopterAutopilot", bridge.autopilot)
+
+
+def loiter(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """17: changes to LOITER; FAILED when the mode cannot be entered."""
+    return set_mode(bridge, LOITER)
+
+
+def land(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """21: changes to LAND, where the vehicle is; the command's place is not used (as in ArduCopter)."""
+    return set_mode(bridge, LAND)
+
+
+def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """22: p7 height above home [m]. In GUIDED, LOITER, ALT_HOLD, armed, on the ground or in the climb; else FAILED."""
+    if command.frame != GLOBAL_RELATIVE_ALT:
+        return DENIED
+    return ACCEPTED if _copter(bridge).takeoff(command.z) else FAILED
+
+
+PERCENT, PULSE = 0.0, 1.0
+"""MOTOR_TEST_THROTTLE_TYPE"""
+BOARD_ORDER = 2.0
+"""MOTOR_TEST_ORDER: by motor number; the others go clockwise from the front."""
+
+
+def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """209: p1 motor, p2 0 percent or 1 pulse, p3 throttle, p4 seconds, p6 order. One motor at a time (p5 0 or 1)."""
+    if command.p2 not in (PERCENT, PULSE) or command.p5 not in (0.0, 1.0) or command.p1 != int(command.p1):
+        return FAILED
+    throttle = command.p3 * 0.01
+    if command.p2 == PULSE:
+        least, most = bridge.parameter("MOT_PWM_MIN") or 0.0, bridge.parameter("MOT_PWM_MAX") or 0.0
+        throttle = (command.p3 - least) / (most - least) if most > least else -1.0
+    ok = _copter(bridge).test_motor(int(command.p1), command.p6 != BOARD_ORDER, throttle, command.p4)
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
+
+
+def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """178: p1 0 or 1 horizontal, 2 climb, 3 descent; p2 speed [m/s]."""
+    if command.p2 <= 0.0 or command.p1 not in (0.0, 1.0, 2.0, 3.0):
+        return DENIED
+    return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
+
+
+def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """115: p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 0 absolute, 1 relative."""
+    if not 0.0 <= command.p1 <= 360.0 or command.p4 not in (0.0, 1.0):
+        return FAILED
+    direction = (command.p3 > 0.0) - (command.p3 < 0.0)
+    angle, rate = math.radians(command.p1), math.radians(max(command.p2, 0.0))
+    return ACCEPTED if _copter(bridge).condition_yaw(angle, rate, direction, command.p4 == 1.0) else FAILED
+
+
+def pause_continue(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """193: p1 0 pause, 1 continue."""
+    if command.p1 not in (0.0, 1.0):
+        return DENIED
+    return ACCEPTED if _copter(bridge).pause(command.p1 == 0.0) else FAILED
+
+
+def set_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """195, 201: point the nose at a place; all zero ends it."""
+    if command.frame not in GLOBAL_FRAMES:
+        return DENIED
+    if command.lat == 0 and command.lon == 0 and command.z == 0.0:
+        _copter(bridge).set_roi(None)
+        return ACCEPTED
+    place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
+    if place is None:
+        return FAILED
+    _copter(bridge).set_roi(place)
+    return ACCEPTED
+
+
+def no_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """197: look ahead again."""
+    _copter(bridge).set_roi(None)
+    return ACCEPTED
+
+
+def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """185: p1 above 0.5 stops the motors, in flight too."""
+    if command.p1 <= 0.5:
+        return FAILED
+    _copter(bridge).terminate()
+    bridge.say_pending()
+    return ACCEPTED
+
+
+COMMANDS: dict[int, Entry] = {
+    **commands_vehicle.COMMANDS,
+    **commands_system.COMMANDS,
+    17: Entry(loiter),
+    21: Entry(land),
+    22: Entry(takeoff, required=(7,)),
+    115: Entry(condition_yaw, required=(1,)),
+    178: Entry(change_speed, required=(1, 2)),
+    185: Entry(terminate, required=(1,)),
+    193: Entry(pause_continue, required=(1,)),
+    195: Entry(set_roi, required=(5, 6, 7), place=True),
+    197: Entry(no_roi),
+    201: Entry(set_roi, required=(5, 6, 7), place=True),
+    209: Entry(motor_test, required=(1, 2, 3, 4)),
+}

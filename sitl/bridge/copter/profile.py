@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter's face on MAVLink."""
+
+from __future__ import annotations
+
+from ...autopilot import events
+from ...autopilot.copter.modes.numbers import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, NAMES, RTL, STABILIZE
+from ..profile import AUTOMATIC, Controllers, Mode, Profile, Stick
+from ..services.results import CRITICAL, INFO
+from ..telemetry.identity import CAPABILITIES, TERMINATION
+from . import telemetry
+from .autopilot import CopterAutopilot
+from .commands import COMMANDS
+from .setpoints import CopterSetpoints
+
+PROFILE = Profile(
+    firmware="ArduCopter",
+    mav_type=telemetry.QUADROTOR,
+    capabilities=CAPABILITIES | TERMINATION,
+    modes=(
+        Mode(STABILIZE, NAMES[STABILIZE]),
+        Mode(ALT_HOLD, NAMES[ALT_HOLD], standard=4),
+        Mode(AUTO, NAMES[AUTO], 6, AUTOMATIC),
+        Mode(GUIDED, NAMES[GUIDED], 0, AUTOMATIC),
+        Mode(LOITER, NAMES[LOITER], standard=1),
+        Mode(RTL, NAMES[RTL], 5, AUTOMATIC),
+        Mode(LAND, NAMES[LAND], 7, AUTOMATIC),
+        Mode(BRAKE, NAMES[BRAKE], 0, AUTOMATIC),
+    ),
+    auto=AUTO,
+    guided=GUIDED,
+    rtl=RTL,
+    groups={
+        1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+        2: (
+            "EXT_STAT",
+            ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
+             "POSITION_TARGET_GLOBAL_INT"),
+        ),
+        3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+        4: ("RAW_CTRL", ()),
+        6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
+        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
+        11: ("EXTRA2", ("VFR_HUD",)),
+        12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
+    },
+    commands=COMMANDS,
+    set_points=CopterSetpoints,
+    texts={
+        events.ARMED: (INFO, "Arming motors"),
+        events.DISARMED: (INFO, "Disarming motors"),
+        events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
+        events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
+    },
+    sticks=(
+        Stick("RCMAP_ROLL", 1, "y"),
+        Stick("RCMAP_PITCH", 2, "x", is_reversed=True),
+        Stick("RCMAP_THROTTLE", 3, "z", lowest=0),
+        Stick("RCMAP_YAW", 4, "r"),
+    ),
+    receiver_timeout="RC_FS_TIMEOUT",
+    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=True),
+    builders=telemetry.BUILDERS,
+    autopilot=CopterAutopilot,
+)  # fmt: skip

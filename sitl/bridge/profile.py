@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a firmware is on MAVLink: everything in which two firmwares differ there, as data.
+
+``bridge/copter`` and ``bridge/rover`` each define one; services and telemetry read ``bridge.profile``.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .autopilot_api import Autopilot
+from .services.command import Entry
+from .telemetry.builder import Builder
+
+if TYPE_CHECKING:
+    from .services.setpoints import SetpointService
+
+
+class Mode(NamedTuple):
+    """A flight mode as AVAILABLE_MODES tells it."""
+
+    number: int
+    """``custom_mode`` of HEARTBEAT."""
+    name: str
+    standard: int = 0
+    """MAV_STANDARD_MODE"""
+    properties: int = 0
+    """MAV_MODE_PROPERTY bits"""
+
+
+AUTOMATIC = 4
+"""MAV_MODE_PROPERTY_AUTO_MODE: moves without the pilot's sticks."""
+NOT_SELECTABLE = 2
+"""MAV_MODE_PROPERTY_NOT_USER_SELECTABLE"""
+
+
+class Stick(NamedTuple):
+    """Where one axis of MANUAL_CONTROL goes."""
+
+    parameter: str
+    """RCMAP_ parameter that names the channel."""
+    channel: int
+    """The channel if that means none."""
+    axis: str
+    """Field of the message."""
+    lowest: int = -1000
+    """The field's value that means the channel's least pulse; 1000 means its greatest."""
+    is_reversed: bool = False
+
+
+class Controllers(NamedTuple):
+    """Bits of SYS_STATUS (MAV_SYS_STATUS_SENSOR) that stand for controllers, not sensors."""
+
+    present: int
+    enabled: Callable[[int, bool], int]
+    """Those at work in a mode, armed or not."""
+    healthy_at_rest: bool
+    """Whether those that are not at work are told as healthy."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A firmware's face."""
+
+    firmware: str
+    """ArduPilot's name of it."""
+    mav_type: int
+    """MAV_TYPE of HEARTBEAT"""
+    capabilities: int
+    """MAV_PROTOCOL_CAPABILITY bits"""
+    modes: tuple[Mode, ...]
+    auto: int
+    """Number of the mode that runs missions."""
+    guided: int
+    """Number of the mode that takes set-points."""
+    rtl: int
+    groups: Mapping[int, tuple[str, tuple[str, ...]]]
+    """MAV_DATA_STREAM -> (ending of the MAV1_ rate parameter, messages)."""
+    commands: Mapping[int, Entry]
+    """MAV_CMD -> how it is carried out. A number that is not here is answered UNSUPPORTED."""
+    set_points: type[SetpointService]
+    texts: Mapping[int, tuple[int, str]]
+    """Code of an event -> (severity, text with the event's numbers ``a`` and ``b``)."""
+    sticks: tuple[Stick, ...]
+    receiver_timeout: str | float
+    """Silence of the receiver [s] after which it counts as lost, or the parameter that says so."""
+    controllers: Controllers
+    builders: Mapping[str, Builder]
+    """Telemetry that only this firmware has, or has in its own way."""
+    autopilot: Callable[[Any], Autopilot]
+    """The firmware's laws behind the services."""
+
+
+NAMES = ("copter", "rover")
+"""Firmwares that have a profile."""
+
+
+def load(firmware: str) -> Profile:
+    """The profile of a firmware by its name; its code is loaded with the first vehicle that has it."""
+    found: Profile = importlib.import_module(f"{__package__}.{firmware}.profile").PROFILE
+    return found

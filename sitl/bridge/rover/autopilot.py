@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rover firmware behind the MAVLink services, in one place: a changed law is a changed line here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...autopilot import events
+from ...autopilot.mission.notes import ItemReached, Text
+from ...autopilot.rover import arming, failsafe, motor_test, texts
+from ...autopilot.rover.control import servos
+from ...autopilot.rover.modes import change_speed, guided, numbers, set_mode
+from ...autopilot.rover.navigation import waypoint
+from ..autopilot_api import Note, Vector, Yaw
+from ..base_autopilot import INFO, BaseAutopilot
+
+
+class RoverAutopilot(BaseAutopilot):
+    """The rover firmware's laws, called on the vehicle's record. Backward speeds are negative."""
+
+    _arming, _failsafe, _set_mode, _numbers = arming, failsafe, set_mode, numbers
+
+    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
+        if code == events.GUIDED_REACHED:
+            return [ItemReached(0)]
+        return [Text(severity, text) for severity, text in texts.texts(code, a, b)]
+
+    # ------------------------------------------------------------------ outputs
+
+    def test_motor(self, motor: int, throttle: float, pulse: int, seconds: float) -> bool:
+        """Drive an output: 1 throttle, 2 steering, 3 left, 4 right; at -1 .. 1, or with a pulse [us] that is not 0."""
+        return int(motor_test.start(self._v, motor, throttle, pulse, seconds)) == motor_test.OK
+
+    def set_servo(self, number: int, pulse: int) -> bool:
+        """Outputs without a function (SERVOn_FUNCTION 0) are free."""
+        return bool(servos.set_servo(self._v, number - 1, pulse))
+
+    # ------------------------------------------------------------------ GUIDED
+
+    def is_guided_in_auto(self) -> bool:
+        """Whether a mission waits for set-points (NAV_GUIDED_ENABLE)."""
+        return self.mode() == numbers.AUTO and bool(guided.is_open(self._v.autopilot))
+
+    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
+        """Drive to a place; height and yaw mean nothing to a rover."""
+        return int(guided.set_position(self._v, place[0], place[1])) == 0
+
+    def guided_heading(self, heading: float, speed: float) -> bool:
+        return int(guided.set_heading_and_speed(self._v, heading, speed)) == 0
+
+    def guided_heading_change(self, change: float, speed: float) -> bool:
+        """Turn by an angle [rad] from the heading asked for last."""
+        return int(guided.set_heading_change_and_speed(self._v, change, speed)) == 0
+
+    def guided_turn_rate(self, rate: float, speed: float) -> bool:
+        return int(guided.set_turn_rate_and_speed(self._v, rate, speed)) == 0
+
+    def guided_stop(self) -> bool:
+        return int(guided.stop(self._v)) == 0
+
+    def change_speed(self, kind: int, speed: float) -> bool:
+        """Airspeed (0) is ground speed (1); there are no others."""
+        return int(change_speed.change_speed(self._v, speed)) == 0
+
+    def set_reversed(self, backward: bool) -> None:
+        """Drive paths backwards, until the mode changes."""
+        waypoint.set_reversed(self._v.autopilot, int(backward))
+
+    # ------------------------------------------------------------------ home
+
+    def set_home_here(self) -> bool:
+        return self._told_home(super().set_home_here())
+
+    def set_home(self, lat: int, lon: int, alt: float) -> bool:
+        return self._told_home(super().set_home(lat, lon, alt))
+
+    def _told_home(self, ok: bool) -> bool:
+        home = self._v.autopilot.home
+        if ok:
+            place = f"{int(home.lat) * 1e-7:.7g} {int(home.lon) * 1e-7:.7g} at {float(home.alt):.2f}m"
+            self._say(INFO, [f"Set HOME to {place}"])
+        return ok

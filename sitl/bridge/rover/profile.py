@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rover's face on MAVLink."""
+
+from __future__ import annotations
+
+from ...autopilot.rover.modes.numbers import AUTO, GUIDED, INITIALISING, NAMES, RTL, is_autopilot
+from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
+from ..profile import AUTOMATIC, NOT_SELECTABLE, Controllers, Mode, Profile, Stick
+from ..telemetry.identity import CAPABILITIES
+from . import targets, telemetry
+from .autopilot import RoverAutopilot
+from .commands import COMMANDS
+from .setpoints import RoverSetpoints
+
+
+def _properties(number: int) -> int:
+    return NOT_SELECTABLE if number == INITIALISING else AUTOMATIC if is_autopilot(number) else 0
+
+
+PROFILE = Profile(
+    firmware="ArduRover",
+    mav_type=telemetry.GROUND_ROVER,
+    capabilities=CAPABILITIES,
+    modes=tuple(Mode(number, name, properties=_properties(number)) for number, name in NAMES.items()),
+    auto=AUTO,
+    guided=GUIDED,
+    rtl=RTL,
+    groups={
+        1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+        2: (
+            "EXT_STAT",
+            ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
+             "POSITION_TARGET_GLOBAL_INT"),
+        ),
+        3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+        4: ("RAW_CTRL", ("RC_CHANNELS_SCALED",)),
+        6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
+        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
+        11: ("EXTRA2", ("VFR_HUD",)),
+        12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "WHEEL_DISTANCE")),
+    },
+    commands=COMMANDS,
+    set_points=RoverSetpoints,
+    texts={},
+    sticks=(Stick("RCMAP_ROLL", 1, "y"), Stick("RCMAP_THROTTLE", 3, "z")),
+    receiver_timeout=RECEIVER_TIMEOUT_S,
+    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=False),
+    builders={**telemetry.BUILDERS, **targets.BUILDERS},
+    autopilot=RoverAutopilot,
+)  # fmt: skip

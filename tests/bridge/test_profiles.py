@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The firmwares' faces fit the services that read them."""
+
+from __future__ import annotations
+
+import inspect
+from collections import Counter
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from sitl.bridge.profile import NAMES, Profile, load
+from sitl.bridge.telemetry.builder import builders
+from sitl.kinds import KINDS
+
+PROFILES = [load(name) for name in NAMES]
+
+
+def test_every_firmware_has_one() -> None:
+    assert set(NAMES) == set(KINDS)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
+def test_streams(profile: Profile) -> None:
+    sent = Counter(name for _, names in profile.groups.values() for name in names)
+    assert sent and max(sent.values()) == 1, "a message has one group"
+    assert set(sent) <= set(builders(profile))
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
+def test_commands(profile: Profile) -> None:
+    known = mavlink.enums["MAV_CMD"]
+    for number, entry in profile.commands.items():
+        assert number in known
+        assert (inspect.getdoc(entry.run) or "").startswith(tuple("123456789")), "begins with its number"
+
+
+@pytest.mark.parametrize(("name", "profile"), list(zip(NAMES, PROFILES, strict=True)), ids=NAMES)
+def test_modes(name: str, profile: Profile) -> None:
+    names = {mode.number: mode.name for mode in profile.modes}
+    assert names == dict(KINDS[name].firmware.mode_names)
+    assert [names[number] for number in (profile.auto, profile.guided, profile.rtl)] == ["AUTO", "GUIDED", "RTL"]
+    for stick in profile.sticks:
+        assert stick.parameter in KINDS[name].firmware.table
+        assert stick.axis in mavlink.MAVLink_manual_control_message.fieldnames
