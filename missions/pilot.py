@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The two recorded flights, flown by this simulator with the same commands at the same times, as MAVLink bytes."""
+"""Sends commands at simulated times, as MAVLink bytes, and keeps what telemetry says."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from sitl.simulation import Simulation
 
 from .recording import COLUMNS, Recording
 
-GUIDED, AUTO, RTL = 4, 3, 6
 SET_MODE, ARM, TAKEOFF, CONDITION_YAW, MISSION_START = 176, 400, 22, 115, 300
 POSITION_ABSOLUTE = 16
 """EKF_STATUS_REPORT: the filter has an absolute position."""
@@ -22,9 +21,6 @@ PREARM_BIT = 0x10000000
 LOCAL_NED = 1
 POSITION_ONLY, VELOCITY_ONLY = 0b0000110111111000, 0b0000110111000111
 SAMPLE_US = 40_000
-
-SQUARE = [(-353629926, 1491652371), (-353629926, 1491655676), (-353632621, 1491655676), (-353632621, 1491652371)]
-"""Corners of the recorded AUTO mission [degE7]."""
 
 
 class FlightError(RuntimeError):
@@ -80,7 +76,12 @@ class Pilot:
         """All that was flown."""
         data = np.array(self.rows)
         assert data.shape[1] == len(COLUMNS)
-        return Recording(data, self.phases, self.reached, self.now)
+        return Recording(data, self.phases, self.reached, self.texts, self.now)
+
+    def choose_mode(self, name: str) -> None:
+        """Ask for a mode by its name."""
+        numbers = {name: number for number, name in self.simulation.firmware.mode_names.items()}
+        self.client.command(SET_MODE, 1, numbers[name])
 
     def boot(self) -> None:
         """Wait for a position and for the checks, 5 s more as the recordings did, then choose GUIDED."""
@@ -88,7 +89,7 @@ class Pilot:
             state = f"position {self.position}, checks {self.checked}"
             raise FlightError(f"not ready after {self.now:.0f} s ({state}): {self.texts[-5:]}")
         self.fly(5.0)
-        self.client.command(SET_MODE, 1, GUIDED)
+        self.choose_mode("GUIDED")
 
     def arm(self, wait: float = 2.0) -> None:
         """Arm and let ``wait`` seconds pass; FlightError with the vehicle's texts when it refuses."""
@@ -136,51 +137,6 @@ class Pilot:
             self.reached.append((self.now, fields.seq))
         elif name == "COMMAND_ACK":
             self.acks.append((fields.command, fields.result))
-
-
-def guided(simulation: Simulation) -> Pilot:
-    """Take-off 10 m, 20 m north, 3 m/s east for 10 s, stop, three yaw commands, RTL: the recorded GUIDED script."""
-    pilot = Pilot(simulation)
-    pilot.boot()
-    pilot.arm(2.08)
-    pilot.phase("takeoff")
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)
-    pilot.fly(25.0)
-    pilot.phase("pos_step_20N")
-    pilot.setpoint(POSITION_ONLY, position=(20.0, 0.0, -10.0))
-    pilot.fly(25.0)
-    pilot.phase("vel_3E_10s")
-    pilot.stream_setpoint(10.0, VELOCITY_ONLY, (0.0, 3.0, 0.0))
-    pilot.phase("vel_zero")
-    pilot.stream_setpoint(6.0, VELOCITY_ONLY, (0.0, 0.0, 0.0))
-    pilot.phase("yaw_0_abs_ccw")
-    pilot.client.command(CONDITION_YAW, 0, 0, -1, 0)
-    pilot.fly(12.0)
-    pilot.phase("yaw_90_abs")
-    pilot.client.command(CONDITION_YAW, 90, 0, 1, 0)
-    pilot.fly(12.0)
-    pilot.phase("yaw_rel_cw_45_30dps")
-    pilot.client.command(CONDITION_YAW, 45, 30, 1, 1)
-    pilot.fly(8.0)
-    pilot.phase("RTL")
-    pilot.client.command(SET_MODE, 1, RTL)
-    pilot.wait_disarmed(90.0)
-    return pilot
-
-
-def auto(simulation: Simulation) -> Pilot:
-    """Upload the recorded square, arm in GUIDED, switch to AUTO and start."""
-    pilot = Pilot(simulation)
-    pilot.boot()
-    items = [(0, 16, -353632621, 1491652371, 584.0), (3, 22, 0, 0, 10.0)]
-    items += [(3, 16, lat, lon, 10.0) for lat, lon in SQUARE] + [(3, 21, 0, 0, 0.0)]
-    upload(pilot, items)
-    pilot.arm(1.08)
-    pilot.phase("mission_start")
-    pilot.client.command(SET_MODE, 1, AUTO)
-    pilot.client.command(MISSION_START, 0, 0)
-    pilot.wait_disarmed(120.0)
-    return pilot
 
 
 def upload(pilot: Pilot, items: list[tuple[int, int, int, int, float]]) -> None:
