@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from missions.flights import VELOCITY_ONLY, Pilot
+from missions.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
 from sitl.core import compile as compiler

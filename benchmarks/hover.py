@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from missions.flights import TAKEOFF, Pilot
+from missions.pilot import TAKEOFF, Pilot
 from sitl.simulation import Core, Simulation
 
 

@@ -1,32 +1,56 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The core's entry: physics and autopilot, tick by tick, for as long as nothing needs Python."""
+"""The core's entries, one for each kind of vehicle: physics and autopilot, tick by tick, until something needs Python.
+
+``advance(fleet, index, ticks)`` advances one vehicle by up to ``ticks`` ticks of 2500 us. It returns early, at the end
+of a tick in which something happened (``autopilot.events``). The border is crossed once a tick: physics writes
+``sensors``, the autopilot reads them and writes ``actuators``.
+"""
 
 from __future__ import annotations
 
-from .autopilot import firmware
+from .autopilot.copter import firmware as copter
 from .autopilot.events import HIT_GROUND, emit
-from .core.kernels import unit
-from .physics.native.step import step
+from .autopilot.rover import firmware as rover
+from .core.kernels import law, unit
+from .physics.native.copter.step import step as step_copter
+from .physics.native.rover.step import step as step_rover
 from .truth_estimator import observe
 
 
 @unit
-def advance(fleet, index, ticks):
-    """Advance one vehicle by up to ``ticks`` ticks of 2500 us.
-
-    Returns early, at the end of a tick in which something happened (``autopilot.events``). The border is crossed
-    once a tick: physics writes ``sensors``, the autopilot reads them and writes ``actuators``.
-    """
+def advance_copter(fleet, index, ticks):
+    """Up to ``ticks`` ticks of a copter."""
     vehicle = fleet[index]
     events = vehicle.autopilot.events
     told = events.count
     for _ in range(ticks):
-        step(fleet, index)
-        ground = vehicle.physics.ground
-        if ground.hit_count > 0 and ground.hit_time_us == vehicle.time_us:
-            emit(vehicle.autopilot.events, vehicle.time_us, HIT_GROUND, ground.hit_speed, 0.0)
+        step_copter(fleet, index)
+        report_touch(vehicle)
         if vehicle.autopilot.ekf.use_external != 0:
             observe(vehicle)
-        firmware.update(fleet, index)
+        copter.update(fleet, index)
         if events.attention != 0 or events.count != told:
             break
+
+
+@unit
+def advance_rover(fleet, index, ticks):
+    """Up to ``ticks`` ticks of a rover."""
+    vehicle = fleet[index]
+    events = vehicle.autopilot.events
+    told = events.count
+    for _ in range(ticks):
+        step_rover(fleet, index)
+        if vehicle.autopilot.ekf.use_external != 0:
+            observe(vehicle)
+        rover.update(fleet, index)
+        if events.attention != 0 or events.count != told:
+            break
+
+
+@law
+def report_touch(vehicle):
+    """HIT_GROUND when the vehicle came down hard in this tick."""
+    ground = vehicle.physics.ground
+    if ground.hit_count > 0 and ground.hit_time_us == vehicle.time_us:
+        emit(vehicle.autopilot.events, vehicle.time_us, HIT_GROUND, ground.hit_speed, 0.0)

@@ -13,18 +13,17 @@ from typing import Any
 import numpy as np
 
 from . import sim_parameters, vehicles
-from .advance import advance as advance_unit
 from .autopilot import boot
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
-from .autopilot.params import files, table
+from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.record_reader import RecordReader
 from .core import compile as compiler
 from .core import records
 from .core.compile import Progress
-from .physics.native.init import init as init_physics
-from .vehicle import TICK_US, VEHICLE_DTYPE
+from .kinds import COPTER, KINDS, Kind
+from .vehicle import TICK_US
 from .vehicles import Airframe, AirframeError
 
 Array = np.ndarray[Any, Any]
@@ -41,9 +40,10 @@ class OptionError(ValueError):
 
 
 class Core:
-    """``advance(fleet, index, ticks)``, compiled or (``NUMBA_DISABLE_JIT=1``) plain Python."""
+    """``advance(fleet, index, ticks)`` of a kind of vehicle, compiled or (``NUMBA_DISABLE_JIT=1``) plain Python."""
 
-    def __init__(self, function: Callable[[int, int, int, int], None] | None) -> None:
+    def __init__(self, kind: Kind, function: Callable[[int, int, int, int], None] | None) -> None:
+        self.kind = kind
         self._function = function
 
     def __call__(self, fleet: Array, index: int, ticks: int) -> None:
@@ -53,14 +53,14 @@ class Core:
     def bind(self, fleet: Array, index: int) -> Callable[[int], None]:
         """The same for one vehicle, whose memory stays in place: cheaper to call."""
         if self._function is None:
-            plain = {index: records.view(fleet, index)}
-            return lambda ticks: advance_unit(plain, index, ticks)
+            plain, advance = {index: records.view(fleet, index)}, self.kind.advance
+            return lambda ticks: advance(plain, index, ticks)
         return partial(self._function, fleet.ctypes.data, len(fleet), index)
 
 
-def load_core(progress: Progress | None = None) -> Core:
-    """The core; compiles what changed since it was last built."""
-    return Core(compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, advance_unit, progress))
+def load_core(kind: Kind = COPTER, progress: Progress | None = None) -> Core:
+    """The core of a kind of vehicle; compiles what changed since it was last built."""
+    return Core(kind, compiler.load(kind.advance, kind.record_path, progress))
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Simulation:
         seed: seed of all sensor noise and turbulence.
         estimator: "ekf", or "truth" for work on controllers.
         params: values under ArduPilot's names, over the airframe's own and the defaults.
-        core: a core already loaded (tests share one).
+        core: the core of this kind of vehicle, if it is loaded already.
 
     Raises:
         OptionError, sitl.vehicles.AirframeError, ParameterError: an argument that cannot be taken, named.
@@ -107,10 +107,12 @@ class Simulation:
             raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         self.airframe = vehicles.load(frame)
         self.home, self.seed, self.estimator = checked_home(home), checked_seed(seed), estimator
-        self.fleet: Array = np.zeros(1, VEHICLE_DTYPE)
+        self.kind = KINDS[self.airframe.kind]
+        self.firmware = self.kind.firmware
+        self.fleet: Array = np.zeros(1, self.kind.dtype)
         self.index = 0
         self.v = records.view(self.fleet, self.index)
-        size = VEHICLE_DTYPE.itemsize
+        size = self.fleet.dtype.itemsize
         self._record = memoryview(self.fleet.view("u1"))[self.index * size : (self.index + 1) * size]  # type: ignore[arg-type]
         reader = RecordReader(self.fleet, self.index)
         self._clock = reader.field("time_us")
@@ -120,18 +122,21 @@ class Simulation:
         """Simulated time that passed before the last reboot [us]."""
         self._reboot = False
         params_record = self.v.autopilot.params
+        table = self.firmware.table
         table.set_defaults(params_record)
         label = f"airframe {self.airframe.name}"
-        unknown = files.apply(params_record, self.airframe.parameters, label)
+        unknown = files.apply(table, params_record, self.airframe.parameters, label)
         if unknown:
             raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
-        self.unknown_parameters = files.apply(params_record, params or {}, "parameters")
+        self.unknown_parameters = files.apply(table, params_record, params or {}, "parameters")
         """Names in ``params`` that this firmware does not have."""
-        self.core = core or load_core(progress)
+        if core is not None and core.kind is not self.kind:
+            raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
+        self.core = core or load_core(self.kind, progress)
         self._run = self.core.bind(self.fleet, self.index)
         self.mission = Mission()
         self._power_on()
-        self.sequencer = Sequencer(self)
+        self.sequencer = Sequencer(self, self.firmware.commands)
         self.bridge = Bridge(self)
 
     @property
@@ -210,7 +215,7 @@ class Simulation:
     def parameter_changed(self, name: str) -> None:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
         if name.startswith(sim_parameters.PREFIX):
-            sim_parameters.apply(self.v)
+            self.kind.apply_sim_parameters(self.v)
 
     def close(self) -> None:
         """Close links and log."""
@@ -218,10 +223,10 @@ class Simulation:
 
     def _power_on(self) -> None:
         boot.clear(self.v)
-        sim_parameters.apply(self.v)  # first the wind that blows at power-on
-        init_physics(self.v, self.airframe, self.home, self.seed)
-        boot.power_on(self.v)
-        sim_parameters.apply(self.v)
+        self.kind.apply_sim_parameters(self.v)  # first the wind that blows at power-on
+        self.kind.init_physics(self.v, self.airframe, self.home, self.seed)
+        self.firmware.power_on(self.v)
+        self.kind.apply_sim_parameters(self.v)
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
 
     def _follow_events(self) -> None:
@@ -236,7 +241,7 @@ class Simulation:
         self.before_boot_us = self.time_us
         self._power_on()
         self._events_seen = 0
-        self.sequencer = Sequencer(self)
+        self.sequencer = Sequencer(self, self.firmware.commands)
         self.bridge = self.bridge.successor()
 
 

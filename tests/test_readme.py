@@ -11,6 +11,7 @@ import pytest
 from sitl.autopilot.params import docs
 from sitl.cli import parser
 from sitl.core import compile as compiler
+from sitl.kinds import KINDS
 from sitl.simulation import Core
 
 ROOT = Path(__file__).parents[1]
@@ -47,15 +48,18 @@ def test_links_lead_somewhere(page: Path) -> None:
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
-def test_the_parameter_page_is_up_to_date() -> None:
-    assert (ROOT / "docs" / "parameters.md").read_text() == docs.page(), "run: python docs/make_pages.py"
+@pytest.mark.parametrize("name", KINDS)
+def test_the_parameter_pages_are_up_to_date(name: str) -> None:
+    page = docs.page(name, KINDS[name].firmware.table)
+    assert (ROOT / "docs" / f"parameters-{name}.md").read_text() == page, "run: python docs/make_pages.py"
 
 
-def test_the_units_of_the_core_are_few_and_named_after_their_place() -> None:
-    assert {unit.function.__module__.removeprefix("sitl.") for unit in compiler.UNITS.values()} == {
-        "advance",
-        "autopilot.control.update",
-        "autopilot.estimation.update",
-        "autopilot.modes.copter.update",
-        "physics.native.step",
-    }
+@pytest.mark.parametrize("name", KINDS)
+def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> None:
+    assert [unit.name for unit in compiler.reached(KINDS[name].advance)] == [
+        f"physics.native.{name}.step.step",
+        "autopilot.estimation.update.update",
+        f"autopilot.{name}.modes.update.update",
+        f"autopilot.{name}.control.update.update",
+        f"advance.advance_{name}",
+    ]

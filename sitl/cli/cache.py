@@ -17,19 +17,19 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def cache(options: argparse.Namespace) -> int:
     """Show where the compiled core is, delete it, or build what is missing."""
-    from ..advance import advance
-    from ..vehicle import VEHICLE_DTYPE
+    from ..kinds import KINDS
     from .progress import CompileProgress
 
     if options.action == "clear":
         print(f"deleted {compiler.clear_cache()} compiled units from {compiler.cache_folder()}")
     elif options.action == "build":
         with CompileProgress() as progress:
-            took = compiler.build(advance, "sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, progress)
+            took = sum(compiler.build(kind.advance, kind.record_path, progress) for kind in KINDS.values())
         print(f"built in {took:.1f} s")
     else:
-        absent = {u.name for u in compiler.missing(VEHICLE_DTYPE)}
         print(compiler.cache_folder())
-        for unit in compiler.UNITS.values():
-            print(f"  {'to build' if unit.name in absent else 'ready   '}  {unit.name}")
+        for kind in KINDS.values():
+            absent = compiler.missing(kind.advance, kind.record_path)
+            for unit in compiler.reached(kind.advance):
+                print(f"  {'to build' if unit in absent else 'ready   '}  {kind.name}: {unit.name}")
     return 0

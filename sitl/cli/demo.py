@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl demo copter``: the MAVSDK example flies a mission; figures, log and picture."""
+"""``sitl demo copter`` and ``sitl demo rover``: a MAVSDK example drives the vehicle; figures, log and picture."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from ..simulation import OptionError, Simulation
 from . import execute
 from .options import VEHICLES, add_vehicle_options, build_simulation, open_folder
 
-SCRIPT = Path(__file__).resolve().parents[2] / "examples" / "mavsdk_mission.py"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SCRIPTS = {"copter": "mavsdk_mission.py", "rover": "mavsdk_rover.py"}
 _SHOWN_US = 200_000
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("demo", help="fly the MAVSDK example and draw the flight")
+    parser = commands.add_parser("demo", help="run a MAVSDK example and draw what the vehicle did")
     parser.add_argument("vehicle", choices=sorted(VEHICLES))
     execute.add_speedup(parser, default="max")
     add_vehicle_options(parser)
@@ -33,11 +34,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def demo(options: argparse.Namespace) -> int:
-    """Fly, print the figures, draw."""
-    check_installed()
+    """Run the example, print the figures, draw."""
+    script = EXAMPLES / SCRIPTS[options.vehicle]
+    check_installed(script)
     reason = execute.can_warp()
     if reason:
-        print(f"{reason}\nThe demo flies in real time instead.", file=sys.stderr)
+        print(f"{reason}\nThe demo runs in real time instead.", file=sys.stderr)
         options.speedup = "1"
     folder = open_folder(options.log_dir)
     simulation = build_simulation(options)
@@ -45,7 +47,7 @@ def demo(options: argparse.Namespace) -> int:
     runner.send_to_free_port(simulation, port)
     log = runner.open_log(simulation, folder, f"demo-{options.vehicle}")
     start = time.monotonic()
-    command = [sys.executable, str(SCRIPT), f"udpin://{runner.HOST}:{port}"]
+    command = [sys.executable, str(script), f"udpin://{runner.HOST}:{port}"]
     try:
         with FlightProgress(simulation) as progress:
             code = execute.run_script(simulation, command, options.speedup, None, progress.update)
@@ -53,7 +55,7 @@ def demo(options: argparse.Namespace) -> int:
         simulation.close()
     wall = time.monotonic() - start
     if code:
-        print(f"sitl demo: {SCRIPT.name} ended with exit code {code}; log: {log}", file=sys.stderr)
+        print(f"sitl demo: {script.name} ended with exit code {code}; log: {log}", file=sys.stderr)
         return code
     simulated = simulation.time_us * 1e-6
     print(f"simulated {simulated:.1f} s in {wall:.1f} s of wall time: {simulated / wall:.1f}x real time")
@@ -65,22 +67,23 @@ def demo(options: argparse.Namespace) -> int:
         disarmed = flown.armed[-1][0]
         print(f"  disarmed               {disarmed - armed:6.1f} s after arming (t = {disarmed:.1f} s)")
     picture = log.with_suffix(".png")
-    plot.draw(flown, picture, f"{simulation.airframe.name}: {SCRIPT.name}, {simulated / wall:.0f}x real time")
+    title = f"{simulation.airframe.name}: {script.name}, {simulated / wall:.0f}x real time"
+    plot.draw(flown, picture, title, simulation.kind.name)
     print(f"log:     {log}\npicture: {picture}")
     return 0
 
 
-def check_installed() -> None:
+def check_installed(script: Path) -> None:
     """What the demo needs besides the simulator.
 
     Raises:
         OptionError: the example is not there.
         MissingExtra: the example's library, or that of the picture, is not installed.
     """
-    if not SCRIPT.exists():
+    if not script.exists():
         raise OptionError(
-            f"the demo flies examples/{SCRIPT.name} of a source checkout, and {SCRIPT.parent} has none: "
-            "run make demo in a checkout, or fly a script of your own: sitl exec -- python SCRIPT"
+            f"the demo runs examples/{script.name} of a source checkout, and {script.parent} has none: "
+            "run make demo in a checkout, or a script of your own: sitl exec -- python SCRIPT"
         )
     for module, extra in (("mavsdk", "mavsdk"), ("matplotlib", "viz")):
         if importlib.util.find_spec(module) is None:
@@ -119,7 +122,7 @@ class FlightProgress:
             self._was_armed = True
             step, text = 2 + reached, f"armed, item {int(ap.modes.nav.mission_current)}"
         elif self._was_armed:
-            step, text = self._STEPS, "landed and disarmed"
+            step, text = self._STEPS, "disarmed"
         else:
             step, text = (1, "ready to arm") if ap.arming.prearm_ok else (0, "starting, waiting for a position")
         self._bar.set_description_str(f"{self._simulation.time_us * 1e-6:6.1f} s  {text}", refresh=False)

@@ -4,16 +4,16 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from .. import vehicles
 from ..autopilot.params import files
-from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation
+from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation, checked_home
 from .progress import CompileProgress
 
-VEHICLES = {"copter": "erle_copter"}
+VEHICLES = {"copter": "erle_copter", "rover": "erle_rover"}
 """Vehicle kinds and the airframe each flies by default."""
 
 
@@ -25,9 +25,10 @@ def home(text: str) -> Home:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not LAT,LON,ALT,HEADING (degrees, degrees, metres, degrees), as in {DEFAULT_HOME}"
         ) from None
-    if not (-90 <= lat <= 90 and -180 <= lon <= 180 and math.isfinite(alt) and math.isfinite(heading)):
-        raise argparse.ArgumentTypeError(f"{text!r}: latitude is within +-90, longitude within +-180 degrees")
-    return (lat, lon, alt, heading % 360.0)
+    try:
+        return checked_home((lat, lon, alt, heading))
+    except OptionError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def instance(text: str) -> int:
@@ -69,12 +70,17 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
 
 def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
+    vehicle = getattr(options, "vehicle", "copter")
+    airframe = vehicles.load(options.frame or VEHICLES[vehicle])
+    if airframe.kind != vehicle:
+        others = ", ".join(vehicles.names(vehicle))
+        raise OptionError(f"--frame {options.frame} is a {airframe.kind}; those of a {vehicle} are {others}")
     values: dict[str, float] = dict(overrides or {})
     for path in options.params:
         values.update(files.load(path))
     with CompileProgress() as progress:
         simulation = Simulation(
-            options.frame or VEHICLES[getattr(options, "vehicle", "copter")],
+            airframe,
             home=options.home,
             seed=options.seed,
             estimator=options.estimator,

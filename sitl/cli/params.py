@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl params``: the firmware's parameters as a .parm file or a documentation page."""
+"""``sitl params``: a firmware's parameters as a .parm file or a documentation page."""
 
 from __future__ import annotations
 
 import argparse
 
 from .. import vehicles
-from ..autopilot.params import docs, files, table
+from ..autopilot.params import docs, files
 from ..core.records import record
+from ..kinds import KINDS
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("params", help="list the parameters")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), default="copter", help="whose parameters")
     parser.add_argument("--frame", metavar="NAME", help="with the values of this airframe")
     parser.add_argument("--markdown", action="store_true", help="as the documentation page")
     parser.set_defaults(function=params)
@@ -20,14 +22,17 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def params(options: argparse.Namespace) -> int:
     """Print every parameter."""
+    airframe = vehicles.load(options.frame) if options.frame else None
+    kind = KINDS[airframe.kind if airframe else options.vehicle]
+    table = kind.firmware.table
     if options.markdown:
-        print(docs.page(), end="")
+        print(docs.page(kind.name, table), end="")
         return 0
     import numpy as np
 
-    holder = np.zeros(1, record(("params", table.PARAMS_DTYPE))).view(np.recarray)[0].params
+    holder = np.zeros(1, record(("params", table.dtype))).view(np.recarray)[0].params
     table.set_defaults(holder)
-    if options.frame:
-        files.apply(holder, vehicles.load(options.frame).parameters, f"airframe {options.frame}")
-    print(files.dump(holder), end="")
+    if airframe:
+        files.apply(table, holder, airframe.parameters, f"airframe {airframe.name}")
+    print(files.dump(table, holder), end="")
     return 0

@@ -7,7 +7,6 @@ import math
 import sys
 import time
 
-from ..autopilot.modes.copter.numbers import NAMES
 from ..simulation import Simulation
 
 
@@ -54,9 +53,10 @@ def describe(simulation: Simulation, factor: float) -> str:
     height = -float(estimate.pos[2]) + float(ap.home.pos[2])
     speed = math.hypot(float(estimate.vel[0]), float(estimate.vel[1]))
     armed = "ARMED" if int(ap.arming.armed) else "disarmed"
+    mode = simulation.firmware.mode_names[int(ap.modes.number)]
     ready = "" if int(ap.arming.prearm_ok) or int(ap.arming.armed) else " (not ready to arm)"
     return (
-        f"{simulation.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {NAMES[int(ap.modes.number)]} {armed}{ready}"
+        f"{simulation.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {mode} {armed}{ready}"
         f"  alt {height:.1f} m  speed {speed:.1f} m/s  {float(ap.battery.voltage):.1f} V"
         f"  clients {clients(simulation)}"
     )

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flight as one picture: plan view, altitude, attitude, motors."""
+"""A flight as one picture: plan view, and what tells most of its kind of vehicle over time."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,12 +15,14 @@ class MissingExtra(RuntimeError):
     """An optional dependency is not installed; the message says which extra brings it."""
 
 
-def draw(flight: Flight, path: str | Path, title: str = "") -> None:
+def draw(flight: Flight, path: str | Path, title: str = "", kind: str = "copter") -> None:
     """Write the picture (PNG, SVG or PDF by the name's ending).
+
+    Beside the plan view: altitude, attitude and motors of a copter; speed, heading and outputs of a rover.
 
     Raises:
         MissingExtra: matplotlib is not installed.
-        LogError: the flight holds no position, attitude or motor outputs.
+        LogError: the flight holds no position, attitude or outputs.
     """
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -27,7 +30,7 @@ def draw(flight: Flight, path: str | Path, title: str = "") -> None:
     except ImportError:
         raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
 
-    position, attitude, motors = flight["LOCAL_POSITION_NED"], flight["ATTITUDE"], flight["SERVO_OUTPUT_RAW"]
+    position = flight["LOCAL_POSITION_NED"]
     figure = Figure(figsize=(12, 8), layout="constrained")
     FigureCanvasAgg(figure)
     figure.suptitle(title)
@@ -35,36 +38,76 @@ def draw(flight: Flight, path: str | Path, title: str = "") -> None:
     grid = axes[0, 0].get_gridspec()
     for row in range(3):
         axes[row, 0].remove()
-    plan = figure.add_subplot(grid[:, 0])
-    plan.plot(position[:, 2], position[:, 1], lw=1.5)
-    plan.plot(position[0, 2], position[0, 1], "ko", ms=5, label="home")
-    for t, seq in flight.reached:
-        north, east = (np.interp(t, position[:, 0], position[:, k]) for k in (1, 2))
-        plan.plot(east, north, "r.", ms=9)
-        plan.annotate(str(seq), (east, north), textcoords="offset points", xytext=(6, 4), color="r")
-    plan.set(xlabel="east [m]", ylabel="north [m]", title="plan view (red: mission items reached)")
-    plan.set_aspect("equal", adjustable="datalim")
-    plan.grid(alpha=0.3)
-    plan.legend(loc="upper right")
-
+    _plan(figure.add_subplot(grid[:, 0]), flight)
     armed = next((t for t, state in flight.armed if state), position[0, 0])
     start = max(position[0, 0], armed - 5.0)
-    altitude, angles, pulses = axes[0, 1], axes[1, 1], axes[2, 1]
-    altitude.plot(position[:, 0], -position[:, 3])
-    altitude.set(ylabel="altitude [m]")
-    for column, name in enumerate(("roll", "pitch", "yaw"), 1):
-        angles.plot(attitude[:, 0], np.degrees(attitude[:, column]), lw=0.9, label=name)
-    angles.set(ylabel="attitude [deg]")
-    for column in range(1, 5):
-        pulses.plot(motors[:, 0], motors[:, column], lw=0.7, label=f"motor {column}")
-    pulses.set(ylabel="output [us]", xlabel="simulated time [s]")
-    for axis in (altitude, angles, pulses):
+    panels = _COPTER if kind == "copter" else _ROVER
+    for axis, panel in zip(axes[:, 1], panels, strict=True):
+        panel(axis, flight)
         axis.grid(alpha=0.3)
         axis.set_xlim(start, position[-1, 0])
-        for t, seq in flight.reached:
+        for t, _ in flight.reached:
             axis.axvline(t, color="r", lw=0.6, alpha=0.6)
-            if axis is altitude:
-                axis.annotate(str(seq), (t, axis.get_ylim()[1]), color="r", fontsize=8)
-    angles.legend(loc="upper right", ncols=3, fontsize=8)
-    pulses.legend(loc="upper right", ncols=4, fontsize=8)
+        if axis.get_legend_handles_labels()[0]:
+            axis.legend(loc="upper right", ncols=4, fontsize=8)
+    for t, seq in flight.reached:
+        axes[0, 1].annotate(str(seq), (t, axes[0, 1].get_ylim()[1]), color="r", fontsize=8)
+    axes[2, 1].set(xlabel="simulated time [s]")
     figure.savefig(path, dpi=110)
+
+
+def _plan(axis: Any, flight: Flight) -> None:
+    position = flight["LOCAL_POSITION_NED"]
+    axis.plot(position[:, 2], position[:, 1], lw=1.5)
+    axis.plot(position[0, 2], position[0, 1], "ko", ms=5, label="home")
+    for t, seq in flight.reached:
+        north, east = (np.interp(t, position[:, 0], position[:, k]) for k in (1, 2))
+        axis.plot(east, north, "r.", ms=9)
+        axis.annotate(str(seq), (east, north), textcoords="offset points", xytext=(6, 4), color="r")
+    axis.set(xlabel="east [m]", ylabel="north [m]", title="plan view (red: mission items reached)")
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.grid(alpha=0.3)
+    axis.legend(loc="upper right")
+
+
+def _altitude(axis: Any, flight: Flight) -> None:
+    position = flight["LOCAL_POSITION_NED"]
+    axis.plot(position[:, 0], -position[:, 3])
+    axis.set(ylabel="altitude [m]")
+
+
+def _attitude(axis: Any, flight: Flight) -> None:
+    attitude = flight["ATTITUDE"]
+    for column, name in enumerate(("roll", "pitch", "yaw"), 1):
+        axis.plot(attitude[:, 0], np.degrees(attitude[:, column]), lw=0.9, label=name)
+    axis.set(ylabel="attitude [deg]")
+
+
+def _motors(axis: Any, flight: Flight) -> None:
+    outputs = flight["SERVO_OUTPUT_RAW"]
+    for column in range(1, 5):
+        axis.plot(outputs[:, 0], outputs[:, column], lw=0.7, label=f"motor {column}")
+    axis.set(ylabel="output [us]")
+
+
+def _speed(axis: Any, flight: Flight) -> None:
+    position = flight["LOCAL_POSITION_NED"]
+    axis.plot(position[:, 0], np.hypot(position[:, 4], position[:, 5]))
+    axis.set(ylabel="speed [m/s]")
+
+
+def _heading(axis: Any, flight: Flight) -> None:
+    attitude = flight["ATTITUDE"]
+    axis.plot(attitude[:, 0], np.degrees(np.unwrap(attitude[:, 3])), lw=0.9)
+    axis.set(ylabel="heading [deg]")
+
+
+def _outputs(axis: Any, flight: Flight) -> None:
+    outputs = flight["SERVO_OUTPUT_RAW"]
+    for column, name in ((1, "output 1"), (3, "output 3")):
+        axis.plot(outputs[:, 0], outputs[:, column], lw=0.7, label=name)
+    axis.set(ylabel="output [us]")
+
+
+_COPTER = (_altitude, _attitude, _motors)
+_ROVER = (_speed, _heading, _outputs)

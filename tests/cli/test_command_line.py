@@ -132,7 +132,7 @@ def test_the_demo_says_what_it_lacks(
         patch.setattr(demo.importlib.util, "find_spec", lambda name: None)
         assert main(["demo", "copter"]) == 2
     assert "pip install 'gym-sitl[mavsdk]'" in capsys.readouterr().err
-    monkeypatch.setattr(demo, "SCRIPT", tmp_path / "mavsdk_mission.py")
+    monkeypatch.setattr(demo, "EXAMPLES", tmp_path)
     assert main(["demo", "copter"]) == 2
     assert "run make demo in a checkout" in capsys.readouterr().err
 

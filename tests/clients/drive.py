@@ -32,13 +32,13 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
-def fly(logs: Path, script: Path, url: str, *options: str) -> str:
-    """Run a script against a vehicle of its own; what it printed.
+def fly(logs: Path, script: Path, url: str, *options: str, vehicle: str = "copter", speedup: str = SPEEDUP) -> str:
+    """Run a script against a vehicle of its own (on the ground it drives); what it printed.
 
     Fails when the script does. ``PORT`` in ``url`` becomes the UDP port that the vehicle sends to.
     """
     port = str(free_udp_port())
-    command = [sys.executable, "-m", "sitl", "exec", "--quiet", "--speedup", SPEEDUP, "--tcp", "0"]
+    command = [sys.executable, "-m", "sitl", "exec", "--vehicle", vehicle, "--quiet", "--speedup", speedup, "--tcp", "0"]
     command += ["--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
     command += ["--", sys.executable, str(script), url.replace("PORT", port)]
     done = subprocess.run(
@@ -50,9 +50,9 @@ def fly(logs: Path, script: Path, url: str, *options: str) -> str:
 
 
 @contextmanager
-def serve(logs: Path, *options: str) -> Iterator[int]:
-    """A vehicle served in real time on a TCP port of this machine, which is given."""
-    command = [sys.executable, "-m", "sitl", "run", "copter", "--quiet", "--tcp", "0", "--out", "none"]
+def serve(logs: Path, *options: str, vehicle: str = "copter") -> Iterator[int]:
+    """A vehicle served in real time (or as the options say) on a TCP port of this machine, which is given."""
+    command = [sys.executable, "-m", "sitl", "run", vehicle, "--quiet", "--tcp", "0", "--out", "none"]
     command += ["--log-dir", str(logs), *options]
     process = subprocess.Popen(command, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, text=True)
     try:

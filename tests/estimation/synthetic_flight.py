@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from sitl.autopilot.copter.table import TABLE
 from sitl.autopilot.estimation import update
-from sitl.autopilot.params import table
 from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
 from sitl.core.records import view
-from sitl.simulation import load_core
-from sitl.vehicle import VEHICLE_DTYPE
+from sitl.vehicle import COPTER_DTYPE
 
 DT = 0.0025
 TAKE_OFF = 50.0
@@ -30,15 +29,14 @@ GRAVITY = 9.80665
 
 def new() -> np.ndarray:
     """A fleet of one vehicle at power-on, with default parameters."""
-    fleet = np.zeros(1, VEHICLE_DTYPE)
-    table.set_defaults(view(fleet, 0).autopilot.params)
+    fleet = np.zeros(1, COPTER_DTYPE)
+    TABLE.set_defaults(view(fleet, 0).autopilot.params)
     return fleet
 
 
 def updater() -> Any:
     """``f(fleet)``: one tick of the estimator, compiled unless Numba is switched off."""
-    load_core()  # builds every unit where the cache is empty: the build of one entry knows only what that imports
-    call = compiler.load("sitl.vehicle.VEHICLE_DTYPE", VEHICLE_DTYPE, update.update)
+    call = compiler.load(update.update, "sitl.vehicle.COPTER_DTYPE")
     if call is None:
         return lambda fleet: update.update(fleet.view(np.recarray), 0)
     return lambda fleet: call(fleet.ctypes.data, 1, 0)

@@ -32,9 +32,7 @@ class Chaos(Soak):
         if self.dice.random() < 0.75:
             super().act()
             return
-        deed = self.dice.choice((self.gps, self.transmitter, self.ground_station, self.weather, self.tune))
-        self.log.append(f"{self.now:.1f} {deed.__name__}")
-        deed()
+        self.do_one_of((self.gps, self.transmitter, self.ground_station, self.weather, self.tune))
 
     def set_target(self) -> None:
         if self.mode == GUIDED or self.set_mode(GUIDED):

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import math
-import random
 
 import aviator
 import numpy as np
 from aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
+from by_dice import ByDice
 
-from missions.flights import ARM, CONDITION_YAW, TAKEOFF
+from missions.pilot import ARM, CONDITION_YAW, TAKEOFF
 from sitl.simulation import Core
 
 MODES = (STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
@@ -21,13 +21,11 @@ MASKS = (0xDF8, 0xDC7, 0xC3F, 0xDC0, 0xC00, 0xC07, 0x9F8, 0x5C7, 0x9C7, 0x5F8)
 """Position; velocity; acceleration; combinations of them; with yaw, with yaw rate."""
 
 
-class Soak(Aviator):
+class Soak(ByDice, Aviator):
     """Flies by dice."""
 
     def __init__(self, core: Core, frame: str, seed: int) -> None:
-        super().__init__(core, frame, seed=seed)
-        self.dice = random.Random(seed)
-        self.log: list[str] = []
+        super().__init__(core, frame, seed)
         self.landings = self.crashes = 0
 
     def check(self) -> None:
@@ -40,20 +38,11 @@ class Soak(Aviator):
     def check_numbers(self) -> None:
         """Finite, above the ground, neither too fast nor overturned."""
         t = self.track[-1]
-        assert np.isfinite(t).all(), self.story()
+        broken = self.not_finite("estimate", "control", "modes")
+        assert not broken, (broken, self.story())
         assert t[3] < 0.01, self.story()
         assert math.hypot(t[4], t[5], t[6]) < 30.0, self.story()
         assert max(abs(t[7]), abs(t[8])) < 60.0 or self.height < 1.0, self.story()
-        for name in ("estimate", "control", "modes"):
-            record = self.simulation.fleet["autopilot"][name][0]
-            for field in record.dtype.names:
-                value = record[field]
-                if value.dtype.kind == "f":
-                    assert np.isfinite(value).all(), (name, field, self.story())
-
-    def story(self) -> str:
-        """What was done last."""
-        return f"at {self.now:.1f} s in mode {self.mode}: {self.log[-12:]} {self.texts[-4:]} {self.track[-1]}"
 
     def go(self, seconds: float) -> None:
         """Let the dice act every few seconds; land in between and at the end."""
@@ -109,12 +98,10 @@ class Soak(Aviator):
 
     def act(self) -> None:
         """One random deed."""
-        deed = self.dice.choice(
+        self.do_one_of(
             (self.change_mode, self.change_mode, self.set_target, self.set_target, self.stick, self.command,
              self.load_mission, self.weather, self.set_attitude)
         )  # fmt: skip
-        self.log.append(f"{self.now:.1f} {deed.__name__}")
-        deed()
 
     def change_mode(self) -> None:
         mode = self.dice.choice(MODES)

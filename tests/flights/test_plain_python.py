@@ -22,7 +22,7 @@ from aviator import (
     Item,
 )  # fmt: skip
 
-from missions.flights import VELOCITY_ONLY
+from missions.pilot import VELOCITY_ONLY
 from sitl.core import records
 from sitl.simulation import Core
 
@@ -96,6 +96,6 @@ def test_bits_are_the_same(core: Core, frame: str, phase: str) -> None:
     PHASES[phase](p)
     compiled, plain = p.simulation.fleet.copy(), p.simulation.fleet.copy()
     core(compiled, 0, TICKS)
-    Core(None)(plain, 0, TICKS)
+    Core(core.kind, None)(plain, 0, TICKS)
     assert int(compiled["tick"][0]) == int(plain["tick"][0]) > int(p.simulation.fleet["tick"][0])
     assert records.first_difference(compiled[0], plain[0]) is None

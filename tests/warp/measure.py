@@ -75,9 +75,7 @@ def main(say: Callable[[str], None] = print) -> None:
     parser.add_argument("speedups", nargs="+", help='numbers, or "max"')
     parser.add_argument("--python", default=sys.executable, help="interpreter that has the MAVSDK to measure")
     options = parser.parse_args()
-    native = (
-        subprocess.run([options.python, "-c", "import mavsdk.plugins"], capture_output=True).returncode == 0
-    )
+    native = subprocess.run([options.python, "-c", "import mavsdk.plugins"], capture_output=True).returncode == 0
     preload_library()  # compile before the clock starts
     say(COLUMNS)
     for speedup in options.speedups:

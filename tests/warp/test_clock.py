@@ -132,8 +132,6 @@ def test_without_a_page_the_library_changes_nothing():
     with ClockPage() as page:
         env = script_environment(page)
     env["SITL_WARP_PAGE"] = "/nonexistent"
-    code = (
-        "import time, json; t = time.monotonic(); time.sleep(0.05); print(json.dumps(time.monotonic() - t))"
-    )
+    code = "import time, json; t = time.monotonic(); time.sleep(0.05); print(json.dumps(time.monotonic() - t))"
     done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, timeout=60)
     assert 0.05 <= json.loads(done.stdout) < 5.0

@@ -18,7 +18,7 @@ def check(what: str, ok: object, seen: object = "") -> None:
 
 
 class Pilot:
-    """A ground station (255/190) that flies a copter."""
+    """A ground station (255/190) that flies a copter or drives a rover."""
 
     def __init__(self, url: str) -> None:
         self.link = mavutil.mavlink_connection(url, source_system=255, source_component=190)
@@ -78,18 +78,22 @@ class Pilot:
         number = self.link.mode_mapping()[name]
         self.expect(f"mode {name}", ("HEARTBEAT",), lambda m: m.custom_mode == number, 5.0)
 
-    def take_off(self, height=10.0) -> None:
-        """From power-on into the air, in GUIDED."""
+    def arm(self, mode="GUIDED") -> None:
+        """From power-on to armed with a position."""
         self.stream(10, "LOCAL_POSITION_NED", "ATTITUDE")
         self.stream(2, "SYS_STATUS", "GLOBAL_POSITION_INT")
-        self.mode("GUIDED")
-        ready = mavlink.MAV_SYS_STATUS_PREARM_CHECK
-        self.expect("ready to arm", ("SYS_STATUS",), lambda s: s.onboard_control_sensors_health & ready, 90.0)
+        self.mode(mode)
+        flags = mavlink.MAV_SYS_STATUS_PREARM_CHECK
+        self.expect("ready to arm", ("SYS_STATUS",), lambda s: s.onboard_control_sensors_health & flags, 90.0)
         self.link.arducopter_arm()
         self.expect("armed", ("HEARTBEAT",), lambda m: m.base_mode & ARMED, 5.0)
+
+    def take_off(self, height=10.0) -> None:
+        """From power-on into the air, in GUIDED."""
+        self.arm()
         check("take-off", self.command(22, 0, 0, 0, 0, 0, 0, height) == 0)
         self.expect("at height", ("LOCAL_POSITION_NED",), lambda p: p.z < -height + 0.3, 30.0)
 
-    def landed(self, seconds=80.0) -> None:
+    def disarmed(self, seconds=80.0) -> None:
         """Wait for the motors to be off."""
         self.expect("disarmed", ("HEARTBEAT",), lambda m: not m.base_mode & ARMED, seconds)

@@ -75,4 +75,4 @@ pilot.fly_for(2, lambda: pilot.mav.set_attitude_target_send(0, 1, 1, RATES_AND_T
 now = pilot.expect("attitude", ("ATTITUDE",))
 check("yaw rate", abs(now.yawspeed - 0.3) < 0.06, now.yawspeed)
 pilot.mode("LAND")
-pilot.landed()
+pilot.disarmed()

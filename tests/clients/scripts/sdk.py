@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the MAVSDK 4 scripts of these tests share."""
 
+import math
 import sys
 import time
 
@@ -79,3 +80,12 @@ class Session:
         """North, east, down [m/s]."""
         v = self.telemetry.position_velocity_ned().velocity
         return v.north_m_s, v.east_m_s, v.down_m_s
+
+    def speed(self) -> float:
+        """Over the ground [m/s]."""
+        return math.hypot(*self.velocity()[:2])
+
+    def place(self) -> tuple[float, float]:
+        """North, east [m] of where the estimator began."""
+        p = self.telemetry.position_velocity_ned().position
+        return p.north_m, p.east_m

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Missions of a rover by MAVSDK 4: upload, download, start, pause, jump, clear, and a QGroundControl plan."""
+
+import json
+import math
+
+from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
+from mavsdk.plugins.telemetry import FlightMode
+from sdk import Session, check, refused, wait
+
+WAYPOINT, RETURN, TAKEOFF, CHANGE_SPEED, SET_REVERSE, JUMP = 16, 20, 22, 178, 194, 177
+
+session = Session()
+action, telemetry = session.action, session.telemetry
+mission = MissionRaw(session.system)
+session.ready()
+home = telemetry.home()
+lat, lon = home.latitude_deg, home.longitude_deg
+
+
+def item(seq, command, north=0.0, p1=0.0, p2=0.0):
+    place = (round((lat + north) * 1e7), round(lon * 1e7)) if command == WAYPOINT else (0, 0)
+    return MissionItem(seq, 3, command, int(seq == 0), 1, p1, p2, 0.0, 0.0, *place, 0.0, 0)
+
+
+items = [
+    item(0, WAYPOINT), item(1, WAYPOINT, 0.8e-4), item(2, WAYPOINT, 2e-4, p1=2.0), item(3, WAYPOINT, 3e-4),
+    item(4, CHANGE_SPEED, p1=1.0, p2=0.8), item(5, WAYPOINT, 1e-4), item(6, RETURN),
+]  # fmt: skip
+mission.upload_mission(items)
+check("download", [i.command for i in mission.download_mission()] == [i.command for i in items])
+action.arm()
+mission.start_mission()
+wait("on the way to item 2", lambda: mission.mission_progress().current == 2, 60.0)
+check("mission mode", telemetry.flight_mode() == FlightMode.MISSION)
+mission.pause_mission()
+wait("pause", lambda: session.speed() < 0.1, 15.0)
+check("hold", telemetry.flight_mode() == FlightMode.HOLD)
+mission.set_current_mission_item(5)
+mission.start_mission()
+wait("back at 5", lambda: mission.mission_progress().current == 5, 5.0)
+wait("return", lambda: mission.mission_progress().current == 6, 60.0)
+wait("home", lambda: math.hypot(*session.place()) < 2.5, 60.0)
+wait("finished", lambda: mission.is_mission_finished(), 60.0)
+action.hold()
+action.disarm()
+wait("disarmed", lambda: not telemetry.armed(), 5.0)
+refused("a take-off item", mission.upload_mission, [item(0, WAYPOINT), item(1, TAKEOFF)], result="UNSUPPORTED")
+mission.clear_mission()
+check("cleared", len(mission.download_mission()) <= 1)  # MAVSDK clears ArduPilot's by uploading one empty item
+
+simple = {"autoContinue": True, "type": "SimpleItem", "frame": 3}
+plan = {
+    "fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
+    "geoFence": {"circles": [], "polygons": [], "version": 2}, "rallyPoints": {"points": [], "version": 2},
+    "mission": {
+        "version": 2, "firmwareType": 3, "vehicleType": 10, "globalPlanAltitudeMode": 1,
+        "cruiseSpeed": 2, "hoverSpeed": 5, "plannedHomePosition": [lat, lon, 584],
+        "items": [
+            {**simple, "command": WAYPOINT, "doJumpId": 1, "params": [0, 0, 0, None, lat + 1e-4, lon, 0]},
+            {**simple, "command": SET_REVERSE, "doJumpId": 2, "frame": 2, "params": [1, 0, 0, 0, 0, 0, 0]},
+            {**simple, "command": WAYPOINT, "doJumpId": 3, "params": [3, 0, 0, None, lat, lon, 0]},
+            {**simple, "command": JUMP, "doJumpId": 4, "frame": 2, "params": [1, 2, 0, 0, 0, 0, 0]},
+            {**simple, "command": RETURN, "doJumpId": 5, "frame": 2, "params": [0, 0, 0, 0, 0, 0, 0]},
+        ],
+    },
+}  # fmt: skip
+imported = mission.import_qgroundcontrol_mission_from_string(json.dumps(plan)).mission_items
+mission.upload_mission(imported)
+commands = [i.command for i in mission.download_mission()]
+check("plan", commands == [WAYPOINT, WAYPOINT, SET_REVERSE, WAYPOINT, JUMP, RETURN], commands)
+session.mavsdk.destroy()

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A test pilot of rovers."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from witness import KEEP, MIDDLE, Item, Witness
+
+MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED = 0, 1, 3, 4, 5, 7, 9, 10, 11, 12, 15
+MODES = (MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED)
+AIRFRAMES = ("erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover")
+POSITION, VELOCITY, VELOCITY_YAW, VELOCITY_YAW_RATE, YAW, YAW_RATE = 0xDF8, 0xDC7, 0x9C7, 0x5C7, 0x9FF, 0x5FF
+"""Masks of SET_POSITION_TARGET."""
+BODY = 8
+
+
+class Driver(Witness):
+    """Drives one rover."""
+
+    # ------------------------------------------------------------------ what is true
+
+    @property
+    def place(self) -> np.ndarray:
+        """True north and east of home [m]."""
+        return self.pos[:2]
+
+    @property
+    def speed(self) -> float:
+        """True speed along the nose [m/s], backward negative."""
+        heading = math.radians(self.heading)
+        return float(self.vel[0] * math.cos(heading) + self.vel[1] * math.sin(heading))
+
+    @property
+    def heading(self) -> float:
+        """True heading [deg], -180 to 180."""
+        return float(self.euler[2])
+
+    @property
+    def cruise(self) -> float:
+        """The airframe's own speed along legs [m/s], WP_SPEED."""
+        return float(self.ap.params.WP_SPEED)
+
+    @property
+    def radius(self) -> float:
+        """Of its tightest turn [m], TURN_RADIUS."""
+        return float(self.ap.params.TURN_RADIUS)
+
+    @property
+    def is_skid(self) -> bool:
+        """Whether it turns on the spot."""
+        return int(self.ap.params.SERVO1_FUNCTION) == 73
+
+    def away(self, north: float, east: float) -> float:
+        """True distance to a place, which counts from where the estimator has its origin [m]."""
+        return float(np.hypot(*(self.place - self.true(north, east))))
+
+    def true(self, north: float, east: float) -> np.ndarray:
+        """Where the estimator's place truly is: its error is not the driver's [m]."""
+        return np.array((north, east)) + self.place - np.array(self.ap.estimate.pos)[:2]
+
+    # ------------------------------------------------------------------ driving
+
+    def ready(self) -> Driver:
+        """Boot, until armable in GUIDED."""
+        self.boot()
+        self.fly(0.1)
+        return self
+
+    def armed_in(self, mode: int = GUIDED) -> Driver:
+        """Boot, arm, change to a mode."""
+        self.ready()
+        self.arm(0.2)
+        assert self.set_mode(mode), self.texts
+        return self
+
+    def hold(self, steering: int = MIDDLE, throttle: int = MIDDLE) -> None:
+        """Hold the sticks from now on [us]."""
+        self._pulses = (steering, KEEP, throttle)
+
+    def sticks(self, seconds: float, steering: int = MIDDLE, throttle: int = MIDDLE) -> None:
+        """Hold the sticks for a time [us]; what is not given is centred."""
+        self.hold(steering, throttle)
+        self.fly(seconds)
+
+    def stands(self) -> bool:
+        """Whether it stands."""
+        return abs(self.speed) < 0.02
+
+    def wait_until_it_stands(self, seconds: float = 30.0) -> None:
+        """Until it has stood for half a second."""
+        since = self.now
+
+        def stands() -> bool:
+            nonlocal since
+            since = since if self.stands() else self.now
+            return self.now - since > 0.5
+
+        assert self.fly(seconds, stands), f"still at {self.speed} m/s, {self.texts[-3:]}"
+
+    def get_going(self, speed: float | None = None, seconds: float = 8.0) -> None:
+        """Drive north in GUIDED (at WP_SPEED) for a time."""
+        self.stream(seconds, VELOCITY, vx=self.cruise if speed is None else speed)
+
+    def start_mission(self, *items: Item) -> None:
+        """Upload, AUTO; armed."""
+        assert self.upload(*items) == 0
+        self.reached.clear()
+        assert self.set_mode(AUTO), self.texts
+
+    def finish_mission(self, seconds: float) -> None:
+        """Until it says that it is through."""
+        assert self.fly(seconds, lambda: self.said("Mission Complete")), (self.reached, self.texts[-4:])
+
+
+def path_error(rows: np.ndarray, *corners: Any) -> np.ndarray:
+    """Distance [m] of each row (time, position ...) from the line through the corners."""
+    points = rows[:, 1:3]
+    best = np.full(len(points), np.inf)
+    for a, b in zip(corners, corners[1:], strict=False):
+        a, along = np.array(a), np.subtract(b, a)
+        share = np.clip((points - a) @ along / (along @ along), 0.0, 1.0)
+        best = np.minimum(best, np.hypot(*(points - a - share[:, None] * along).T))
+    return best

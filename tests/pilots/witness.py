@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A test pilot of any vehicle: commands it by MAVLink bytes like any client, and judges by the simulator's truth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from missions.pilot import ARM, SET_MODE, Pilot
+from sitl.core.geodesy import add_offset
+from sitl.physics.native import truth
+from sitl.simulation import Core, Simulation
+
+MIDDLE, LOW = 1500, 1000
+KEEP = 65535
+ABSOLUTE, RELATIVE, TERRAIN = 5, 6, 11
+
+WAYPOINT, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, RETURN = 16, 17, 18, 19, 20
+LAND_ITEM, TAKEOFF_ITEM, GUIDED_ENABLE, DELAY = 21, 22, 92, 93
+CONDITION_DELAY, CONDITION_DISTANCE, CONDITION_YAW = 112, 114, 115
+JUMP, CHANGE_SPEED, REVERSE, ROI, ROI_NONE, YAW_SPEED, GUIDED_LIMITS = 177, 178, 194, 195, 197, 213, 222
+
+
+class Item(NamedTuple):
+    """A mission item; the place in metres north and east of the origin, None for none."""
+
+    command: int
+    place: tuple[float, float] | None = None
+    z: float = 0.0
+    p: tuple[float, ...] = ()
+    frame: int = RELATIVE
+
+
+def _is_finite(value: Any) -> bool:
+    """Whether all numbers are, within nested records, too."""
+    if value.dtype.names:
+        return all(_is_finite(value[name]) for name in value.dtype.names)
+    return value.dtype.kind != "f" or bool(np.isfinite(value).all())
+
+
+class Witness(Pilot):
+    """Commands one vehicle and keeps, at 25 Hz, where it truly was."""
+
+    def __init__(self, core: Core, frame: str, *, seed: int = 0, estimator: str = "ekf", **params: float) -> None:
+        self.track: list[tuple[float, ...]] = []
+        self.items: tuple[Item, ...] = ()
+        self.answers: list[int] = []
+        self._pulses: tuple[int, ...] | None = None
+        super().__init__(Simulation(frame, seed=seed, estimator=estimator, core=core, params=params))
+
+    # ------------------------------------------------------------------ what is true
+
+    @property
+    def ap(self) -> Any:
+        """The autopilot's record."""
+        return self.simulation.v.autopilot
+
+    @property
+    def mode(self) -> int:
+        """Custom mode number."""
+        return int(self.ap.modes.number)
+
+    @property
+    def pos(self) -> np.ndarray:
+        """True position, NED from home [m]."""
+        return np.array(truth.read(self.simulation.v).pos)
+
+    @property
+    def vel(self) -> np.ndarray:
+        """True velocity NED [m/s]."""
+        return np.array(truth.read(self.simulation.v).vel)
+
+    @property
+    def euler(self) -> np.ndarray:
+        """True roll, pitch, yaw [deg]."""
+        return np.degrees(truth.read(self.simulation.v).euler)
+
+    def since(self, time: float) -> np.ndarray:
+        """Rows (time, position, velocity, roll, pitch, yaw [deg]) since a time [s]."""
+        rows = np.array(self.track)
+        return rows[rows[:, 0] > time]
+
+    def said(self, text: str) -> bool:
+        """Whether a status text had this in it."""
+        return any(text in said for _, said in self.texts)
+
+    def not_finite(self, *names: str) -> list[str]:
+        """What is no number: of the truth, and in these parts of the autopilot's record."""
+        found = [] if np.isfinite(self.track[-1]).all() else ["truth"]
+        for name in names:
+            record = self.simulation.fleet["autopilot"][name][0]
+            for field in record.dtype.names:
+                if not _is_finite(record[field]):
+                    found.append(f"{name}.{field}")
+        return found
+
+    # ------------------------------------------------------------------ commands
+
+    def fly(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """As Pilot.fly; sends the sticks that are held, at 25 Hz."""
+        stop = self.simulation.time_us + int(seconds * 1e6)
+        while self.simulation.time_us < stop:
+            if self._pulses is not None:
+                self.override(*self._pulses)
+            left = (stop - self.simulation.time_us) * 1e-6
+            if super().fly(min(0.04, left), until):
+                self._note()
+                return True
+            self._note()
+        return False
+
+    def _note(self) -> None:
+        t = truth.read(self.simulation.v)
+        self.track.append((self.now, *t.pos, *t.vel, *np.degrees(t.euler)))
+
+    def set_mode(self, number: int) -> bool:
+        """DO_SET_MODE; whether the vehicle is in that mode then."""
+        self.client.command(SET_MODE, 1, number)
+        self.fly(0.1)
+        return self.mode == number
+
+    def ask(self, number: int, *params: float, wait: float = 0.1) -> int:
+        """Send a command; its MAV_RESULT."""
+        self.acks.clear()
+        self.client.command(number, *params)
+        self.fly(wait)
+        return dict(self.acks)[number]
+
+    def set_parameter(self, name: str, value: float) -> None:
+        """PARAM_SET."""
+        self.client.send(
+            "PARAM_SET", target_system=1, target_component=1, param_id=name.encode(), param_value=value,
+            param_type=9,
+        )  # fmt: skip
+        self.fly(0.05)
+        assert math.isclose(getattr(self.ap.params, name), value, rel_tol=1e-6), name
+
+    def target(self, mask: int, frame: int = 1, **fields: float) -> None:
+        """SET_POSITION_TARGET_LOCAL_NED."""
+        self.client.send(
+            "SET_POSITION_TARGET_LOCAL_NED", target_system=1, target_component=1, coordinate_frame=frame,
+            type_mask=mask, **fields,
+        )  # fmt: skip
+
+    def stream(self, seconds: float, mask: int, frame: int = 1, **fields: float) -> None:
+        """The same at 10 Hz."""
+        for _ in range(round(seconds * 10)):
+            self.target(mask, frame, **fields)
+            self.fly(0.1)
+
+    def disarm_result(self) -> int:
+        """MAV_RESULT of disarming now."""
+        return self.ask(ARM, 0)
+
+    # ------------------------------------------------------------------ sticks
+
+    def override(self, *pulses: int) -> None:
+        """One RC_CHANNELS_OVERRIDE; channels not given are left alone."""
+        channels = {f"chan{k + 1}_raw": p for k, p in enumerate((*pulses, *[KEEP] * (8 - len(pulses))))}
+        self.client.send("RC_CHANNELS_OVERRIDE", target_system=1, target_component=1, **channels)
+
+    def let_go(self) -> None:
+        """Send no sticks any more."""
+        self._pulses = None
+
+    # ------------------------------------------------------------------ missions
+
+    def lat_lon(self, north: float, east: float) -> tuple[int, int]:
+        """A place, metres from the origin [degE7]."""
+        estimate = self.ap.estimate
+        lat, lon = add_offset(int(estimate.origin_lat), int(estimate.origin_lon), north, east)
+        return round(lat), round(lon)
+
+    def upload(self, *items: Item) -> int:
+        """Upload items (home is put in front) by the mission protocol; the MAV_MISSION_RESULT."""
+        self.items = (Item(WAYPOINT, (0.0, 0.0), 584.0, frame=ABSOLUTE), *items)
+        self.answers.clear()
+        self.client.send("MISSION_COUNT", target_system=1, target_component=1, count=len(self.items))
+        assert self.fly(10.0, lambda: bool(self.answers)), "no MISSION_ACK"
+        return self.answers[0]
+
+    def reached_at(self, seq: int) -> float:
+        """When MISSION_ITEM_REACHED first came for an item [s]; NaN when it did not."""
+        return next((time for time, number in self.reached if number == seq), math.nan)
+
+    def _take(self, name: str, fields: Any) -> None:
+        super()._take(name, fields)
+        if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
+            item = self.items[fields.seq]
+            x, y = self.lat_lon(*item.place) if item.place else (0, 0)
+            p = {f"param{k + 1}": value for k, value in enumerate(item.p)}
+            self.client.send(
+                "MISSION_ITEM_INT", target_system=1, target_component=1, seq=fields.seq, frame=item.frame,
+                command=item.command, autocontinue=1, x=x, y=y, z=item.z, **p,
+            )  # fmt: skip
+        elif name == "MISSION_ACK":
+            self.answers.append(fields.type)
