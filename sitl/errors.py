@@ -12,6 +12,8 @@ from .pacing import SpeedupError
 from .simulation import OptionError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
+from .worlds import WorldError
+from .worlds.drawing import NoMatplotlib
 
 USER_ERRORS: tuple[type[Exception], ...] = (
     AirframeError,
@@ -20,7 +22,9 @@ USER_ERRORS: tuple[type[Exception], ...] = (
     LinkAddressError,
     LogError,
     MissingExtra,
+    NoMatplotlib,
     OptionError,
     ParameterError,
     SpeedupError,
+    WorldError,
 )
