@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
+import subprocess
+import sys
 import tempfile
 import time
 import timeit
@@ -15,10 +18,10 @@ import numpy as np
 from missions.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
-from sitl.core import compile as compiler
+from sitl.kinds import KINDS
 from sitl.simulation import Core, load_core
 
-from .hover import hovering
+from .scenes import SPEED, begin, go_on
 
 FLEET = 256
 """Vehicles."""
@@ -44,10 +47,14 @@ def show(name: str, factors: list[float]) -> float:
 def kernel(pilot: Pilot, core: Core) -> Callable[[], float]:
     """The compiled core alone, 10 simulated seconds a call."""
     simulation = pilot.simulation
+    advance = core.bind(simulation.fleet, simulation.index)
 
     def run() -> float:
-        core(simulation.fleet, simulation.index, 4000)
-        return 10.0
+        start = simulation.time_us
+        for _ in range(5):
+            go_on(core, simulation.fleet)
+            advance(800)
+        return (simulation.time_us - start) * 1e-6
 
     return run
 
@@ -57,10 +64,12 @@ def fleet(pilot: Pilot, core: Core, size: int) -> Callable[[], float]:
     vehicles = np.repeat(pilot.simulation.fleet, size)
 
     def run() -> float:
+        start = vehicles["time_us"].sum()
         for _ in range(5):
+            go_on(core, vehicles)
             for index in range(size):
                 core(vehicles, index, 40)
-        return 0.5 * size
+        return float(vehicles["time_us"].sum() - start) * 1e-6
 
     return run
 
@@ -68,8 +77,7 @@ def fleet(pilot: Pilot, core: Core, size: int) -> Callable[[], float]:
 def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable[[], float]:
     """A client that sends a velocity set-point and reads telemetry as MAVLink bytes at ``rate_hz``, in lockstep."""
     simulation, client = pilot.simulation, pilot.client
-    for name in ("EKF_STATUS_REPORT", "SYS_STATUS", "LOCAL_POSITION_NED", "ATTITUDE"):
-        client.set_interval(name, 0.0)
+    client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)  # stops all streams, a rover's own too
     for name in messages:
         client.set_interval(name, rate_hz)
     kind = message("SET_POSITION_TARGET_LOCAL_NED")
@@ -82,7 +90,7 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
         for k in range(steps):
             payload = kind.payload(
                 target_system=1, target_component=1, coordinate_frame=1, type_mask=VELOCITY_ONLY,
-                vx=1.0 if k % (4 * rate_hz) < 2 * rate_hz else -1.0,
+                vx=SPEED if k % (4 * rate_hz) < 2 * rate_hz else -SPEED,
             )  # fmt: skip
             client.send_payload(kind, payload)
             simulation.advance_to(simulation.time_us + period_us)
@@ -103,48 +111,51 @@ def snapshots(pilot: Pilot, repeats: int) -> None:
         print(f"{name:58s} {statistics.median(times) / 2000 * 1e6:9.1f} us", flush=True)
 
 
-def compile_times() -> None:
+def compile_times(kind: str) -> None:
     """The whole core from nothing, and a warm start, in a cache folder of their own."""
-    import os
-    import subprocess
-    import sys
-
+    code = f"from sitl import kinds, simulation; simulation.load_core(kinds.KINDS[{kind!r}])"
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "SITL_CACHE_DIR": folder}
         for name in ("compile the whole core", "warm start to a loaded core"):
             start = time.perf_counter()
-            subprocess.run(
-                [sys.executable, "-c", "from sitl.simulation import load_core; load_core()"], env=env, check=True
-            )
+            subprocess.run([sys.executable, "-c", code], env=env, check=True)
             print(f"{name:58s} {time.perf_counter() - start:9.1f} s", flush=True)
 
 
+def measure(frame: str, repeats: int, compilation: bool) -> None:
+    """Print every figure of one airframe."""
+    kind = KINDS[vehicles.load(frame).kind]
+    core = load_core(kind)
+    pilot = begin(frame, core)
+    alone = show(f"{frame}, EKF and all loops: compiled core alone", repeat(kernel(pilot, core), repeats))
+    show(f"{frame}, a fleet of {FLEET} in steps of 0.1 s: sum of all", repeat(fleet(pilot, core, FLEET), repeats))
+    truth = begin(frame, core, "truth")
+    show(f"{frame}, --estimator truth: compiled core alone", repeat(kernel(truth, core), repeats))
+    two = ("LOCAL_POSITION_NED", "ATTITUDE")
+    for rate in (10, 50):
+        name = f"{frame}, MAVLink in the loop at {rate} Hz ({len(two)} messages)"
+        factor = show(name, repeat(streaming(begin(frame, core), rate, two), repeats))
+        print(f"{'   of the core alone':58s} {factor / alone:9.2f}")
+    snapshots(pilot, repeats)
+    if compilation:
+        compile_times(kind.name)
+
+
 def main() -> None:
-    """Print every figure; compilation when asked for."""
+    """Print every figure of the vehicles asked for; compilation too when asked for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("--frame", default="erle_copter", choices=vehicles.names())
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--vehicle", choices=tuple(KINDS), help="the first airframe of this kind; else one of each")
+    which.add_argument("--frame", choices=vehicles.names())
     parser.add_argument("--compile", action="store_true", help="also measure compilation")
     parser.add_argument("--repeats", type=int, default=7, metavar="N", help="runs of each, of which the median counts")
     options = parser.parse_args()
     if options.repeats < 1:
         parser.error(f"--repeats {options.repeats} must be 1 or more")
-    print(f"one core, CPU time, median of {options.repeats} (lowest .. highest); units: {len(compiler.UNITS)}")
-    core = load_core()
-    pilot = hovering(options.frame, core)
-    name = f"{options.frame}, EKF and all loops: compiled core alone"
-    alone = show(name, repeat(kernel(pilot, core), options.repeats))
-    name = f"{options.frame}, a fleet of {FLEET} in steps of 0.1 s: sum of all"
-    show(name, repeat(fleet(pilot, core, FLEET), options.repeats))
-    truth = hovering(options.frame, core, "truth")
-    show(f"{options.frame}, --estimator truth: compiled core alone", repeat(kernel(truth, core), options.repeats))
-    two = ("LOCAL_POSITION_NED", "ATTITUDE")
-    for rate, messages in ((10, two), (50, two)):
-        name = f"{options.frame}, MAVLink in the loop at {rate} Hz ({len(messages)} messages)"
-        factor = show(name, repeat(streaming(hovering(options.frame, core), rate, messages), options.repeats))
-        print(f"{'   of the core alone':58s} {factor / alone:9.2f}")
-    snapshots(pilot, options.repeats)
-    if options.compile:
-        compile_times()
+    print(f"one core, CPU time, median of {options.repeats} (lowest .. highest)")
+    kinds = (options.vehicle,) if options.vehicle else tuple(KINDS)
+    for frame in (options.frame,) if options.frame else [vehicles.names(kind)[0] for kind in kinds]:
+        measure(frame, options.repeats, options.compile)
 
 
 if __name__ == "__main__":

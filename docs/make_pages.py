@@ -58,6 +58,9 @@ simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both sides 
   moment that is decided by the estimate's noise: the recorded estimate goes 0.03 m/s towards the waypoint while the
   recorded vehicle stands still, so its target gets away; ours stands. With that velocity put into our estimate the
   first waypoint is reached as recorded (`tests/rover/modes/test_rover_square.py`). From there on times and path agree.
+  The recorded error is no chance: at every stop of the recording, whatever the heading, the estimate says about
+  0.017 m/s backward and 0.022 m/s to the right. An error of the inertial sensors,
+  fixed in the body, would look like that.
 - *HOLD: below 0.1 m/s.* The recorded estimate is 0.03 m/s slower than the recorded vehicle, which itself still does
   0.10 m/s after 6.0 s; then RTL begins (a dash: it was not so slow by then).
 - *errors at the end* of the position targets differ by centimetres: GUIDED stops as soon as the target has come within

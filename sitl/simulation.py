@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from ctypes import c_int64, c_void_p
 from dataclasses import dataclass
 from functools import partial
 from numbers import Integral, Real
@@ -35,6 +36,7 @@ DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 
 ESTIMATORS = ("ekf", "truth")
 
+
 class OptionError(ValueError):
     """An option of the simulation that cannot be taken."""
 
@@ -42,7 +44,7 @@ class OptionError(ValueError):
 class Core:
     """``advance(fleet, index, ticks)`` of a kind of vehicle, compiled or (``NUMBA_DISABLE_JIT=1``) plain Python."""
 
-    def __init__(self, kind: Kind, function: Callable[[int, int, int, int], None] | None) -> None:
+    def __init__(self, kind: Kind, function: Callable[..., None] | None) -> None:
         self.kind = kind
         self._function = function
 
@@ -55,7 +57,8 @@ class Core:
         if self._function is None:
             plain, advance = {index: records.view(fleet, index)}, self.kind.advance
             return lambda ticks: advance(plain, index, ticks)
-        return partial(self._function, fleet.ctypes.data, len(fleet), index)
+        place = c_void_p(fleet.ctypes.data), c_int64(len(fleet)), c_int64(index)  # converted once
+        return partial(self._function, *place)
 
 
 def load_core(kind: Kind = COPTER, progress: Progress | None = None) -> Core:
@@ -115,7 +118,7 @@ class Simulation:
         size = self.fleet.dtype.itemsize
         self._record = memoryview(self.fleet.view("u1"))[self.index * size : (self.index + 1) * size]  # type: ignore[arg-type]
         reader = RecordReader(self.fleet, self.index)
-        self._clock = reader.field("time_us")
+        self._clock: Callable[[], int] = reader.field("time_us")
         self._event_count = reader.field("autopilot.events.count")
         self._events_seen = 0
         self.before_boot_us = 0
@@ -136,13 +139,12 @@ class Simulation:
         self._run = self.core.bind(self.fleet, self.index)
         self.mission = Mission()
         self._power_on()
-        self.sequencer = Sequencer(self, self.firmware.commands)
         self.bridge = Bridge(self)
 
     @property
     def time_us(self) -> int:
         """Simulated time since the start of the simulation [us]; reboots do not set it back."""
-        return self.before_boot_us + int(self._clock())
+        return self.before_boot_us + self._clock()
 
     @property
     def elapsed_us(self) -> int:
@@ -172,7 +174,7 @@ class Simulation:
             if self._reboot:
                 self._do_reboot()
                 bridge = self.bridge
-            now = int(self._clock())
+            now = self._clock()
             stop = time_us - self.before_boot_us
             if now >= stop:
                 return
@@ -225,6 +227,7 @@ class Simulation:
         boot.clear(self.v)
         self.kind.apply_sim_parameters(self.v)  # first the wind that blows at power-on
         self.kind.init_physics(self.v, self.airframe, self.home, self.seed)
+        self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
         self.firmware.power_on(self.v)
         self.kind.apply_sim_parameters(self.v)
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
@@ -241,7 +244,6 @@ class Simulation:
         self.before_boot_us = self.time_us
         self._power_on()
         self._events_seen = 0
-        self.sequencer = Sequencer(self, self.firmware.commands)
         self.bridge = self.bridge.successor()
 
 

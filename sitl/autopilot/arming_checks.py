@@ -12,6 +12,7 @@ from ..core.kernels import law
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
 BY_RUDDER = 0
 BY_MAVLINK = 1
+BY_MOTOR_TEST = 3
 BY_TERMINATION = 5
 BY_BATTERY_FAILSAFE = 7
 BY_CRASH = 12

@@ -47,9 +47,7 @@ class Bridge:
     simulated times give the same bytes.
     """
 
-    def __init__(
-        self, vehicle: Vehicle, *, epoch_us: int = EPOCH_US, autopilot: Autopilot | None = None
-    ) -> None:
+    def __init__(self, vehicle: Vehicle, *, epoch_us: int = EPOCH_US, autopilot: Autopilot | None = None) -> None:
         self.vehicle = vehicle
         self.epoch_us = epoch_us
         self.reader = RecordReader(vehicle.fleet, vehicle.index)
@@ -66,11 +64,12 @@ class Bridge:
         self.taps = self.board.taps
         """Get every frame, in and out: ``taps.append(writer)``."""
         self._system = self.reader.field("autopilot.params.MAV_SYSID")
-        self._time_us = self.reader.field("time_us")
+        self._time_us: Callable[[], int] = self.reader.field("time_us")
         self._parameters: dict[str, Callable[[], float]] = {}
         self.places = Places(self.reader)
         self._match_clocks()
-        self._handlers: dict[int, tuple[MessageType, int, Handler]] = {}
+        self._handlers: dict[int, tuple[int, Handler]] = {}
+        """By message number: place of the field target_system, -1 when there is none, and what is to be done."""
         self.services: dict[type, Service] = {}
         for kind in ALL_SERVICES:
             service = self.profile.set_points(self) if kind is SetpointService else kind(self)
@@ -85,14 +84,14 @@ class Bridge:
         if kind.id in self._handlers:
             raise ValueError(f"two services handle {name}")
         target = kind.fields.index("target_system") if "target_system" in kind.fields else -1
-        self._handlers[kind.id] = (kind, target, handler)
+        self._handlers[kind.id] = (target, handler)
 
     # ------------------------------------------------------------------ time and identity
 
     @property
     def now_us(self) -> int:
         """Simulated time since the last boot [us]."""
-        return int(self._time_us())
+        return self._time_us()
 
     @property
     def elapsed_us(self) -> int:
@@ -175,20 +174,21 @@ class Bridge:
     def receive(self) -> int:
         """Read all links and act on every frame. Returns the number of frames acted on."""
         acted = 0
-        for channel, frame in self.board.receive():
-            acted += self._dispatch(channel, frame)
-        self.flush()
+        for channel, frames in self.board.receive():
+            for frame in frames:
+                acted += self._dispatch(channel, frame)
+        self.board.flush()
         return acted
 
     def _dispatch(self, channel: Channel, frame: Frame) -> int:
-        entry = self._handlers.get(frame.kind.id)
-        if entry is None or (frame.system == channel.system and frame.component == COMPONENT):
+        kind, system, component = frame.kind, frame.system, frame.component
+        if kind.id not in self._handlers or (system == channel.system and component == COMPONENT):
             return 0
-        kind, target, handler = entry
+        target, handler = self._handlers[kind.id]
         fields = kind.decode(frame.payload)
         if target >= 0 and fields[target] not in (0, channel.system):
             return 0
-        handler(channel, fields, (frame.system, frame.component))
+        handler(channel, fields, (system, component))
         return 1
 
     # ------------------------------------------------------------------ out
@@ -216,7 +216,7 @@ class Bridge:
                 if not channel.peer.congested:
                     for kind, build in due:
                         self._emit(channel, kind, build)
-        self.flush()
+        self.board.flush()
 
     def _emit(self, channel: Channel, kind: MessageType, build: Build) -> None:
         try:

@@ -79,7 +79,7 @@ class Channel:
         if frame:
             self.sequence = (self.sequence + 1) & 0xFF
             self.statistics.sent += 1
-            self.peer.write(frame)
+            self.peer.outbox.append(frame)
 
     def receive(self) -> list[Frame]:
         """Frames that came in since the last call."""
@@ -87,19 +87,17 @@ class Channel:
         if not data:
             return []
         frames = self.splitter.feed(data)
+        self.statistics.received += len(frames)
+        expected = self._expected
         for frame in frames:
-            self._note(frame)
+            sender, sequence = (frame.system, frame.component), frame.sequence
+            if sender in expected:
+                self.statistics.lost += (sequence - expected[sender]) & 0xFF
+                expected[sender] = (sequence + 1) & 0xFF
+            elif len(expected) < 256:
+                expected[sender] = (sequence + 1) & 0xFF
+            if frame.version == 2:
+                self.heard_v2, self.version = True, 2
+            elif not self.heard_v2:
+                self.version = 1
         return frames
-
-    def _note(self, frame: Frame) -> None:
-        self.statistics.received += 1
-        sender = (frame.system, frame.component)
-        expected = self._expected.get(sender)
-        if expected is not None:
-            self.statistics.lost += (frame.sequence - expected) & 0xFF
-        if expected is not None or len(self._expected) < 256:
-            self._expected[sender] = (frame.sequence + 1) & 0xFF
-        if frame.version == 2:
-            self.heard_v2, self.version = True, 2
-        elif not self.heard_v2:
-            self.version = 1

@@ -13,7 +13,7 @@ from __future__ import annotations
 import struct
 from collections import namedtuple
 from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 from typing import Any, cast
 
 from fastcrc import crc16
@@ -86,7 +86,7 @@ class MessageType:
     __slots__ = (
         "_arrays", "_codes", "_is_text", "_make", "_zeros",
         "base_size", "crc_extra", "fields", "id", "name", "pack", "size",
-        "tuple_type", "unpack",
+        "tuple_type", "unpack_from", "wire_id",
     )  # fmt: skip
 
     def __init__(self, cls: Any) -> None:
@@ -94,6 +94,8 @@ class MessageType:
         types = [cls.fieldtypes[cls.fieldnames.index(name)] for name in order]
         types = ["uint8_t" if t == "uint8_t_mavlink_version" else t for t in types]
         self.id: int = cls.id
+        self.wire_id = self.id.to_bytes(3, "little")
+        """As MAVLink 2 frames carry it."""
         self.name: str = cls.msgname
         self.size: int = cls.unpacker.size
         self.base_size = _base_size(cls, types)
@@ -102,7 +104,7 @@ class MessageType:
         layout = struct.Struct(cls.unpacker.format)
         self.pack: Callable[..., bytes] = layout.pack
         """``pack(*values in wire order)`` -> the full payload; arrays element by element."""
-        self.unpack = layout.unpack
+        self.unpack_from = layout.unpack_from
         self.tuple_type: Any = namedtuple(self.name, order)  # type: ignore[misc]
         self._make = partial(tuple.__new__, self.tuple_type)  # three times as fast as its own _make
         self._is_text = [t == "char" and n > 0 for t, n in zip(types, cls.array_lengths, strict=True)]
@@ -121,12 +123,7 @@ class MessageType:
 
         Texts are bytes up to the first NUL, arrays are tuples.
         """
-        short = self.size - len(payload)
-        if short > 0:
-            payload += bytes(short)
-        elif short < 0:
-            payload = payload[: self.size]
-        values = self.unpack(payload)
+        values = self.unpack_from(payload.ljust(self.size, b"\0"))
         if self._arrays is None:
             return self._make(values)
         out: list[Any] = []
@@ -189,12 +186,26 @@ _BY_NAME: dict[str, int] = {cls.msgname: number for number, cls in _CLASSES.item
 KNOWN_IDS = frozenset(_CLASSES)
 
 
-@cache
+class _Types(dict[int, MessageType]):
+    """Message types by number, each made when it is first asked for."""
+
+    def __missing__(self, number: int) -> MessageType | None:
+        if number in KNOWN_IDS:
+            self[number] = MessageType(_CLASSES[number])
+        return self.get(number)
+
+
+_TYPES = _Types()
+find_message: Callable[[int], MessageType | None] = _TYPES.__getitem__
+"""The message type with this number, None when there is none."""
+
+
 def message_by_id(number: int) -> MessageType:
     """The message type with this number."""
-    if number not in _CLASSES:
+    found = find_message(number)
+    if found is None:
         raise UnknownMessageError(f"message {number} is not in the ardupilotmega dialect")
-    return MessageType(_CLASSES[number])
+    return found
 
 
 def message(name: str) -> MessageType:

@@ -10,11 +10,12 @@ import struct
 from functools import partial
 from typing import NamedTuple
 
-from .dialect import KNOWN_IDS, MessageType, crc_mcrf4xx, message_by_id
+from .dialect import MessageType, crc_mcrf4xx, find_message
 
 MARK_V1, MARK_V2 = 0xFE, 0xFD
 HEADER_V1, HEADER_V2, CHECKSUM, SIGNATURE = 6, 10, 2, 13
-_write_v2 = struct.Struct("<BxxBBBHB").pack
+_write_v2 = struct.Struct("<BxxBBB3s").pack
+"""Behind the start mark: length, no flags, sequence, system, component, id."""
 SIGNED = 0x01
 """Incompatibility flag: 13 bytes of signature follow the checksum."""
 
@@ -22,8 +23,8 @@ SIGNED = 0x01
 def encode_v2(kind: MessageType, payload: bytes, sequence: int, system: int, component: int) -> bytes:
     """A MAVLink 2 frame; trailing zeros of the payload are left out (one byte always stays)."""
     payload = payload.rstrip(b"\0") or b"\0"
-    body = _write_v2(len(payload), sequence, system, component, kind.id & 0xFFFF, kind.id >> 16) + payload
-    return b"\xfd%b%b" % (body, crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little"))
+    body = _write_v2(len(payload), sequence, system, component, kind.wire_id) + payload
+    return b"\xfd" + body + crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little")
 
 
 def encode_v1(kind: MessageType, payload: bytes, sequence: int, system: int, component: int) -> bytes:
@@ -78,35 +79,34 @@ class Splitter:
         while at < end:
             mark = buffer[at]
             if mark == MARK_V2:
-                header = HEADER_V2
+                start = at + HEADER_V2
+                if start > end:
+                    break
+                size, flags, sequence, system, component, low, high = _read_v2(buffer, at + 1)
+                number, version = low | high << 16, 2
             elif mark == MARK_V1:
-                header = HEADER_V1
+                start = at + HEADER_V1
+                if start > end:
+                    break
+                size, sequence, system, component, number = _read_v1(buffer, at + 1)
+                flags, version = 0, 1
             else:
                 at = self._next_mark(buffer, at + 1)
                 continue
-            if end - at < header:
-                break
-            if header == HEADER_V2:
-                size, flags, sequence, system, component, low, high = _read_v2(buffer, at + 1)
-                number = low | high << 16
-                total = HEADER_V2 + CHECKSUM + size + (SIGNATURE if flags & SIGNED else 0)
-                version = 2
-            else:
-                size, sequence, system, component, number = _read_v1(buffer, at + 1)
-                flags, total, version = 0, HEADER_V1 + CHECKSUM + size, 1
-            if flags & ~SIGNED or number not in KNOWN_IDS or size > (kind := message_by_id(number)).size:
+            kind = find_message(number)
+            if kind is None or size > kind.size or flags & ~SIGNED:
                 at += 1
                 continue
-            if end - at < total:
+            stop = start + size
+            after = stop + CHECKSUM + (SIGNATURE if flags else 0)
+            if after > end:
                 break
-            stop = at + header + size
             if crc_mcrf4xx(buffer[at + 1 : stop] + kind.crc_extra, 0xFFFF) != buffer[stop] | buffer[stop + 1] << 8:
                 self.bad_checksums += 1
                 at += 1
                 continue
-            payload, raw = buffer[at + header : stop], buffer[at : at + total]
-            frames.append(_frame((kind, payload, sequence, system, component, version, raw)))
-            at += total
+            frames.append(_frame((kind, buffer[start:stop], sequence, system, component, version, buffer[at:after])))
+            at = after
         self._rest = buffer[at:]
         return frames
 

@@ -28,9 +28,7 @@ def locate(dtype: np.dtype[Any], path: str) -> tuple[int, str, int]:
     offset = 0
     for name in path.split("."):
         if dtype.fields is None or name not in dtype.fields:
-            raise UnknownFieldError(
-                f"no field {name!r} of {path!r} in the record; it has {list(dtype.names or ())}"
-            )
+            raise UnknownFieldError(f"no field {name!r} of {path!r} in the record; it has {list(dtype.names or ())}")
         dtype, step = dtype.fields[name][:2]
         offset += step
     base, shape = dtype.subdtype if dtype.subdtype is not None else (dtype, ())

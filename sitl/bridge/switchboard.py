@@ -82,8 +82,8 @@ class Switchboard:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
         return bool(self._selector.select(seconds))
 
-    def receive(self) -> Iterator[tuple[Channel, Frame]]:
-        """Read all links; every frame that came in, channel by channel."""
+    def receive(self) -> Iterator[tuple[Channel, list[Frame]]]:
+        """Read all links; channel by channel, the frames that came in."""
         if self._sockets:
             for key, _ in self._selector.select(0):
                 key.data()
@@ -92,10 +92,11 @@ class Switchboard:
                     self.dropped += link.refusals
                     link.refusals.clear()
         for channel in self.channels:
-            for frame in channel.receive():
-                for tap in self.taps:
+            frames = channel.receive()
+            for tap in self.taps:
+                for frame in frames:
                     tap.frame(self._clock(), frame.raw)
-                yield channel, frame
+            yield channel, frames
 
     def flush(self) -> None:
         """Hand everything queued to the links; notice who is gone."""

@@ -68,13 +68,18 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="where .tlog files go")
 
 
+def check_kind(frame: str, airframe: vehicles.Airframe, vehicle: str) -> None:
+    """OptionError when the airframe of ``--frame`` is not one of this kind of vehicle."""
+    if airframe.kind != vehicle:
+        others = ", ".join(vehicles.names(vehicle))
+        raise OptionError(f"--frame {frame} is a {airframe.kind}; those of a {vehicle} are {others}")
+
+
 def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
     vehicle = getattr(options, "vehicle", "copter")
     airframe = vehicles.load(options.frame or VEHICLES[vehicle])
-    if airframe.kind != vehicle:
-        others = ", ".join(vehicles.names(vehicle))
-        raise OptionError(f"--frame {options.frame} is a {airframe.kind}; those of a {vehicle} are {others}")
+    check_kind(options.frame, airframe, vehicle)
     values: dict[str, float] = dict(overrides or {})
     for path in options.params:
         values.update(files.load(path))

@@ -9,21 +9,28 @@ from .. import vehicles
 from ..autopilot.params import docs, files
 from ..core.records import record
 from ..kinds import KINDS
+from .options import check_kind
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("params", help="list the parameters")
-    parser.add_argument("--vehicle", choices=sorted(KINDS), default="copter", help="whose parameters")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), help="whose parameters (default: the frame's, or copter)")
     parser.add_argument("--frame", metavar="NAME", help="with the values of this airframe")
     parser.add_argument("--markdown", action="store_true", help="as the documentation page")
     parser.set_defaults(function=params)
 
 
 def params(options: argparse.Namespace) -> int:
-    """Print every parameter."""
+    """Print every parameter.
+
+    Raises:
+        OptionError: the airframe is of another kind than the vehicle.
+    """
     airframe = vehicles.load(options.frame) if options.frame else None
-    kind = KINDS[airframe.kind if airframe else options.vehicle]
+    if airframe and options.vehicle:
+        check_kind(options.frame, airframe, options.vehicle)
+    kind = KINDS[airframe.kind if airframe else options.vehicle or "copter"]
     table = kind.firmware.table
     if options.markdown:
         print(docs.page(kind.name, table), end="")

@@ -22,6 +22,8 @@ class RecordView:
     """Base of the generated classes: one for each record type."""
 
     __slots__ = ("_bytes", "_f4", "_f8", "_i4", "_i8")
+    _f8: Any
+    _i8: Any
     dtype: np.dtype[Any]
     """Of the record."""
     _stores: tuple[str, ...] = ()
@@ -57,22 +59,27 @@ def as_bytes(value: Any, dtype: np.dtype[Any]) -> Any:
 
 def _number(store: str, size: int, offset: int) -> property:
     k = offset // size
-    if store in ("_i8", "_i4"):
 
-        def write(self: RecordView, value: Any) -> None:
-            getattr(self, store)[k] = int(value)
-    else:
+    def write_f8(self: RecordView, value: Any) -> None:
+        self._f8[k] = value
 
-        def write(self: RecordView, value: Any) -> None:
-            getattr(self, store)[k] = value
+    def write_i8(self: RecordView, value: Any) -> None:
+        try:
+            self._i8[k] = value
+        except TypeError:  # its fraction is cut off, as in the core
+            self._i8[k] = int(value)
 
+    def write_small(self: RecordView, value: Any) -> None:
+        getattr(self, store)[k] = int(value) if store == "_i4" else value
+
+    writes = {"_f8": write_f8, "_i8": write_i8}
     reads = {
         "_f8": lambda self: self._f8[k],
         "_i8": lambda self: self._i8[k],
         "_f4": lambda self: self._f4[k],
         "_i4": lambda self: self._i4[k],
     }
-    return property(reads[store], write)
+    return property(reads[store], writes.get(store, write_small))
 
 
 def _nested(name: str) -> property:

@@ -54,8 +54,13 @@ AIRFRAME = RoverAirframe(
     },
     parameters={
         "CRUISE_SPEED": 1.2,  # [m/s]
-        "CRUISE_THROTTLE": 76,  # [%] for it: (1.2 + 0.044) / 1.632
+        "CRUISE_THROTTLE": 76,  # [%] for it: (1.2 + 0.044) / 1.632, of what MOT_THR_MIN leaves
+        "MOT_THR_MIN": 3,  # [%] less does not overcome the rolling resistance
         "WP_SPEED": 1.2,  # [m/s]
+        # A corner between two legs is cut along a parabola, at its tightest 1.2^2 / (2 sqrt(2) 0.5) = 1.0 m with
+        # little speed left: with twice the acceleration it needs turns that no steering gives, and runs wide by 1.1 m.
+        "WP_ACCEL": 0.5,  # [m/s^2]
+        "WP_JERK": 1.0,  # [m/s^3]
         "WP_RADIUS": 2.0,  # [m] the airframe's own parameter file
         "TURN_RADIUS": 2.0,  # [m] wheelbase / tan(0.7727 rad) [derived]
         # Steering of one rad/s at speed v: wheelbase / 0.7727 rad / v, and less for large angles (a tangent). The
@@ -66,13 +71,15 @@ AIRFRAME = RoverAirframe(
         "ATC_STR_RAT_I": 1.0,
         "ATC_STR_RAT_MAX": 45.0,  # [deg/s] what full steering gives at top speed
         "ATC_TURN_MAX_G": 0.1,  # full steering at 1.2 m/s gives 0.07, so that legs are planned with wide corners
-        # A course of two straights and two half circles of 3 m at 1.2 m/s is held to 0.13 m (0.25 m with the defaults).
+        # The estimate is that of the IMU, 0.86 m ahead of the axle that follows the path. Driving backwards its motion
+        # sideways feeds the turn: PSC_VEL_P times 0.86 m must stay well below the speed (at 1.5 it weaves).
         "PSC_POS_P": 0.4,
-        "PSC_VEL_P": 1.5,
+        "PSC_VEL_P": 1.0,
         "ATC_SPEED_P": 0.4,
         "ATC_SPEED_I": 0.4,
         "BATT_MONITOR": 4,  # voltage and current
         "BATT_CAPACITY": 40000,  # [mAh]
+        "BATT_LOW_VOLT": 40.8,  # [V] 3.4 a cell; ArduPilot's 10.5 V is three cells
         "GPS1_DELAY_MS": 120,  # as gps_delay
     },
 )

@@ -52,8 +52,11 @@ AIRFRAME = RoverAirframe(
     },
     parameters={
         "CRUISE_SPEED": 0.25,  # [m/s]
-        "CRUISE_THROTTLE": 80,  # [%] for it
+        "CRUISE_THROTTLE": 79,  # [%] for it: (0.25 + 0.029) / 0.347, of what MOT_THR_MIN leaves
+        "MOT_THR_MIN": 8,  # [%] less does not overcome the rolling resistance
         "WP_SPEED": 0.25,  # [m/s]
+        "WP_ACCEL": 0.1,  # [m/s^2] so that the steering gives the turns of its corners
+        "WP_JERK": 0.2,  # [m/s^3]
         "WP_RADIUS": 0.5,  # [m]
         "TURN_RADIUS": 0.4,  # [m] wheelbase / tan(0.7727 rad) [derived]
         "MOT_SPD_SCA_BASE": 0.15,  # [m/s] steering shrinks above it; below it the loop does not learn

@@ -43,7 +43,8 @@ AIRFRAME = RoverAirframe(
         "SERVO1_FUNCTION": 73,  # left motors
         "SERVO3_FUNCTION": 74,  # right motors
         "CRUISE_SPEED": 1.0,  # [m/s]
-        "CRUISE_THROTTLE": 52,  # [%] for it: (1.0 + 0.1) / 2.1
+        "CRUISE_THROTTLE": 50,  # [%] for it: (1.0 + 0.1) / 2.1, of what MOT_THR_MIN leaves
+        "MOT_THR_MIN": 4,  # [%] less does not overcome the rolling resistance
         "WP_SPEED": 1.0,  # [m/s]
         "WP_RADIUS": 1.0,  # [m]
         "TURN_RADIUS": 0.0,  # [m] turns on the spot
@@ -57,6 +58,7 @@ AIRFRAME = RoverAirframe(
         "ATC_SPEED_I": 0.3,
         "BATT_MONITOR": 4,  # voltage and current
         "BATT_CAPACITY": 9200,  # [mAh]
+        "BATT_LOW_VOLT": 21.7,  # [V] 3.1 a cell
         "GPS1_DELAY_MS": 120,  # as gps_delay
     },
 )

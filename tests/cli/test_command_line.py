@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import socket
 import subprocess
@@ -16,15 +15,7 @@ import pytest
 from sitl.cli import demo, main
 from sitl.logs import flight, plot
 from sitl.simulation import Core
-
-ROOT = Path(__file__).parents[2]
-
-
-def sitl(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "sitl", *arguments]
-    return subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=300)
-
+from tests.cli.command import environment, sitl
 
 RUN = ("run", "copter", "--out", "none", "--tcp", "0", "--speedup", "max")
 
@@ -53,9 +44,10 @@ def test_two_runs_write_the_same_log_and_none_is_overwritten(core: Core, tmp_pat
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> None:
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", "sitl", *RUN[:-2], "--speedup", "5"]
-    run = subprocess.Popen(command, cwd=tmp_path, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    run = subprocess.Popen(
+        command, cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     assert run.stdout is not None
     port = int(run.stdout.readline().rsplit(":", 1)[1])
     with socket.create_connection(("127.0.0.1", port), timeout=60) as client:

@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[2]
 SCRIPTS = Path(__file__).parent / "scripts"
 EXAMPLES = ROOT / "examples"
 SPEEDUP = "20"
+FASTEST = "max"
 WALL_S = 300
 """A script that takes longer has hung: on two idle cores it takes 3 to 10 s."""
 
@@ -38,8 +39,8 @@ def fly(logs: Path, script: Path, url: str, *options: str, vehicle: str = "copte
     Fails when the script does. ``PORT`` in ``url`` becomes the UDP port that the vehicle sends to.
     """
     port = str(free_udp_port())
-    command = [sys.executable, "-m", "sitl", "exec", "--vehicle", vehicle, "--quiet", "--speedup", speedup, "--tcp", "0"]
-    command += ["--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
+    command = [sys.executable, "-m", "sitl", "exec", "--vehicle", vehicle, "--quiet", "--speedup", speedup]
+    command += ["--tcp", "0", "--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
     command += ["--", sys.executable, str(script), url.replace("PORT", port)]
     done = subprocess.run(
         command, cwd=ROOT, env=environment(), text=True, timeout=WALL_S,

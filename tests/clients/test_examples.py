@@ -9,8 +9,9 @@ import sys
 
 import pytest
 
+from sitl import vehicles
 from sitl.simulation import Core
-from tests.clients.drive import EXAMPLES, ROOT, WALL_S, Fly
+from tests.clients.drive import EXAMPLES, FASTEST, ROOT, SPEEDUP, WALL_S, Fly
 
 pytestmark = pytest.mark.slow
 
@@ -25,6 +26,19 @@ def test_pymavlink_guided(fly: Fly) -> None:
 def test_mavsdk(fly: Fly, name: str) -> None:
     pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
     assert "landed and disarmed" in fly(EXAMPLES / f"{name}.py", "udpin://127.0.0.1:PORT")
+
+
+@pytest.mark.parametrize(
+    ("frame", "speedup"), [("erle_rover", SPEEDUP), *((name, FASTEST) for name in vehicles.names("rover"))]
+)
+def test_mavsdk_rover(fly: Fly, frame: str, speedup: str) -> None:
+    """Every rover drives it, the small one for six minutes."""
+    pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
+    url = "udpin://127.0.0.1:PORT"
+    said = fly(EXAMPLES / "mavsdk_rover.py", url, "--frame", frame, vehicle="rover", speedup=speedup)
+    assert "square driven" in said and "home again" in said
+    assert "low" not in said  # no battery warnings
+    assert said.rstrip().endswith("disarmed")
 
 
 def test_lockstep_client(core: Core) -> None:

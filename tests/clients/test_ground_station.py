@@ -8,6 +8,7 @@ sequence that QGroundControl shows as its progress bar.
 from __future__ import annotations
 
 import struct
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -67,9 +68,17 @@ class GroundStation:
                 return
 
 
-def test_initial_connect(core: Core, tmp_path: Path) -> None:
-    with serve(tmp_path) as port:
+@pytest.mark.parametrize(
+    ("vehicle", "kind", "names"),
+    [
+        ("copter", 2, {"STABILIZE", "GUIDED", "AUTO", "RTL"}),
+        ("rover", 10, {"MANUAL", "STEERING", "HOLD", "GUIDED", "AUTO", "RTL", "SMART_RTL"}),
+    ],
+)
+def test_initial_connect(core: Core, tmp_path: Path, vehicle: str, kind: int, names: set[str]) -> None:
+    with serve(tmp_path, vehicle=vehicle) as port:
         station = GroundStation(port)
+        assert station.receive("HEARTBEAT").type == kind
         for stream, rate in ((1, 2), (2, 2), (3, 2), (6, 3), (10, 10), (11, 10), (12, 3)):
             station.mav.request_data_stream_send(1, 1, stream, rate, 1)
 
@@ -77,7 +86,7 @@ def test_initial_connect(core: Core, tmp_path: Path) -> None:
         assert version.flight_sw_version >> 24 == 4
         modes = [station.request(435, "AVAILABLE_MODES", 1)]
         modes += [station.request(435, "AVAILABLE_MODES", k) for k in range(2, modes[0].number_modes + 1)]
-        assert {"STABILIZE", "GUIDED", "AUTO", "RTL"} <= {m.mode_name for m in modes}
+        assert names <= {m.mode_name for m in modes}
         for number in (300, 397, 395, 436):  # protocol version, component metadata and information, current mode
             assert station.command(REQUEST_MESSAGE, number) == FAILED
 
@@ -89,11 +98,11 @@ def test_initial_connect(core: Core, tmp_path: Path) -> None:
             seen[value.param_index], total = value.param_id, value.param_count
         assert len(set(seen.values())) == total
 
-        for kind in (0, 1, 2):  # mission, fence, rally points
-            station.mav.mission_request_list_send(1, 1, kind)
+        for plan in (0, 1, 2):  # mission, fence, rally points
+            station.mav.mission_request_list_send(1, 1, plan)
             count = station.receive("MISSION_COUNT")
-            assert (count.count, count.mission_type) == (0, kind)
-            station.mav.mission_ack_send(1, 1, 0, kind)
+            assert (count.count, count.mission_type) == (0, plan)
+            station.mav.mission_ack_send(1, 1, 0, plan)
 
         assert {"ATTITUDE", "SYS_STATUS", "VFR_HUD", "GPS_RAW_INT"} <= {
             station.receive(kind).get_type() for kind in ("ATTITUDE", "SYS_STATUS", "VFR_HUD", "GPS_RAW_INT")
@@ -123,3 +132,27 @@ def test_questions_to_what_is_not_there_are_refused(core: Core, tmp_path: Path) 
         assert station.receive("TIMESYNC", until=lambda m: m.tc1 != 0).ts1 == 123456789
         station.mav.ping_send(1, 7, 0, 0)
         assert station.receive("PING").seq == 7
+
+
+def test_a_rover_drives_in_real_time(core: Core, tmp_path: Path) -> None:
+    """By TCP, as a ground station would at 1x: arm, drive north, hold, disarm."""
+    hold, guided, armed = 4, 15, 128
+    with serve(tmp_path, "--estimator", "truth", vehicle="rover") as port:
+        station = GroundStation(port)
+        assert station.command(511, 32, 100_000) == ACCEPTED
+        assert station.command(176, 1, guided) == ACCEPTED
+        station.receive("STATUSTEXT", until=lambda m: m.text == "ArduPilot Ready")
+        assert station.command(400, 1, 2989) == ACCEPTED  # without the checks, which take 20 s
+        station.receive("HEARTBEAT", until=lambda m: m.base_mode & armed)
+        first = station.receive("LOCAL_POSITION_NED").time_boot_ms
+        began = time.monotonic()
+        for half in range(1, 9):
+            station.mav.set_position_target_local_ned_send(0, 1, 1, 1, 0xDC7, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0)
+            station.mav.heartbeat_send(6, 8, 0, 0, 4)
+            at = first + 500 * half
+            now = station.receive("LOCAL_POSITION_NED", until=lambda m, at=at: m.time_boot_ms >= at)
+        assert time.monotonic() - began == pytest.approx(4.0, abs=1.0)
+        assert (now.vx, now.vy) == pytest.approx((1.0, 0.0), abs=0.2)
+        assert station.command(176, 1, hold) == ACCEPTED
+        station.receive("LOCAL_POSITION_NED", until=lambda m: abs(m.vx) < 0.05)
+        assert station.command(400, 0) == ACCEPTED

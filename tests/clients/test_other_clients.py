@@ -20,16 +20,25 @@ def installed(package: str) -> bool:
     return True
 
 
-def test_mavsdk_grpc(fly: Fly) -> None:
+COPTER_AND_ROVER = pytest.mark.parametrize("vehicle", ["copter", "rover"])
+
+
+@COPTER_AND_ROVER
+def test_mavsdk_grpc(fly: Fly, vehicle: str) -> None:
     pytest.importorskip("mavsdk_grpc")
-    fly(SCRIPTS / "grpc_flight.py", "udpin://127.0.0.1:PORT")
+    script = {"copter": "grpc_flight.py", "rover": "grpc_rover.py"}[vehicle]
+    fly(SCRIPTS / script, "udpin://127.0.0.1:PORT", vehicle=vehicle)
 
 
 @pytest.mark.skipif(not installed("dronekit"), reason="DroneKit is not installed")
-def test_dronekit(fly: Fly) -> None:
-    fly(SCRIPTS / "dronekit_flight.py", "udpin:127.0.0.1:PORT")
+@COPTER_AND_ROVER
+def test_dronekit(fly: Fly, vehicle: str) -> None:
+    script = {"copter": "dronekit_flight.py", "rover": "dronekit_rover.py"}[vehicle]
+    fly(SCRIPTS / script, "udpin:127.0.0.1:PORT", vehicle=vehicle)
 
 
 @pytest.mark.skipif(not installed("MAVProxy"), reason="MAVProxy is not installed")
-def test_mavproxy(fly: Fly) -> None:
-    fly(SCRIPTS / "mavproxy_session.py", "udpin:127.0.0.1:PORT")
+@COPTER_AND_ROVER
+def test_mavproxy(fly: Fly, vehicle: str) -> None:
+    script = {"copter": "mavproxy_session.py", "rover": "mavproxy_rover.py"}[vehicle]
+    fly(SCRIPTS / script, "udpin:127.0.0.1:PORT", vehicle=vehicle)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.control.shaping import (
@@ -107,6 +107,20 @@ def test_horizontal_shaping_reaches_a_point_from_any_motion(gx, gy, vx, vy):
         assert math.hypot(ax, ay) <= 2.5 * (1 + 1e-9)
     assert math.hypot(px - gx, py - gy) < 0.02
     assert math.hypot(vx, vy) < 0.02
+
+
+@given(st.floats(-60, 60), st.floats(-60, 60), st.floats(-10, 10), st.floats(-10, 10))
+@example(0.0, 20.0, 10.0, 0.0)  # the goal lies where a circle at full speed has its centre
+@settings(max_examples=10, deadline=None)
+def test_braking_first_reaches_a_point_from_any_motion(gx, gy, vx, vy):
+    px = py = ax = ay = 0.0
+    dt, v_max, a_max, jerk = 0.02, 10.0, 2.5, 5.0
+    for _ in range(4000):
+        px, py, vx, vy = advance_2d(px, py, vx, vy, ax, ay, dt, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        ax, ay = shape_pos_vel_accel_2d(gx, gy, 0.0, 0.0, 0.0, 0.0, px, py, vx, vy, ax, ay, v_max, a_max, jerk, dt, 0)
+        assert math.hypot(ax, ay) <= a_max * (1 + 1e-9)
+    assert math.hypot(px - gx, py - gy) < 0.05
+    assert math.hypot(vx, vy) < 0.05
 
 
 def test_velocity_shaping_uses_the_limit_of_its_direction():

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import copy
+import itertools
 import math
 from typing import Any
 
 import numpy as np
 from witness import KEEP, MIDDLE, Item, Witness
+
+from sitl.simulation import Core
 
 MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED = 0, 1, 3, 4, 5, 7, 9, 10, 11, 12, 15
 MODES = (MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED)
@@ -17,8 +21,16 @@ POSITION, VELOCITY, VELOCITY_YAW, VELOCITY_YAW_RATE, YAW, YAW_RATE = 0xDF8, 0xDC
 BODY = 8
 
 
+_READY: dict[tuple[object, ...], tuple[Any, dict[str, Any]]] = {}
+"""Rovers that have booted, by what they were made with: the snapshot, and what their driver had heard."""
+
+
 class Driver(Witness):
     """Drives one rover."""
+
+    def __init__(self, core: Core, frame: str, *, seed: int = 0, estimator: str = "ekf", **params: float) -> None:
+        super().__init__(core, frame, seed=seed, estimator=estimator, **params)
+        self._made_with = (frame, seed, estimator, *sorted(params.items()))
 
     # ------------------------------------------------------------------ what is true
 
@@ -64,9 +76,18 @@ class Driver(Witness):
     # ------------------------------------------------------------------ driving
 
     def ready(self) -> Driver:
-        """Boot, until armable in GUIDED."""
-        self.boot()
-        self.fly(0.1)
+        """Boot, until armable in GUIDED; one that was made alike has done it already."""
+        known = _READY.get(self._made_with)
+        if known is None:
+            self.boot()
+            self.fly(0.1)
+            heard = {name: getattr(self, name) for name in ("rows", "track", "texts", "armed", "position", "checked")}
+            _READY[self._made_with] = (self.simulation.snapshot(), copy.deepcopy(heard))
+            return self
+        self.simulation.advance(0.0)  # reads what the client has asked for
+        self.client.receive()
+        self.simulation.restore(known[0])
+        self.__dict__.update(copy.deepcopy(known[1]))
         return self
 
     def armed_in(self, mode: int = GUIDED) -> Driver:
@@ -119,7 +140,7 @@ def path_error(rows: np.ndarray, *corners: Any) -> np.ndarray:
     """Distance [m] of each row (time, position ...) from the line through the corners."""
     points = rows[:, 1:3]
     best = np.full(len(points), np.inf)
-    for a, b in zip(corners, corners[1:], strict=False):
+    for a, b in itertools.pairwise(corners):
         a, along = np.array(a), np.subtract(b, a)
         share = np.clip((points - a) @ along / (along @ along), 0.0, 1.0)
         best = np.minimum(best, np.hypot(*(points - a - share[:, None] * along).T))

@@ -45,7 +45,7 @@ class Aviator(Witness):
     """Flies one copter."""
 
     def __init__(self, core: Core, frame: str = "erle_copter", *, seed: int = 0, **params: float) -> None:
-        super().__init__(core, frame, seed=seed, **params)  # type: ignore[arg-type]
+        super().__init__(core, frame, seed=seed, **params)
 
     @property
     def height(self) -> float:

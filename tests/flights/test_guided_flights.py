@@ -148,6 +148,17 @@ def test_far_target_at_full_speed(core: Core, frame: str) -> None:
 
 
 @BOTH
+@pytest.mark.parametrize("aside", [15.0, 40.0])
+def test_a_point_beside_a_fast_way_is_reached_and_not_circled(core: Core, frame: str, aside: float) -> None:
+    p = Aviator(core, frame, WPNAV_SPEED=1000.0).hover()
+    stream(p, 8.0, VELOCITY, 1, vx=9.9)
+    here = estimate(p)
+    target(p, POSITION, 1, x=here[0], y=here[1] + aside, z=here[2])
+    p.fly(40.0)
+    assert estimate(p) == pytest.approx(here + [0.0, aside, 0.0], abs=0.5)
+
+
+@BOTH
 def test_reversals_keep_height_and_lean(core: Core, frame: str) -> None:
     p = Aviator(core, frame).hover(20.0)
     start = p.now

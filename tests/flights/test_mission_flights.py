@@ -122,29 +122,29 @@ def test_jump(core: Core, times: int, seconds: float) -> None:
 @BOTH
 def test_speed_and_conditions(core: Core, frame: str) -> None:
     p, start = fly(
-        core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 10.0), Item(CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)),
-        Item(WAYPOINT, (40.0, 0.0), 10.0), Item(CONDITION_DISTANCE, None, 0.0, (8.0,)),
-        Item(CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)), Item(WAYPOINT, (40.0, 20.0), 10.0),
-        Item(CONDITION_DELAY, None, 0.0, (3.0,)), Item(CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), DOWN,
+        core, frame, UP, Item(CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)), Item(WAYPOINT, (20.0, 0.0), 10.0),
+        Item(CONDITION_DISTANCE, None, 0.0, (8.0,)), Item(CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)),
+        Item(WAYPOINT, (40.0, 0.0), 10.0), Item(CONDITION_DELAY, None, 0.0, (3.0,)),
+        Item(CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), Item(WAYPOINT, (40.0, 20.0), 10.0), DOWN,
     )  # fmt: skip
     rows = p.since(start)
     speed = np.linalg.norm(rows[:, 4:6], axis=1)
-    assert speed[rows[:, 0] < p.reached_at(4)].max() == pytest.approx(2.0, abs=0.25)
+    assert speed[rows[:, 0] < p.reached_at(6)].max() == pytest.approx(2.0, abs=0.25)
     assert speed.max() > 2.8
-    away = rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(5))), 1]
+    away = rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(4))), 1]
     assert 40.0 - away == pytest.approx(8.0, abs=1.5)
-    assert heading_at(p, p.reached_at(4)) > 30.0
-    assert p.reached_at(8) - p.reached_at(4) == pytest.approx(3.0, abs=0.2)
+    assert heading_at(p, p.reached_at(6)) > 30.0
+    assert p.reached_at(7) - p.reached_at(6) == pytest.approx(3.0, abs=0.2)
 
 
 @BOTH
 def test_roi_behind_a_take_off_holds_until_it_is_ended(core: Core, frame: str) -> None:
-    """It was lost: the take-off began, and turned it off, after the do-command had run."""
+    """It runs when the take-off is done; waypoints do not turn the nose away."""
     p, _ = fly(
         core, frame, UP, Item(ROI, (0.0, 50.0), 0.0), Item(WAYPOINT, (30.0, 0.0), 10.0),
         Item(WAYPOINT, (30.0, 10.0), 10.0), Item(ROI_NONE), Item(WAYPOINT, (0.0, 10.0), 10.0), DOWN,
     )  # fmt: skip
-    assert heading_at(p, p.reached_at(1)) == pytest.approx(90.0, abs=4.0)
+    assert abs(heading_at(p, p.reached_at(1))) < 15.0
     assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(121.0, abs=6.0)
     assert abs(heading_at(p, p.reached_at(6) - 2.0)) > 170.0
 
@@ -153,11 +153,11 @@ def test_a_fixed_yaw_lasts_one_leg(core: Core) -> None:
     """As in ArduPilot the next waypoint points the nose along the path again (WP_YAW_BEHAVIOR not 0)."""
     for behaviour, heading in ((2, 0.0), (0, 90.0)):
         p, _ = fly(
-            core, "erle_copter", UP, Item(WAYPOINT, (30.0, 0.0), 10.0),
-            Item(CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)), Item(WAYPOINT, (70.0, 0.0), 10.0), DOWN,
+            core, "erle_copter", UP, Item(CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)),
+            Item(WAYPOINT, (30.0, 0.0), 10.0), Item(WAYPOINT, (70.0, 0.0), 10.0), DOWN,
             WP_YAW_BEHAVIOR=behaviour,
         )  # fmt: skip
-        assert heading_at(p, p.reached_at(2) - 1.0) == pytest.approx(90.0, abs=5.0)
+        assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(90.0, abs=5.0)
         assert heading_at(p, p.reached_at(4) - 2.0) == pytest.approx(heading, abs=5.0)
 
 

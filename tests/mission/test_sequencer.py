@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot import events
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
+from sitl.autopilot.copter.modes import auto_yaw
 from sitl.autopilot.copter.navigation import command as path_command
 from sitl.autopilot.copter.navigation import waypoint
 from sitl.autopilot.copter.table import TABLE
@@ -172,11 +173,33 @@ def test_jumps_are_told_and_kept_in_the_record() -> None:
     assert p.order() == [1, 2, 1, 2, 4]
 
 
-def test_do_commands_run_while_flying() -> None:
-    """Do-commands behind a navigation command run when it begins; a condition holds the rest back."""
+def test_do_commands_run_on_the_way_to_the_next_command() -> None:
+    """The first before the next navigation command begins, the others once it is under way, as in ArduPilot."""
+    p = Vehicle(WP, SPEED, SPEED._replace(p2=3.0), WP, SPEED._replace(p2=7.0)).start()
+    assert p.texts() == ["Mission: 1 WP"]
+    assert p.nav.speed_ne == 0.0
+    p.told.clear()
+    assert p.complete() == 4
+    assert p.texts() == [
+        "Reached command #1", "Mission: 2 ChangeSpeed", "Mission: 4 WP", "Mission: 3 ChangeSpeed"
+    ]  # fmt: skip
+    assert p.nav.speed_ne == 3.0
+    assert p.complete() == 0
+    assert p.nav.speed_ne == 7.0
+
+
+def test_only_the_first_of_the_last_do_commands_runs() -> None:
+    p = Vehicle(WP, SPEED, SPEED._replace(p2=3.0)).start()
+    assert p.complete() == 0
+    assert p.nav.speed_ne == 5.0
+    assert p.nav.mission_state == COMPLETE
+
+
+def test_conditions_hold_the_do_commands_behind_them_back() -> None:
     wait = MissionItem(c.CONDITION_DELAY, p1=2.0)
-    p = Vehicle(WP, SPEED, wait, SPEED._replace(p2=3.0), WP, SPEED._replace(p2=7.0)).start()
-    assert p.texts() == ["Mission: 1 WP", "Mission: 2 ChangeSpeed", "Mission: 3 CondDelay"]
+    p = Vehicle(WP, SPEED, wait, SPEED._replace(p2=3.0), WP, SPEED._replace(p2=7.0), WP).start()
+    assert p.complete() == 5
+    assert p.texts()[-2:] == ["Mission: 5 WP", "Mission: 3 CondDelay"]
     assert p.nav.speed_ne == 5.0
     assert p.nav.condition_kind == CONDITION_DELAY
     p.wait(1.9)
@@ -185,16 +208,42 @@ def test_do_commands_run_while_flying() -> None:
     assert p.nav.speed_ne == 3.0
     assert p.nav.condition_kind == CONDITION_NONE
     assert ItemReached(3) in p.told
-    assert p.complete() == 5
+    assert p.complete() == 7
     assert p.nav.speed_ne == 7.0
 
 
 def test_held_back_is_passed_over() -> None:
     """A do-command whose condition is not met in time does not run."""
-    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP).start()
+    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
     assert p.complete() == 4
+    assert p.complete() == 5
     p.wait(100.0)
     assert p.nav.speed_ne == 0.0
+
+
+def test_a_condition_begins_anew_when_the_mission_goes_on() -> None:
+    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
+    assert p.complete() == 4
+    p.sequencer.stop(p.v)
+    p.told.clear()
+    p.start()
+    assert p.texts() == ["Mission: 2 CondDelay", "Mission: 4 WP"]
+    p.wait(60.0)
+    assert p.nav.speed_ne == 5.0
+    p.sequencer.stop(p.v)
+    p.told.clear()
+    p.start()
+    assert p.texts() == ["Mission: 4 WP"]
+
+
+def test_a_turn_goes_on_when_the_next_command_begins() -> None:
+    """CONDITION_YAW runs before the waypoint behind it, which does not turn the nose back."""
+    p = Vehicle(WP, MissionItem(c.CONDITION_YAW, p1=90.0), WP, WP).start()
+    yaw = p.v.autopilot.modes.auto_yaw
+    p.complete()
+    assert yaw.mode == auto_yaw.FIXED
+    p.complete()
+    assert yaw.mode != auto_yaw.FIXED
 
 
 def test_leaving_and_resuming() -> None:
@@ -272,10 +321,24 @@ def test_new_mission_in_flight() -> None:
     assert p.v.autopilot.params.MIS_TOTAL == 2
 
 
+def test_a_changed_command_under_way_begins_anew() -> None:
+    p = Vehicle(WP, WP, WP).start()
+    elsewhere = WP._replace(y=LON + 5000)
+    same = p.mission.items[1]._replace(current=1)
+    assert p.sequencer.set_mission(p.v, Mission((p.mission.items[0], same, WP))) == []
+    begun = int(p.nav.command_count)
+    notes = p.sequencer.set_mission(p.v, Mission((p.mission.items[0], elsewhere, WP)))
+    assert Text(2, "Auto mission changed, restarted command") in notes
+    assert p.nav.command_count == begun + 1 and p.nav.command_seq == 1
+    assert p.nav.target[1] == pytest.approx(5000 * 0.009, abs=5.0)
+    p.sequencer.set_mission(p.v, Mission(p.mission.items[:1]))
+    assert p.nav.mission_state == COMPLETE
+
+
 def test_corner_is_planned_ahead() -> None:
     """The leg after the next is known when a waypoint without delay begins, through jumps and do-commands."""
     there = WP._replace(x=LAT + 3000)
-    p = Vehicle(WP, SPEED, jump(5, 1), WP, there).start()
+    p = Vehicle(SPEED, WP, SPEED, jump(6, 1), WP, there).start()
     assert p.nav.current.fast == 1
     assert p.nav.next.length == pytest.approx(2000 * 0.0111319, rel=1e-3)
     assert p.nav.current.top_speed == 5.0
@@ -293,12 +356,12 @@ def test_altitude_frames(frame: int) -> None:
 def test_set_home_and_roi() -> None:
     """DO_SET_HOME moves home to a place or to the vehicle; DO_SET_ROI turns the nose to a place."""
     roi = MissionItem(c.DO_SET_ROI, x=LAT + 1000, y=LON + 1000)
-    p = Vehicle(WP, MissionItem(c.DO_SET_HOME, 0, x=LAT + 2000, y=LON, z=600.0), roi).start()
+    p = Vehicle(MissionItem(c.DO_SET_HOME, 0, x=LAT + 2000, y=LON, z=600.0), roi, WP).start()
     home = p.v.autopilot.home
     assert (int(home.lat), float(home.alt), int(home.locked)) == (LAT + 2000, 600.0, 1)
     assert home.pos[0] == pytest.approx(2000 * 0.0111319, rel=1e-3)
     assert p.v.autopilot.modes.auto_yaw.roi[0] == pytest.approx(11.13, abs=0.01)
-    p = Vehicle(WP, MissionItem(c.DO_SET_HOME, p1=1.0)).start()
+    p = Vehicle(MissionItem(c.DO_SET_HOME, p1=1.0), WP).start()
     assert p.v.autopilot.home.alt == pytest.approx(594.0)
 
 

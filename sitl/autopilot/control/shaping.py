@@ -117,6 +117,25 @@ def limit_accel(vx, vy, ax, ay, most):
 
 
 @law
+def limit_accel_braking(vx, vy, ax, ay, most):
+    """The same, but what slows down comes first: for shaped targets.
+
+    A point that passes its goal at speed then brakes, where ``limit_accel`` would circle it for ever.
+    """
+    speed = math.sqrt(vx * vx + vy * vy)
+    if most <= 0.0 or ax * ax + ay * ay <= most * most or speed < 1e-9:
+        return limit_accel(vx, vy, ax, ay, most)
+    ux, uy = vx / speed, vy / speed
+    along = ax * ux + ay * uy
+    if along >= 0.0:
+        return limit_accel(vx, vy, ax, ay, most)
+    along = max(along, -most)
+    room = math.sqrt(max(most * most - along * along, 0.0))
+    across = constrain(ay * ux - ax * uy, -room, room)
+    return (ux * along - uy * across, uy * along + ux * across)
+
+
+@law
 def shape_accel(target, accel, jerk, dt):
     """Acceleration moved towards ``target`` by at most ``jerk * dt`` (jerk 0: at once)."""
     if jerk <= 0.0:
@@ -149,12 +168,12 @@ def shape_vel_accel(v_in, a_in, v, a, a_min, a_max, jerk, dt, limit_total):
 
 @law
 def shape_vel_accel_2d(vx_in, vy_in, ax_in, ay_in, vx, vy, ax, ay, a_max, jerk, dt, limit_total):
-    """The same horizontally: one limit for the length of the acceleration."""
+    """The same horizontally: one limit for the length of the acceleration, of which braking takes its part first."""
     tx, ty = sqrt_controller_2d(vx_in - vx, vy_in - vy, jerk / a_max, jerk, dt)
-    tx, ty = limit_accel(vx, vy, tx, ty, a_max)
+    tx, ty = limit_accel_braking(vx, vy, tx, ty, a_max)
     tx, ty = tx + ax_in, ty + ay_in
     if limit_total != 0:
-        tx, ty = limit_accel(vx, vy, tx, ty, a_max)
+        tx, ty = limit_accel_braking(vx, vy, tx, ty, a_max)
     return shape_accel_2d(tx, ty, ax, ay, jerk, dt)
 
 

@@ -11,8 +11,9 @@ from ..mission.commands import Commands, is_speed, whole_seconds
 from ..mission.item import MissionItem
 from ..mission.notes import INFO, Note, Text
 from ..mission.place import Point, down, point
-from ..mission.under_way import end_path, write, write_none
+from ..mission.under_way import write, write_none
 from ..navigation import state as kinds
+from ..navigation.path import clear_legs
 from ..navigation.planner import end
 from .modes import auto, auto_yaw
 from .modes.numbers import AUTO
@@ -73,7 +74,8 @@ class CopterCommands(Commands):
         ap, time_us = v.autopilot, int(v.time_us)
         nav = ap.modes.nav
         kind = KINDS[item.command]
-        auto.face(v, kind)
+        if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
+            auto.face(v, kind)
         here, _ = PLANNER.origin_of_next(ap, time_us)
         if kind in LEGS:
             PLANNER.begin(ap, time_us, point(ap, item, here))
@@ -85,7 +87,7 @@ class CopterCommands(Commands):
             north, east, _ = point(ap, item, here)
             PLANNER.begin(ap, time_us, (north, east, here[2]))  # at the present height
         else:
-            end_path(nav)
+            _end_path(nav)
             height = down(ap, item) if kind == kinds.TAKEOFF else here[2]
             nav.target[0], nav.target[1], nav.target[2] = here[0], here[1], height
         write(nav, kind, seq)
@@ -194,3 +196,10 @@ def _circle(ap: Any, time_us: int, item: MissionItem, here: Point) -> None:
 
 
 COMMANDS = CopterCommands()
+
+
+def _end_path(nav: Any) -> None:
+    """Forget the legs: the next one starts where the vehicle would come to rest."""
+    clear_legs(nav)
+    nav.reached = nav.fresh = 0
+    nav.active_us = 0

@@ -8,12 +8,11 @@ aside. The test ends by itself, or with a disarming.
 from __future__ import annotations
 
 from ...core.kernels import law
+from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from .arming import disarm
 from .control.motors import MOTORS
 
-BY_MOTOR_TEST = 3
-"""Method of disarming (ArduPilot's number)."""
 LONGEST_S = 600.0
 
 # Answers of start()

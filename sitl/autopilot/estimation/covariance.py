@@ -25,8 +25,9 @@ MIN_VARIANCE = (1e-9, 1e-6, 1e-6, 1e-13, 1e-9, 1e-11)
 
 
 @law
-def _rows(P, q, dv, dt):
+def _rows(ekf):
     """P := F P, rows at a time."""
+    P, q, dv, dt = ekf.P, ekf.q, ekf.step_dv, ekf.step_dt
     w, x, y, z = q[0], q[1], q[2], q[3]
     r00, r01, r02 = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
     r10, r11, r12 = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
@@ -54,11 +55,11 @@ def predict(ekf, params):
     """Covariance over the step since the last one: ``step_dt`` seconds, ``step_dv`` m/s."""
     P = ekf.P
     dt = ekf.step_dt
-    _rows(P, ekf.q, ekf.step_dv, dt)
+    _rows(ekf)
     for i in range(N):
         for j in range(i):
             P[i, j], P[j, i] = P[j, i], P[i, j]
-    _rows(P, ekf.q, ekf.step_dv, dt)
+    _rows(ekf)
     gyro, acc = noise.GYRO * params.EK3_GYRO_P_NSE, noise.ACC * params.EK3_ACC_P_NSE
     gyro_bias, acc_bias = noise.GYRO_BIAS * params.EK3_GBIAS_P_NSE, noise.ACC_BIAS * params.EK3_ABIAS_P_NSE
     mag_bias = noise.MAG_BIAS * params.EK3_MAGB_P_NSE
@@ -132,8 +133,12 @@ def bound(ekf):
         elif not P[i, i] >= low:
             P[i, i] = low
     for i in range(N):
+        own = P[i, i]
         for j in range(i):
-            limit = math.sqrt(P[i, i] * P[j, j])
+            product = own * P[j, j]
+            if P[i, j] * P[i, j] < 0.99 * product:
+                continue  # far within: no need for the root
+            limit = math.sqrt(product)
             if abs(P[i, j]) > limit:
                 value = limit if P[i, j] > 0.0 else -limit
                 P[i, j] = value

@@ -24,6 +24,8 @@ class Commands(ABC):
     """MAV_CMDs that missions may hold."""
     planner: Planner
     """Plans the legs of missions and of modes."""
+    goes_on_disarmed = False
+    """Disarming in AUTO leaves the mission where it is; else, and in other modes, it goes back to its start."""
 
     @abstractmethod
     def enter(self, v: Any) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 INFO = 6
 """MAV_SEVERITY"""
+CRITICAL = 2
 NOTICE = 5
 WARNING = 4
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gives the core one navigation command after the other, and runs the do-commands in between.
 
-A navigation command (waypoint, landing, ...) is flown by the core, which says when it is complete. The
-do-commands and conditions that follow it in the mission run while it is flown; those that a condition still
-holds back when it completes are passed over. DO_JUMP sends the mission elsewhere, so many times. Behaviour
-and texts: ArduPilot's missions
+A navigation command (waypoint, landing, ...) is flown by the core, which says when it is complete. Then the
+do-commands and conditions that follow it in the mission run: the first before the next navigation command begins, the
+others once it is under way; those that a condition still holds back when that completes are passed over. At the
+mission's end only the first runs. DO_JUMP sends the mission elsewhere, so many times. Behaviour and texts:
+ArduPilot's missions
 (https://ardupilot.org/copter/docs/common-planning-a-mission-with-waypoints-and-events.html).
 
 All run state is in the vehicle's record (``nav.mission_*``, ``nav.jump_*``): a sequencer holds nothing but
@@ -28,9 +29,9 @@ from ..navigation.state import (
 )
 from . import jumps
 from .commands import Commands
-from .item import NAV_TAKEOFF
+from .item import NAV_TAKEOFF, MissionItem
 from .mission import Mission
-from .notes import INFO, CurrentChanged, ItemReached, Note, Text
+from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
 from .under_way import write_none
 
 
@@ -76,20 +77,26 @@ class Sequencer:
         ap.modes.mission_takes_off = 1 if first is not None and first.command == NAV_TAKEOFF else 0
 
     def set_mission(self, v: Any, mission: Mission) -> list[Note]:
-        """Take a new mission. One under way goes on with its present command, then with the new items.
+        """Take a new mission. One under way goes on: with its present command, from the start if that has changed.
 
         Raises:
             MissionError: it holds a command that this firmware does not take.
         """
+        nav = v.autopilot.modes.nav
+        seq = int(nav.command_seq)
+        before = self.mission.get(seq)
         self._holder.mission = Mission.of(mission.items, self.commands.taken)
         self._publish(v)
-        nav = v.autopilot.modes.nav
         jumps.keep(nav, {})
+        notes: list[Note] = []
         if nav.mission_state == RUNNING:
             nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
-            self._look_ahead(v)
-            return []
-        notes: list[Note] = []
+            if _same(self.mission.get(seq), before):
+                self._look_ahead(v)
+            else:
+                notes.append(Text(CRITICAL, "Auto mission changed, restarted command"))
+                self._run_from(v, seq, notes)
+            return notes
         nav.mission_state = STOPPED
         self._set_current(nav, 0, notes)
         return notes
@@ -99,11 +106,14 @@ class Sequencer:
         return bool(v.autopilot.modes.nav.mission_state != RUNNING)
 
     def start(self, v: Any) -> list[Note]:
-        """AUTO was entered: start the mission, or go on where it was (MIS_RESTART, MISSION_SET_CURRENT)."""
+        """AUTO was entered: start the mission, or go on where it was (MIS_RESTART, MISSION_SET_CURRENT).
+
+        Before the estimator has an origin no place means anything: then it waits for that.
+        """
         ap = v.autopilot
         nav = ap.modes.nav
         notes: list[Note] = []
-        if not self.mission.present:
+        if not self.mission.present or ap.estimate.origin_set == 0:
             return notes
         restart = ap.params.MIS_RESTART == 1 and nav.mission_resume == 0
         if restart or nav.mission_state == COMPLETE or nav.mission_current == 0:
@@ -111,7 +121,8 @@ class Sequencer:
             nav.mission_current = 0
         nav.mission_resume = 0
         self.commands.enter(v)
-        self._run_from(v, max(int(nav.mission_current), 1), notes)
+        held_back = nav.mission_do_next != 0 and nav.mission_current != 0
+        self._run_from(v, int(nav.mission_do) if held_back else max(int(nav.mission_current), 1), notes)
         return notes
 
     def stop(self, v: Any) -> list[Note]:
@@ -154,7 +165,7 @@ class Sequencer:
             self._run_from(v, max(seq, 1), notes)
         else:
             nav.mission_state = STOPPED
-            nav.mission_resume = 1
+            nav.mission_resume, nav.mission_do_next = 1, 0
             self._set_current(nav, max(seq, 1), notes)
         return (True, notes)
 
@@ -182,8 +193,12 @@ class Sequencer:
                 return self.start(v)
             if not in_auto and running:
                 return self.stop(v)
+        elif code == events.EKF_ORIGIN_SET:
+            if nav.mission_state == STOPPED and v.autopilot.modes.number == self.commands.auto:
+                return self.start(v)
         elif code == events.DISARMED:
-            return self.reset(v)
+            in_auto = v.autopilot.modes.number == self.commands.auto
+            return [] if in_auto and self.commands.goes_on_disarmed else self.reset(v)
         return []
 
     # --- inside
@@ -197,8 +212,7 @@ class Sequencer:
         """Run the mission from item ``seq``: do-commands that come first, then the navigation command."""
         nav = v.autopilot.modes.nav
         nav.mission_state = RUNNING
-        nav.condition_kind, nav.mission_do, nav.mission_do_next = CONDITION_NONE, 0, 0
-        self._advance(v, seq, notes, run_do=True)
+        self._advance(v, seq, notes)
 
     def _complete(self, v: Any) -> list[Note]:
         """The navigation command under way is done."""
@@ -209,8 +223,7 @@ class Sequencer:
         notes: list[Note] = [ItemReached(seq)]
         if item is not None:
             notes += self.commands.completed(v, seq, item)
-        nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
-        self._advance(v, seq + 1, notes, run_do=False)
+        self._advance(v, seq + 1, notes)
         return notes
 
     def _arrived(self, v: Any) -> list[Note]:
@@ -219,11 +232,12 @@ class Sequencer:
         item = self.mission.get(seq)
         return [] if item is None else self.commands.arrived(v, seq, item)
 
-    def _advance(self, v: Any, seq: int, notes: list[Note], run_do: bool) -> None:
-        """Go on to the next navigation command from ``seq`` on;
+    def _advance(self, v: Any, seq: int, notes: list[Note]) -> None:
+        """Go on to the next navigation command from ``seq`` on, and run the first do-command on the way to it;
         the mission is complete when there is none.
         """
         nav = v.autopilot.modes.nav
+        nav.condition_kind, nav.mission_do, nav.mission_do_next = CONDITION_NONE, 0, 0
         counts = jumps.runs(nav)
         for _ in range(len(self.mission) + jumps.LONGEST):
             taken: list[tuple[int, int, int]] = []
@@ -236,25 +250,25 @@ class Sequencer:
                 jumps.keep(nav, counts)
                 self._give(v, seq, notes)
                 return
-            if run_do:
+            if nav.mission_do_next == 0:
                 self._do(v, seq, notes)
-                nav.condition_kind = CONDITION_NONE  # nothing is flown yet that a condition could wait for
+                nav.mission_do_next = seq + 1
             seq += 1
         jumps.keep(nav, counts)
         nav.mission_state = COMPLETE
-        nav.condition_kind = CONDITION_NONE
+        nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
         notes += self.commands.finish(v)
 
     def _give(self, v: Any, seq: int, notes: list[Note]) -> None:
-        """Begin navigation command ``seq`` and the do-commands behind it."""
+        """Begin navigation command ``seq``, and run the other do-commands before it."""
         nav = v.autopilot.modes.nav
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
         self._set_current(nav, seq, notes)
         notes += self.commands.give(v, seq, item)
         self._look_ahead(v)
-        nav.mission_do_next = seq + 1
-        self._run_do(v, notes)
+        if nav.mission_do_next != 0 and nav.condition_kind == CONDITION_NONE:
+            self._run_do(v, notes)
 
     def _look_ahead(self, v: Any) -> None:
         """Plan the leg after the current one."""
@@ -265,7 +279,7 @@ class Sequencer:
     def _run_do(self, v: Any, notes: list[Note]) -> None:
         """Run do-commands up to the next navigation command or a condition."""
         nav = v.autopilot.modes.nav
-        counts = jumps.runs(nav)  # a copy: the jump is counted when the navigation command after it begins
+        counts = jumps.runs(nav)  # a copy: jumps were counted on the way to the navigation command
         seq = int(nav.mission_do_next)
         for _ in range(len(self.mission) + jumps.LONGEST):
             seq = jumps.following(self.mission, seq, counts, JUMPS)
@@ -294,3 +308,10 @@ class Sequencer:
         notes: list[Note] = [ItemReached(seq)]
         self._run_do(v, notes)
         return notes
+
+
+def _same(a: MissionItem | None, b: MissionItem | None) -> bool:
+    """Whether two items ask for the same; ``current`` is a mark of the upload."""
+    if a is None or b is None:
+        return a is b
+    return a._replace(current=0) == b._replace(current=0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..navigation.path import clear_legs
 from ..navigation.state import NONE
 
 
@@ -20,10 +19,3 @@ def write(nav: Any, kind: int, seq: int) -> None:
 def write_none(nav: Any) -> None:
     """No command is under way."""
     write(nav, NONE, 0)
-
-
-def end_path(nav: Any) -> None:
-    """Forget the legs: the next one starts where the vehicle would come to rest."""
-    clear_legs(nav)
-    nav.reached = nav.fresh = 0
-    nav.active_us = 0

@@ -9,7 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import Any
 
-from .leg import SHORTEST, Limits, plan, write
+from .leg import SHORTEST, LegError, Limits, plan, write
 from .profile import clear, evaluate
 
 Point = tuple[float, float, float]
@@ -132,7 +132,11 @@ class Planner(ABC):
             direction: Point = tuple(float(x) for x in leg.unit)  # type: ignore[assignment]
             here: Point = tuple(float(leg.origin[k] + direction[k] * p) for k in range(3))  # type: ignore[assignment]
             wanted = self.limits(ap, direction)
-            write(leg, plan(left, wanted, v, a), here, direction, left)
+            try:
+                profile = plan(left, wanted, v, a)
+            except LegError:
+                return  # limits that this motion cannot be brought within: it goes on as planned
+            write(leg, profile, here, direction, left)
             leg.top_speed = wanted.speed
         leg.fast, leg.started = fast, started
 

@@ -32,8 +32,6 @@ from .modes.numbers import allows_arming, allows_arming_by_stick, requires_posit
 
 CHECK_PARAMETERS = 32
 """ARMING_CHECK"""
-BY_MOTOR_TEST = 3
-"""Method of arming and disarming (ArduPilot's number)."""
 
 
 @law

@@ -54,6 +54,7 @@ class RoverCommands(Commands):
     auto = AUTO
     taken = frozenset((*KINDS, *OTHERS))
     planner = PLANNER
+    goes_on_disarmed = True
 
     def enter(self, v: Any) -> None:
         """The parameters' speed, forwards, no legs."""

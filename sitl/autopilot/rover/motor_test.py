@@ -8,14 +8,15 @@ As in ArduRover the vehicle is armed for it, with all arming checks, and radio, 
 from __future__ import annotations
 
 from ...core.kernels import law
+from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from .arming import disarm, try_arm
 from .control.motors import TEST_RIGHT, TEST_THROTTLE, is_skid
 
-BY_MOTOR_TEST = 3
 """Method of arming and disarming (ArduPilot's number)."""
 LONGEST_S = 30.0
-LARGEST_PULSE = 2200  # [us]
+LEAST_PULSE, LARGEST_PULSE = 800, 2200
+"""[us]; ArduPilot takes shorter ones, too, which no servo understands."""
 
 # Answers of start()
 OK = 0
@@ -40,7 +41,7 @@ def start(v, motor, throttle, pulse, seconds):
     motors = ap.control.motors
     if motor < TEST_THROTTLE or motor > TEST_RIGHT or is_skid(ap) != (motor > 2):
         return BAD_MOTOR
-    if not -1.0 <= throttle <= 1.0 or pulse < 0 or pulse > LARGEST_PULSE:
+    if not -1.0 <= throttle <= 1.0 or (pulse != 0 and not LEAST_PULSE <= pulse <= LARGEST_PULSE):
         return BAD_THROTTLE
     if not seconds >= 0.0:
         return BAD_TIME

@@ -36,9 +36,9 @@ ZERO: Vector = (0.0, 0.0, 0.0)
 class CopterSetpoints(SetpointService):
     """Set-points for GUIDED, and mission items with ``current`` 2 or 3."""
 
-    @property
-    def _copter(self) -> CopterAutopilot:
-        return cast("CopterAutopilot", self.bridge.autopilot)
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._copter = cast("CopterAutopilot", bridge.autopilot)
 
     def _unknown_frame(self) -> None:
         self.bridge.autopilot.guided_stop()

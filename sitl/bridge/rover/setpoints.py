@@ -38,14 +38,12 @@ class RoverSetpoints(SetpointService):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
+        self._rover = cast("RoverAutopilot", bridge.autopilot)
         self._origin_set = bridge.reader.field("autopilot.estimate.origin_set")
-
-    @property
-    def _rover(self) -> RoverAutopilot:
-        return cast("RoverAutopilot", self.bridge.autopilot)
+        self._wp_speed = bridge.reader.field("autopilot.params.WP_SPEED")
 
     def _listens(self) -> bool:
-        return super()._listens() or self._rover.is_guided_in_auto()
+        return self._mode() == self._guided or self._rover.is_guided_in_auto()
 
     def _unknown_frame(self) -> None:
         pass
@@ -69,8 +67,11 @@ class RoverSetpoints(SetpointService):
             return
         yaw = None if mask & YAW_IGNORED else m.yaw
         rate = None if mask & YAW_RATE_IGNORED else m.yaw_rate
-        used = [*(pos or ())[:2], *(vel or ())[:2], yaw or 0.0, rate or 0.0]
-        if not math.isfinite(sum(used)):
+        used = (yaw or 0.0) + (rate or 0.0)
+        for vector in (pos, vel):
+            if vector is not None:
+                used += vector[0] + vector[1]
+        if not math.isfinite(used):
             rover.guided_stop()
         elif pos is not None:
             rover.guided_position(pos, None)
@@ -87,12 +88,14 @@ class RoverSetpoints(SetpointService):
         """Speed [m/s] of a velocity, within WP_SPEED; 0 without one."""
         if vel is None:
             return 0.0
-        speed = min(math.hypot(vel[0], vel[1]), self._fastest())
+        speed, fastest = math.hypot(vel[0], vel[1]), self._fastest()
+        if speed > fastest:
+            speed = fastest
         return -speed if backward else speed
 
     def _fastest(self) -> float:
         """Speed [m/s] that stands for full speed."""
-        return max(self.bridge.parameter("WP_SPEED") or 0.0, 0.0)
+        return max(float(self._wp_speed()), 0.0)
 
     def _attitude(self, channel: Channel, m: Any, sender: Sender) -> None:
         """Thrust -1 .. 1 is a share of WP_SPEED; the heading is that of the quaternion, or turns with body_yaw_rate."""

@@ -10,6 +10,7 @@ made of each kind is the firmware's (``copter/setpoints.py``, ``rover/setpoints.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from ...autopilot.mission.item import MissionItem
@@ -38,9 +39,9 @@ class SetpointService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._mode = bridge.reader.field("autopilot.modes.number")
+        self._mode: Callable[[], int] = bridge.reader.field("autopilot.modes.number")
         self._pose = bridge.reader.fields(E_ + "euler", E_ + "pos")
-        self._guided = bridge.profile.guided
+        self._guided: int = bridge.profile.guided
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -53,7 +54,7 @@ class SetpointService(Service):
 
     def _listens(self) -> bool:
         """Whether set-points count now."""
-        return bool(self._mode() == self._guided)
+        return self._mode() == self._guided
 
     def _unknown_frame(self) -> None:
         """A position in a frame that there is not."""

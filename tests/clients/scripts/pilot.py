@@ -62,6 +62,11 @@ class Pilot:
         self.mav.command_long_send(1, 1, number, 0, *params, *(0,) * (7 - len(params)))
         return self.expect(f"answer to command {number}", ("COMMAND_ACK",), lambda a: a.command == number, 3.0).result
 
+    def parameter(self, name) -> float:
+        """Value of a parameter."""
+        self.link.param_fetch_one(name)
+        return self.expect(name, ("PARAM_VALUE",), lambda p: p.param_id == name).param_value
+
     def stream(self, rate_hz, *names) -> None:
         """Ask for messages."""
         for name in names:
@@ -78,11 +83,11 @@ class Pilot:
         number = self.link.mode_mapping()[name]
         self.expect(f"mode {name}", ("HEARTBEAT",), lambda m: m.custom_mode == number, 5.0)
 
-    def arm(self, mode="GUIDED") -> None:
-        """From power-on to armed with a position."""
+    def arm(self) -> None:
+        """From power-on to armed, in GUIDED."""
         self.stream(10, "LOCAL_POSITION_NED", "ATTITUDE")
         self.stream(2, "SYS_STATUS", "GLOBAL_POSITION_INT")
-        self.mode(mode)
+        self.mode("GUIDED")
         flags = mavlink.MAV_SYS_STATUS_PREARM_CHECK
         self.expect("ready to arm", ("SYS_STATUS",), lambda s: s.onboard_control_sensors_health & flags, 90.0)
         self.link.arducopter_arm()

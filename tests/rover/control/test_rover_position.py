@@ -123,6 +123,17 @@ def test_bad_targets_are_not_taken_over(bad):
     ap = car.v.autopilot
     before = list(ap.control.position.pos_target)
     position.input_pos(ap, bad, 0.0)
-    position.input_pos_vel(ap, 0.0, 0.0, bad, 0.0)
+    position.input_pos_vel_accel(ap, 0.0, 0.0, bad, 0.0, 0.0, 0.0)
     position.set_pos_vel_accel(ap, 0.0, 0.0, 0.0, 0.0, 0.0, bad)
     assert list(ap.control.position.pos_target) == before
+
+
+@pytest.mark.parametrize("speed_max", [5.0, 0.25])
+def test_a_way_straight_back_begins_with_a_turn(speed_max):
+    """Also of a vehicle that is never fast: else nothing turns it, and it drives away for ever."""
+    car = ready(PSC_POS_P=1.0)
+    ap = car.v.autopilot
+    position.set_limits(ap, speed_max, 1.0, steering.lat_accel_max(ap), 1.0)
+    position.set_pos_vel_accel(ap, -10.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    follow(car)
+    assert ap.control.position.desired_lat_accel > 0.0

@@ -17,6 +17,7 @@ from sitl.autopilot.rover import arming, texts
 from sitl.autopilot.rover.control import update as control
 from sitl.autopilot.rover.control.state import DT, PERIOD_US
 from sitl.autopilot.rover.firmware import power_on
+from sitl.autopilot.rover.modes import guided
 from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.state import AUTOPILOT_DTYPE
@@ -155,3 +156,9 @@ class Rover:
     def texts(self) -> list[str]:
         """What was said since the last call."""
         return [text for event in self.events() for _, text in texts.texts(*event)]
+
+
+def set_velocity(v: Any, north: float, east: float) -> int:
+    """A velocity [m/s] as the bridge gives it to GUIDED: its direction is the heading, its length the speed."""
+    speed = min(math.hypot(north, east), float(v.autopilot.params.WP_SPEED))
+    return int(guided.set_heading_and_speed(v, math.atan2(east, north), speed))

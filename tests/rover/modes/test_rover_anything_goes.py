@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import pytest
-from driven_rover import Rover
+from driven_rover import Rover, set_velocity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -19,7 +19,7 @@ from sitl.autopilot.rover.modes.numbers import NAMES
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
 SETTERS = (
     guided.set_position,
-    guided.set_velocity,
+    set_velocity,
     guided.set_heading_and_speed,
     guided.set_heading_change_and_speed,
     guided.set_turn_rate_and_speed,

@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import pytest
-from driven_rover import Rover
+from driven_rover import Rover, set_velocity
 
 from sitl.autopilot.events import COMMAND_COMPLETE, MODE_CHANGED
 from sitl.autopilot.navigation import state as kinds
@@ -117,11 +117,11 @@ def test_heading_and_speed(rover: Rover) -> None:
 
 
 def test_guided_until_its_place_or_limit(rover: Rover) -> None:
-    assert guided.set_velocity(rover.v, 1.0, 0.0) == NOT_IN_GUIDED
+    assert set_velocity(rover.v, 1.0, 0.0) == NOT_IN_GUIDED
     guided.set_limits(rover.v, 4.0, 0.0)
     give(rover, kinds.GUIDED)
     rover.run(0.1)
-    assert guided.set_velocity(rover.v, 2.0, 0.0) == OK
+    assert set_velocity(rover.v, 2.0, 0.0) == OK
     assert seconds_until_complete(rover, 10.0) == pytest.approx(4.0, abs=0.2)
     assert rover.position[0] > 2.0
     guided.set_limits(rover.v, 0.0, 0.0)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from driven_rover import Rover
+from driven_rover import Rover, set_velocity
 
 from sitl.autopilot.events import GUIDED_REACHED, GUIDED_TIMEOUT
 from sitl.autopilot.rover.modes import guided
@@ -33,7 +33,7 @@ def stream(rover: Rover, seconds: float, setter: object, *numbers: float) -> Non
 def test_velocity_north_as_recorded(rover: Rover) -> None:
     times: dict[float, float] = {}
     for k in range(100):
-        guided.set_velocity(rover.v, 2.0, 0.0)
+        set_velocity(rover.v, 2.0, 0.0)
         rover.run(0.1)
         for mark in (1.0, 1.9):
             if rover.speed >= mark:
@@ -45,7 +45,7 @@ def test_velocity_north_as_recorded(rover: Rover) -> None:
 
 
 def test_a_set_point_is_good_for_three_seconds(rover: Rover) -> None:
-    stream(rover, 10.0, guided.set_velocity, 2.0, 0.0)
+    stream(rover, 10.0, set_velocity, 2.0, 0.0)
     rover.events()
     rover.run(2.9)
     assert rover.events() == []
@@ -84,6 +84,18 @@ def test_positions_need_no_renewal_and_arrival_is_said_once(rover: Rover) -> Non
     assert rover.position[0] == pytest.approx(10.0, abs=0.5)
 
 
+@pytest.mark.parametrize("aside", [12.0, 25.0, 40.0])
+def test_a_position_beside_the_way_is_not_circled_for_ever(rover: Rover, aside: float) -> None:
+    stream(rover, 15.0, set_velocity, 5.0, 0.0)
+    assert rover.speed > 4.5
+    north, east = rover.position
+    assert guided.set_position(rover.v, north, east + aside) == OK
+    rover.events()
+    rover.run(60.0)
+    assert (GUIDED_REACHED, 0.0, 0.0) in rover.events()
+    assert rover.position == pytest.approx((north, east + aside), abs=3.5)
+
+
 def test_planned_positions(rover: Rover) -> None:
     rover.ap.params.GUID_OPTIONS = 64.0
     guided.set_position(rover.v, 10.0, 5.0)
@@ -118,23 +130,15 @@ def test_steering_and_throttle(rover: Rover) -> None:
     assert [int(rover.v.actuators.pwm[k]) for k in (0, 2)] == [1750, 1550]
 
 
-def test_velocity_is_at_most_wp_speed_and_zero_keeps_the_heading(rover: Rover) -> None:
-    guided.set_velocity(rover.v, 30.0, 40.0)
-    assert rover.ap.modes.guided.speed == 5.0
-    rover.place(0.0, 0.0, 1.2)
-    guided.set_velocity(rover.v, 0.0, 0.0)
-    assert rover.ap.modes.guided.heading == pytest.approx(1.2)
-
-
 def test_stop(rover: Rover) -> None:
-    stream(rover, 4.0, guided.set_velocity, 2.0, 0.0)
+    stream(rover, 4.0, set_velocity, 2.0, 0.0)
     assert guided.stop(rover.v) == OK
     rover.run(3.0)
     assert abs(rover.speed) < 0.1
     assert rover.ap.modes.guided.submode == STOP
 
 
-@pytest.mark.parametrize("setter", [guided.set_position, guided.set_velocity, guided.set_turn_rate_and_speed])
+@pytest.mark.parametrize("setter", [guided.set_position, guided.set_heading_and_speed, guided.set_turn_rate_and_speed])
 def test_refusals_change_nothing(setter: object) -> None:
     rover = Rover().arm()
     before = bytes(rover.v._bytes)
@@ -154,7 +158,7 @@ def test_change_speed_is_for_positions(rover: Rover) -> None:
 
 
 def test_hold_rolls_out_as_recorded(rover: Rover) -> None:
-    stream(rover, 6.0, guided.set_velocity, 2.0, 0.0)
+    stream(rover, 6.0, set_velocity, 2.0, 0.0)
     start, before = rover.position[0], rover.speed
     request(rover.v, HOLD, 2)
     rover.run(5.5)

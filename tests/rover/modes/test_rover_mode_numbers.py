@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from driven_rover import Rover
 
 from sitl.autopilot import events
 from sitl.autopilot.rover import failsafe, texts
@@ -28,6 +29,15 @@ def test_only_hands_and_hold_do_without_a_position() -> None:
 def test_ways_home_are_not_for_arming() -> None:
     refused = [numbers.NAMES[n] for n in numbers.NAMES if not numbers.allows_arming(n)]
     assert refused == ["RTL", "SMART_RTL", "INITIALISING"]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "got"), [(4, 4), (15, 15), (7, 7), (5, 16), (9, 16), (10, 16), (11, 16), (12, 16), (2, 16)]
+)
+def test_initial_mode_is_one_that_can_be_entered_at_power_on(wanted: int, got: int) -> None:
+    """LOITER and CIRCLE need a place, the ways home need one, AUTO needs a mission."""
+    ap = Rover(INITIAL_MODE=wanted, MODE_CH=0).ap
+    assert ap.modes.number == got
 
 
 @pytest.mark.parametrize(

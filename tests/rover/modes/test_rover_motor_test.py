@@ -36,6 +36,13 @@ def test_a_pulse_instead() -> None:
     assert int(rover.v.actuators.pwm[2]) == 1650
 
 
+@pytest.mark.parametrize("pulse", [-1, 1, 799, 2201])
+def test_a_pulse_that_is_none(pulse: int) -> None:
+    rover = Rover()
+    assert motor_test.start(rover.v, THROTTLE, 0.0, pulse, 2.0) == motor_test.BAD_THROTTLE
+    assert rover.ap.arming.armed == 0
+
+
 def test_needs_the_arming_checks() -> None:
     rover = Rover()
     request(rover.v, RTL, 2)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from driven_rover import Rover
+from driven_rover import Rover, set_velocity
 
 from sitl.autopilot.events import CIRCLE_ADAPTED
 from sitl.autopilot.rover.modes import circle, guided
@@ -79,7 +79,7 @@ def test_smart_rtl_needs_a_path() -> None:
 def test_loiter_stops_and_stays() -> None:
     rover = out([])
     for _ in range(40):
-        guided.set_velocity(rover.v, 2.0, 0.0)
+        set_velocity(rover.v, 2.0, 0.0)
         rover.run(0.1)
     here = rover.position[0]
     request(rover.v, LOITER, 2)

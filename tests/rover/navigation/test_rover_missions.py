@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from rover_on_mission import Missionary, at
 
+from sitl.autopilot import events
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.mission.validate import UNSUPPORTED, check
+from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
 from sitl.autopilot.rover.modes import guided
 from sitl.autopilot.rover.modes.numbers import AUTO, MANUAL
@@ -125,12 +127,13 @@ def test_guided_within_a_mission() -> None:
 
 def test_conditions_hold_back_what_follows_them() -> None:
     p = Missionary().drive(
-        at(WP, 40.0, 0.0), MissionItem(c.CONDITION_DELAY, p1=3.0), MissionItem(c.DO_CHANGE_SPEED, p2=2.0),
-        MissionItem(c.CONDITION_DISTANCE, p1=10.0), MissionItem(c.DO_CHANGE_SPEED, p2=1.0), at(WP, 60.0, 0.0),
+        MissionItem(c.CONDITION_DELAY, p1=3.0), MissionItem(c.DO_CHANGE_SPEED, p2=2.0),
+        MissionItem(c.CONDITION_DISTANCE, p1=10.0), MissionItem(c.DO_CHANGE_SPEED, p2=1.0), at(WP, 40.0, 0.0),
+        at(WP, 60.0, 0.0),
     )  # fmt: skip
-    while p.reached(5) is None and p.time < 60.0:
+    while p.reached(4) is None and p.time < 60.0:
         p.step()
-    first, second = p.reached(3), p.reached(5)
+    first, second = p.reached(2), p.reached(4)
     assert first == pytest.approx(3.0, abs=0.1)
     assert second is not None and second > 5.0
     assert 40.0 - p.position[0] == pytest.approx(10.0, abs=0.3)
@@ -155,6 +158,34 @@ def test_leaving_and_coming_back_goes_on_with_the_item() -> None:
     p.run(0.1)
     assert p.said()[-1] == "Mission: 2 WP"
     assert math.isfinite(p.until(3))
+
+
+def test_disarmed_it_waits_and_goes_on_with_the_item() -> None:
+    p = Missionary().drive(at(WP, 15.0, 0.0), at(WP, 15.0, 15.0), at(WP, 0.0, 15.0))
+    p.until(1)
+    assert arming.disarm(p.v, 1, 0) == 1
+    p.run(3.0)
+    p.arm()
+    assert math.isfinite(p.until(3))
+    assert p.said().count("Mission: 1 WP") == 1
+    assert request(p.v, MANUAL, 2) == 0
+    assert arming.disarm(p.v, 1, 0) == 1
+    p.run(0.1)
+    assert p.ap.modes.nav.mission_current == 0
+
+
+def test_without_an_origin_it_waits() -> None:
+    p = Missionary()
+    assert arming.disarm(p.v, 1, 0) == 1
+    p.ap.estimate.origin_set = 0
+    p.drive(at(WP, 15.0, 0.0))
+    p.run(1.0)
+    assert p.said() == []
+    p.ap.estimate.origin_set = 1
+    events.emit(p.ap.events, p.v.time_us, events.EKF_ORIGIN_SET, 0.0, 0.0)
+    p.run(0.1)
+    assert p.said() == ["Mission: 1 WP"]
+    assert p.ap.modes.nav.target[0] == pytest.approx(15.0, abs=0.1)
 
 
 def test_what_the_other_firmware_takes_is_refused() -> None:

@@ -199,6 +199,32 @@ def test_pivot_turn() -> None:
     assert not pivot.is_active(p.ap)
 
 
+def test_reversed_on_the_way_a_skid_steered_vehicle_turns_round() -> None:
+    """Else it would stand for ever with its nose where its tail should go."""
+    p = Driver(**SKID).to(60.0, 0.0)
+    p.place(10.0, 0.0)
+    waypoint.set_reversed(p.ap, 1)
+    assert pivot.is_active(p.ap)
+    waypoint.update(p.v)
+    assert abs(p.ap.modes.nav.drive.desired_turn_rate) > 0.5
+    pivot.end(p.ap)
+    waypoint.set_reversed(p.ap, 1)  # said again, it changes nothing
+    assert not pivot.is_active(p.ap)
+
+
+@pytest.mark.parametrize(("backward", "turn"), [(0, 1.0), (1, -1.0)])
+def test_standing_it_turns_as_for_the_way_it_will_drive(backward: int, turn: float) -> None:
+    """Towards a destination on the right of its nose or, backwards, away from it."""
+    p = Driver(**SKID, WP_PIVOT_ANGLE=0.0)
+    waypoint.set_reversed(p.ap, backward)
+    p.to(20.0, 5.0)
+    for _ in range(100):
+        waypoint.update(p.v)
+        p.v.time_us += 20_000
+        p.ap.control.tick += 1
+    assert p.ap.modes.nav.drive.desired_turn_rate * turn > 0.0
+
+
 def test_a_pivot_corner_is_a_stop() -> None:
     p = Driver(**SKID)
     waypoint.set_destinations(p.v, 20.0, 0.0, 20.0, 20.0)
@@ -213,6 +239,17 @@ def test_a_pivot_corner_is_a_stop() -> None:
 def test_wp_pivot_angle_of_zero_means_none() -> None:
     p = Driver(**SKID, WP_PIVOT_ANGLE=0.0)
     assert not pivot.would_turn(p.ap, math.pi)
+
+
+def test_limits_that_its_motion_does_not_fit_leave_the_leg_as_it_is() -> None:
+    p = Driver(ATC_ACCEL_MAX=5.0, WP_ACCEL=5.0, WP_JERK=5.0, WP_SPEED=30.0).to(300.0, 0.0)
+    p.run(1.5)
+    leg = p.ap.modes.nav.current
+    before = float(leg.duration)
+    p.ap.params.WP_ACCEL = p.ap.params.WP_JERK = 0.01
+    waypoint.set_speed(p.ap, 2.0)
+    p.run(1.0)
+    assert float(leg.duration) == before
 
 
 def test_limits() -> None:

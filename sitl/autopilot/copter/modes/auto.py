@@ -84,7 +84,7 @@ def begin(v):
 
 @law
 def face(v, kind):
-    """Heading of a new command; the shell calls it before the do-commands that follow, which may change it."""
+    """Heading of a new command; do-commands on the way to it have run, or follow."""
     yaw = v.autopilot.modes.auto_yaw
     if kind == TAKEOFF:
         auto_yaw.set_mode(v, auto_yaw.HOLD)

@@ -29,7 +29,9 @@ from .state import DT
 from .steering import lat_accel_max, turn_rate_from_lat_accel
 
 _TIMEOUT = 5  # periods: 0.1 s, ArduPilot's
-_BACK = 0.3  # least speed of a way back that counts as one [m/s]
+_BACK = 0.3  # least speed of a way back that counts as one [m/s]; of slow vehicles a share of their speed
+_BACK_SHARE = 0.5
+_STANDING = 1e-9  # speed that has a direction only [m/s]
 _ASIDE = 0.01  # lateral acceleration that leaves the line of a way straight back [m/s^2]
 
 
@@ -105,12 +107,6 @@ def input_pos_vel_accel(ap, pn, pe, vn, ve, an, ae):
         float(c.speed_max), accel, float(c.jerk_max), DT, 0,
     )  # fmt: skip
     c.accel_desired[0], c.accel_desired[1] = bn, be
-
-
-@law
-def input_pos_vel(ap, pn, pe, vn, ve):
-    """The same towards a point that moves steadily."""
-    input_pos_vel_accel(ap, pn, pe, vn, ve, 0.0, 0.0)
 
 
 @law
@@ -206,13 +202,13 @@ def _brake(ap):
 
 
 @law
-def _aside(backward, along, size, lateral):
+def _aside(c, along, size, lateral):
     """``lateral`` acceleration [m/s^2]; where the way leads straight back, nothing would turn a car: then to the right.
 
     ``along``: of the wanted velocity of ``size`` along the nose [m/s].
     """
-    away = along > 0.0 if backward != 0 else along < 0.0
-    if away and size > _BACK and abs(lateral) < _ASIDE:
+    away = along > 0.0 if c.reversed != 0 else along < 0.0
+    if away and size > min(_BACK, _BACK_SHARE * float(c.speed_max)) and abs(lateral) < _ASIDE:
         return _ASIDE
     return lateral
 
@@ -246,5 +242,8 @@ def update(v):
     least = min(size, math.sqrt(0.5 * lat_accel_max(ap) * turn_radius(ap)))
     wanted = min(-least, along) if c.reversed != 0 else max(least, along)
     c.desired_speed = desired_speed_accel_limited(ap, wanted)
-    c.desired_lat_accel = _aside(int(c.reversed), along, size, ae * cosine - an * sine)
-    c.desired_turn_rate = turn_rate_from_lat_accel(float(c.desired_lat_accel), float(c.desired_speed))
+    c.desired_lat_accel = _aside(c, along, size, ae * cosine - an * sine)
+    speed = float(c.desired_speed)
+    if speed == 0.0 and c.reversed != 0:
+        speed = -_STANDING  # towards where it is about to go
+    c.desired_turn_rate = turn_rate_from_lat_accel(float(c.desired_lat_accel), speed)

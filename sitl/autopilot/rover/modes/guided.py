@@ -7,8 +7,6 @@ headings [rad] from north, turn rates [rad/s] right positive, speeds [m/s] backw
 
 from __future__ import annotations
 
-import math
-
 from ....core.kernels import law
 from ....core.rotations import constrain, wrap_pi
 from ..navigation import waypoint
@@ -81,18 +79,6 @@ def set_position(v, n, e):
 
 
 @law
-def set_velocity(v, vn, ve):
-    """Drive a velocity [m/s]: its direction is the heading, its length, at most WP_SPEED, the speed."""
-    code = refusal(v, vn, ve)
-    if code != OK:
-        return code
-    ap = v.autopilot
-    size = math.sqrt(vn * vn + ve * ve)
-    heading = math.atan2(ve, vn) if size > 0.0 else float(ap.estimate.euler[2])
-    return set_heading_and_speed(v, heading, min(size, float(ap.params.WP_SPEED)))
-
-
-@law
 def set_heading_and_speed(v, heading, speed):
     """Turn to a heading and drive."""
     code = refusal(v, heading, speed)
@@ -128,7 +114,7 @@ def set_turn_rate_and_speed(v, turn_rate, speed):
 
 @law
 def set_steering_and_throttle(v, steering, throttle):
-    """Steering and throttle -1 .. 1 directly."""
+    """Steering and throttle -1 .. 1 directly (ArduRover: for scripts on board; no message asks for it)."""
     code = refusal(v, steering, throttle)
     if code == OK:
         begin(v, STEERING_AND_THROTTLE)

@@ -5,15 +5,16 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from .. import pilot
-from .numbers import INITIALISING, REASON_INITIALISED, is_known
+from .numbers import ACCEPTED, INITIALISING, REASON_INITIALISED, is_known
+from .set_mode import enter
 
 
 @law
 def init(v):
-    """Disarmed, in INITIAL_MODE."""
+    """Disarmed, in INITIAL_MODE; INITIALISING when that needs what is not known yet (a place, home, a mission)."""
     ap = v.autopilot
     number = int(ap.params.INITIAL_MODE)
-    ap.modes.number = number if is_known(number) else INITIALISING
+    ap.modes.number = number if is_known(number) and enter(v, number) == ACCEPTED else INITIALISING
     ap.modes.previous = INITIALISING
     ap.modes.reason = REASON_INITIALISED
     ap.arming.landed = 1

@@ -32,6 +32,13 @@ def is_active(ap):
 
 
 @law
+def begin(ap):
+    """Turn from now on."""
+    ap.modes.nav.drive.pivoting = 1
+    ap.modes.nav.drive.pivot_us = 0
+
+
+@law
 def end(ap):
     """No turn is under way."""
     ap.modes.nav.drive.pivoting = 0
@@ -52,9 +59,8 @@ def check(ap, time_us, heading, anyway):
         drive.pivoting = 0
         return
     error = abs(wrap_pi(heading - float(ap.estimate.euler[2])))
-    if anyway or error > math.radians(ap.params.WP_PIVOT_ANGLE):
-        drive.pivoting = 1
-        drive.pivot_us = 0
+    if anyway or would_turn(ap, error):
+        begin(ap)
         return
     if drive.pivoting != 0 and drive.pivot_us == 0 and error < math.radians(ACCURACY):
         drive.pivot_us = time_us

@@ -185,8 +185,13 @@ def set_nudge_speed(ap, wanted):
 
 @law
 def set_reversed(ap, backward):
-    """Drive backwards (1) or forwards (0)."""
-    ap.modes.nav.drive.reversed = backward
+    """Drive backwards (1) or forwards (0); a skid-steered vehicle on its way turns round first."""
+    drive = ap.modes.nav.drive
+    if backward == drive.reversed:
+        return
+    drive.reversed = backward
+    if has_destination(ap) and pivot.would_turn(ap, heading(ap) - float(ap.estimate.euler[2])):
+        pivot.begin(ap)
 
 
 @law

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The same commands give the same bytes: again, in another process, from a snapshot, in a fork."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from rover_driver import AIRFRAMES, CIRCLE, GUIDED, HOLD, LOITER, MANUAL, RTL, SMART_RTL, VELOCITY, Driver
+from witness import WAYPOINT, Item
+
+from sitl.kinds import KINDS
+from sitl.simulation import Core, load_core
+
+ALL = pytest.mark.parametrize("frame", AIRFRAMES)
+
+
+def act(d: Driver) -> bytes:
+    """A drive through many modes; what was heard of it, and the record at its end."""
+    side = 6.0 * d.cruise
+    for k in range(8):
+        d.stream(2.0, VELOCITY, vx=d.cruise, vy=(-1) ** k * d.cruise)
+        d.set_mode((LOITER, CIRCLE, RTL, SMART_RTL, HOLD, MANUAL)[k % 6])
+        d.sticks(3.0, steering=1400 + 50 * k, throttle=1600)
+        d.let_go()
+        d.set_mode(GUIDED)
+    d.start_mission(Item(WAYPOINT, (side, 0.0)), Item(WAYPOINT, (side, side)))
+    d.fly(20.0)
+    return repr((d.rows, d.texts, d.acks)).encode() + d.simulation.fleet.tobytes()
+
+
+def digest(frame: str) -> str:
+    """Of a whole drive from power-on."""
+    return hashlib.sha256(act(Driver(load_core(KINDS["rover"]), frame, seed=5).armed_in())).hexdigest()
+
+
+@ALL
+def test_again(core: Core, frame: str) -> None:
+    first = act(Driver(core, frame, seed=5).armed_in())
+    assert act(Driver(core, frame, seed=5).armed_in()) == first
+    assert act(Driver(core, frame, seed=6).armed_in()) != first
+
+
+def test_in_another_process() -> None:
+    here = Path(__file__).parent
+    paths = [str(here), str(here.parent / "pilots"), str(here.parents[1])]
+    script = f"import sys; sys.path[:0] = {paths}\nimport test_rover_drive_repeats as t; print(t.digest('erle_rover'))"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == digest("erle_rover")
+
+
+@ALL
+def test_from_a_snapshot(core: Core, frame: str) -> None:
+    """Restored, the vehicle and its telemetry go on as if nothing had been in between."""
+    d = Driver(core, frame, seed=5).armed_in()
+    d.start_mission(Item(WAYPOINT, (10.0 * d.cruise, 0.0)), Item(WAYPOINT, (0.0, 10.0 * d.cruise)))
+    d.fly(8.0)
+    snapshot = d.simulation.snapshot()
+    record, mission = d.simulation.fleet.tobytes(), d.simulation.mission
+
+    def go_on() -> bytes:
+        sent = b""
+        for _ in range(100):
+            d.simulation.advance(0.1)
+            sent += d.client.link.receive()
+        return sent + d.simulation.fleet.tobytes()
+
+    first = go_on()
+    d.set_mode(MANUAL)
+    d.sticks(5.0, throttle=1700)
+    d.let_go()
+    d.simulation.restore(snapshot)
+    assert d.simulation.fleet.tobytes() == record and d.simulation.mission is mission
+    d.client.receive()
+    assert go_on() == first
+
+
+@ALL
+def test_forks(core: Core, frame: str) -> None:
+    """Two simulations from one snapshot: the same while they are told the same, then each its own."""
+    parent = Driver(core, frame, seed=5).armed_in()
+    parent.get_going(seconds=5.0)
+    snapshot = parent.simulation.snapshot()
+    children = [Driver(core, frame, seed=k) for k in (5, 9)]
+    for child in children:
+        child.simulation.restore(snapshot)
+        child.stream(4.0, VELOCITY, vx=child.cruise)
+    assert children[0].simulation.fleet.tobytes() == children[1].simulation.fleet.tobytes()
+    children[0].set_mode(HOLD)
+    children[1].stream(3.0, VELOCITY, vy=children[1].cruise)
+    assert children[0].simulation.fleet.tobytes() != children[1].simulation.fleet.tobytes()
+    assert parent.simulation.time_us < children[0].simulation.time_us
