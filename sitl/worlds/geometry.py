@@ -45,9 +45,9 @@ FLOOR = 6
 """Down coordinate of the floor [m]."""
 GRID_FIGURES = 7
 
-_MARGIN = -0.05
+_MARGIN = 1e-6
 """A solid is listed in every cell that comes this near to it [m]: far more than rounding, so that the walk through the
-grid (``raycast.cast``) meets every solid that testing all of them would."""
+grid (``raycast.walk``) meets every solid that testing all of them would."""
 _CELLS_EACH = 6
 """Cells aimed at for a solid; a few more or less cost little."""
 _MOST_CELLS = 65_536
