@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import gymnasium as gym
 
+from .mavlink.ends import LinkLostError, NotReadyError
 from .options import EnvOptionError
 
-__all__ = ["MAX_EPISODE_STEPS", "PAPER", "EnvOptionError", "register"]
+__all__ = ["MAX_EPISODE_STEPS", "PAPER", "EnvOptionError", "LinkLostError", "NotReadyError", "register"]
 
 MAX_EPISODE_STEPS = 1500
 """After which an episode is truncated: the paper's experiments stopped there. ``gym.make(..., max_episode_steps=-1)``
@@ -22,6 +23,8 @@ PAPER = {
     "GazeboCircuit2TurtlebotLIDAR-v0": "circuit2-turtlebot",
     "GazeboMazeTurtlebotLIDAR-v0": "maze-turtlebot",
     "GazeboRoundTurtlebotLIDAR-v0": "round-turtlebot",
+    "GazeboMazeErleRoverLIDAR-v0": "maze-erle-rover",
+    "GazeboOfficeErleCopterLIDAR-v0": "office-erle-copter",
 }
 """The paper's environments -> their presets (``paper.PRESETS``)."""
 

@@ -37,11 +37,26 @@ def turtlebot(world: str, speed: float = 0.3, turning_speed: float = 0.05, rewar
     }
 
 
+def autopilot(robot: str, world: str) -> dict[str, Any]:
+    """Options of an environment of a vehicle with an autopilot, steered by RC overrides."""
+    return {
+        "robot": robot,
+        "world": world,
+        "task": paper(),
+        "observation": Digits(),
+        "action": "discrete",
+        "setpoint": "rc",
+        "step_time": 0.1,
+    }
+
+
 PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
     "circuit-turtlebot": lambda: turtlebot("circuit"),
     "circuit2-turtlebot": lambda: turtlebot("circuit2"),
     "maze-turtlebot": lambda: turtlebot("maze", speed=0.25, reward=3.0),
     "round-turtlebot": lambda: turtlebot("round", turning_speed=0.1),
+    "maze-erle-rover": lambda: autopilot("erle_rover", "maze_erlerover"),
+    "office-erle-copter": lambda: autopilot("erle_copter", "office_erlecopter"),
 }
 """Options of ``Navigate`` by the preset's name; ``envs.PAPER`` says which environment has which."""
 

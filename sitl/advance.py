@@ -2,14 +2,15 @@
 """The core's entries, one for each kind of vehicle: physics and autopilot, tick by tick, until something needs Python.
 
 ``advance(fleet, index, ticks)`` advances one vehicle by up to ``ticks`` ticks of 2500 us. It returns early, at the end
-of a tick in which something happened (``autopilot.events``). The border is crossed once a tick: physics writes
-``sensors``, the autopilot reads them and writes ``actuators``.
+of a tick in which something happened (``autopilot.events``), or in which the vehicle came to the end of its list of
+solids. The border is crossed once a tick: physics writes ``sensors``, the autopilot reads them and writes
+``actuators``.
 """
 
 from __future__ import annotations
 
 from .autopilot.copter import firmware as copter
-from .autopilot.events import HIT_GROUND, emit
+from .autopilot.events import HIT_GROUND, HIT_OBSTACLE, emit
 from .autopilot.rover import firmware as rover
 from .core.kernels import law, unit
 from .physics.native.copter.step import step as step_copter
@@ -26,6 +27,7 @@ def advance_copter(fleet, index, ticks):
     for _ in range(ticks):
         step_copter(fleet, index)
         report_touch(vehicle)
+        watch_obstacles(vehicle)
         if vehicle.autopilot.ekf.use_external != 0:
             observe(vehicle)
         copter.update(fleet, index)
@@ -41,6 +43,7 @@ def advance_rover(fleet, index, ticks):
     told = events.count
     for _ in range(ticks):
         step_rover(fleet, index)
+        watch_obstacles(vehicle)
         if vehicle.autopilot.ekf.use_external != 0:
             observe(vehicle)
         rover.update(fleet, index)
@@ -54,3 +57,15 @@ def report_touch(vehicle):
     ground = vehicle.physics.ground
     if ground.hit_count > 0 and ground.hit_time_us == vehicle.time_us:
         emit(vehicle.autopilot.events, vehicle.time_us, HIT_GROUND, ground.hit_speed, 0.0)
+
+
+@law
+def watch_obstacles(vehicle):
+    """HIT_OBSTACLE when the vehicle ran into a solid in this tick; back to the shell for a new list of solids."""
+    obstacles = vehicle.physics.obstacles
+    if obstacles.present == 0:
+        return
+    if obstacles.hit_count > 0 and obstacles.hit_time_us == vehicle.time_us:
+        emit(vehicle.autopilot.events, vehicle.time_us, HIT_OBSTACLE, obstacles.hit_speed, 0.0)
+    if obstacles.wanted != 0:
+        vehicle.autopilot.events.attention = 1

@@ -8,8 +8,8 @@ from .bridge.links.address import LinkAddressError
 from .core.compile import BuildError
 from .logs.plot import MissingExtra
 from .logs.tlog import LogError
+from .option_error import OptionError
 from .pacing import SpeedupError
-from .simulation import OptionError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
 from .worlds import WorldError

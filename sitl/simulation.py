@@ -9,6 +9,7 @@ from ctypes import c_int64, c_void_p
 from dataclasses import dataclass
 from functools import partial
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,8 +25,12 @@ from .core import compile as compiler
 from .core import records
 from .core.compile import Progress
 from .kinds import COPTER, KINDS, Kind
+from .lidar import Rangers
+from .option_error import OptionError
+from .surroundings import StartPose, Surroundings, checked_world
 from .vehicle import TICK_US
 from .vehicles import Airframe, AirframeError
+from .worlds import World
 
 Array = np.ndarray[Any, Any]
 Home = tuple[float, float, float, float]
@@ -35,10 +40,6 @@ DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 """Canberra model aircraft club, ArduPilot's default SITL location."""
 
 ESTIMATORS = ("ekf", "truth")
-
-
-class OptionError(ValueError):
-    """An option of the simulation that cannot be taken."""
 
 
 class Core:
@@ -78,6 +79,8 @@ class Snapshot:
     before_boot_us: int
     events_seen: int
     reboot: bool
+    world: str | None = None
+    """Name of the world that it is in."""
 
 
 class Simulation:
@@ -90,9 +93,14 @@ class Simulation:
         estimator: "ekf", or "truth" for work on controllers.
         params: values under ArduPilot's names, over the airframe's own and the defaults.
         core: the core of this kind of vehicle, if it is loaded already.
+        world: name (``sitl.worlds.names()``), path of a .toml file, or a World. Its origin is at ``home``, and the
+            vehicle stands at ``start``; home's heading does not count.
+        start: name of one of the world's start poses, or x, y, z [m], yaw [deg] in the world's frame; None: the
+            world's own for this airframe.
 
     Raises:
-        OptionError, sitl.vehicles.AirframeError, ParameterError: an argument that cannot be taken, named.
+        OptionError, sitl.vehicles.AirframeError, ParameterError, sitl.worlds.WorldError: an argument that cannot be
+            taken, named.
     """
 
     def __init__(
@@ -105,11 +113,20 @@ class Simulation:
         params: Mapping[str, float] | None = None,
         core: Core | None = None,
         progress: Progress | None = None,
+        world: str | Path | World | None = None,
+        start: StartPose | None = None,
     ) -> None:
         if estimator not in ESTIMATORS:
             raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         self.airframe = vehicles.load(frame)
         self.home, self.seed, self.estimator = checked_home(home), checked_seed(seed), estimator
+        self.world = checked_world(world, start)
+        """Where it is; None: on a plain without end."""
+        self.surroundings = Surroundings(self.world, start, self.airframe) if self.world is not None else None
+        if self.surroundings is not None:
+            self.home = (*self.home[:3], math.degrees(self.surroundings.heading))
+        self.rangers: Rangers | None = None
+        """Its lidar and range-finder, in a world."""
         self.kind = KINDS[self.airframe.kind]
         self.firmware = self.kind.firmware
         self.fleet: Array = np.zeros(1, self.kind.dtype)
@@ -117,7 +134,7 @@ class Simulation:
         self.v = records.view(self.fleet, self.index)
         size = self.fleet.dtype.itemsize
         self._record = memoryview(self.fleet.view("u1"))[self.index * size : (self.index + 1) * size]  # type: ignore[arg-type]
-        reader = RecordReader(self.fleet, self.index)
+        self._reader = reader = RecordReader(self.fleet, self.index)
         self._clock: Callable[[], int] = reader.field("time_us")
         self._event_count = reader.field("autopilot.events.count")
         self._events_seen = 0
@@ -166,21 +183,28 @@ class Simulation:
 
         What clients sent is read at the beginning; the clock ends on the first whole tick at or after ``time_us``.
         """
-        bridge = self.bridge
+        bridge, surroundings, rangers = self.bridge, self.surroundings, self.rangers
         bridge.receive()
         while True:
             if self._event_count() != self._events_seen:
                 self._follow_events()
             if self._reboot:
                 self._do_reboot()
-                bridge = self.bridge
+                bridge, rangers = self.bridge, self.rangers
             now = self._clock()
             stop = time_us - self.before_boot_us
             if now >= stop:
                 return
             due = bridge.next_due_us()
+            if surroundings is not None:
+                if surroundings.is_wanted():
+                    self._look_around()
+                if rangers is not None and rangers.due_us < due:
+                    due = rangers.due_us
             ticks = (min(stop, due) - now + TICK_US - 1) // TICK_US
             self._run(ticks if ticks > 1 else 1)
+            if rangers is not None and rangers.due_us <= self._clock():
+                rangers.measure(self._clock())
             if self._event_count() != self._events_seen:
                 self._follow_events()
             bridge.service()
@@ -195,6 +219,7 @@ class Simulation:
             self.before_boot_us,
             self._events_seen,
             self._reboot,
+            self.world.name if self.world is not None else None,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -205,9 +230,14 @@ class Simulation:
         """
         if snapshot.airframe != self.airframe.name:
             raise OptionError(f"the snapshot is of airframe {snapshot.airframe}, this is {self.airframe.name}")
+        here = self.world.name if self.world is not None else None
+        if snapshot.world != here:
+            raise OptionError(f"the snapshot is of world {snapshot.world}, this is world {here}")
         self._record[:] = snapshot.record
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
+        if self.rangers is not None:
+            self.rangers.find_due()
         self.bridge.restore(snapshot.bridge)
 
     def request_reboot(self) -> None:
@@ -227,10 +257,25 @@ class Simulation:
         boot.clear(self.v)
         self.kind.apply_sim_parameters(self.v)  # first the wind that blows at power-on
         self.kind.init_physics(self.v, self.airframe, self.home, self.seed)
+        if self.surroundings is not None:
+            self._enter_world(self.surroundings)
         self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
         self.firmware.power_on(self.v)
         self.kind.apply_sim_parameters(self.v)
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
+
+    def _enter_world(self, surroundings: Surroundings) -> None:
+        """Stand at the start; lidar and range-finder measure for the first time."""
+        surroundings.attach(self.v, self._reader)
+        geometry = surroundings.world.geometry
+        self.rangers = Rangers(self.v, self.fleet, self.index, geometry, surroundings.floor)
+        self.rangers.measure(0)
+
+    def _look_around(self) -> None:
+        """List the solids near the vehicle anew."""
+        if self.surroundings is not None:
+            self.surroundings.gather()
+        self.v.autopilot.events.attention = 0
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""

@@ -15,6 +15,9 @@ from .robot import Robot
 
 ROBOTS = {
     "turtlebot": "envs.robots.turtlebot:Turtlebot",
+    "erle_copter": "envs.robots.autopilot:ErleCopter",
+    "erle_rover": "envs.robots.autopilot:ErleRover",
+    "autopilot": "envs.robots.autopilot:AutopilotRobot",
 }
 """Name -> class."""
 

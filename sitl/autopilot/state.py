@@ -16,6 +16,9 @@ from .arming_state import ARMING_DTYPE
 from .estimation.state import EKF_DTYPE
 from .events import EVENT_RING
 
+LIDAR_SAMPLES = 360
+"""Readings of a scan that there is room for."""
+
 SENSORS_DTYPE = record(
     # HIL_SENSOR, one a tick
     ("time_us", "i8"),
@@ -43,6 +46,12 @@ SENSORS_DTYPE = record(
     # WHEEL_DISTANCE, of a vehicle with encoders
     ("wheel_count", "i8"),  # samples so far
     ("wheel_distance", "f8", 2),  # rolled by the left and right driven wheel since power-on, forward positive [m]
+    # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.lidar)
+    ("lidar_count", "i8"),  # scans so far
+    ("lidar_time_us", "i8"),  # of the last one
+    ("rangefinder_count", "i8"),  # readings so far
+    ("lidar_ranges", "f4", LIDAR_SAMPLES),  # counter-clockwise from right to left [m]; inf: nothing in range
+    ("rangefinder_range", "f4", 1),  # looking down [m]; inf: nothing in range
 )
 
 ACTUATORS_DTYPE = record(

@@ -20,6 +20,7 @@ from .profile import load
 from .record_reader import RecordReader
 from .services import ALL_SERVICES
 from .services.events import EventService
+from .services.grants import Grants
 from .services.service import Handler, Service
 from .services.setpoints import SetpointService
 from .services.streams import StreamService
@@ -66,6 +67,8 @@ class Bridge:
         self._system = self.reader.field("autopilot.params.MAV_SYSID")
         self._time_us: Callable[[], int] = self.reader.field("time_us")
         self._parameters: dict[str, Callable[[], float]] = {}
+        self.grants: Grants | None = None
+        """Set by who lets clients push the clock (``sitl.lockstep``)."""
         self.places = Places(self.reader)
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}
@@ -226,7 +229,10 @@ class Bridge:
                 self._left_out.add(kind.name)
                 self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
             return
-        if payload:
+        if isinstance(payload, tuple):
+            for part in payload:
+                channel.send(kind, part)
+        elif payload:
             channel.send(kind, payload)
 
     def send_now(self, channel: Channel, number: int) -> bool:
@@ -299,4 +305,5 @@ class Bridge:
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
         new.board.take_over(self.board)
         new.taps = new.board.taps
+        new.grants = self.grants
         return new

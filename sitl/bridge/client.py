@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from .dialect import FieldError, message
 from .frame import Splitter, encode_v2
@@ -22,16 +22,26 @@ class Received(NamedTuple):
 _received = partial(tuple.__new__, Received)
 
 
+class End(Protocol):
+    """A client's end of a link: an :class:`InProcessLink`, or a socket."""
+
+    def send(self, data: bytes) -> None:
+        """To the vehicle."""
+
+    def receive(self) -> bytes:
+        """All bytes from the vehicle since the last call."""
+
+
 class Client:
-    """The other end of an :class:`InProcessLink`.
+    """The other end of an :class:`InProcessLink`, or of a socket.
 
     Args:
-        link: the link that the vehicle's bridge has.
+        link: the link that the vehicle's bridge has, or the client's end of another; None: a new one in process.
         system, component: who sends; 255 and 190 are a ground station's.
     """
 
-    def __init__(self, link: InProcessLink | None = None, system: int = 255, component: int = 190) -> None:
-        self.link = link or InProcessLink()
+    def __init__(self, link: End | None = None, system: int = 255, component: int = 190) -> None:
+        self.link: Any = link or InProcessLink()
         self.system, self.component = system, component
         self._splitter = Splitter()
         self._sequence = 0

@@ -10,7 +10,7 @@ from .dialect import MessageType
 NEVER = 1 << 62
 """A time that does not come [us]."""
 
-Entry = tuple[MessageType, Callable[[], bytes]]
+Entry = tuple[MessageType, Callable[[], bytes | tuple[bytes, ...]]]
 Layout = tuple[tuple[int, tuple[int, ...]], ...]
 """(interval [us], numbers of the messages sent at it), in the order in which they were asked for."""
 

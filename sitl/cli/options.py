@@ -11,6 +11,7 @@ from pathlib import Path
 from .. import vehicles
 from ..autopilot.params import files
 from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation, checked_home
+from ..surroundings import StartPose
 from .progress import CompileProgress
 
 VEHICLES = {"copter": "erle_copter", "rover": "erle_rover"}
@@ -29,6 +30,19 @@ def home(text: str) -> Home:
         return checked_home((lat, lon, alt, heading))
     except OptionError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def start(text: str) -> StartPose:
+    """Name of a start pose, or ``X,Y,Z,YAW`` in metres and degrees."""
+    if "," not in text:
+        return text
+    try:
+        x, y, z, yaw = (float(word) for word in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is neither the name of a start pose nor X,Y,Z,YAW (metres, degrees), as in 0,1.5,0,90"
+        ) from None
+    return (x, y, z, yaw)
 
 
 def instance(text: str) -> int:
@@ -62,6 +76,8 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
         "--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)"
     )
     parser.add_argument("--home", type=home, default=DEFAULT_HOME, metavar="LAT,LON,ALT,HEADING", help="start")
+    parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
+    parser.add_argument("--start", type=start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
     parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")
     parser.add_argument("--params", action="append", default=[], metavar="FILE", help=".parm file (repeatable)")
@@ -91,6 +107,8 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
             estimator=options.estimator,
             params=values,
             progress=progress,
+            world=options.world,
+            start=options.start,
         )
     if simulation.unknown_parameters:
         names = simulation.unknown_parameters

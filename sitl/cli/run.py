@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import argparse
 import signal
+from functools import partial
 from pathlib import Path
 
 from .. import runner
 from ..bridge.links.address import open_link
 from ..bridge.links.link import Link
+from ..lockstep import serve_lockstep
 from ..pacing import Pacing, parse_speedup
 from ..simulation import Simulation
 from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds
@@ -20,7 +22,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("run", help="run a vehicle and serve MAVLink")
     parser.add_argument("vehicle", choices=sorted(VEHICLES))
-    parser.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")
+    clock = parser.add_mutually_exclusive_group()
+    clock.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")
+    clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")
     add_run_options(parser)
     parser.set_defaults(function=run)
 
@@ -68,14 +72,10 @@ def run(options: argparse.Namespace) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
         signal.signal(number, lambda n, _: stopped.append(n))
     status = StatusLine(simulation, not options.quiet)
+    until_us = int(options.duration * 1e6) if options.duration else None
+    serve = serve_lockstep if options.lockstep else partial(runner.serve, pace=Pacing(speedup))
     try:
-        runner.serve(
-            simulation,
-            Pacing(speedup),
-            until_us=int(options.duration * 1e6) if options.duration else None,
-            running=lambda: not stopped,
-            on_slice=status.update,
-        )
+        serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=status.update)
     finally:
         status.close()
         simulation.close()

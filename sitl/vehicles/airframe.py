@@ -60,6 +60,11 @@ class Airframe:
             raise AirframeError(f"airframe {self.name!r}: figures missing: {', '.join(missing)}")
         for name, value in self.figures.items():
             self._check(names[name], value)
+        if "lidar_rays" in names and self.value("lidar_samples") > self.value("lidar_rays"):
+            raise AirframeError(
+                f"airframe {self.name!r}: lidar_samples = {self.value('lidar_samples')!r}; at most lidar_rays, "
+                f"which is {self.value('lidar_rays')!r}"
+            )
 
     def value(self, name: str) -> Any:
         """A figure by its name: a number, or a sequence for a vector."""

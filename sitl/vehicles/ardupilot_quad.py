@@ -79,6 +79,8 @@ AIRFRAME = CopterAirframe(
         "leg_time_constant": 0.02,  # [s] (assumed)
         "tip_angle": math.radians(60.0),  # (assumed)
         "hit_speed": 0.1,  # [m/s]
+        "contact_radius": ARM + 0.13,  # [m] rotors of 10 inches (assumed)
+        "contact_top": 0.1,  # [m] (assumed)
         **sensor_sets.SITL_IMU,
         **sensor_sets.SITL_GPS,
         **sensor_sets.SITL_BARO,

@@ -37,6 +37,8 @@ AIRFRAME = RoverAirframe(
         "battery_voltage_full": 12.6,  # [V] SIM_BATT_VOLTAGE
         "battery_capacity": 0.0,  # [Ah] SIM_BATT_CAP_AH 0: it never empties
         "battery_resistance": BATTERY_SAG / BATTERY_CURRENT,  # [ohm] counts once a capacity is given
+        "contact_radius": 0.25,  # [m] (assumed)
+        "contact_top": 0.3,  # [m] (assumed)
         **sensor_sets.SITL_IMU,
         **sensor_sets.SITL_GPS,
         **sensor_sets.SITL_BARO,

@@ -49,6 +49,19 @@ AIRFRAME = CopterAirframe(
         "leg_time_constant": 0.02,  # [s] [estimate]
         "tip_angle": math.radians(60.0),  # [rad] [estimate]
         "hit_speed": 0.1,  # [m/s]
+        "contact_radius": 0.32,  # [m] to the tips of the rotors of 0.12 m [model]
+        "contact_top": 0.17,  # [m] the lidar [derived]
+        "lidar_rays": 140,  # [model] 140 samples at a horizontal resolution of 0.5
+        "lidar_samples": 70,  # [model]
+        "lidar_fov": math.radians(270.0),  # [model]
+        "lidar_min": 0.01,  # [m] [model]
+        "lidar_max": 10.0,  # [m] [model]
+        "lidar_rate": 10.0,  # [Hz] [model]
+        "lidar_at": (0.15, 0.0, -0.15),  # [m] [model]
+        "rangefinder_min": 0.01,  # [m] the sonar [model]
+        "rangefinder_max": 50.0,  # [m] [model]
+        "rangefinder_rate": 10.0,  # [Hz] [model]
+        "rangefinder_at": (0.12, 0.0, 0.0),  # [m] [model]
         **sensor_sets.ADIS16448,
         **sensor_sets.UBLOX_M8,
         **sensor_sets.MS5611,

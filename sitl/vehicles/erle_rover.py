@@ -7,6 +7,8 @@ nothing was published.
 
 from __future__ import annotations
 
+import math
+
 from . import sensor_sets
 from .figures.rover import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
@@ -47,6 +49,18 @@ AIRFRAME = RoverAirframe(
         "avionics_current": 0.8,  # [A] Erle-Brain, receiver, lidar [estimate]
         "encoder_rate": 50.0,  # [Hz] [estimate]
         "encoder_step": 0.002,  # [m] 1000 counts a turn of the wheel [estimate]
+        "contact_discs": 3,
+        "contact_along": (0.506, 0.111, -0.284),  # [m] from bumper to bumper 2.59 m, wheels included [derived]
+        "contact_radius": 0.90,  # [m] 1.78 m over the rear wheels [derived]
+        "contact_top": 0.85,  # [m] the lidar [derived]
+        "base_along": -CENTRE,  # [m] base_link, which the world's start pose means
+        "lidar_rays": 542,  # [model] 542 samples at a horizontal resolution of 0.5
+        "lidar_samples": 271,  # [model]
+        "lidar_fov": math.radians(270.0),  # [model]
+        "lidar_min": 0.06,  # [m] [model]
+        "lidar_max": 20.0,  # [m] [model]
+        "lidar_rate": 10.0,  # [Hz] [model]
+        "lidar_at": (0.5 - CENTRE, 0.0, -0.8),  # [m] [model]
         **sensor_sets.ADIS16448,
         **sensor_sets.UBLOX_M8,
         **sensor_sets.MS5611,

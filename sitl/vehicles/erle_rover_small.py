@@ -7,13 +7,16 @@ Sources: [model] erlerobot/gym-gazebo, urdf/erlerover of 2016-11-21, which kept 
 
 from __future__ import annotations
 
+import math
+
 from . import sensor_sets
 from .figures.rover import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
 
 MASS = 3.0  # [kg] a 1:10 car with Erle-Brain and lidar; the model's 882 kg cannot be meant [estimate]
 WHEELBASE = 0.390444  # [m] axles at x = +0.240444 and -0.15 [model]
-REAR_AXLE = 0.15 + 0.0228  # [m] a fifth of the large one's [derived]
+CENTRE = 0.0228  # [m] centre of mass ahead of base_link, a fifth of the large one's [derived]
+REAR_AXLE = 0.15 + CENTRE  # [m]
 SPEED = 5.0 * 0.0635  # [m/s] wheels of 0.0635 m turn at 5 rad/s at PWM 1900 [model]
 TIME_CONSTANT = 0.2  # [s] [estimate]
 ROLLING = 0.015  # [estimate]
@@ -45,6 +48,18 @@ AIRFRAME = RoverAirframe(
         "avionics_current": 0.8,  # [A] Erle-Brain, receiver, lidar [estimate]
         "encoder_rate": 50.0,  # [Hz] [estimate]
         "encoder_step": 0.0004,  # [m] 1000 counts a turn of the wheel [estimate]
+        "contact_discs": 3,  # a fifth of the large one's
+        "contact_along": (0.1012, 0.0222, -0.0568),  # [m] [derived]
+        "contact_radius": 0.18,  # [m] [derived]
+        "contact_top": 0.45,  # [m] the lidar [derived]
+        "base_along": -CENTRE,  # [m] base_link, which start poses mean
+        "lidar_rays": 542,  # [model] 542 samples at a horizontal resolution of 0.5
+        "lidar_samples": 271,  # [model]
+        "lidar_fov": math.radians(270.0),  # [model]
+        "lidar_min": 0.06,  # [m] [model]
+        "lidar_max": 20.0,  # [m] [model]
+        "lidar_rate": 10.0,  # [Hz] [model]
+        "lidar_at": (-CENTRE, 0.0, -0.4),  # [m] [model]
         **sensor_sets.ADIS16448,
         **sensor_sets.UBLOX_M8,
         **sensor_sets.MS5611,

@@ -34,6 +34,10 @@ AIRFRAME = RoverAirframe(
         "avionics_current": 0.5,  # [A]
         "encoder_rate": 50.0,  # [Hz]
         "encoder_step": 0.0008,  # [m]
+        "contact_discs": 2,
+        "contact_along": (0.04, -0.04, 0.0),  # [m]
+        "contact_radius": 0.22,  # [m]
+        "contact_top": 0.25,  # [m]
         **sensor_sets.ADIS16448,
         **sensor_sets.UBLOX_M8,
         **sensor_sets.MS5611,

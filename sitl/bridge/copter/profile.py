@@ -42,7 +42,7 @@ PROFILE = Profile(
         6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
         10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
         11: ("EXTRA2", ("VFR_HUD",)),
-        12: ("EXTRA3", ("AHRS", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
+        12: ("EXTRA3", ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
     },
     commands=COMMANDS,
     set_points=CopterSetpoints,

@@ -37,6 +37,9 @@ class CommandService(Service):
         self._run(channel, entry, from_long(fields, entry), fields.command, sender)
 
     def _int(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        grants = self.bridge.grants
+        if grants is not None and grants.command(self.bridge, channel, fields, sender):
+            return
         entry = self._table.get(fields.command)
         if entry is None:
             self._ack(channel, fields.command, UNSUPPORTED, sender)

@@ -26,6 +26,7 @@ TEXTS = {
     core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
     core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
 }
 """Event code -> (severity, text with the event's numbers a and b), of every firmware."""
 

@@ -9,11 +9,14 @@ from __future__ import annotations
 from typing import Any
 
 from ..channel import Channel
+from ..dialect import message
 from .service import Handler, Sender, Service
 
-IGNORE, RELEASE_EXTENDED = 65535, 65534
-"""Channels 1..8: 0 gives the channel back; channels 9..18: 65534 does, and 0 means nothing."""
+RELEASE_EXTENDED = 65534
+"""Channels 1..8: 0 gives the channel back; channels 9..18: 65534 does, and 0 means nothing. 65535 leaves a channel."""
 CHANNELS = 18
+FIRST_EXTENDED = message("RC_CHANNELS_OVERRIDE").fields.index("chan9_raw")
+"""Place of channel 9 in the message as it is on the wire; the others follow."""
 INVALID = 32767
 FULL = 1000
 """Axes of MANUAL_CONTROL: greatest value."""
@@ -25,14 +28,18 @@ LOWEST, HIGHEST = 800, 2200
 class RcService(Service):
     """The ground station's sticks; the firmware forgets them after RC_OVERRIDE_TIME."""
 
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        rc = bridge.vehicle.v.autopilot.rc
+        self._pulses, self._times = rc.override, rc.override_us  # of the record: they stay in place
+
     def handlers(self) -> dict[str, Handler]:
         return {"RC_CHANNELS_OVERRIDE": self._override, "MANUAL_CONTROL": self._manual}
 
     def _put(self, channel: int, pulse: int) -> None:
         """Override channel 0.. with a pulse [us]; 0 gives it back."""
-        rc = self.bridge.vehicle.v.autopilot.rc
-        rc.override[channel] = pulse
-        rc.override_us[channel] = self.bridge.now_us
+        self._pulses[channel] = pulse
+        self._times[channel] = self.bridge.now_us
 
     def _heard(self) -> None:
         self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
@@ -40,14 +47,16 @@ class RcService(Service):
     def _override(self, channel: Channel, m: Any, sender: Sender) -> None:
         if sender[0] != self.bridge.ground_station:
             return
-        for k in range(CHANNELS):
-            pulse = getattr(m, f"chan{k + 1}_raw")
-            if pulse == IGNORE or (k >= 8 and pulse == 0):
-                continue
-            if pulse == 0 or (k >= 8 and pulse == RELEASE_EXTENDED):
-                self._put(k, 0)
-            elif LOWEST <= pulse <= HIGHEST:
+        for k, pulse in enumerate(m[:8]):  # these come first on the wire
+            if pulse == 0 or LOWEST <= pulse <= HIGHEST:
                 self._put(k, pulse)
+        extended = m[FIRST_EXTENDED:]
+        if any(extended):
+            for k, pulse in enumerate(extended, 8):
+                if pulse == RELEASE_EXTENDED:
+                    self._put(k, 0)
+                elif LOWEST <= pulse <= HIGHEST:
+                    self._put(k, pulse)
         self._heard()
 
     def _manual(self, channel: Channel, m: Any, sender: Sender) -> None:

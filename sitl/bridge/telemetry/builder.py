@@ -15,8 +15,8 @@ from ..record_reader import RecordReader
 if TYPE_CHECKING:
     from ..profile import Profile
 
-Build = Callable[[], bytes]
-"""Gives the payload now; empty when the vehicle has nothing to say (no position yet)."""
+Build = Callable[[], bytes | tuple[bytes, ...]]
+"""Gives the payload now: empty when the vehicle has nothing to say (no position yet), several when one is too small."""
 Builder = Callable[["Context"], Build]
 
 

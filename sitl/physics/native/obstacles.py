@@ -5,8 +5,9 @@ A vehicle's record lists the solids near it, so that it stays one record of a fi
 state, and a fleet needs nothing else. When the vehicle leaves the place for which the list is good, ``wanted`` asks
 the shell for a new one (``sitl.worlds.contact.near``) before the next tick.
 
-The vehicle's outline is a row of discs along its body between two heights. It does not enter a solid: it is pushed
-out along the solid's normal and loses the velocity into it, without bounce and without friction.
+The vehicle's outline is a row of upright discs along its body between two heights. It does not enter a solid: it is
+pushed out along the solid's normal and loses the velocity into it, without bounce. Sides have no friction; on top of a
+solid it comes to rest.
 """
 
 from __future__ import annotations
@@ -15,16 +16,28 @@ import math
 
 from ...core.kernels import law
 from ...core.records import record
+from ...core.rotations import quat_rotate_inverse
 from ...worlds.contact import nearest_of
 from ...worlds.geometry import SOLID_FIGURES
 from .tick import TICK_S
 
 OBSTACLES_MAX = 24
 """Solids in the list."""
+HIT_SPEED = 0.1
+"""Slowest contact that is reported [m/s]."""
+HIT_PAUSE_US = 250_000
+"""Contacts that follow sooner belong to the last one."""
+_TOUCH = 1e-6
+"""A solid that is nearer than this is touched [m]."""
+_UPWARD = -0.9
+"""Down component of the normal of what can be stood on: less than this."""
+_FRICTION = 0.8
+"""Of rubber feet."""
 _AHEAD = 0.5
 """A new list is asked for this far before the old one ends [m]: more than any vehicle moves in a tick."""
-_SURE = 1.001
-"""The way of a tick is counted this much too long, against rounding."""
+_RELEASE = 1.0 - math.exp(-TICK_S / 0.02)
+"""Share of an impact that shows in a tick: body and bumper give way for some 0.02 s, as a copter's legs do. All of it
+in one tick would be beyond what an accelerometer can show."""
 
 OBSTACLES_DTYPE = record(
     ("present", "i8"),  # there is a world with solids
@@ -34,11 +47,14 @@ OBSTACLES_DTYPE = record(
     ("complete", "f8"),  # every solid nearer to there is in the list [m]
     ("rows", "f8", (OBSTACLES_MAX, SOLID_FIGURES)),
     ("wanted", "i8"),  # the list no longer does
-    ("clear", "f8"),  # the nearest solid is at least this far away [m]
+    ("looked", "f8", 3),  # where the vehicle was when distances were last worked out [m]
+    ("clear", "f8"),  # the nearest solid was at least this far away then [m]
+    ("turned", "f8"),  # angle that the body has turned by since [rad]
     ("touching", "i8"),
-    ("hit_count", "i8"),  # contacts so far
+    ("hit_count", "i8"),  # contacts so far that were faster than HIT_SPEED
     ("hit_speed", "f8"),  # of the last one, into the solid [m/s]
     ("hit_time_us", "i8"),
+    ("impulse", "f8", 3),  # velocity taken away that the accelerometer still has to show, NED [m/s]
 )
 
 
@@ -69,51 +85,117 @@ def separate(p, distance, north, east, down):
     b.vel[0] += into * north
     b.vel[1] += into * east
     b.vel[2] += into * down
+    if down < _UPWARD:
+        stand(p, into)
     return into
 
 
 @law
-def collide(p, time_us):
-    """After the body has moved: keep it out of solids. Returns the velocity that was taken away, NED [m/s]."""
-    o, b = p.obstacles, p.body
-    if o.present == 0:
-        return (0.0, 0.0, 0.0)
-    vn, ve, vd = float(b.vel[0]), float(b.vel[1]), float(b.vel[2])
-    turn = 0.0
+def stand(p, into):
+    """On top of a solid: Coulomb friction, which goes with the velocity ``into`` it that was taken away [m/s], and feet
+    that end a rotation.
+    """
+    b = p.body
+    n, e = float(b.vel[0]), float(b.vel[1])
+    speed, grip = math.sqrt(n * n + e * e), _FRICTION * into
+    left = 0.0
+    if speed > grip:
+        left = 1.0 - grip / speed
+    b.vel[0] = left * n
+    b.vel[1] = left * e
+    for j in range(3):
+        b.rates[j] *= 1.0 - _RELEASE
+
+
+@law
+def half_length(p):
+    """How far the middles of the outline's discs are from the origin at most [m]."""
+    longest = 0.0
     for k in range(int(p.airframe.contact_discs)):
-        turn = max(turn, abs(float(p.airframe.contact_along[k])))
-    rates = abs(float(b.rates[0])) + abs(float(b.rates[1])) + abs(float(b.rates[2]))
-    o.clear -= _SURE * TICK_S * (math.sqrt(vn * vn + ve * ve + vd * vd) + turn * rates)
-    if o.clear > 0.0:
-        return (0.0, 0.0, 0.0)
-    was_touching, speed = o.touching, 0.0
+        longest = max(longest, abs(float(p.airframe.contact_along[k])))
+    return longest
+
+
+@law
+def is_clear(p):
+    """Whether the vehicle cannot have reached a solid since distances were last worked out."""
+    o, b = p.obstacles, p.body
+    turns = abs(float(b.rates_mean[0])) + abs(float(b.rates_mean[1])) + abs(float(b.rates_mean[2]))
+    o.turned += TICK_S * turns
+    left = float(o.clear) - float(o.turned) * half_length(p)
+    n, e = float(b.pos[0]) - float(o.looked[0]), float(b.pos[1]) - float(o.looked[1])
+    d = float(b.pos[2]) - float(o.looked[2])
+    return left > 0.0 and n * n + e * e + d * d < left * left
+
+
+@law
+def collide(p, time_us):
+    """After the body has moved in a world: keep it out of solids. Returns whether it was pushed."""
+    o, b = p.obstacles, p.body
+    if is_clear(p):
+        return False
+    vn, ve, vd = float(b.vel[0]), float(b.vel[1]), float(b.vel[2])
     o.touching = 0
-    clear = math.inf
+    speed, clear, is_pushed = 0.0, math.inf, False
     for k in range(int(p.airframe.contact_discs)):
         for _ in range(2):  # a corner has two sides
             distance, north, east, down = nearest(p, k)
             clear = min(clear, distance)
+            if distance < _TOUCH:
+                o.touching = 1
             if distance >= 0.0:
                 break
-            o.touching = 1
+            is_pushed = True
             speed = max(speed, separate(p, distance, north, east, down))
     o.clear = clear
-    if o.touching != 0 and was_touching == 0:
+    o.turned = 0.0
+    for j in range(3):
+        o.looked[j] = b.pos[j]
+    ask(p)
+    if not is_pushed:
+        return False
+    if speed > HIT_SPEED and (o.hit_count == 0 or time_us - o.hit_time_us > HIT_PAUSE_US):
         o.hit_count += 1
         o.hit_speed = speed
         o.hit_time_us = time_us
-    ask(p, turn)
-    return (float(b.vel[0]) - vn, float(b.vel[1]) - ve, float(b.vel[2]) - vd)
+    o.impulse[0] += float(b.vel[0]) - vn
+    o.impulse[1] += float(b.vel[1]) - ve
+    o.impulse[2] += float(b.vel[2]) - vd
+    return True
 
 
 @law
-def ask(p, turn):
-    """Ask for a new list when the vehicle, ``turn`` [m] long to each side, comes to the end of the old one."""
-    o, b = p.obstacles, p.body
-    reach = math.hypot(float(b.pos[0]) - float(o.north), float(b.pos[1]) - float(o.east)) + turn
-    left = float(o.complete) - reach - float(p.airframe.contact_radius) - _AHEAD
+def ask(p):
+    """Ask for a new list when the vehicle comes to the end of the old one."""
+    o, b, a = p.obstacles, p.body, p.airframe
+    away = math.hypot(float(b.pos[0]) - float(o.north), float(b.pos[1]) - float(o.east))
+    left = float(o.complete) - away - half_length(p) - float(a.contact_radius) - _AHEAD
     if left <= 0.0:
         o.wanted = 1
         o.clear = 0.0
     else:
         o.clear = min(float(o.clear), left)
+
+
+@law
+def show(p):
+    """Let acceleration and specific force of this tick show what is left of impacts."""
+    o, b = p.obstacles, p.body
+    n, e, d = float(o.impulse[0]), float(o.impulse[1]), float(o.impulse[2])
+    if n == 0.0 and e == 0.0 and d == 0.0:
+        return
+    share = _RELEASE
+    if n * n + e * e + d * d < 1e-12:
+        share = 1.0
+    n, e, d = share * n, share * e, share * d
+    o.impulse[0] -= n
+    o.impulse[1] -= e
+    o.impulse[2] -= d
+    n, e, d = n / TICK_S, e / TICK_S, d / TICK_S
+    b.acc_ned[0] += n
+    b.acc_ned[1] += e
+    b.acc_ned[2] += d
+    fx, fy, fz = quat_rotate_inverse(float(b.q[0]), float(b.q[1]), float(b.q[2]), float(b.q[3]), n, e, d)
+    b.specific_force[0] += fx
+    b.specific_force[1] += fy
+    b.specific_force[2] += fz

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Records that the physics of every vehicle has.
 
-SI units; NED frame from the home ground point (pos[2] negative up); FRD body frame; quaternions body to NED.
+SI units; NED frame from the home ground point, in a world from its origin on the floor (pos[2] negative up); FRD body
+frame; quaternions body to NED.
 Only physics and the shell read them; the autopilot sees ``sensors``.
 """
 
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...core.records import record
+from .obstacles import OBSTACLES_DTYPE
 
 DERIVED_SHARED = (  # follows from the figures (prepare.py), so that a tick needs no exp
     ("charge_per_amp", "f8"),  # loss of charge (of 1) per ampere and tick
@@ -108,5 +110,6 @@ def physics_dtype(airframe: np.dtype[Any], derived: np.dtype[Any], *own: tuple[s
         ("air", AIR_DTYPE),
         ("wind", WIND_DTYPE),
         ("sensors", SENSOR_STATE_DTYPE),
+        ("obstacles", OBSTACLES_DTYPE),
         *own,
     )

@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 
 from .battery import BATTERY
-from .body import BODY
+from .body import BODY, OUTLINE
 from .figure import Figure, figures_dtype
+from .ranging import RANGING
 from .sensors import SENSORS
 
 ROTORS_MAX = 8
@@ -69,5 +70,5 @@ LEGS = (
     Figure("hit_speed", "m/s", "slowest touch that is reported"),
 )
 
-FIGURES = (*BODY, *AIR, *HUBS, *ROTORS, *BATTERY, *LEGS, *SENSORS)
+FIGURES = (*BODY, *AIR, *HUBS, *ROTORS, *BATTERY, *LEGS, *SENSORS, *OUTLINE, *RANGING)
 FIGURES_DTYPE = figures_dtype(FIGURES)

@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 
 from .battery import BATTERY
-from .body import BODY
+from .body import BODY, OUTLINE
 from .figure import Figure, figures_dtype
+from .ranging import RANGING
 from .sensors import SENSORS
 
 STEERING_FRONT_WHEELS = 0
@@ -57,5 +58,5 @@ ENCODERS = (
     Figure("encoder_step", "m", "travel of the rim a count, 0 continuous", default=0.0),
 )
 
-FIGURES = (*BODY, *DRIVE, *TYRES, *STEERING, *BATTERY, *SENSORS, *ENCODERS)
+FIGURES = (*BODY, *DRIVE, *TYRES, *STEERING, *BATTERY, *SENSORS, *ENCODERS, *OUTLINE, *RANGING)
 FIGURES_DTYPE = figures_dtype(FIGURES)

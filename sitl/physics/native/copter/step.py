@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One tick of a multicopter's world: wind, rotors, body, ground, battery, sensors."""
+"""One tick of a multicopter's world: wind, rotors, body, ground, solids, battery, sensors."""
 
 from __future__ import annotations
 
 from ....core.kernels import law, unit
 from ....core.rotations import quat_rotate, quat_rotate_inverse
-from .. import battery, wind
+from .. import battery, obstacles, wind
 from ..body import GRAVITY, fly
 from ..sensors.sense import sense
 from ..tick import TICK_S, TICK_US
@@ -61,5 +61,8 @@ def step(fleet, i):
         wind.update(p.wind, v.rng)
     rotors.command(p, v.actuators.controls)
     move(p, time_us)
+    if p.obstacles.present != 0:
+        obstacles.collide(p, time_us)
+        obstacles.show(p)
     battery.update(p, float(p.rotors.power))
     sense(p, v.sensors, tick, time_us, v.rng)

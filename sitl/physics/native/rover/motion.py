@@ -42,3 +42,22 @@ def roll(p, before, yaw_rate):
     b.rates[2], b.rates_mean[2] = yaw_rate, mean
     b.acc_ned[0], b.acc_ned[1] = an, ae
     b.specific_force[0], b.specific_force[1], b.specific_force[2] = c * an + s * ae, c * ae - s * an, -GRAVITY
+
+
+@law
+def hold_back(p):
+    """After a solid took away velocity: the axle keeps what is left along the body, the tyres take up the rest, and the
+    wheels are held back with the vehicle: motors stall.
+    """
+    b, o, wheels = p.body, p.obstacles, p.wheels
+    w, z = float(b.q[0]), float(b.q[3])
+    c, s = w * w - z * z, 2.0 * w * z
+    vn, ve = float(b.vel[0]), float(b.vel[1])
+    u, across = c * vn + s * ve, float(p.airframe.rear_axle) * float(b.rates[2])
+    lost = u - float(wheels.forward)
+    wheels.speed[0] += lost
+    wheels.speed[1] += lost
+    wheels.forward = u
+    b.vel[0], b.vel[1] = c * u - s * across, s * u + c * across
+    o.impulse[0] += float(b.vel[0]) - vn
+    o.impulse[1] += float(b.vel[1]) - ve

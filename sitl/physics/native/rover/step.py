@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One tick of a rover's world: motors, steering, motion, wheels, battery, sensors. Wind does not move it."""
+"""One tick of a rover's world: motors, steering, motion, wheels, solids, battery, sensors. Wind does not move it."""
 
 from __future__ import annotations
 
 from ....core.kernels import law, unit
 from ....vehicles.figures.rover import STEERING_SKID
-from .. import battery
+from .. import battery, obstacles
 from ..sensors.sense import sense
 from ..tick import TICK_S, TICK_US
 from . import encoders
 from .drive import commanded, grip_along, run
-from .motion import roll
+from .motion import hold_back, roll
 from .steering import curvature, grip_across, turn_wheels
 
 STEERING_OUTPUT = 0
@@ -53,6 +53,10 @@ def step(fleet, i):
     v.tick += 1
     tick, time_us = int(v.tick), int(v.time_us)
     move(p, v.actuators.controls)
+    if p.obstacles.present != 0:
+        if obstacles.collide(p, time_us):
+            hold_back(p)
+        obstacles.show(p)
     battery.update(p, float(p.wheels.power))
     sense(p, v.sensors, tick, time_us, v.rng)
     encoders.update(p, v.sensors, tick)

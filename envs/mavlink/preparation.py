@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From power-on until an episode may begin: armed, in GUIDED, a copter in the air. It sees only telemetry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from .connection import ACCEPTED, Connection
+from .ends import NotReadyError
+from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN
+
+ARM_DISARM, SET_MODE, TAKE_OFF, REBOOT, SET_INTERVAL, REQUEST = 400, 176, 22, 246, 511, 512
+FORCE = 21196.0
+INTERVAL_US = 100_000
+"""Of position, attitude and scan after ``prepare``."""
+ALIGN_US = 6_000_000
+"""An episode begins at a whole multiple of it since boot, so that messages fall due at the ends of all usual steps."""
+_SECOND, _TENTH = 1_000_000, 100_000
+_PATIENCE_S = 90
+
+
+LEARNED = "MOT_THST_HOVER"
+"""A parameter that a copter changes by itself in flight and keeps: it is put back, so that episodes are alike."""
+_REAL_4 = 9
+"""MAV_PARAM_TYPE_REAL32"""
+
+
+def reboot(link: Connection) -> None:
+    """Disarm and restart the vehicle.
+
+    Raises:
+        NotReadyError: it refuses.
+    """
+    link.command(ARM_DISARM, 0.0, FORCE)
+    name = {"target_system": link.heard.system, "target_component": 1, "param_id": LEARNED.encode()}
+    if not link.was_rebooted:
+        link.client.send("PARAM_REQUEST_READ", param_index=-1, **name)
+        link.pause(0 if link.is_exact else _SECOND)
+        link.learned = link.heard.parameters.get(LEARNED)
+        link.was_rebooted = True
+    elif link.learned is not None:
+        link.client.send("PARAM_SET", param_value=link.learned, param_type=_REAL_4, **name)
+    result = link.command(REBOOT, 1.0)
+    if result != ACCEPTED:
+        raise NotReadyError(f"{link.name}: the vehicle refuses to reboot (MAV_RESULT {result}), so it cannot be reset")
+    link.pause(0 if link.is_exact else 2 * _SECOND)
+    link.heard.forget()
+
+
+def set_intervals(link: Connection, interval_us: int) -> None:
+    """Ask for position, attitude and scan at an interval.
+
+    Raises:
+        NotReadyError: the vehicle does not send one of them so often.
+    """
+    for kind in (POSITION, ATTITUDE, SCAN):
+        result = link.command(SET_INTERVAL, kind.id, interval_us)
+        if result != ACCEPTED:
+            raise NotReadyError(
+                f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms "
+                f"(MAV_RESULT {result})"
+            )
+
+
+def hear_again(link: Connection) -> None:
+    """Ask for position, attitude and scan as they are: those of this instant were lost on the way."""
+    for kind in (POSITION, ATTITUDE, SCAN):
+        link.command(REQUEST, kind.id)
+
+
+def set_mode(link: Connection, number: int) -> None:
+    """Change the flight mode.
+
+    Raises:
+        NotReadyError: it refuses.
+    """
+    if link.command(SET_MODE, 1.0, number) != ACCEPTED:
+        raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_told(link)}")
+
+
+def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callable[[], None]) -> None:
+    """Everything from power-on until the vehicle stands armed in GUIDED, or hovers there.
+
+    Args:
+        link: to a vehicle that has just booted.
+        guided: number of the mode GUIDED.
+        take_off: height above its home [m], 0: none.
+        hold_sticks: sends RC overrides of sticks at rest.
+
+    Raises:
+        NotReadyError: it does not get there; the message says what the vehicle told.
+    """
+    heard = link.heard
+    link.client.send("REQUEST_DATA_STREAM", target_system=heard.system, target_component=1)  # stop all
+    set_intervals(link, INTERVAL_US)
+
+    def arms() -> bool:
+        if math.isnan(heard.position[1]) or link.command(SET_MODE, 1.0, guided) != ACCEPTED:
+            return False
+        return link.command(ARM_DISARM, 1.0) == ACCEPTED
+
+    _until(link, arms, _SECOND, "does not arm")
+    if take_off > 0.0:
+        if link.command(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, take_off) != ACCEPTED:
+            raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_told(link)}")
+        _until(link, lambda: abs(heard.position[3] + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
+               f"does not climb to {take_off:g} m")  # fmt: skip
+    for _ in range(3):  # it may be lost on the way
+        if heard.origin is None:
+            link.command(REQUEST, ORIGIN.id)
+    if heard.origin is None:
+        raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
+    if link.is_exact:
+        link.run(ALIGN_US - 1000 * int(heard.position[0]) % ALIGN_US - _TENTH)
+    hold_sticks()
+    scans = heard.scans
+    link.run(_TENTH)
+    if heard.scans == scans:
+        raise NotReadyError(f"{link.name}: the vehicle sends no scan (DEBUG_FLOAT_ARRAY called LASER)")
+
+
+def _until(link: Connection, done: Callable[[], bool], every_us: int, complaint: str) -> None:
+    for _ in range(_PATIENCE_S * _SECOND // every_us):
+        if done():
+            return
+        link.pause(every_us)
+    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {_PATIENCE_S} s; {_told(link)}")
+
+
+def _told(link: Connection) -> str:
+    return "it told: " + "; ".join(link.heard.texts[-4:]) if link.heard.texts else "it told nothing"

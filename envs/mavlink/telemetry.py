@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a vehicle has said last, read from MAVLink's bytes without more work than an environment's step needs."""
+
+from __future__ import annotations
+
+import math
+import struct
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter
+
+POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
+HEARTBEAT, ACK, TEXT, ORIGIN, PARAMETER = (
+    message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "GPS_GLOBAL_ORIGIN", "PARAM_VALUE")
+)
+COMPONENT = 1
+PART = 58
+"""Readings in a part of a scan."""
+SCAN_NAME = b"LASER"
+HIT = b"SIM Hit obstacle"
+"""How the text begins that tells of a touch."""
+ARMED = 128
+"""MAV_MODE_FLAG_SAFETY_ARMED"""
+_part = struct.Struct("<QH10s").unpack_from
+_seven = struct.Struct("<I6f").unpack_from
+
+
+class Telemetry:
+    """The latest of each message.
+
+    Args:
+        readings: of a scan.
+    """
+
+    def __init__(self, readings: int) -> None:
+        self._splitter = Splitter()
+        self._parts = -(-readings // PART)
+        self._fresh: set[int] = set()
+        self._scan_us = -1
+        self.scan: npt.NDArray[np.float32] = np.full(self._parts * PART, np.inf, np.float32)
+        """The last whole scan and beyond [m], from right to left."""
+        self._next = self.scan.copy()
+        self.system = 0
+        """Of the vehicle; 0 before it is heard."""
+        self.position: tuple[float, ...] = (0, math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
+        """Time since boot [ms]; north, east, down from the origin of its estimate [m]; the same of velocity [m/s]."""
+        self.attitude: tuple[float, ...] = (0,) + 6 * (0.0,)
+        """Time since boot [ms]; roll, pitch, heading [rad]; their rates [rad/s]."""
+        self.scans = 0
+        """Whole scans so far."""
+        self.hits = 0
+        """Touches told so far."""
+        self.mode, self.armed = -1, False
+        self.origin: tuple[int, int, int] | None = None
+        """Latitude, longitude [degE7], altitude [mm] of local positions."""
+        self.acks: list[Any] = []
+        """Answers to commands, until somebody takes them."""
+        self.parameters: dict[str, float] = {}
+        """Those that were asked for."""
+        self.texts: list[str] = []
+        """The last texts, newest last."""
+
+    def feed(self, data: bytes) -> None:
+        """Take bytes from the vehicle, in any pieces."""
+        for kind, payload, _, system, component, _, _ in self._splitter.feed(data):
+            if component != COMPONENT or system != (self.system or system):
+                continue
+            if kind is POSITION:
+                self.position = _seven(payload.ljust(28, b"\0"))
+            elif kind is ATTITUDE:
+                self.attitude = _seven(payload.ljust(28, b"\0"))
+            elif kind is SCAN:
+                self._scan_part(payload.ljust(252, b"\0"))
+            else:
+                self._other(kind, payload, system)
+
+    def _scan_part(self, payload: bytes) -> None:
+        time_us, number, name = _part(payload)
+        if number >= self._parts or not name.startswith(SCAN_NAME):
+            return
+        if time_us != self._scan_us:
+            self._scan_us = time_us
+            self._fresh.clear()
+        self._next[PART * number : PART * (number + 1)] = np.frombuffer(payload, "<f4", PART, 20)
+        self._fresh.add(number)
+        if len(self._fresh) == self._parts:
+            self._fresh.clear()
+            self.scan, self._next = self._next, self.scan
+            self.scans += 1
+
+    def _other(self, kind: Any, payload: bytes, system: int) -> None:
+        fields = kind.decode(payload)
+        if kind is HEARTBEAT:
+            self.system, self.mode, self.armed = system, fields.custom_mode, bool(fields.base_mode & ARMED)
+        elif kind is ACK:
+            self.system = system
+            self.acks.append(fields)
+        elif kind is PARAMETER:
+            self.parameters[fields.param_id.decode("ascii", "replace")] = fields.param_value
+        elif kind is ORIGIN:
+            self.origin = (fields.latitude, fields.longitude, fields.altitude)
+        elif kind is TEXT:
+            if fields.text.startswith(HIT):
+                self.hits += 1
+            self.texts = [*self.texts[-9:], fields.text.decode("ascii", "replace")]
+
+    def forget(self) -> None:
+        """The vehicle boots: what it said before does not count any more."""
+        self.position = (0, math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
+        self.origin, self.armed, self._scan_us = None, False, -1
+        self._fresh.clear()
+        self.acks.clear()
+        self.texts.clear()
+
+    def memory(self) -> tuple[Any, ...]:
+        """What ``recall`` needs to go on as from here; can be pickled."""
+        return self.position, self.attitude, self.scan.copy(), self._scan_us, self.mode, self.armed, self.origin
+
+    def recall(self, memory: tuple[Any, ...]) -> None:
+        """Go on as from a ``memory``; parts of bytes and of scans are gone."""
+        self.position, self.attitude, scan, self._scan_us, self.mode, self.armed, self.origin = memory
+        self.scan[:] = scan
+        self._splitter = Splitter()
+        self._fresh.clear()
+        self.acks.clear()

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What measures distances in a world: a planar lidar and a range-finder that looks down, fixed to the body.
+
+Scan ``k`` is taken ``k`` / rate seconds after power-on, on the tick at or after that, and written into the record's
+``sensors`` before any message that is due at the same time. The readings follow Gazebo's rule (``sitl.worlds.planar``):
+index 0 is the rightmost, the last one the leftmost. A reading below the least is the least.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .bridge.record_reader import RecordReader
+from .core.kernels import jit_disabled, law
+from .core.rng import RNG_DTYPE, normal
+from .core.rotations import quat_rotate
+from .worlds import Geometry, planar
+from .worlds.compiled import kernel
+from .worlds.planar import publish_readings
+from .worlds.raycast import scan_rays
+
+NEVER = 1 << 62
+DOWN = np.array([[0.0], [0.0], [1.0]])
+
+
+@law
+def measure_ranges(rng, position, attitude, figures, solids, grid, cells, rays, directions, ranges, readings):
+    """One scan of a sensor on a body, into ``readings``.
+
+    Args:
+        rng: records, shape (1,): of the vehicle's random numbers.
+        position: of the body, NED from the origin on the floor [m].
+        attitude: quaternion from body to NED.
+        figures: least reading, range, standard deviation of a reading [m], place on the body forward, right, down [m],
+            height of the floor in the world's frame [m].
+        solids, grid, cells: of the world's ``Geometry``.
+        rays: unit vectors on the body, FRD, shape (3, rays).
+        directions, ranges: room to work in, shapes (3, rays), (rays,).
+        readings: float32 [m]; inf: nothing in range.
+    """
+    w, x, y, z = float(attitude[0]), float(attitude[1]), float(attitude[2]), float(attitude[3])
+    for k in range(ranges.shape[0]):
+        n, e, d = quat_rotate(w, x, y, z, float(rays[0, k]), float(rays[1, k]), float(rays[2, k]))
+        directions[0, k], directions[1, k], directions[2, k] = n, e, d
+    n, e, d = quat_rotate(w, x, y, z, float(figures[3]), float(figures[4]), float(figures[5]))
+    n, e, d = n + float(position[0]), e + float(position[1]), d + float(position[2]) - float(figures[6])
+    scan_rays(solids, grid, cells, n, e, d, directions, ranges)
+    least, longest, noise = float(figures[0]), float(figures[1]), float(figures[2])
+    publish_readings(ranges, longest, readings)
+    for k in range(readings.shape[0]):
+        reading = float(readings[k])
+        if reading < longest:
+            if noise > 0.0:
+                reading = min(reading + noise * normal(rng[0]), longest)
+            readings[k] = max(reading, least)
+
+
+def _signature() -> Any:
+    import numba
+    from numba import types
+
+    rng = types.Array(numba.from_dtype(RNG_DTYPE), 1, "C")
+    line, table, whole = types.float64[::1], types.float64[:, ::1], types.int64[::1]
+    return types.void(rng, line, line, line, table, line, whole, table, table, line, types.float32[::1])
+
+
+_measure = kernel(_signature)(measure_ranges)
+
+
+class Ranger:
+    """One sensor of one vehicle: ``take`` measures, ``due_us`` is when it next has to.
+
+    Args:
+        v: view of the vehicle's record.
+        fleet, index: the record itself.
+        name: "lidar" or "rangefinder": of its figures and counter.
+        rays: unit vectors on the body, FRD, shape (3, rays).
+        readings: float32 array in the record.
+        geometry, floor: of the world.
+    """
+
+    def __init__(
+        self,
+        v: Any,
+        fleet: np.ndarray[Any, Any],
+        index: int,
+        name: str,
+        rays: np.ndarray[Any, Any],
+        readings: np.ndarray[Any, Any],
+        geometry: Geometry,
+        floor: float,
+    ) -> None:
+        a, self._sensors, self._counter = v.physics.airframe, v.sensors, name + "_count"
+        self._count = RecordReader(fleet, index).field(f"sensors.{name}_count")
+        self._period_us = 1e6 / float(a[name + "_rate"])
+        figures = [a[name + "_min"], a[name + "_max"], a[name + "_noise"], *a[name + "_at"], floor]
+        rng: Any = [v.rng] if jit_disabled() else fleet["rng"][index : index + 1]
+        room, ranges = np.empty_like(rays), np.empty(rays.shape[1])
+        self._function = _measure.function()
+        self._arguments = (
+            rng, v.physics.body.pos, v.physics.body.q, np.array(figures, np.float64),
+            geometry.solids, geometry.grid, geometry.cells, rays, room, ranges, readings,
+        )  # fmt: skip
+        self.find_due()
+
+    def find_due(self) -> None:
+        """Set ``due_us`` from how many measurements there have been."""
+        self.due_us = math.floor(int(self._count()) * self._period_us + 0.5)
+
+    def take(self, now_us: int) -> None:
+        """Measure. Ticks that are longer than the period leave some out."""
+        self._function(*self._arguments)
+        count = int(self._count())
+        self._sensors[self._counter] = max(count + 1, math.floor((now_us + 0.5) / self._period_us) + 1)
+        self.find_due()
+
+
+class Rangers:
+    """The sensors that one vehicle has.
+
+    Args:
+        v: view of the vehicle's record, with the figures of its airframe.
+        fleet, index: the record itself.
+        geometry: of the world.
+        floor: height of the floor in the world's frame [m].
+    """
+
+    def __init__(self, v: Any, fleet: np.ndarray[Any, Any], index: int, geometry: Geometry, floor: float) -> None:
+        a, s = v.physics.airframe, v.sensors
+        self._sensors = s
+        self.lidar: Ranger | None = None
+        self.rangefinder: Ranger | None = None
+        samples = int(a.lidar_samples)
+        if samples > 0:
+            rays = np.ascontiguousarray(planar.rays(int(a.lidar_rays), float(a.lidar_fov)))
+            self.lidar = Ranger(v, fleet, index, "lidar", rays, s.lidar_ranges[:samples], geometry, floor)
+        if a.rangefinder_max > 0.0:
+            self.rangefinder = Ranger(v, fleet, index, "rangefinder", DOWN, s.rangefinder_range, geometry, floor)
+        self._all = [sensor for sensor in (self.lidar, self.rangefinder) if sensor is not None]
+        self.find_due()
+
+    def find_due(self) -> None:
+        """Set ``due_us``, when the next one has to measure, from the record: after it was written from outside."""
+        for sensor in self._all:
+            sensor.find_due()
+        self.due_us = min((sensor.due_us for sensor in self._all), default=NEVER)
+
+    def measure(self, now_us: int) -> None:
+        """Measure with every sensor that is due."""
+        for sensor in self._all:
+            if sensor.due_us <= now_us:
+                sensor.take(now_us)
+                if sensor is self.lidar:
+                    self._sensors.lidar_time_us = now_us
+        self.due_us = min((sensor.due_us for sensor in self._all), default=NEVER)
