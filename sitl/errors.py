@@ -6,12 +6,13 @@ from __future__ import annotations
 from .autopilot.params.files import ParameterError
 from .bridge.links.address import LinkAddressError
 from .core.compile import BuildError
-from .logs.plot import MissingExtra
+from .core.extras import MissingExtra
 from .logs.tlog import LogError
 from .pacing import SpeedupError
 from .simulation import OptionError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
+from .worlds import WorldError
 
 USER_ERRORS: tuple[type[Exception], ...] = (
     AirframeError,
@@ -23,4 +24,5 @@ USER_ERRORS: tuple[type[Exception], ...] = (
     OptionError,
     ParameterError,
     SpeedupError,
+    WorldError,
 )

@@ -8,9 +8,9 @@ import sys
 from collections.abc import Sequence
 
 from .. import __version__, errors
-from . import cache, demo, execute, params, run
+from . import cache, demo, execute, params, run, world
 
-COMMANDS = (run, execute, demo, params, cache)
+COMMANDS = (run, execute, demo, params, world, cache)
 
 
 def parser() -> argparse.ArgumentParser:

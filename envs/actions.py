@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Actions: a space, and the set-point that each action of it stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from operator import index
+from typing import Any, Protocol
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+from gymnasium.error import InvalidAction
+
+from .options import EnvOptionError
+from .setpoints import Setpoint
+
+Floats = npt.NDArray[np.float64]
+
+
+class Action(Protocol):
+    """A kind of actions, for one robot or many: rows of arrays."""
+
+    setpoint: Setpoint
+    """What the numbers of a command mean."""
+
+    @property
+    def space(self) -> gym.Space[Any]:
+        """Of one robot's actions."""
+
+    def room(self, count: int) -> npt.NDArray[Any]:
+        """An array for the actions of ``count`` robots."""
+
+    def check(self, action: Any) -> Any:
+        """One robot's action in the form that ``room`` takes.
+
+        Raises:
+            InvalidAction: it is not in the space.
+        """
+
+    def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
+        """Set-points of the actions, shape (count, setpoint.width), into ``out``."""
+
+
+class Discrete:
+    """A table of set-points; action k is row k.
+
+    Args:
+        setpoint: what the columns mean.
+        rows: name of the action -> numbers of its set-point.
+    """
+
+    def __init__(self, setpoint: Setpoint, rows: Mapping[str, Sequence[float]]) -> None:
+        self.setpoint = setpoint
+        self.names = tuple(rows)
+        for name, row in rows.items():
+            if len(row) != setpoint.width or not np.all(np.isfinite(row)):
+                raise EnvOptionError(f"action {name!r} = {row!r}; it must be {setpoint.width} finite numbers: "
+                                     f"{', '.join(setpoint.columns)}")  # fmt: skip
+        if not rows:
+            raise EnvOptionError("a table of actions needs a row")
+        self.table = np.array(list(rows.values()), np.float64)
+        self.space = gym.spaces.Discrete(len(rows))
+        self._count = len(rows)
+
+    def room(self, count: int) -> npt.NDArray[Any]:
+        """See ``Action``."""
+        return np.zeros(count, np.int64)
+
+    def check(self, action: Any) -> int:
+        """See ``Action``."""
+        try:
+            number = index(action)
+        except TypeError:
+            number = -1
+        if 0 <= number < self._count:
+            return number
+        names = ", ".join(f"{k} {name}" for k, name in enumerate(self.names))
+        raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
+
+    def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
+        """See ``Action``."""
+        self.table.take(actions, 0, out, "clip")
+
+
+class Continuous:
+    """A box of set-points.
+
+    Args:
+        setpoint: what the numbers mean.
+        low, high: limits of each number, in its unit.
+        columns: numbers of the set-point that the action gives; the others are 0. None: all.
+    """
+
+    def __init__(
+        self, setpoint: Setpoint, low: Sequence[float], high: Sequence[float], columns: Sequence[int] | None = None
+    ) -> None:
+        self.setpoint = setpoint
+        self.columns = list(range(setpoint.width)) if columns is None else list(columns)
+        if len(low) != len(self.columns) or len(high) != len(self.columns):
+            raise EnvOptionError(f"limits {low!r} .. {high!r} are not {len(self.columns)} numbers each")
+        if not all(a < b for a, b in zip(low, high)):
+            raise EnvOptionError(f"limits {low!r} .. {high!r}: each low must be less than its high")
+        self.space = gym.spaces.Box(np.array(low, np.float32), np.array(high, np.float32))
+        self._low, self._high = self.space.low.tolist(), self.space.high.tolist()
+
+    def room(self, count: int) -> npt.NDArray[Any]:
+        """See ``Action``."""
+        return np.zeros((count, len(self.columns)))
+
+    def check(self, action: Any) -> Any:
+        """See ``Action``."""
+        try:
+            numbers = np.asarray(action, np.float32).tolist()
+            if len(numbers) == len(self._low) and all(a <= x <= b for a, x, b in zip(self._low, numbers, self._high)):
+                return numbers
+        except (TypeError, ValueError):
+            pass
+        names = ", ".join(
+            f"{self.setpoint.columns[c]} {a:g} .. {b:g}" for c, a, b in zip(self.columns, self._low, self._high)
+        )
+        raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
+
+    def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
+        """See ``Action``."""
+        out[:, self.columns] = actions

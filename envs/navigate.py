@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The environment of one robot: any robot in any world, with any task, observation and action."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+
+from sitl.worlds import World
+
+from .actions import Action
+from .observations import Observation
+from .options import unknown
+from .randomisation import Randomise
+from .rendering import RENDER_MODES, Renderer
+from .robots.robot import Robot
+from .session import Session, Snapshot
+from .starts import StartOption
+from .tasks import Task
+
+
+class Navigate(gym.Env[Any, Any]):
+    """A robot that finds its way by lidar.
+
+    Args:
+        robot: name (``robots.ROBOTS``) or class.
+        world: name (``sitl.worlds.names()``), .toml file or World.
+        task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
+        observation: name (``observations.OBSERVATIONS``) or Observation.
+        action: "discrete", "continuous", or an Action.
+        setpoint: kind that named actions give, of those the robot takes (``setpoints``); None: its usual one.
+        step_time: simulated time of a step [s], exact; None: the robot's.
+        start: name of one of the world's start poses, "random", a pose (x, y, yaw) or (x, y, z, yaw) in the world
+            file's frame [m, rad], or a function of a random generator that gives one; None: the world's for the robot.
+        randomise: figure of the robot -> (low, high), drawn for each episode.
+        render_mode: "rgb_array", "human" or None.
+        robot_options: what this robot takes besides.
+
+    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" (and what the task tells).
+
+    Raises:
+        EnvOptionError: an option that cannot be used; the message says what is allowed.
+    """
+
+    metadata = {"render_modes": RENDER_MODES, "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
+
+    def __init__(
+        self,
+        robot: str | Callable[..., Robot] = "turtlebot",
+        world: str | Path | World = "circuit2",
+        task: str | Task = "wander",
+        observation: str | Observation = "scan",
+        action: str | Action = "discrete",
+        setpoint: str | None = None,
+        step_time: float | None = None,
+        start: StartOption | None = None,
+        randomise: Randomise | None = None,
+        render_mode: str | None = None,
+        **robot_options: Any,
+    ) -> None:
+        if render_mode is not None and render_mode not in RENDER_MODES:
+            raise unknown("render_mode", render_mode, RENDER_MODES)
+        self._session = session = Session(
+            1, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options
+        )
+        self.observation_space = session.observation_space
+        self.action_space = session.action.space
+        self.render_mode = render_mode
+        self._renderer = None if render_mode is None else Renderer(session.robot, session.task)
+        self._bind()
+
+    def _bind(self) -> None:
+        """What is looked up once, not in every step."""
+        session = self._session
+        self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
+        self._observe, self._info = session.observation.observe, session.task.info
+        self._plain_info = type(session.task).info is Task.info
+        self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot: ``pose``, ``velocity``, ``scan``, ... with one row."""
+        return self._session.robot
+
+    @property
+    def world(self) -> World:
+        """The world."""
+        return self._session.robot.world
+
+    @property
+    def task(self) -> Task:
+        """The task."""
+        return self._session.task
+
+    @property
+    def step_time(self) -> float:
+        """Simulated time of a step [s]."""
+        return self._session.seconds
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """See ``gymnasium.Env.reset``; options: "pose", the start pose of this episode."""
+        super().reset(seed=seed)
+        self._session.reset(0, self.np_random, options)
+        self._session.look()
+        if self._renderer is not None:
+            self._renderer.start()
+            self._show()
+        return self._observation(), {}
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """See ``gymnasium.Env.step``; it is never truncated here (a ``TimeLimit`` does that).
+
+        Raises:
+            InvalidAction: the action is not in the space.
+        """
+        session = self._session
+        self._actions[0] = self._check(action)
+        self._advance()
+        terminated = bool(session.terminated[0])
+        if self._plain_info:
+            info: dict[str, Any] = {"crashed": terminated}
+        else:
+            told = self._info(session.step).items()
+            info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in told}
+        if self._renderer is not None:
+            self._renderer.note()
+            self._show()
+        return self._observation(), float(session.rewards[0]), terminated, False, info
+
+    def _observation(self) -> Any:
+        rows = self._observe(self._session.robot)
+        if self._is_dict:
+            return {name: value[0] for name, value in rows.items()}
+        return rows[0]
+
+    def snapshot(self) -> Snapshot:
+        """Robot, episode and random numbers: ``restore`` goes on from here bit for bit. It can be pickled.
+
+        The step count of a ``TimeLimit`` around this environment is not part of it.
+        """
+        return self._session.snapshot(0, self.np_random)
+
+    def restore(self, snapshot: Snapshot) -> Any:
+        """Go back to a snapshot, of this or of an equal environment; returns the observation."""
+        self._session.restore(0, snapshot, self.np_random)
+        if self._renderer is not None:
+            self._renderer.start()
+        return self._observation()
+
+    def render(self) -> Any:
+        """A picture seen from above: shape (height, width, 3), uint8; None in "human" mode, which draws by itself."""
+        if self._renderer is None:
+            gym.logger.warn(
+                "render() without a render mode: make the environment with "
+                f'gym.make("{self.spec.id if self.spec else "sitl/Navigate-v0"}", render_mode="rgb_array")'
+            )
+            return None
+        return self._renderer.picture() if self.render_mode == "rgb_array" else self._renderer.show()
+
+    def _show(self) -> None:
+        if self.render_mode == "human" and self._renderer is not None:
+            self._renderer.show()
+
+    def close(self) -> None:
+        """Close the window and what the robot holds open; may be called twice."""
+        if self._renderer is not None:
+            self._renderer.close()
+        self._session.robot.close()
+
+    def __getstate__(self) -> dict[str, Any]:
+        bound = ("_check", "_actions", "_advance", "_observe", "_info")
+        return {name: value for name, value in vars(self).items() if name not in bound}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._bind()

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a user may choose, and the errors when it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any
+
+
+class EnvOptionError(ValueError):
+    """An option of an environment that cannot be used; the message names it, its value and what is allowed."""
+
+
+def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:
+    """The error for a name that is not among those known, with the nearest of them."""
+    names = list(known)
+    near = get_close_matches(str(value), names, 1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    return EnvOptionError(f"{option} {value!r} is not known; it is one of {', '.join(names)}{hint}")

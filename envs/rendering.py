@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The view from above: world, robot, its trail and what its lidar reads. Needs pygame; no screen for "rgb_array"."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium.error import DependencyNotInstalled
+
+from sitl.worlds import Marking, Solid
+
+from .robots.robot import Robot
+from .tasks import ReachGoal, Task
+
+RENDER_MODES = ["rgb_array", "human"]
+SIZE = 640
+"""Of the longer side of a picture [pixels]."""
+_BORDER = 0.5
+"""Around the world [m]."""
+_PAPER, _WALL, _LOW_WALL = (250, 250, 247), (62, 68, 76), (190, 194, 198)
+_RAY, _TRAIL, _BODY, _CRASHED, _NOSE = (222, 168, 90), (70, 130, 180), (40, 90, 160), (200, 50, 40), (255, 255, 255)
+_GOAL = (60, 150, 80)
+
+
+def _pygame() -> Any:
+    try:
+        import pygame
+    except ImportError:
+        raise DependencyNotInstalled("rendering needs pygame: pip install 'gym-sitl[viz]'") from None
+    return pygame
+
+
+class Renderer:
+    """Draws one robot of a ``Robot`` in its world.
+
+    Args:
+        robot: whose world, pose and readings are drawn.
+        task: whose goal is drawn, if it has one.
+        index: of the robot.
+    """
+
+    def __init__(self, robot: Robot, task: Task, index: int = 0) -> None:
+        self._robot, self._task, self._index = robot, task, index
+        x0, y0, x1, y1 = robot.world.bounds
+        self._low = (x0 - _BORDER, y0 - _BORDER)
+        extent = (x1 - x0 + 2.0 * _BORDER, y1 - y0 + 2.0 * _BORDER)
+        self._scale = SIZE / max(extent)
+        self._shape = tuple(max(math.ceil(length * self._scale), 64) for length in extent)
+        self.trail: list[tuple[float, float]] = []
+        """Where the robot was after each step, on the picture."""
+        self._plan: Any = None
+        self._trodden: Any = None
+        """The plan with the trail, as far as it is drawn."""
+        self._drawn = 0
+        self._canvas: Any = None
+        self._window: Any = None
+
+    def _point(self, x: float, y: float) -> tuple[float, float]:
+        """On the picture: x of the world to the right, y up."""
+        return (x - self._low[0]) * self._scale, self._shape[1] - (y - self._low[1]) * self._scale
+
+    def start(self) -> None:
+        """A new episode: the trail begins anew."""
+        self.trail = []
+        self._trodden = None
+        self.note()
+
+    def note(self) -> None:
+        """Add the robot's place to the trail."""
+        x, y = self._robot.pose[self._index, :2].tolist()
+        self.trail.append(self._point(x, y))
+
+    def _draw_plan(self, pygame: Any) -> Any:
+        plan = pygame.Surface(self._shape)
+        plan.fill(_PAPER)
+        world = self._robot.world
+        for marking in world.markings:
+            self._draw_marking(pygame, plan, marking)
+        at = world.plan_height
+        for solid in sorted(world.solids, key=lambda s: s.low <= at <= s.high):
+            self._draw_solid(pygame, plan, solid, _WALL if solid.low <= at <= solid.high else _LOW_WALL)
+        return plan
+
+    def _draw_marking(self, pygame: Any, plan: Any, marking: Marking) -> None:
+        points = [self._point(*p) for p in marking.footprint().tolist()]
+        pygame.draw.polygon(plan, pygame.Color(marking.colour).lerp(_PAPER, 0.7), points)
+        pygame.draw.aalines(plan, pygame.Color(marking.colour), True, points)
+
+    def _draw_solid(self, pygame: Any, plan: Any, solid: Solid, colour: tuple[int, int, int]) -> None:
+        points = [self._point(*p) for p in solid.footprint().tolist()]
+        pygame.draw.polygon(plan, colour, points)
+        pygame.draw.aalines(plan, colour, True, points)
+
+    def _draw(self) -> Any:
+        pygame = _pygame()
+        if self._plan is None:
+            self._plan = self._draw_plan(pygame)
+            self._canvas = pygame.Surface(self._shape)
+        if self._trodden is None:
+            self._trodden, self._drawn = self._plan.copy(), 1
+        if len(self.trail) > self._drawn:
+            pygame.draw.lines(self._trodden, _TRAIL, False, self.trail[self._drawn - 1 :], 2)
+            self._drawn = len(self.trail)
+        canvas, robot = self._canvas, self._robot
+        canvas.blit(self._trodden, (0, 0))
+        if isinstance(self._task, ReachGoal):
+            goal = self._point(*self._task.goals[self._index].tolist())
+            pygame.draw.circle(canvas, _GOAL, goal, max(self._task.radius * self._scale, 3.0), 2)
+        x, y, _, yaw = robot.pose[self._index].tolist()
+        middle = self._point(x, y)
+        for angle, reading in zip(robot.angles.tolist(), robot.scan[self._index].tolist()):
+            reach = min(reading, robot.range_max)
+            end = self._point(x + reach * math.cos(yaw + angle), y + reach * math.sin(yaw + angle))
+            pygame.draw.aaline(canvas, _RAY, middle, end)
+        radius = max(robot.volume.radius * self._scale, 4.0)
+        crashed = bool(robot.collided[self._index])
+        pygame.draw.circle(canvas, _CRASHED if crashed else _BODY, middle, radius)
+        nose = (middle[0] + radius * math.cos(yaw), middle[1] - radius * math.sin(yaw))
+        pygame.draw.line(canvas, _NOSE, middle, nose, max(int(0.25 * radius), 1))
+        return canvas
+
+    def picture(self) -> npt.NDArray[np.uint8]:
+        """Shape (height, width, 3)."""
+        pixels = _pygame().image.tobytes(self._draw(), "RGB")
+        return np.frombuffer(pixels, np.uint8).reshape(self._shape[1], self._shape[0], 3).copy()
+
+    def show(self) -> None:
+        """Draw into the window, without waiting; opens it first. Closing the window does not stop the environment."""
+        pygame = _pygame()
+        if self._window is None:
+            try:
+                pygame.display.init()
+                self._window = pygame.display.set_mode(self._shape)
+            except pygame.error as error:
+                raise DependencyNotInstalled(
+                    f'render_mode "human" finds no screen ({error}); "rgb_array" needs none'
+                ) from None
+            pygame.display.set_caption(f"{self._robot.name} in {self._robot.world.name}")
+        self._window.blit(self._draw(), (0, 0))
+        pygame.event.pump()
+        pygame.display.flip()
+
+    def close(self) -> None:
+        """Close the window."""
+        if self._window is not None:
+            pygame = _pygame()
+            pygame.display.quit()
+            self._window = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_plan": None, "_trodden": None, "_canvas": None, "_window": None}

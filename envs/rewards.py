@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reward terms: functions of a step that give an array, one reward a robot. A task adds them up.
+
+A term of your own is any function of a ``Step``: ``lambda step: -0.1 * abs(step.velocity[:, 3])``. It works on arrays
+with a row a robot, whether there is one robot or a thousand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .options import EnvOptionError
+from .robots.robot import Robot
+
+Floats = npt.NDArray[np.float64]
+
+
+class Step:
+    """What has happened in a step: what reward terms look at. Arrays have a row a robot."""
+
+    def __init__(self, robot: Robot, seconds: float) -> None:
+        self.robot = robot
+        self.seconds = seconds
+        """Simulated time of a step [s]."""
+        self.actions: npt.NDArray[Any] = np.zeros(robot.count)
+        """As the agent gave them."""
+        self.commands: Floats = np.zeros((robot.count, 0))
+        """The set-points that they stand for."""
+        self.crashed: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
+        self.reached: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
+        """Whether the goal was reached, where there is one."""
+
+    @property
+    def scan(self) -> npt.NDArray[np.float32]:
+        """Readings [m], shape (count, readings)."""
+        return self.robot.scan
+
+    @property
+    def pose(self) -> Floats:
+        """x, y, z [m], yaw [rad], in the frame of world files, shape (count, 4)."""
+        return self.robot.pose
+
+    @property
+    def velocity(self) -> Floats:
+        """Forward, left, up [m/s], turn rate [rad/s], shape (count, 4)."""
+        return self.robot.velocity
+
+
+Term = Callable[[Step], Floats]
+"""A function of a step: rewards, shape (count,)."""
+
+
+class ByAction:
+    """A number for each action of a table: the paper's reward."""
+
+    def __init__(self, rewards: Sequence[float]) -> None:
+        self.rewards = np.array(rewards, np.float64)
+
+    def __call__(self, step: Step) -> Floats:
+        """See ``Term``."""
+        return self.rewards.take(step.actions, mode="clip")
+
+
+class Forward:
+    """Metres driven forward in the step, at the speed at its end, times ``per_metre``."""
+
+    def __init__(self, per_metre: float = 25.0) -> None:
+        self.per_metre = per_metre
+
+    def __call__(self, step: Step) -> Floats:
+        """See ``Term``."""
+        return self.per_metre * step.seconds * step.velocity[:, 0]
+
+
+class Turning:
+    """Turn rate at the end of the step, as a magnitude [rad/s], times ``per_rad``: a penalty when that is negative."""
+
+    def __init__(self, per_rad: float = -1.0) -> None:
+        self.per_rad = per_rad
+
+    def __call__(self, step: Step) -> Floats:
+        """See ``Term``."""
+        return self.per_rad * np.abs(step.velocity[:, 3])
+
+
+class EachStep:
+    """The same in every step."""
+
+    def __init__(self, reward: float = -1.0) -> None:
+        self.reward = reward
+
+    def __call__(self, step: Step) -> Floats:
+        """See ``Term``."""
+        return np.full(step.robot.count, self.reward)
+
+
+class Nearness:
+    """A penalty that grows from 0, where the nearest reading is ``distance`` [m], to ``most`` where it is 0."""
+
+    def __init__(self, distance: float = 0.5, most: float = -1.0) -> None:
+        if not distance > 0.0:
+            raise EnvOptionError(f"Nearness(distance={distance}); it must be above 0 m")
+        self.distance, self.most = distance, most
+
+    def __call__(self, step: Step) -> Floats:
+        """See ``Term``."""
+        nearest = step.scan.min(axis=1).astype(np.float64)
+        return self.most * np.maximum(1.0 - nearest / self.distance, 0.0)
+
+
+TERMS: dict[str, Callable[[], Term]] = {
+    "forward": Forward,
+    "turning": Turning,
+    "each_step": EachStep,
+    "nearness": Nearness,
+}
+"""By name, with their usual figures."""

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Turtlebot as an environment's robot: driven directly, without autopilot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.physics.native.turtlebot.state import TICK_S
+from sitl.turtlebot import Turtlebots, ticks_in
+from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.turtlebot import AIRFRAME, FIGURES, LIDAR, Lidar, TurtlebotAirframe
+from sitl.worlds import World, planar
+
+from ..actions import Action, Continuous, Discrete
+from ..options import EnvOptionError
+from ..setpoints import DRIVE, Setpoint
+from .robot import Floats, Pose, Volume
+
+
+class Turtlebot:
+    """See ``Robot``.
+
+    Args:
+        world: that it drives in.
+        count: of robots.
+        airframe: figures.
+        lidar: rays and readings.
+    """
+
+    name = "turtlebot"
+    tick = TICK_S
+    step_time = 0.6
+    """The Kobuki's command time-out: see docs/environments.md."""
+    crash_range = 0.2
+    setpoints: tuple[Setpoint, ...] = (DRIVE,)
+    figures: Mapping[str, Figure] = {figure.name: figure for figure in FIGURES}
+    digit_when_inf = 6
+
+    def __init__(
+        self,
+        world: str | Path | World = "circuit2",
+        count: int = 1,
+        airframe: TurtlebotAirframe = AIRFRAME,
+        lidar: Lidar = LIDAR,
+    ) -> None:
+        self._robots = robots = Turtlebots(world, count, airframe, lidar)
+        self.count, self.world, self.scan = count, robots.world, robots.scan
+        self.volume = Volume(airframe.value("radius"), airframe.value("bottom"), airframe.value("top"))
+        self.range_max = float(airframe.value("range_max"))
+        self.angles = planar.angles(lidar.readings, lidar.field_of_view)
+        self._ready()
+
+    def _ready(self) -> None:
+        robots = self._robots
+        self.scan = robots.scan
+        self._ticks, self._seconds = robots.ticks, -1.0
+        self._commands, self._run = robots.commands, robots.advance_each
+        self.collided = robots.fleet["body"]["collided"]
+
+    @property
+    def pose(self) -> Floats:
+        """See ``Robot``."""
+        b = self._robots.fleet["body"]
+        return np.stack([b["north"], 0.0 - b["east"], 0.0 - b["down"], 0.0 - b["heading"]], axis=1)
+
+    @property
+    def velocity(self) -> Floats:
+        """See ``Robot``."""
+        b = self._robots.fleet["body"]
+        return np.stack([b["speed"], np.zeros(self.count), np.zeros(self.count), 0.0 - b["yaw_rate"]], axis=1)
+
+    @property
+    def time(self) -> Floats:
+        """See ``Robot``."""
+        out: Floats = 1e-6 * self._robots.fleet["time_us"]
+        return out
+
+    def action(self, form: str, setpoint: Setpoint) -> Action:
+        """Discrete: the paper's forward, left and right. Continuous: 0 .. 0.3 m/s, +-0.3 rad/s."""
+        if form == "continuous":
+            return Continuous(DRIVE, (0.0, -0.3), (0.3, 0.3))
+        return Discrete(DRIVE, {"forward": (0.3, 0.0), "left": (0.05, 0.3), "right": (0.05, -0.3)})
+
+    def reset(self, index: int, pose: Pose, seed: int) -> None:
+        """See ``Robot``."""
+        self._robots.reset(index, pose, seed)
+
+    def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
+        """See ``Robot``."""
+        self._ticks[:] = 0 if rows is None else np.where(rows, 0, -1)
+        self._seconds = -1.0
+        self._run()
+
+    def apply(self, setpoint: Setpoint, commands: Floats) -> None:
+        """See ``Robot``."""
+        self._commands[:] = commands
+
+    def advance(self, seconds: float, rows: npt.NDArray[np.bool_] | None = None) -> None:
+        """See ``Robot``."""
+        if rows is not None:
+            self._ticks[:] = np.where(rows, ticks_in(seconds), 0)
+            self._seconds = -1.0
+        elif seconds != self._seconds:
+            self._ticks[:] = ticks_in(seconds)
+            self._seconds = seconds
+        self._run()
+
+    def set_figure(self, index: int, name: str, value: float) -> None:
+        """See ``Robot``."""
+        self._robots.set_figure(index, name, value)
+
+    def snapshot(self, index: int) -> Any:
+        """See ``Robot``."""
+        return self._robots.snapshot(index)
+
+    def restore(self, index: int, snapshot: Any) -> None:
+        """See ``Robot``."""
+        try:
+            self._robots.restore(snapshot, index)
+        except (TypeError, ValueError) as error:
+            raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
+
+    def close(self) -> None:
+        """See ``Robot``."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = ("count", "world", "volume", "range_max", "angles", "_robots")
+        return {name: vars(self)[name] for name in kept}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._ready()

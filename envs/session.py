@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robot x world x task x observation x action, put together: for one robot or for many, before Gymnasium's classes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl import worlds
+from sitl.worlds import World, WorldError
+
+from . import robots
+from .actions import Action
+from .observations import OBSERVATIONS, Observation
+from .options import EnvOptionError, unknown
+from .randomisation import Randomisation, Randomise
+from .rewards import Step
+from .robots.robot import Robot
+from .setpoints import SETPOINTS, Setpoint
+from .starts import StartOption, Starts
+from .tasks import TASKS, Task
+
+FORMS = ("discrete", "continuous")
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Everything of one robot and its episode; can be pickled."""
+
+    robot: Any
+    task: Any
+    rng: Mapping[str, Any]
+    """State of the generator that later episodes are drawn from."""
+
+
+class Session:
+    """The pieces of an environment, for ``count`` robots; see ``Navigate`` for the arguments."""
+
+    def __init__(
+        self,
+        count: int,
+        robot: str | Callable[..., Robot],
+        world: str | Path | World,
+        task: str | Task,
+        observation: str | Observation,
+        action: str | Action,
+        setpoint: str | None,
+        step_time: float | None,
+        start: StartOption | None,
+        randomise: Randomise | None,
+        robot_options: Mapping[str, Any],
+    ) -> None:
+        try:
+            found = worlds.load(world)
+        except WorldError as error:
+            raise EnvOptionError(str(error)) from None
+        self.robot = robots.load(robot, found, count, robot_options)
+        self.count = count
+        self.randomisation = Randomisation(randomise or {}, self.robot)
+        self.starts = Starts(start, self.robot)
+        self.task: Task = _named("task", task, TASKS, "judge")
+        self.observation: Observation = _named("observation", observation, OBSERVATIONS, "observe")
+        self.action = self._choose_action(action, setpoint)
+        self.seconds = self._check_step_time(step_time)
+        self.observation_space = self.observation.space(self.robot)
+        self.actions = self.action.room(count)
+        """To be filled before ``advance``, a row a robot, with what ``action.check`` gives."""
+        self.commands = np.zeros((count, self.action.setpoint.width))
+        self.rewards = np.zeros(count)
+        self.terminated = np.zeros(count, np.bool_)
+        self.step = Step(self.robot, self.seconds)
+        self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
+        self.task.prepare(self.robot)
+
+    def _choose_action(self, action: str | Action, setpoint: str | None) -> Action:
+        robot = self.robot
+        kinds = {kind.name: kind for kind in robot.setpoints}
+        if setpoint is not None and setpoint not in kinds:
+            if setpoint in SETPOINTS:
+                raise EnvOptionError(f"setpoint {setpoint!r}: {robot.name} takes {', '.join(kinds)}")
+            raise unknown("setpoint", setpoint, kinds)
+        if isinstance(action, str):
+            if action not in FORMS:
+                raise unknown("action", action, FORMS)
+            kind: Setpoint = robot.setpoints[0] if setpoint is None else kinds[setpoint]
+            return robot.action(action, kind)
+        if not hasattr(action, "commands"):
+            raise EnvOptionError(f"action {action!r} is neither a name ({', '.join(FORMS)}) nor an Action")
+        if action.setpoint.name not in kinds:
+            raise EnvOptionError(f"action gives {action.setpoint.name!r}; {robot.name} takes {', '.join(kinds)}")
+        return action
+
+    def _check_step_time(self, step_time: float | None) -> float:
+        seconds, tick = self.robot.step_time if step_time is None else step_time, self.robot.tick
+        valid = isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0.0
+        if not valid or abs(seconds / tick - round(seconds / tick)) > 1e-6:
+            raise EnvOptionError(f"step_time = {seconds!r}; it must be above 0 s and a whole number of {tick:g} s")
+        return float(seconds)
+
+    def reset(self, index: int, rng: np.random.Generator, options: Mapping[str, Any] | None) -> None:
+        """An episode of one robot begins; ``look`` follows. ``options``: "pose", a start pose for this episode."""
+        pose = self.starts.draw(rng)
+        if options and options.get("pose") is not None:
+            pose = self.starts.pose(options["pose"])
+        seed = int(rng.integers(1 << 32))
+        self.randomisation.draw(index, self.robot, rng)
+        self.robot.reset(index, pose, seed)
+        self.task.start(index, self.robot, rng)
+
+    def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
+        """Read the lidars of robots that were reset."""
+        self.robot.look(rows)
+
+    def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
+        """One step of these robots (None: all); fills ``rewards`` and ``terminated``."""
+        self.action.commands(self.actions, self.commands)
+        self.robot.apply(self.action.setpoint, self.commands)
+        self.robot.advance(self.seconds, rows)
+        self.task.judge(self.step, self.rewards, self.terminated)
+
+    def snapshot(self, index: int, rng: np.random.Generator) -> Snapshot:
+        """Of one robot, with the generator of its episodes."""
+        return Snapshot(self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state)
+
+    def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
+        """Put one robot back, and the generator of its episodes.
+
+        Raises:
+            EnvOptionError: it is none, or of another kind of robot.
+        """
+        if not isinstance(snapshot, Snapshot):
+            raise EnvOptionError(f"{snapshot!r} is no snapshot of an environment")
+        self.robot.restore(index, snapshot.robot)
+        self.task.recall(index, snapshot.task)
+        rng.bit_generator.state = dict(snapshot.rng)
+
+
+def _named(option: str, value: Any, known: Mapping[str, Callable[[], Any]], method: str) -> Any:
+    """The piece of that name, or a copy of the piece itself: two environments do not share what it remembers."""
+    if isinstance(value, str):
+        if value not in known:
+            raise unknown(option, value, known)
+        return known[value]()
+    if isinstance(value, type) or not hasattr(value, method):
+        raise EnvOptionError(f"{option} {value!r} is neither a name ({', '.join(known)}) nor an object with {method}()")
+    return deepcopy(value)

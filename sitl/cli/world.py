@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl world``: the worlds there are, and what one looks like."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .. import worlds
+from ..simulation import OptionError
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser("world", help="list and draw worlds")
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    actions.add_parser("list", help="the worlds there are").set_defaults(function=list_worlds)
+    show = actions.add_parser("show", help="describe a world and draw its plan")
+    show.add_argument("world", metavar="NAME|FILE", help="one of the list, or a .toml file")
+    show.add_argument("--png", type=Path, metavar="OUT", help="where the picture goes (default: NAME.png)")
+    show.add_argument(
+        "--height", type=float, metavar="Z", help="height of the cut in metres (default: the world's own)"
+    )
+    show.set_defaults(function=show_world)
+
+
+def list_worlds(options: argparse.Namespace) -> int:
+    """Print every world with what it is."""
+    width = max(map(len, worlds.names()))
+    for name in worlds.names():
+        print(f"{name:{width}s}  {worlds.load(name).description}")
+    return 0
+
+
+def show_world(options: argparse.Namespace) -> int:
+    """Describe a world and draw it."""
+    from ..worlds import drawing
+
+    world = worlds.load(options.world)
+    print(drawing.summary(world))
+    path = options.png or Path(f"{world.name}.png")
+    try:
+        drawing.draw(world, path, options.height)
+    except (OSError, ValueError) as error:  # ValueError: an ending that matplotlib does not know
+        raise OptionError(
+            f"--png {str(path)!r} cannot be written: {getattr(error, 'strerror', None) or error}"
+        ) from None
+    print(f"plan: {path}")
+    return 0

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Turtlebot as the gym-gazebo paper's environments had it: Kobuki base, plates, a planar lidar on top. No autopilot.
+
+Sources: [model] kobuki.urdf.xacro and kobuki_gazebo.urdf.xacro of erlerobot/gym-gazebo and turtlebot_description;
+[guide] the Kobuki user guide.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from .airframe import Airframe
+from .figures.figure import Figure, figures_dtype
+
+FIGURES = (
+    Figure("wheel_radius", "m", "that the drive turns speeds into wheel rates with", 1e-3, 1.0),
+    Figure("wheel_radius_left", "m", "true one", 1e-3, 1.0),
+    Figure("wheel_radius_right", "m", "true one", 1e-3, 1.0),
+    Figure("wheel_separation", "m", "between the wheels", 1e-2, 10.0),
+    Figure("wheel_speed_max", "m/s", "greatest speed of a rim, forward and backward", 0.0, 100.0),
+    Figure("command_timeout", "s", "after which the wheels stand unless another command came", 0.0),
+    Figure("radius", "m", "of the cylinder that touches walls", 1e-3, 10.0),
+    Figure("bottom", "m", "height of its underside above the floor", 0.0, 10.0),
+    Figure("top", "m", "height of its top above the floor", 0.0, 10.0),
+    Figure("lidar_ahead", "m", "lidar ahead of the axle", -1.0, 1.0, 0.0),
+    Figure("lidar_height", "m", "lidar above the floor", 0.0, 10.0),
+    Figure("range_max", "m", "greatest reading of the lidar; what is farther is inf", 1e-3, 1e4),
+    Figure("range_noise", "m", "standard deviation of a reading", 0.0, 10.0, 0.0),
+)
+FIGURES_DTYPE = figures_dtype(FIGURES)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurtlebotAirframe(Airframe):
+    """A robot on two driven wheels with a planar lidar and no autopilot."""
+
+    kind: ClassVar[str] = "turtlebot"
+    known = FIGURES
+    dtype = FIGURES_DTYPE
+
+
+@dataclass(frozen=True)
+class Lidar:
+    """What the shape of a planar lidar's scan follows from; its ranges and noise are figures of the airframe."""
+
+    rays: int
+    """That are cast."""
+    readings: int
+    """That are published: weighted means of neighbouring rays, see ``sitl.worlds.planar``."""
+    field_of_view: float
+    """[rad], symmetric to straight ahead; the first and the last ray are its ends."""
+
+
+LIDAR = Lidar(rays=40, readings=20, field_of_view=math.radians(270.0))
+"""[model] 40 samples at a horizontal resolution of 0.5."""
+
+AIRFRAME = TurtlebotAirframe(
+    name="turtlebot",
+    description="Turtlebot 2 (Kobuki) with a planar lidar, as the paper's environments have it",
+    figures={
+        "wheel_radius": 0.035,  # [model]
+        "wheel_radius_left": 0.0352,  # [model] 0.6 % larger: a straight command drifts to the right
+        "wheel_radius_right": 0.0350,  # [model]
+        "wheel_separation": 0.230,  # [model]
+        "wheel_speed_max": 0.7,  # [guide]; the model has no limit, the environments command 0.33 at most
+        "command_timeout": 0.6,  # [model]
+        "radius": 0.178,  # [model] base, the widest part
+        "bottom": 0.0152,  # [model] 0.0597 - 0.10938 / 2 above base_link, which is 0.0102 above ground
+        "top": 0.510,  # [model] lidar on top of the plates
+        "lidar_height": 0.510,  # [model]
+        "range_max": 20.0,  # [model]
+        "range_noise": 0.0,  # [model]
+    },
+)
