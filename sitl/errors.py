@@ -6,14 +6,13 @@ from __future__ import annotations
 from .autopilot.params.files import ParameterError
 from .bridge.links.address import LinkAddressError
 from .core.compile import BuildError
-from .logs.plot import MissingExtra
+from .core.extras import MissingExtra
 from .logs.tlog import LogError
 from .option_error import OptionError
 from .pacing import SpeedupError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
 from .worlds import WorldError
-from .worlds.drawing import NoMatplotlib
 
 USER_ERRORS: tuple[type[Exception], ...] = (
     AirframeError,
@@ -22,7 +21,6 @@ USER_ERRORS: tuple[type[Exception], ...] = (
     LinkAddressError,
     LogError,
     MissingExtra,
-    NoMatplotlib,
     OptionError,
     ParameterError,
     SpeedupError,

@@ -23,9 +23,12 @@ def blocks(page: Path, language: str) -> list[str]:
 
 
 def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
-    (program,) = blocks(ROOT / "README.md", "python")
+    flight, learning = blocks(ROOT / "README.md", "python")
+    exec(compile(learning, "README.md", "exec"), {})
+    rewards = [float(line.split()[-1]) for line in capsys.readouterr().out.splitlines()]
+    assert len(rewards) == 500 and sum(rewards[-100:]) > sum(rewards[:100]) + 100 * 100.0
     scope: dict[str, object] = {}
-    exec(compile(program, "README.md", "exec"), scope)
+    exec(compile(flight, "README.md", "exec"), scope)
     printed = capsys.readouterr().out
     assert "LOCAL_POSITION_NED" in printed
     simulation = scope["simulation"]

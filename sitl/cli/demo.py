@@ -13,6 +13,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from .. import runner
+from ..core.extras import MissingExtra
 from ..logs import flight as flights
 from ..logs import plot
 from ..simulation import OptionError, Simulation
@@ -87,7 +88,7 @@ def check_installed(script: Path) -> None:
         )
     for module, extra in (("mavsdk", "mavsdk"), ("matplotlib", "viz")):
         if importlib.util.find_spec(module) is None:
-            raise plot.MissingExtra(f"the demo needs {module}: pip install 'gym-sitl[{extra}]'")
+            raise MissingExtra(f"the demo needs {module}: pip install 'gym-sitl[{extra}]'")
 
 
 def free_udp_port() -> int:

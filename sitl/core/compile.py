@@ -102,7 +102,7 @@ def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
     return [u for u in reached(entry) if not (unit_folder(u, path) / "built").exists()]
 
 
-def _make_jitable() -> None:
+def make_jitable() -> None:
     """Let Numba compile laws into their callers (the functions themselves stay plain Python)."""
     from numba.extending import register_jitable
 
@@ -168,7 +168,7 @@ def load_unit(unit: Unit, path: str) -> Any:
     import numba
     from numba import types
 
-    _make_jitable()
+    make_jitable()
     dtype = record_type(path)
     record = numba.from_dtype(dtype)
     if _records.setdefault(record, path) != path:

@@ -8,11 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..core.extras import MissingExtra
 from .flight import Flight
-
-
-class MissingExtra(RuntimeError):
-    """An optional dependency is not installed; the message says which extra brings it."""
 
 
 def draw(flight: Flight, path: str | Path, title: str = "", kind: str = "copter") -> None:

@@ -58,7 +58,7 @@ def _load(wanted: Kernel) -> Callable[..., Any]:
     signature = wanted.signature if isinstance(wanted.signature, str) else wanted.signature()
     key = fingerprint(unit, np.dtype("f8"), f"{compiler.toolchain()} {signature}")
     folder = compiler.cache_folder() / f"{wanted.name}-{key}"
-    compiler._make_jitable()
+    compiler.make_jitable()
     count = wanted.law.__code__.co_argcount
     names = ", ".join(f"a{k}" for k in range(count))
     try:

@@ -6,13 +6,9 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from ..core.extras import MissingExtra
 from .shapes import Cylinder
 from .world import World
-
-
-class NoMatplotlib(RuntimeError):
-    """Pictures need an optional dependency; the message says which extra brings it."""
-
 
 _NAMES_UP_TO = 40
 """Solids whose names are still readable in a picture."""
@@ -51,14 +47,14 @@ def draw(world: World, path: str | Path, height: float | None = None) -> None:
     Black: solid at that height. Blue: solid at others. Green: start poses.
 
     Raises:
-        NoMatplotlib: matplotlib is not installed.
+        MissingExtra: matplotlib is not installed.
         OSError: the picture cannot be written.
     """
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        raise NoMatplotlib("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
+        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
     figure = Figure(figsize=(9, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
     plan(figure.add_subplot(), world, world.plan_height if height is None else height)

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Optional dependencies."""
+
+from __future__ import annotations
+
+
+class MissingExtra(RuntimeError):
+    """An optional dependency is not installed; the message says which extra brings it."""
