@@ -148,7 +148,7 @@ class Remote(Connection):
             since = last if within is None else began
             if now - since >= (self.patience if within is None else within):
                 raise LinkLostError(f"connection {self.name} is lost: no answer for {now - since:.1f} s")
-            if False and now - max(sent, since) >= _REPEAT_S:
+            if repeat and now - max(sent, since) >= _REPEAT_S:
                 self.end.write(data)
                 sent = now
             self.end.wait(_REPEAT_S)
