@@ -97,6 +97,8 @@ class Continuous:
     ) -> None:
         self.setpoint = setpoint
         self.columns = list(range(setpoint.width)) if columns is None else list(columns)
+        if len(set(self.columns)) != len(self.columns) or not set(self.columns) <= set(range(setpoint.width)):
+            raise EnvOptionError(f"columns {columns!r}: each must be another of 0 .. {setpoint.width - 1}")
         if len(low) != len(self.columns) or len(high) != len(self.columns):
             raise EnvOptionError(f"limits {low!r} .. {high!r} are not {len(self.columns)} numbers each")
         if not all(a < b for a, b in zip(low, high)):

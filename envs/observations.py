@@ -31,8 +31,11 @@ class Observation(Protocol):
 
 
 @law
-def digits_of(scans, every, when_inf, out):
-    """The paper's rule: each ``every``-th reading, rounded down; inf and nan have digits of their own."""
+def digits_of(scans, every, when_inf, highest, out):
+    """The paper's rule: each ``every``-th reading, rounded down; inf and nan have digits of their own.
+
+    A reading beyond the digit ``highest``, of a lidar that a function of the user's has given a longer range, is that.
+    """
     for i in range(out.shape[0]):
         for k in range(out.shape[1]):
             reading = float(scans[i, k * every])
@@ -41,10 +44,10 @@ def digits_of(scans, every, when_inf, out):
             elif math.isnan(reading):
                 out[i, k] = 0
             else:
-                out[i, k] = int(reading)
+                out[i, k] = min(int(reading), highest)
 
 
-_digits = kernel("void(f4[:,::1], i8, i8, i8[:,::1])")(digits_of)
+_digits = kernel("void(f4[:,::1], i8, i8, i8, i8[:,::1])")(digits_of)
 
 
 class Digits:
@@ -62,7 +65,7 @@ class Digits:
             raise EnvOptionError(f"Digits(when_inf={when_inf}, parts={parts}): parts from 1 on, when_inf from 0 on")
         self.when_inf = when_inf
         self.parts = parts
-        self._plan = (0, 0, 0)
+        self._plan = (0, 0, 0, 0)
 
     def space(self, robot: Robot) -> gym.Space[Any]:
         """See ``Observation``."""
@@ -70,14 +73,15 @@ class Digits:
         every = max(readings // self.parts, 1)
         when_inf = robot.digit_when_inf if self.when_inf is None else self.when_inf
         taken = len(range(0, readings, every))
-        self._plan = (every, when_inf, taken)
-        return gym.spaces.MultiDiscrete(np.full(taken, max(int(robot.range_max), when_inf) + 1))
+        highest = max(int(robot.range_max), when_inf)
+        self._plan = (every, when_inf, highest, taken)
+        return gym.spaces.MultiDiscrete(np.full(taken, highest + 1))
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
-        every, when_inf, taken = self._plan
+        every, when_inf, highest, taken = self._plan
         out = np.empty((robot.count, taken), np.int64)
-        _digits(robot.scan, every, when_inf, out)
+        _digits(robot.scan, every, when_inf, highest, out)
         return out
 
 

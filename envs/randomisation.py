@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,8 @@ class Randomisation:
             raise EnvOptionError(f"randomise: {name} = {values!r}; it must be low <= high within {limits}")
         if name == "range_max":
             robot.range_max = max(robot.range_max, high)
+        if name == "radius":  # random places have room for the greatest
+            robot.volume = replace(robot.volume, radius=max(robot.volume.radius, high))
 
     def draw(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """Give one robot its figures for the next episode."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
@@ -21,13 +22,15 @@ from .actions import Action
 from .observations import OBSERVATIONS, Observation
 from .options import EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise
-from .rewards import Step
+from .rewards import ByAction, Step
 from .robots.robot import Robot
 from .setpoints import SETPOINTS, Setpoint
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
 FORMS = ("discrete", "continuous")
+RESET_OPTIONS = ("pose", "reset_mask")
+"""The second is of vector environments."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,10 @@ class Snapshot:
     task: Any
     rng: Mapping[str, Any]
     """State of the generator that later episodes are drawn from."""
+    steps: int = 0
+    """Of the episode so far; vector environments count them themselves."""
+    ended: bool = False
+    """Whether the next step of a vector environment begins another episode."""
 
 
 class Session:
@@ -68,6 +75,10 @@ class Session:
         self.task: Task = _named("task", task, TASKS, "judge")
         self.observation: Observation = _named("observation", observation, OBSERVATIONS, "observe")
         self.action = self._choose_action(action, setpoint)
+        if not isinstance(self.action.space, gym.spaces.Discrete) and any(
+            isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
+        ):
+            raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
         self.seconds = self._check_step_time(step_time)
         self.observation_space = self.observation.space(self.robot)
         self.actions = self.action.room(count)
@@ -91,7 +102,7 @@ class Session:
                 raise unknown("action", action, FORMS)
             kind: Setpoint = robot.setpoints[0] if setpoint is None else kinds[setpoint]
             return robot.action(action, kind)
-        if not hasattr(action, "commands"):
+        if isinstance(action, type) or not hasattr(action, "commands"):
             raise EnvOptionError(f"action {action!r} is neither a name ({', '.join(FORMS)}) nor an Action")
         if action.setpoint.name not in kinds:
             raise EnvOptionError(f"action gives {action.setpoint.name!r}; {robot.name} takes {', '.join(kinds)}")
@@ -99,13 +110,17 @@ class Session:
 
     def _check_step_time(self, step_time: float | None) -> float:
         seconds, tick = self.robot.step_time if step_time is None else step_time, self.robot.tick
-        valid = isinstance(seconds, int | float | np.number) and math.isfinite(seconds) and seconds > 0.0
-        if not valid or abs(seconds / tick - round(seconds / tick)) > 1e-6:
+        valid = isinstance(seconds, int | float | np.number) and math.isfinite(seconds)
+        ticks = round(seconds / tick) if valid else 0
+        if ticks < 1 or abs(seconds / tick - ticks) > 1e-5:
             raise EnvOptionError(f"step_time = {seconds!r}; it must be above 0 s and a whole number of {tick:g} s")
-        return float(seconds)
+        return round(ticks * tick, 9)  # exact, also for a float32 or a sum of tenths
 
     def reset(self, index: int, rng: np.random.Generator, options: Mapping[str, Any] | None) -> None:
         """An episode of one robot begins; ``look`` follows. ``options``: "pose", a start pose for this episode."""
+        for option in options or ():
+            if option not in RESET_OPTIONS:
+                raise unknown("reset: option", option, RESET_OPTIONS[:1])
         pose = self.starts.draw(rng)
         if options and options.get("pose") is not None:
             pose = self.starts.pose(options["pose"])
@@ -137,8 +152,8 @@ class Session:
         """
         if not isinstance(snapshot, Snapshot):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of an environment")
-        self.robot.restore(index, snapshot.robot)
         self.task.recall(index, snapshot.task)
+        self.robot.restore(index, snapshot.robot)
         rng.bit_generator.state = dict(snapshot.rng)
 
 

@@ -23,6 +23,8 @@ from .robots.robot import Pose, Robot
 CELL = 0.1
 """Side of the cells that reachable places are found in [m]."""
 _MOST_CELLS = 250_000
+"""Above which cells are made larger, as long as no wall fits between two of them."""
+_FAR_TOO_MANY_CELLS = 4_000_000
 _MARGIN = 0.1
 """A random place keeps this far from what would be a crash [m]."""
 
@@ -69,11 +71,19 @@ class ReachableCells:
         reach = robot.volume.radius + self.margin
         self._low = np.array([x0 - reach, y0 - reach])
         extent = np.array([x1 + reach, y1 + reach]) - self._low
-        self.cell = max(CELL, math.sqrt(float(extent[0] * extent[1]) / _MOST_CELLS))
+        largest = 1.9 * reach  # even the thinnest wall makes a band of twice the reach that no middle of a cell is in
+        self.cell = max(CELL, min(math.sqrt(float(extent[0] * extent[1]) / _MOST_CELLS), largest))
         rows, columns = (math.ceil(length / self.cell) for length in extent.tolist())
+        if rows * columns > _FAR_TOO_MANY_CELLS:
+            size = f"{extent[0]:.0f} x {extent[1]:.0f} m"
+            raise EnvOptionError(f"random places in world {self._world.name!r}: {size} is too large; say where instead")
         first = ((np.array(start.position[:2]) - self._low) / self.cell).astype(int).tolist()
-        self.cells = np.array(self._flood(first, self._free(rows, columns)))
+        free = self._free(rows, columns)
+        self.cells = np.array(self._flood(first, free))
         """Their numbers along x and y, shape (n, 2)."""
+        if len(self.cells) == 1 and not free[first[0], first[1]]:
+            where = f"random places in world {self._world.name!r}"
+            raise EnvOptionError(f"{where}: {robot.name} has no room at start {start.name!r} to set out")
 
     def _free(self, rows: int, columns: int) -> npt.NDArray[np.int64]:
         out = np.empty((rows, columns), np.int64)
@@ -112,7 +122,7 @@ class ReachableCells:
         while True:
             cell = self.cells[rng.integers(len(self.cells))]
             x, y = (self._low + self.cell * (cell + rng.random(2))).tolist()
-            if len(self.cells) == 1 or self.is_free(x, y):
+            if self.is_free(x, y):
                 return x, y
 
 
@@ -128,18 +138,19 @@ class Starts:
     """
 
     def __init__(self, option: StartOption | None, robot: Robot) -> None:
+        self._robot = robot
         self._draw: Callable[[np.random.Generator], Any] | None = None
         self._cells: ReachableCells | None = None
         self._z = robot.world.start(robot.name).position[2]
         self._pose: Pose | None = None
-        if option == "random":
+        if isinstance(option, str) and option == "random":
             self._cells = ReachableCells(robot)
         elif option is None or isinstance(option, str):
             try:
                 start = robot.world.start(robot.name, option)
             except WorldError as error:
                 raise EnvOptionError(f'start {option!r}: {error}, and "random"') from None
-            self._pose = (*start.position, start.yaw)
+            self._pose = self.pose((*start.position, start.yaw))
         elif callable(option):
             self._draw = option
         else:
@@ -152,9 +163,22 @@ class Starts:
             EnvOptionError: it is none.
         """
         try:
-            return full_pose(pose, self._z)
+            found = full_pose(pose, self._z)
         except ValueError as error:
             raise EnvOptionError(f"start: {error}") from None
+        self._check_room(found)
+        return found
+
+    def _check_room(self, pose: Pose) -> None:
+        """Inside of a solid every reading is 0, which is no crash: the robot would drive out as if nothing were."""
+        north, east, down = to_ned(*pose[:3])
+        volume, world = self._robot.volume, self._robot.world
+        near = clearance(world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0)
+        if near.distance < 0.0:
+            solid = world.solids[near.solid]
+            what = f"{type(solid).__name__.lower()} {solid.name!r}"
+            x, y, z, _ = pose
+            raise EnvOptionError(f"start: ({x:g}, {y:g}, {z:g}) in world {world.name!r} is inside of {what}")
 
     def draw(self, rng: np.random.Generator) -> Pose:
         """The start pose of an episode."""

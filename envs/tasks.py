@@ -18,6 +18,9 @@ from .rewards import TERMS, ByAction, EachStep, Floats, Forward, Step, Term
 from .robots.robot import Robot
 from .starts import ReachableCells
 
+_DRAWS = 100
+"""Of a random goal, until it is not one that the robot has reached where it starts."""
+
 
 @law
 def count_crashes(scans, crash_range, touched, contact_ends, out):
@@ -135,9 +138,12 @@ class ReachGoal(Task):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        self.goals[index] = self._cells.draw(rng) if self._cells else self.goal
-        x, y = robot.pose[index, :2]
-        self._distance[index] = math.dist((x, y), self.goals[index])
+        place = robot.pose[index, :2]
+        for _ in range(_DRAWS if self._cells else 1):
+            self.goals[index] = self._cells.draw(rng) if self._cells else self.goal
+            self._distance[index] = np.hypot(*(place - self.goals[index]))  # as in ``judge``, to the last bit
+            if self._distance[index] > self.radius:
+                break
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """See ``Task``."""
@@ -161,6 +167,8 @@ class ReachGoal(Task):
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
+        if memory is None:
+            raise EnvOptionError("snapshot cannot be restored: it is of a task without a goal")
         self.goals[index], self._distance[index] = memory
 
 

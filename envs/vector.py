@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -173,21 +174,35 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         """As Gymnasium's vector environments have them: each array with a mask of the robots that it is of."""
         infos: dict[str, Any] = {}
         for name, value in self._session.task.info(self._session.step).items():
-            value[~rows] = 0
-            infos[name], infos["_" + name] = value, rows.copy()
+            told = np.array(value)  # a task's own array stays as it is
+            told[~rows] = 0
+            infos[name], infos["_" + name] = told, rows.copy()
         return infos
 
     def snapshot(self) -> list[Snapshot]:
-        """Of every robot, as ``Navigate.snapshot``."""
-        return [self._session.snapshot(index, self._generator(index)) for index in range(self.num_envs)]
+        """Of every robot, as ``Navigate.snapshot``, with its step count and whether its episode has ended."""
+        return [
+            replace(
+                self._session.snapshot(index, self._generator(index)),
+                steps=int(self._steps[index]),
+                ended=bool(self._ended[index]),
+            )
+            for index in range(self.num_envs)
+        ]
 
     def restore(self, snapshots: Sequence[Snapshot]) -> Any:
-        """Put every robot back; returns the observations. Their step counts begin anew."""
+        """Put every robot back; returns the observations. Snapshots of a ``Navigate`` begin with a step count of 0."""
         if len(snapshots) != self.num_envs:
             raise EnvOptionError(f"{len(snapshots)} snapshots for num_envs = {self.num_envs}")
         for index, snapshot in enumerate(snapshots):
-            self._session.restore(index, snapshot, self._generator(index))
-        self._steps[:], self._ended[:] = 0, False
+            generator = self._generators[index]
+            if generator is None:
+                generator, _ = seeding.np_random(0)
+            self._session.restore(index, snapshot, generator)
+            self._generators[index] = generator
+            self._steps[index], self._ended[index] = snapshot.steps, snapshot.ended
+        for renderer in self._renderers:
+            renderer.start()
         return self._session.observation.observe(self._session.robot)
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:

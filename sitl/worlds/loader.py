@@ -26,7 +26,7 @@ def read(path: Path) -> World:
         WorldError: the file cannot be read, is not TOML, or says something that is not allowed.
     """
     try:
-        content = path.read_bytes().decode("utf-8")
+        content = path.read_bytes().decode("utf-8-sig")  # Windows editors begin with a mark
     except OSError as error:
         raise WorldError(f"world file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

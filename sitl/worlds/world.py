@@ -29,6 +29,10 @@ class World:
     markings: tuple[Marking, ...] = ()
     laps: tuple[Lap, ...] = ()
 
+    def __post_init__(self) -> None:
+        if not self.starts:
+            raise WorldError(f"world {self.name!r} has no start pose; it needs one")
+
     @cached_property
     def geometry(self) -> Geometry:
         """Arrays for ray casting and contacts, in the simulator's NED frame."""

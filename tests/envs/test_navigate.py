@@ -316,3 +316,111 @@ def test_foreign_snapshots_are_refused():
     other.reset()
     with pytest.raises(EnvOptionError, match="snapshot"):
         env.restore(other.snapshot())
+
+
+@pytest.mark.parametrize("step_time", [1e-9, 1e-8, 0.600001, np.float32(0.605)])
+def test_step_time_that_is_no_whole_number_of_ticks_is_refused(step_time):
+    with pytest.raises(EnvOptionError, match=r"step_time = .* a whole number of 0.01 s"):
+        make(step_time=step_time)
+
+
+@pytest.mark.parametrize("step_time", [np.float32(0.1), 0.1 + 0.2 - 0.2, 0.100000005])
+def test_step_time_is_the_nearest_whole_number_of_ticks(step_time):
+    env = make(step_time=step_time)
+    env.reset()
+    env.step(0)
+    assert env.step_time == 0.1 and env.robot.time[0] == approx(0.1, abs=1e-12)
+
+
+def test_start_can_be_an_array():
+    env = make(start=np.array([0.5, 0.1, 0.2]))
+    env.reset()
+    assert env.robot.pose[0] == approx([0.5, 0.1, 0.0, 0.2])
+
+
+PILLAR = worlds.World(
+    "pillar", (worlds.Cylinder((0.0, 0.0, 0.5), 0.5, 1.0, "post"),), (worlds.Start("o", (0.0, 0.0, 0.0), 0.0),)
+)
+
+
+def test_starts_inside_of_solids_are_refused():
+    with pytest.raises(EnvOptionError, match=r"start: \(0, 0, 0\) in world 'pillar' is inside of cylinder 'post'"):
+        make(world=PILLAR)
+    with pytest.raises(EnvOptionError, match=r"turtlebot has no room at start 'o'"):
+        make(world=PILLAR, start="random")
+    env = make(world=PILLAR, start=lambda rng: (0.4, 0.0, 0.0))
+    with pytest.raises(EnvOptionError, match="inside of"):
+        env.reset()
+    env = make(world=PILLAR, start=(2.0, 0.0, 0.0))
+    env.reset()
+    with pytest.raises(EnvOptionError, match="inside of"):
+        env.reset(options={"pose": (0.0, 0.3, 0.0)})
+
+
+def test_reset_options_that_are_not_known_are_named():
+    with pytest.raises(EnvOptionError, match=r"reset: option 'psoe' is not known; it is one of pose; did you mean"):
+        make().reset(options={"psoe": (0.0, 0.0, 0.0)})
+
+
+def test_random_starts_leave_room_for_the_greatest_robot():
+    env = make(start="random", randomise={"radius": (0.4, 0.45)})
+    for seed in range(40):
+        env.reset(seed=seed)
+        assert not env.step(1)[4]["crashed"]
+
+
+def test_random_goals_are_not_where_the_robot_starts():
+    env = make(task=ReachGoal(radius=1.0))
+    for seed in range(100):
+        env.reset(seed=seed)
+        assert not env.step(1)[4]["reached"]
+
+
+def test_reward_by_action_needs_a_table():
+    with pytest.raises(EnvOptionError, match="needs a table of actions"):
+        make(task="paper", action="continuous")
+
+
+def test_a_class_of_actions_is_no_action():
+    with pytest.raises(EnvOptionError, match="nor an Action"):
+        make(action=Discrete)
+
+
+@pytest.mark.parametrize("columns", [(2,), (-1,)])
+def test_columns_of_actions_are_those_of_the_setpoint(columns):
+    with pytest.raises(EnvOptionError, match=r"columns .* 0 \.\. 1"):
+        Continuous(DRIVE, (0.0,), (1.0,), columns)
+
+
+def test_digits_stay_in_the_space_whatever_a_function_draws():
+    wall = worlds.Box((40.0, 0.0, 0.5), (1.0, 90.0, 1.0))
+    world = worlds.World("far", (wall,), (worlds.Start("o", (0.0, 0.0, 0.0), 0.0),))
+    env = make(world=world, observation="digits", randomise={"range_max": lambda rng: 90.0})
+    observation, _ = env.reset()
+    assert env.robot.scan[0, 8] == approx(42.4, abs=0.1) and observation[2] == 20
+    assert env.observation_space.contains(observation)
+
+
+def test_snapshot_of_another_task_is_refused():
+    env, other = make(task="goal"), make()
+    env.reset(seed=1), other.reset(seed=1)
+    with pytest.raises(EnvOptionError, match="a task without a goal"):
+        env.restore(other.snapshot())
+
+
+def yard(half):
+    """A yard that a wall without a gate divides; small boxes outside of it."""
+    at = [((half, 0.0), 0.2, 2 * half), ((-half, 0.0), 0.2, 2 * half), ((0.0, half), 2 * half, 0.2)]
+    at += [((0.0, -half), 2 * half, 0.2), ((0.0, 0.0), 0.2, 2 * half), ((half + 50.0, 0.0), 0.2, 0.2)]
+    walls = tuple(worlds.Box((*xy, 0.5), (length, width, 1.0)) for xy, length, width in at)
+    return worlds.World("yard", walls, (worlds.Start("o", (-0.5 * half, 0.0, 0.0), 0.0),))
+
+
+def test_random_starts_stay_behind_walls_of_a_large_world():
+    env = make(world=yard(200.0), start="random")
+    for seed in range(100):
+        env.reset(seed=seed)
+        x, y = env.robot.pose[0, :2]
+        assert -200.0 < x < 0.0 and abs(y) < 200.0
+    with pytest.raises(EnvOptionError, match=r"world 'yard': 8051 x 8001 m is too large; say where instead"):
+        make(world=yard(4000.0), start="random")

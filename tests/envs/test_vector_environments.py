@@ -11,6 +11,7 @@ import pytest
 from gymnasium.error import InvalidAction, ResetNeeded
 
 from envs import EnvOptionError
+from envs.tasks import ReachGoal
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 CASES = [
@@ -115,3 +116,41 @@ def test_step_needs_a_reset():
 def test_wrong_counts_are_refused(options):
     with pytest.raises(EnvOptionError, match=r"must be 1 or more"):
         gym.make_vec(CIRCUIT2, **options)
+
+
+def test_goals_and_their_rewards_are_those_of_single_ones_to_the_last_bit():
+    options = {"task": "goal", "start": "random", "max_episode_steps": 9}
+    vector = gym.make_vec("sitl/Navigate-v0", num_envs=4, **options)
+    singles = gym.vector.SyncVectorEnv([lambda: gym.make("sitl/Navigate-v0", **options) for _ in range(4)])
+    vector.reset(seed=5), singles.reset(seed=5)
+    for step in range(60):
+        actions = np.arange(step, step + 4) % 3
+        ours, theirs = vector.step(actions), singles.step(actions)
+        for a, b in zip(ours[:4], theirs[:4]):
+            assert np.array_equal(a, b), step
+
+
+def test_snapshots_keep_who_has_ended_and_the_step_count():
+    vector = gym.make_vec("GazeboCircuit2TurtlebotLIDAR-v0", num_envs=2, max_episode_steps=30).unwrapped
+    vector.reset(seed=1)
+    while not vector.step(np.array([0, 1]))[2].any():
+        pass
+    kept = vector.snapshot()
+    first = [vector.step(np.array([0, 1]))[:4] for _ in range(30)]
+    other = gym.make_vec("GazeboCircuit2TurtlebotLIDAR-v0", num_envs=2, max_episode_steps=30).unwrapped
+    for again in (vector, other):  # the other was never reset
+        again.restore(kept)
+        for a in first:
+            assert all(np.array_equal(x, y) for x, y in zip(a, again.step(np.array([0, 1]))[:4]))
+
+
+def test_a_tasks_own_arrays_stay_as_they_are():
+    class Told(ReachGoal):
+        def info(self, step):
+            return {"goal": self.goals}
+
+    vector = gym.make_vec("sitl/Navigate-v0", num_envs=2, task=Told((1.0, 2.0)), max_episode_steps=1).unwrapped
+    vector.reset(seed=1)
+    vector.step(np.array([1, 1]))
+    vector.step(np.array([1, 1]))
+    assert vector._session.task.goals.tolist() == [[1.0, 2.0]] * 2

@@ -211,3 +211,14 @@ def test_the_examples_of_the_page_work() -> None:
     exec(example, scope)
     assert [int(r) for r in scope["readings"][::4]] == [0, 4, 1, 1, 0]
     assert scope["near"].distance == pytest.approx(0.234, abs=0.001)
+
+
+def test_a_byte_order_mark_does_not_matter(tmp_path: Path) -> None:
+    path = tmp_path / "marked.toml"
+    path.write_bytes('\ufeff[world]\ndescription = "From an editor on Windows."\n'.encode())
+    assert worlds.load(path).description == "From an editor on Windows."
+
+
+def test_a_world_has_a_start() -> None:
+    with pytest.raises(WorldError, match="world 'nowhere' has no start pose"):
+        worlds.World("nowhere", (), ())
