@@ -84,6 +84,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.envs")
     parser.add_argument("--repeats", type=int, default=7, metavar="N", help="runs of each, of which the median counts")
     parser.add_argument("--steps", type=int, default=20_000, metavar="N", help="of a run")
+    parser.add_argument("--copters", type=int, default=0, metavar="N", help="also a vector of N copters (256: 250 MB)")
     options = parser.parse_args()
     if options.repeats < 1 or options.steps < 1024:
         parser.error("--repeats must be 1 or more, --steps 1024 or more")
@@ -94,6 +95,9 @@ def main() -> None:
     for count in VECTORS:
         rows[f"{_ID}, vector of {count}"] = (vector(_ID, count, max(options.steps, 4 * count)), 0.6)
     rows[f"{_ROVER}, vector of 16"] = (vector(_ROVER, 16, options.steps // 10), 0.1)
+    if options.copters:
+        count = options.copters
+        rows[f"{_COPTER}, vector of {count}"] = (vector(_COPTER, count, max(options.steps // 10, 4 * count)), 0.1)
     rows[f"{_ID}, every step drawn"] = (drawn(_ID, options.steps // 40), 0.6)
     results: dict[str, list[float]] = {name: [] for name in rows}
     for _ in range(options.repeats):

@@ -114,10 +114,46 @@ class WithPose:
         return {"scan": self.scan.observe(robot), "pose": robot.pose.astype(np.float32)}
 
 
+class WithGoal:
+    """Another observation, and the way to the goal of a task that has one.
+
+    A dictionary of "goal" (distance [m], bearing [rad], left of the nose positive, float32) and what the other one has.
+    """
+
+    def __init__(self, other: Observation) -> None:
+        self.other = other
+        self._task: Any = None
+
+    def watch(self, task: Any) -> None:
+        """Take the goals of a task (``goals``: x, y of each robot's)."""
+        if not hasattr(task, "goals"):
+            raise EnvOptionError(f'observation with a goal: task {task!r} has none, as "goal" has')
+        self._task = task
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        low, high = np.array([0.0, -math.pi], np.float32), np.array([3.0 * FAR, math.pi], np.float32)
+        goal = gym.spaces.Box(low, high, dtype=np.float32)
+        other = self.other.space(robot)
+        return gym.spaces.Dict({**(other if isinstance(other, gym.spaces.Dict) else {"scan": other}), "goal": goal})
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        pose, other = robot.pose, self.other.observe(robot)
+        way = self._task.goals - pose[:, :2]
+        bearing = np.arctan2(way[:, 1], way[:, 0]) - pose[:, 3]
+        bearing = np.arctan2(np.sin(bearing), np.cos(bearing))
+        goal = np.stack([np.hypot(way[:, 0], way[:, 1]), bearing], axis=1).astype(np.float32)
+        return {**(other if isinstance(other, dict) else {"scan": other}), "goal": goal}
+
+
 OBSERVATIONS: dict[str, Callable[[], Observation]] = {
     "digits": Digits,
     "scan": Scan,
     "digits+pose": lambda: WithPose(Digits()),
     "scan+pose": lambda: WithPose(Scan()),
+    "digits+goal": lambda: WithGoal(Digits()),
+    "scan+goal": lambda: WithGoal(Scan()),
+    "scan+pose+goal": lambda: WithGoal(WithPose(Scan())),
 }
 """By name."""

@@ -80,7 +80,6 @@ class Session:
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
         self.seconds = self._check_step_time(step_time)
-        self.observation_space = self.observation.space(self.robot)
         self.actions = self.action.room(count)
         """To be filled before ``advance``, a row a robot, with what ``action.check`` gives."""
         self.commands = np.zeros((count, self.action.setpoint.width))
@@ -89,6 +88,10 @@ class Session:
         self.step = Step(self.robot, self.seconds)
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
         self.task.prepare(self.robot)
+        watch = getattr(self.observation, "watch", None)
+        if watch is not None:
+            watch(self.task)
+        self.observation_space = self.observation.space(self.robot)
 
     def _choose_action(self, action: str | Action, setpoint: str | None) -> Action:
         robot = self.robot
