@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from .connection import ACCEPTED, Connection
 from .ends import NotReadyError
-from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN
+from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN, SECTORS
 
 ARM_DISARM, SET_MODE, TAKE_OFF, REBOOT, SET_INTERVAL, REQUEST = 400, 176, 22, 246, 511, 512
 FORCE = 21196.0
@@ -51,11 +51,16 @@ def reboot(link: Connection) -> None:
 def set_intervals(link: Connection, interval_us: int) -> None:
     """Ask for position, attitude and scan at an interval.
 
+    A vehicle that knows nothing of whole scans (a real one) is asked for OBSTACLE_DISTANCE: centimetres, 72 sectors.
+
     Raises:
         NotReadyError: the vehicle does not send one of them so often.
     """
-    for kind in (POSITION, ATTITUDE, SCAN):
+    for kind in (POSITION, ATTITUDE, link.heard.scan_kind):
         result = link.command(SET_INTERVAL, kind.id, interval_us)
+        if result != ACCEPTED and kind is SCAN:
+            link.heard.scan_kind = kind = SECTORS
+            result = link.command(SET_INTERVAL, kind.id, interval_us)
         if result != ACCEPTED:
             raise NotReadyError(
                 f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms "
@@ -65,7 +70,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
 
 def hear_again(link: Connection) -> None:
     """Ask for position, attitude and scan as they are: those of this instant were lost on the way."""
-    for kind in (POSITION, ATTITUDE, SCAN):
+    for kind in (POSITION, ATTITUDE, link.heard.scan_kind):
         link.command(REQUEST, kind.id)
 
 
@@ -117,7 +122,7 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     scans = heard.scans
     link.run(_TENTH)
     if heard.scans == scans:
-        raise NotReadyError(f"{link.name}: the vehicle sends no scan (DEBUG_FLOAT_ARRAY called LASER)")
+        raise NotReadyError(f"{link.name}: the vehicle sends no scan (DEBUG_FLOAT_ARRAY called LASER, or OBSTACLE_DISTANCE)")
 
 
 def _until(link: Connection, done: Callable[[], bool], every_us: int, complaint: str) -> None:

@@ -14,6 +14,7 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
+SECTORS = message("OBSTACLE_DISTANCE")
 HEARTBEAT, ACK, TEXT, ORIGIN, PARAMETER = (
     message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "GPS_GLOBAL_ORIGIN", "PARAM_VALUE")
 )
@@ -52,6 +53,10 @@ class Telemetry:
         """Time since boot [ms]; roll, pitch, heading [rad]; their rates [rad/s]."""
         self.scans = 0
         """Whole scans so far."""
+        self.scan_kind = SCAN
+        """Where scans are taken from: SCAN, or SECTORS of a vehicle that does not send the other."""
+        self.angles: npt.NDArray[np.float64] = np.zeros(readings)
+        """Of the readings, counter-clockwise from straight ahead [rad]: SECTORS are spread over them."""
         self.hits = 0
         """Touches told so far."""
         self.mode, self.armed = -1, False
@@ -92,6 +97,19 @@ class Telemetry:
             self.scan, self._next = self._next, self.scan
             self.scans += 1
 
+    def _sectors(self, fields: Any) -> None:
+        """OBSTACLE_DISTANCE: the reading of each angle is that of its sector."""
+        step = fields.increment_f or float(fields.increment)
+        if self.scan_kind is not SECTORS or step == 0.0:
+            return
+        distances = np.array(fields.distances, np.float32) * np.float32(0.01)
+        distances[distances > fields.max_distance * 0.01] = np.inf
+        clockwise = (-np.degrees(self.angles) - fields.angle_offset) / step
+        number = np.rint(clockwise % abs(360.0 / step)).astype(int)
+        number[number >= round(abs(360.0 / step))] = 0
+        self.scan[: len(number)] = np.where(number < len(distances), distances.take(number, mode="clip"), np.inf)
+        self.scans += 1
+
     def _other(self, kind: Any, payload: bytes, system: int) -> None:
         fields = kind.decode(payload)
         if kind is HEARTBEAT:
@@ -99,6 +117,8 @@ class Telemetry:
         elif kind is ACK:
             self.system = system
             self.acks.append(fields)
+        elif kind is SECTORS:
+            self._sectors(fields)
         elif kind is PARAMETER:
             self.parameters[fields.param_id.decode("ascii", "replace")] = fields.param_value
         elif kind is ORIGIN:
@@ -118,11 +138,13 @@ class Telemetry:
 
     def memory(self) -> tuple[Any, ...]:
         """What ``recall`` needs to go on as from here; can be pickled."""
-        return self.position, self.attitude, self.scan.copy(), self._scan_us, self.mode, self.armed, self.origin
+        scan = self.scan_kind is SECTORS, self.scan.copy(), self._scan_us
+        return self.position, self.attitude, scan, self.mode, self.armed, self.origin
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Go on as from a ``memory``; parts of bytes and of scans are gone."""
-        self.position, self.attitude, scan, self._scan_us, self.mode, self.armed, self.origin = memory
+        self.position, self.attitude, (in_sectors, scan, self._scan_us), self.mode, self.armed, self.origin = memory
+        self.scan_kind = SECTORS if in_sectors else SCAN
         self.scan[:] = scan
         self._splitter = Splitter()
         self._fresh.clear()

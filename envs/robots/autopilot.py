@@ -174,6 +174,7 @@ class AutopilotRobot:
             link = self._links[0]
             if link is None:
                 link = connect(self._options["connection"], self.scan.shape[1], self._options["patience"])
+                link.heard.angles = self.angles
                 self._links[0] = link
             reboot(link)
             origin = self._prepare(link, pose)
@@ -191,6 +192,7 @@ class AutopilotRobot:
         if ready is None:
             simulation = self._simulation(pose, figures)
             link = InProcess(simulation, self.scan.shape[1])
+            link.heard.angles = self.angles
             origin = self._prepare(link, pose)
             ready = Ready(simulation.snapshot(), link.heard.memory(), origin, simulation.time_us, "", INTERVAL_US)
             link.close()
@@ -219,6 +221,7 @@ class AutopilotRobot:
         if link is None:
             simulation = self._simulation()
             link = self._links[index] = InProcess(simulation, self.scan.shape[1])
+            link.heard.angles = self.angles
             if index == 0 and self._options["gcs"] is not None:
                 simulation.bridge.add_link(self._gcs)
         assert isinstance(link, InProcess)
