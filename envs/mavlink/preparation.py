@@ -122,7 +122,8 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     scans = heard.scans
     link.run(_TENTH)
     if heard.scans == scans:
-        raise NotReadyError(f"{link.name}: the vehicle sends no scan (LASER in DEBUG_FLOAT_ARRAY, or OBSTACLE_DISTANCE)")
+        wanted = "LASER in DEBUG_FLOAT_ARRAY, or OBSTACLE_DISTANCE"
+        raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
 
 
 def _until(link: Connection, done: Callable[[], bool], every_us: int, complaint: str) -> None:
