@@ -46,3 +46,19 @@ def moved_to(v, channel):
         pilot.switch_position = now
         return now
     return -1
+
+
+@law
+def chosen(k, mode1, mode2, mode3, mode4, mode5, mode6):
+    """The mode of position ``k`` (0 .. 5), of the six that the firmware's parameters name."""
+    if k == 0:
+        return int(mode1)
+    if k == 1:
+        return int(mode2)
+    if k == 2:
+        return int(mode3)
+    if k == 3:
+        return int(mode4)
+    if k == 4:
+        return int(mode5)
+    return int(mode6)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...arming_checks import BY_RUDDER
-from ...mode_switch import moved_to
+from ...mode_switch import chosen, moved_to
 from .. import arming
 from .numbers import REASON_RC
 from .set_mode import request
@@ -16,28 +16,13 @@ _FULL_STICK = 4000.0 / 4500.0
 
 
 @law
-def mode_at(p, k):
-    """FLTMODE of position ``k``."""
-    if k == 0:
-        return int(p.FLTMODE1)
-    if k == 1:
-        return int(p.FLTMODE2)
-    if k == 2:
-        return int(p.FLTMODE3)
-    if k == 3:
-        return int(p.FLTMODE4)
-    if k == 4:
-        return int(p.FLTMODE5)
-    return int(p.FLTMODE6)
-
-
-@law
 def read_mode(v):
     """After each frame: a new position of the switch changes the mode."""
-    params = v.autopilot.params
-    now = moved_to(v, int(params.FLTMODE_CH))
+    p = v.autopilot.params
+    now = moved_to(v, int(p.FLTMODE_CH))
     if now >= 0:
-        request(v, mode_at(params, now), REASON_RC)
+        mode = chosen(now, p.FLTMODE1, p.FLTMODE2, p.FLTMODE3, p.FLTMODE4, p.FLTMODE5, p.FLTMODE6)
+        request(v, mode, REASON_RC)
 
 
 @law

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...arming_checks import BY_RUDDER
-from ...mode_switch import moved_to
+from ...mode_switch import chosen, moved_to
 from .. import arming
 from ..control.motors import is_moving
 from .numbers import REASON_RC, allows_arming_by_stick
@@ -17,28 +17,13 @@ _FULL_STICK = 4000.0 / 4500.0
 
 
 @law
-def mode_at(p, k):
-    """MODE of position ``k``."""
-    if k == 0:
-        return int(p.MODE1)
-    if k == 1:
-        return int(p.MODE2)
-    if k == 2:
-        return int(p.MODE3)
-    if k == 3:
-        return int(p.MODE4)
-    if k == 4:
-        return int(p.MODE5)
-    return int(p.MODE6)
-
-
-@law
 def read_mode(v):
     """After each frame: a new position of the switch changes the mode."""
-    params = v.autopilot.params
-    now = moved_to(v, int(params.MODE_CH))
+    p = v.autopilot.params
+    now = moved_to(v, int(p.MODE_CH))
     if now >= 0:
-        request(v, mode_at(params, now), REASON_RC)
+        mode = chosen(now, p.MODE1, p.MODE2, p.MODE3, p.MODE4, p.MODE5, p.MODE6)
+        request(v, mode, REASON_RC)
 
 
 @law
