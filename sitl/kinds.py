@@ -13,8 +13,12 @@ from . import advance, sim_parameters, vehicle
 from .autopilot.copter.firmware import FIRMWARE as COPTER_FIRMWARE
 from .autopilot.firmware import Firmware
 from .autopilot.rover.firmware import FIRMWARE as ROVER_FIRMWARE
+from .physics.native.copter import pieces as copter_pieces
 from .physics.native.copter.init import init as init_copter
+from .physics.native.copter.step import step as step_copter
+from .physics.native.rover import pieces as rover_pieces
 from .physics.native.rover.init import init as init_rover
+from .physics.native.rover.step import step as step_rover
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,13 @@ class Kind:
     record: str
     """Name of its record in ``sitl.vehicle``."""
     advance: Callable[[Any, int, int], None]
-    """Entry of its core (``sitl.advance``)."""
+    """Entry of its core (``sitl.advance``): native physics and autopilot."""
+    fly: Callable[[Any, int], None]
+    """Unit of one tick of its autopilot alone."""
+    step: Callable[[Any, int], None]
+    """Unit of one tick of its native physics alone."""
+    pieces: Any
+    """Module of the units ``begin``, ``load`` and ``sense``: a tick without the motion (``sitl.physics.engine``)."""
     init_physics: Callable[..., None]
     """``init(v, airframe, home, seed)``: power-on of its physics."""
     apply_sim_parameters: Callable[[Any], None]
@@ -48,6 +58,24 @@ class Kind:
         return found
 
 
-COPTER = Kind(COPTER_FIRMWARE, "COPTER_DTYPE", advance.advance_copter, init_copter, sim_parameters.apply_to_copter)
-ROVER = Kind(ROVER_FIRMWARE, "ROVER_DTYPE", advance.advance_rover, init_rover, sim_parameters.apply_to_all)
+COPTER = Kind(
+    COPTER_FIRMWARE,
+    "COPTER_DTYPE",
+    advance.advance_copter,
+    advance.fly_copter,
+    step_copter,
+    copter_pieces,
+    init_copter,
+    sim_parameters.apply_to_copter,
+)
+ROVER = Kind(
+    ROVER_FIRMWARE,
+    "ROVER_DTYPE",
+    advance.advance_rover,
+    advance.fly_rover,
+    step_rover,
+    rover_pieces,
+    init_rover,
+    sim_parameters.apply_to_all,
+)
 KINDS = {kind.name: kind for kind in (COPTER, ROVER)}

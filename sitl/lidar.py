@@ -9,6 +9,8 @@ index 0 is the rightmost, the last one the leftmost. A reading below the least i
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,32 +24,28 @@ from .worlds.compiled import kernel
 from .worlds.planar import publish_readings
 from .worlds.raycast import scan_rays
 
+Cast = Callable[..., bool]
 NEVER = 1 << 62
 DOWN = np.array([[0.0], [0.0], [1.0]])
 
 
 @law
-def measure_ranges(rng, position, attitude, figures, solids, grid, cells, rays, directions, ranges, readings):
-    """One scan of a sensor on a body, into ``readings``.
-
-    Args:
-        rng: records, shape (1,): of the vehicle's random numbers.
-        position: of the body, NED from the origin on the floor [m].
-        attitude: quaternion from body to NED.
-        figures: least reading, range, standard deviation of a reading [m], place on the body forward, right, down [m],
-            height of the floor in the world's frame [m].
-        solids, grid, cells: of the world's ``Geometry``.
-        rays: unit vectors on the body, FRD, shape (3, rays).
-        directions, ranges: room to work in, shapes (3, rays), (rays,).
-        readings: float32 [m]; inf: nothing in range.
-    """
+def aim(position, attitude, figures, rays, origin, directions):
+    """Turn a sensor's rays into the world: ``origin`` NED, down from z = 0 of the world's frame [m], shape (3,), and
+    ``directions`` NED, shape (3, rays)."""
     w, x, y, z = float(attitude[0]), float(attitude[1]), float(attitude[2]), float(attitude[3])
-    for k in range(ranges.shape[0]):
+    for k in range(rays.shape[1]):
         n, e, d = quat_rotate(w, x, y, z, float(rays[0, k]), float(rays[1, k]), float(rays[2, k]))
         directions[0, k], directions[1, k], directions[2, k] = n, e, d
     n, e, d = quat_rotate(w, x, y, z, float(figures[3]), float(figures[4]), float(figures[5]))
-    n, e, d = n + float(position[0]), e + float(position[1]), d + float(position[2]) - float(figures[6])
-    scan_rays(solids, grid, cells, n, e, d, directions, ranges)
+    origin[0] = n + float(position[0])
+    origin[1] = e + float(position[1])
+    origin[2] = d + float(position[2]) - float(figures[6])
+
+
+@law
+def publish(rng, figures, ranges, readings):
+    """What a sensor reads of the ranges that its rays met [m]; see ``measure_ranges``."""
     least, longest, noise = float(figures[0]), float(figures[1]), float(figures[2])
     publish_readings(ranges, longest, readings)
     for k in range(readings.shape[0]):
@@ -58,13 +56,33 @@ def measure_ranges(rng, position, attitude, figures, solids, grid, cells, rays, 
             readings[k] = max(reading, least)
 
 
+@law
+def measure_ranges(rng, position, attitude, figures, solids, grid, cells, rays, origin, directions, ranges, readings):
+    """One scan of a sensor on a body, into ``readings``.
+
+    Args:
+        rng: records, shape (1,): of the vehicle's random numbers.
+        position: of the body, NED from the origin on the floor [m].
+        attitude: quaternion from body to NED.
+        figures: least reading, range, standard deviation of a reading [m], place on the body forward, right, down [m],
+            height of the floor in the world's frame [m].
+        solids, grid, cells: of the world's ``Geometry``.
+        rays: unit vectors on the body, FRD, shape (3, rays).
+        origin, directions, ranges: room to work in, shapes (3,), (3, rays), (rays,).
+        readings: float32 [m]; inf: nothing in range.
+    """
+    aim(position, attitude, figures, rays, origin, directions)
+    scan_rays(solids, grid, cells, float(origin[0]), float(origin[1]), float(origin[2]), directions, ranges)
+    publish(rng, figures, ranges, readings)
+
+
 def _signature() -> Any:
     import numba
     from numba import types
 
     rng = types.Array(numba.from_dtype(RNG_DTYPE), 1, "C")
     line, table, whole = types.float64[::1], types.float64[:, ::1], types.int64[::1]
-    return types.void(rng, line, line, line, table, line, whole, table, table, line, types.float32[::1])
+    return types.void(rng, line, line, line, table, line, whole, table, line, table, line, types.float32[::1])
 
 
 _measure = kernel(_signature)(measure_ranges)
@@ -80,6 +98,7 @@ class Ranger:
         rays: unit vectors on the body, FRD, shape (3, rays).
         readings: float32 array in the record.
         geometry, floor: of the world.
+        cast: an engine's own way to cast rays (``sitl.physics.engine.Engine.cast``).
     """
 
     def __init__(
@@ -92,18 +111,30 @@ class Ranger:
         readings: np.ndarray[Any, Any],
         geometry: Geometry,
         floor: float,
+        cast: Cast | None = None,
     ) -> None:
         a, self._sensors, self._counter = v.physics.airframe, v.sensors, name + "_count"
         self._count = RecordReader(fleet, index).field(f"sensors.{name}_count")
         self._period_us = 1e6 / float(a[name + "_rate"])
         figures = [a[name + "_min"], a[name + "_max"], a[name + "_noise"], *a[name + "_at"], floor]
         rng: Any = [v.rng] if jit_disabled() else fleet["rng"][index : index + 1]
-        room, ranges = np.empty_like(rays), np.empty(rays.shape[1])
-        self._function = _measure.function()
-        self._arguments = (
-            rng, v.physics.body.pos, v.physics.body.q, np.array(figures, np.float64),
-            geometry.solids, geometry.grid, geometry.cells, rays, room, ranges, readings,
+        origin, room, ranges = np.empty(3), np.empty_like(rays), np.empty(rays.shape[1])
+        body, numbers = v.physics.body, np.array(figures, np.float64)
+        measure = partial(
+            _measure.function(), rng, body.pos, body.q, numbers,
+            geometry.solids, geometry.grid, geometry.cells, rays, origin, room, ranges, readings,
         )  # fmt: skip
+        self._measure: Callable[[], None] = measure
+        if cast is not None:
+
+            def by_engine() -> None:
+                aim(body.pos, body.q, numbers, rays, origin, room)
+                if cast(origin, room, ranges, float(numbers[1])):
+                    publish([v.rng], numbers, ranges, readings)
+                else:
+                    measure()
+
+            self._measure = by_engine
         self.find_due()
 
     def find_due(self) -> None:
@@ -112,7 +143,7 @@ class Ranger:
 
     def take(self, now_us: int) -> None:
         """Measure. Ticks that are longer than the period leave some out."""
-        self._function(*self._arguments)
+        self._measure()
         count = int(self._count())
         self._sensors[self._counter] = max(count + 1, math.floor((now_us + 0.5) / self._period_us) + 1)
         self.find_due()
@@ -126,9 +157,18 @@ class Rangers:
         fleet, index: the record itself.
         geometry: of the world.
         floor: height of the floor in the world's frame [m].
+        cast: see ``Ranger``.
     """
 
-    def __init__(self, v: Any, fleet: np.ndarray[Any, Any], index: int, geometry: Geometry, floor: float) -> None:
+    def __init__(
+        self,
+        v: Any,
+        fleet: np.ndarray[Any, Any],
+        index: int,
+        geometry: Geometry,
+        floor: float,
+        cast: Cast | None = None,
+    ) -> None:
         a, s = v.physics.airframe, v.sensors
         self._sensors = s
         self.lidar: Ranger | None = None
@@ -136,9 +176,9 @@ class Rangers:
         samples = int(a.lidar_samples)
         if samples > 0:
             rays = np.ascontiguousarray(planar.rays(int(a.lidar_rays), float(a.lidar_fov)))
-            self.lidar = Ranger(v, fleet, index, "lidar", rays, s.lidar_ranges[:samples], geometry, floor)
+            self.lidar = Ranger(v, fleet, index, "lidar", rays, s.lidar_ranges[:samples], geometry, floor, cast)
         if a.rangefinder_max > 0.0:
-            self.rangefinder = Ranger(v, fleet, index, "rangefinder", DOWN, s.rangefinder_range, geometry, floor)
+            self.rangefinder = Ranger(v, fleet, index, "rangefinder", DOWN, s.rangefinder_range, geometry, floor, cast)
         self._all = [sensor for sensor in (self.lidar, self.rangefinder) if sensor is not None]
         self.find_due()
 

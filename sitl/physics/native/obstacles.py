@@ -19,6 +19,7 @@ from ...core.records import record
 from ...core.rotations import quat_rotate_inverse
 from ...worlds.contact import nearest_of
 from ...worlds.geometry import SOLID_FIGURES
+from .body import GRAVITY
 from .tick import TICK_S
 
 OBSTACLES_MAX = 24
@@ -52,7 +53,7 @@ OBSTACLES_DTYPE = record(
     ("turned", "f8"),  # angle that the body has turned by since [rad]
     ("touching", "i8"),
     ("hit_count", "i8"),  # contacts so far that were faster than HIT_SPEED
-    ("hit_speed", "f8"),  # of the last one, into the solid [m/s]
+    ("hit_speed", "f4"),  # of the last one, into the solid [m/s]
     ("hit_time_us", "i8"),
     ("impulse", "f8", 3),  # velocity taken away that the accelerometer still has to show, NED [m/s]
 )
@@ -175,6 +176,13 @@ def ask(p):
         o.clear = 0.0
     else:
         o.clear = min(float(o.clear), left)
+
+
+@law
+def settle(p):
+    """At rest on hard ground: the accelerometer shows its support from the first tick on, although each tick's share of
+    it is spread like an impact."""
+    p.obstacles.impulse[2] = -GRAVITY * TICK_S * (1.0 - _RELEASE) / _RELEASE
 
 
 @law

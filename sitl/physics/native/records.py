@@ -45,6 +45,14 @@ BODY_DTYPE = record(  # truth
     ("specific_force", "f8", 3),  # body, mean over the last tick; at rest and level (0, 0, -9.80665)
 )
 
+MOTION_DTYPE = record(  # between the common laws and an engine that moves the body (sitl.physics.engine)
+    ("force", "f8", 3),  # on the body but gravity and ground, FRD [N]
+    ("torque", "f8", 3),  # FRD [N m]
+    ("contact", "f8", 3),  # change of velocity in this tick that hard contacts gave, NED [m/s]
+    ("vel", "f8", 3),  # body.vel before this tick
+    ("q", "f8", 4),  # body.q before this tick
+)
+
 BATTERY_STATE_DTYPE = record(
     ("charge", "f8"),  # 1 full .. 0 empty
     ("voltage", "f8"),  # at the terminals [V]
@@ -106,6 +114,7 @@ def physics_dtype(airframe: np.dtype[Any], derived: np.dtype[Any], *own: tuple[s
         ("derived", derived),
         ("place", PLACE_DTYPE),
         ("body", BODY_DTYPE),
+        ("motion", MOTION_DTYPE),
         ("battery", BATTERY_STATE_DTYPE),
         ("air", AIR_DTYPE),
         ("wind", WIND_DTYPE),

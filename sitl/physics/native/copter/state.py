@@ -37,7 +37,7 @@ GROUND_LYING = 2
 GROUND_DTYPE = record(
     ("state", "i8"),  # GROUND_*
     ("hit_count", "i8"),  # touches so far that were faster than the airframe's hit_speed
-    ("hit_speed", "f8"),  # of the last one, vertical [m/s]
+    ("hit_speed", "f4"),  # of the last one, vertical [m/s]
     ("hit_time_us", "i8"),
     ("impulse", "f8"),  # vertical impact that the legs still have to take up [m/s]
 )

@@ -16,6 +16,17 @@ from .wrench import wrench
 
 
 @law
+def begin(v):
+    """First thing of a tick: the clock goes on, wind blows, actuator controls become rotor commands."""
+    v.time_us += TICK_US
+    v.tick += 1
+    p = v.physics
+    if int(v.tick) % wind.PERIOD_TICKS == 0:
+        wind.update(p.wind, v.rng)
+    rotors.command(p, v.actuators.controls)
+
+
+@law
 def move(p, time_us):
     """Advance the body by one tick; sets its means over the tick."""
     b = p.body
@@ -49,20 +60,21 @@ def move(p, time_us):
     b.acc_ned[0], b.acc_ned[1], b.acc_ned[2] = an, ae, ad + GRAVITY
 
 
+@law
+def end(v):
+    """Last thing of a tick: battery and sensors."""
+    battery.update(v.physics, float(v.physics.rotors.power))
+    sense(v.physics, v.sensors, int(v.tick), int(v.time_us), v.rng)
+
+
 @unit
 def step(fleet, i):
     """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
     v = fleet[i]
-    p = v.physics
-    v.time_us += TICK_US
-    v.tick += 1
-    tick, time_us = int(v.tick), int(v.time_us)
-    if tick % wind.PERIOD_TICKS == 0:
-        wind.update(p.wind, v.rng)
-    rotors.command(p, v.actuators.controls)
+    begin(v)
+    p, time_us = v.physics, int(v.time_us)
     move(p, time_us)
     if p.obstacles.present != 0:
         obstacles.collide(p, time_us)
         obstacles.show(p)
-    battery.update(p, float(p.rotors.power))
-    sense(p, v.sensors, tick, time_us, v.rng)
+    end(v)

@@ -20,21 +20,30 @@ THROTTLE_OUTPUT = 2
 
 
 @law
-def move(p, controls):
-    """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
-    w, rolled, scale = p.wheels, p.wheels.distance, float(p.derived.control_scale)
+def drive(p, controls):
+    """Let motors and steering follow the actuator controls [-1 .. 1] for a tick."""
+    w, scale = p.wheels, float(p.derived.control_scale)
     first = commanded(float(controls[STEERING_OUTPUT]), scale)
     second = commanded(float(controls[THROTTLE_OUTPUT]), scale)
-    before = float(w.forward)
     if int(p.airframe.steering_model) == STEERING_SKID:
         w.power = 0.5 * (run(p, 0, first) + run(p, 1, second))
+    else:
+        turn_wheels(p, first)
+        w.power = run(p, 0, second)
+
+
+@law
+def move(p, controls):
+    """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
+    w, rolled = p.wheels, p.wheels.distance
+    before = float(w.forward)
+    drive(p, controls)
+    if int(p.airframe.steering_model) == STEERING_SKID:
         left, right = float(w.speed[0]), float(w.speed[1])
         accel = grip_along(p, 0.5 * (left + right))
         rate = (left - right) * float(p.derived.inverse_track)
         roll(p, before, grip_across(p, rate, accel))
     else:
-        turn_wheels(p, first)
-        w.power = run(p, 0, second)
         speed = float(w.speed[0])
         accel = grip_along(p, speed)
         roll(p, before, grip_across(p, float(w.forward) * curvature(p), accel))
@@ -44,19 +53,31 @@ def move(p, controls):
     rolled[1] += TICK_S * right
 
 
+@law
+def begin(v):
+    """First thing of a tick: the clock goes on."""
+    v.time_us += TICK_US
+    v.tick += 1
+
+
+@law
+def end(v):
+    """Last thing of a tick: battery and sensors."""
+    p = v.physics
+    battery.update(p, float(p.wheels.power))
+    sense(p, v.sensors, int(v.tick), int(v.time_us), v.rng)
+    encoders.update(p, v.sensors, int(v.tick))
+
+
 @unit
 def step(fleet, i):
     """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
     v = fleet[i]
-    p = v.physics
-    v.time_us += TICK_US
-    v.tick += 1
-    tick, time_us = int(v.tick), int(v.time_us)
+    begin(v)
+    p, time_us = v.physics, int(v.time_us)
     move(p, v.actuators.controls)
     if p.obstacles.present != 0:
         if obstacles.collide(p, time_us):
             hold_back(p)
         obstacles.show(p)
-    battery.update(p, float(p.wheels.power))
-    sense(p, v.sensors, tick, time_us, v.rng)
-    encoders.update(p, v.sensors, tick)
+    end(v)
