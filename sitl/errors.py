@@ -10,6 +10,8 @@ from .core.extras import MissingExtra
 from .logs.tlog import LogError
 from .option_error import OptionError
 from .pacing import SpeedupError
+from .physics.engine import EngineError
+from .plants.plant import PhysicsLostError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
 from .worlds import WorldError
@@ -18,11 +20,13 @@ USER_ERRORS: tuple[type[Exception], ...] = (
     AirframeError,
     BuildError,
     CannotBuild,
+    EngineError,
     LinkAddressError,
     LogError,
     MissingExtra,
     OptionError,
     ParameterError,
+    PhysicsLostError,
     SpeedupError,
     WorldError,
 )

@@ -85,7 +85,24 @@ def _signature() -> Any:
     return types.void(rng, line, line, line, table, line, whole, table, line, table, line, types.float32[::1])
 
 
+def _aim_signature() -> Any:
+    from numba import types
+
+    line, table = types.float64[::1], types.float64[:, ::1]
+    return types.void(line, line, line, table, line, table)
+
+
+def _publish_signature() -> Any:
+    import numba
+    from numba import types
+
+    rng = types.Array(numba.from_dtype(RNG_DTYPE), 1, "C")
+    return types.void(rng, types.float64[::1], types.float64[::1], types.float32[::1])
+
+
 _measure = kernel(_signature)(measure_ranges)
+_aim = kernel(_aim_signature)(aim)
+_publish = kernel(_publish_signature)(publish)
 
 
 class Ranger:
@@ -126,11 +143,12 @@ class Ranger:
         )  # fmt: skip
         self._measure: Callable[[], None] = measure
         if cast is not None:
+            turn, read, reach = _aim.function(), _publish.function(), float(numbers[1])
 
             def by_engine() -> None:
-                aim(body.pos, body.q, numbers, rays, origin, room)
-                if cast(origin, room, ranges, float(numbers[1])):
-                    publish([v.rng], numbers, ranges, readings)
+                turn(body.pos, body.q, numbers, rays, origin, room)
+                if cast(origin, room, ranges, reach):
+                    read(rng, numbers, ranges, readings)
                 else:
                     measure()
 

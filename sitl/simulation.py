@@ -5,9 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from ctypes import c_int64, c_void_p
 from dataclasses import dataclass
-from functools import partial
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
@@ -21,13 +19,17 @@ from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.record_reader import RecordReader
-from .core import compile as compiler
 from .core import records
 from .core.compile import Progress
-from .kinds import COPTER, KINDS, Kind
-from .lidar import Rangers
+from .core_entry import Core, load_core
+from .kinds import KINDS
 from .option_error import OptionError
-from .surroundings import StartPose, Surroundings, checked_world
+from .physics.carried import Carried
+from .physics.engines import NATIVE
+from .plants.choose import is_remote, remote
+from .plants.local import LocalPlant
+from .plants.plant import Craft, PhysicsLostError, Plant
+from .surroundings import StartPose
 from .vehicle import TICK_US
 from .vehicles import Airframe, AirframeError
 from .worlds import World
@@ -40,31 +42,6 @@ DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 """Canberra model aircraft club, ArduPilot's default SITL location."""
 
 ESTIMATORS = ("ekf", "truth")
-
-
-class Core:
-    """``advance(fleet, index, ticks)`` of a kind of vehicle, compiled or (``NUMBA_DISABLE_JIT=1``) plain Python."""
-
-    def __init__(self, kind: Kind, function: Callable[..., None] | None) -> None:
-        self.kind = kind
-        self._function = function
-
-    def __call__(self, fleet: Array, index: int, ticks: int) -> None:
-        """Advance vehicle ``index`` by up to ``ticks`` ticks."""
-        self.bind(fleet, index)(ticks)
-
-    def bind(self, fleet: Array, index: int) -> Callable[[int], None]:
-        """The same for one vehicle, whose memory stays in place: cheaper to call."""
-        if self._function is None:
-            plain, advance = {index: records.view(fleet, index)}, self.kind.advance
-            return lambda ticks: advance(plain, index, ticks)
-        place = c_void_p(fleet.ctypes.data), c_int64(len(fleet)), c_int64(index)  # converted once
-        return partial(self._function, *place)
-
-
-def load_core(kind: Kind = COPTER, progress: Progress | None = None) -> Core:
-    """The core of a kind of vehicle; compiles what changed since it was last built."""
-    return Core(kind, compiler.load(kind.advance, kind.record_path, progress))
 
 
 @dataclass(frozen=True)
@@ -81,6 +58,10 @@ class Snapshot:
     reboot: bool
     world: str | None = None
     """Name of the world that it is in."""
+    physics: str = NATIVE
+    """What it is simulated by."""
+    plant: bytes = b""
+    """What that holds besides the record."""
 
 
 class Simulation:
@@ -97,36 +78,35 @@ class Simulation:
             vehicle stands at ``start``; home's heading does not count.
         start: name of one of the world's start poses, or x, y, z [m], yaw [deg] in the world's frame; None: the
             world's own for this airframe.
+        physics: "native", "pybullet", "jsbsim", or where the physics is: "hil:tcp:HOST:PORT" (``sitl physics``),
+            "json:HOST:PORT" (a simulator with ArduPilot's JSON interface). Home, seed, world and start of a physics
+            elsewhere are its own.
 
     Raises:
-        OptionError, sitl.vehicles.AirframeError, ParameterError, sitl.worlds.WorldError: an argument that cannot be
-            taken, named.
+        OptionError, sitl.physics.engine.EngineError, sitl.vehicles.AirframeError, ParameterError,
+            sitl.worlds.WorldError: an argument that cannot be taken, named.
+        MissingExtra: the library of an engine is not installed.
+        PhysicsLostError: no physics at that address.
     """
 
     def __init__(
         self,
         frame: str | Airframe = "erle_copter",
         *,
-        home: Home = DEFAULT_HOME,
-        seed: int = 0,
+        home: Home | None = None,
+        seed: int | None = None,
         estimator: str = "ekf",
         params: Mapping[str, float] | None = None,
         core: Core | None = None,
         progress: Progress | None = None,
         world: str | Path | World | None = None,
         start: StartPose | None = None,
+        physics: str = NATIVE,
     ) -> None:
         if estimator not in ESTIMATORS:
             raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         self.airframe = vehicles.load(frame)
-        self.home, self.seed, self.estimator = checked_home(home), checked_seed(seed), estimator
-        self.world = checked_world(world, start)
-        """Where it is; None: on a plain without end."""
-        self.surroundings = Surroundings(self.world, start, self.airframe) if self.world is not None else None
-        if self.surroundings is not None:
-            self.home = (*self.home[:3], math.degrees(self.surroundings.heading))
-        self.rangers: Rangers | None = None
-        """Its lidar and range-finder, in a world."""
+        self.seed, self.estimator, self.physics = checked_seed(seed or 0), estimator, physics
         self.kind = KINDS[self.airframe.kind]
         self.firmware = self.kind.firmware
         self.fleet: Array = np.zeros(1, self.kind.dtype)
@@ -134,7 +114,7 @@ class Simulation:
         self.v = records.view(self.fleet, self.index)
         size = self.fleet.dtype.itemsize
         self._record = memoryview(self.fleet.view("u1"))[self.index * size : (self.index + 1) * size]  # type: ignore[arg-type]
-        self._reader = reader = RecordReader(self.fleet, self.index)
+        reader = RecordReader(self.fleet, self.index)
         self._clock: Callable[[], int] = reader.field("time_us")
         self._event_count = reader.field("autopilot.events.count")
         self._events_seen = 0
@@ -152,8 +132,19 @@ class Simulation:
         """Names in ``params`` that this firmware does not have."""
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
-        self.core = core or load_core(self.kind, progress)
-        self._run = self.core.bind(self.fleet, self.index)
+        craft = Craft(self.kind, self.airframe, self.fleet, self.index, self.v, reader, self._physics_restarted)
+        if is_remote(physics):
+            truth = estimator if estimator == "truth" else None
+            given = {"home": home, "seed": seed, "world": world, "start": start, "estimator": truth}
+            self.plant: Plant = remote(craft, physics, **given)
+            self.world: World | None = None
+            """Where it is; None: on a plain without end, or known at the other end of the link alone."""
+            self.home = checked_home(home or DEFAULT_HOME)
+        else:
+            where = checked_home(home or DEFAULT_HOME)
+            plant = LocalPlant(craft, physics, where, self.seed, world, start, core, progress)
+            plant.load()
+            self.plant, self.world, self.home = plant, plant.world, plant.home
         self.mission = Mission()
         self._power_on()
         self.bridge = Bridge(self)
@@ -167,6 +158,12 @@ class Simulation:
     def elapsed_us(self) -> int:
         """The same, under the name that logs use."""
         return self.time_us
+
+    @property
+    def core(self) -> Core:
+        """The compiled core of native physics and this firmware: to be shared with other simulations."""
+        given = self.plant.core if isinstance(self.plant, LocalPlant) else None
+        return given or load_core(self.kind)
 
     def advance(self, seconds: float) -> None:
         """Advance by a simulated time, rounded up to whole ticks of 2.5 ms.
@@ -182,32 +179,37 @@ class Simulation:
         """Advance until simulated time ``time_us``, serving MAVLink on the way, exactly when each message falls due.
 
         What clients sent is read at the beginning; the clock ends on the first whole tick at or after ``time_us``.
+
+        Raises:
+            PhysicsLostError: the physics at the other end of a link has gone; time stands where it is, and the same
+                call goes on from there once the physics is back.
         """
-        bridge, surroundings, rangers = self.bridge, self.surroundings, self.rangers
+        bridge, plant = self.bridge, self.plant
         bridge.receive()
         while True:
             if self._event_count() != self._events_seen:
                 self._follow_events()
             if self._reboot:
                 self._do_reboot()
-                bridge, rangers = self.bridge, self.rangers
+                bridge = self.bridge
             now = self._clock()
             stop = time_us - self.before_boot_us
             if now >= stop:
                 return
-            due = bridge.next_due_us()
-            if surroundings is not None:
-                if surroundings.is_wanted():
-                    self._look_around()
-                if rangers is not None and rangers.due_us < due:
-                    due = rangers.due_us
-            ticks = (min(stop, due) - now + TICK_US - 1) // TICK_US
-            self._run(ticks if ticks > 1 else 1)
-            if rangers is not None and rangers.due_us <= self._clock():
-                rangers.measure(self._clock())
+            plant.prepare()
+            ticks = (min(stop, bridge.next_due_us(), plant.due_us) - now + TICK_US - 1) // TICK_US
+            lost = None
+            try:
+                plant.run(ticks if ticks > 1 else 1)
+            except PhysicsLostError as error:
+                lost = error
+            if plant.due_us <= self._clock():
+                plant.measure()
             if self._event_count() != self._events_seen:
                 self._follow_events()
             bridge.service()
+            if lost is not None:
+                raise lost
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""
@@ -220,6 +222,8 @@ class Simulation:
             self._events_seen,
             self._reboot,
             self.world.name if self.world is not None else None,
+            self.physics,
+            self.plant.snapshot(),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -233,12 +237,17 @@ class Simulation:
         here = self.world.name if self.world is not None else None
         if snapshot.world != here:
             raise OptionError(f"the snapshot is of world {snapshot.world}, this is world {here}")
+        if snapshot.physics != self.physics:
+            raise OptionError(f"the snapshot is of physics {snapshot.physics}, this is {self.physics}")
         self._record[:] = snapshot.record
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
-        if self.rangers is not None:
-            self.rangers.find_due()
+        self.plant.restore(snapshot.plant)
         self.bridge.restore(snapshot.bridge)
+
+    def _physics_restarted(self) -> None:
+        """A physics elsewhere has begun anew: the autopilot begins anew with it."""
+        self._reboot = True
 
     def request_reboot(self) -> None:
         """Restart vehicle and autopilot before the next tick; parameters and mission stay, links stay open."""
@@ -247,35 +256,28 @@ class Simulation:
     def parameter_changed(self, name: str) -> None:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
         if name.startswith(sim_parameters.PREFIX):
-            self.kind.apply_sim_parameters(self.v)
+            self.plant.parameter_changed(name)
+
+    def reseed(self, seed: int) -> None:
+        """Another seed for the noise of all sensors from now on."""
+        self.plant.reseed(seed)
+
+    def truth(self) -> Carried:
+        """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
+        return self.plant.truth()
 
     def close(self) -> None:
-        """Close links and log."""
+        """Close links, log and physics."""
         self.bridge.close()
+        self.plant.close()
 
     def _power_on(self) -> None:
         boot.clear(self.v)
-        self.kind.apply_sim_parameters(self.v)  # first the wind that blows at power-on
-        self.kind.init_physics(self.v, self.airframe, self.home, self.seed)
-        if self.surroundings is not None:
-            self._enter_world(self.surroundings)
+        self.plant.power_on()
         self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
         self.firmware.power_on(self.v)
         self.kind.apply_sim_parameters(self.v)
         self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
-
-    def _enter_world(self, surroundings: Surroundings) -> None:
-        """Stand at the start; lidar and range-finder measure for the first time."""
-        surroundings.attach(self.v, self._reader)
-        geometry = surroundings.world.geometry
-        self.rangers = Rangers(self.v, self.fleet, self.index, geometry, surroundings.floor)
-        self.rangers.measure(0)
-
-    def _look_around(self) -> None:
-        """List the solids near the vehicle anew."""
-        if self.surroundings is not None:
-            self.surroundings.gather()
-        self.v.autopilot.events.attention = 0
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""

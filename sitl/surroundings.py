@@ -61,14 +61,21 @@ class Surroundings:
         self._rows = contact.rows(OBSTACLES_MAX)
         self._check_free(airframe)
 
-    def attach(self, v: Any, reader: RecordReader) -> None:
-        """Put a vehicle that has just been powered on, at home, at its start."""
+    def attach(self, v: Any, reader: RecordReader, lists_solids: bool = True) -> None:
+        """Put a vehicle that has just been powered on, at home, at its start.
+
+        Args:
+            v: view of its record.
+            reader: of the same.
+            lists_solids: native physics finds the solids near the vehicle in its record; other engines have their own.
+        """
         self._obstacles, self._position = v.physics.obstacles, v.physics.body.pos
         self.is_wanted: Callable[[], int] = reader.field("physics.obstacles.wanted")
         """Whether the vehicle needs a new list of the solids near it."""
         self._position[:] = self.position
-        self._obstacles.present = int(len(self.world.geometry) > 0)
-        self.gather()
+        self._obstacles.present = int(lists_solids and len(self.world.geometry) > 0)
+        if lists_solids:
+            self.gather()
 
     def gather(self) -> None:
         """List the solids near the vehicle in its record."""

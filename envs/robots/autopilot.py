@@ -20,7 +20,6 @@ import numpy.typing as npt
 from sitl import vehicles, worlds
 from sitl.autopilot.params.files import ParameterError
 from sitl.bridge.links.address import LinkAddressError, open_link
-from sitl.core import rng
 from sitl.core.geodesy import offset_ne
 from sitl.simulation import DEFAULT_HOME, Core, Home, OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
@@ -160,7 +159,7 @@ class AutopilotRobot:
             ready = self._restored(pose, tuple(sorted(self._changed[index].items())))
             link = self._link(index)
             self._put(index, ready)
-            rng.seed(link.simulation.v.rng, seed)
+            link.simulation.reseed(seed)
         else:
             self._reset_remote(pose, seed)
         self.collided[index] = 0

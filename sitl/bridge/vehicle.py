@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..autopilot.firmware import Firmware
+from ..physics.carried import Carried
 
 
 class Vehicle(Protocol):
@@ -24,6 +25,14 @@ class Vehicle(Protocol):
     @property
     def time_us(self) -> int:
         """Simulated time since the start of the simulation [us]; the record's counts from the last boot."""
+        ...
+
+    def truth(self) -> Carried:
+        """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
+        ...
+
+    def reseed(self, seed: int) -> None:
+        """Another seed for the noise of all sensors from now on."""
         ...
 
     def request_reboot(self) -> None:

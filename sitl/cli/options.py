@@ -10,6 +10,8 @@ from pathlib import Path
 
 from .. import vehicles
 from ..autopilot.params import files
+from ..physics.engines import NATIVE
+from ..plants.choose import FORMS
 from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation, checked_home
 from ..surroundings import StartPose
 from .progress import CompileProgress
@@ -75,10 +77,13 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)"
     )
-    parser.add_argument("--home", type=home, default=DEFAULT_HOME, metavar="LAT,LON,ALT,HEADING", help="start")
+    parser.add_argument("--home", type=home, metavar="LAT,LON,ALT,HEADING", help="start")
+    parser.add_argument(
+        "--physics", default=NATIVE, metavar="NAME", help=f"what simulates it: {', '.join(FORMS)} (default {NATIVE})"
+    )
     parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
     parser.add_argument("--start", type=start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
+    parser.add_argument("--seed", type=int, metavar="N", help="seed of sensor noise and turbulence")
     parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")
     parser.add_argument("--params", action="append", default=[], metavar="FILE", help=".parm file (repeatable)")
     parser.add_argument("--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="where .tlog files go")
@@ -104,6 +109,7 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
             airframe,
             home=options.home,
             seed=options.seed,
+            physics=options.physics,
             estimator=options.estimator,
             params=values,
             progress=progress,

@@ -18,7 +18,8 @@ from sitl.autopilot.mission.validate import check_all
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
-from sitl.core import records
+from sitl.core import records, rng
+from sitl.physics.carried import Carried, carried
 from sitl.vehicle import COPTER_DTYPE, ROVER_DTYPE
 
 TICK_US = 2500
@@ -43,6 +44,12 @@ class FakeVehicle:
     @property
     def time_us(self) -> int:
         return self.before_boot_us + int(self.v.time_us)
+
+    def truth(self) -> Carried:
+        return carried(self.v)
+
+    def reseed(self, seed: int) -> None:
+        rng.seed(self.v.rng, seed)
 
     def request_reboot(self) -> None:
         self.reboots += 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from sitl.core_entry import Core, load_core
 from sitl.kinds import KINDS
-from sitl.simulation import Core, load_core
 
 
 @pytest.fixture(scope="session")

@@ -36,10 +36,10 @@ def stand(simulation: Simulation, down: float, *angles: float) -> np.ndarray:
     b.pos[2] = down
     if angles:
         b.q = quat_from_euler(*angles)
-    assert simulation.rangers is not None
+    assert simulation.plant.rangers is not None
     simulation.v.sensors.lidar_count = simulation.v.sensors.rangefinder_count = 0
-    simulation.rangers.find_due()
-    simulation.rangers.measure(0)
+    simulation.plant.rangers.find_due()
+    simulation.plant.rangers.measure(0)
     return scan(simulation)
 
 
@@ -161,7 +161,7 @@ def test_a_vehicle_without_them_measures_nothing(cores: dict[str, Core]) -> None
     assert (simulation.v.sensors.lidar_count, simulation.v.sensors.rangefinder_count) == (0, 0)
     plain = Simulation("erle_copter", core=cores["copter"])
     plain.advance(0.3)
-    assert plain.v.sensors.lidar_count == 0 and plain.rangers is None
+    assert plain.v.sensors.lidar_count == 0 and plain.plant.rangers is None
 
 
 def test_more_readings_than_rays_are_refused() -> None:

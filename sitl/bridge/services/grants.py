@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ...core import rng
 from ..channel import Channel
 from ..dialect import message
 from ..links.link import Peer
@@ -45,7 +44,7 @@ class Grants:
                 self.until_us = max(self.until_us, 1000 * fields.x)
                 self._asked.append((channel.peer, sender, 1000 * fields.x))
         elif fields.command == RESEED:
-            rng.seed(bridge.vehicle.v.rng, fields.x & 0xFFFFFFFF)
+            bridge.vehicle.reseed(fields.x & 0xFFFFFFFF)
             _ack(channel, RESEED, ACCEPTED, sender, 0)
         return fields.command in (GRANT, RESEED)
 

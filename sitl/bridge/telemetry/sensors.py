@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 
-from ...core.geodesy import add_offset
 from ...core.rotations import quat_to_euler
+from ...physics.carried import MILLIG
 from ..dialect import message
 from .builder import Build, Builder, Context
-from .units import G, boot_ms, int16, int32
+from .units import G, boot_ms, int16
 
 S = "sensors."
 _IMU = (S + "acc", S + "gyro", S + "mag")
@@ -75,16 +75,14 @@ def scaled_pressure(context: Context) -> Build:
 
 def simstate(context: Context) -> Build:
     """SIMSTATE: the simulator's truth: angles [rad], specific force [m/s^2] and rates [rad/s] of the body, degE7."""
-    body, place = "physics.body.", "physics.place."
-    read = context.fields(
-        body + "q", body + "specific_force", body + "rates", body + "pos", place + "lat", place + "lon"
-    )
+    vehicle = context.vehicle
     pack = message("SIMSTATE").pack
 
     def build() -> bytes:
-        *q, fx, fy, fz, p, r, y, n, e, _, lat0, lon0 = read()
-        lat, lon = add_offset(lat0, lon0, n, e)
-        return pack(*quat_to_euler(*q), fx, fy, fz, p, r, y, int32(lat), int32(lon))
+        truth = vehicle.truth()
+        fx, fy, fz = truth.acceleration
+        angles = quat_to_euler(*truth.attitude)
+        return pack(*angles, MILLIG * fx, MILLIG * fy, MILLIG * fz, *truth.rates, truth.lat, truth.lon)
 
     return build
 

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The physics end of the JSON interface: what a datagram of an autopilot asks for. Neither socket nor clock.
+
+Lockstep: an autopilot sends a frame of servos and waits for the line that answers it. The count of frames goes up by
+one with each line that it has taken, so that
+
+| count | means | physics |
+|---|---|---|
+| one more than the last | go on | steps, answers |
+| the same | our answer was lost, or is late | does not step; answers with the same line |
+| lower | the autopilot has been started anew | back to power-on, steps, answers |
+| higher by more than one | frames were lost, or physics has been started anew | steps once, answers |
+
+An answer too many would be taken as the answer to the next frame, and the autopilot would from then on be one step
+ahead of its physics. So of frames that wait together only the newest counts, and a repeated one that comes right after
+our answer, which must have crossed it, is not answered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from enum import Enum
+
+from .servos import ServoError, Servos, decode
+
+TICK_HZ = 400
+MOST_TICKS = 8
+"""A step is no longer than 20 ms, the period of a rover's loop."""
+CROSSED_S = 0.5
+"""Autopilots repeat a frame after a second or more without an answer [s]."""
+ALIVE_S = 0.25
+"""An autopilot heard within this time is still there when another one calls [s]."""
+
+
+class Asked(Enum):
+    """What a datagram asks for."""
+
+    STEP = "step"
+    RESTART = "power-on, then step"
+    REPEAT = "the same line again"
+    NOTHING = "nothing"
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """A datagram, understood."""
+
+    asked: Asked
+    servos: Servos | None = None
+    note: str = ""
+    """Something that people should be told."""
+
+
+def ticks(rate: int) -> int:
+    """Ticks of 2500 us to step for a frame: the whole ones in 1 / ``rate`` [Hz], at least one, at most 20 ms.
+
+    A frame that asks for less than a tick gets one: ArduPilot takes the step it is given. (It then asks for 401 Hz, one
+    more than it got, so that a finer step would have to be agreed on beforehand.)
+    """
+    return min(max(TICK_HZ // rate, 1), MOST_TICKS) if rate > 0 else 1
+
+
+class PhysicsEnd:
+    """Which frames came, and from whom."""
+
+    def __init__(self) -> None:
+        self.peer: Hashable | None = None
+        """Where the autopilot is."""
+        self.count: int | None = None
+        """Of the last frame that was stepped."""
+        self.line = b""
+        """The last answer."""
+        self.refused = 0
+        """Datagrams that were no frames, or of another autopilot."""
+        self._stepped_any = False
+        self._heard_at = self._answered_at = float("-inf")
+        self._told: set[str] = set()
+
+    def hear(self, datagram: bytes, peer: Hashable, now: float) -> Heard:
+        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, unless for NOTHING."""
+        try:
+            servos = decode(datagram)
+        except ServoError as error:
+            return self._refuse(f"a datagram from {peer} is no frame of servos: {error}", "datagram")
+        note = ""
+        if peer != self.peer:
+            if self.peer is not None and now - self._heard_at < ALIVE_S:
+                return self._refuse(f"a second autopilot, at {peer}, is not served: there is one at {self.peer}", peer)
+            note = f"autopilot at {peer}" if self.peer is None else f"autopilot at {peer}, before at {self.peer}"
+        moved, self.peer, self._heard_at = peer != self.peer, peer, now
+        before, self.count = self.count, servos.count
+        if before is None:
+            asked = Asked.RESTART if servos.count == 0 and self._stepped_any else Asked.STEP
+        elif servos.count == before and not moved:
+            if now - self._answered_at < CROSSED_S:
+                return Heard(Asked.NOTHING, servos)
+            asked = Asked.REPEAT if self.line else Asked.STEP
+        elif servos.count <= before and (before - servos.count) < 1 << 31:
+            asked, note = Asked.RESTART, note or "the autopilot has been started anew"
+        else:
+            asked = Asked.STEP
+        return Heard(asked, servos, note)
+
+    def answer(self, line: bytes, now: float) -> bytes:
+        """Keep the answer to the last frame, for when it is asked for again."""
+        self.line, self._answered_at, self._stepped_any = line, now, True
+        return line
+
+    def repeat(self, now: float) -> bytes:
+        """The last answer once more."""
+        self._answered_at = now
+        return self.line
+
+    def lost(self) -> None:
+        """Physics begins anew, or the autopilot is known to have gone: whoever speaks next is new."""
+        self.peer, self.count, self.line = None, None, b""
+        self._told.clear()
+
+    def _refuse(self, note: str, kind: Hashable) -> Heard:
+        """Count, and tell each kind once."""
+        self.refused += 1
+        key = str(kind)
+        if key in self._told:
+            return Heard(Asked.NOTHING)
+        if len(self._told) < 16:
+            self._told.add(key)
+        return Heard(Asked.NOTHING, None, note)

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Physics by PyBullet: rigid bodies, joints and contacts (``pip install 'gym-sitl[pybullet]'``)."""

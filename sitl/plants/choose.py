@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What ``--physics`` means."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from ..option_error import OptionError
+from ..physics.engines import BACKENDS
+from .plant import Craft, Plant
+
+LINKS = {"hil": "sitl.plants.hil", "json": "sitl.plants.json"}
+"""Scheme -> module whose ``make(craft, address)`` gives a plant at the other end of a link."""
+FORMS = (*BACKENDS, "hil:tcp:HOST:PORT", "json:HOST:PORT")
+
+
+def is_remote(physics: str) -> bool:
+    """Whether the physics is at the other end of a link.
+
+    Raises:
+        OptionError: no physics of this name.
+    """
+    if physics in BACKENDS:
+        return False
+    scheme = physics.partition(":")[0] if isinstance(physics, str) else ""
+    if scheme in LINKS and ":" in physics:
+        return True
+    raise OptionError(f"physics {physics!r} is not known; it is one of {', '.join(FORMS)}")
+
+
+def remote(craft: Craft, physics: str, **given: Any) -> Plant:
+    """A plant at the other end of a link.
+
+    Args:
+        craft: the vehicle.
+        physics: "SCHEME:ADDRESS".
+        given: options of the simulation that belong to the physics side; none may be given (not None).
+
+    Raises:
+        OptionError: an option that the physics at the other end has to be told, or an address that cannot be read.
+    """
+    for name, value in given.items():
+        if value is not None:
+            raise OptionError(f"{name} = {value!r}: with physics {physics} it belongs to the other end of the link")
+    scheme, _, address = physics.partition(":")
+    make: Callable[[Craft, str], Plant] = import_module(LINKS[scheme]).make
+    return make(craft, address)

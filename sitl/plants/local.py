@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Physics in this process: native, which is compiled into one core with the autopilot, or another engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from ..core import rng
+from ..core.compile import Progress
+from ..core_entry import Core, bind_unit, load_core
+from ..lidar import Rangers
+from ..physics.carried import Carried, carried
+from ..physics.engine import Engine, Laws, Seat
+from ..physics.engines import NATIVE, make
+from ..physics.native.power_on import Home
+from ..surroundings import StartPose, Surroundings, checked_world
+from ..worlds import World
+from .plant import Craft, Plant
+
+
+class LocalPlant(Plant):
+    """A vehicle's physics and world in this process.
+
+    Args:
+        craft: the vehicle.
+        backend: name of the engine (``sitl.physics.engines.BACKENDS``).
+        home, seed, world, start: see ``sitl.simulation.Simulation``.
+        core: the core of this kind of vehicle, if it is loaded already.
+        progress: told of each unit that is compiled.
+
+    Raises:
+        OptionError, EngineError, WorldError: what cannot be simulated, named.
+        MissingExtra: the engine's library is not installed.
+    """
+
+    def __init__(
+        self,
+        craft: Craft,
+        backend: str,
+        home: Home,
+        seed: int,
+        world: str | Path | World | None = None,
+        start: StartPose | None = None,
+        core: Core | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        super().__init__(craft)
+        self.backend = backend
+        self.seed, self.home = seed, home
+        self.world = checked_world(world, start)
+        self.surroundings = Surroundings(self.world, start, craft.airframe) if self.world is not None else None
+        if self.surroundings is not None:
+            self.home = (*home[:3], math.degrees(self.surroundings.heading))
+        self.rangers: Rangers | None = None
+        self.core = core
+        self.progress = progress
+        self.engine: Engine | None = None
+        if backend != NATIVE:
+            self.engine = make(backend, self._seat())
+        self._run: Callable[[int], None] | None = None
+        self._tick: Callable[[], None] | None = None
+        self._told = craft.reader.field("autopilot.events.count")
+        self._attention = craft.reader.field("autopilot.events.attention")
+        self._clock = craft.reader.field("time_us")
+
+    def _seat(self) -> Seat:
+        craft = self.craft
+        units = craft.kind.pieces
+        laws = Laws(*(self._unit(unit) for unit in (units.begin, units.load, units.sense)))
+        floor = self.surroundings.floor if self.surroundings is not None else 0.0
+        return Seat(craft.v, craft.fleet, craft.index, craft.airframe, laws, self.world, floor)
+
+    def _unit(self, unit: Callable[..., None]) -> Callable[[], None]:
+        craft = self.craft
+        return bind_unit(unit, craft.kind, craft.fleet, craft.index, self.progress)
+
+    # ------------------------------------------------------------------ power-on
+
+    def power_on(self) -> None:
+        craft, v = self.craft, self.craft.v
+        craft.kind.apply_sim_parameters(v)  # first the wind that blows at power-on
+        craft.kind.init_physics(v, craft.airframe, self.home, self.seed)
+        around = self.surroundings
+        if around is not None:
+            around.attach(v, craft.reader, lists_solids=self.engine is None)
+        if self.engine is not None:
+            self.engine.place()
+        if around is not None:
+            cast = self.engine.cast if self.engine is not None else None
+            self.rangers = Rangers(v, craft.fleet, craft.index, around.world.geometry, around.floor, cast)
+            self.rangers.measure(0)
+            self.due_us = self.rangers.due_us
+
+    # ------------------------------------------------------------------ going on
+
+    def prepare(self) -> None:
+        around = self.surroundings
+        if around is not None and around.is_wanted():
+            around.gather()
+            self.craft.v.autopilot.events.attention = 0
+
+    def run(self, ticks: int) -> None:
+        if self._run is None:
+            self._run = self._runner()
+        self._run(ticks)
+
+    def _runner(self) -> Callable[[int], None]:
+        """What runs ticks of physics and autopilot; compiled now if need be."""
+        craft, engine = self.craft, self.engine
+        if engine is None:
+            if self.core is None:
+                self.core = load_core(craft.kind, self.progress)
+            return self.core.bind(craft.fleet, craft.index)
+        tick, fly = engine.tick, self._unit(craft.kind.fly)
+        told, attention = self._told, self._attention
+
+        def run(ticks: int) -> None:
+            before = told()
+            for _ in range(ticks):
+                tick()
+                fly()
+                if attention() or told() != before:
+                    return
+
+        return run
+
+    def load(self) -> None:
+        """Compile all that ``run`` needs now."""
+        if self._run is None:
+            self._run = self._runner()
+
+    def tick(self) -> None:
+        """One tick of physics alone, for an autopilot elsewhere: actuators in, sensors out."""
+        if self._tick is None:
+            self._tick = self.engine.tick if self.engine is not None else self._unit(self.craft.kind.step)
+        self.prepare()
+        self._tick()
+        if self.due_us <= self._clock():
+            self.measure()
+
+    def measure(self) -> None:
+        rangers = self.rangers
+        if rangers is not None and rangers.due_us <= self._clock():
+            rangers.measure(self._clock())
+            self.due_us = rangers.due_us
+
+    # ------------------------------------------------------------------ the rest
+
+    def truth(self) -> Carried:
+        return carried(self.craft.v)
+
+    def reseed(self, seed: int) -> None:
+        rng.seed(self.craft.v.rng, seed)
+
+    def snapshot(self) -> bytes:
+        return b"" if self.engine is None else self.engine.snapshot()
+
+    def restore(self, state: bytes) -> None:
+        if self.engine is not None:
+            self.engine.restore(state)
+        if self.rangers is not None:
+            self.rangers.find_due()
+            self.due_us = self.rangers.due_us
+
+    def close(self) -> None:
+        if self.engine is not None:
+            self.engine.close()

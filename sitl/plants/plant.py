@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The physics side of the border as a simulation sees it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..bridge.record_reader import RecordReader
+from ..kinds import Kind
+from ..physics.carried import Carried
+from ..vehicles import Airframe
+
+NEVER = 1 << 62
+
+
+class PhysicsLostError(ConnectionError):
+    """The physics behind a link does not answer: time stands. Advancing again tries again."""
+
+
+@dataclass(frozen=True)
+class Craft:
+    """One vehicle, as its plant finds it."""
+
+    kind: Kind
+    airframe: Airframe
+    fleet: np.ndarray[Any, Any]
+    index: int
+    v: Any
+    """View of the record ``fleet[index]``, whose memory stays in place."""
+    reader: RecordReader
+    restarted: Callable[[], None]
+    """To be called by a plant whose physics has begun anew by itself: the autopilot reboots before the next tick."""
+
+
+class Plant(ABC):
+    """What moves one vehicle, and what measures it.
+
+    ``run`` lets physics and autopilot go on; the simulation never runs past ``due_us`` and then calls ``measure``.
+    """
+
+    name: ClassVar[str] = ""
+
+    def __init__(self, craft: Craft) -> None:
+        self.craft = craft
+        self.due_us = NEVER
+        """Time since boot at which something has to be measured besides the tick's sensors [us]."""
+
+    @abstractmethod
+    def power_on(self) -> None:
+        """Physics to power-on, at time 0 (a link may join later); parameters are kept, first samples are taken.
+
+        Raises:
+            PhysicsLostError: nobody is there.
+        """
+
+    @abstractmethod
+    def run(self, ticks: int) -> None:
+        """Physics and autopilot, up to ``ticks`` ticks; back early, at the end of a tick, when something needs Python.
+
+        Raises:
+            PhysicsLostError: the physics has gone; the ticks before that have passed and count.
+        """
+
+    def prepare(self) -> None:
+        """What the world has to look up before the next tick."""
+        return
+
+    def measure(self) -> None:
+        """Take the measurements that are due now, and set ``due_us``."""
+        return
+
+    @abstractmethod
+    def truth(self) -> Carried:
+        """Where the vehicle really is, as far as MAVLink can tell."""
+
+    def parameter_changed(self, name: str) -> None:
+        """A SIM_ parameter was set: the world follows it."""
+        self.craft.kind.apply_sim_parameters(self.craft.v)
+
+    @abstractmethod
+    def reseed(self, seed: int) -> None:
+        """Another seed for all sensor noise from now on."""
+
+    @abstractmethod
+    def snapshot(self) -> bytes:
+        """What the record does not hold, for ``restore`` to go on bit for bit.
+
+        Raises:
+            EngineError: this plant cannot.
+        """
+
+    @abstractmethod
+    def restore(self, state: bytes) -> None:
+        """Go back to a snapshot; the record has been put back already."""
+
+    def close(self) -> None:
+        """Let go of what is open."""
+        return
