@@ -20,6 +20,9 @@ _WIND_SETTING = ("speed", "direction", "turbulence", "time_constant")
 Home = tuple[float, float, float, float]
 """Latitude [deg], longitude [deg], altitude above mean sea level [m], heading [deg]."""
 
+DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
+"""Canberra model aircraft club, ArduPilot's default SITL location."""
+
 
 def clear(v: Any, airframe: Airframe, seed: int) -> None:
     """Empty physics, sensors, actuators and clock, but for the wind's settings; figures and random numbers start."""

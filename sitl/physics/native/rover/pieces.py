@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import unit
+from ....vehicles.figures.rover import STEERING_SKID
 from ..observe import note, observe
 from . import step
 
@@ -14,7 +15,12 @@ def begin(fleet, i):
     v = fleet[i]
     note(v.physics)
     step.begin(v)
-    step.drive(v.physics, v.actuators.controls)
+    p = v.physics
+    first, second = step.commands(p, v.actuators.controls)
+    if int(p.airframe.steering_model) == STEERING_SKID:
+        step.drive_sides(p, first, second)
+    else:
+        step.drive_axle(p, first, second)
 
 
 @unit

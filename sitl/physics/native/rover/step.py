@@ -20,30 +20,39 @@ THROTTLE_OUTPUT = 2
 
 
 @law
-def drive(p, controls):
-    """Let motors and steering follow the actuator controls [-1 .. 1] for a tick."""
-    w, scale = p.wheels, float(p.derived.control_scale)
-    first = commanded(float(controls[STEERING_OUTPUT]), scale)
-    second = commanded(float(controls[THROTTLE_OUTPUT]), scale)
-    if int(p.airframe.steering_model) == STEERING_SKID:
-        w.power = 0.5 * (run(p, 0, first) + run(p, 1, second))
-    else:
-        turn_wheels(p, first)
-        w.power = run(p, 0, second)
+def commands(p, controls):
+    """Commands -1 .. 1 of the two actuator controls in use."""
+    scale = float(p.derived.control_scale)
+    return (commanded(float(controls[STEERING_OUTPUT]), scale), commanded(float(controls[THROTTLE_OUTPUT]), scale))
+
+
+@law
+def drive_sides(p, left, right):
+    """Let the motors of both sides follow their commands for a tick."""
+    p.wheels.power = 0.5 * (run(p, 0, left) + run(p, 1, right))
+
+
+@law
+def drive_axle(p, steering, throttle):
+    """Let steering and motor follow their commands for a tick."""
+    turn_wheels(p, steering)
+    p.wheels.power = run(p, 0, throttle)
 
 
 @law
 def move(p, controls):
     """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
     w, rolled = p.wheels, p.wheels.distance
+    first, second = commands(p, controls)
     before = float(w.forward)
-    drive(p, controls)
     if int(p.airframe.steering_model) == STEERING_SKID:
+        drive_sides(p, first, second)
         left, right = float(w.speed[0]), float(w.speed[1])
         accel = grip_along(p, 0.5 * (left + right))
         rate = (left - right) * float(p.derived.inverse_track)
         roll(p, before, grip_across(p, rate, accel))
     else:
+        drive_axle(p, first, second)
         speed = float(w.speed[0])
         accel = grip_along(p, speed)
         roll(p, before, grip_across(p, float(w.forward) * curvature(p), accel))
