@@ -5,15 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .bridge.dialect import message
 from .bridge.services.grants import Grants
 from .simulation import Simulation
+from .standstill import Patience, Standstill
 
 SLICE_US = 500_000
 """Longest simulated time between two looks at what else happens [us]."""
-_WAIT_S = 0.2
-_WAITS_A_HEARTBEAT = 5
-_HEARTBEAT = message("HEARTBEAT").id
 
 
 def serve_lockstep(
@@ -28,17 +25,13 @@ def serve_lockstep(
     While time stands a HEARTBEAT goes out about once a wall second: a client that waits for one finds the vehicle.
     """
     grants = simulation.bridge.grants = Grants()
-    waits = 0
+    standstill, patience = Standstill(simulation), Patience(simulation)
     while running() and (until_us is None or simulation.time_us < until_us):
-        simulation.advance_to(simulation.time_us)  # hears clients; a reboot that they ask for happens here, too
+        patience.advance_to(simulation.time_us)  # hears clients; a reboot that they ask for happens here, too
         goal = min(grants.until_us, simulation.time_us + SLICE_US)
         if goal > simulation.time_us:
-            simulation.advance_to(goal if until_us is None else min(goal, until_us))
+            patience.advance_to(goal if until_us is None else min(goal, until_us))
         grants.answer(simulation.bridge)
         on_slice()
         if grants.until_us <= simulation.time_us:
-            if waits % _WAITS_A_HEARTBEAT == 0:
-                for channel in simulation.bridge.channels:
-                    simulation.bridge.send_now(channel, _HEARTBEAT)
-                simulation.bridge.flush()
-            waits = 1 if simulation.bridge.wait(_WAIT_S) else waits + 1
+            standstill.wait()

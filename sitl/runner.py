@@ -13,6 +13,7 @@ from .bridge.links.tcp import TcpServerLink
 from .bridge.links.udp import UdpOutLink
 from .logs.tlog import LogError, TlogWriter
 from .simulation import Simulation
+from .standstill import Patience
 
 HOST = "127.0.0.1"
 BASE_TCP_PORT = 5760
@@ -108,9 +109,13 @@ def serve(
     running: Callable[[], bool] = lambda: True,
     on_slice: Callable[[], None] = lambda: None,
 ) -> None:
-    """Advance until simulated time ``until_us`` (None: without end) or until ``running()`` is false."""
+    """Advance until simulated time ``until_us`` (None: without end) or until ``running()`` is false.
+
+    Physics at the other end of a link may go and come back: time stands meanwhile.
+    """
+    patience = Patience(simulation)
     while running() and (until_us is None or simulation.time_us < until_us):
         target = simulation.time_us + pace.slice_us
-        simulation.advance_to(target if until_us is None else min(target, until_us))
+        patience.advance_to(target if until_us is None else min(target, until_us))
         on_slice()
         pace.after_slice(simulation)

@@ -26,6 +26,7 @@ from .kinds import KINDS
 from .option_error import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
+from .physics.native.power_on import DEFAULT_HOME, Home
 from .plants.choose import is_remote, remote
 from .plants.local import LocalPlant
 from .plants.plant import Craft, PhysicsLostError, Plant
@@ -35,12 +36,6 @@ from .vehicles import Airframe, AirframeError
 from .worlds import World
 
 Array = np.ndarray[Any, Any]
-Home = tuple[float, float, float, float]
-"""Latitude [deg], longitude [deg], altitude above mean sea level [m], heading [deg]."""
-
-DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
-"""Canberra model aircraft club, ArduPilot's default SITL location."""
-
 ESTIMATORS = ("ekf", "truth")
 
 
