@@ -15,9 +15,9 @@ SQUARE = [(-353629926, 1491652371), (-353629926, 1491655676), (-353632621, 14916
 """Corners of the recorded AUTO mission [degE7]."""
 
 
-def guided(simulation: Simulation) -> Pilot:
+def guided(simulation: Simulation, pilot: Pilot | None = None) -> Pilot:
     """Take-off 10 m, 20 m north, 3 m/s east for 10 s, stop, three yaw commands, RTL: the recorded GUIDED script."""
-    pilot = Pilot(simulation)
+    pilot = pilot or Pilot(simulation)
     pilot.boot()
     pilot.arm(2.08)
     pilot.phase("takeoff")
@@ -45,9 +45,9 @@ def guided(simulation: Simulation) -> Pilot:
     return pilot
 
 
-def auto(simulation: Simulation) -> Pilot:
+def auto(simulation: Simulation, pilot: Pilot | None = None) -> Pilot:
     """Upload the recorded square, arm in GUIDED, switch to AUTO and start."""
-    pilot = Pilot(simulation)
+    pilot = pilot or Pilot(simulation)
     pilot.boot()
     items = [(0, 16, -353632621, 1491652371, 584.0), (3, 22, 0, 0, 10.0)]
     items += [(3, 16, lat, lon, 10.0) for lat, lon in SQUARE] + [(3, 21, 0, 0, 0.0)]

@@ -63,10 +63,14 @@ class Pilot:
             self.simulation.advance_to(min(stop, self.simulation.time_us + SAMPLE_US))
             for name, fields in self.client.receive():
                 self._take(name, fields)
-            self.rows.append((self.now, *self._position, *self._attitude[:3]))
+            self.note()
             if until():
                 return True
         return False
+
+    def note(self) -> None:
+        """Keep what telemetry says now; called every 40 ms."""
+        self.rows.append((self.now, *self._position, *self._attitude[:3]))
 
     def phase(self, name: str) -> None:
         """Name what comes now."""

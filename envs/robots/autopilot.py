@@ -21,6 +21,8 @@ from sitl import vehicles, worlds
 from sitl.autopilot.params.files import ParameterError
 from sitl.bridge.links.address import LinkAddressError, open_link
 from sitl.core.geodesy import offset_ne
+from sitl.physics.engine import EngineError
+from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import DEFAULT_HOME, Core, Home, OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
@@ -74,6 +76,7 @@ class AutopilotRobot:
         params: values under ArduPilot's names, in process.
         gcs: where a ground station listens to the first vehicle, as ``sitl run --out`` has it; None: nowhere.
         patience: wall time without an answer after which a connection is lost [s].
+        physics: what simulates it, in process: "native", "pybullet" (see ``sitl.simulation.Simulation``).
     """
 
     def __init__(
@@ -87,10 +90,11 @@ class AutopilotRobot:
         params: Mapping[str, float] | None = None,
         gcs: str | None = None,
         patience: float = 10.0,
+        physics: str = NATIVE,
     ) -> None:
         self._options: dict[str, Any] = {
             "world": world, "count": count, "frame": frame, "connection": connection, "take_off": take_off,
-            "home": home, "params": params, "gcs": gcs, "patience": patience,
+            "home": home, "params": params, "gcs": gcs, "patience": patience, "physics": physics,
         }  # fmt: skip
         try:
             self.airframe = airframe = vehicles.load(frame)
@@ -107,6 +111,8 @@ class AutopilotRobot:
         self._in_process = connection == INPROCESS
         if not self._in_process and (count > 1 or gcs is not None or params):
             raise EnvOptionError(f"connection {connection!r} leads to one vehicle as it is: no count, gcs or params")
+        if physics not in BACKENDS or (physics != NATIVE and not self._in_process):
+            raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(BACKENDS)}, and of a vehicle in process")
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, kind.tick if self._in_process else max(kind.tick, 0.005)
         self.figures: Mapping[str, Figure] = (
@@ -207,12 +213,14 @@ class AutopilotRobot:
             simulation = Simulation(
                 self.airframe.changed(**dict(figures)) if figures else self.airframe,
                 world=self.world, start=start, home=options["home"], params=options["params"], core=self._core,
+                physics=options["physics"],
             )  # fmt: skip
-        except (OptionError, AirframeError, ParameterError) as error:
+        except (OptionError, AirframeError, EngineError, ParameterError) as error:
             raise EnvOptionError(str(error)) from None
         if simulation.unknown_parameters:
             raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
-        self._core = simulation.core
+        if options["physics"] == NATIVE:
+            self._core = simulation.core
         return simulation
 
     def _link(self, index: int) -> InProcess:

@@ -12,6 +12,23 @@ from ..core.extras import MissingExtra
 from .flight import Flight
 
 
+def new_figure(width: float, height: float, title: str = "") -> Any:
+    """An empty matplotlib figure [inches] that needs no screen.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(title)
+    return figure
+
+
 def draw(flight: Flight, path: str | Path, title: str = "", kind: str = "copter") -> None:
     """Write the picture (PNG, SVG or PDF by the name's ending).
 
@@ -21,16 +38,8 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = "copter"
         MissingExtra: matplotlib is not installed.
         LogError: the flight holds no position, attitude or outputs.
     """
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
-
     position = flight["LOCAL_POSITION_NED"]
-    figure = Figure(figsize=(12, 8), layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.suptitle(title)
+    figure = new_figure(12.0, 8.0, title)
     axes = figure.subplots(3, 2, width_ratios=(1, 1.2))
     grid = axes[0, 0].get_gridspec()
     for row in range(3):
