@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -37,6 +37,16 @@ from .worlds import World
 
 Array = np.ndarray[Any, Any]
 ESTIMATORS = ("ekf", "truth")
+
+
+class Observer(Protocol):
+    """Looks at a vehicle at simulated times of its own choosing; it changes nothing."""
+
+    due_us: int
+    """When it wants to look next: simulated time since the start of the simulation [us]."""
+
+    def observe(self) -> None:
+        """Look: it is ``due_us`` or the tick after; all that falls due at this time has been sent. Sets ``due_us``."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +126,7 @@ class Simulation:
         self.before_boot_us = 0
         """Simulated time that passed before the last reboot [us]."""
         self._reboot = False
+        self.observers: list[Observer] = []
         params_record = self.v.autopilot.params
         table = self.firmware.table
         table.set_defaults(params_record)
@@ -192,7 +203,10 @@ class Simulation:
             if now >= stop:
                 return
             plant.prepare()
-            ticks = (min(stop, bridge.next_due_us(), plant.due_us) - now + TICK_US - 1) // TICK_US
+            until = min(stop, bridge.next_due_us(), plant.due_us)
+            for observer in self.observers:
+                until = min(until, observer.due_us - self.before_boot_us)
+            ticks = (until - now + TICK_US - 1) // TICK_US
             lost = None
             try:
                 plant.run(ticks if ticks > 1 else 1)
@@ -203,6 +217,9 @@ class Simulation:
             if self._event_count() != self._events_seen:
                 self._follow_events()
             bridge.service()
+            for observer in self.observers:
+                if observer.due_us <= self.time_us:
+                    observer.observe()
             if lost is not None:
                 raise lost
 
@@ -282,10 +299,10 @@ class Simulation:
         self._events_seen = int(self._event_count())
 
     def _do_reboot(self) -> None:
-        self._reboot = False
         self.before_boot_us = self.time_us
-        self._power_on()
         self._events_seen = 0
+        self._power_on()  # raises when the physics is not there: the next call begins here again
+        self._reboot = False
         self.bridge = self.bridge.successor()
 
 

@@ -213,3 +213,21 @@ def test_a_snapshot_of_another_airframe_is_refused(core: Core) -> None:
     with pytest.raises(OptionError, match="ardupilot_quad, this is erle_copter"):
         simulation.restore(Simulation("ardupilot_quad", core=core).snapshot())
     assert records.first_difference(before[0], simulation.fleet[0]) is None
+
+
+def test_an_observer_looks_at_its_times_and_changes_nothing(core: Core) -> None:
+    class Looker:
+        def __init__(self, simulation: Simulation) -> None:
+            self.simulation, self.due_us, self.seen = simulation, 0, []
+
+        def observe(self) -> None:
+            self.seen.append(self.simulation.time_us)
+            self.due_us += 33_000
+
+    watched, alone = Simulation(core=core, seed=3), Simulation(core=core, seed=3)
+    looker = Looker(watched)
+    watched.observers.append(looker)
+    for simulation in (watched, alone):
+        simulation.advance(1.0)
+    assert looker.seen[:3] == [2500, 35_000, 67_500]  # the first tick at or after each
+    assert watched.fleet.tobytes() == alone.fleet.tobytes()
