@@ -19,6 +19,7 @@ from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.record_reader import RecordReader
+from .bridge.services.statustext import StatusTextService
 from .core import records
 from .core.compile import Progress
 from .core_entry import Core, load_core
@@ -36,6 +37,8 @@ from .vehicles import Airframe, AirframeError
 from .worlds import World
 
 Array = np.ndarray[Any, Any]
+_WARNING = 4
+"""MAV_SEVERITY"""
 ESTIMATORS = ("ekf", "truth")
 
 
@@ -259,6 +262,7 @@ class Simulation:
 
     def _physics_restarted(self) -> None:
         """A physics elsewhere has begun anew: the autopilot begins anew with it."""
+        self.bridge.get(StatusTextService).say(_WARNING, "Physics began anew: rebooting")
         self._reboot = True
 
     def request_reboot(self) -> None:

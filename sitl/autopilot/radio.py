@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..core.kernels import law
 from ..core.rotations import constrain
+from .state import RC_INPUTS
 
 RC_TICKS = 8
 """Ticks between two frames of the receiver: 50 Hz."""
@@ -106,21 +107,27 @@ def override_valid(v, k):
 def receive(v, throttle, timeout):
     """One frame of the receiver, fifty times a second: effective channels, and whether the radio is there.
 
+    A receiver of the physics side takes the place of the simulated transmitter, and is lost when its frames stop.
+
     Args:
         v: the vehicle.
         throttle: pulse [us] of the throttle stick at rest in the simulated transmitter.
         timeout: silence that counts as lost [s].
     """
-    rc = v.autopilot.rc
-    overridden = False
+    rc, s = v.autopilot.rc, v.sensors
+    overridden, is_real = False, s.rc_count > 0
     for k in range(18):
         if override_valid(v, k):
             rc.channels[k] = int(rc.override[k])
             overridden = True
+        elif rc.has_receiver != 0 and is_real:
+            rc.channels[k] = int(s.rc_channels[k]) if k < RC_INPUTS else 0
         elif rc.has_receiver != 0:
             rc.channels[k] = throttle if k == _THROTTLE else RECEIVER_PULSES[k] if k < 8 else 0
-    if overridden or rc.has_receiver != 0:
+    if overridden or (rc.has_receiver != 0 and not is_real):
         rc.receiver_us = v.time_us
+    elif rc.has_receiver != 0:
+        rc.receiver_us = max(int(rc.receiver_us), int(s.rc_time_us))
     fresh = v.time_us - rc.receiver_us < timeout * 1e6
     rc.receiver_ok = 1 if fresh and int(rc.channels[stick_channel(v.autopilot.params, 2) - 1]) > 0 else 0
 

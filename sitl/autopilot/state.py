@@ -19,6 +19,9 @@ from .events import EVENT_RING
 LIDAR_SAMPLES = 360
 """Readings of a scan that there is room for."""
 
+RC_INPUTS = 12
+"""Channels of HIL_RC_INPUTS_RAW."""
+
 SENSORS_DTYPE = record(
     # HIL_SENSOR, one a tick
     ("time_us", "i8"),
@@ -52,6 +55,10 @@ SENSORS_DTYPE = record(
     ("rangefinder_count", "i8"),  # readings so far
     ("lidar_ranges", "f4", LIDAR_SAMPLES),  # counter-clockwise from right to left [m]; inf: nothing in range
     ("rangefinder_range", "f4", 1),  # looking down [m]; inf: nothing in range
+    # HIL_RC_INPUTS_RAW: frames of a receiver that the physics side has; without any there is a simulated transmitter
+    ("rc_count", "i8"),  # frames so far
+    ("rc_time_us", "i8"),  # of the last one
+    ("rc_channels", "i8", RC_INPUTS),  # pulses [us]; 0 unknown
 )
 
 ACTUATORS_DTYPE = record(

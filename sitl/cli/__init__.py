@@ -8,9 +8,9 @@ import sys
 from collections.abc import Sequence
 
 from .. import __version__, errors
-from . import cache, demo, execute, params, run, world
+from . import cache, demo, execute, params, physics, run, world
 
-COMMANDS = (run, execute, demo, params, world, cache)
+COMMANDS = (run, execute, demo, physics, params, world, cache)
 
 
 def parser() -> argparse.ArgumentParser:

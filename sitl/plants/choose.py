@@ -36,14 +36,17 @@ def remote(craft: Craft, physics: str, **given: Any) -> Plant:
     Args:
         craft: the vehicle.
         physics: "SCHEME:ADDRESS".
-        given: options of the simulation that belong to the physics side; none may be given (not None).
+        given: options of the simulation that may belong to the physics side; the module of the link names those that
+            do not (``OWN``), the others may not be given (not None).
 
     Raises:
         OptionError: an option that the physics at the other end has to be told, or an address that cannot be read.
     """
-    for name, value in given.items():
-        if value is not None:
-            raise OptionError(f"{name} = {value!r}: with physics {physics} it belongs to the other end of the link")
     scheme, _, address = physics.partition(":")
-    make: Callable[[Craft, str], Plant] = import_module(LINKS[scheme]).make
-    return make(craft, address)
+    module = import_module(LINKS[scheme])
+    own = {name: given[name] for name in getattr(module, "OWN", ()) if name in given}
+    for name, value in given.items():
+        if value is not None and name not in own:
+            raise OptionError(f"{name} = {value!r}: with physics {physics} it belongs to the other end of the link")
+    make: Callable[..., Plant] = module.make
+    return make(craft, address, **own)

@@ -131,12 +131,17 @@ class LocalPlant(Plant):
         if self._run is None:
             self._run = self._runner()
 
+    def load_tick(self) -> None:
+        """Compile all that ``tick`` needs now."""
+        if self._tick is None:
+            self._tick = self.engine.tick if self.engine is not None else self._unit(self.craft.kind.step)
+
     def tick(self) -> None:
         """One tick of physics alone, for an autopilot elsewhere: actuators in, sensors out."""
         if self._tick is None:
-            self._tick = self.engine.tick if self.engine is not None else self._unit(self.craft.kind.step)
+            self.load_tick()
         self.prepare()
-        self._tick()
+        self._tick()  # type: ignore[misc]
         if self.due_us <= self._clock():
             self.measure()
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""HIL_ACTUATOR_CONTROLS: what the autopilot answers to a tick.
+
+``controls`` are the record's: 0 .. 1 a rotor, -1 .. 1 a servo or a wheel's motor. ``time_usec`` is that of the
+HIL_SENSOR answered.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..dialect import message
+from ..record_reader import RecordReader, locate
+from .numbers import ARMED, CUSTOM_MODE, LATEST_US, LOCKSTEP, RefusedError, culprit, within
+
+KIND = message("HIL_ACTUATOR_CONTROLS")
+OUTPUTS = 16
+_LIMITS = (10.0,) * OUTPUTS
+_NAMES = tuple(f"controls[{k}]" for k in range(OUTPUTS))
+
+
+class Controls(NamedTuple):
+    """An answer, checked."""
+
+    time_us: int
+    flags: int
+    outputs: tuple[float, ...]
+    mode: int
+
+    @property
+    def is_lockstep(self) -> bool:
+        """Whether the sender waits for the next tick."""
+        return self.flags & LOCKSTEP != 0
+
+    @property
+    def is_armed(self) -> bool:
+        """Whether motors may turn."""
+        return self.mode & ARMED != 0
+
+
+def controls_writer(reader: RecordReader) -> Callable[[], bytes]:
+    """A function that gives the payload for a record's actuators, as an answer to its present time."""
+    read = reader.fields("time_us", "actuators.controls", "actuators.armed")
+    pack = KIND.pack
+
+    def payload() -> bytes:
+        t, *outputs, armed = read()
+        return pack(t, LOCKSTEP, *outputs, CUSTOM_MODE | ARMED if armed else CUSTOM_MODE)
+
+    return payload
+
+
+def read_controls(payload: bytes) -> Controls:
+    """The fields, checked.
+
+    Raises:
+        RefusedError: one of them is not finite or absurd.
+    """
+    t, flags, *outputs, mode = KIND.unpack_from(payload.ljust(KIND.size, b"\0"))
+    if not within(outputs, _LIMITS):
+        raise culprit(KIND.name, _NAMES, outputs, _LIMITS)
+    if t >= LATEST_US:
+        raise RefusedError(f"{KIND.name}.time_usec = {t}")
+    return Controls(t, flags, tuple(outputs), mode)
+
+
+def actuators_writer(fleet: np.ndarray[Any, Any], index: int) -> Callable[[Controls], None]:
+    """A function that puts an answer into a record's actuators."""
+    start = index * fleet.dtype.itemsize
+    place = start + locate(fleet.dtype, "actuators.controls")[0]
+    armed = start + locate(fleet.dtype, "actuators.armed")[0]
+    memory = fleet.view("u1").data
+    write, write_armed = struct.Struct(f"<{OUTPUTS}f").pack_into, struct.Struct("<q").pack_into
+
+    def put(controls: Controls) -> None:
+        write(memory, place, *controls.outputs)
+        write_armed(memory, armed, 1 if controls.mode & ARMED else 0)
+
+    return put

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What both ends agree on: addresses on the link, flags, and which numbers cannot be right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from operator import lt
+
+BASE_PORT = 4560
+"""Where physics listens; instance N at 4560 + N, as PX4 expects."""
+
+AUTOPILOT = (1, 1)
+"""System and component of our autopilot on this link."""
+PHYSICS = (1, 158)
+"""Of the physics: a peripheral of the same system (MAV_COMP_ID_PERIPHERAL)."""
+
+MAV_TYPES = {"copter": 2, "rover": 10}
+"""By kind of vehicle: what the autopilot's HEARTBEAT says it is."""
+ARDUPILOTMEGA, PX4 = 3, 12
+"""MAV_AUTOPILOT in a HEARTBEAT: ours, and one whose clock is its own."""
+ARMED, CUSTOM_MODE = 128, 1
+"""Bits of ``HIL_ACTUATOR_CONTROLS.mode`` (MAV_MODE_FLAG)."""
+LOCKSTEP = 1
+"""Bit of ``HIL_ACTUATOR_CONTROLS.flags``: the sender waits for the next HIL_SENSOR."""
+
+IMU_UPDATED, MAG_UPDATED, BARO_UPDATED = 0x3F, 0x1C0, 0x1A00
+"""Bits of ``HIL_SENSOR.fields_updated`` (HIL_SENSOR_UPDATED_FLAGS)."""
+
+SET_MESSAGE_INTERVAL, REQUEST_MESSAGE, REBOOT, RESEED = 511, 512, 246, 31011
+"""MAV_CMD numbers. RESEED is MAV_CMD_USER_2 as COMMAND_INT: x and y are the seed's low and high 32 bits."""
+
+LATEST_US = 1 << 62
+"""No clock goes this far [us]."""
+
+
+class RefusedError(ValueError):
+    """A message with a number that cannot be right."""
+
+
+def within(values: Iterable[float], limits: Iterable[float]) -> bool:
+    """Whether each value is finite and its size below its limit."""
+    return all(map(lt, map(abs, values), limits))
+
+
+def culprit(name: str, fields: Iterable[str], values: Iterable[float], limits: Iterable[float]) -> RefusedError:
+    """The error that names the first value that is not ``within``."""
+    for field, value, limit in zip(fields, values, limits):
+        if not abs(value) < limit:
+            return RefusedError(f"{name}.{field} = {value}: less than {limit:g} in size is needed")
+    return RefusedError(f"{name} cannot be read")

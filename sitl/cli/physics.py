@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl physics``: the physics of a vehicle whose autopilot is elsewhere."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+from collections.abc import Callable
+from importlib import import_module
+
+from .. import vehicles
+from ..option_error import OptionError
+from ..physics.engines import BACKENDS, NATIVE
+from ..physics.native.power_on import DEFAULT_HOME
+from ..plants.alone import stand_alone
+from ..plants.local import LocalPlant
+from . import options as shared
+from .progress import CompileProgress
+
+Serve = Callable[[LocalPlant, str, int, Callable[[str], None], Callable[[], bool]], None]
+"""``serve(plant, address, instance, say, running)``: listens at the address until ``running()`` is false."""
+
+LISTENERS = {"tcp": "sitl.physics_server", "json": "sitl.foreign.json_server"}
+"""Kind of ``--listen`` -> module that has ``serve``."""
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser("physics", help="run the physics of a vehicle whose autopilot is elsewhere")
+    parser.add_argument("vehicle", choices=sorted(shared.VEHICLES))
+    parser.add_argument("--backend", choices=BACKENDS, default=NATIVE, help=f"what simulates it (default {NATIVE})")
+    parser.add_argument(
+        "--listen",
+        default="tcp",
+        metavar="tcp[:[HOST:]PORT]|json[:[HOST:]PORT]",
+        help="MAVLink HIL on a TCP port (default 127.0.0.1:4560), or ArduPilot's JSON on a UDP port (9002)",
+    )
+    parser.add_argument(
+        "--instance", type=shared.instance, default=0, metavar="N", help="adds N to the default TCP port, 10 N to UDP's"
+    )
+    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one")
+    parser.add_argument("--home", type=shared.home, default=DEFAULT_HOME, metavar="LAT,LON,ALT,HEADING", help="start")
+    parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
+    parser.add_argument("--start", type=shared.start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
+    parser.set_defaults(function=physics)
+
+
+def physics(options: argparse.Namespace) -> int:
+    """Serve autopilots until Ctrl-C or SIGTERM.
+
+    Raises:
+        OptionError: an option that cannot be taken.
+    """
+    kind, _, address = options.listen.partition(":")
+    if kind not in LISTENERS:
+        raise OptionError(f"--listen {options.listen!r}: {kind!r} is not known; it is one of {', '.join(LISTENERS)}")
+    serve: Serve = import_module(LISTENERS[kind]).serve
+    airframe = vehicles.load(options.frame or shared.VEHICLES[options.vehicle])
+    shared.check_kind(options.frame, airframe, options.vehicle)
+    with CompileProgress() as progress:
+        plant = stand_alone(
+            airframe,
+            home=options.home,
+            backend=options.backend,
+            seed=options.seed,
+            world=options.world,
+            start=options.start,
+            progress=progress,
+        )
+        plant.load_tick()
+    print(f"{airframe.name}, {options.backend} physics, seed {options.seed}", flush=True)
+    stopped: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
+        signal.signal(number, lambda n, _: stopped.append(n))
+    try:
+        serve(plant, address, options.instance, lambda text: print(text, flush=True), lambda: not stopped)
+    finally:
+        plant.close()
+    return 0

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Physics at the other end of a MAVLink HIL link (``sitl physics``): one exchange a tick, in lockstep.
+
+The autopilot's clock is the physics'. While the physics is silent or gone, time stands; controls that were not
+answered are said again once it is back, so that no tick is lost or flown twice. A physics that is found at another time
+has begun anew, and the autopilot begins anew with it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from ..bridge.hil.autopilot_end import TAKEN, WAITING, AutopilotEnd
+from ..bridge.hil.numbers import MAV_TYPES
+from ..core_entry import bind_unit
+from ..physics.carried import Carried
+from ..physics.engine import EngineError
+from ..sim_parameters import PREFIX
+from ..vehicles import apply
+from .hil_link import HilLink, parse_address
+from .plant import Craft, PhysicsLostError, Plant
+
+PATIENCE_S = 2.5
+"""Silence after which the physics counts as lost [s of wall time]."""
+RESEND_S = 1.0
+"""Silence after which controls are said again [s of wall time]."""
+
+
+def make(craft: Craft, address: str) -> Plant:
+    """The plant of ``--physics hil:tcp:HOST:PORT``."""
+    return HilPlant(craft, HilLink(parse_address(address)), PATIENCE_S)
+
+
+class HilPlant(Plant):
+    """One vehicle whose physics is elsewhere.
+
+    Args:
+        craft: the vehicle.
+        link: to the physics.
+        patience_s: silence after which the physics counts as lost [s of wall time].
+    """
+
+    name = "hil"
+
+    def __init__(self, craft: Craft, link: HilLink, patience_s: float) -> None:
+        super().__init__(craft)
+        self.link, self._patience_s = link, patience_s
+        apply(craft.airframe, craft.v)
+        self.end = AutopilotEnd(craft.fleet, craft.index, craft.v, MAV_TYPES[craft.kind.name])
+        self._has_joined = self._is_silent = False
+        self._fly = bind_unit(craft.kind.fly, craft.kind, craft.fleet, craft.index)
+        self._told: Callable[[], int] = craft.reader.field("autopilot.events.count")
+        self._attention: Callable[[], int] = craft.reader.field("autopilot.events.attention")
+        self._clock: Callable[[], int] = craft.reader.field("time_us")
+
+    # ------------------------------------------------------------------ power-on
+
+    def power_on(self) -> None:
+        """Join the physics as it stands; later times it is told to begin anew.
+
+        Raises:
+            PhysicsLostError: nobody is there, or nobody answers.
+        """
+        apply(self.craft.airframe, self.craft.v)
+        if not self.link.is_open:
+            self.link.open(0.0 if self._has_joined else self._patience_s)
+        end = self.end
+        ask = end.ask_reboot() if self._has_joined else end.ask_state()
+        self.link.send(end.hello(self._world()) + ask)
+        self._wait_for(lambda found: found == TAKEN)
+        self._has_joined = True
+
+    def _world(self) -> dict[str, float]:
+        """The parameters of the world."""
+        params = self.craft.v.autopilot.params
+        return {name: float(params[name]) for name in self.craft.kind.firmware.table.names() if name.startswith(PREFIX)}
+
+    # ------------------------------------------------------------------ going on
+
+    def run(self, ticks: int) -> None:
+        fly, told, attention = self._fly, self._told, self._attention
+        before = told()
+        for _ in range(ticks):
+            if not self._exchange():
+                return
+            fly()
+            if attention() or told() != before:
+                return
+
+    def _exchange(self) -> bool:
+        """Controls out, the next tick in; False when the physics has begun anew."""
+        link, end = self.link, self.end
+        if not link.is_open:
+            self._open()
+        link.send(end.controls())
+        found = self._listen()
+        if found == WAITING:
+            found = self._wait_for(lambda found: found != WAITING, end.controls())
+        if found == TAKEN:
+            return True
+        self.craft.restarted()
+        return False
+
+    def _open(self) -> None:
+        self.link.open()
+        self.link.send(self.end.hello(self._world()))
+
+    def _wait_for(self, is_it: Callable[[int], bool], again: bytes = b"") -> int:
+        """Listen until that is found; ``again`` is said once a second. Who has been silent for long is not given as
+        much time as others.
+
+        Raises:
+            PhysicsLostError: not within the patience, or the connection is lost.
+        """
+        link = self.link
+        begun = said = time.monotonic()
+        patience = 0.0 if self._is_silent else self._patience_s
+        while True:
+            found = self._listen()
+            if is_it(found):
+                self._is_silent = False
+                return found
+            now = time.monotonic()
+            if now - begun > patience:
+                self._is_silent = True
+                raise self._lost(f"physics at {link.name} does not answer")
+            if again and now - said > RESEND_S:
+                said = now
+                link.send(again)
+
+    def _listen(self) -> int:
+        """Take what has come, or wait a moment for it; what the physics said goes with the news that it is lost."""
+        try:
+            return self.end.feed(self.link.receive())
+        except PhysicsLostError as error:
+            raise self._lost(str(error)) from None
+
+    def _lost(self, why: str) -> PhysicsLostError:
+        notes, self.end.notes = self.end.notes, []
+        return PhysicsLostError(why + (f" ({'; '.join(notes)})" if notes else ""))
+
+    # ------------------------------------------------------------------ the rest
+
+    def truth(self) -> Carried:
+        """Asked for when it is wanted; as last known while the physics does not answer."""
+        link, end = self.link, self.end
+        if end.truth_us != self._clock() and not end.is_waiting:
+            try:
+                if not link.is_open:
+                    self._open()
+                link.send(end.ask_truth())
+                self._wait_for(lambda _: end.truth_us >= self._clock())
+            except PhysicsLostError:
+                pass  # the next tick says so
+        return end.truth
+
+    def parameter_changed(self, name: str) -> None:
+        super().parameter_changed(name)
+        self.end.set_parameter(name, float(self.craft.v.autopilot.params[name]))
+
+    def reseed(self, seed: int) -> None:
+        self.end.reseed(seed)
+
+    def snapshot(self) -> bytes:
+        raise EngineError("a physics at the other end of a link cannot be put back: choose native, pybullet or jsbsim")
+
+    def restore(self, state: bytes) -> None:
+        self.snapshot()
+
+    def close(self) -> None:
+        self.link.close()
