@@ -18,6 +18,8 @@ from .tasks import ReachGoal, Task
 RENDER_MODES = ["rgb_array", "human"]
 SIZE = 640
 """Of the longer side of a picture [pixels]."""
+PHOTOGRAPH = (640, 480)
+"""Width and height of a picture by the renderer of a physics engine [pixels]."""
 _BORDER = 0.5
 """Around the world [m]."""
 _PAPER, _WALL, _LOW_WALL = (250, 250, 247), (62, 68, 76), (190, 194, 198)
@@ -123,7 +125,11 @@ class Renderer:
         return canvas
 
     def picture(self) -> npt.NDArray[np.uint8]:
-        """Shape (height, width, 3)."""
+        """Shape (height, width, 3): by the renderer of the robot's physics if it has one, else seen from above."""
+        photograph = getattr(self._robot, "photograph", None)
+        taken = None if photograph is None else photograph(self._index, *PHOTOGRAPH)
+        if taken is not None:
+            return np.asarray(taken, np.uint8)
         pixels = _pygame().image.tobytes(self._draw(), "RGB")
         return np.frombuffer(pixels, np.uint8).reshape(self._shape[1], self._shape[0], 3).copy()
 

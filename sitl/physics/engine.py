@@ -115,6 +115,11 @@ class Engine(ABC):
         """
         return False
 
+    def render(self, width: int, height: int) -> Array | None:
+        """A picture of the vehicle in its world by the engine's own renderer: uint8, shape (height, width, 3); None
+        when it has none."""
+        return None
+
     def close(self) -> None:
         """Let go of what the engine holds."""
         return

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One world of Bullet in this process ("direct"), with its clock and solver set.
 
-Bullet's frame is that of world files: x forward (north), y left (west), z up, metres; its bodies' axes are forward, left,
-up. From and to NED and FRD only signs change: (x, y, z) is (north, -east, -down), and the quaternion (w, x, y, z) of a
-body is (w, x, -y, -z) here, which Bullet writes (x, y, z, w).
+Bullet's frame is that of world files: x forward (north), y left (west), z up, metres; its bodies' axes are forward,
+left, up. From and to NED and FRD only signs change: (x, y, z) is (north, -east, -down), and the quaternion (w, x, y, z)
+of a body is (w, x, -y, -z) here, which Bullet writes (x, y, z, w).
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from ..native.body import GRAVITY
 
 ITERATIONS = 50
 """Passes of the contact solver; it leaves off sooner when nothing changes."""
+RESIDUAL = 1e-7
+"""Bullet's own."""
 
 
 class Client:
@@ -32,13 +34,14 @@ class Client:
     Args:
         step_s: of the simulation [s].
         iterations: greatest number of passes of the solver in a step.
+        residual: the solver leaves off when a pass changes velocities by less than this, squared.
 
     Raises:
         MissingExtra: pybullet is not installed.
         EngineError: this process has too many worlds open.
     """
 
-    def __init__(self, step_s: float, iterations: int = ITERATIONS) -> None:
+    def __init__(self, step_s: float, iterations: int = ITERATIONS, residual: float = RESIDUAL) -> None:
         self.p = p = bullet()
         self.id: int = p.connect(p.DIRECT)
         if self.id < 0:
@@ -48,6 +51,7 @@ class Client:
             fixedTimeStep=step_s,
             numSubSteps=0,
             numSolverIterations=iterations,
+            solverResidualThreshold=residual,
             deterministicOverlappingPairs=1,
             physicsClientId=self.id,
         )
@@ -77,7 +81,7 @@ def bullet() -> Any:
         MissingExtra: it is not installed.
     """
     try:
-        with _silence():
+        with silence():
             import pybullet
     except ImportError:
         raise MissingExtra("physics by PyBullet needs pybullet: pip install 'gym-sitl[pybullet]'") from None
@@ -85,7 +89,7 @@ def bullet() -> Any:
 
 
 @contextlib.contextmanager
-def _silence() -> Iterator[None]:
+def silence() -> Iterator[None]:
     """Send what C code prints nowhere: descriptors 1 and 2, since C knows nothing of ``sys.stdout``."""
     sys.stdout.flush()
     sys.stderr.flush()

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a copter's contacts mean: standing or in the air, hard touches, runs into solids.
+
+The rules are those of native physics (``native.obstacles``, ``native.copter.ground``): a contact with a solid that is
+faster than HIT_SPEED counts unless it follows the last one within HIT_PAUSE_US; a touch of the floor out of the air
+that is faster than the airframe's ``hit_speed`` counts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from ..native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from ..native.obstacles import HIT_PAUSE_US, HIT_SPEED
+from .worlds import Surfaces
+
+CLEAR = 0.01
+"""A copter is in the air again when it touches nothing this high over the floor [m]."""
+_OTHER, _LINK, _NORMAL, _FORCE = 2, 3, 7, 9
+"""Columns of pybullet's contacts: the other body, the link of this one, from the other to this, how hard [N]."""
+BODY = -1
+"""The link with the rigid outline."""
+
+Row = Sequence[Any]
+
+
+def report(v: Any, surfaces: Surfaces, rows: Sequence[Row], before: Sequence[float]) -> bool:
+    """Write what the contacts of a step are into ``physics.ground`` and ``physics.obstacles``.
+
+    Args:
+        v: the vehicle.
+        surfaces: of its world.
+        rows: pybullet's contacts of it.
+        before: its velocity before the step, NED [m/s].
+
+    Returns:
+        Whether the rigid outline was pushed.
+    """
+    p = v.physics
+    into, on_floor, in_solid, is_hard = 0.0, False, False, False
+    for row in rows:
+        if row[_FORCE] <= 0.0:
+            continue
+        is_hard = is_hard or row[_LINK] == BODY
+        if row[_OTHER] == surfaces.floor:
+            on_floor = True
+        else:
+            in_solid = True
+            x, y, z = row[_NORMAL]
+            into = max(into, y * before[1] + z * before[2] - x * before[0])
+    o = p.obstacles
+    if in_solid or o.touching:
+        o.touching = int(in_solid)
+    if into > HIT_SPEED and (o.hit_count == 0 or v.time_us - o.hit_time_us > HIT_PAUSE_US):
+        o.hit_count += 1
+        o.hit_speed = into
+        o.hit_time_us = v.time_us
+    if on_floor:
+        touch(v, before[2])
+    elif p.ground.state != GROUND_AIRBORNE and p.body.pos[2] < -CLEAR:
+        p.ground.state = GROUND_AIRBORNE
+    return is_hard
+
+
+def touch(v: Any, speed: float) -> None:
+    """On the floor after a step that began with ``speed`` [m/s] downward."""
+    g, a, q = v.physics.ground, v.physics.airframe, v.physics.body.q
+    if g.state == GROUND_AIRBORNE and speed > a.hit_speed:
+        g.hit_count += 1
+        g.hit_speed = speed
+        g.hit_time_us = v.time_us
+    x, y = float(q[1]), float(q[2])
+    upright = 1.0 - 2.0 * (x * x + y * y)  # cosine of the lean
+    g.state = GROUND_STANDING if upright >= math.cos(float(a.tip_angle)) else GROUND_LYING
