@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``python -m missions.engines``: the same flights under the same firmware and parameters, on every physics engine.
 
-Each vehicle goes through two scripts: commands in GUIDED, and a mission. All figures are of the simulator's truth, not of the estimate, at equal times since the beginning of each phase.
+Each vehicle goes through two scripts: commands in GUIDED, and a mission. All figures are of the simulator's truth, not
+of the estimate, at equal times since the beginning of each phase.
 """
 
 from __future__ import annotations

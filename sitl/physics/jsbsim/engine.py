@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""JSBSim as the engine of one vehicle.
+
+A tick is as many frames of JSBSim as the airframe has substeps. A frame first moves the vehicle by what acted on it at
+the end of the last one and then works out what acts now, so that an actuator shows one frame later than in native
+physics. Integrators without a memory are chosen, for restoring: Buss' second-order rotation, and Euler's rule for
+velocity and position, which then stands half a frame behind the velocity; it is reported with that made up for.
+
+JSBSim cannot give or take its whole state. What its state follows from is all in the vehicle's record: a snapshot makes
+JSBSim start anew from the record, and so does restoring it, and both go on from the same bits. The new start changes
+the flight that goes on by rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from ...core.rotations import quat_rotate, quat_to_euler
+from ..engine import Engine, EngineError, Seat
+from ..native.tick import TICK_S
+from . import memory, start
+from .air import Air
+from .aircraft import RADIUS
+from .craft import Craft
+from .model import library, load
+from .properties import Properties
+from .units import FOOT
+
+Vector = tuple[float, float, float]
+_STATE = (
+    "position/lat-gc-rad",
+    "position/long-gc-rad",
+    "position/h-sl-ft",
+    "velocities/v-north-fps",
+    "velocities/v-east-fps",
+    "velocities/v-down-fps",
+    "attitude/phi-rad",
+    "attitude/theta-rad",
+    "attitude/psi-rad",
+    "velocities/p-rad_sec",
+    "velocities/q-rad_sec",
+    "velocities/r-rad_sec",
+)
+
+
+class JsbsimEngine(Engine):
+    """One vehicle in a JSBSim of its own.
+
+    Args:
+        seat: where its record is. The world may have a floor, but no solids.
+        craft: what is special about the kind of vehicle.
+
+    Raises:
+        EngineError: the world has solids.
+        MissingExtra: JSBSim is not installed.
+    """
+
+    name: ClassVar[str] = "jsbsim"
+
+    def __init__(self, seat: Seat, craft: Craft) -> None:
+        super().__init__(seat)
+        library()
+        if seat.world is not None and len(seat.world.geometry) > 0:
+            raise EngineError(
+                f"world {seat.world.name!r}: physics 'jsbsim' knows no solids; take physics 'native' or 'pybullet'"
+            )
+        self.craft = craft
+        self.executive: Any = None
+        """JSBSim's FGFDMExec."""
+        self._figures = b""
+        self._physics = seat.v.physics
+        self._wind = seat.v.physics.wind
+        self._write_body = memory.writer(seat, "physics.body.pos", 13)
+
+    # ------------------------------------------------------------------ starting
+
+    def place(self) -> None:
+        figures = bytes(self._physics.airframe._bytes)
+        if figures != self._figures or self.air.has_stirred:
+            self._load()
+            self._figures = figures
+        self.air.seed(int(self.seat.v.rng.s[0]))
+        self._start()
+
+    def _load(self) -> None:
+        """Have JSBSim take the vehicle as its figures are now."""
+        a, craft = self._physics.airframe, self.craft
+        self.frames = craft.frames(a)
+        self.dt = TICK_S / self.frames
+        self.executive = load(craft.document(a, self.dt), self.dt)
+        self._height = craft.height(a)
+        properties = Properties(self.executive)
+        self._state = [properties.reader(name) for name in _STATE]
+        self._run = self.executive.run
+        self.air = Air(properties)
+        craft.bind(properties, a, self.dt)
+
+    def _start(self) -> None:
+        """Start JSBSim from what the record says."""
+        p = self._physics
+        self.air.be_still()
+        start.begin(self.executive, self._motion())
+        self.air.settle(float(p.place.alt))
+        self.air.blow(p.wind.steady.tolist())
+        self.craft.starting()
+        self.craft.inputs()
+        start.settle(self.executive)
+        self.craft.started()
+        self.air.stir(float(p.wind.turbulence))
+
+    def _motion(self) -> start.Motion:
+        """Of the centre of mass, from the record."""
+        b, half = self._physics.body, 0.5 * self.dt
+        q = b.q.tolist()
+        rates = tuple(b.rates.tolist())
+        (x, y, z), (vx, vy, vz) = self._lever(q, rates)
+        (north, east, down), (vn, ve, vd) = b.pos.tolist(), b.vel.tolist()
+        velocity = vn + vx, ve + vy, vd + vz
+        down = down + z - half * velocity[2]
+        position = north + x - half * velocity[0], east + y - half * velocity[1], self._height - down
+        return start.Motion(position, velocity, quat_to_euler(*q), rates)
+
+    def _lever(self, q: Sequence[float], rates: Sequence[float]) -> tuple[Vector, Vector]:
+        """From the origin of the body to its centre of mass: place [m] and velocity [m/s], NED."""
+        w, x, y, z = q
+        ahead = self.craft.ahead
+        across, upward = ahead * rates[2], ahead * rates[1]
+        return quat_rotate(w, x, y, z, ahead, 0.0, 0.0), quat_rotate(w, x, y, z, 0.0, across, -upward)
+
+    # ------------------------------------------------------------------ going on
+
+    def move(self) -> None:
+        air = self.air
+        wind = self._wind.steady.tolist()
+        if wind != air.wind:
+            air.blow(wind)
+        if self._wind.turbulence != air.turbulence:
+            air.stir(self._wind.turbulence)
+        self.craft.inputs()
+        for _ in range(self.frames):
+            self._run()
+        lat, lon, height, vn, ve, vd, roll, pitch, yaw, p, q, r = [read() for read in self._state]
+        vn, ve, vd = FOOT * vn, FOOT * ve, FOOT * vd
+        half = 0.5 * self.dt
+        north, east, down = RADIUS * lat + half * vn, RADIUS * lon + half * ve, self._height - FOOT * height + half * vd
+        cr, sr = math.cos(0.5 * roll), math.sin(0.5 * roll)
+        cp, sp = math.cos(0.5 * pitch), math.sin(0.5 * pitch)
+        cy, sy = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
+        attitude = (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+        if self.craft.ahead != 0.0:
+            (x, y, z), (vx, vy, vz) = self._lever(attitude, (p, q, r))
+            north, east, down, vn, ve, vd = north - x, east - y, down - z, vn - vx, ve - vy, vd - vz
+        self._write_body(north, east, down, vn, ve, vd, *attitude, p, q, r)
+        self.craft.outputs(vd)
+
+    # ------------------------------------------------------------------ going back
+
+    def snapshot(self) -> bytes:
+        if self.air.turbulence > 0.0:
+            raise EngineError(
+                "physics 'jsbsim' has a turbulence of its own, which cannot be restored: set SIM_WIND_TURB to 0 "
+                "or take physics 'native'"
+            )
+        self._start()
+        return b""
+
+    def restore(self, state: bytes) -> None:
+        self._start()
+
+    def close(self) -> None:
+        self.executive = None
