@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from missions import compare
+from missions import compare, engines
 from missions.figures import table
 from sitl.autopilot.params import docs
 from sitl.bridge import docs as mavlink
 from sitl.kinds import KINDS
+from sitl.physics.engines import BACKENDS
 from sitl.simulation import ESTIMATORS
 
 HERE = Path(__file__).parent
@@ -68,8 +69,19 @@ simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both sides 
 """
 
 
+def physics() -> str:
+    """physics.md; draws its pictures too."""
+    tables = {}
+    for frame in engines.FLIGHTS:
+        flown = engines.fly_all(frame, list(BACKENDS))
+        tables[frame] = engines.table(flown)
+        engines.plot(flown, f"{frame} on {len(BACKENDS)} engines", HERE / "images" / f"{frame}-engines.png")
+    return (HERE / "templates" / "physics.md").read_text(encoding="utf-8").format(**tables)
+
+
 def main() -> None:
-    """Write comparison.md, mavlink.md and parameters-*.md."""
+    """Write comparison.md, physics.md, mavlink.md and parameters-*.md."""
+    (HERE / "physics.md").write_text(physics(), encoding="utf-8")
     tables = {
         f"{kind}_{estimator}": table(compare.figures(kind, estimator))
         for kind in compare.FLIGHTS

@@ -140,6 +140,9 @@ class Turtlebots:
         b = self.views[index].body
         return (*from_ned(b.north, b.east, b.down), from_heading(b.heading))
 
+    def close(self) -> None:
+        """Let go of what is open: nothing."""
+
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name not in ("views", "_advance", "_arguments")}
 

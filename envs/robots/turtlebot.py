@@ -30,6 +30,11 @@ class Turtlebot:
         count: of robots.
         airframe: figures.
         lidar: rays and readings.
+        physics: "native", or "pybullet": wheels that slip, walls that it slides along.
+
+    Raises:
+        EnvOptionError: no physics of this name.
+        sitl.core.extras.MissingExtra: its library is not installed.
     """
 
     name = "turtlebot"
@@ -47,8 +52,9 @@ class Turtlebot:
         count: int = 1,
         airframe: TurtlebotAirframe = AIRFRAME,
         lidar: Lidar = LIDAR,
+        physics: str = "native",
     ) -> None:
-        self._robots = robots = Turtlebots(world, count, airframe, lidar)
+        self._robots = robots = _fleet(physics)(world, count, airframe, lidar)
         self.count, self.world, self.scan = count, robots.world, robots.scan
         self.volume = Volume(airframe.value("radius"), airframe.value("bottom"), airframe.value("top"))
         self.range_max = float(airframe.value("range_max"))
@@ -110,6 +116,11 @@ class Turtlebot:
             self._seconds = seconds
         self._run()
 
+    def photograph(self, index: int, width: int, height: int) -> Any:
+        """A picture by the renderer of the robot's physics; None when it has none."""
+        render = getattr(self._robots, "render", None)
+        return None if render is None else render(index, width, height)
+
     def set_figure(self, index: int, name: str, value: float) -> None:
         """See ``Robot``."""
         self._robots.set_figure(index, name, value)
@@ -127,6 +138,7 @@ class Turtlebot:
 
     def close(self) -> None:
         """See ``Robot``."""
+        self._robots.close()
 
     def __getstate__(self) -> dict[str, Any]:
         kept = ("count", "world", "volume", "range_max", "angles", "_robots")
@@ -135,3 +147,14 @@ class Turtlebot:
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
         self._ready()
+
+
+def _fleet(physics: str) -> type[Turtlebots]:
+    """The class of Turtlebots that a physics moves."""
+    if physics == "native":
+        return Turtlebots
+    if physics == "pybullet":
+        from sitl.bullet_turtlebots import BulletTurtlebots
+
+        return BulletTurtlebots
+    raise EnvOptionError(f"physics {physics!r} cannot move a Turtlebot; 'native' and 'pybullet' can")

@@ -34,6 +34,10 @@ AIRFRAME = RoverAirframe(
         "steering_angle": math.radians(35.0),
         "turning_diameter": 1.8,  # [m]
         "track": 0.296,  # [m] of the wheel encoders alone, which are off
+        # A point neither tips over nor pitches: as a car it is low, and its wheelbase gives what turns it takes.
+        "wheelbase": 0.3,  # [m] (assumed)
+        "wheel_radius": 0.05,  # [m] (assumed)
+        "centre_height": 0.02,  # [m] (assumed)
         "battery_voltage_full": 12.6,  # [V] SIM_BATT_VOLTAGE
         "battery_capacity": 0.0,  # [Ah] SIM_BATT_CAP_AH 0: it never empties
         "battery_resistance": BATTERY_SAG / BATTERY_CURRENT,  # [ohm] counts once a capacity is given

@@ -43,6 +43,8 @@ AIRFRAME = RoverAirframe(
         "track": 1.50,  # [m] rear wheels, which drive [model]
         "steering_angle": 0.7727,  # [rad] both front wheels alike [model]
         "steering_rate": 7.5,  # [rad/s] a servo of 0.14 s for 60 degrees; the model's has no limit [estimate]
+        "wheel_radius": 0.3175,  # [m] [model]
+        "centre_height": 0.40,  # [m] [estimate]
         "battery_voltage_full": 50.4,  # [V] twelve lithium-polymer cells [estimate]
         "battery_capacity": 40.0,  # [Ah] [estimate]
         "battery_resistance": 0.02,  # [ohm] [estimate]

@@ -42,6 +42,8 @@ AIRFRAME = RoverAirframe(
         "track": 0.30,  # [m] rear wheels, which drive [model]
         "steering_angle": 0.7727,  # [rad] both front wheels alike [model]
         "steering_rate": 7.5,  # [rad/s] a servo of 0.14 s for 60 degrees [estimate]
+        "wheel_radius": 0.0635,  # [m] [model]
+        "centre_height": 0.08,  # [m] a fifth of the large one's [estimate]
         "battery_voltage_full": 8.4,  # [V] two lithium-polymer cells [estimate]
         "battery_capacity": 5.0,  # [Ah] [estimate]
         "battery_resistance": 0.03,  # [ohm] [estimate]

@@ -28,6 +28,8 @@ AIRFRAME = RoverAirframe(
         "steering_model": STEERING_SKID,
         "track": 0.376,  # [m] [like]
         "track_slip": 1.5,  # wheels scrub: it turns as if the track were this much wider [like]
+        "wheel_radius": 0.098,  # [m] [like]
+        "centre_height": 0.11,  # [m]
         "battery_voltage_full": 29.4,  # [V] seven lithium-ion cells [like]
         "battery_capacity": 9.2,  # [Ah] 270 Wh [like]
         "battery_resistance": 0.1,  # [ohm]

@@ -172,3 +172,14 @@ def test_scrubbing_tyre() -> None:
     assert scrub(3.0, 4.0, 10.0) == approx((-6.0, -8.0))
     assert scrub(0.1 * CREEP, 0.0, 10.0) == approx((-1.0, 0.0))
     assert math.hypot(*scrub(-1e-9, 1e-9, 10.0)) < 1e-6
+
+
+def test_picture_shows_it_and_its_world() -> None:
+    r = Rover("erle_rover", WALL)
+    r.drive(1.0, 0.5, 0.5)
+    before = r.fleet.copy()
+    picture = r.engine.render(80, 60)
+    assert picture.shape == (60, 80, 3) and picture.dtype == np.uint8
+    red = (picture[:, :, 0] > 120) & (picture[:, :, 1] < 60)
+    assert 5 < red.sum() < 2000
+    assert first_difference(r.fleet[0], before[0]) is None

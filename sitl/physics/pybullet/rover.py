@@ -20,10 +20,12 @@ from ..native.tick import TICK_S
 from . import lidar, worlds
 from .client import Client
 from .hits import report
+from .picture import Camera, Picture
+from .record import offset
 from .rover_model import Model, build
 from .state import load as load_state
 from .state import save as save_state
-from .tyres import scrub
+from .tyres import scrub_all
 from .wheels import filter_by_both
 
 RESERVE = 1.25
@@ -57,11 +59,12 @@ class BulletRover(Engine):
         super().__init__(seat)
         self._memory: Any = seat.fleet.view("u1").data
         base = seat.index * seat.fleet.dtype.itemsize
-        self._body_at = base + _offset(seat.fleet.dtype, "physics", "body", "pos")
-        self._command_at = base + _offset(seat.fleet.dtype, "physics", "wheels", "angle")
-        self._rolled_at = base + _offset(seat.fleet.dtype, "physics", "wheels", "speed")
-        self._forward_at = base + _offset(seat.fleet.dtype, "physics", "wheels", "forward")
+        self._body_at = base + offset(seat.fleet.dtype, "physics", "body", "pos")
+        self._command_at = base + offset(seat.fleet.dtype, "physics", "wheels", "angle")
+        self._rolled_at = base + offset(seat.fleet.dtype, "physics", "wheels", "speed")
+        self._forward_at = base + offset(seat.fleet.dtype, "physics", "wheels", "forward")
         self._client: Client | None = None
+        self._picture: Picture | None = None
         self._figures = b""
 
     # ------------------------------------------------------------------ the model
@@ -175,26 +178,12 @@ class BulletRover(Engine):
 
         A torque at a joint turns the chassis the other way, which makes up for the lever from the hub to the floor.
         """
-        p, number, model, radius = client.p, self._number, self.model, self._radius
-        x, y, z, vx, vy, vz, rolls, pitches, turns, c, s, rises, leans = self._state
-        forward, leftward = c * vx + s * vy, c * vy - s * vx
-        above = z - self.surfaces.height
-        fx = fy = tz = 0.0
-        torques = [0.0, 0.0, 0.0, 0.0]
-        for k, (ahead, aside) in enumerate(model.layout.wheels):
-            up = z - self._zero + ahead * rises + aside * leans
-            load = model.stiffness * (model.layout.sag - up) - model.damping * (vz - ahead * pitches + aside * rolls)
-            if load <= 0.0:
-                continue
-            along = forward - aside * turns - self._speeds[k]
-            ahead_force, aside_force = scrub(along, leftward + ahead * turns, self._friction * load)
-            fx += ahead_force
-            fy += aside_force
-            tz += ahead * aside_force - aside * ahead_force
-            torques[k] = -radius * ahead_force
-        nx, ny = c * fx - s * fy, s * fx + c * fy
+        p, number, model = client.p, self._number, self.model
+        x, y, z, *_, c, s, _, _ = self._state
+        fx, fy, turning, torques = scrub_all(model, self._state, self._zero, self._speeds, self._friction)
+        nx, ny, above = c * fx - s * fy, s * fx + c * fy, z - self.surfaces.height
         p.applyExternalForce(number, -1, (nx, ny, 0.0), (x, y, z), _WORLD_FRAME, client.id)
-        p.applyExternalTorque(number, -1, (above * ny, -above * nx, tz), _WORLD_FRAME, client.id)
+        p.applyExternalTorque(number, -1, (above * ny, -above * nx, turning), _WORLD_FRAME, client.id)
         p.setJointMotorControlArray(number, model.driven, p.TORQUE_CONTROL, forces=torques, physicsClientId=client.id)
 
     def _read(self, client: Client) -> None:
@@ -250,16 +239,20 @@ class BulletRover(Engine):
         lidar.cast(self._fit(), origin, directions, ranges, reach)
         return True
 
+    def render(self, width: int, height: int, camera: Camera | None = None) -> Array:
+        """A picture of it in its world, uint8, shape (height, width, 3); see ``Picture``."""
+        client, seat = self._fit(), self.seat
+        if self._picture is None:
+            a, reach = seat.v.physics.airframe, self.model.layout.wheelbase
+            self._picture = Picture(lambda c: build(c, a, seat.floor).body, seat.world, seat.floor, reach)
+        place, attitude = client.p.getBasePositionAndOrientation(self._number, client.id)
+        joints = {k: client.p.getJointState(self._number, k, client.id)[0] for k in self.model.joints}
+        return self._picture.render(place, attitude, width, height, camera, joints)
+
     def close(self) -> None:
+        if self._picture is not None:
+            self._picture.close()
+            self._picture = None
         if self._client is not None:
             self._client.close()
             self._client = None
-
-
-def _offset(dtype: Any, *path: str) -> int:
-    """Of a field within a record [bytes]."""
-    place = 0
-    for name in path:
-        dtype, more = dtype.fields[name][:2]
-        place += more
-    return place

@@ -17,6 +17,7 @@ from ..native.turtlebot.step import wheel_speeds
 from . import lidar as rays_of_bullet
 from . import worlds
 from .client import Client
+from .picture import Camera, Picture
 from .state import load, save
 from .turtlebot_model import TORQUE, build
 from .wheels import filter_by_both
@@ -44,6 +45,7 @@ class BulletTurtlebot:
         self._rays = planar.rays(lidar.rays, lidar.field_of_view)
         self._ranges, self._readings = np.empty(lidar.rays), np.empty(lidar.readings)
         self._client: Client | None = None
+        self._picture: Picture | None = None
         self._figures = b""
         self._rates = (math.nan, math.nan)
 
@@ -134,6 +136,15 @@ class BulletTurtlebot:
                 if readings[k] < longest:
                     readings[k] = min(max(float(readings[k]) + error, 0.0), longest)
 
+    def render(self, width: int, height: int, camera: Camera | None = None) -> Any:
+        """A picture of it in its world, uint8, shape (height, width, 3); see ``Picture``."""
+        client, floor = self._fit(), self.world.floor_z
+        if self._picture is None:
+            figures = self.v.figures
+            self._picture = Picture(lambda c: build(c, figures, floor).body, self.world, floor, 0.5)
+        place, attitude = client.p.getBasePositionAndOrientation(self.model.body, client.id)
+        return self._picture.render(place, attitude, width, height, camera)
+
     def snapshot(self) -> bytes:
         """What the record does not hold."""
         return save(self._fit())
@@ -149,6 +160,9 @@ class BulletTurtlebot:
 
     def close(self) -> None:
         """Give its world up."""
+        if self._picture is not None:
+            self._picture.close()
+            self._picture = None
         if self._client is not None:
             self._client.close()
             self._client = None

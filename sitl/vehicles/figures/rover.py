@@ -53,10 +53,15 @@ STEERING = (
     Figure("track_slip", "", "track that the yaw rate follows by the true one: wheels scrub", 1.0, 10.0, models=_SKID),
 )
 
+CHASSIS = (  # for engines that build the vehicle of parts; native physics has no use for them
+    Figure("wheel_radius", "m", "of the wheels, 0: a sixth of the wheelbase", default=0.0),
+    Figure("centre_height", "m", "of the centre of mass over the floor, 0: one and a half wheel radii", default=0.0),
+)
+
 ENCODERS = (
     Figure("encoder_rate", "Hz", "samples a second of the wheel encoders, 0 none", 0.0, 200.0, 0.0),
     Figure("encoder_step", "m", "travel of the rim a count, 0 continuous", default=0.0),
 )
 
-FIGURES = (*BODY, *DRIVE, *TYRES, *STEERING, *BATTERY, *SENSORS, *ENCODERS, *OUTLINE, *RANGING)
+FIGURES = (*BODY, *DRIVE, *TYRES, *STEERING, *CHASSIS, *BATTERY, *SENSORS, *ENCODERS, *OUTLINE, *RANGING)
 FIGURES_DTYPE = figures_dtype(FIGURES)
