@@ -33,6 +33,8 @@ $(VENV)/demo.stamp: pyproject.toml $(VENV)/bin/python
 
 $(VENV)/dev.stamp: pyproject.toml $(VENV)/bin/python
 	$(BIN)/pip install -q -e '.[dev]' $$(command -v cc gcc clang >/dev/null || echo ziglang)
+	$(BIN)/pip install -q --only-binary :all: -e '.[pybullet]' || echo "no pybullet for this Python here: its tests are skipped"
+	$(BIN)/pip install -q --only-binary :all: -e '.[jsbsim]' || echo "no jsbsim for this Python here: its tests are skipped"
 	@touch $@
 
 clean:
