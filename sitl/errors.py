@@ -7,6 +7,7 @@ from .autopilot.params.files import ParameterError
 from .bridge.links.address import LinkAddressError
 from .core.compile import BuildError
 from .core.extras import MissingExtra
+from .foreign.process import AutopilotEndedError
 from .logs.tlog import LogError
 from .option_error import OptionError
 from .pacing import SpeedupError
@@ -18,6 +19,7 @@ from .worlds import WorldError
 
 USER_ERRORS: tuple[type[Exception], ...] = (
     AirframeError,
+    AutopilotEndedError,
     BuildError,
     CannotBuild,
     EngineError,

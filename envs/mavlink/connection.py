@@ -30,6 +30,10 @@ class Connection:
     client: Client
     is_exact = True
     """Whether its clock goes exactly as far as it is told to."""
+    sees = False
+    """Whether scans and touches come with it, not by MAVLink."""
+    longest_interval_us = 1 << 62
+    """Greatest interval of telemetry that is new enough at the end of a step [us]."""
     was_rebooted = False
     learned: float | None = None
     """What the vehicle may have changed by itself, as it was at first (``preparation.reboot``)."""

@@ -56,7 +56,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     Raises:
         NotReadyError: the vehicle does not send one of them so often.
     """
-    for kind in (POSITION, ATTITUDE, link.heard.scan_kind):
+    for kind in (POSITION, ATTITUDE) if link.sees else (POSITION, ATTITUDE, link.heard.scan_kind):
         result = link.command(SET_INTERVAL, kind.id, interval_us)
         if result != ACCEPTED and kind is SCAN:
             link.heard.scan_kind = kind = SECTORS

@@ -21,8 +21,10 @@ from sitl import vehicles, worlds
 from sitl.autopilot.params.files import ParameterError
 from sitl.bridge.links.address import LinkAddressError, open_link
 from sitl.core.geodesy import offset_ne
+from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import BACKENDS, NATIVE
+from sitl.plants.local import LocalPlant
 from sitl.simulation import DEFAULT_HOME, Core, Home, OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
@@ -30,13 +32,15 @@ from sitl.worlds import World, planar
 from sitl.worlds.frames import from_heading, from_ned
 
 from ..actions import Action
-from ..mavlink import setpoints
+from ..mavlink import px4, setpoints
 from ..mavlink.connection import Connection, InProcess, Lockstep, connect
 from ..mavlink.ends import LinkLostError
+from ..mavlink.foreign import Foreign
 from ..mavlink.preparation import ALIGN_US, INTERVAL_US, hear_again, prepare, reboot, set_intervals, set_mode
 from ..options import EnvOptionError, unknown
 from ..setpoints import Setpoint
-from .autopilot_kinds import KINDS
+from . import foreign
+from .autopilot_kinds import KINDS, PX4_KIND
 from .robot import Floats, Pose, Volume
 
 INPROCESS = "inprocess"
@@ -76,7 +80,12 @@ class AutopilotRobot:
         params: values under ArduPilot's names, in process.
         gcs: where a ground station listens to the first vehicle, as ``sitl run --out`` has it; None: nowhere.
         patience: wall time without an answer after which a connection is lost [s].
-        physics: what simulates it, in process: "native", "pybullet" (see ``sitl.simulation.Simulation``).
+        physics: what simulates it, in process or under a foreign autopilot: "native", "pybullet" (see
+            ``sitl.simulation.Simulation``).
+        autopilot: "native", or a foreign one on our physics, by its program or by where its MAVLink is:
+            "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started, or rebooted, for
+            each episode, and has no snapshots.
+        autopilot_path: the program, when ``autopilot`` does not say.
     """
 
     def __init__(
@@ -91,10 +100,13 @@ class AutopilotRobot:
         gcs: str | None = None,
         patience: float = 10.0,
         physics: str = NATIVE,
+        autopilot: str = NATIVE,
+        autopilot_path: str | Path | None = None,
     ) -> None:
         self._options: dict[str, Any] = {
             "world": world, "count": count, "frame": frame, "connection": connection, "take_off": take_off,
             "home": home, "params": params, "gcs": gcs, "patience": patience, "physics": physics,
+            "autopilot": autopilot, "autopilot_path": autopilot_path,
         }  # fmt: skip
         try:
             self.airframe = airframe = vehicles.load(frame)
@@ -108,15 +120,23 @@ class AutopilotRobot:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
         if airframe.kind == "copter" and not 0.5 <= take_off <= 100.0:
             raise EnvOptionError(f"take_off = {take_off}; it must be 0.5 .. 100 m")
-        self._in_process = connection == INPROCESS
-        if not self._in_process and (count > 1 or gcs is not None or params):
+        try:
+            self._choice = choose(autopilot, airframe.kind, autopilot_path)
+        except OptionError as error:
+            raise EnvOptionError(str(error)) from None
+        if self._choice is not None and self._choice.kind == PX4:
+            self.kind = kind = PX4_KIND
+        self._in_process = connection == INPROCESS and self._choice is None
+        if self._choice is not None:
+            foreign.check(self._choice, self._options, count)
+        if connection != INPROCESS and (count > 1 or gcs is not None or params):
             raise EnvOptionError(f"connection {connection!r} leads to one vehicle as it is: no count, gcs or params")
-        if physics not in BACKENDS or (physics != NATIVE and not self._in_process):
-            raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(BACKENDS)}, and of a vehicle in process")
+        if physics not in BACKENDS or (physics != NATIVE and connection != INPROCESS):
+            raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(BACKENDS)}, of a vehicle in process")
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, kind.tick if self._in_process else max(kind.tick, 0.005)
         self.figures: Mapping[str, Figure] = (
-            {f.name: f for f in airframe.known if f.length == 1 and not f.whole} if self._in_process else {}
+            {f.name: f for f in airframe.known if f.length == 1 and not f.whole} if connection == INPROCESS else {}
         )
         reach = max(abs(x) for x in airframe.value("contact_along")) if airframe.value("contact_discs") > 1 else 0.0
         above = take_off if airframe.kind == "copter" else 0.0
@@ -166,6 +186,8 @@ class AutopilotRobot:
             link = self._link(index)
             self._put(index, ready)
             link.simulation.reseed(seed)
+        elif self._choice is not None:
+            self._reset_foreign(self._choice, index, pose, seed)
         else:
             self._reset_remote(pose, seed)
         self.collided[index] = 0
@@ -189,6 +211,20 @@ class AutopilotRobot:
             self.close()
             raise
         self._now[0] = Ready(None, None, origin, self._time_us(link), "", INTERVAL_US)
+
+    def _reset_foreign(self, choice: Choice, index: int, pose: Pose, seed: int) -> None:
+        figures = self._changed[index]
+        airframe = self.airframe.changed(**figures) if figures else self.airframe
+        link, self._links[index] = self._links[index], None
+        try:
+            found = foreign.begin(choice, self._options, link, airframe, self.world, pose, seed)
+            self._links[index] = found
+            found.heard.angles = self.angles
+            origin = self._prepare(found, pose)
+        except LinkLostError:
+            self.close()
+            raise
+        self._now[index] = Ready(None, None, origin, self._time_us(found), "", INTERVAL_US)
 
     def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...]) -> Ready:
         """The state after take-off at a pose; found once."""
@@ -238,7 +274,10 @@ class AutopilotRobot:
         """Get ready; returns NED of the local origin in the world."""
         take_off = self._options["take_off"] if self.airframe.kind == "copter" else 0.0
         heard = link.heard
-        prepare(link, self.kind.guided, take_off, lambda: self._send(link, setpoints.override(_AT_REST, heard, ())))
+        if self.kind is PX4_KIND:
+            px4.prepare(link, take_off)
+        else:
+            prepare(link, self.kind.guided, take_off, lambda: self._send(link, setpoints.override(_AT_REST, heard, ())))
         assert heard.origin is not None
         lat, lon = (round(1e7 * angle) for angle in self._options["home"][:2])
         north, east = offset_ne(lat, lon, *heard.origin[:2])
@@ -248,6 +287,8 @@ class AutopilotRobot:
     def _time_us(link: Connection) -> int:
         if isinstance(link, InProcess):
             return link.simulation.time_us
+        if isinstance(link, Foreign):
+            return link.time_us
         return 1000 * (link.time_ms if isinstance(link, Lockstep) else int(link.heard.position[0]))
 
     # ------------------------------------------------------------------ steps
@@ -269,9 +310,9 @@ class AutopilotRobot:
     def _step(self, index: int, us: int) -> None:
         link, now, setpoint = self._links[index], self._now[index], self._setpoint
         if link is None:
-            raise LinkLostError(f"connection {self._options['connection']} is not open; reset() opens it")
+            raise LinkLostError(f"{self._where} is not open; reset() opens it")
         heard = link.heard
-        interval_us = math.gcd(ALIGN_US, us)
+        interval_us = min(math.gcd(ALIGN_US, us), link.longest_interval_us)
         if now.setpoint != setpoint.name or now.interval_us != interval_us:
             now = self._change(link, now, setpoint.name, interval_us)
             self._now[index] = now
@@ -328,13 +369,20 @@ class AutopilotRobot:
         """A vehicle in process itself, to look at what MAVLink does not tell."""
         return self._link(index).simulation
 
+    def photograph(self, index: int, width: int, height: int) -> Any:
+        """A picture by the renderer of the vehicle's physics; None when it has none."""
+        if not self._in_process:
+            return None
+        plant = self._link(index).simulation.plant
+        return plant.engine.render(width, height) if isinstance(plant, LocalPlant) and plant.engine else None
+
     # ------------------------------------------------------------------ other times
 
     def snapshot(self, index: int) -> Any:
         """See ``Robot``."""
         link, now = self._links[index], self._now[index]
         if not isinstance(link, InProcess):
-            raise EnvOptionError(f"connection {self._options['connection']!r}: only vehicles in process have snapshots")
+            raise EnvOptionError(f"{self._where}: only vehicles in process have snapshots")
         return Ready(
             link.simulation.snapshot(), link.heard.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
         )
@@ -342,7 +390,7 @@ class AutopilotRobot:
     def restore(self, index: int, snapshot: Any) -> None:
         """See ``Robot``."""
         if not self._in_process:
-            raise EnvOptionError(f"connection {self._options['connection']!r}: only vehicles in process have snapshots")
+            raise EnvOptionError(f"{self._where}: only vehicles in process have snapshots")
         if not isinstance(snapshot, Ready):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of a vehicle")
         self._put(index, snapshot)
@@ -359,6 +407,12 @@ class AutopilotRobot:
         link.heard.recall(ready.heard)
         self._now[index] = ready
 
+    @property
+    def _where(self) -> str:
+        if self._choice is not None:
+            return f"autopilot {self._choice.name}"
+        return f"connection {self._options['connection']!r}"
+
     def close(self) -> None:
         """See ``Robot``."""
         for index, link in enumerate(self._links):
@@ -368,7 +422,7 @@ class AutopilotRobot:
 
     def __getstate__(self) -> dict[str, Any]:
         if not self._in_process:
-            raise TypeError(f"an environment on connection {self._options['connection']!r} cannot be pickled")
+            raise TypeError(f"an environment on {self._where} cannot be pickled")
         kept = [None if link is None else self.snapshot(i) for i, link in enumerate(self._links)]
         return {"options": self._options, "kept": kept, "changed": self._changed, "collided": self.collided}
 

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sitl.autopilot.copter.modes import numbers as copter
 from sitl.autopilot.rover.modes import numbers as rover
 
 from ..actions import Action, Continuous, Discrete
+from ..mavlink import px4
 from ..mavlink.setpoints import COPTER, ROVER, Encode
 from ..options import EnvOptionError
 from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY, Setpoint
@@ -105,3 +106,13 @@ ROVER_KIND = Kind(
     },
 )
 KINDS = {"copter": COPTER_KIND, "rover": ROVER_KIND}
+PX4_KIND = replace(
+    COPTER_KIND,
+    setpoints=(VELOCITY, POSITION),
+    modes={"velocity": px4.OFFBOARD, "position": px4.OFFBOARD},
+    guided=px4.OFFBOARD,
+    encode=px4.COPTER,
+    discrete={"velocity": COPTER_KIND.discrete["velocity"]},
+    continuous={name: COPTER_KIND.continuous[name] for name in ("velocity", "position")},
+)
+"""A copter that PX4 flies: it has no climb rate in attitude set-points, and takes sticks in modes of its own."""

@@ -11,9 +11,11 @@ from pathlib import Path
 from .. import runner
 from ..bridge.links.address import open_link
 from ..bridge.links.link import Link
+from ..foreign.choice import choose
 from ..lockstep import serve_lockstep
 from ..pacing import Pacing, parse_speedup
 from ..simulation import Simulation
+from . import foreign
 from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds
 from .status import StatusLine
 
@@ -26,6 +28,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     clock.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")
     clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")
     add_run_options(parser)
+    foreign.add_autopilot_options(parser)
     parser.set_defaults(function=run)
 
 
@@ -66,6 +69,9 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
 
 def run(options: argparse.Namespace) -> int:
     """Serve the vehicle until Ctrl-C, SIGTERM or the end of ``--duration``."""
+    choice = choose(options.autopilot, options.vehicle)
+    if choice is not None:
+        return foreign.fly(options, choice)
     speedup = parse_speedup(options.speedup)
     simulation, _, _ = start(options)
     stopped: list[int] = []

@@ -43,11 +43,13 @@ class AutopilotEnd:
         """
         lines = [line for line in datagram.split(b"\n") if line.strip()]
         if not lines:
-            return self._refuse("an empty datagram")
+            self._refuse("an empty datagram")
+            return None
         try:
             told = motion.decode(lines[-1])
         except MotionError as error:
-            return self._refuse(str(error))
+            self._refuse(str(error))
+            return None
         before, self.time = self.time, told.time
         self.count = (self.count + 1) & servos.COUNT_MASK
         return told, 1.0 / self.rate if before is None else told.time - before

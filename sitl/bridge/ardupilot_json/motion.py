@@ -18,6 +18,8 @@ from ...core.rotations import quat_from_euler
 _LIMITS = {"gyro": 1e3, "accel_body": 1e5, "position": 1e7, "velocity": 1e4}
 """Beyond these a number is no motion of a vehicle [rad/s, m/s^2, m, m/s]."""
 _LATEST = 1e9
+_KINDS = {float, int}
+_RANGE = b"rng_"
 RANGES = tuple(f"rng_{k}" for k in range(1, 7))
 _LINE = (
     '\n{"timestamp":%r,"imu":{"gyro":[%r,%r,%r],"accel_body":[%r,%r,%r]},"position":[%r,%r,%r],'
@@ -111,7 +113,7 @@ def decode(line: bytes) -> Motion:
         _vector(fields, "position"),
         _vector(fields, "velocity"),
         _attitude(fields),
-        tuple(_number(fields[key], key, math.inf) if key in fields else None for key in RANGES),
+        _ranges(fields) if _RANGE in line else (),
         None if not isinstance(battery, dict) else _battery(battery),
         _receiver(fields.get("rc")),
     )
@@ -132,11 +134,13 @@ def _number(value: Any, name: str, limit: float) -> float:
 
 
 def _vector(fields: dict[str, Any], name: str, length: int = 3, limit: float | None = None) -> tuple[float, ...]:
-    values = fields.get(name)
+    values, bound = fields.get(name), limit or _LIMITS[name]
     if values is None:
         raise MotionError(f"field {name} is missing")
     if not isinstance(values, list) or len(values) != length:
         raise MotionError(f"{name} {values!r} is not {length} numbers")
+    if _KINDS.issuperset(map(type, values)) and -bound <= min(values) and max(values) <= bound:  # NaN is no JSON
+        return tuple(map(float, values))
     return tuple(_number(value, name, limit or _LIMITS[name]) for value in values)
 
 
@@ -152,6 +156,10 @@ def _attitude(fields: dict[str, Any]) -> tuple[float, ...]:
         roll, pitch, yaw = _vector(fields, "attitude", 3, 1e3)
         return tuple(float(part) for part in quat_from_euler(roll, pitch, yaw))
     raise MotionError("neither quaternion nor attitude is there")
+
+
+def _ranges(fields: dict[str, Any]) -> tuple[float | None, ...]:
+    return tuple(_number(fields[key], key, math.inf) if key in fields else None for key in RANGES)
 
 
 def _battery(fields: dict[str, Any]) -> tuple[float, float]:

@@ -89,14 +89,14 @@ class PhysicsEnd:
                 return self._refuse(f"a second autopilot, at {peer}, is not served: there is one at {self.peer}", peer)
             note = f"autopilot at {peer}" if self.peer is None else f"autopilot at {peer}, before at {self.peer}"
         moved, self.peer, self._heard_at = peer != self.peer, peer, now
-        before, self.count = self.count, servos.count
+        before, self.count = self.count, servos.number
         if before is None:
-            asked = Asked.RESTART if servos.count == 0 and self._stepped_any else Asked.STEP
-        elif servos.count == before and not moved:
+            asked = Asked.RESTART if servos.number == 0 and self._stepped_any else Asked.STEP
+        elif servos.number == before and not moved:
             if now - self._answered_at < CROSSED_S:
                 return Heard(Asked.NOTHING, servos)
             asked = Asked.REPEAT if self.line else Asked.STEP
-        elif servos.count <= before and (before - servos.count) < 1 << 31:
+        elif servos.number <= before and (before - servos.number) < 1 << 31:
             asked, note = Asked.RESTART, note or "the autopilot has been started anew"
         else:
             asked = Asked.STEP
@@ -111,11 +111,6 @@ class PhysicsEnd:
         """The last answer once more."""
         self._answered_at = now
         return self.line
-
-    def lost(self) -> None:
-        """Physics begins anew, or the autopilot is known to have gone: whoever speaks next is new."""
-        self.peer, self.count, self.line = None, None, b""
-        self._told.clear()
 
     def _refuse(self, note: str, kind: Hashable) -> Heard:
         """Count, and tell each kind once."""

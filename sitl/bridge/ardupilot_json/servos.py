@@ -26,7 +26,7 @@ class Servos(NamedTuple):
 
     rate: int
     """Steps a second that the autopilot would like [Hz]."""
-    count: int
+    number: int
     """Frames before this one; a frame that is sent again has the same."""
     pulses: tuple[int, ...]
     """16 or 32 of them [us]; 0: no pulse."""
@@ -37,7 +37,7 @@ def encode(frame: Servos) -> bytes:
     count = len(frame.pulses)
     if count not in MAGIC:
         raise ServoError(f"a frame has 16 or 32 pulses, not {count}")
-    return _LAYOUT[count].pack(MAGIC[count], frame.rate, frame.count & COUNT_MASK, *frame.pulses)
+    return _LAYOUT[count].pack(MAGIC[count], frame.rate, frame.number & COUNT_MASK, *frame.pulses)
 
 
 def decode(datagram: bytes) -> Servos:

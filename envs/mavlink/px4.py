@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""PX4's ways: flight by set-points in its mode OFFBOARD, which it enters and keeps only while they come."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from sitl.bridge.services.setpoints import (
+    ACCELERATION_IGNORED,
+    LOCAL_NED,
+    POSITION_IGNORED,
+    VELOCITY_IGNORED,
+    YAW_IGNORED,
+    YAW_RATE_IGNORED,
+)
+
+from .connection import ACCEPTED, Connection
+from .ends import NotReadyError
+from .preparation import ARM_DISARM, INTERVAL_US, ORIGIN, REQUEST, SET_MODE, set_intervals
+from .setpoints import LOCAL, Encode, Message, position
+from .telemetry import Telemetry
+
+OFFBOARD = 6
+"""Main mode of PX4's, in param2 of DO_SET_MODE with MAV_MODE_FLAG_CUSTOM_MODE_ENABLED in param1."""
+_VELOCITY_AND_TURN = POSITION_IGNORED | ACCELERATION_IGNORED | YAW_IGNORED
+_PLACE_AND_YAW = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
+_TENTH = 100_000
+_BEFORE = 10
+"""Set-points that come before the mode is asked for."""
+_READY_S, _CLIMB_S = 90, 30
+
+
+def velocity(row: Sequence[float], heard: Telemetry, origin: Sequence[float]) -> Message:
+    """SET_POSITION_TARGET_LOCAL_NED: velocities [m/s] turned from the heading to north and east, turn rate [rad/s].
+
+    PX4 takes them in the local frame on all its versions, in the body's on some.
+    """
+    forward, left, up, turn = row
+    c, s = math.cos(heard.attitude[3]), math.sin(heard.attitude[3])
+    motion = {"vx": forward * c + left * s, "vy": forward * s - left * c, "vz": -up, "yaw_rate": -turn}
+    return LOCAL, LOCAL.payload(
+        target_system=heard.system, target_component=1, coordinate_frame=LOCAL_NED, type_mask=_VELOCITY_AND_TURN,
+        **motion,
+    )  # fmt: skip
+
+
+COPTER: dict[str, Encode] = {"velocity": velocity, "position": position}
+"""Kind of set-point -> its message."""
+
+
+def prepare(link: Connection, take_off: float) -> None:
+    """From power-on until it hovers in OFFBOARD.
+
+    Args:
+        link: to a PX4 that has just been started.
+        take_off: height above where it stands [m].
+
+    Raises:
+        NotReadyError: it does not get there; the message says what the vehicle told.
+    """
+    heard = link.heard
+    set_intervals(link, INTERVAL_US)
+    _until(link, lambda: not math.isnan(heard.position[1]), lambda: None, _READY_S, "has no position")
+    north, east, down = heard.position[1:4]
+    heading = heard.attitude[3]
+
+    def hold() -> None:
+        """A place above where it stands."""
+        place = {"x": north, "y": east, "z": down - take_off, "yaw": heading}
+        target = LOCAL.payload(
+            target_system=heard.system,
+            target_component=1,
+            coordinate_frame=LOCAL_NED,
+            type_mask=_PLACE_AND_YAW,
+            **place,
+        )
+        link.client.send_payload(LOCAL, target)
+
+    for _ in range(_BEFORE):
+        hold()
+        link.run(_TENTH)
+
+    def arms() -> bool:
+        return link.command(SET_MODE, 1.0, OFFBOARD) == ACCEPTED and link.command(ARM_DISARM, 1.0) == ACCEPTED
+
+    _until(link, arms, hold, _READY_S, "does not arm in OFFBOARD")
+    _until(
+        link, lambda: abs(heard.position[3] - down + take_off) < 0.15 and abs(heard.position[6]) < 0.15, hold,
+        _CLIMB_S, f"does not climb to {take_off:g} m",
+    )  # fmt: skip
+    for _ in range(3):
+        if heard.origin is None:
+            hold()
+            link.command(REQUEST, ORIGIN.id)
+    if heard.origin is None:
+        raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
+    scans = heard.scans
+    for _ in range(3):
+        hold()
+        link.run(_TENTH)
+    if heard.scans == scans:
+        raise NotReadyError(f"{link.name}: the physics sends no scan")
+
+
+def _until(link: Connection, done: Callable[[], bool], hold: Callable[[], None], seconds: int, complaint: str) -> None:
+    for _ in range(10 * seconds):
+        if done():
+            return
+        hold()
+        link.pause(_TENTH)
+    told = "; ".join(link.heard.texts[-4:]) or "nothing"
+    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; it told: {told}")

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl run --autopilot``: a foreign autopilot in our physics and world."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import signal
+import sys
+import time
+from pathlib import Path
+
+from .. import runner, vehicles
+from ..autopilot.params import files
+from ..bridge.bridge import EPOCH_US
+from ..bridge.links.address import open_link
+from ..bridge.links.link import Link
+from ..foreign.ardupilot import FASTEST
+from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
+from ..foreign.session import ArduPilotSession, Px4Session, Session
+from ..logs.tlog import TlogWriter
+from ..option_error import OptionError
+from ..pacing import parse_speedup
+from ..physics.engines import BACKENDS
+from ..plants.alone import stand_alone
+from ..plants.local import LocalPlant
+from ..simulation import DEFAULT_HOME
+from .options import VEHICLES, check_kind, open_folder
+from .progress import CompileProgress
+
+
+def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
+    """Which autopilot flies."""
+    parser.add_argument(
+        "--autopilot", default=NATIVE, metavar="NAME[:PROGRAM|:CONNECTION]", help=f"who flies it: {FORMS}"
+    )
+    parser.add_argument(
+        "--autopilot-dir", type=Path, metavar="DIR", help="folder of a foreign autopilot's files (default: a new one)"
+    )
+
+
+def fly(options: argparse.Namespace, choice: Choice) -> int:
+    """Serve until Ctrl-C, SIGTERM, the end of ``--duration`` or of the autopilot."""
+    check(options, choice)
+    speedup = parse_speedup(options.speedup)
+    plant = build_plant(options)
+    links: list[Link] = []
+    log: TlogWriter | None = None
+    say = Sayer()
+    try:
+        if choice.program is not None and choice.kind == ARDUPILOT:  # PX4 speaks UDP itself
+            links = open_links(options)
+            folder = open_folder(options.log_dir)
+            name = f"{choice.kind}-{plant.craft.airframe.name}-{options.instance}"
+            log = TlogWriter(runner.new_file(folder, name), EPOCH_US)
+        session = build_session(options, choice, plant, links, speedup, log, say)
+    except BaseException:
+        plant.close()
+        for link in links:
+            link.close()
+        raise
+    print(f"{choice.name} flies {plant.craft.airframe.name}; physics: {plant.backend}")
+    for link in links:
+        print(f"MAVLink on {link.name}")
+    if log is not None:
+        print(f"log: {log.path}")
+    else:
+        print(f"MAVLink of the autopilot: {session.clients}")
+    sys.stdout.flush()
+    stopped: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda n, _: stopped.append(n))
+    until_us = int(options.duration * 1e6) if options.duration else math.inf
+    status = PlantStatus(plant, say, not options.quiet)
+    clock = plant.craft.reader.field("time_us")
+    try:
+        session.serve(lambda: not stopped and clock() < until_us, status.update)
+    finally:
+        status.close()
+        session.close()
+        if log is not None:
+            log.close()
+    return 0
+
+
+def check(options: argparse.Namespace, choice: Choice) -> None:
+    """OptionError for an option that a foreign autopilot cannot have."""
+    if getattr(options, "lockstep", False):
+        raise OptionError(f"--lockstep: {choice.kind} knows no grants; environments hold its time (autopilot=)")
+    if options.estimator != "ekf":
+        raise OptionError(f"--estimator {options.estimator}: {choice.kind} has estimators of its own")
+    if options.physics not in BACKENDS:
+        raise OptionError(f"--physics {options.physics}: a foreign autopilot flies one of {', '.join(BACKENDS)}")
+    if choice.program is None and options.params:
+        raise OptionError(f"--params: {choice.name} runs already, with parameters of its own")
+
+
+def build_plant(options: argparse.Namespace) -> LocalPlant:
+    """Physics and world as the options say; SIM_ parameters of the files that we know act on them."""
+    airframe = vehicles.load(options.frame or VEHICLES[options.vehicle])
+    check_kind(options.frame, airframe, options.vehicle)
+    values: dict[str, float] = {}
+    for path in options.params:
+        values.update((name, value) for name, value in files.load(path).items() if name.startswith("SIM_"))
+    with CompileProgress() as progress:
+        return stand_alone(
+            airframe, home=options.home or DEFAULT_HOME, backend=options.physics, seed=options.seed or 0,
+            world=options.world, start=options.start, params=values, progress=progress,
+        )  # fmt: skip
+
+
+def open_links(options: argparse.Namespace) -> list[Link]:
+    """Where clients reach the autopilot: as for our own."""
+    step = 10 * options.instance
+    outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS] if options.out is None else options.out
+    links: list[Link] = [open_link(text) for text in outputs if text != "none"]
+    links.append(runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp))
+    return links
+
+
+def build_session(
+    options: argparse.Namespace,
+    choice: Choice,
+    plant: LocalPlant,
+    links: list[Link],
+    speedup: float | None,
+    log: TlogWriter | None,
+    say: Sayer,
+) -> Session:
+    """The autopilot on its plant."""
+    clock = plant.craft.reader.field("time_us")
+
+    def tap(frame: bytes) -> None:
+        if log is not None:
+            log.frame(clock(), frame)
+
+    if choice.kind == ARDUPILOT:
+        return ArduPilotSession(
+            choice, plant, links, instance=options.instance, speedup=speedup or FASTEST,
+            params=[Path(path) for path in options.params], folder=options.autopilot_dir, say=say, tap=tap,
+        )  # fmt: skip
+    values: dict[str, float] = {}
+    for path in options.params:
+        values.update(files.load(path))
+    theirs = {name: value for name, value in values.items() if not name.startswith("SIM_")}
+    return Px4Session(
+        choice, plant, instance=options.instance, speedup=speedup, params=theirs,
+        folder=options.autopilot_dir, say=say,
+    )  # fmt: skip
+
+
+class Sayer:
+    """Lines for people, from whatever thread, shown between two updates of the status line."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def __call__(self, text: str) -> None:
+        self.lines.append(text)
+
+
+class PlantStatus:
+    """One line on a terminal, rewritten a few times a second: what the physics knows."""
+
+    _PERIOD_S = 0.25
+
+    def __init__(self, plant: LocalPlant, say: Sayer, enabled: bool = True) -> None:
+        self._read = plant.craft.reader.fields("time_us", "physics.body.pos", "physics.body.vel")
+        self._say, self._enabled = say, enabled and sys.stderr.isatty()
+        self._next = self._last = time.monotonic()
+        self._last_us = 0
+        self._width = 0
+
+    def update(self) -> None:
+        """Rewrite the line when it is time to; say what has to be said."""
+        while self._say.lines:
+            print(f"\r{self._say.lines.pop(0)}".ljust(self._width), file=sys.stderr, flush=True)
+        now = time.monotonic()
+        if not self._enabled or now < self._next:
+            return
+        time_us, north, east, down, vn, ve, _ = self._read()
+        factor = (time_us - self._last_us) * 1e-6 / max(now - self._last, 1e-6)
+        self._last, self._last_us, self._next = now, time_us, now + self._PERIOD_S
+        text = (
+            f"{time_us * 1e-6:9.1f} s  {factor:6.1f}x  north {north:.1f}  east {east:.1f}  height {-down:.1f} m  "
+            f"speed {math.hypot(vn, ve):.1f} m/s"
+        )
+        sys.stderr.write("\r" + text.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(text)
+
+    def close(self) -> None:
+        """Say what is left; leave the last line standing and go to the next."""
+        if self._enabled and self._width:
+            sys.stderr.write("\n")
+        while self._say.lines:
+            print(self._say.lines.pop(0), file=sys.stderr)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How ArduPilot's simulator (``arducopter``, ``ardurover``) is started for a vehicle of ours.
+
+Options: ``--model JSON:HOST`` sends servos to the simulator port and waits for answers, ``--sim-port-out`` names that
+port, ``--base-port`` the TCP port of its first MAVLink connection (it waits there for a client before it boots),
+``--defaults`` files of parameters. Sources: https://ardupilot.org/dev/docs/sitl-with-JSON.html, the program's --help.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..physics.native.power_on import Home
+from ..vehicles import Airframe
+from .process import AutopilotProcess
+
+SERIAL_PORTS = 8
+"""Ports from the base port on that it may listen on: TCP for its serial ports, and the last one, UDP, for sticks."""
+DEFAULTS = "vehicle.parm"
+FASTEST = 1000.0
+"""Speed-up at which it never waits for the wall clock."""
+_RANGEFINDER = 100  # the simulator's own
+_DOWN = 25
+"""Orientation of a range-finder: pitched by -90 deg."""
+
+
+def defaults(airframe: Airframe, sees_ground: bool) -> str:
+    """Parameters with which ArduPilot flies or drives this airframe, as a file.
+
+    The airframe's own are ArduPilot's names already. A step of the physics for each loop of a copter; a version that
+    does not know a name ignores it.
+    """
+    values: dict[str, float] = {"SIM_RATE_HZ": 400, **airframe.parameters}
+    if airframe.kind == "copter":
+        values = {"FRAME_CLASS": 1, **values}
+    if sees_ground:
+        low, high = float(airframe.value("rangefinder_min")), float(airframe.value("rangefinder_max"))
+        values |= {
+            "RNGFND1_TYPE": _RANGEFINDER, "RNGFND1_ORIENT": _DOWN, "RNGFND1_MIN": low, "RNGFND1_MAX": high,
+            "RNGFND1_MIN_CM": round(100 * low), "RNGFND1_MAX_CM": round(100 * high),
+        }  # fmt: skip
+    return "".join(f"{name} {value:g}\n" for name, value in values.items())
+
+
+def command(
+    program: Path, home: Home, port: int, base: int, instance: int, speedup: float, files: Sequence[Path | str]
+) -> list[str]:
+    """Program and arguments.
+
+    Args:
+        program: ``arducopter`` or ``ardurover``.
+        home: where position (0, 0, 0) of the physics is.
+        port: UDP port of the physics on this machine.
+        base: TCP port of its MAVLink.
+        instance: adds to MAV_SYSID in ArduPilot's own way; its ports are given by the others.
+        speedup: times the wall clock.
+        files: of parameters.
+    """
+    where = ",".join(f"{number:.9g}" for number in home)
+    return [
+        str(program), "--base-port", str(base), "--instance", str(instance), "--model", "JSON:127.0.0.1",
+        "--sim-port-out", str(port), "--rc-in-port", str(base + SERIAL_PORTS - 1),
+        "--home", where, "--speedup", f"{speedup:g}", "--defaults", ",".join(map(str, files)), "--wipe",
+    ]  # fmt: skip
+
+
+def start(
+    program: Path,
+    airframe: Airframe,
+    home: Home,
+    port: int,
+    base: int,
+    *,
+    instance: int = 0,
+    speedup: float = FASTEST,
+    sees_ground: bool = False,
+    params: Sequence[Path] = (),
+    overrides: str = "",
+    folder: Path | None = None,
+) -> AutopilotProcess:
+    """Start it; see ``command`` and ``defaults``. ``params`` are more files, ``overrides`` the text of a last one."""
+    files = {DEFAULTS: defaults(airframe, sees_ground)}
+    named: list[Path | str] = ["{folder}/" + DEFAULTS, *(path.resolve() for path in params)]
+    if overrides:
+        files["overrides.parm"] = overrides
+        named.append("{folder}/overrides.parm")
+    return AutopilotProcess(command(program, home, port, base, instance, speedup, named), files, {}, folder)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A plant's motion as a line of JSON: truth, since ArduPilot's simulator has sensor models of its own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from ..bridge.ardupilot_json import motion
+from ..plants.plant import Craft
+
+CLOCK_LEAD = 1e-9
+"""The clock of the lines is fast by this part.
+
+ArduPilot adds each difference of two timestamps to a clock of whole microseconds and cuts off the rest: with
+differences a rounding error below 2500 us it would lose a microsecond now and then. The lead, a microsecond in 1000 s,
+outweighs rounding.
+"""
+_S = 1e-6 * (1.0 + CLOCK_LEAD)
+
+
+class BodyLines:
+    """Writes lines for one vehicle.
+
+    Args:
+        craft: the vehicle.
+    """
+
+    def __init__(self, craft: Craft) -> None:
+        reader = craft.reader
+        self._clock = reader.field("time_us")
+        body = (f"physics.body.{name}" for name in ("rates_mean", "specific_force", "pos", "q", "vel"))
+        self._motion = reader.fields(*body)
+        self._slow = reader.fields(
+            "sensors.rangefinder_count", "sensors.battery_voltage", "sensors.battery_current", "physics.wind.vel"
+        )
+        airframe = craft.airframe
+        self._range_max = float(airframe.value("rangefinder_max"))
+        self._range: Callable[[], float] = reader.field("sensors.rangefinder_range")
+        self._v: Any = craft.v
+        self._seen: tuple[Any, ...] = ()
+        self._extras = ""
+
+    def line(self) -> bytes:
+        """How the body moves now; the state at the end of a tick."""
+        slow = self._slow()
+        if slow != self._seen:
+            self._seen, self._extras = slow, self._others(slow)
+        return motion.encode((self._clock() * _S, *self._motion()), self._extras)
+
+    def _others(self, slow: tuple[Any, ...]) -> str:
+        """Range-finder, battery, and in wind what a vane shows; they change less often than the motion."""
+        readings, voltage, current, *wind = slow
+        reading = None
+        if readings > 0 and self._range_max > 0.0:  # out of range is farther than the sensor sees
+            reading = min(float(self._range()), self._range_max + 1.0)
+        return motion.extra(reading, (voltage, current), self._vane(wind) if any(wind) else None)
+
+    def _vane(self, wind: list[float]) -> tuple[float, float]:
+        """Where the air that meets the vehicle comes from, clockwise from its nose [rad], and how fast [m/s]."""
+        body = self._v.physics.body
+        w, x, y, z = body.q.tolist()
+        yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        north, east = (float(body.vel[k]) - wind[k] for k in range(2))
+        return math.remainder(math.atan2(east, north) - yaw, 2.0 * math.pi), math.hypot(north, east)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which autopilot: ours, or a foreign one by its program or by where it runs already."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..option_error import OptionError
+
+NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
+PROGRAMS = {ARDUPILOT: {"copter": "arducopter", "rover": "ardurover"}, PX4: {"copter": "px4", "rover": "px4"}}
+"""Autopilot -> kind of vehicle -> its program's usual name."""
+_REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
+FORMS = (
+    '"native", "ardupilot" or "px4" (the program is looked for in PATH), "ardupilot:PROGRAM", "px4:PROGRAM", or, for '
+    'one that runs already, where its MAVLink is: "ardupilot:tcp:HOST:PORT", "px4:udp:HOST:PORT"'
+)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An autopilot that is not ours."""
+
+    kind: str
+    """ARDUPILOT or PX4."""
+    program: Path | None = None
+    """To be started; None: it runs already."""
+    connection: str | None = None
+    """Where the MAVLink of one that runs already is."""
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return f"{self.kind}:{self.program or self.connection}"
+
+
+def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | None:
+    """The autopilot that ``text`` means; None for our own.
+
+    Args:
+        text: one of the forms.
+        vehicle: "copter" or "rover".
+        path: of the program, when the text does not say.
+
+    Raises:
+        OptionError: none of the forms, or no such program.
+    """
+    kind, _, rest = text.partition(":") if isinstance(text, str) else ("", "", "")
+    if kind == NATIVE and not rest and path is None:
+        return None
+    if kind not in PROGRAMS:
+        extra = f" with a program ({path})" if kind == NATIVE else ""
+        raise OptionError(f"autopilot {text!r}{extra} is none of {FORMS}")
+    if rest.startswith(_REACHED):
+        return Choice(kind, connection=rest)
+    wanted = rest or (str(path) if path is not None else "")
+    usual = PROGRAMS[kind][vehicle]
+    found = shutil.which(os.path.expanduser(wanted) if wanted else usual)
+    if found is None:
+        if not wanted:
+            raise OptionError(f"autopilot {text!r}: no program {usual!r} in PATH; say where it is: {kind}:PROGRAM")
+        why = "is not a program that may be run" if Path(wanted).expanduser().exists() else "is not there"
+        raise OptionError(f"autopilot {text!r}: program {wanted!r} {why}")
+    return Choice(kind, Path(found).resolve())

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An autopilot's program as a process of ours: started in a folder of its own, and ended for certain."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from ..option_error import OptionError
+
+OUTPUT = "output.txt"
+_GRACE_S = 3.0
+_LAST_LINES = 6
+
+
+class AutopilotEndedError(RuntimeError):
+    """The autopilot's program has ended by itself; the message says how, and what it said last."""
+
+
+class AutopilotProcess:
+    """A running program.
+
+    Args:
+        command: program and arguments; "{folder}" in an argument becomes the folder.
+        files: written into the folder before: name -> text.
+        environment: added to ours.
+        folder: where it runs and keeps its files; None: a new one that is deleted in the end.
+
+    Raises:
+        OptionError: it cannot be started.
+    """
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        files: Mapping[str, str],
+        environment: Mapping[str, str],
+        folder: Path | None = None,
+    ) -> None:
+        self._owned = folder is None
+        self.folder = Path(tempfile.mkdtemp(prefix="gym-sitl-")) if folder is None else folder
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.command = [word.replace("{folder}", str(self.folder)) for word in command]
+        for name, text in files.items():
+            (self.folder / name).write_text(text)
+        try:
+            with (self.folder / OUTPUT).open("wb") as output:
+                self._process = subprocess.Popen(
+                    self.command, cwd=self.folder, env={**os.environ, **environment}, stdin=subprocess.DEVNULL,
+                    stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
+                )  # fmt: skip
+        except OSError as error:
+            self._forget_folder()
+            why = error.strerror or error
+            raise OptionError(f"autopilot {self.command[0]!r} cannot be started: {why}") from None
+        atexit.register(self.stop)  # who forgets it leaves no process behind
+
+    @property
+    def pid(self) -> int:
+        """Number of the process, which leads a group of its own."""
+        return self._process.pid
+
+    def is_running(self) -> bool:
+        """Whether it still runs."""
+        return self._process.poll() is None
+
+    def check(self) -> None:
+        """AutopilotEndedError when it has ended."""
+        code = self._process.poll()
+        if code is not None:
+            how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
+            said = self.said()
+            raise AutopilotEndedError(f"autopilot {self.command[0]} {how}; it said: {said}")
+
+    def said(self) -> str:
+        """The last lines of its output."""
+        try:
+            lines = (self.folder / OUTPUT).read_text(errors="replace").split("\n")
+        except OSError:
+            return "nothing"
+        return " / ".join([line.strip() for line in lines if line.strip()][-_LAST_LINES:]) or "nothing"
+
+    def stop(self) -> None:
+        """End it, and what it has started; may be called twice."""
+        atexit.unregister(self.stop)
+        if self._process.poll() is None:
+            self._signal(signal.SIGTERM)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(timeout=_GRACE_S)
+        self._signal(signal.SIGKILL)  # also what is left of its group
+        self._process.wait()
+        self._forget_folder()
+
+    def _signal(self, number: int) -> None:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, number)
+
+    def _forget_folder(self) -> None:
+        if self._owned:
+            shutil.rmtree(self.folder, ignore_errors=True)

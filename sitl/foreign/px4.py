@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How PX4's simulator program is started for a copter of ours, over the HIL link.
+
+``px4 -i N -d ETC`` connects to the simulator on TCP port 4560 + N of this machine and speaks MAVLink from UDP port
+14580 + N to 14540 + N (for programs) and to 14550 (for ground stations). PX4_SIM_MODEL none_iris is an airframe that
+starts no simulator; PX4_PARAM_name sets a parameter. Sources: https://docs.px4.io/main/en/simulation/,
+ROMFS/px4fmu_common/init.d-posix.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..bridge.hil.numbers import BASE_PORT
+from ..option_error import OptionError
+from ..physics.native.power_on import Home
+from ..vehicles import Airframe, CopterAirframe
+from .ports import HOST
+from .process import AutopilotProcess
+
+MODEL = "none_iris"
+PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550
+"""UDP: where it sends to programs, from where, and where to ground stations; the first two are + N."""
+_MOST = 50
+
+
+def parameters(airframe: Airframe) -> dict[str, float]:
+    """Parameters with which PX4 flies this airframe.
+
+    Where the rotors are and which way they turn (CA_ROTORn), what pulse is full thrust, the thrust curve, the hover
+    throttle, and rate loops from ArduPilot's, whose gains have the same meaning but not the same mixer: a beginning.
+
+    Raises:
+        OptionError: the airframe is no copter.
+    """
+    if not isinstance(airframe, CopterAirframe):
+        raise OptionError(f"airframe {airframe.name} is a {airframe.kind}: px4 flies copters here")
+    values: dict[str, float] = {"CA_AIRFRAME": 0, "CA_ROTOR_COUNT": len(airframe.rotors)}
+    moment = float(airframe.value("moment_coefficient")) or 0.05
+    for k, rotor in enumerate(airframe.rotors):
+        values |= {
+            f"CA_ROTOR{k}_PX": rotor.x,
+            f"CA_ROTOR{k}_PY": rotor.y,
+            f"CA_ROTOR{k}_KM": moment * rotor.direction,
+            f"PWM_MAIN_FUNC{k + 1}": 101 + k,
+            f"PWM_MAIN_MIN{k + 1}": 1000 + round(1000 * float(airframe.value("control_min"))),
+            f"PWM_MAIN_MAX{k + 1}": 1000 + round(1000 * float(airframe.value("control_max"))),
+        }
+    own = airframe.parameters
+    for name, theirs in (
+        ("MOT_THST_EXPO", "THR_MDL_FAC"),
+        ("MOT_THST_HOVER", "MPC_THR_HOVER"),
+        ("ATC_RAT_RLL_P", "MC_ROLLRATE_P"),
+        ("ATC_RAT_RLL_I", "MC_ROLLRATE_I"),
+        ("ATC_RAT_RLL_D", "MC_ROLLRATE_D"),
+        ("ATC_RAT_PIT_P", "MC_PITCHRATE_P"),
+        ("ATC_RAT_PIT_I", "MC_PITCHRATE_I"),
+        ("ATC_RAT_PIT_D", "MC_PITCHRATE_D"),
+        ("BATT_CAPACITY", "BAT1_CAPACITY"),
+    ):
+        if name in own:
+            values[theirs] = float(own[name])
+    return values | {"NAV_DLL_ACT": 0, "NAV_RCL_ACT": 0, "COM_RC_IN_MODE": 4}  # no ground station, no sticks
+
+
+def free_instance() -> int:
+    """The first instance of which all ports are free.
+
+    Raises:
+        OptionError: there is none.
+    """
+    for number in range(_MOST):
+        with contextlib.ExitStack() as stack, contextlib.suppress(OSError):
+            for kind, port in (
+                (socket.SOCK_STREAM, BASE_PORT),
+                (socket.SOCK_DGRAM, PROGRAMS_PORT),
+                (socket.SOCK_DGRAM, OWN_PORT),
+            ):
+                probe = stack.enter_context(socket.socket(socket.AF_INET, kind))
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(kind == socket.SOCK_STREAM))
+                probe.bind((HOST, port + number))
+            return number
+    raise OptionError(f"px4: the ports of all instances from 0 to {_MOST - 1} are taken")
+
+
+def start(
+    program: Path,
+    airframe: Airframe,
+    home: Home,
+    instance: int,
+    *,
+    speedup: float = 1.0,
+    params: Mapping[str, float] | None = None,
+    folder: Path | None = None,
+) -> AutopilotProcess:
+    """Start it.
+
+    Args:
+        program: ``build/px4_sitl_default/bin/px4``, whose start-up files are in ``build/px4_sitl_default/etc``.
+        airframe: a copter.
+        home: where it stands.
+        instance: of all its ports, and of its MAV_SYS_ID less one.
+        speedup: times the wall clock, by which it lengthens its time-outs.
+        params: under PX4's names, over those of ``parameters``.
+        folder: see ``AutopilotProcess``.
+    """
+    values = {**parameters(airframe), **(params or {})}
+    environment = {
+        "PX4_SIM_MODEL": MODEL,
+        "PX4_SIM_SPEED_FACTOR": f"{speedup:g}",
+        "PX4_HOME_LAT": f"{home[0]:.9g}",
+        "PX4_HOME_LON": f"{home[1]:.9g}",
+        "PX4_HOME_ALT": f"{home[2]:.9g}",
+        **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in values.items()},
+    }
+    command = [str(program), "-i", str(instance), "-d", str(program.parent.parent / "etc")]
+    return AutopilotProcess(command, {}, environment, folder)

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Carries MAVLink between an autopilot's TCP port and the links that ``sitl run`` has: UDP, TCP, a log.
+
+ArduPilot boots when the first client connects, and stands still when that client does not read: the relay connects at
+once, always reads (in a thread of its own), and connects again after a reboot.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import selectors
+import socket
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from ..bridge.links.link import Link, Peer
+from .cutter import Cutter
+
+_WAIT_S = 0.1
+_RETRY_S = 0.2
+_READ = 1 << 16
+_UNSENT = 1 << 20
+
+
+class Relay:
+    """Between one autopilot and all clients.
+
+    Args:
+        address: host and port of the autopilot's MAVLink.
+        links: to clients; closed with the relay.
+        tap: gets every frame, of both sides, in the relay's thread.
+    """
+
+    def __init__(
+        self,
+        address: tuple[str, int],
+        links: Sequence[Link],
+        tap: Callable[[bytes], None] = lambda frame: None,
+    ) -> None:
+        self._address, self._links, self._tap = address, list(links), tap
+        self._peers: list[Peer] = []
+        self._selector = selectors.DefaultSelector()
+        self._autopilot: socket.socket | None = None
+        self._cutter = Cutter()
+        self._unsent = bytearray()
+        self._retry_at = 0.0
+        self._stopping = False
+        self.frames = 0
+        """From the autopilot so far."""
+        for link in self._links:
+            link.attach(self._selector, self._peers.append)
+        self._thread = threading.Thread(target=self._run, name="mavlink relay", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether the autopilot is there."""
+        return self._autopilot is not None
+
+    def _run(self) -> None:
+        while not self._stopping:
+            self.turn(_WAIT_S)
+
+    def turn(self, seconds: float) -> None:
+        """Carry what is there; wait for something so long at most."""
+        if self._autopilot is None:
+            self._connect()
+        for key, _ in self._selector.select(seconds):
+            key.data()
+        for link in self._links:
+            link.refusals.clear()
+        self._peers[:] = [peer for peer in self._peers if not peer.closed]
+        for peer in self._peers:
+            data = peer.take()
+            if data:
+                self._to_autopilot(data)
+        self._push()
+
+    def _connect(self) -> None:
+        now = time.monotonic()
+        if now < self._retry_at:
+            return
+        self._retry_at = now + _RETRY_S
+        made = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        made.settimeout(_RETRY_S)
+        try:
+            made.connect(self._address)
+        except OSError:
+            made.close()
+            return
+        made.setblocking(False)
+        with contextlib.suppress(OSError):
+            made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._autopilot, self._cutter = made, Cutter()
+        self._unsent.clear()
+        self._selector.register(made, selectors.EVENT_READ, self._from_autopilot)
+
+    def _from_autopilot(self) -> None:
+        assert self._autopilot is not None
+        try:
+            data = self._autopilot.recv(_READ)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self._drop()
+            return
+        for frame in self._cutter.feed(data):
+            self.frames += 1
+            self._tap(frame)
+            for peer in self._peers:
+                if not peer.closed and not peer.congested:
+                    peer.write(frame)
+        for peer in self._peers:
+            if not peer.closed:
+                peer.flush()
+
+    def _to_autopilot(self, data: bytes) -> None:
+        for frame in Cutter().feed(data):
+            self._tap(frame)
+        if self._autopilot is not None and len(self._unsent) < _UNSENT:
+            self._unsent += data
+
+    def _push(self) -> None:
+        while self._unsent and self._autopilot is not None:
+            try:
+                del self._unsent[: self._autopilot.send(self._unsent)]
+            except BlockingIOError:
+                return
+            except OSError:
+                self._drop()
+
+    def _drop(self) -> None:
+        if self._autopilot is not None:
+            self._selector.unregister(self._autopilot)
+            self._autopilot.close()
+            self._autopilot = None
+            self._retry_at = time.monotonic() + _RETRY_S
+
+    def close(self) -> None:
+        """End the thread, close all links."""
+        self._stopping = True
+        if self._thread.is_alive():
+            self._thread.join()
+        self._drop()
+        for link in self._links:
+            link.close()
+        self._selector.close()

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A plant, the foreign autopilot that flies it, and its clients, for ``sitl run --autopilot``."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from ..bridge.hil.numbers import BASE_PORT
+from ..bridge.links.link import Link
+from ..pacing import Pacing
+from ..physics_server import PhysicsServer
+from ..plants.json_link import PORT
+from ..plants.local import LocalPlant
+from . import ardupilot, px4
+from .choice import Choice
+from .json_host import JsonHost
+from .ports import HOST, free_tcp_run
+from .process import AutopilotProcess
+from .relay import Relay
+
+Say = Callable[[str], None]
+Tap = Callable[[bytes], None]
+
+
+class Session(Protocol):
+    """What flies a plant."""
+
+    plant: LocalPlant
+    clients: str | None
+    """Where its MAVLink is, when it is not on our links."""
+
+    def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
+        """Let physics and autopilot go on until ``running()`` is false; ``on_turn`` is called now and then.
+
+        Raises:
+            AutopilotEndedError: the program that was started has ended.
+        """
+
+    def close(self) -> None:
+        """End the program, close links and physics."""
+
+
+class ArduPilotSession:
+    """ArduPilot on a plant.
+
+    Args:
+        choice: a program to start, or one that runs already and is given our port by whoever started it.
+        plant: at power-on.
+        links: for its clients, of a program that is started.
+        instance: 10 more for the default port of the physics, 1 more for its MAV_SYSID.
+        speedup: times the wall clock.
+        params: files of parameters.
+        folder: see ``AutopilotProcess``.
+        say: takes what people should be told.
+        tap: see ``Relay``.
+
+    Raises:
+        OptionError: no port, or a program that cannot be started.
+    """
+
+    def __init__(
+        self,
+        choice: Choice,
+        plant: LocalPlant,
+        links: Sequence[Link] = (),
+        *,
+        instance: int = 0,
+        speedup: float = 1.0,
+        params: Sequence[Path] = (),
+        folder: Path | None = None,
+        say: Say = lambda text: None,
+        tap: Tap = lambda frame: None,
+    ) -> None:
+        self.plant = plant
+        self.process: AutopilotProcess | None = None
+        self.relay: Relay | None = None
+        self.clients = choice.connection
+        with contextlib.ExitStack() as undo:
+            port = 0 if choice.program is not None else PORT + 10 * instance
+            self.host = JsonHost(plant, (HOST, port), say)
+            undo.callback(self.host.close)
+            if choice.program is not None:
+                base = free_tcp_run(ardupilot.SERIAL_PORTS)
+                self.process = ardupilot.start(
+                    choice.program, plant.craft.airframe, plant.home, self.host.address[1], base, instance=instance,
+                    speedup=speedup, sees_ground=plant.rangers is not None and plant.rangers.rangefinder is not None,
+                    params=params, overrides=f"MAV_SYSID {1 + instance}\nSYSID_THISMAV {1 + instance}\n", folder=folder,
+                )  # fmt: skip
+                undo.callback(self.process.stop)
+                self.relay = Relay((HOST, base), links, tap)
+                self.relay.start()
+            undo.pop_all()
+
+    def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
+        process = self.process
+
+        def goes_on() -> bool:
+            if process is not None:
+                process.check()
+            return running()
+
+        self.host.serve(goes_on, on_turn)
+
+    def close(self) -> None:
+        if self.process is not None:
+            self.process.stop()
+        if self.relay is not None:
+            self.relay.close()
+        self.host.close()
+        self.plant.close()
+
+
+class Px4Session:
+    """PX4 on a plant. Its clients reach it at its own UDP ports (``clients``).
+
+    Args:
+        choice, plant, instance, folder, say: see ``ArduPilotSession``.
+        speedup: times the wall clock; None: as fast as it goes.
+        params: under PX4's names.
+
+    Raises:
+        OptionError, LinkAddressError: no copter, no port, or a program that cannot be started.
+    """
+
+    def __init__(
+        self,
+        choice: Choice,
+        plant: LocalPlant,
+        *,
+        instance: int = 0,
+        speedup: float | None = 1.0,
+        params: Mapping[str, float] | None = None,
+        folder: Path | None = None,
+        say: Say = lambda text: None,
+    ) -> None:
+        self.plant, self._speedup = plant, speedup
+        self.process: AutopilotProcess | None = None
+        self.clients = (
+            f"udp {HOST}:{px4.PROGRAMS_PORT + instance}, for ground stations {HOST}:{px4.STATIONS_PORT}"
+            if choice.program is not None
+            else choice.connection
+        )
+        self.server = PhysicsServer(plant, HOST, BASE_PORT + instance, say)
+        if choice.program is not None:
+            try:
+                self.process = px4.start(
+                    choice.program, plant.craft.airframe, plant.home, instance, speedup=speedup or 1.0, params=params,
+                    folder=folder,
+                )  # fmt: skip
+            except BaseException:
+                self.server.close()
+                raise
+
+    def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
+        process, end, pacing, due_us = self.process, self.server.end, Pacing(self._speedup), 0
+
+        def goes_on() -> bool:
+            nonlocal due_us
+            if process is not None:
+                process.check()
+            on_turn()
+            if end.time_us >= due_us:  # PX4 goes as fast as its physics: this is what holds it
+                due_us = end.time_us + pacing.slice_us
+                wait = pacing.wait_s()
+                if wait > 0.0:
+                    time.sleep(wait)
+            return running()
+
+        self.server.serve(goes_on)
+
+    def close(self) -> None:
+        if self.process is not None:
+            self.process.stop()
+        self.server.close()
+        self.plant.close()

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Physics at the other end of ArduPilot's JSON interface: any simulator that serves ``arducopter --model JSON:HOST``.
+
+It tells where the vehicle is and how it moves; what our autopilot sees is made of that by our own sensor models, with
+the noise, delays and biases of the airframe, as ArduPilot's simulator makes its own. Lockstep: one tick of 2500 us for
+each that the physics' clock has gone on. Physics with finer steps is asked again until the tick is full (the IMU gets
+the mean), with longer ones the ticks of a step see the same motion.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import time
+from collections.abc import Callable
+
+from ..bridge.ardupilot_json.autopilot_end import LONGEST_S, AutopilotEnd
+from ..bridge.ardupilot_json.motion import Motion
+from ..bridge.record_reader import locate
+from ..core import rng
+from ..core.rotations import quat_multiply, quat_rotate
+from ..core_entry import bind_unit
+from ..physics.carried import Carried, carried
+from ..physics.engine import EngineError
+from ..physics.native.body import GRAVITY
+from ..physics.native.power_on import DEFAULT_HOME, Home
+from ..physics.native.tick import TICK_S
+from ..vehicle import TICK_US
+from .json_link import JsonLink, parse_address
+from .plant import Craft, PhysicsLostError, Plant
+
+OWN = ("home", "seed", "estimator")
+"""Options of a simulation that are the autopilot's at this kind of link: the physics knows no place on the earth."""
+RESEND_S = 1.0
+"""Wall time after which a frame without an answer is sent again, as ArduPilot does [s]."""
+PATIENCE_S = 2.5
+"""Wall time without an answer after which the physics is lost [s]."""
+_BODY = struct.Struct("<13d")
+_US = 1e6
+
+
+def make(craft: Craft, address: str, home: Home | None = None, seed: int | None = None, **_: object) -> Plant:
+    """The plant of ``--physics json:HOST:PORT``."""
+    plant = JsonPlant(craft, JsonLink(parse_address(address)), home, seed or 0)
+    plant.load()  # now, and not while the physics waits
+    return plant
+
+
+class JsonPlant(Plant):
+    """One vehicle whose physics is a JSON simulator.
+
+    Args:
+        craft: the vehicle.
+        link: datagrams to and from the simulator.
+        home: where the position (0, 0, 0) of the physics is on the earth.
+        seed: of the sensors' noise.
+        clock: wall time [s], for repeats and patience.
+    """
+
+    name = "json"
+
+    def __init__(
+        self,
+        craft: Craft,
+        link: JsonLink,
+        home: Home | None,
+        seed: int,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__(craft)
+        self.link, self.home, self.seed = link, home or DEFAULT_HOME, seed
+        self.end = AutopilotEnd()
+        self._wall = clock
+        self._behind_us = 0.0
+        """Time of the physics less that of the vehicle [us]: time it has to step before the next tick is full."""
+        self._last: Motion | None = None
+        self._told: Callable[[], int] = craft.reader.field("autopilot.events.count")
+        self._attention: Callable[[], int] = craft.reader.field("autopilot.events.attention")
+        self._pulses = craft.reader.fields("actuators.pwm")
+        self._memory = memoryview(craft.fleet.view("u1"))  # type: ignore[arg-type]
+        self._body_at = craft.index * craft.fleet.dtype.itemsize + locate(craft.fleet.dtype, "physics.body.pos")[0]
+        self._units: tuple[Callable[[], None], ...] = ()
+        self._substeps = int(craft.airframe.value("substeps")) if craft.kind.name == "copter" else 0
+        self._note = ""
+        """Why lines were not taken."""
+
+    # ------------------------------------------------------------------ power-on
+
+    def power_on(self) -> None:
+        craft = self.craft
+        craft.kind.apply_sim_parameters(craft.v)
+        craft.kind.init_physics(craft.v, craft.airframe, self.home, self.seed)
+        self.end.restart()
+        self._behind_us, self._last = 0.0, None
+
+    def load(self) -> None:
+        """Compile all that ``run`` needs now."""
+        if not self._units:
+            craft, pieces = self.craft, self.craft.kind.pieces
+            wanted = pieces.begin, pieces.load, pieces.sense, craft.kind.fly
+            self._units = tuple(bind_unit(unit, craft.kind, craft.fleet, craft.index) for unit in wanted)
+
+    # ------------------------------------------------------------------ going on
+
+    def run(self, ticks: int) -> None:
+        self.load()
+        begin, load, sense, fly = self._units
+        told, attention, before = self._told, self._attention, self._told()
+        for _ in range(ticks):
+            motion = self._next()
+            if motion is None:
+                return
+            begin()
+            for _ in range(self._substeps):
+                load()  # the rotors' power, for the battery
+            self._move(motion)
+            sense()
+            self._others(motion)
+            fly()
+            if attention() or told() != before:
+                return
+
+    def _next(self) -> Motion | None:
+        """The motion at the end of the next tick; None when the physics has begun anew, and so must the autopilot."""
+        gyro, accel, weight = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
+        while self._behind_us < 0.5 * TICK_US or self._last is None:
+            heard = self._exchange()
+            if heard is None:
+                return None
+            motion, step = heard
+            if step <= 0.0:
+                continue
+            self._last = motion
+            if step > LONGEST_S:  # a clock that jumps takes nothing with it
+                self._behind_us = TICK_US
+            else:
+                self._behind_us += step * _US
+            gyro = tuple(g + step * x for g, x in zip(gyro, motion.gyro))  # type: ignore[assignment]
+            accel = tuple(a + step * x for a, x in zip(accel, motion.accel))  # type: ignore[assignment]
+            weight += step
+        self._behind_us -= TICK_US
+        last = self._last
+        if weight == 0.0 or gyro == last.gyro:
+            return last
+        k = 1.0 / weight
+        mean_gyro, mean_accel = tuple(k * g for g in gyro), tuple(k * a for a in accel)
+        return Motion(
+            last.time, mean_gyro, mean_accel, last.position, last.velocity, last.attitude,
+            last.ranges, last.battery, last.receiver,
+        )  # fmt: skip
+
+    def _exchange(self) -> tuple[Motion, float] | None:
+        """Frame out, line in; None when the physics' time went backwards.
+
+        Raises:
+            PhysicsLostError: no line within the patience.
+        """
+        frame = self.end.frame(self._pulses())
+        self.link.send(frame)
+        began = sent = self._wall()
+        while True:
+            data = self.link.receive()
+            if data is not None:
+                heard = self.end.hear(data)
+                if self.end.note:
+                    self._note, self.end.note = self.end.note, ""
+                if heard is not None:
+                    if heard[1] < 0.0:
+                        self.craft.restarted()
+                        return None
+                    return heard
+            now = self._wall()
+            if now - began >= PATIENCE_S:
+                why = f"; {self.end.refused} lines were refused, {self._note}" if self.end.refused else ""
+                raise PhysicsLostError(f"physics json:{self.link.name} does not answer{why}")
+            if data is None and now - sent >= RESEND_S:
+                self.link.send(frame)
+                sent = now
+
+    def _move(self, motion: Motion) -> None:
+        """Write the motion, and the one before that the IMU's laws make this line's gyro and accel of."""
+        m = self.craft.v.physics.motion
+        q0, q1, q2, q3 = q = motion.attitude
+        _BODY.pack_into(self._memory, self._body_at, *motion.position, *motion.velocity, *q, *motion.gyro)
+        gx, gy, gz = motion.gyro
+        half = 0.5 * TICK_S * math.sqrt(gx * gx + gy * gy + gz * gz)
+        k = -0.5 * TICK_S * (math.sin(half) / half if half > 1e-9 else 1.0)
+        before = quat_multiply(q0, q1, q2, q3, math.cos(half), k * gx, k * gy, k * gz)
+        w, x, y, z = (b + a for b, a in zip(before, q))
+        norm = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
+        n, e, d = quat_rotate(w * norm, x * norm, y * norm, z * norm, *motion.accel)
+        vn, ve, vd = motion.velocity
+        m.q[:] = before
+        m.vel[:] = (vn - TICK_S * n, ve - TICK_S * e, vd - TICK_S * (d + GRAVITY))
+
+    def _others(self, motion: Motion) -> None:
+        """What a line may tell beside the motion."""
+        sensors = self.craft.v.sensors
+        if motion.receiver:
+            channels = motion.receiver[: len(sensors.rc_channels)]
+            sensors.rc_channels[: len(channels)] = channels
+            sensors.rc_count += 1
+            sensors.rc_time_us = sensors.time_us
+        if motion.battery is not None:
+            sensors.battery_voltage, sensors.battery_current = motion.battery
+        if motion.ranges and motion.ranges[0] is not None:
+            longest = float(self.craft.airframe.value("rangefinder_max"))
+            reading = motion.ranges[0]
+            sensors.rangefinder_range[0] = reading if longest <= 0.0 or reading < longest else math.inf
+            sensors.rangefinder_count += 1
+
+    # ------------------------------------------------------------------ the rest
+
+    def truth(self) -> Carried:
+        return carried(self.craft.v)
+
+    def reseed(self, seed: int) -> None:
+        rng.seed(self.craft.v.rng, seed)
+
+    def snapshot(self) -> bytes:
+        raise EngineError("physics behind a JSON link has no snapshots; native physics has")
+
+    def restore(self, state: bytes) -> None:
+        raise EngineError("physics behind a JSON link has no snapshots; native physics has")
+
+    def close(self) -> None:
+        self.link.close()

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stands in for PX4's simulator program: its command line, its handshake, its ways on both links; a small controller
+on the truth inside.
+
+As the real one: connects to the simulator and tries until it is there; says HEARTBEAT and asks for the truth, then
+nothing until it has booted; its clock is HIL_SENSOR's; zeros while disarmed; MAVLink by UDP to 14540 + N first;
+OFFBOARD only while set-points come; hears commands only while its time passes.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import socket
+import sys
+import time
+from pathlib import Path
+
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter, encode_v2
+from sitl.core.rotations import quat_to_euler
+
+BOOT_TICKS, POSITION_TICKS = 400, 4000
+OFFBOARD, FRESH_US = 6, 500_000
+MASS, GRAVITY, THRUST, TURN = 1.14, 9.80665, 8.54858e-6, (0.035, 0.046, 0.098)
+METRES = 1e-7 * math.radians(1.0) * 6378100.0
+
+
+def limited(value: float, bound: float) -> float:
+    return min(max(value, -bound), bound)
+
+
+class Wire:
+    """Frames in and out, over any socket."""
+
+    def __init__(self, send, system: int) -> None:
+        self._send, self._system, self._sequence = send, system, 0
+
+    def say(self, name: str, **fields) -> None:
+        kind = message(name)
+        self._send(encode_v2(kind, kind.payload(**fields), self._sequence, self._system, 1))
+        self._sequence = self._sequence + 1 & 0xFF
+
+
+class Px4:
+    def __init__(self, instance: int) -> None:
+        assert os.environ["PX4_SIM_MODEL"] == "none_iris"
+        given = {name[10:]: float(value) for name, value in os.environ.items() if name.startswith("PX4_PARAM_")}
+        self.rotors = [
+            tuple(given[f"CA_ROTOR{k}_{axis}"] for axis in ("PX", "PY", "KM"))
+            for k in range(int(given["CA_ROTOR_COUNT"]))
+        ]
+        self.simulator = connect(4560 + instance)
+        self.hil = Wire(self.simulator.sendall, 1 + instance)
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 14580 + instance))
+        self.socket.setblocking(False)
+        self.client = ("127.0.0.1", 14540 + instance)
+        self.link = Wire(lambda frame: self.socket.sendto(frame, self.client), 1 + instance)
+        self.now, self.ticks, self.armed, self.mode = 0, 0, False, 4
+        self.truth, self.origin = None, None
+        self.target, self.target_us = (0.0,) * 4, -FRESH_US
+        self.place = None
+        self.intervals = {"LOCAL_POSITION_NED": 50_000, "ATTITUDE": 50_000, "HEARTBEAT": 1_000_000}
+        self.due = dict.fromkeys(self.intervals, 0)
+
+    def run(self) -> None:
+        self.hil.say("HEARTBEAT", autopilot=12)
+        self.hil.say("COMMAND_LONG", command=511, param1=115, param2=5000)
+        splitter, commands = Splitter(), Splitter()
+        while data := self.simulator.recv(1 << 16):
+            for frame in splitter.feed(data):
+                if frame.kind.name == "HIL_STATE_QUATERNION":
+                    self.truth = frame.kind.decode(frame.payload)
+                elif frame.kind.name == "HIL_SENSOR":
+                    self.sense(frame.kind.decode(frame.payload))
+                    self.hear(commands)
+                    self.tell()
+                    if self.ticks > BOOT_TICKS:
+                        self.answer()
+
+    def sense(self, sensor) -> None:
+        assert sensor.time_usec > self.now, "time goes forward"
+        self.now, self.ticks, self.gyro = sensor.time_usec, self.ticks + 1, (sensor.xgyro, sensor.ygyro, sensor.zgyro)
+        if self.origin is None and self.ticks > POSITION_TICKS:
+            self.origin = (self.truth.lat, self.truth.lon, self.truth.alt)
+
+    def position(self) -> tuple[float, float, float]:
+        lat, lon, alt = self.origin
+        north, down = (self.truth.lat - lat) * METRES, (alt - self.truth.alt) * 1e-3
+        return north, (self.truth.lon - lon) * METRES * math.cos(math.radians(lat * 1e-7)), down
+
+    # ------------------------------------------------------------------ MAVLink
+
+    def tell(self) -> None:
+        for name, interval in self.intervals.items():
+            if interval > 0 and self.now >= self.due[name]:
+                self.due[name] = self.now + interval
+                self.report(name)
+
+    def report(self, name: str) -> None:
+        ms = self.now // 1000
+        if name == "HEARTBEAT":
+            mode = 1 | 128 * self.armed
+            self.link.say(name, autopilot=12, type=2, base_mode=mode, custom_mode=self.mode << 16)
+        elif self.origin is not None and name == "LOCAL_POSITION_NED":
+            x, y, z = self.position()
+            vx, vy, vz = (0.01 * v for v in (self.truth.vx, self.truth.vy, self.truth.vz))
+            self.link.say(name, time_boot_ms=ms, x=x, y=y, z=z, vx=vx, vy=vy, vz=vz)
+        elif self.truth is not None and name == "ATTITUDE":
+            roll, pitch, yaw = quat_to_euler(*self.truth.attitude_quaternion)
+            self.link.say(name, time_boot_ms=ms, roll=roll, pitch=pitch, yaw=yaw, yawspeed=self.gyro[2])
+        elif self.origin is not None and name == "GPS_GLOBAL_ORIGIN":
+            self.link.say(name, latitude=self.origin[0], longitude=self.origin[1], altitude=self.origin[2])
+
+    def hear(self, splitter: Splitter) -> None:
+        while True:
+            try:
+                data, self.client = self.socket.recvfrom(65535)
+            except BlockingIOError:
+                return
+            for frame in splitter.feed(data):
+                fields = frame.kind.decode(frame.payload)
+                if frame.kind.name == "COMMAND_LONG":
+                    result = self.command(fields)
+                    self.link.say("COMMAND_ACK", command=fields.command, result=result)
+                elif frame.kind.name == "SET_POSITION_TARGET_LOCAL_NED" and fields.coordinate_frame == 1:
+                    self.target_us = self.now
+                    self.place = None if fields.type_mask & 7 else (fields.x, fields.y, fields.z, fields.yaw)
+                    self.target = (fields.vx, fields.vy, fields.vz, fields.yaw_rate)
+
+    def command(self, fields) -> int:
+        names = {message(name).id: name for name in ("LOCAL_POSITION_NED", "ATTITUDE", "GPS_GLOBAL_ORIGIN")}
+        if fields.command in (511, 512) and int(fields.param1) in names:
+            if fields.command == 512:
+                self.report(names[int(fields.param1)])
+            else:
+                self.intervals[names[int(fields.param1)]] = int(fields.param2)
+            return 0
+        if fields.command == 176:
+            fresh = self.now - self.target_us < FRESH_US
+            if int(fields.param2) == OFFBOARD and not (fresh and self.origin):
+                return 1  # temporarily rejected
+            self.mode = int(fields.param2)
+            return 0
+        if fields.command == 400:
+            if self.origin is None:
+                return 1
+            self.armed = fields.param1 == 1.0
+            return 0
+        return 3
+
+    # ------------------------------------------------------------------ flight
+
+    def answer(self) -> None:
+        controls = self.fly() if self.armed else [0.0] * 16
+        self.hil.say("HIL_ACTUATOR_CONTROLS", time_usec=self.now, controls=controls, mode=1 | 128 * self.armed, flags=1)
+
+    def fly(self) -> list[float]:
+        roll, pitch, yaw = quat_to_euler(*self.truth.attitude_quaternion)
+        vn, ve, vd = (0.01 * v for v in (self.truth.vx, self.truth.vy, self.truth.vz))
+        wanted = self.target
+        if self.mode != OFFBOARD or self.now - self.target_us > FRESH_US:
+            wanted = (0.0, 0.0, 0.0, 0.0)  # nobody leads: hold
+        elif self.place is not None:
+            x, y, z = self.position()
+            turn = limited(2.0 * math.remainder(self.place[3] - yaw, 2.0 * math.pi), 1.0)
+            wanted = tuple(limited(1.0 * (p - q), 2.0) for p, q in zip(self.place, (x, y, z))) + (turn,)
+        an, ae = limited(1.5 * (wanted[0] - vn), 3.0), limited(1.5 * (wanted[1] - ve), 3.0)
+        ad = limited(3.0 * (wanted[2] - vd), 4.0)
+        c, s = math.cos(yaw), math.sin(yaw)
+        lean = (-s * an + c * ae) / GRAVITY, -(c * an + s * ae) / GRAVITY
+        rates = (6.0 * (lean[0] - roll), 6.0 * (lean[1] - pitch), wanted[3])
+        mx, my, mz = (j * k * (w - g) for j, k, w, g in zip(TURN, (20.0, 20.0, 5.0), rates, self.gyro))
+        thrust = MASS * (GRAVITY - ad) / (math.cos(roll) * math.cos(pitch))
+        controls = [0.0] * 16
+        for k, (x, y, km) in enumerate(self.rotors):
+            lever = 4.0 * self.rotors[0][0] ** 2
+            force = 0.25 * thrust - y / lever * mx + x / lever * my + mz / (4.0 * km)
+            controls[k] = math.sqrt(max(force, 0.1) / THRUST) * 1e-3
+        return controls
+
+
+def connect(port: int) -> socket.socket:
+    while True:
+        made = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        try:
+            made.connect(("127.0.0.1", port))
+        except OSError:
+            made.close()
+            time.sleep(0.0005)
+        else:
+            return made
+
+
+def install(folder: Path) -> Path:
+    """A program in a folder that starts this file."""
+    (folder / "bin").mkdir()
+    program, root = folder / "bin" / "px4", Path(__file__).resolve().parents[2]
+    program.write_text(f'#!/bin/sh\nPYTHONPATH="{root}" exec "{sys.executable}" "{__file__}" "$@"\n')
+    program.chmod(0o755)
+    return program
+
+
+if __name__ == "__main__":
+    assert sys.argv[1] == "-i" and sys.argv[3] == "-d" and sys.argv[4].endswith("/etc"), sys.argv
+    Px4(int(sys.argv[2])).run()

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Environments whose vehicles are flown by programs of other makers, here by their stand-ins."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import subprocess
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import envs  # noqa: F401
+from envs import EnvOptionError
+from envs.mavlink.ends import LinkLostError
+from envs.mavlink.foreign import physics_port
+from envs.robots.autopilot import AutopilotRobot
+
+ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
+
+
+def drive(env, steps, action):
+    """Time of each step's end, and what was seen."""
+    robot, times, seen = env.unwrapped.robot, [], []
+    for _ in range(steps):
+        observation, _, ended, *_ = env.step(action)
+        times.append(round(float(robot.time[0]), 4))
+        seen.append(observation)
+        if ended:
+            break
+    return times, seen
+
+
+@pytest.mark.slow
+def test_a_rover_of_ardupilots_drives_the_maze(ardurover):
+    env = gym.make(ROVER, autopilot=f"ardupilot:{ardurover}", observation="scan+pose")
+    observation, _ = env.reset(seed=1)
+    assert np.isfinite(observation["scan"]).any()
+    times, seen = drive(env, 20, 0)
+    steps = np.diff(times)
+    assert np.allclose(steps[1:], steps[1], atol=1e-6)  # time goes exactly as far as each step says
+    assert not np.array_equal(seen[0]["scan"], seen[-1]["scan"])
+    env.reset(seed=2)
+    drive(env, 2, 1)
+    env.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("program", ["arducopter", "px4"])
+def test_a_copter_of_another_maker_flies_the_office(program, request):
+    path = request.getfixturevalue(program)
+    kind = "px4" if program == "px4" else "ardupilot"
+    env = gym.make(COPTER, autopilot=f"{kind}:{path}", setpoint="velocity")
+    env.reset(seed=1)
+    robot = env.unwrapped.robot
+    before = robot.pose[0].copy()
+    times, _ = drive(env, 15, 0)
+    assert robot.pose[0, 2] == pytest.approx(1.0, abs=0.3)
+    assert np.hypot(*(robot.pose[0, :2] - before[:2])) > 0.2
+    assert np.allclose(np.diff(times)[1:], np.diff(times)[1], atol=1e-6)
+    env.close()
+
+
+@pytest.mark.slow
+def test_a_program_that_dies_in_an_episode_is_told_of(ardurover):
+    env = gym.make(ROVER, autopilot=f"ardupilot:{ardurover}", patience=5.0)
+    env.reset(seed=1)
+    link = env.unwrapped.robot.link(0)
+    link.process._signal(9)
+    with pytest.raises(LinkLostError, match="ended by signal 9"):
+        drive(env, 3, 0)
+    env.reset(seed=1)  # and the next episode has another one
+    drive(env, 1, 0)
+    env.close()
+
+
+@pytest.mark.slow
+def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, tmp_path):
+    instance = free_instance()
+    mavlink = 5760 + 10 * instance
+    words = "--base-port", mavlink, "--model", "JSON:127.0.0.1", "--sim-port-out", 9002 + 10 * instance
+    command = [ardurover, *words, "--home", "-35.363262,149.165237,584,0", "--speedup", 1000]
+    with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL) as program:
+        try:
+            env = gym.make(ROVER, autopilot=f"ardupilot:tcp:127.0.0.1:{mavlink}")
+            first, second = env.reset(seed=1)[0], None
+            drive(env, 10, 0)
+            second = env.reset(seed=1)[0]
+            assert np.allclose(first, second, atol=1.0)
+            drive(env, 2, 0)
+            env.close()
+        finally:
+            program.kill()
+
+
+def free_instance():
+    for number in range(3, 50):
+        with contextlib.ExitStack() as stack, contextlib.suppress(OSError):
+            for kind, port in ((socket.SOCK_STREAM, 5760), (socket.SOCK_DGRAM, 9002)):
+                probe = stack.enter_context(socket.socket(socket.AF_INET, kind))
+                probe.bind(("127.0.0.1", port + 10 * number))
+            return number
+    raise AssertionError("no free ports")
+
+
+@pytest.mark.parametrize(
+    ("connection", "port"), [("tcp:h:5760", 9002), ("tcp:h:5780", 9022), ("tcp:h:5763", 9002), ("udp:h:14550", 9002)]
+)
+def test_the_port_of_the_physics_follows_the_instance(connection, port):
+    assert physics_port(connection) == port
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ({"autopilot": "ardupilot:/nowhere"}, "is not there"),
+        ({"autopilot": "betaflight"}, "none of"),
+        ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "count": 2}, "one vehicle"),
+        ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "connection": "tcp:127.0.0.1:5760"}, "no connection"),
+        ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "gcs": "udp:127.0.0.1:14550"}, "gcs"),
+        ({"autopilot": "px4:udp:127.0.0.1:14540"}, "copters"),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(options, why):
+    with pytest.raises(EnvOptionError, match=why):
+        AutopilotRobot(frame="erle_rover", **options)

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How programs are started: command lines, parameters for an airframe, and how they end."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from sitl import vehicles
+from sitl.foreign import ardupilot, px4
+from sitl.foreign.ports import HOST, free_tcp_run
+from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
+from sitl.option_error import OptionError
+
+
+def test_ardupilots_command_line():
+    words = ardupilot.command(Path("/x/arducopter"), (-35.3632621, 149.1652371, 584.0, 353.0), 9012, 5770, 1, 10, ["a"])
+    assert words[:4] == ["/x/arducopter", "--base-port", "5770", "--instance"]  # the instance must come after the port
+    pairs = dict(zip(words[1::2], words[2::2]))
+    assert pairs["--model"] == "JSON:127.0.0.1" and pairs["--sim-port-out"] == "9012" and pairs["--speedup"] == "10"
+    assert pairs["--home"] == "-35.3632621,149.165237,584,353" and pairs["--defaults"] == "a"
+    assert words[-1] == "--wipe"
+
+
+def test_ardupilots_parameters_are_the_airframes():
+    text = ardupilot.defaults(vehicles.load("erle_copter"), sees_ground=True)
+    values = dict(line.split(" ") for line in text.splitlines())
+    assert values["FRAME_CLASS"] == "1" and values["FRAME_TYPE"] == "1" and values["MOT_SPIN_MAX"] == "0.838"
+    assert values["SIM_RATE_HZ"] == "400" and values["RNGFND1_TYPE"] == "100" and values["RNGFND1_MAX_CM"] == "5000"
+    assert "RNGFND1_TYPE" not in ardupilot.defaults(vehicles.load("erle_rover"), sees_ground=False)
+
+
+def test_px4s_parameters_are_the_airframes():
+    values = px4.parameters(vehicles.load("erle_copter"))
+    assert values["CA_ROTOR_COUNT"] == 4
+    for k, (x, y, turn) in enumerate([(1, 1, 1), (-1, -1, 1), (1, -1, -1), (-1, 1, -1)]):
+        assert values[f"CA_ROTOR{k}_PX"] == x * 0.141 and values[f"CA_ROTOR{k}_PY"] == y * 0.141
+        assert values[f"CA_ROTOR{k}_KM"] == turn * 0.016
+        assert values[f"PWM_MAIN_MAX{k + 1}"] == 1838 and values[f"PWM_MAIN_FUNC{k + 1}"] == 101 + k
+    assert values["MPC_THR_HOVER"] == 0.45 and values["THR_MDL_FAC"] == 0.7
+    with pytest.raises(OptionError, match="rover"):
+        px4.parameters(vehicles.load("erle_rover"))
+
+
+def test_free_ports_are_a_run():
+    first = free_tcp_run(8)
+    assert first > 0 and HOST == "127.0.0.1"
+
+
+def python(*lines: str) -> list[str]:
+    return [sys.executable, "-c", "\n".join(lines)]
+
+
+def test_a_program_runs_in_a_folder_of_its_own_that_goes_with_it():
+    process = AutopilotProcess(
+        [*python("import sys, time", "print(open(sys.argv[1]).read())", "time.sleep(60)"), "{folder}/a.txt"],
+        {"a.txt": "hello"}, {},
+    )  # fmt: skip
+    folder = process.folder
+    process.check()
+    assert process.is_running() and (folder / "a.txt").exists()
+    process.stop()
+    assert not process.is_running() and not folder.exists()
+    process.stop()
+
+
+def test_a_folder_that_was_named_stays(tmp_path):
+    process = AutopilotProcess(python("print('said')"), {}, {}, tmp_path / "kept")
+    process._process.wait()
+    process.stop()
+    assert process.said() == "said"
+
+
+def test_a_program_that_ends_is_told_of_with_its_last_words():
+    process = AutopilotProcess(python("print('no eeprom')", "raise SystemExit(3)"), {}, {})
+    process._process.wait()
+    with pytest.raises(AutopilotEndedError, match=r"code 3; it said: no eeprom"):
+        process.check()
+    process.stop()
+
+
+def test_a_program_that_does_not_heed_and_its_children_are_ended(monkeypatch):
+    monkeypatch.setattr("sitl.foreign.process._GRACE_S", 0.2)
+    child = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print(1, flush=True); time.sleep(60)"
+    process = AutopilotProcess(
+        python(
+            "import signal, subprocess, sys, time",
+            "signal.signal(signal.SIGTERM, signal.SIG_IGN)",
+            f"child = subprocess.Popen([sys.executable, '-c', {child!r}])",
+            "print(child.pid, flush=True)",
+            "time.sleep(60)",
+        ),
+        {},
+        {},
+    )
+    while len(process.said().split(" / ")) < 2:
+        process.check()
+    number = max(int(word) for word in process.said().split(" / "))
+    process.stop()
+    with pytest.raises(ProcessLookupError):
+        while True:  # until its new parent has buried it
+            os.kill(number, 0)
+            if Path(f"/proc/{number}/stat").read_text().split(")")[1].split()[0] == "Z":
+                raise ProcessLookupError
+    assert process._process.returncode == -signal.SIGKILL
+
+
+def test_what_cannot_be_started_is_named():
+    with pytest.raises(OptionError, match="/nowhere"):
+        AutopilotProcess(["/nowhere"], {}, {})

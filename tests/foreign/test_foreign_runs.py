@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl run --autopilot`` and ``sitl physics --listen json`` as commands, with stand-ins for the programs."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+from arducopter_stand_in import install
+
+from sitl.bridge.dialect import message
+from sitl.logs.tlog import read_tlog
+from sitl.simulation import Simulation
+
+_TEXT, _POSITION = message("STATUSTEXT"), message("HEARTBEAT")
+
+
+@contextlib.contextmanager
+def command(*words, cwd):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "sitl", *map(str, words)], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )  # fmt: skip
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        for stream in (process.stdout, process.stderr):
+            stream.close()
+
+
+def line_with(stream, text):
+    for line in stream:
+        if text in line:
+            return line.strip()
+    raise AssertionError(f"no line with {text!r}")
+
+
+@pytest.mark.slow
+def test_a_program_is_run_relayed_and_logged_until_the_duration_is_over(arducopter, tmp_path):
+    words = ("--speedup", "max", "--out", "none", "--tcp", "0", "--log-dir", tmp_path / "logs", "--duration", "30")
+    with command("run", "copter", "--autopilot", f"ardupilot:{arducopter}", *words, cwd=tmp_path) as process:
+        out, err = process.communicate(timeout=120)
+    assert process.returncode == 0, err
+    assert "flies erle_copter; physics: native" in out and "MAVLink on tcp:127.0.0.1:" in out
+    (log,) = (tmp_path / "logs").iterdir()
+    texts = b"".join(raw for _, raw in read_tlog(log) if raw[7] == 253)
+    assert b"ArduPilot Ready" in texts
+
+
+@pytest.mark.slow
+def test_a_program_that_dies_ends_the_run_with_its_last_words(tmp_path):
+    program = tmp_path / "arducopter"
+    program.write_text("#!/bin/sh\necho cannot find my eeprom\nexit 7\n")
+    program.chmod(0o755)
+    words = ("--out", "none", "--tcp", "0", "--log-dir", tmp_path / "logs")
+    with command("run", "copter", "--autopilot", f"ardupilot:{program}", *words, cwd=tmp_path) as process:
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert "ended with code 7; it said: cannot find my eeprom" in err
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_the_run_and_the_program(arducopter, tmp_path):
+    words = ("--speedup", "max", "--out", "none", "--tcp", "0", "--log-dir", tmp_path / "logs")
+    with command("run", "copter", "--autopilot", f"ardupilot:{arducopter}", *words, cwd=tmp_path) as process:
+        line_with(process.stdout, "log:")
+        line_with(process.stderr, "autopilot at")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+    assert process.returncode == 0
+
+
+@pytest.mark.slow
+def test_px4_is_run(px4, tmp_path):
+    words = ("--speedup", "max", "--log-dir", tmp_path / "logs", "--duration", "5", "--instance", "7")
+    with command("run", "copter", "--autopilot", f"px4:{px4}", *words, cwd=tmp_path) as process:
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    assert "udp 127.0.0.1:14547" in out
+    assert "every tick waits for the autopilot" in err
+
+
+@pytest.mark.slow
+def test_the_physics_command_listens_for_json(tmp_path):
+    with command("physics", "copter", "--listen", "json:0", cwd=tmp_path) as process:
+        where = line_with(process.stdout, "JSON on udp").rpartition(" ")[2]
+        simulation = Simulation("erle_copter", physics=f"json:{where}")
+        simulation.advance(2.0)
+        simulation.close()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+    assert process.returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("--estimator", "truth"), "estimators of its own"),
+        (("--lockstep",), "grants"),
+        (("--physics", "json:127.0.0.1:9002"), "native, pybullet"),
+    ],
+)
+def test_options_that_a_foreign_autopilot_cannot_have_are_refused(tmp_path, capsys, words, why):
+    from sitl.cli import main
+
+    program = install(tmp_path)
+    assert main(["run", "copter", "--autopilot", f"ardupilot:{program}", *words]) == 2
+    assert why in capsys.readouterr().err

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A plant behind the JSON wire, asked by scripted peers with the habits of ArduPilot's program."""
+
+from __future__ import annotations
+
+import contextlib
+
+import json_peer
+import pytest
+
+from sitl.foreign.json_host import JsonHost
+from sitl.option_error import OptionError
+from sitl.plants.alone import stand_alone
+from sitl.simulation import DEFAULT_HOME
+
+ANY = ("127.0.0.1", 0)
+
+
+@contextlib.contextmanager
+def served(plant):
+    """A host and a peer; wall time is a list's only number."""
+    wall, said = [0.0], []
+    host = JsonHost(plant, ANY, said.append, lambda: wall[0])
+    host.wall, host.said = wall, said
+    peer = json_peer.Peer(host)
+    try:
+        yield host, peer
+    finally:
+        peer.close()
+        host.close()
+
+
+def test_a_standing_copter_is_told_as_it_is(copter_plant):
+    with served(copter_plant) as (_, peer):
+        line = peer.ask(0)
+        assert line["timestamp"] == pytest.approx(0.0025, rel=1e-8)
+        assert line["position"] == [0.0, 0.0, 0.0] and line["velocity"] == [0.0, 0.0, 0.0]
+        assert line["imu"]["accel_body"] == pytest.approx([0.0, 0.0, -9.80665])
+        assert line["battery"]["voltage"] == pytest.approx(12.6, abs=0.1)
+        assert "windvane" not in line and "rng_1" not in line
+
+
+def test_ardupilots_clock_of_whole_microseconds_keeps_step_with_ours(copter_plant):
+    with served(copter_plant) as (host, peer):
+        theirs, last = 0, 0.0
+        for number in range(3000):
+            now = peer.ask(number)["timestamp"]
+            theirs, last = int(theirs + (now - last) * 1e6), now
+        assert theirs == host.time_us == 7_500_000
+
+
+@pytest.mark.parametrize("pulses", [16, 32])
+def test_pulses_turn_the_rotors(copter_plant, pulses):
+    with served(copter_plant) as (_, peer):
+        for number in range(200):
+            line = peer.ask(number, pulse=1700, pulses=pulses)
+        assert line["position"][2] < -0.2 and line["velocity"][2] < -0.5
+        assert list(copter_plant.craft.v.actuators.pwm) == [1700] * 16
+
+
+def test_a_rovers_pulses_are_centred(rover_plant):
+    with served(rover_plant) as (_, peer):
+        for number in range(200):
+            still = peer.ask(number, pulse=1500)
+        assert abs(still["velocity"][0]) < 1e-6
+        for number in range(200, 400):
+            line = peer.ask(number, pulse=1700)
+        assert line["velocity"][0] > 0.1
+
+
+@pytest.mark.parametrize(("rate", "ticks"), [(1200, 1), (400, 1), (100, 4), (50, 8)])
+def test_the_rate_asked_for_is_the_step(copter_plant, rate, ticks):
+    with served(copter_plant) as (host, peer):
+        peer.ask(0, rate=rate)
+        assert host.time_us == 2500 * ticks
+
+
+def test_a_frame_sent_again_gets_the_same_line_and_is_not_stepped_again(copter_plant):
+    with served(copter_plant) as (host, peer):
+        first = peer.ask(0)
+        for _ in range(2):
+            host.wall[0] += 1.0
+            peer.send(0)
+            assert not host.listen()
+            assert peer.lines() == [first]
+        assert host.time_us == 2500
+        peer.ask(1)
+        assert host.time_us == 5000
+
+
+def test_of_frames_that_waited_while_time_was_held_one_is_answered(copter_plant):
+    with served(copter_plant) as (host, peer):
+        peer.ask(0)
+        for _ in range(10):  # nobody listens for ten seconds; it repeats itself
+            peer.send(1)
+            host.wall[0] += 1.0
+        assert host.listen()
+        host.step()
+        assert len(peer.lines()) == 1 and host.time_us == 5000
+        assert not host.listen() and peer.lines() == []
+
+
+def test_an_autopilot_started_anew_begins_at_power_on(copter_plant):
+    with served(copter_plant) as (host, peer):
+        for number in range(300):
+            before = peer.ask(number, pulse=1700)
+        assert before["position"][2] < -0.5
+        host.wall[0] += 0.5
+        again = json_peer.Peer(host)
+        line = again.ask(0)
+        again.close()
+        assert line["position"] == [0.0, 0.0, 0.0] and host.time_us == 2500 and host.boots == 1
+
+
+def test_strangers_and_junk_are_told_of_and_change_nothing(copter_plant):
+    with served(copter_plant) as (host, peer):
+        peer.ask(0)
+        other = json_peer.Peer(host)
+        other.send(0)
+        assert not host.listen()
+        other.socket.send(b"\x00" * 40)
+        assert not host.listen()
+        other.close()
+        assert other.host.time_us == 2500
+        assert any("second autopilot" in text for text in host.said) and any(
+            "begins with 0" in text for text in host.said
+        )
+        peer.ask(1)
+
+
+def test_time_can_be_held_within_a_step(copter_plant):
+    with served(copter_plant) as (host, peer):
+        peer.send(0, rate=50)
+        assert host.listen() and host.listen()  # it waits
+        host.step(until_us=5000)
+        assert host.time_us == 5000
+        peer.send(1, rate=50)
+        assert host.listen()
+        host.step(until_us=5000)  # a step is a tick at least
+        assert host.time_us == 7500
+
+
+def test_range_finder_and_vane_are_told_where_there_is_something_to_tell():
+    plant = stand_alone(
+        "erle_copter", home=DEFAULT_HOME, world="maze_erlerover", start=(0.0, 0.0, 0.0, 0.0),
+        params={"SIM_WIND_SPD": 5.0, "SIM_WIND_DIR": 0.0},
+    )  # fmt: skip
+    with served(plant) as (_, peer):
+        line = peer.ask(0)
+        assert 0.0 <= line["rng_1"] < 0.3
+        assert line["windvane"]["direction"] == pytest.approx(0.0, abs=1e-6)  # head to wind
+        assert line["windvane"]["speed"] == pytest.approx(5.0, abs=0.1)
+    plant.close()
+
+
+def test_same_pulses_same_lines(copter_plant):
+    def flight():
+        plant = stand_alone("erle_copter", home=DEFAULT_HOME)
+        with served(plant) as (_, peer):
+            return [peer.ask(number, pulse=1400 + number % 300) for number in range(400)]
+
+    assert flight() == flight()
+
+
+def test_a_port_that_is_taken_is_named(copter_plant):
+    with served(copter_plant) as (host, _), pytest.raises(OptionError, match=str(host.address[1])):
+        JsonHost(copter_plant, host.address)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lines of motion: as ArduPilot's parser finds its keys, and what our end believes."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+
+import pytest
+
+from sitl.bridge.ardupilot_json.motion import MotionError, decode, encode, extra
+
+MOTION = (1.25, 0.1, -0.2, 0.3, 0.0, 0.0, -9.80665, 10.5, -20.25, -3.125, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, -0.5)
+GOOD = {
+    "timestamp": 2.5,
+    "imu": {"gyro": [0, 0, 0.1], "accel_body": [0, 0, -9.8]},
+    "position": [1, 2, -3],
+    "attitude": [0, 0, 0],
+    "velocity": [0.5, 0, 0],
+}
+
+
+def found_by_text(line: str, section: str, key: str) -> str:
+    """What follows a key where ArduPilot looks: the first text of that name behind the section's, and two bytes on."""
+    at = line.index(section) + len(section) + 1
+    at = line.index(key, at) + len(key) + 2
+    return line[at:]
+
+
+def test_a_line_stands_between_line_feeds_without_spaces():
+    line = encode(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode()
+    assert line.startswith("\n{") and line.endswith("}\n") and " " not in line
+    assert json.loads(line)["quaternion"] == [1.0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "numbers"),
+    [
+        ("imu", "gyro", MOTION[1:4]),
+        ("imu", "accel_body", MOTION[4:7]),
+        ("", "position", MOTION[7:10]),
+        ("", "quaternion", MOTION[10:14]),
+        ("", "velocity", MOTION[14:17]),
+    ],
+)
+def test_ardupilots_parser_finds_every_vector(section, key, numbers):
+    line = encode(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
+    values = re.match(r"\[([^]]*)\]", found_by_text(line, section, key))
+    assert values is not None
+    assert tuple(map(float, values[1].split(","))) == numbers
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "number"),
+    [
+        ("", "timestamp", 1.25),
+        ("", "rng_1", 1.5),
+        ("windvane", "direction", 0.5),
+        ("windvane", "speed", 2.0),
+        ("battery", "voltage", 12.5),
+        ("battery", "current", 3.0),
+    ],
+)
+def test_ardupilots_parser_finds_every_number(section, key, number):
+    line = encode(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
+    assert float(re.match(r"[-0-9.e]+", found_by_text(line, section, key))[0]) == number
+
+
+def test_what_is_written_is_read_to_the_last_bit():
+    motion = decode(encode((1 / 3, *(math.sin(k) for k in range(9)), 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3), extra(0.7)))
+    assert motion.time == 1 / 3
+    assert motion.gyro + motion.accel + motion.position == tuple(math.sin(k) for k in range(9))
+    assert motion.ranges == (0.7, None, None, None, None, None)
+
+
+def test_an_attitude_in_angles_is_taken_and_a_quaternion_counts_more():
+    motion = decode(json.dumps({**GOOD, "attitude": [0, 0, math.pi]}).encode())
+    assert motion.attitude == pytest.approx((0, 0, 0, 1), abs=1e-12)
+    both = decode(json.dumps({**GOOD, "attitude": [0, 0, math.pi], "quaternion": [2, 0, 0, 0]}).encode())
+    assert both.attitude == (1.0, 0.0, 0.0, 0.0)
+
+
+def test_battery_and_receiver_are_optional():
+    plain = decode(json.dumps(GOOD).encode())
+    assert plain.battery is None and plain.receiver == ()
+    more = {**GOOD, "battery": {"voltage": 12.1, "current": 3}, "rc": {"rc_1": 1500, "rc_2": 1100, "rc_4": 1}}
+    told = decode(json.dumps(more).encode())
+    assert told.battery == (12.1, 3.0) and told.receiver == (1500, 1100)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"timestamp": None}, "timestamp is missing"),
+        ({"timestamp": -1}, "negative"),
+        ({"timestamp": True}, "not a number"),
+        ({"imu": None}, "imu is missing"),
+        ({"imu": {"gyro": [0, 0, 0]}}, "accel_body is missing"),
+        ({"position": [0, 0]}, "not 3 numbers"),
+        ({"position": [0, 0, "low"]}, "not a number"),
+        ({"velocity": [1e9, 0, 0]}, "out of all bounds"),
+        ({"attitude": None}, "attitude"),
+        ({"quaternion": [0, 0, 0, 0]}, "length 0"),
+        ({"quaternion": [1, 0, 0]}, "not 4 numbers"),
+    ],
+)
+def test_what_is_no_motion_is_refused_with_the_reason(change, why):
+    with pytest.raises(MotionError, match=why):
+        decode(json.dumps({**GOOD, **change}).encode())
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[1, 2]", "nonsense", '{"timestamp": NaN}', '{"timestamp": Infinity}', "[" * 99999]
+)
+def test_what_is_no_json_is_refused(text):
+    with pytest.raises(MotionError):
+        decode(text.encode())
