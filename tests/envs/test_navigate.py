@@ -276,7 +276,7 @@ def test_numpy_integers_are_actions():
         ({"randomise": {"range_nois": (0, 1)}}, r"figure 'range_nois' .* did you mean 'range_noise'"),
         ({"randomise": {"range_noise": (0.2, 0.1)}}, r"range_noise = \(0.2, 0.1\); it must be low <= high within 0"),
         ({"randomise": {"range_noise": 0.1}}, r"range_noise = 0.1; it must be \(low, high\) or a function"),
-        ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar; did you mean 'lidar'"),
+        ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics; did you mean 'lidar'"),
         ({"render_mode": "ascii"}, r"render_mode 'ascii' is not known"),
     ],
 )
