@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from sitl.core.rotations import quat_to_euler
+from sitl.errors import USER_ERRORS
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
@@ -271,7 +272,10 @@ def main() -> None:
     parser.add_argument("--plots", type=Path, metavar="DIR", help="also draw FRAME-engines.png there")
     options = parser.parse_args()
     for frame in [options.frame] if options.frame else sorted(FLIGHTS):
-        flown = fly_all(frame, [NATIVE, *(options.engine or BACKENDS[1:])])
+        try:
+            flown = fly_all(frame, [NATIVE, *(options.engine or BACKENDS[1:])])
+        except USER_ERRORS as error:
+            parser.error(str(error))
         print(f"{frame}\n\n{table(flown)}\n")
         if options.plots:
             plot(flown, f"{frame} on {len(next(iter(flown.values())))} engines", options.plots / f"{frame}-engines.png")

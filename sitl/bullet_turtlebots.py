@@ -61,12 +61,13 @@ class BulletTurtlebots(Turtlebots):
     def restore(self, snapshot: Any, index: int = 0) -> None:
         if len(snapshot) != 3:
             raise ValueError("this snapshot is not of a Turtlebot with physics by PyBullet")
-        kept = self.fleet[index].tobytes()
+        kept, scan, command = self.fleet[index].tobytes(), self.scan[index].copy(), self.commands[index].copy()
         super().restore(snapshot[:2], index)
         try:
             self.robots[index].restore(snapshot[2])
         except EngineError:
             self.fleet[index] = np.frombuffer(kept, TURTLEBOT_DTYPE)[0]
+            self.scan[index], self.commands[index] = scan, command
             raise
 
     def set_figure(self, index: int, name: str, value: float) -> None:

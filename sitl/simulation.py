@@ -254,10 +254,15 @@ class Simulation:
             raise OptionError(f"the snapshot is of world {snapshot.world}, this is world {here}")
         if snapshot.physics != self.physics:
             raise OptionError(f"the snapshot is of physics {snapshot.physics}, this is {self.physics}")
+        kept = self._record.tobytes()
         self._record[:] = snapshot.record
+        try:
+            self.plant.restore(snapshot.plant)
+        except Exception:
+            self._record[:] = kept  # all of it or nothing
+            raise
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
-        self.plant.restore(snapshot.plant)
         self.bridge.restore(snapshot.bridge)
 
     def _physics_restarted(self) -> None:

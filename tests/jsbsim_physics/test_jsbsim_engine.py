@@ -99,3 +99,29 @@ def test_figures_count() -> None:
         one.run(1.0, *(0.65,) * 4)
     assert b.body.pos[2] < -0.3
     assert abs(heavy.body.pos[2]) < 0.01
+
+
+def test_a_snapshot_brings_its_figures() -> None:
+    heavy, light = Bench("erle_copter"), Bench("erle_copter")
+    heavy.p.airframe.mass = 3.0
+    heavy.engine.place()
+    state, record = heavy.engine.snapshot(), heavy.simulation.fleet.tobytes()
+    light.simulation.fleet.view("u1")[:] = np.frombuffer(record, "u1")
+    light.engine.restore(state)
+    for one in (heavy, light):
+        one.run(1.0, *(0.65,) * 4)
+    assert light.digest() == heavy.digest()
+    assert abs(light.body.pos[2]) < 0.01, "too heavy to fly"
+
+
+def test_turbulence_repeats_itself_after_a_snapshot() -> None:
+    b = Bench("erle_copter")
+    b.run(0.5, *(0.65,) * 4)
+    state, record, ends = b.engine.snapshot(), b.simulation.fleet.tobytes(), []
+    for _ in range(2):
+        b.p.wind.turbulence = 2.0
+        b.run(1.0)
+        ends.append(b.digest())
+        b.simulation.fleet.view("u1")[:] = np.frombuffer(record, "u1")
+        b.engine.restore(state)
+    assert ends[0] == ends[1]

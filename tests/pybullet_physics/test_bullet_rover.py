@@ -13,6 +13,7 @@ pytest.importorskip("pybullet")
 from bullet_rovers import AIRFRAMES, Rover
 from pytest import approx
 
+from sitl import worlds
 from sitl.core.records import first_difference
 from sitl.physics.engine import EngineError
 from sitl.physics.native.body import GRAVITY
@@ -153,9 +154,53 @@ def test_placing_it_again_forgets_the_past() -> None:
     assert first_difference(r.fleet[0], end[0]) is None
 
 
+def by_dice(r: Rover, seed: int) -> bytes:
+    """Some seconds of random driving; all bytes of the vehicle afterwards."""
+    dice = np.random.default_rng(seed)
+    for _ in range(3):
+        r.drive(0.5, float(dice.uniform(-1.0, 1.0)), float(dice.choice([1.0, 0.6, -0.6])))
+    return r.fleet.tobytes()
+
+
+def put_back(r: Rover, record: bytes) -> None:
+    r.fleet.view("u1")[:] = np.frombuffer(record, "u1")
+
+
+@pytest.mark.parametrize("frame", ["erle_rover", "ardupilot_rover", "skid_rover"])
+def test_what_it_ran_into_is_forgotten(frame: str) -> None:
+    """By restoring and by power-on: all goes on bit for bit as in an engine that has never touched anything."""
+    world = worlds.load("round")
+    r, touched = Rover(frame, world), 0
+    for k in range(12):
+        by_dice(r, k)
+        touched += int(r.hits.touching)
+        state, record = r.engine.snapshot(), r.fleet.tobytes()
+        end = by_dice(r, 99)
+        for again in (r, Rover(frame, world)):
+            put_back(again, record)
+            again.engine.restore(state)
+            assert by_dice(again, 99) == end, k
+        ends = []
+        for again in (r, Rover(frame, world)):
+            put_back(again, record)
+            again.engine.place()
+            ends.append(by_dice(again, 99))
+        assert ends[0] == ends[1], k
+        put_back(r, record)
+        r.engine.restore(state)
+    assert touched > 1
+
+
 def test_snapshot_of_something_else_is_refused() -> None:
+    """And leaves the vehicle where it is."""
+    r, other = Rover("erle_rover", WALL), Rover("erle_rover", WALL)
+    for one in (r, other):
+        one.drive(1.0, 0.3, 1.0)
     with pytest.raises(EngineError, match="snapshot"):
-        Rover("erle_rover").engine.restore(bytes(300))
+        r.engine.restore(bytes(300))
+    with pytest.raises(EngineError, match="snapshot"):
+        r.engine.restore(Rover("skid_rover").engine.snapshot())
+    assert by_dice(r, 1) == by_dice(other, 1)
 
 
 def test_layouts() -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import subprocess
 import sys
@@ -15,9 +16,12 @@ pytest.importorskip("pybullet")
 
 from bullet_copters import by_dice, copter, put, record_of, run
 
+from envs.options import EnvOptionError
+from envs.robots.autopilot import AutopilotRobot, Ready
 from sitl import worlds
 from sitl.physics.engine import EngineError
 from sitl.physics.pybullet.engine import BulletEngine
+from sitl.simulation import Simulation
 
 
 def again(engine: BulletEngine, record: bytes, state: bytes) -> bytes:
@@ -59,8 +63,31 @@ def test_a_snapshot_of_another_world_is_refused() -> None:
     state = copter(world=worlds.load("maze")).snapshot()
     with pytest.raises(EngineError, match="vehicle and world"):
         copter().restore(state)
+    engine, other = copter(), copter()
     with pytest.raises(EngineError, match="vehicle and world"):
-        copter().restore(b"-nonsense")
+        engine.restore(b"-nonsense")
+    assert by_dice(engine, 200, 1) == by_dice(other, 200, 1), "it is where it was"
+
+
+def test_power_on_forgets_what_it_ran_into() -> None:
+    world = worlds.load("round")
+    engine, dice = copter(world=world), np.random.default_rng(5)
+    start, record, touched = world.start("erle_copter").north_east_down, record_of(engine), 0
+    for k in range(10):
+        put(engine, (start[0] + dice.uniform(-1, 1), start[1] + dice.uniform(-1, 1), -dice.uniform(0.0, 1.0)))
+        body = engine.body
+        velocity, spin = dice.uniform(-3, 3, 3).tolist(), dice.uniform(-6, 6, 3).tolist()
+        body.client.p.resetBaseVelocity(body.number, velocity, spin, body.client.id)
+        by_dice(engine, 200, k)
+        touched += engine.body.keeps_contacts()
+        n, e, d = engine.seat.v.physics.body.pos.tolist()
+        ends = []
+        for again in (engine, copter(world=world)):
+            again.seat.fleet.view("u1")[:] = bytearray(record)
+            put(again, (n, e, min(d, 0.0)))
+            ends.append(by_dice(again, 300, k))
+        assert ends[0] == ends[1], k
+    assert touched > 3
 
 
 @pytest.mark.parametrize("name", ["maze", "round"])
@@ -98,3 +125,38 @@ def test_goes_on_bit_for_bit_in_another_process(tmp_path: Path) -> None:
         capture_output=True, check=True,
     )  # fmt: skip
     assert there.stdout == by_dice(engine, 200, 9)
+
+
+def test_bullet_keeps_no_state_that_it_read(tmp_path: Path) -> None:
+    """Its cache of files would grow with every one, and take the second for the first."""
+    engine, heights = copter(position=(0.0, 0.0, -30.0)), []
+    p, client, file = engine.body.client.p, engine.body.client.id, str(tmp_path / "state.bullet")
+    for _ in range(2):
+        p.saveBullet(file, client)
+        by_dice(engine, 50, 1)
+        p.restoreState(fileName=file, physicsClientId=client)
+        heights.append(p.getBasePositionAndOrientation(engine.body.number, client)[0][2])
+        by_dice(engine, 50, 1)
+    assert heights[1] < heights[0]
+
+
+def test_a_simulation_takes_all_of_a_snapshot_or_nothing() -> None:
+    simulation, other = (Simulation("erle_copter", physics="pybullet") for _ in range(2))
+    taken = simulation.snapshot()
+    for one in (simulation, other):
+        one.advance(1.0)
+    with pytest.raises(EngineError, match="snapshot"):
+        simulation.restore(dataclasses.replace(taken, plant=b"-nonsense"))
+    for one in (simulation, other):
+        one.advance(1.0)
+    assert simulation.time_us == 2_000_000
+    assert simulation.fleet.tobytes() == other.fleet.tobytes()
+
+
+def test_a_robot_refuses_it_by_name() -> None:
+    robot = AutopilotRobot("office_erlecopter", frame="erle_copter", physics="pybullet")
+    taken = Ready(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
+    broken = dataclasses.replace(taken, simulation=dataclasses.replace(taken.simulation, plant=b""))
+    with pytest.raises(EnvOptionError, match="cannot be restored"):
+        robot.restore(0, broken)
+    robot.close()

@@ -7,6 +7,7 @@ import math
 import pickle
 
 import gymnasium as gym
+import numpy as np
 import pytest
 
 pytest.importorskip("pybullet")
@@ -95,6 +96,35 @@ def test_snapshot_and_pickle_go_on_bit_for_bit() -> None:
         each.advance(0.6)
         ends.append((each.fleet[index].tobytes(), each.scan[index].tobytes()))
     assert len(set(ends)) == 1
+
+
+@pytest.mark.parametrize("name", ["maze", "round"])
+def test_what_it_ran_into_is_forgotten(name: str) -> None:
+    """By restoring and by a reset: all goes on bit for bit as with a robot that has never touched anything."""
+    robots, dice, collided = BulletTurtlebots(name), np.random.default_rng(5), 0
+
+    def go(some: BulletTurtlebots) -> bytes:
+        for turn in (-0.7, 0.2, 0.9):
+            some.commands[0] = (0.3, turn)
+            some.advance(0.6)
+        return some.fleet.tobytes() + some.scan.tobytes()
+
+    for k in range(25):
+        for _ in range(6):
+            robots.commands[0] = (dice.choice([0.3, 0.3, -0.3]), dice.choice([-1.0, -0.3, 0.0, 0.3, 1.0]))
+            robots.advance(0.1 * int(dice.integers(1, 12)))
+            collided += int(robots.fleet["body"]["collided"][0])
+        snapshot, pose, end = robots.snapshot(), robots.pose(), go(robots)
+        for again in (robots, BulletTurtlebots(name)):
+            again.restore(snapshot)
+            assert go(again) == end, k
+        ends = []
+        for again in (robots, BulletTurtlebots(name)):
+            again.reset(0, pose, seed=3)
+            ends.append(go(again))
+        assert ends[0] == ends[1], k
+        robots.restore(snapshot)
+    assert collided > 5
 
 
 def test_snapshots_of_others_are_refused() -> None:

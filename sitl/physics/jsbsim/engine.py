@@ -77,12 +77,15 @@ class JsbsimEngine(Engine):
     # ------------------------------------------------------------------ starting
 
     def place(self) -> None:
+        self._fit(anew=self.executive is not None and self.air.has_stirred)
+        self._start()
+
+    def _fit(self, anew: bool) -> None:
+        """An aircraft of the vehicle's figures as they are now; ``anew``, in air that nothing has stirred."""
         figures = bytes(self._physics.airframe._bytes)
-        if figures != self._figures or self.air.has_stirred:
+        if figures != self._figures or anew:
             self._load()
             self._figures = figures
-        self.air.seed(int(self.seat.v.rng.s[0]))
-        self._start()
 
     def _load(self) -> None:
         """Have JSBSim take the vehicle as its figures are now."""
@@ -101,6 +104,7 @@ class JsbsimEngine(Engine):
         """Start JSBSim from what the record says."""
         p = self._physics
         self.air.be_still()
+        self.air.seed(int(self.seat.v.rng.s[0]))
         start.begin(self.executive, self._motion())
         self.air.settle(float(p.place.alt))
         self.air.blow(p.wind.steady.tolist())
@@ -168,10 +172,15 @@ class JsbsimEngine(Engine):
                 "physics 'jsbsim' has a turbulence of its own, which cannot be restored: set SIM_WIND_TURB to 0 "
                 "or take physics 'native'"
             )
-        self._start()
+        self._go_on()
         return b""
 
     def restore(self, state: bytes) -> None:
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """From the record. Snapshots are of still air."""
+        self._fit(anew=self.air.has_stirred and not self._physics.wind.turbulence > 0.0)
         self._start()
 
     def close(self) -> None:

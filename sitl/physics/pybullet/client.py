@@ -53,6 +53,7 @@ class Client:
             numSolverIterations=iterations,
             solverResidualThreshold=residual,
             deterministicOverlappingPairs=1,
+            enableFileCaching=0,  # it would keep every state and model that it ever read
             physicsClientId=self.id,
         )
         self._step = p.stepSimulation

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...worlds import World
 from ..native.tick import TICK_S
-from . import urdf
+from . import state, urdf
 from .client import Client
 from .copter_model import CopterModel, model, sag
 from .worlds import BODY_GROUP, FLOOR_GROUP, SOLID_GROUP, Surfaces, build
@@ -29,13 +29,12 @@ class CopterBody:
         figures: of the airframe, as its record has them (``physics.airframe``).
         world: what is around it; None: a floor.
         floor: height of the floor in the world's frame [m].
-        above: height of the centre of mass over the floor when it stands [m], if that is known.
 
     Raises:
         MissingExtra: pybullet is not installed.
     """
 
-    def __init__(self, figures: Any, world: World | None, floor: float, above: float | None = None) -> None:
+    def __init__(self, figures: Any, world: World | None, floor: float) -> None:
         self.substeps = max(int(figures.substeps), 1)
         """Steps of Bullet in a tick."""
         self.step_s = TICK_S / self.substeps
@@ -50,11 +49,7 @@ class CopterBody:
         for link in (BODY, LEGS):
             p.changeDynamics(self.number, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=id_)
         self._as_built: int = p.saveState(id_)
-        if above is None:
-            above = self._resting_height(sag(float(figures.leg_time_constant)))
-        self.above = above
-        """Height of the centre of mass over the soles when it stands [m]."""
-        self.zero = floor + above
+        self.zero = floor + self._resting_height(sag(float(figures.leg_time_constant)))
         """Height of the centre of mass in the world's frame at which the record's position is 0 [m]."""
         self._meet(FLOOR_GROUP | SOLID_GROUP)
 
@@ -62,6 +57,7 @@ class CopterBody:
         """Everything as it was built, but the body at a pose, at rest; in Bullet's frame."""
         p, id_ = self.client.p, self.client.id
         p.restoreState(self._as_built, physicsClientId=id_)
+        state.forget(self.client, self.number)
         p.resetBasePositionAndOrientation(self.number, position, attitude, physicsClientId=id_)
         p.resetBaseVelocity(self.number, _NOWHERE, _NOWHERE, physicsClientId=id_)
 

@@ -4,7 +4,8 @@
 Frame: forward, left, up; the origin is the centre of mass. Two links: ``body`` has mass, inertia and the rigid outline
 that runs into things; ``legs`` has a foot under each rotor, each on a spring and damper that take up a touch in the
 airframe's ``leg_time_constant``, critically damped. The legs are as long as ``tip_angle`` asks for: at that lean the
-centre of mass stands over the line between two feet.
+centre of mass stands over the line between two feet. The outline reaches farther out than they do and keeps a vehicle
+that leans more from falling over: it lands on its feet again from up to about a right angle.
 """
 
 from __future__ import annotations

@@ -12,14 +12,13 @@ import struct
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ...core.rotations import quat_rotate
 from ...worlds.contact import clearance
 from ..engine import Array, Engine, EngineError, Seat
 from ..native.body import GRAVITY
 from ..native.copter.state import GROUND_AIRBORNE, GROUND_STANDING
 from ..native.obstacles import settle
+from ..record import offset
 from . import lidar, state, urdf
 from .contacts import CLEAR, Row, report
 from .copter_body import ALL, BODY, CopterBody
@@ -55,8 +54,8 @@ class BulletEngine(Engine):
         super().__init__(seat)
         self._memory: Any = seat.fleet.view("u1").data
         base = seat.index * seat.fleet.dtype.itemsize
-        self._body_at = base + _offset(seat.fleet.dtype, "physics", "body")
-        self._wrench_at = base + _offset(seat.fleet.dtype, "physics", "motion")
+        self._body_at = base + offset(seat.fleet.dtype, "physics", "body")
+        self._wrench_at = base + offset(seat.fleet.dtype, "physics", "motion")
         self._load = seat.laws.load
         self._ground, self._obstacles = seat.v.physics.ground, seat.v.physics.obstacles
         self._body: CopterBody | None = None
@@ -142,8 +141,7 @@ class BulletEngine(Engine):
 
     def restore(self, state_: bytes) -> None:
         body = self.body
-        state.forget(body.client, body.number)
-        state.load(body.client, state_)
+        state.load(body.client, state_, body.number)
 
     def _is_near(self) -> bool:
         """Whether floor or solids are so near that Bullet may have something about them in mind."""
@@ -184,13 +182,3 @@ class BulletEngine(Engine):
         if self._body is not None:
             self._body.close()
             self._body = None
-
-
-def _offset(dtype: np.dtype[Any], *names: str) -> int:
-    """Where a record within a record begins [bytes]."""
-    offset = 0
-    for name in names:
-        assert dtype.fields is not None
-        dtype, step = dtype.fields[name][:2]
-        offset += step
-    return offset

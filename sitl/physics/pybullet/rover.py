@@ -17,14 +17,12 @@ from ...vehicles.figures.rover import STEERING_FRONT_WHEELS
 from ..engine import Array, Engine, EngineError, Seat
 from ..native.body import GRAVITY
 from ..native.tick import TICK_S
-from . import lidar, worlds
+from ..record import offset
+from . import lidar, state, worlds
 from .client import Client
 from .hits import report
 from .picture import Camera, Picture
-from .record import offset
 from .rover_model import Model, build
-from .state import load as load_state
-from .state import save as save_state
 from .tyres import scrub_all
 from .wheels import filter_by_both
 
@@ -121,6 +119,7 @@ class BulletRover(Engine):
         ahead = self.model.layout.origin
         c, s = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
         p.restoreState(self._as_built, physicsClientId=client.id)
+        state.forget(client, self._number, self._zero)
         p.resetBasePositionAndOrientation(
             self._number, (n - ahead * c, ahead * s - e, self._zero), (x, -y, -z, w), client.id
         )
@@ -227,11 +226,15 @@ class BulletRover(Engine):
     # ------------------------------------------------------------------ the rest
 
     def snapshot(self) -> bytes:
-        return _LAST.pack(*self._state, *self._spin, *self._speeds) + save_state(self._fit())
+        """See ``Engine``. Among solids it goes on as if it had been restored (``state``)."""
+        saved = _LAST.pack(*self._state, *self._spin, *self._speeds) + state.save(self._fit())
+        if self._has_solids:
+            self.restore(saved)
+        return saved
 
-    def restore(self, state: bytes) -> None:
-        load_state(self._fit(), state[_LAST.size :])
-        last = _LAST.unpack_from(state)
+    def restore(self, state_: bytes) -> None:
+        state.load(self._fit(), state_[_LAST.size :], self._number, self._zero)
+        last = _LAST.unpack_from(state_)
         self._state, self._spin, self._speeds = last[:13], last[13:16], last[16:]
         self._target = (math.nan,)
 

@@ -15,10 +15,9 @@ from ..native.turtlebot.init import place as place_record
 from ..native.turtlebot.state import TICK_S, TICK_US
 from ..native.turtlebot.step import wheel_speeds
 from . import lidar as rays_of_bullet
-from . import worlds
+from . import state, worlds
 from .client import Client
 from .picture import Camera, Picture
-from .state import load, save
 from .turtlebot_model import TORQUE, build
 from .wheels import filter_by_both
 
@@ -58,6 +57,7 @@ class BulletTurtlebot:
             filter_by_both(self._client)
             self.surfaces = worlds.build(self._client, self.world, self.world.floor_z)
             self.model = build(self._client, self.v.figures, self.world.floor_z)
+            self._zero = self.world.floor_z + self.model.height
             self._as_built: int = self._client.p.saveState(self._client.id)
             self._rates = (math.nan, math.nan)
         return self._client
@@ -73,7 +73,8 @@ class BulletTurtlebot:
         p, id_, number = client.p, client.id, self.model.body
         half = -0.5 * b.heading
         p.restoreState(self._as_built, physicsClientId=id_)
-        at = (b.north, 0.0 - b.east, self.world.floor_z + self.model.height)
+        state.forget(client, number, self._zero)
+        at = (b.north, 0.0 - b.east, self._zero)
         p.resetBasePositionAndOrientation(number, at, (0.0, 0.0, math.sin(half), math.cos(half)), id_)
         p.resetBaseVelocity(number, _NOTHING, _NOTHING, id_)
         self._rates = (math.nan, math.nan)
@@ -146,16 +147,20 @@ class BulletTurtlebot:
         return self._picture.render(place, attitude, width, height, camera)
 
     def snapshot(self) -> bytes:
-        """What the record does not hold."""
-        return save(self._fit())
+        """What the record does not hold. Among solids it goes on as if it had been restored (``state``)."""
+        saved = state.save(self._fit())
+        if self.surfaces.solids:
+            self.restore(saved)
+        return saved
 
-    def restore(self, state: bytes) -> None:
+    def restore(self, state_: bytes) -> None:
         """Go back to a snapshot; the record has been put back already.
 
         Raises:
             EngineError: it is of another robot or world.
         """
-        load(self._fit(), state)
+        client = self._fit()
+        state.load(client, state_, self.model.body, self._zero)
         self._rates = (math.nan, math.nan)
 
     def close(self) -> None:
