@@ -42,6 +42,7 @@ class Patience:
 
     def advance_to(self, time_us: int) -> bool:
         """As ``Simulation.advance_to``; False when time stands because the physics has gone: call it again."""
+        before = self._simulation.time_us
         try:
             self._simulation.advance_to(time_us)
         except PhysicsLostError as error:
@@ -50,9 +51,9 @@ class Patience:
             self._is_lost = True
             self._standstill.wait()
             return False
-        if self._is_lost:
+        if self._is_lost and self._simulation.time_us > before:  # a call that only hears clients tells nothing
             self._say(_INFO, "Physics is back")
-        self._is_lost = False
+            self._is_lost = False
         return True
 
     def _say(self, severity: int, text: str) -> None:

@@ -134,7 +134,7 @@ class Remote(Connection):
         Args:
             done: looked at after every word of the vehicle.
             repeat: send it again after half a second.
-            within: wall time for it all [s], whatever else the vehicle says; None: as long as it says something.
+            within: wall time for it all [s], whatever else the vehicle says; None: as long as its time goes on.
 
         Raises:
             LinkLostError: not done in time.
@@ -145,13 +145,16 @@ class Remote(Connection):
             heard = self.end.receive()
             now = time.monotonic()
             if heard:
+                words = self.heard.words
                 self.heard.feed(heard)
-                last = now
+                if self.heard.words != words:
+                    last = now
             if done():
                 return
             since = last if within is None else began
             if now - since >= (self.patience if within is None else within):
-                raise LinkLostError(f"connection {self.name} is lost: no answer for {now - since:.1f} s")
+                told = f"; it told: {'; '.join(self.heard.texts[-4:])}" if self.heard.texts else ""
+                raise LinkLostError(f"connection {self.name} is lost: no answer for {now - since:.1f} s{told}")
             if repeat and now - max(sent, since) >= _REPEAT_S:
                 self.end.write(data)
                 sent = now

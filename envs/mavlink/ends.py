@@ -7,6 +7,8 @@ import contextlib
 import select
 import socket
 
+from sitl.bridge.links.echo import refuse_echo
+
 from ..options import EnvOptionError
 
 FORMS = (
@@ -50,6 +52,7 @@ class SocketEnd:
             if self._stream:
                 self._socket.settimeout(5.0)
                 self._socket.connect(address)
+                refuse_echo(self._socket)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             elif kind == "udpout":
                 self._peer = (socket.gethostbyname(host), int(port))

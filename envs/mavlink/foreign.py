@@ -275,7 +275,7 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], readi
         if choice.kind == PX4:
             instance = px4.free_instance()
             host: Host = HilHost(plant, (HOST, BASE_PORT + instance))
-            where = f"udp:{HOST}:{px4.PROGRAMS_PORT + instance}"
+            where = f"udp:{HOST}:{px4.programs_port(instance)}"
         elif choice.program is None:
             where = choice.connection or ""
             host = JsonHost(plant, (HOST, physics_port(where)))

@@ -68,12 +68,16 @@ class Telemetry:
         """Those that were asked for."""
         self.texts: list[str] = []
         """The last texts, newest last."""
+        self.words = 0
+        """Messages so far that a vehicle whose time stands does not send: all but HEARTBEAT and texts."""
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
         for kind, payload, _, system, component, _, _ in self._splitter.feed(data):
             if component != COMPONENT or system != (self.system or system):
                 continue
+            if kind is not HEARTBEAT and kind is not TEXT:
+                self.words += 1
             if kind is POSITION:
                 self.position = _seven(payload.ljust(28, b"\0"))
             elif kind is ATTITUDE:

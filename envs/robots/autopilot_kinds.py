@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 
 from sitl.autopilot.copter.modes import numbers as copter
 from sitl.autopilot.rover.modes import numbers as rover
+from sitl.vehicles import Airframe
 
 from ..actions import Action, Continuous, Discrete
 from ..mavlink import px4
 from ..mavlink.setpoints import COPTER, ROVER, Encode
 from ..options import EnvOptionError
 from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY, Setpoint
+from .robot import Volume
 
 Rows = Mapping[str, tuple[float, ...]]
 Limits = tuple[tuple[float, ...], tuple[float, ...], tuple[int, ...]]
@@ -44,6 +46,16 @@ class Kind:
                 raise EnvOptionError(f"no discrete actions for setpoint {setpoint.name!r}; there are for {allowed}")
             return Discrete(setpoint, self.discrete[setpoint.name])
         return Continuous(setpoint, *self.continuous[setpoint.name])
+
+
+def volume(airframe: Airframe, climbs: float) -> Volume:
+    """What a vehicle takes up, with the room to climb so high [m]."""
+    reach = max(abs(x) for x in airframe.value("contact_along")) if airframe.value("contact_discs") > 1 else 0.0
+    return Volume(
+        float(reach + airframe.value("contact_radius")),
+        0.0 - float(airframe.value("contact_bottom")),
+        float(airframe.value("contact_top")) + climbs,
+    )
 
 
 def pulses(one: int, two: int, three: int) -> tuple[float, ...]:

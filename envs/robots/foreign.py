@@ -1,80 +1,87 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's options for an autopilot that is not ours, and how an episode of it begins."""
+"""Vehicles with an autopilot that is not ours, on our physics: its program is started anew, or rebooted, for every
+episode."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
-from sitl import vehicles
 from sitl.foreign.choice import PX4, Choice
 from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError
-from sitl.worlds import World
 
 from ..mavlink.connection import Connection
 from ..mavlink.foreign import Foreign, launch
 from ..options import EnvOptionError
 from .robot import Pose
-
-INPROCESS = "inprocess"
-
-
-def check(choice: Choice, options: Mapping[str, Any], count: int) -> None:
-    """EnvOptionError for options that do not go with a foreign autopilot."""
-    airframe = vehicles.load(options["frame"])
-    if choice.kind == PX4 and airframe.kind != "copter":
-        raise EnvOptionError(f"autopilot {choice.name} flies copters here; {airframe.name} is a {airframe.kind}")
-    if options["connection"] != INPROCESS:
-        raise EnvOptionError(f"autopilot {choice.name}: it needs no connection besides")
-    if options["gcs"] is not None:
-        raise EnvOptionError(f"autopilot {choice.name}: gcs is for our own autopilot in process")
-    if choice.program is None and (count > 1 or options["params"]):
-        raise EnvOptionError(f"autopilot {choice.name} is one vehicle as it is: no count or params")
+from .vehicles import INPROCESS, Ready, Seat, Vehicles
 
 
-def begin(
-    choice: Choice,
-    options: Mapping[str, Any],
-    link: Connection | None,
-    airframe: Airframe,
-    world: World,
-    pose: Pose,
-    seed: int,
-) -> Foreign:
-    """A foreign autopilot that has just booted on physics at power-on.
+class ForeignVehicles(Vehicles):
+    """See ``Vehicles``.
 
     Args:
+        seat: what they are made of.
         choice: the autopilot.
-        options: of the robot.
-        link: of the episode before: closed, or rebooted when its program is not ours to start.
-        airframe: with the figures of this episode.
-        world: where.
-        pose: that it stands at.
-        seed: of the physics.
-
-    Raises:
-        EnvOptionError, LinkLostError, NotReadyError: it cannot be simulated, started or rebooted.
     """
-    rebooted = link if isinstance(link, Foreign) and choice.program is None else None
-    if link is not None and rebooted is None:
-        link.close()
-    try:
-        plant = stand_alone(
-            airframe, home=options["home"], backend=options["physics"], seed=seed, world=world,
-            start=(*pose[:3], math.degrees(pose[3])),
-        )  # fmt: skip
-        if rebooted is not None:
+
+    def __init__(self, seat: Seat, choice: Choice) -> None:
+        self._choice = choice
+        options, airframe = seat.options, seat.airframe
+        if choice.kind == PX4 and airframe.kind != "copter":
+            raise EnvOptionError(f"{self.where} flies copters here; {airframe.name} is a {airframe.kind}")
+        if options["connection"] != INPROCESS:
+            raise EnvOptionError(f"{self.where}: it needs no connection besides")
+        if options["gcs"] is not None:
+            raise EnvOptionError(f"{self.where}: gcs is for our own autopilot in process")
+        if choice.program is None and (options["count"] > 1 or options["params"]):
+            raise EnvOptionError(f"{self.where} is one vehicle as it is: no count or params")
+        super().__init__(seat)
+
+    @property
+    def where(self) -> str:
+        return f"autopilot {self._choice.name}"
+
+    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
+        figures, airframe = self.changed[index], self.seat.airframe
+        before, self.links[index] = self.links[index], None
+        link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
+        self.links[index] = link
+        link.heard.angles = self.seat.angles
+        return self.begun(index, self.prepare(link, pose))
+
+    def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:
+        """A foreign autopilot that has just booted on physics at power-on.
+
+        Args:
+            before: link of the episode before: closed, or rebooted when its program is not ours to start.
+            airframe: with the figures of this episode.
+            pose: that it stands at.
+            seed: of the physics.
+        """
+        choice, options = self._choice, self.options
+        rebooted = before if isinstance(before, Foreign) and choice.program is None else None
+        if before is not None and rebooted is None:
+            before.close()
+        try:
+            plant = stand_alone(
+                airframe, home=options["home"], backend=options["physics"], seed=seed, world=self.seat.world,
+                start=(*pose[:3], math.degrees(pose[3])),
+            )  # fmt: skip
+            if rebooted is None:
+                return launch(choice, plant, options["params"] or {}, len(self.seat.angles), options["patience"])
             try:
                 rebooted.restart(plant)
             except BaseException:
                 rebooted.close()
                 raise
             return rebooted
-        readings = int(airframe.value("lidar_samples"))
-        return launch(choice, plant, options["params"] or {}, readings, options["patience"])
-    except (OptionError, AirframeError, EngineError) as error:
-        raise EnvOptionError(str(error)) from None
+        except (OptionError, AirframeError, EngineError) as error:
+            raise EnvOptionError(str(error)) from None
+
+    def time_us(self, index: int) -> int:
+        link = self.links[index]
+        assert isinstance(link, Foreign)
+        return link.time_us

@@ -78,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
         signal.signal(number, lambda n, _: stopped.append(n))
     status = StatusLine(simulation, not options.quiet)
-    until_us = int(options.duration * 1e6) if options.duration else None
+    until_us = simulation.time_us + int(options.duration * 1e6) if options.duration else None
     serve = serve_lockstep if options.lockstep else partial(runner.serve, pace=Pacing(speedup))
     try:
         serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=status.update)

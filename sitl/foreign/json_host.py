@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 
 from ..bridge.ardupilot_json.physics_end import Asked, Heard, PhysicsEnd, ticks
-from ..bridge.ardupilot_json.servos import controls
+from ..bridge.ardupilot_json.servos import controls, is_frame
 from ..option_error import OptionError
 from ..plants.alone import restart
 from ..plants.json_link import WAIT_S, wait_in_kernel
@@ -17,6 +17,8 @@ from ..vehicle import TICK_US
 from .body import BodyLines
 
 _MOST = 65535
+_GATHERED = 10_000
+"""So many datagrams are looked through at once: nobody can keep us from answering."""
 _IDLE_S = 0.01
 """After so long without an answer of ours the frames that wait are looked through [s]."""
 
@@ -89,8 +91,16 @@ class JsonHost:
         except OSError:  # none came, or our last answer met a closed port
             return False
         now = self._wall()
+        waiting = {peer: datagram}
         if now - self._answered > _IDLE_S:
-            datagram, peer = self._newest(datagram, peer)
+            self._newest(waiting)
+        for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
+            if self._hear(waiting[peer], peer, now):
+                return True
+        return False
+
+    def _hear(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
+        """Take one datagram; whether it asks for a step."""
         heard = self.end.hear(datagram, peer, now)
         if heard.note:
             self._say(heard.note)
@@ -104,13 +114,15 @@ class JsonHost:
         self._pending = heard
         return True
 
-    def _newest(self, datagram: bytes, peer: tuple[str, int]) -> tuple[bytes, tuple[str, int]]:
-        """The last of the frames that wait."""
-        while True:
+    def _newest(self, waiting: dict[tuple[str, int], bytes]) -> None:
+        """Look through the datagrams that wait: the last frame of each sender counts, or the last that is none."""
+        for _ in range(_GATHERED):
             try:
                 datagram, peer = self._socket.recvfrom(_MOST, socket.MSG_DONTWAIT)
             except OSError:
-                return datagram, peer
+                return
+            if peer not in waiting or is_frame(datagram) or not is_frame(waiting[peer]):
+                waiting[peer] = datagram
 
     def step(self, until_us: int | None = None) -> None:
         """Do what the frame that waits asks for, and answer it; no further than ``until_us`` [us]."""

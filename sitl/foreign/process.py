@@ -60,7 +60,21 @@ class AutopilotProcess:
             self._forget_folder()
             why = error.strerror or error
             raise OptionError(f"autopilot {self.command[0]!r} cannot be started: {why}") from None
+        self._watch = self._watched()
         atexit.register(self.stop)  # who forgets it leaves no process behind
+
+    def _watched(self) -> subprocess.Popen[bytes]:
+        """A shell that ends the program's group when we are gone without a word (kill -9): its input ends then."""
+        script = ["/bin/sh", "-c", 'read _; kill -9 "-$0"', str(self._process.pid)]
+        silent = subprocess.DEVNULL
+        return subprocess.Popen(script, stdin=subprocess.PIPE, stdout=silent, stderr=silent, start_new_session=True)
+
+    def _watch_no_more(self) -> None:
+        """Before the number of its group can be another's."""
+        self._watch.kill()
+        self._watch.wait()
+        if self._watch.stdin is not None:
+            self._watch.stdin.close()
 
     @property
     def pid(self) -> int:
@@ -75,6 +89,7 @@ class AutopilotProcess:
         """AutopilotEndedError when it has ended."""
         code = self._process.poll()
         if code is not None:
+            self._watch_no_more()
             how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
             said = self.said()
             raise AutopilotEndedError(f"autopilot {self.command[0]} {how}; it said: {said}")
@@ -94,6 +109,7 @@ class AutopilotProcess:
             self._signal(signal.SIGTERM)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(timeout=_GRACE_S)
+        self._watch_no_more()
         self._signal(signal.SIGKILL)  # also what is left of its group
         self._process.wait()
         self._forget_folder()

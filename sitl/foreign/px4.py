@@ -24,14 +24,16 @@ from .process import AutopilotProcess
 MODEL = "none_iris"
 PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550
 """UDP: where it sends to programs, from where, and where to ground stations; the first two are + N."""
-_MOST = 50
+INSTANCES = 10
+"""Later ones (from 10 on) all send to port 14549, where programs cannot tell them apart."""
 
 
 def parameters(airframe: Airframe) -> dict[str, float]:
     """Parameters with which PX4 flies this airframe.
 
-    Where the rotors are and which way they turn (CA_ROTORn), what pulse is full thrust, the thrust curve, the hover
-    throttle, and rate loops from ArduPilot's, whose gains have the same meaning but not the same mixer: a beginning.
+    Where the rotors are and which way they turn (CA_ROTORn), the thrust curve, the hover throttle, and rate loops from
+    ArduPilot's, whose gains have the same meaning but not the same mixer: a beginning. What pulse is full thrust PX4
+    need not know: over the HIL link it says parts of each motor's range (``bridge.hil.physics_end``).
 
     Raises:
         OptionError: the airframe is no copter.
@@ -46,8 +48,6 @@ def parameters(airframe: Airframe) -> dict[str, float]:
             f"CA_ROTOR{k}_PY": rotor.y,
             f"CA_ROTOR{k}_KM": moment * rotor.direction,
             f"PWM_MAIN_FUNC{k + 1}": 101 + k,
-            f"PWM_MAIN_MIN{k + 1}": 1000 + round(1000 * float(airframe.value("control_min"))),
-            f"PWM_MAIN_MAX{k + 1}": 1000 + round(1000 * float(airframe.value("control_max"))),
         }
     own = airframe.parameters
     for name, theirs in (
@@ -66,13 +66,18 @@ def parameters(airframe: Airframe) -> dict[str, float]:
     return values | {"NAV_DLL_ACT": 0, "NAV_RCL_ACT": 0, "COM_RC_IN_MODE": 4}  # no ground station, no sticks
 
 
+def programs_port(instance: int) -> int:
+    """UDP port that an instance sends to for programs."""
+    return PROGRAMS_PORT + min(instance, INSTANCES - 1)
+
+
 def free_instance() -> int:
     """The first instance of which all ports are free.
 
     Raises:
         OptionError: there is none.
     """
-    for number in range(_MOST):
+    for number in range(INSTANCES):
         with contextlib.ExitStack() as stack, contextlib.suppress(OSError):
             for kind, port in (
                 (socket.SOCK_STREAM, BASE_PORT),
@@ -83,7 +88,7 @@ def free_instance() -> int:
                 probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(kind == socket.SOCK_STREAM))
                 probe.bind((HOST, port + number))
             return number
-    raise OptionError(f"px4: the ports of all instances from 0 to {_MOST - 1} are taken")
+    raise OptionError(f"px4: the ports of all instances from 0 to {INSTANCES - 1} are taken")
 
 
 def start(

@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
+from ..bridge.links.echo import refuse_echo
 from ..bridge.links.link import Link, Peer
 from .cutter import Cutter
 
@@ -89,6 +90,7 @@ class Relay:
         made.settimeout(_RETRY_S)
         try:
             made.connect(self._address)
+            refuse_echo(made)
         except OSError:
             made.close()
             return

@@ -140,7 +140,7 @@ class Px4Session:
         self.plant, self._speedup = plant, speedup
         self.process: AutopilotProcess | None = None
         self.clients = (
-            f"udp {HOST}:{px4.PROGRAMS_PORT + instance}, for ground stations {HOST}:{px4.STATIONS_PORT}"
+            f"udp {HOST}:{px4.programs_port(instance)}, for ground stations {HOST}:{px4.STATIONS_PORT}"
             if choice.program is not None
             else choice.connection
         )

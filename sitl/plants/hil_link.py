@@ -7,6 +7,7 @@ import contextlib
 import socket
 import time
 
+from ..bridge.links.echo import refuse_echo
 from ..option_error import OptionError
 from .plant import PhysicsLostError
 
@@ -69,6 +70,7 @@ class HilLink:
         while True:
             try:
                 found = socket.create_connection(self.address, CONNECT_S)
+                refuse_echo(found)
             except OSError as error:
                 if time.monotonic() >= end:
                     raise PhysicsLostError(f"no physics at {self.name}: {error.strerror or error}") from None

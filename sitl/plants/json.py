@@ -26,7 +26,7 @@ from ..physics.native.body import GRAVITY
 from ..physics.native.power_on import DEFAULT_HOME, Home
 from ..physics.native.tick import TICK_S
 from ..vehicle import TICK_US
-from .json_link import JsonLink, parse_address
+from .json_link import WAIT_S, JsonLink, parse_address
 from .plant import Craft, PhysicsLostError, Plant
 
 OWN = ("home", "seed", "estimator")
@@ -35,7 +35,12 @@ RESEND_S = 1.0
 """Wall time after which a frame without an answer is sent again, as ArduPilot does [s]."""
 PATIENCE_S = 2.5
 """Wall time without an answer after which the physics is lost [s]."""
+STILL_S = 0.001
+"""After a line without new time another one is waited for so long before the frame is sent again [s]: physics that goes
+by a clock of its own is asked until it has gone on."""
 _BODY = struct.Struct("<13d")
+_ZERO: tuple[float, ...] = (0.0, 0.0, 0.0)
+_NOTHING = _ZERO, _ZERO, 0.0
 _US = 1e6
 
 
@@ -74,6 +79,8 @@ class JsonPlant(Plant):
         self._behind_us = 0.0
         """Time of the physics less that of the vehicle [us]: time it has to step before the next tick is full."""
         self._last: Motion | None = None
+        self._sums = _NOTHING
+        """What the IMU has felt in the part of the tick that is done: rates and forces by steps, sum of steps [s]."""
         self._told: Callable[[], int] = craft.reader.field("autopilot.events.count")
         self._attention: Callable[[], int] = craft.reader.field("autopilot.events.attention")
         self._pulses = craft.reader.fields("actuators.pwm")
@@ -91,7 +98,7 @@ class JsonPlant(Plant):
         craft.kind.apply_sim_parameters(craft.v)
         craft.kind.init_physics(craft.v, craft.airframe, self.home, self.seed)
         self.end.restart()
-        self._behind_us, self._last = 0.0, None
+        self._behind_us, self._last, self._sums = 0.0, None, _NOTHING
 
     def load(self) -> None:
         """Compile all that ``run`` needs now."""
@@ -122,22 +129,23 @@ class JsonPlant(Plant):
 
     def _next(self) -> Motion | None:
         """The motion at the end of the next tick; None when the physics has begun anew, and so must the autopilot."""
-        gyro, accel, weight = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
+        began = self._wall()
+        gyro, accel, weight = self._sums
         while self._behind_us < 0.5 * TICK_US or self._last is None:
-            heard = self._exchange()
+            heard = self._exchange(began)
             if heard is None:
                 return None
             motion, step = heard
-            if step <= 0.0:
-                continue
             self._last = motion
             if step > LONGEST_S:  # a clock that jumps takes nothing with it
                 self._behind_us = TICK_US
             else:
                 self._behind_us += step * _US
-            gyro = tuple(g + step * x for g, x in zip(gyro, motion.gyro))  # type: ignore[assignment]
-            accel = tuple(a + step * x for a, x in zip(accel, motion.accel))  # type: ignore[assignment]
+            gyro = tuple(g + step * x for g, x in zip(gyro, motion.gyro))
+            accel = tuple(a + step * x for a, x in zip(accel, motion.accel))
             weight += step
+            self._sums = gyro, accel, weight  # kept, should the physics be lost before the tick is full
+        self._sums = _NOTHING
         self._behind_us -= TICK_US
         last = self._last
         if weight == 0.0 or gyro == last.gyro:
@@ -149,17 +157,20 @@ class JsonPlant(Plant):
             last.ranges, last.battery, last.receiver,
         )  # fmt: skip
 
-    def _exchange(self) -> tuple[Motion, float] | None:
+    def _exchange(self, began: float) -> tuple[Motion, float] | None:
         """Frame out, line in; None when the physics' time went backwards.
 
+        Args:
+            began: when the tick was begun [s of wall time].
+
         Raises:
-            PhysicsLostError: no line within the patience.
+            PhysicsLostError: no line with new time within the patience.
         """
         frame = self.end.frame(self._pulses())
         self.link.send(frame)
-        began = sent = self._wall()
+        sent, stands = self._wall(), False
         while True:
-            data = self.link.receive()
+            data = self.link.receive(STILL_S if stands else WAIT_S)
             if data is not None:
                 heard = self.end.hear(data)
                 if self.end.note:
@@ -168,12 +179,15 @@ class JsonPlant(Plant):
                     if heard[1] < 0.0:
                         self.craft.restarted()
                         return None
-                    return heard
+                    if heard[1] > 0.0:
+                        return heard
+                    stands = True
             now = self._wall()
             if now - began >= PATIENCE_S:
                 why = f"; {self.end.refused} lines were refused, {self._note}" if self.end.refused else ""
-                raise PhysicsLostError(f"physics json:{self.link.name} does not answer{why}")
-            if data is None and now - sent >= RESEND_S:
+                what = "answers, but its time stands" if stands else "does not answer"
+                raise PhysicsLostError(f"physics json:{self.link.name} {what}{why}")
+            if data is None and (stands or now - sent >= RESEND_S):
                 self.link.send(frame)
                 sent = now
 

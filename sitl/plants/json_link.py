@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import select
 import socket
 import struct
 import sys
@@ -68,9 +69,11 @@ class JsonLink:
         with contextlib.suppress(OSError):
             self._socket.send(frame)
 
-    def receive(self) -> bytes | None:
-        """A datagram; None when none came for a while."""
+    def receive(self, wait_s: float = WAIT_S) -> bytes | None:
+        """A datagram; None when none came for so long, which is ``WAIT_S`` at most."""
         try:
+            if wait_s != WAIT_S and not select.select([self._socket], [], [], wait_s)[0]:
+                return None
             return self._socket.recv(_MOST)
         except OSError:  # nothing came, or the last one that we sent met a closed port
             return None

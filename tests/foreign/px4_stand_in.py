@@ -3,8 +3,9 @@
 on the truth inside.
 
 As the real one: connects to the simulator and tries until it is there; says HEARTBEAT and asks for the truth, then
-nothing until it has booted; its clock is HIL_SENSOR's; zeros while disarmed; MAVLink by UDP to 14540 + N first;
-OFFBOARD only while set-points come; hears commands only while its time passes.
+nothing until it has booted; its clock is HIL_SENSOR's from the first one on; zeros while disarmed, else parts of each
+motor's range; MAVLink by UDP to 14540 + N first; OFFBOARD only while set-points come; hears commands only while its
+time passes.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from sitl.core.rotations import quat_to_euler
 BOOT_TICKS, POSITION_TICKS = 400, 4000
 OFFBOARD, FRESH_US = 6, 500_000
 MASS, GRAVITY, THRUST, TURN = 1.14, 9.80665, 8.54858e-6, (0.035, 0.046, 0.098)
+TOP_SPEED = 838.0
 METRES = 1e-7 * math.radians(1.0) * 6378100.0
 
 
@@ -58,6 +60,7 @@ class Px4:
         self.client = ("127.0.0.1", 14540 + instance)
         self.link = Wire(lambda frame: self.socket.sendto(frame, self.client), 1 + instance)
         self.now, self.ticks, self.armed, self.mode = 0, 0, False, 4
+        self.began = None
         self.truth, self.origin = None, None
         self.target, self.target_us = (0.0,) * 4, -FRESH_US
         self.place = None
@@ -80,8 +83,11 @@ class Px4:
                         self.answer()
 
     def sense(self, sensor) -> None:
-        assert sensor.time_usec > self.now, "time goes forward"
-        self.now, self.ticks, self.gyro = sensor.time_usec, self.ticks + 1, (sensor.xgyro, sensor.ygyro, sensor.zgyro)
+        if self.began is None:
+            self.began = sensor.time_usec
+        now = sensor.time_usec - self.began
+        assert now > self.now or self.ticks == 0, "time goes forward"
+        self.now, self.ticks, self.gyro = now, self.ticks + 1, (sensor.xgyro, sensor.ygyro, sensor.zgyro)
         if self.origin is None and self.ticks > POSITION_TICKS:
             self.origin = (self.truth.lat, self.truth.lon, self.truth.alt)
 
@@ -177,7 +183,7 @@ class Px4:
         for k, (x, y, km) in enumerate(self.rotors):
             lever = 4.0 * self.rotors[0][0] ** 2
             force = 0.25 * thrust - y / lever * mx + x / lever * my + mz / (4.0 * km)
-            controls[k] = math.sqrt(max(force, 0.1) / THRUST) * 1e-3
+            controls[k] = math.sqrt(max(force, 0.1) / THRUST) / TOP_SPEED
         return controls
 
 

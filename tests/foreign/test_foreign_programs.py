@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
+import subprocess
 import sys
 from pathlib import Path
 
@@ -40,7 +42,7 @@ def test_px4s_parameters_are_the_airframes():
     for k, (x, y, turn) in enumerate([(1, 1, 1), (-1, -1, 1), (1, -1, -1), (-1, 1, -1)]):
         assert values[f"CA_ROTOR{k}_PX"] == x * 0.141 and values[f"CA_ROTOR{k}_PY"] == y * 0.141
         assert values[f"CA_ROTOR{k}_KM"] == turn * 0.016
-        assert values[f"PWM_MAIN_MAX{k + 1}"] == 1838 and values[f"PWM_MAIN_FUNC{k + 1}"] == 101 + k
+        assert values[f"PWM_MAIN_FUNC{k + 1}"] == 101 + k
     assert values["MPC_THR_HOVER"] == 0.45 and values["THR_MDL_FAC"] == 0.7
     with pytest.raises(OptionError, match="rover"):
         px4.parameters(vehicles.load("erle_rover"))
@@ -107,6 +109,26 @@ def test_a_program_that_does_not_heed_and_its_children_are_ended(monkeypatch):
             if Path(f"/proc/{number}/stat").read_text().split(")")[1].split()[0] == "Z":
                 raise ProcessLookupError
     assert process._process.returncode == -signal.SIGKILL
+
+
+def test_a_program_does_not_outlive_who_started_it():
+    with socket.create_server((HOST, 0)) as server:
+        port = server.getsockname()[1]
+        program = python("import socket, time", f"s = socket.create_connection(('{HOST}', {port}))", "time.sleep(60)")
+        starter = python(
+            "import os, time",
+            "from sitl.foreign.process import AutopilotProcess",
+            f"process = AutopilotProcess({program!r}, {{}}, {{}})",
+            "time.sleep(60)",
+        )
+        running = subprocess.Popen(starter, env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])})
+        server.settimeout(30.0)
+        link, _ = server.accept()
+        running.kill()  # as kill -9 does
+        running.wait()
+        link.settimeout(30.0)
+        assert link.recv(1) == b""
+        link.close()
 
 
 def test_what_cannot_be_started_is_named():

@@ -100,6 +100,21 @@ def test_of_frames_that_waited_while_time_was_held_one_is_answered(copter_plant)
         assert not host.listen() and peer.lines() == []
 
 
+def test_junk_and_strangers_do_not_hide_the_autopilots_frame(copter_plant):
+    with served(copter_plant) as (host, peer):
+        peer.ask(0)
+        host.wall[0] += 0.1
+        other = json_peer.Peer(host)
+        other.send(7)
+        peer.send(1)
+        peer.socket.send(b"junk")
+        other.socket.send(b"junk")
+        assert host.listen()
+        host.step()
+        other.close()
+        assert len(peer.lines()) == 1 and host.time_us == 5000 and host.end.count == 1
+
+
 def test_an_autopilot_started_anew_begins_at_power_on(copter_plant):
     with served(copter_plant) as (host, peer):
         for number in range(300):

@@ -66,7 +66,7 @@ class Scripted:
         self.frames.append(decode(frame))
         self.waiting = next(self.answers)
 
-    def receive(self):
+    def receive(self, wait_s=0.2):
         answer, self.waiting = self.waiting, None
         return answer
 
@@ -140,11 +140,49 @@ def test_a_clock_that_jumps_takes_nothing_with_it():
     assert simulation.v.time_us == 12_500
 
 
-def test_an_answer_that_comes_twice_is_no_tick():
-    simulation = on_script(still(0.0025, 0.0025, 0.005, 0.005, 0.0075))
-    simulation.advance(0.0075)
-    assert [frame.number for frame in simulation.plant.link.frames] == [0, 1, 2, 3, 4]
-    assert simulation.v.time_us == 7500
+class Doubled(Scripted):
+    """Some answers come twice, the second time when the next frame is out already."""
+
+    def send(self, frame):
+        super().send(frame)
+        again = getattr(self, "last", None)
+        self.waiting = [self.waiting] if again is None else [again, self.waiting]
+        self.last = self.waiting[-1]
+
+    def receive(self, wait_s=0.2):
+        return self.waiting.pop(0) if self.waiting else None
+
+
+def test_an_answer_that_comes_twice_is_no_tick_and_not_taken_for_the_next():
+    simulation = on_script(still())
+    simulation.plant.link = Doubled(still(0.0025, 0.005, 0.0075, 0.01))
+    simulation.plant._wall = lambda: 0.0
+    simulation.advance(0.01)
+    assert [frame.number for frame in simulation.plant.link.frames] == [0, 1, 2, 3]  # not one ahead
+    assert simulation.v.time_us == 10_000 and simulation.plant.link.waiting == []
+
+
+def test_physics_whose_time_stands_is_asked_again_and_then_lost():
+    simulation = on_script(still(0.0025, *(0.0025,) * 100))
+    simulation.advance(0.0025)
+    with pytest.raises(PhysicsLostError, match="time stands"):
+        simulation.advance(1.0)
+    assert simulation.v.time_us == 2500
+    assert {frame.number for frame in simulation.plant.link.frames[1:]} == {1}
+    simulation.plant.link = Scripted(still(0.005))
+    simulation.advance(0.0025)
+    assert simulation.v.time_us == 5000
+
+
+def test_what_was_felt_in_half_a_tick_is_not_lost_with_the_physics():
+    part = motion.encode((0.0035, 1.0, *REST[1:]))
+    simulation = on_script(iter([*still(0.0025), part, *(None,) * 100]))
+    with pytest.raises(PhysicsLostError):
+        simulation.advance(0.005)
+    assert simulation.v.time_us == 2500 and simulation.plant._sums[0][0] == pytest.approx(0.001)
+    simulation.plant.link = Scripted(still(0.005))
+    simulation.advance(0.0025)
+    assert simulation.v.time_us == 5000 and float(simulation.v.physics.body.rates[0]) == pytest.approx(0.4)
 
 
 def test_a_frame_is_sent_again_and_then_the_physics_is_lost_with_no_time_passed():

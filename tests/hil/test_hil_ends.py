@@ -13,6 +13,7 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor, truth
 from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
+from sitl.bridge.hil.foreign_clock import LATE
 from sitl.bridge.hil.sender import Sender
 from sitl.core.records import first_difference
 
@@ -183,8 +184,35 @@ def test_px4_time_goes_by_itself_until_it_drives() -> None:
     assert names(answer)[-1] == "HIL_SENSOR" and not bench.there.freewheels
     assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=9000, controls=[0.5], flags=1) == b""
     assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=11000, controls=[0.6], flags=1)
-    assert bench.physics.log[5:] == [0.4, 0.6]
+    assert bench.physics.log[5:] == [round(0.838 * part, 6) for part in (0.4, 0.6)]  # of the rotors' range
     assert command.id == 76
+
+
+def test_px4_that_answers_late_is_waited_for_by_going_on() -> None:
+    """Its clock counts from the first tick that it got: at 12.5 ms here it is 10 ms there."""
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    for _ in range(5):
+        bench.there.go_on()
+    for late in (5000, 7500):  # two ticks are still under way to it
+        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=late, controls=[0.4], flags=1) == b""
+        assert bench.there.freewheels
+    assert names(bench.say("HIL_ACTUATOR_CONTROLS", time_usec=10_000, controls=[0.4], flags=1))[-1] == "HIL_SENSOR"
+    assert not bench.there.freewheels and bench.there.time_us == 15_000
+
+
+def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    bench.there.go_on()
+    answers = 0
+    while bench.there.freewheels:
+        bench.there.go_on()
+        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=2500 * answers, controls=[0.4], flags=1)
+        answers += 1
+    assert answers == LATE + 1
 
 
 def test_an_autopilot_without_lockstep_never_stops_time() -> None:
@@ -193,7 +221,7 @@ def test_an_autopilot_without_lockstep_never_stops_time() -> None:
     assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5, controls=[0.4], flags=0) == b""
     assert bench.there.freewheels
     bench.there.go_on()
-    assert bench.physics.log == [0.4]
+    assert bench.physics.log == [round(0.838 * 0.4, 6)]
 
 
 def test_sticks_of_the_physics_side(bench: Bench) -> None:

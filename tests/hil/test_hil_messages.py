@@ -17,8 +17,11 @@ from sitl.bridge.hil.inbox import Inbox
 from sitl.bridge.hil.measurements import Measurements
 from sitl.bridge.hil.numbers import RefusedError
 from sitl.bridge.record_reader import RecordReader
+from sitl.core import records
 from sitl.core.records import first_difference
+from sitl.kinds import KINDS
 from sitl.physics.carried import Carried
+from sitl.vehicles import apply, load
 
 single = st.floats(-90.0, 90.0, width=32)
 
@@ -176,6 +179,21 @@ def test_controls(outputs: list[float], armed: bool) -> None:
     assert given_.time_us == 7500 and given_.is_lockstep and given_.is_armed == armed
     assert other.v.actuators.controls.tobytes() == source.v.actuators.controls.tobytes()
     assert other.v.actuators.armed == armed
+
+
+@pytest.mark.parametrize(
+    ("frame", "lowest", "highest"),
+    [("ardupilot_quad", 0.15, 0.95), ("erle_copter", 0.0, 0.838), ("erle_rover", 0.0, 1.0)],
+)
+def test_parts_of_the_rotors_range(frame: str, lowest: float, highest: float) -> None:
+    airframe = load(frame)
+    fleet = np.zeros(1, KINDS[airframe.kind].dtype)
+    v = records.view(fleet, 0)
+    apply(airframe, v)
+    span = controls.rotor_range(v.physics.airframe)
+    assert span == pytest.approx((lowest, highest))
+    given = controls.Controls(1, 1, (0.0, 0.5, 1.0), 129)
+    assert controls.stretch(given, *span).outputs == pytest.approx((lowest, 0.5 * (lowest + highest), highest))
 
 
 def test_truth() -> None:

@@ -17,18 +17,21 @@ from hil_cuts import CutWire
 from hil_peers import ROOT, PhysicsProcess, WatchedPilot
 
 from missions.pilot import TAKEOFF, Pilot
+from sitl.bridge.client import Client
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
 from sitl.bridge.hil.autopilot_end import TAKEN, AutopilotEnd
 from sitl.bridge.hil.numbers import PX4
 from sitl.bridge.hil.physics_end import HEARTBEAT
 from sitl.bridge.hil.sender import Sender
+from sitl.cli import main
 from sitl.core.records import first_difference
 from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
 from sitl.simulation import Simulation
+from sitl.standstill import Patience
 
 
 def go_on(simulation: Simulation, time_us: int, tries: int = 1000) -> int:
@@ -359,3 +362,42 @@ def test_px4_on_a_real_socket(beside) -> None:
                 while ticks(1)[-1] <= last:
                     pass
     assert any("every tick waits" in text for text in server.said)
+
+
+class Absent:
+    """Physics that answers or not, as it is told, in the place of a plant."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._run, self.is_gone = simulation.plant.run, False
+        simulation.plant.run = self.run  # type: ignore[method-assign]
+
+    def run(self, ticks: int) -> None:
+        if self.is_gone:
+            raise PhysicsLostError("gone")
+        self._run(ticks)
+
+
+def test_it_is_said_once_that_the_physics_has_gone_and_once_that_it_is_back(core) -> None:
+    simulation = Simulation(core=core)
+    client = Client()
+    simulation.bridge.add_link(client.link)
+    physics, patience = Absent(simulation), Patience(simulation)
+    patience._standstill.wait = lambda: None  # type: ignore[method-assign]
+    physics.is_gone = True
+    for _ in range(3):  # as a run in lockstep does
+        assert patience.advance_to(simulation.time_us)
+        assert not patience.advance_to(10_000)
+    physics.is_gone = False
+    patience.advance_to(10_000)
+    patience.advance_to(20_000)
+    said = [m.fields.text.decode() for m in client.receive() if m.name == "STATUSTEXT"]
+    assert said.count("gone") == said.count("Physics is back") == 1
+
+
+def test_a_runs_duration_begins_where_it_joins_the_physics(beside, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(signal, "signal", lambda number, act: None)  # the tests keep their own
+    server = beside()
+    for n in (1, 2):
+        options = ["--out", "none", "--tcp", "0", "--log-dir", str(tmp_path), "--speedup", "max", "--duration", "0.5"]
+        assert main(["run", "copter", "--physics", f"hil:tcp:127.0.0.1:{server.address[1]}", *options]) == 0
+        assert server.end.time_us == n * 500_000

@@ -38,8 +38,8 @@ class AutopilotEnd:
         """The motion in the last line of a datagram and how long a step it ends [s]; None when there is none.
 
         The step of the first line is the one asked for: wherever the clock of the physics stands, the autopilot's
-        begins. It is 0 for a line without new time (an answer that came twice), and negative when the physics has
-        begun anew.
+        begins. It is negative when the physics has begun anew, and 0 for a line without new time: an answer that came
+        twice, which answers nothing and is not counted, or the same one would from then on be taken for the next.
         """
         lines = [line for line in datagram.split(b"\n") if line.strip()]
         if not lines:
@@ -51,6 +51,8 @@ class AutopilotEnd:
             self._refuse(str(error))
             return None
         before, self.time = self.time, told.time
+        if before == told.time:
+            return told, 0.0
         self.count = (self.count + 1) & servos.COUNT_MASK
         return told, 1.0 / self.rate if before is None else told.time - before
 

@@ -61,6 +61,11 @@ def ticks(rate: int) -> int:
     return min(max(TICK_HZ // rate, 1), MOST_TICKS) if rate > 0 else 1
 
 
+def named(peer: Hashable) -> str:
+    """An address for people."""
+    return ":".join(map(str, peer)) if isinstance(peer, tuple) else str(peer)
+
+
 class PhysicsEnd:
     """Which frames came, and from whom."""
 
@@ -82,12 +87,14 @@ class PhysicsEnd:
         try:
             servos = decode(datagram)
         except ServoError as error:
-            return self._refuse(f"a datagram from {peer} is no frame of servos: {error}", "datagram")
+            return self._refuse(f"a datagram from {named(peer)} is no frame of servos: {error}", "datagram")
         note = ""
         if peer != self.peer:
             if self.peer is not None and now - self._heard_at < ALIVE_S:
-                return self._refuse(f"a second autopilot, at {peer}, is not served: there is one at {self.peer}", peer)
-            note = f"autopilot at {peer}" if self.peer is None else f"autopilot at {peer}, before at {self.peer}"
+                return self._refuse(
+                    f"a second autopilot, at {named(peer)}, is not served: there is one at {named(self.peer)}", peer
+                )
+            note = f"autopilot at {named(peer)}" + (f", before at {named(self.peer)}" if self.peer is not None else "")
         moved, self.peer, self._heard_at = peer != self.peer, peer, now
         before, self.count = self.count, servos.number
         if before is None:

@@ -56,6 +56,12 @@ def decode(datagram: bytes) -> Servos:
     return Servos(numbers[1], numbers[2], numbers[3:])
 
 
+def is_frame(datagram: bytes) -> bool:
+    """Whether a datagram is a frame of servos."""
+    known = _BY_SIZE.get(len(datagram))
+    return known is not None and int.from_bytes(datagram[:2], "little") == known[0]
+
+
 def control(pulse: int, is_copter: bool) -> float:
     """The actuator control that a pulse [us] stands for: 0 .. 1 of a rotor, -1 .. 1 of a servo or a wheel's motor."""
     if pulse == 0:

@@ -68,6 +68,19 @@ def read_controls(payload: bytes) -> Controls:
     return Controls(t, flags, tuple(outputs), mode)
 
 
+def rotor_range(airframe: Any) -> tuple[float, float]:
+    """Actuator controls at which the rotors of this airframe stand and turn fastest; what is said, without rotors."""
+    if not hasattr(airframe, "control_max"):
+        return 0.0, 1.0
+    return float(airframe.control_min), float(airframe.control_max)
+
+
+def stretch(given: Controls, lowest: float, highest: float) -> Controls:
+    """Parts of the rotors' range as actuator controls."""
+    span = highest - lowest
+    return given._replace(outputs=tuple([lowest + span * output for output in given.outputs]))
+
+
 def actuators_writer(fleet: np.ndarray[Any, Any], index: int) -> Callable[[Controls], None]:
     """A function that puts an answer into a record's actuators."""
     start = index * fleet.dtype.itemsize

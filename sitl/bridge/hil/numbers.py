@@ -17,7 +17,7 @@ PHYSICS = (1, 158)
 MAV_TYPES = {"copter": 2, "rover": 10}
 """By kind of vehicle: what the autopilot's HEARTBEAT says it is."""
 ARDUPILOTMEGA, PX4 = 3, 12
-"""MAV_AUTOPILOT in a HEARTBEAT: ours, and one whose clock is its own."""
+"""MAV_AUTOPILOT in a HEARTBEAT: ours, and one that counts time from the first tick that it got."""
 ARMED, CUSTOM_MODE = 128, 1
 """Bits of ``HIL_ACTUATOR_CONTROLS.mode`` (MAV_MODE_FLAG)."""
 LOCKSTEP = 1

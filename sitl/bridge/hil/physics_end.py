@@ -2,9 +2,9 @@
 """The physics' end of the link: bytes of an autopilot in, bytes of ticks out. No sockets, no clock.
 
 Two kinds of autopilots are served. Ours answers with the time of the tick that it answers, so an answer that comes
-twice is known as such. PX4 has a clock of its own, says so in its HEARTBEAT, and sends nothing but that until it has
-booted: until its first answer, physics has to go on by itself (``freewheels``), and so it has for any autopilot
-without lockstep.
+twice is known as such. PX4, known by its HEARTBEAT, sends nothing but that until it has booted: until it answers,
+physics has to go on by itself (``freewheels``), and so it has for any autopilot without lockstep. Its rotor controls
+are parts of each motor's range, which the airframe's actuators have between ``control_min`` and ``control_max``.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from ..dialect import message
 from ..frame import Frame, Splitter
 from ..services.results import ACCEPTED, DENIED, UNSUPPORTED
 from . import controls, sticks, truth
+from .foreign_clock import ForeignClock
 from .measurements import Measurements
 from .numbers import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
 from .sensor import KIND as SENSOR
@@ -72,6 +73,7 @@ class PhysicsEnd:
         self._simulated, self._type = simulated, vehicle_type
         self._v = simulated.v
         self._actuate = controls.actuators_writer(simulated.fleet, simulated.index)
+        self._range = controls.rotor_range(simulated.v.physics.airframe)
         self.measurements = Measurements(simulated.fleet, simulated.index, simulated.v)
         self._frame = self.measurements.sender.frame
         self._tick = self.measurements.everything()
@@ -90,9 +92,8 @@ class PhysicsEnd:
     def greet(self) -> None:
         """Another autopilot, or the same one again, is connected: nothing is known of it."""
         self._splitter = Splitter()
-        self._is_foreign = self._is_driven = self._is_stranger = self._complained = False
-        self._is_lockstep = True
-        self._answered_us = -1
+        self._is_foreign = self._is_stranger = self._complained = False
+        self._clock = ForeignClock()
         self._truth_every_us, self._truth_due_us = 0, 0
 
     @property
@@ -103,7 +104,7 @@ class PhysicsEnd:
     @property
     def freewheels(self) -> bool:
         """Whether physics has to go on by itself at the pace of the wall clock."""
-        return self._is_foreign and not (self._is_driven and self._is_lockstep)
+        return self._is_foreign and not self._clock.holds
 
     def move_sticks(self, pulses: Sequence[int]) -> None:
         """A frame of a receiver on this side, up to twelve channels [us], for the next tick."""
@@ -155,10 +156,8 @@ class PhysicsEnd:
         """Controls: one tick further if they answer the present one."""
         self._complained = False
         if self._is_foreign:
-            self._is_driven, self._is_lockstep = True, given.is_lockstep
-            is_new, self._answered_us = given.time_us > self._answered_us, max(given.time_us, self._answered_us)
-            self._actuate(given)
-            return self._step() if is_new and given.is_lockstep else b""
+            self._actuate(controls.stretch(given, *self._range))
+            return self._step() if self._clock.asks_for_step(given, self._now) else b""
         if given.time_us == self._now:
             self._actuate(given)
             return self._step()
@@ -171,6 +170,7 @@ class PhysicsEnd:
         self._simulated.tick()
         self._now += TICK_US
         self.ticks += 1
+        self._clock.sent(self._now)
         self._tick = self.measurements.tick()
         if self._sticks:
             kind, payload = sticks.frame_for(self._is_foreign, self._now, self._sticks)

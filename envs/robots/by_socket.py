@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A vehicle that is reached by a socket, as it is: it reboots for every episode."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..mavlink.connection import Lockstep, connect
+from ..mavlink.preparation import reboot
+from ..options import EnvOptionError
+from .robot import Pose
+from .vehicles import Ready, Seat, Vehicles
+
+
+class SocketVehicles(Vehicles):
+    """See ``Vehicles``; there is one."""
+
+    simulates: ClassVar[bool] = False
+
+    def __init__(self, seat: Seat) -> None:
+        options = seat.options
+        self._connection = options["connection"]
+        if options["count"] > 1 or options["gcs"] is not None or options["params"]:
+            raise EnvOptionError(
+                f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
+            )
+        super().__init__(seat)
+        self._pose: Pose | None = None
+
+    @property
+    def where(self) -> str:
+        return f"connection {self._connection!r}"
+
+    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
+        if self._pose not in (None, pose):
+            raise EnvOptionError(f"{self.where}: the vehicle starts where it was started")
+        self._pose = pose
+        link = self.links[0]
+        if link is None:
+            link = connect(self._connection, len(self.seat.angles), self.options["patience"])
+            link.heard.angles = self.seat.angles
+            self.links[0] = link
+        reboot(link)
+        origin = self.prepare(link, pose)
+        if isinstance(link, Lockstep):
+            link.reseed(seed)
+        return self.begun(0, origin)
+
+    def time_us(self, index: int) -> int:
+        link = self.links[index]
+        assert link is not None
+        return 1000 * (link.time_ms if isinstance(link, Lockstep) else int(link.heard.position[0]))

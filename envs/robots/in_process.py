@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Vehicles with our autopilot in this process. The state in which an episode begins is reached once for each start pose
+and then restored, with a new seed for the noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from sitl.autopilot.params.files import ParameterError
+from sitl.bridge.links.address import LinkAddressError, open_link
+from sitl.physics.engine import EngineError
+from sitl.physics.engines import NATIVE
+from sitl.plants.local import LocalPlant
+from sitl.simulation import Core, OptionError, Simulation
+from sitl.vehicles import AirframeError
+
+from ..mavlink.connection import InProcess
+from ..mavlink.preparation import INTERVAL_US
+from ..options import EnvOptionError, unknown
+from .robot import Pose
+from .vehicles import Ready, Seat, Vehicles
+
+_MOST_READY = 64
+"""Start poses of which the state after take-off is kept."""
+
+
+class InProcessVehicles(Vehicles):
+    """See ``Vehicles``. The first one is made at once: options that cannot be taken are refused here."""
+
+    has_snapshots: ClassVar[bool] = True
+    shortest_step: ClassVar[float] = 0.0
+
+    def __init__(self, seat: Seat) -> None:
+        super().__init__(seat)
+        self._ready: dict[Any, Ready] = {}
+        self._core: Core | None = None
+        gcs = self.options["gcs"]
+        try:
+            self._gcs = None if gcs is None else open_link(gcs)
+        except LinkAddressError as error:
+            raise EnvOptionError(f"gcs: {error}") from None
+        self._link(0)
+
+    @property
+    def where(self) -> str:
+        return f"connection {self.options['connection']!r}"
+
+    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
+        ready = self._restored(pose, tuple(sorted(self.changed[index].items())))
+        self.restore(index, ready)
+        self.simulation(index).reseed(seed)
+        return ready
+
+    def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...]) -> Ready:
+        """The state after take-off at a pose; found once."""
+        key = (pose, figures)
+        ready = self._ready.get(key)
+        if ready is None:
+            simulation = self._simulation(pose, figures)
+            link = InProcess(simulation, len(self.seat.angles))
+            link.heard.angles = self.seat.angles
+            origin = self.prepare(link, pose)
+            ready = Ready(simulation.snapshot(), link.heard.memory(), origin, simulation.time_us, "", INTERVAL_US)
+            link.close()
+            if len(self._ready) >= _MOST_READY:
+                del self._ready[next(iter(self._ready))]
+            self._ready[key] = ready
+        return ready
+
+    def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
+        options, airframe = self.options, self.seat.airframe
+        start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
+        try:
+            simulation = Simulation(
+                airframe.changed(**dict(figures)) if figures else airframe, world=self.seat.world, start=start,
+                home=options["home"], params=options["params"], core=self._core, physics=options["physics"],
+            )  # fmt: skip
+        except (OptionError, AirframeError, EngineError, ParameterError) as error:
+            raise EnvOptionError(str(error)) from None
+        if simulation.unknown_parameters:
+            raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
+        if options["physics"] == NATIVE:
+            self._core = simulation.core
+        return simulation
+
+    def _link(self, index: int) -> InProcess:
+        link = self.links[index]
+        if link is None:
+            simulation = self._simulation()
+            link = self.links[index] = InProcess(simulation, len(self.seat.angles))
+            link.heard.angles = self.seat.angles
+            if index == 0 and self._gcs is not None:
+                simulation.bridge.add_link(self._gcs)
+        assert isinstance(link, InProcess)
+        return link
+
+    def time_us(self, index: int) -> int:
+        return self.simulation(index).time_us
+
+    def simulation(self, index: int) -> Simulation:
+        return self._link(index).simulation
+
+    def photograph(self, index: int, width: int, height: int) -> Any:
+        plant = self.simulation(index).plant
+        return plant.engine.render(width, height) if isinstance(plant, LocalPlant) and plant.engine else None
+
+    def snapshot(self, index: int, now: Ready) -> Ready:
+        link = self.links[index]
+        if not isinstance(link, InProcess):
+            raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
+        return Ready(
+            link.simulation.snapshot(), link.heard.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
+        )
+
+    def restore(self, index: int, ready: Ready) -> None:
+        link = self._link(index)
+        try:
+            link.simulation.restore(ready.simulation)
+        except (OptionError, EngineError) as error:
+            raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
+        link.client.link.receive()
+        link.heard.recall(ready.heard)
