@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from .autopilot.copter import firmware as copter
 from .autopilot.events import HIT_GROUND, HIT_OBSTACLE, emit
+from .autopilot.inertial_ring import remember
 from .autopilot.rover import firmware as rover
 from .core.kernels import law, unit
 from .physics.native.copter.step import step as step_copter
@@ -63,6 +64,7 @@ def react_copter(fleet, index):
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     copter.update(fleet, index)
+    remember(vehicle)
 
 
 @law
@@ -73,6 +75,7 @@ def react_rover(fleet, index):
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     rover.update(fleet, index)
+    remember(vehicle)
 
 
 @law

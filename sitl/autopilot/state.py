@@ -15,6 +15,7 @@ from ..core.records import record
 from .arming_state import ARMING_DTYPE
 from .estimation.state import EKF_DTYPE
 from .events import EVENT_RING
+from .inertial_ring import INERTIAL_RING_DTYPE
 
 LIDAR_SAMPLES = 360
 """Readings of a scan that there is room for."""
@@ -144,4 +145,5 @@ def autopilot_dtype(params: np.dtype[Any], modes: np.dtype[Any], control: np.dty
         ("modes", modes),
         ("control", control),
         ("events", EVENTS_DTYPE),
+        ("inertial", INERTIAL_RING_DTYPE),
     )

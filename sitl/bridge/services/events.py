@@ -104,6 +104,8 @@ class EventService(Service):
                 self.bridge.get(StatusTextService).say(note.severity, note.text)
             elif isinstance(note, ItemReached):
                 self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
+                for listener in self.bridge.listeners:
+                    listener.reached(note.seq)
             elif isinstance(note, CurrentChanged):
                 for channel in self.bridge.channels:
                     self.bridge.send_now(channel, MISSION_CURRENT)

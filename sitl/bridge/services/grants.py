@@ -51,6 +51,9 @@ class Grants:
     def answer(self, bridge: Bridge) -> None:
         """Answer all grants whose time has been reached."""
         now = bridge.elapsed_us
+        journal = bridge.board.journal
+        if journal is not None and any(wanted <= now for _, _, wanted in self._asked):
+            journal.answered()
         for peer, sender, wanted in self._asked:
             if wanted <= now:
                 for channel in bridge.channels:  # a reboot in between has made new ones

@@ -1,28 +1,149 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Log download (LOG_*): this firmware keeps no logs on board, and says so, so that clients need not wait in vain.
+"""Log download (LOG_*): lists the on-board logs and sends their bytes, also of the one that is being written.
 
-Source: https://mavlink.io/en/messages/common.html#LOG_REQUEST_LIST (a list without logs is one entry with num_logs 0).
+Source: https://mavlink.io/en/messages/common.html#LOG_REQUEST_LIST and what ArduPilot does: without logs the list is
+one entry with num_logs 0, a piece shorter than 90 bytes ends a transfer, a new request for the same channel replaces
+the one under way. Unlike ArduPilot's, logs can be had while armed.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
 
 from ..channel import Channel
 from ..dialect import message
+from ..stream_table import NEVER
 from .service import Handler, Sender, Service
 
 ENTRY, DATA = message("LOG_ENTRY"), message("LOG_DATA")
+PIECE = 90
+"""Bytes of one LOG_DATA."""
+EVERY_US = 2_500
+PIECES = 20
+"""So many pieces go out every 2.5 ms of simulated time: 720 kB/s (ArduPilot's SITL does about as much)."""
+
+
+class LogEntry(Protocol):
+    """A log that there is."""
+
+    @property
+    def number(self) -> int:
+        """From 1 on."""
+        ...
+
+    @property
+    def time_utc(self) -> int:
+        """When it began [s, Unix]."""
+        ...
+
+    @property
+    def size(self) -> int:
+        """[bytes]"""
+        ...
+
+
+class LogStore(Protocol):
+    """Where the logs are."""
+
+    def entries(self) -> Sequence[LogEntry]:
+        """All logs, with everything up to now in them."""
+        ...
+
+    def read(self, number: int, offset: int, count: int) -> bytes:
+        """Bytes of a log; fewer at its end."""
+        ...
+
+    def erase(self) -> None:
+        """Forget all logs."""
+        ...
+
+    def close(self) -> None:
+        """Write everything; no more is logged."""
+        ...
+
+
+class _Transfer(NamedTuple):
+    number: int
+    offset: int
+    left: int
 
 
 class LogDownloadService(Service):
-    """Answers lists with "no logs" and requests for data with an empty piece, which is the end of a log."""
+    """Lists the on-board logs of this run, sends their bytes, forgets them; without a logger there are none."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._transfers: dict[Channel, _Transfer] = {}
+        self._sizes: dict[Channel, dict[int, int]] = {}
+        """Sizes as they were told: a log that grows is sent up to there."""
 
     def handlers(self) -> dict[str, Handler]:
-        return {"LOG_REQUEST_LIST": self._list, "LOG_REQUEST_DATA": self._data}
+        return {
+            "LOG_REQUEST_LIST": self._list,
+            "LOG_REQUEST_DATA": self._data,
+            "LOG_REQUEST_END": self._end,
+            "LOG_ERASE": self._erase,
+        }
+
+    def channel_removed(self, channel: Channel) -> None:
+        self._transfers.pop(channel, None)
+        self._sizes.pop(channel, None)
+
+    def snapshot(self) -> Any:
+        transfers = tuple((channel.number, transfer) for channel, transfer in self._transfers.items())
+        sizes = tuple((channel.number, tuple(sizes.items())) for channel, sizes in self._sizes.items())
+        return (transfers, sizes, self.due_us)
+
+    def restore(self, state: Any) -> None:
+        transfers, sizes, self.due_us = state
+        channels = {channel.number: channel for channel in self.bridge.channels}
+        self._transfers = {channels[n]: transfer for n, transfer in transfers if n in channels}
+        self._sizes = {channels[n]: dict(told) for n, told in sizes if n in channels}
 
     def _list(self, channel: Channel, m: Any, sender: Sender) -> None:
-        channel.send(ENTRY, ENTRY.payload())
+        entries = self.bridge.logs.entries() if self.bridge.logs is not None else ()
+        self._sizes[channel] = {entry.number: entry.size for entry in entries}
+        last = min(m.end, len(entries))
+        chosen = [entry for entry in entries if max(m.start, 1) <= entry.number <= last]
+        for entry in chosen:
+            told = {"id": entry.number, "num_logs": len(entries), "last_log_num": last}
+            channel.send(ENTRY, ENTRY.payload(**told, time_utc=entry.time_utc, size=entry.size))
+        if not chosen:
+            channel.send(ENTRY, ENTRY.payload(num_logs=len(entries)))
 
     def _data(self, channel: Channel, m: Any, sender: Sender) -> None:
-        channel.send(DATA, DATA.payload(id=m.id, ofs=m.ofs, count=0))
+        told = self._sizes.setdefault(channel, {})
+        if m.id not in told and self.bridge.logs is not None:
+            told.update({entry.number: entry.size for entry in self.bridge.logs.entries()})
+        left = min(max(told.get(m.id, 0) - m.ofs, 0), m.count)
+        if not left:
+            self._transfers.pop(channel, None)
+            channel.send(DATA, DATA.payload(id=m.id, ofs=m.ofs, count=0))
+            return
+        self._transfers[channel] = _Transfer(m.id, m.ofs, left)
+        self.due_us = min(self.due_us, self.bridge.now_us)
+
+    def _end(self, channel: Channel, m: Any, sender: Sender) -> None:
+        self.channel_removed(channel)
+
+    def _erase(self, channel: Channel, m: Any, sender: Sender) -> None:
+        self._transfers.clear()
+        self._sizes.clear()
+        if self.bridge.logs is not None:
+            self.bridge.logs.erase()
+
+    def service(self, now_us: int) -> None:
+        for channel, (number, offset, left) in list(self._transfers.items()):
+            if channel.peer.congested:
+                continue
+            logs = self.bridge.logs
+            data = logs.read(number, offset, min(left, PIECES * PIECE)) if logs is not None else b""
+            for at in range(0, max(len(data), 1), PIECE):
+                piece = data[at : at + PIECE]
+                channel.send(DATA, DATA.payload(id=number, ofs=offset + at, count=len(piece), data=piece))
+            if len(data) == left or len(data) % PIECE or not data:
+                del self._transfers[channel]
+            else:
+                self._transfers[channel] = _Transfer(number, offset + len(data), left - len(data))
+        self.due_us = now_us + EVERY_US if self._transfers else NEVER

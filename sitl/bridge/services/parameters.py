@@ -111,6 +111,8 @@ class ParameterService(Service):
             return refusal
         self.bridge.vehicle.v.autopilot.params[name] = stored(parameter, value)
         self.bridge.broadcast(VALUE, self._payload(name, NO_INDEX))
+        for listener in self.bridge.listeners:
+            listener.parameter_set(name)
         self.bridge.autopilot.parameter_changed(name)
         self.bridge.get(StreamService).parameter_changed(name)
         if name == "MAV_SYSID":

@@ -30,6 +30,8 @@ class StatusTextService(Service):
     def say(self, severity: int, text: str) -> None:
         """Send ``text`` with a MAV_SEVERITY to every channel."""
         data = text.encode("ascii", "replace")
+        for listener in self.bridge.listeners:
+            listener.said(severity, text)
         pieces = self._pieces(severity, data)
         for channel in self.bridge.channels:
             self._send(channel, pieces)

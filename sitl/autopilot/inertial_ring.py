@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The last few inertial samples at 25 Hz, for on-board logs.
+
+A log wants them more often than anything else. The core keeps them, so that the shell need not stop it for each.
+"""
+
+from __future__ import annotations
+
+from ..core.kernels import law
+from ..core.records import record
+
+INERTIAL_RING = 4
+PERIOD_US = 40_000
+
+INERTIAL_RING_DTYPE = record(
+    ("count", "i8"),  # samples since boot; the last is at (count - 1) % INERTIAL_RING
+    ("due_us", "i8"),  # when the next is taken
+    ("time_us", "i8", INERTIAL_RING),
+    ("acc", "f8", (INERTIAL_RING, 3)),  # as measured [m/s^2]
+    ("gyro", "f8", (INERTIAL_RING, 3)),  # as measured [rad/s]
+    ("euler", "f8", (INERTIAL_RING, 3)),  # as estimated [rad]
+)
+
+
+@law
+def remember(v):
+    """Last thing of a tick: keep a sample when it is time."""
+    ring = v.autopilot.inertial
+    if v.time_us < ring.due_us:
+        return
+    ring.due_us = (int(v.time_us) // PERIOD_US + 1) * PERIOD_US
+    k = int(ring.count) % INERTIAL_RING
+    ring.count += 1
+    ring.time_us[k] = v.time_us
+    for axis in range(3):
+        ring.acc[k, axis] = float(v.sensors.acc[axis])
+        ring.gyro[k, axis] = float(v.sensors.gyro[axis])
+        ring.euler[k, axis] = v.autopilot.estimate.euler[axis]

@@ -1,0 +1,338 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages that every firmware writes, with ArduPilot's names, types and units (4.7).
+
+https://ardupilot.org/copter/docs/logmessages.html
+"""
+
+from __future__ import annotations
+
+from . import bits, derived
+from .derived import DEG
+from .formats import Field, Message, Source
+
+E, S, A, K = "autopilot.estimate.", "sensors.", "autopilot.", "autopilot.ekf."
+_ATTITUDE = bits.ATTITUDE | bits.ATTITUDE_FAST
+PARAMETERS = A + "params."
+
+
+def _pulses(path: str) -> tuple[Field, ...]:
+    return tuple(Field(f"C{k + 1}", "H", "Y", "-", f"{path}[{k}]") for k in range(14))
+
+
+def pulses_in(bit: int) -> Message:
+    """RCIN: pulses of the receiver or of overrides [us]."""
+    return Message("RCIN", _pulses(A + "rc.channels"), bits.MEDIUM, bit)
+
+
+def pulses_out(bit: int) -> Message:
+    """RCOU: pulses to motors and servos [us]."""
+    return Message("RCOU", _pulses("actuators.pwm"), bits.MEDIUM, bit)
+
+
+def magnetometer(bit: int) -> Message:
+    """MAG: field in the body's frame [mgauss]."""
+    offsets = tuple(Field(label, "h", "G", "C") for label in ("OfsX", "OfsY", "OfsZ", "MOX", "MOY", "MOZ"))
+    return Message(
+        "MAG",
+        (
+            Field("I", "B", "#"),
+            *(Field(f"Mag{axis}", "h", "G", "C", f"{S}mag[{k}]", 1000.0) for k, axis in enumerate("XYZ")),
+            *offsets,
+            Field("Health", "B", source=derived.is_seen(S + "mag_count")),
+            Field("S", "I", "s", "F", S + "time_us"),
+        ),
+        bits.MEDIUM,
+        bit,
+        when=S + "mag_count",
+    )
+
+
+def pid(name: str, loop: str, gains: str, measured: str, bit: int, scale: float = 1.0) -> Message:
+    """A PID's inner life: target, measurement, error, parts of its output."""
+    parts = (
+        Field("Tar", "f", source=loop + ".target", scale=scale),
+        Field("Act", "f", source=measured, scale=scale),
+        Field("Err", "f", source=loop + ".error", scale=scale),
+        Field("P", "f", source=derived.proportional(loop, gains + "P")),
+        Field("I", "f", source=loop + ".integrator"),
+        Field("D", "f", source=derived.derivative(loop, gains + "D")),
+        Field("FF", "f", source=derived.ahead(loop, gains + "FF")),
+        Field("DFF", "f"),
+        Field("Dmod", "f", source=1.0),
+        Field("SRate", "f"),
+        Field("Flags", "B"),
+    )
+    return Message(name, parts, bits.MEDIUM, bit)
+
+
+COMMAND = (
+    *(Field(label, "H") for label in ("CTot", "CNum", "CId")),
+    *(Field(f"Prm{k}", "f") for k in range(1, 5)),
+    Field("Lat", "L", "D", "G"),
+    Field("Lng", "L", "U", "G"),
+    Field("Alt", "f", "m", "0"),
+    Field("Frame", "B"),
+)
+
+HAPPENINGS = (
+    Message("PARM", (Field("Name", "N"), Field("Value", "f"), Field("Default", "f"))),
+    Message("MSG", (Field("Message", "Z"),)),
+    Message(
+        "VER",
+        (
+            Field("BT", "B"), Field("BST", "H"), Field("Maj", "B"), Field("Min", "B"), Field("Pat", "B"),
+            Field("FWT", "B"), Field("GH", "I"), Field("FWS", "Z"), Field("APJ", "H"), Field("BU", "B"),
+            Field("FV", "B"), Field("IMI", "I"), Field("ICI", "I"),
+        ),
+    ),
+    Message("MODE", (Field("Mode", "M"), Field("ModeNum", "B"), Field("Rsn", "B"))),
+    Message("ARM", tuple(Field(*x) for x in (("ArmState", "B"), ("ArmChecks", "I"), ("Forced", "B"), ("Method", "B")))),
+    Message("EV", (Field("Id", "B"),)),
+    Message("ERR", (Field("Subsys", "B"), Field("ECode", "B"))),
+    Message("CMD", COMMAND, bits=bits.COMMANDS),
+    Message("MISE", COMMAND, bits=bits.COMMANDS),
+    Message(
+        "ORGN",
+        (
+            Field("Type", "B", "#"), Field("Lat", "L", "D", "G"), Field("Lng", "L", "U", "G"),
+            Field("Alt", "e", "m", "B"),
+        ),
+    ),
+)  # fmt: skip
+"""Written when something happens, by ``happenings``."""
+
+POSITION = Message(
+    "POS",
+    (
+        Field("Lat", "L", "D", "G", derived.latitude(E + "origin_", E + "pos")),
+        Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
+        Field("Alt", "f", "m", "0", derived.difference(E + "origin_alt", E + "pos[2]")),
+        Field("RelHomeAlt", "f", "m", "0", derived.difference(A + "home.pos[2]", E + "pos[2]")),
+        Field("RelOriginAlt", "f", "m", "0", E + "pos[2]", -1.0),
+    ),
+    bits.MEDIUM,
+    _ATTITUDE,
+    when=E + "origin_set",
+)
+
+SENSORS = (
+    Message(
+        "IMU",
+        (
+            Field("I", "B", "#"),
+            *(Field(f"Gyr{axis}", "f", "E", "0", f"@gyro[{k}]") for k, axis in enumerate("XYZ")),
+            *(Field(f"Acc{axis}", "f", "o", "0", f"@acc[{k}]") for k, axis in enumerate("XYZ")),
+            Field("EG", "I"),
+            Field("EA", "I"),
+            Field("T", "f", "O", "0", S + "temperature"),
+            Field("GH", "B", source=1),
+            Field("AH", "B", source=1),
+            Field("GHz", "H", "z", "0", 400),
+            Field("AHz", "H", "z", "0", 400),
+        ),
+        bits.IMU_RATE,
+        bits.IMU,
+        ring=True,
+    ),
+    Message(
+        "BARO",
+        (
+            Field("I", "B", "#"),
+            Field("Alt", "f", "m", "0", derived.baro_altitude),
+            Field("AltAMSL", "f", "m", "0", derived.pressure_altitude),
+            Field("Press", "f", "P", "0", S + "abs_pressure", 100.0),
+            Field("Temp", "c", "O", "B", S + "temperature"),
+            Field("CRt", "f", "n", "0", E + "vel[2]", -1.0),
+            Field("SMS", "I", "s", "C", S + "time_us", 1e-3),
+            Field("Offset", "f", "m", "-"),
+            Field("GndTemp", "f", "O", "0", S + "temperature"),
+            Field("H", "B", source=derived.is_seen(S + "baro_count")),
+            Field("CPress", "f", "P", "0", S + "abs_pressure", 100.0),
+        ),
+        bits.MEDIUM,
+        bits.IMU,
+        when=S + "baro_count",
+    ),
+)
+
+
+def battery(resting: Source, resistance: Source = 0.0) -> Message:
+    """BAT: as measured; ``resting`` [V] and ``resistance`` [ohm] as far as the firmware knows them."""
+    return Message(
+        "BAT",
+        (
+            Field("Inst", "B", "#"),
+            Field("Volt", "f", "v", "0", A + "battery.voltage"),
+            Field("VoltR", "f", "v", "0", resting),
+            Field("Curr", "f", "A", "0", A + "battery.current"),
+            Field("CurrTot", "f", "a", "C", A + "battery.consumed_mah"),
+            Field("EnrgTot", "f", "X", "0", A + "battery.consumed_wh"),
+            Field("Temp", "c", "O", "?"),
+            Field("Res", "f", "w", "0", resistance),
+            Field("RemPct", "B", "%", "0", A + "battery.remaining_pct"),
+            Field("H", "B", source=1),
+            Field("SH", "B", "%", "0"),
+        ),
+        bits.MEDIUM,
+        bits.BATTERY,
+    )
+
+
+GPS_ACCURACY = Message(
+    "GPA",
+    (
+        Field("I", "B", "#"),
+        Field("VDop", "C", "-", "B", S + "gps_epv", 0.01),
+        Field("HAcc", "C", "m", "B", S + "gps_eph", 0.003),
+        Field("VAcc", "C", "m", "B", S + "gps_epv", 0.005),
+        Field("SAcc", "C", "n", "B"),
+        Field("YAcc", "f", "d", "0", float("nan")),
+        Field("VV", "B", source=1),
+        Field("SMS", "I", "s", "C", S + "gps_time_us", 1e-3),
+        Field("Delta", "H", "s", "C", 200),
+        Field("AEl", "e", "m", "B", S + "gps_alt", 1e-3),
+        Field("RTCMFU", "H"),
+        Field("RTCMFD", "H"),
+    ),
+    bits.MEDIUM,
+    bits.GPS,
+    change=S + "gps_count",
+    time=S + "gps_time_us",
+)
+
+_EULER = tuple(A + f"estimate.euler[{k}]" for k in range(3))
+FILTER = (
+    Message(
+        "XKF1",
+        (
+            Field("C", "B", "#"),
+            Field("Roll", "c", "d", "B", _EULER[0], DEG),
+            Field("Pitch", "c", "d", "B", _EULER[1], DEG),
+            Field("Yaw", "C", "h", "B", derived.wrapped(_EULER[2])),
+            *(Field(f"V{axis}", "f", "n", "0", f"{E}vel[{k}]") for k, axis in enumerate("NED")),
+            Field("dPD", "f", "n", "0", E + "vel[2]"),
+            *(Field(f"P{axis}", "f", "m", "0", f"{E}pos[{k}]") for k, axis in enumerate("NED")),
+            *(Field(f"G{axis}", "c", "k", "B", f"{K}gyro_bias[{k}]", DEG) for k, axis in enumerate("XYZ")),
+            Field("OH", "e", "m", "B", E + "origin_alt"),
+        ),
+        bits.MEDIUM,
+        _ATTITUDE,
+        when=derived.estimates,
+    ),
+    Message(
+        "XKF2",
+        (
+            Field("C", "B", "#"),
+            *(Field(f"A{axis}", "c", source=f"{K}acc_bias[{k}]") for k, axis in enumerate("XYZ")),
+            Field("VWN", "c", "n", "B"),
+            Field("VWE", "c", "n", "B"),
+            *(Field(f"M{axis}", "h", "G", "C", f"{K}earth_field[{k}]", 1000.0) for k, axis in enumerate("NED")),
+            *(Field(f"M{axis}", "h", "G", "C", f"{K}mag_bias[{k}]", 1000.0) for k, axis in enumerate("XYZ")),
+            Field("IDX", "f", "o", "0"),
+            Field("IDY", "f", "o", "0"),
+            Field("IS", "f", "r", "0"),
+        ),
+        bits.MEDIUM,
+        _ATTITUDE,
+        when=derived.estimates,
+    ),
+    Message(
+        "XKF4",
+        (
+            Field("C", "B", "#"),
+            *(Field(f"S{x}", "H", "-", "B", f"{E}variance_{y}", 100.0)
+              for x, y in (("V", "vel"), ("P", "pos"), ("H", "hgt"), ("M", "mag"))),
+            Field("SVT", "H", "-", "B"),
+            Field("errRP", "f", "-", "-", derived.angle_error(K + "P"), 1.0 / DEG),
+            Field("OFN", "f", "m", "?", E + "reset_pos[0]"),
+            Field("OFE", "f", "m", "?", E + "reset_pos[1]"),
+            Field("FS", "H"),
+            Field("TS", "B"),
+            Field("SS", "I", source=E + "status_flags"),
+            Field("GPS", "H"),
+            Field("PI", "b"),
+        ),
+        bits.MEDIUM,
+        _ATTITUDE,
+        when=derived.estimates,
+    ),
+    Message(
+        "XKF5",
+        (
+            Field("C", "B", "#"),
+            Field("NI", "B"),
+            *(Field(label, "h") for label in ("FIX", "FIY", "AFI")),
+            Field("HAGL", "c", "m", "B", derived.difference(K + "ground_d", E + "pos[2]")),
+            Field("offset", "c", "?", "B", K + "ground_d"),
+            Field("RI", "c", "?", "B"),
+            Field("rng", "C", "?", "B"),
+            Field("Herr", "C", "m", "B"),
+            Field("eAng", "f", "r", "0", derived.angle_error(K + "P"), 1.0 / DEG),
+            Field("eVel", "f", "n", "0", derived.length(*(f"{K}lag_vel[{k}]" for k in range(3)))),
+            Field("ePos", "f", "m", "0", derived.length(*(f"{K}lag_pos[{k}]" for k in range(3)))),
+        ),
+        bits.MEDIUM,
+        _ATTITUDE,
+        when=derived.estimates,
+    ),
+    Message(
+        "XKQ",
+        (Field("C", "B", "#"), *(Field(f"Q{k + 1}", "f", "?", "?", f"{E}q[{k}]") for k in range(4))),
+        bits.MEDIUM,
+        _ATTITUDE,
+        when=derived.estimates,
+    ),
+)  # fmt: skip
+"""XKF3, the innovations, is missing: the filter keeps none."""
+
+_BODY, _PLACE = "physics.body.", "physics.place."
+
+
+def gps(boot_unix_us: int) -> tuple[Message, ...]:
+    """GPS: its fixes, with the time of the week; ``boot_unix_us``: Unix time of boot.
+
+    GPS time began in 1980 and has been 18 s ahead of UTC since 2017.
+    """
+    boot = (boot_unix_us - 315_964_800_000_000) * 1e-6 + 18.0
+    week = 7 * 86400.0
+    fix = Message(
+        "GPS",
+        (
+            Field("I", "B", "#"),
+            Field("Status", "B", source=S + "gps_fix"),
+            Field("GMS", "I", "s", "C", lambda s: (boot + derived.gps_seconds(s)) % week, 1000.0),
+            Field("GWk", "H", source=lambda s: (boot + derived.gps_seconds(s)) // week),
+            Field("NSats", "B", "S", "0", S + "gps_satellites"),
+            Field("HDop", "c", "-", "B", S + "gps_eph", 0.01),
+            Field("Lat", "L", "D", "G", S + "gps_lat"),
+            Field("Lng", "L", "U", "G", S + "gps_lon"),
+            Field("Alt", "e", "m", "B", S + "gps_alt", 1e-3),
+            Field("Spd", "f", "n", "0", derived.length(S + "gps_vel[0]", S + "gps_vel[1]"), 0.01),
+            Field("GCrs", "f", "h", "0", derived.course),
+            Field("VZ", "f", "n", "0", S + "gps_vel[2]", 0.01),
+            Field("Yaw", "f", "h", "0"),
+            Field("U", "B", source=1),
+        ),
+        bits.MEDIUM,
+        bits.GPS,
+        change=S + "gps_count",
+        time=S + "gps_time_us",
+    )
+    return (fix, GPS_ACCURACY)
+
+
+TRUTH = Message(
+    "SIM",
+    (
+        Field("Roll", "c", "d", "B", derived.roll(_BODY + "q")),
+        Field("Pitch", "c", "d", "B", derived.pitch(_BODY + "q")),
+        Field("Yaw", "C", "h", "B", derived.yaw(_BODY + "q")),
+        Field("Alt", "f", "m", "0", derived.difference(_PLACE + "alt", _BODY + "pos[2]")),
+        Field("Lat", "L", "D", "G", derived.latitude(_PLACE, _BODY + "pos")),
+        Field("Lng", "L", "U", "G", derived.longitude(_PLACE, _BODY + "pos")),
+        *(Field(f"Q{k + 1}", "f", "?", "?", f"{_BODY}q[{k}]") for k in range(4)),
+    ),
+    bits.MEDIUM,
+    _ATTITUDE,
+)
+"""SIM: where the simulated vehicle really is."""

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages of the copter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import bits, common, derived
+from .derived import DEG
+from .formats import Field, Message
+from .samples import Array
+
+A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
+C = "autopilot.control."
+_MOTORS, _ATTITUDE, _NE, _D = C + "motors.", C + "attitude.", C + "pos_ne.", C + "pos_d."
+_SHAPED_TICKS = 8
+"""A position controller that last ran longer ago is not at work."""
+
+
+def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
+    return (
+        Message(
+            "ATT",
+            (
+                Field("DesRoll", "f", "d", "0", _ATTITUDE + "target_euler[0]", DEG),
+                Field("Roll", "f", "d", "0", E + "euler[0]", DEG),
+                Field("DesPitch", "f", "d", "0", _ATTITUDE + "target_euler[1]", DEG),
+                Field("Pitch", "f", "d", "0", E + "euler[1]", DEG),
+                Field("DesYaw", "f", "h", "0", derived.wrapped(_ATTITUDE + "target_euler[2]")),
+                Field("Yaw", "f", "h", "0", derived.wrapped(E + "euler[2]")),
+                Field("AEKF", "B", source=3),
+            ),
+            rate,
+            bit,
+        ),
+        Message(
+            "RATE",
+            (
+                *(
+                    field
+                    for k, (letter, axis) in enumerate((("R", "roll"), ("P", "pitch"), ("Y", "yaw")))
+                    for field in (
+                        Field(letter + "Des", "f", "k", "?", f"{_ATTITUDE}rate_target[{k}]", DEG),
+                        Field(letter, "f", "k", "?", f"{E}rates[{k}]", DEG),
+                        Field(letter + "Out", "f", "-", "?", _MOTORS + axis),
+                    )
+                ),
+                Field("ADes", "f", "o", "B", _D + "accel_target", -100.0),
+                Field("A", "f", "o", "B", E + "acc_ned[2]", -100.0),
+                Field("AOut", "f", source=_MOTORS + "throttle"),
+                Field("AOutSlew", "f"),
+            ),
+            rate,
+            bit,
+        ),
+    )
+
+
+def _boost(s: Any) -> Array:
+    """Throttle that the lean adds."""
+    return s(_MOTORS + "throttle_in") - s(_ATTITUDE + "throttle_in")
+
+
+CONTROL = Message(
+    "CTUN",
+    (
+        Field("ThI", "f", source=A + "modes.pilot.throttle"),
+        Field("ABst", "f", source=_boost),
+        Field("ThO", "f", source=_MOTORS + "throttle_out"),
+        Field("ThH", "f", source=A + "params.MOT_THST_HOVER"),
+        Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
+        Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
+        Field("BAlt", "e", "m", "B", derived.baro_altitude),
+        Field("DSAlt", "f", "m", "0"),
+        Field("SAlt", "f", "m", "0"),
+        Field("TAlt", "f", "m", "0"),
+        Field("DCRt", "h", "n", "B", _D + "vel_target", -100.0),
+        Field("CRt", "h", "n", "B", E + "vel[2]", -100.0),
+    ),
+    bits.MEDIUM,
+    bits.CONTROL,
+)
+
+
+def _at_work(path: str) -> Any:
+    return lambda s: s.raw(C + "tick") - s.raw(path + "last_tick") < _SHAPED_TICKS
+
+
+_NE_AT_WORK, _D_AT_WORK = _at_work(_NE), _at_work(_D)
+
+
+def _position(axis: str, k: int) -> Message:
+    ne = axis != "D"
+    base, end = (_NE, f"[{k}]") if ne else (_D, "")
+    sources = (
+        ("D", "P", "m", base + "pos_desired" + end), ("T", "P", "m", base + "pos_desired" + end),
+        ("", "P", "m", f"{E}pos[{k}]"),
+        ("D", "V", "n", base + "vel_desired" + end), ("T", "V", "n", base + "vel_target" + end),
+        ("", "V", "n", f"{E}vel[{k}]"),
+        ("D", "A", "o", base + "accel_desired" + end), ("T", "A", "o", base + "accel_target" + end),
+        ("", "A", "o", f"{E}acc_ned[{k}]"),
+    )  # fmt: skip
+    fields = tuple(Field(what + kind + axis, "f", unit, "0", source) for what, kind, unit, source in sources)
+    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=_NE_AT_WORK if ne else _D_AT_WORK)
+
+
+def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
+    """All that this LOG_BITMASK asks for; ``simulated``: the record holds the truth."""
+    fast = bool(bitmask & bits.ATTITUDE_FAST)
+    pids = tuple(
+        common.pid(name, f"{C}rate.{axis}", f"ATC_RAT_{short}_", f"{E}rates[{k}]", bits.COPTER_PID)
+        for k, (name, axis, short) in enumerate(
+            (("PIDR", "roll", "RLL"), ("PIDP", "pitch", "PIT"), ("PIDY", "yaw", "YAW"))
+        )
+    )
+    every = (
+        *_attitude(bits.FAST if fast else bits.MEDIUM, bits.ATTITUDE | bits.ATTITUDE_FAST),
+        *common.SENSORS,
+        common.battery(derived.resting_voltage, _MOTORS + "resistance"),
+        CONTROL,
+        *(_position(axis, k) for k, axis in enumerate("NED")),
+        common.POSITION,
+        *common.gps(boot_unix_us),
+        common.magnetometer(bits.COPTER_COMPASS),
+        common.pulses_in(bits.COPTER_RC_IN),
+        common.pulses_out(bits.COPTER_RC_OUT),
+        Message(
+            "MOTB",
+            (
+                Field("LiftMax", "f", source=_MOTORS + "lift_max"),
+                Field("BatVolt", "f", source=_MOTORS + "voltage_ratio"),
+                Field("ThLimit", "f", source=1.0),
+                Field("ThrAvMx", "f", source=_MOTORS + "throttle_avg_max"),
+                Field("FailFlags", "B", source=2),
+            ),
+            bits.MEDIUM,
+            bits.COPTER_MOTORS,
+        ),
+        *pids,
+        *common.FILTER,
+        *((common.TRUTH,) if simulated else ()),
+    )
+    return tuple(m for m in every if m.bits & bitmask)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers of a log that are not in the record as they are: functions of the samples, a column at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...core.geodesy import METRES_PER_DEGE7
+from .samples import Array
+
+DEG = 180.0 / math.pi
+G = 9.80665
+E, S, A = "autopilot.estimate.", "sensors.", "autopilot."
+Column = Callable[[Any], Array]
+
+
+def wrapped(path: str) -> Column:
+    """Angle [rad] of the record as degrees 0 .. 360."""
+    return lambda s: np.mod(s(path) * DEG, 360.0)
+
+
+def difference(a: str, b: str) -> Column:
+    """One number minus another."""
+    return lambda s: s(a) - s(b)
+
+
+def total(a: str, b: str) -> Column:
+    """One number plus another."""
+    return lambda s: s(a) + s(b)
+
+
+def length(*paths: str) -> Column:
+    """Length of a vector."""
+    return lambda s: np.sqrt(sum(s(path) ** 2 for path in paths))
+
+
+def _latitude(lat0: Array, north: Array) -> Array:
+    return lat0 + north / METRES_PER_DEGE7
+
+
+def _longitude(lat0: Array, lon0: Array, lat: Array, east: Array) -> Array:
+    scale = np.maximum(np.cos(np.radians(0.5e-7 * (lat0 + lat))), 0.01)
+    lon = lon0 + east / (METRES_PER_DEGE7 * scale)
+    return np.mod(lon + 1.8e9, 3.6e9) - 1.8e9
+
+
+def latitude(origin: str, position: str) -> Column:
+    """[degE7] of a position NED [m] from ``origin`` (paths that end in ``lat`` and ``lon``)."""
+    return lambda s: _latitude(s(origin + "lat"), s(position + "[0]"))
+
+
+def longitude(origin: str, position: str) -> Column:
+    """[degE7]"""
+
+    def column(s: Any) -> Array:
+        lat0, lon0 = s(origin + "lat"), s(origin + "lon")
+        return _longitude(lat0, lon0, _latitude(lat0, s(position + "[0]")), s(position + "[1]"))
+
+    return column
+
+
+def _quaternion(s: Any, path: str) -> tuple[Array, Array, Array, Array]:
+    return s(path + "[0]"), s(path + "[1]"), s(path + "[2]"), s(path + "[3]")
+
+
+def roll(path: str) -> Column:
+    """Of a quaternion, body to NED [deg]."""
+
+    def column(s: Any) -> Array:
+        w, x, y, z = _quaternion(s, path)
+        return np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)) * DEG
+
+    return column
+
+
+def pitch(path: str) -> Column:
+    """Of a quaternion, body to NED [deg]."""
+
+    def column(s: Any) -> Array:
+        w, x, y, z = _quaternion(s, path)
+        return np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)) * DEG
+
+    return column
+
+
+def yaw(path: str) -> Column:
+    """Of a quaternion, body to NED [deg], 0 .. 360."""
+
+    def column(s: Any) -> Array:
+        w, x, y, z = _quaternion(s, path)
+        return np.mod(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) * DEG, 360.0)
+
+    return column
+
+
+def gps_seconds(s: Any) -> Array:
+    """GPS time of the fix [s] less that of boot."""
+    return s(S + "gps_time_us") * 1e-6
+
+
+def course(s: Any) -> Array:
+    """Of the GPS receiver over ground [deg], 0 .. 360."""
+    return np.mod(np.arctan2(s(S + "gps_vel[1]"), s(S + "gps_vel[0]")) * DEG, 360.0)
+
+
+def pressure_altitude(s: Any) -> Array:
+    """In the standard atmosphere [m]."""
+    return 44330.77 * (1.0 - np.power(np.maximum(s(S + "abs_pressure"), 0.0) / 1013.25, 0.1902632))
+
+
+def baro_altitude(s: Any) -> Array:
+    """Above the ground where the barometer was calibrated [m]."""
+    return pressure_altitude(s) - s(A + "ekf.baro_ground")
+
+
+def resting_voltage(s: Any) -> Array:
+    """Voltage without the drop over the battery's resistance, as estimated [V]."""
+    return s(A + "battery.voltage") + s(A + "battery.current") * s(A + "control.motors.resistance")
+
+
+def is_seen(path: str) -> Column:
+    """1 while a count has begun."""
+    return lambda s: s.raw(path) > 0
+
+
+def estimates(s: Any) -> Array:
+    """Whether the filter runs, and knows its attitude."""
+    return (s.raw(A + "ekf.use_external") == 0) & (s.raw(A + "ekf.tilt_aligned") != 0)
+
+
+def angle_error(path: str) -> Column:
+    """Largest of three errors of the filter [deg], from its covariance."""
+    return lambda s: np.sqrt(np.maximum(s(f"{path}[0,0]"), np.maximum(s(f"{path}[1,1]"), 0.0))) * DEG
+
+
+def proportional(loop: str, gain: str) -> Column:
+    """P part of a PID."""
+    return lambda s: s(loop + ".error") * s(A + "params." + gain)
+
+
+def derivative(loop: str, gain: str) -> Column:
+    """D part of a PID."""
+    return lambda s: s(loop + ".derivative") * s(A + "params." + gain)
+
+
+def ahead(loop: str, gain: str) -> Column:
+    """Feed-forward part of a PID."""
+    return lambda s: s(loop + ".target") * s(A + "params." + gain)

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a DataFlash log is made of: messages, their fields, and the head of the file that describes them.
+
+Every message is two marks, its number and its fields, packed, little-endian. FMT messages come first and give each
+number its name, its fields' names and a letter for the type of each; UNIT, MULT and FMTU give the fields' units.
+Letters and tables: https://github.com/ArduPilot/ardupilot/blob/master/libraries/AP_Logger/README.md
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+HEAD = b"\xa3\x95"
+
+TYPES = {
+    "b": ("i1", "b", 1.0),
+    "B": ("u1", "B", 1.0),
+    "h": ("<i2", "h", 1.0),
+    "H": ("<u2", "H", 1.0),
+    "i": ("<i4", "i", 1.0),
+    "I": ("<u4", "I", 1.0),
+    "f": ("<f4", "f", 1.0),
+    "d": ("<f8", "d", 1.0),
+    "n": ("S4", "4s", 1.0),
+    "N": ("S16", "16s", 1.0),
+    "Z": ("S64", "64s", 1.0),
+    "c": ("<i2", "h", 100.0),
+    "C": ("<u2", "H", 100.0),
+    "e": ("<i4", "i", 100.0),
+    "E": ("<u4", "I", 100.0),
+    "L": ("<i4", "i", 1.0),  # readers take 1e-7 of it: degE7 as it is
+    "M": ("u1", "B", 1.0),
+    "q": ("<i8", "q", 1.0),
+    "Q": ("<u8", "Q", 1.0),
+}
+"""Letter -> (numpy's type, struct's code, stored number for one unit of the value)."""
+
+UNITS = {
+    "-": "", "?": "UNKNOWN", "A": "A", "a": "Ah", "d": "deg", "b": "B", "k": "deg/s", "D": "deglatitude",
+    "e": "deg/s/s", "E": "rad/s", "G": "Gauss", "h": "degheading", "i": "A.s", "J": "W.s", "l": "l", "L": "rad/s/s",
+    "m": "m", "n": "m/s", "o": "m/s/s", "O": "degC", "%": "%", "S": "satellites", "s": "s", "q": "rpm", "r": "rad",
+    "U": "deglongitude", "u": "ppm", "v": "V", "P": "Pa", "w": "Ohm", "W": "Watt", "X": "W.h", "y": "l/s", "Y": "us",
+    "z": "Hz", "#": "instance",
+}  # fmt: skip
+"""Letters of FMTU's UnitIds."""
+MULTIPLIERS = {
+    "-": 0.0, "?": 1.0, "2": 1e2, "1": 1e1, "0": 1e0, "A": 1e-1, "B": 1e-2, "C": 1e-3, "D": 1e-4, "E": 1e-5,
+    "F": 1e-6, "G": 1e-7, "I": 1e-9, "!": 3.6, "/": 3600.0,
+}  # fmt: skip
+"""Letters of FMTU's MultIds: stored number times this is in the unit."""
+
+NAME_BYTES, FORMAT_BYTES, LABEL_BYTES = 4, 16, 64
+
+Source = str | float | Callable[[Any], Any]
+"""Where a field comes from: the path of a number in the vehicle's record ("autopilot.estimate.euler[0]"), a constant,
+or a function of the samples (``s(path)`` gives a column)."""
+RING = "@"
+"""What the path of a number in the ring of inertial samples begins with."""
+
+
+class Field(NamedTuple):
+    """One field of a message."""
+
+    label: str
+    kind: str
+    """Letter of its type."""
+    unit: str = "-"
+    multiplier: str = "-"
+    source: Source = 0.0
+    scale: float = 1.0
+    """Value in the log's unit = source times this."""
+
+
+class Message(NamedTuple):
+    """One kind of message."""
+
+    name: str
+    fields: tuple[Field, ...]
+    """Without TimeUS, which every message but FMT has first."""
+    rate: float = 0.0
+    """How often [Hz]; 0: when something happens."""
+    bits: int = 0
+    """It is written when LOG_BITMASK has one of these; 0: always."""
+    change: str = ""
+    """Path: write it when this number has changed; it is looked at ``rate`` times a second, or more often."""
+    time: str = "time_us"
+    """Path of its TimeUS: when a number that has changed did so."""
+    when: Source = 1.0
+    """Write it only while this is not zero."""
+    ring: bool = False
+    """It is of the samples that the core keeps (``autopilot.inertial_ring``), at their rate; ``@acc[0]`` is a path
+    there."""
+
+    @property
+    def all_fields(self) -> tuple[Field, ...]:
+        """With TimeUS."""
+        return (Field("TimeUS", "Q", "s", "F", self.time), *self.fields)
+
+    @property
+    def format(self) -> str:
+        """The letters of its fields."""
+        return "".join(f.kind for f in self.all_fields)
+
+    @property
+    def labels(self) -> str:
+        """The names of its fields."""
+        return ",".join(f.label for f in self.all_fields)
+
+    @property
+    def units(self) -> str:
+        """UnitIds"""
+        return "".join(f.unit for f in self.all_fields)
+
+    @property
+    def multipliers(self) -> str:
+        """MultIds"""
+        return "".join(f.multiplier for f in self.all_fields)
+
+    @property
+    def packer(self) -> struct.Struct:
+        """Packs head, number and fields."""
+        return struct.Struct("<3B" + "".join(TYPES[f.kind][1] for f in self.all_fields))
+
+    def columns(self) -> list[tuple[str, str]]:
+        """numpy's types of head, number and fields."""
+        return [("head", "<u2"), ("number", "u1"), *((f.label, TYPES[f.kind][0]) for f in self.all_fields)]
+
+
+def check(message: Message) -> None:
+    """ValueError when a message does not fit what FMT and FMTU can say of it."""
+    if not (0 < len(message.name) <= NAME_BYTES and len(message.format) <= FORMAT_BYTES):
+        raise ValueError(f"{message.name}: the name has up to 4 letters, a message up to 16 fields")
+    if len(message.labels) > LABEL_BYTES:
+        raise ValueError(f"{message.name}: its labels have {len(message.labels)} letters, 64 is most")
+    for f in message.all_fields:
+        if f.kind not in TYPES or f.unit not in UNITS or f.multiplier not in MULTIPLIERS:
+            raise ValueError(f"{message.name}.{f.label}: no such type, unit or multiplier")
+
+
+# ---------------------------------------------------------------------- the head of the file
+
+FMT_NUMBER, UNIT_NUMBER, MULT_NUMBER, FMTU_NUMBER = 128, 129, 130, 131
+FIRST_NUMBER = 32
+"""Of the other messages; 128 is FMT's in every log, so readers can begin."""
+_FMT = struct.Struct("<2sBBB4s16s64s")
+_UNIT = struct.Struct("<2sBQb64s")
+_MULT = struct.Struct("<2sBQbd")
+_FMTU = struct.Struct("<2sBQB16s16s")
+_DESCRIBED = (
+    (FMT_NUMBER, _FMT, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns", "-b---", "-----"),
+    (UNIT_NUMBER, _UNIT, "UNIT", "QbZ", "TimeUS,Id,Label", "s--", "F--"),
+    (MULT_NUMBER, _MULT, "MULT", "Qbd", "TimeUS,Id,Mult", "s--", "F--"),
+    (FMTU_NUMBER, _FMTU, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds", "s---", "F---"),
+)
+
+
+def number_all(messages: Iterable[Message]) -> dict[str, int]:
+    """A number for each message, by its name."""
+    free = (n for n in range(FIRST_NUMBER, 255) if not FMT_NUMBER <= n <= FMTU_NUMBER)
+    return {message.name: number for message, number in zip(messages, free, strict=False)}
+
+
+def _fmt(number: int, length: int, name: str, letters: str, labels: str) -> bytes:
+    return _FMT.pack(HEAD, FMT_NUMBER, number, length, name.encode(), letters.encode(), labels.encode())
+
+
+def head(messages: Iterable[Message], numbers: dict[str, int], time_us: int) -> bytes:
+    """All FMT, UNIT, MULT and FMTU messages."""
+    messages = tuple(messages)
+    parts = [_fmt(n, layout.size, name, letters, labels) for n, layout, name, letters, labels, _, _ in _DESCRIBED]
+    parts += [_fmt(numbers[m.name], m.packer.size, m.name, m.format, m.labels) for m in messages]
+    parts += [_UNIT.pack(HEAD, UNIT_NUMBER, time_us, ord(key), text.encode()) for key, text in UNITS.items()]
+    parts += [_MULT.pack(HEAD, MULT_NUMBER, time_us, ord(key), factor) for key, factor in MULTIPLIERS.items()]
+    for number, _, _, _, _, units, multipliers in _DESCRIBED:
+        parts.append(_FMTU.pack(HEAD, FMTU_NUMBER, time_us, number, units.encode(), multipliers.encode()))
+    for m in messages:
+        ids = (m.units.encode(), m.multipliers.encode())
+        parts.append(_FMTU.pack(HEAD, FMTU_NUMBER, time_us, numbers[m.name], *ids))
+    return b"".join(parts)

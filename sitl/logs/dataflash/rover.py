@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages of the rover."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...autopilot.rover.modes import auto_state, guided_state, numbers
+from . import bits, common, derived
+from .derived import DEG
+from .formats import Field, Message
+from .samples import Array
+
+A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
+C, M = "autopilot.control.", "autopilot.modes."
+_STEERING, _SPEED, _POSITION, _MOTORS = C + "steering.", C + "speed.", C + "position.", C + "motors."
+_PATHS = (numbers.RTL, numbers.SMART_RTL)
+"""Modes that follow paths all the time."""
+_RECENT = 25
+"""A position controller that last ran longer ago (periods) is not at work."""
+
+
+def _attitude(fast: bool) -> Message:
+    euler = "@euler" if fast else E + "euler"
+    return Message(
+        "ATT",
+        (
+            Field("DesRoll", "f", "d", "0"),
+            Field("Roll", "f", "d", "0", euler + "[0]", DEG),
+            Field("DesPitch", "f", "d", "0"),
+            Field("Pitch", "f", "d", "0", euler + "[1]", DEG),
+            Field("DesYaw", "f", "h", "0"),
+            Field("Yaw", "f", "h", "0", derived.wrapped(euler + "[2]")),
+            Field("AEKF", "B", source=3),
+        ),
+        bits.IMU_RATE if fast else bits.MEDIUM,
+        bits.ATTITUDE | bits.ATTITUDE_FAST,
+        ring=fast,
+    )
+
+
+def _any_of(s: Any, in_mode: tuple[int, ...], in_auto: tuple[int, ...], in_guided: tuple[int, ...] = ()) -> Array:
+    """Whether the vehicle is in one of these modes, or does one of these things in AUTO or in GUIDED."""
+    mode, auto, guided = (s.raw(M + name) for name in ("number", "auto.submode", "guided.submode"))
+    guiding = (mode == numbers.GUIDED) | ((mode == numbers.AUTO) & (auto == auto_state.GUIDED))
+    found = np.isin(mode, in_mode) | ((mode == numbers.AUTO) & np.isin(auto, in_auto))
+    return found | (guiding & np.isin(guided, in_guided))
+
+
+def _drives_itself(s: Any) -> Array:
+    return _any_of(s, (*_PATHS, numbers.LOITER, numbers.CIRCLE, numbers.AUTO, numbers.GUIDED), ())
+
+
+def _on_path(s: Any) -> Array:
+    """It follows a line to a place."""
+    return _any_of(s, _PATHS, (auto_state.WAYPOINT, auto_state.RTL), (guided_state.POSITION,))
+
+
+def _at_place(s: Any) -> Array:
+    return _any_of(s, (numbers.LOITER,), (auto_state.LOITER,))
+
+
+def _on_circle(s: Any) -> Array:
+    return _any_of(s, (numbers.CIRCLE,), (auto_state.CIRCLE,))
+
+
+def _to_target(s: Any) -> tuple[Array, Array]:
+    """Where the vehicle is going, from where it is: north, east [m]; 0 when it goes to no place."""
+    places = ((_on_path(s), "nav.target"), (_at_place(s), "loiter.place"), (_on_circle(s), "circle.target"))
+
+    def way(k: int) -> Array:
+        here = s(f"{E}pos[{k}]")
+        return np.select([where for where, _ in places], [s(f"{M}{name}[{k}]") for _, name in places], here) - here
+
+    return way(0), way(1)
+
+
+def _distance(s: Any) -> Array:
+    return np.hypot(*_to_target(s))
+
+
+def _bearing(s: Any) -> Array:
+    north, east = _to_target(s)
+    return np.mod(np.arctan2(east, north) * DEG, 360.0)
+
+
+def _heading(s: Any) -> Array:
+    """As it was asked for, else towards the target."""
+    asked = _any_of(s, (), (), (guided_state.HEADING_AND_SPEED,))
+    turning = _any_of(s, (), (auto_state.HEADING_AND_SPEED,))
+    headings = [derived.wrapped(f"{M}{name}.heading")(s) for name in ("guided", "auto")]
+    return np.select([asked, turning], headings, _bearing(s))
+
+
+def _beside(s: Any) -> Array:
+    return np.where(_on_path(s), s(M + "nav.drive.crosstrack"), 0.0)
+
+
+def _lateral(s: Any) -> Array:
+    """Speed times turn rate [m/s^2]."""
+    return s(_SPEED + "forward") * s(E + "rates[2]")
+
+
+THROTTLE = Message(
+    "THR",
+    (
+        Field("ThrIn", "h", source=M + "pilot.throttle", scale=100.0),
+        Field("ThrOut", "f", source=_MOTORS + "throttle", scale=100.0),
+        Field("DesSpeed", "f", "n", "0", _SPEED + "desired"),
+        Field("Speed", "f", "n", "0", _SPEED + "forward"),
+        Field("AccX", "f", "o", "0", S + "acc[0]"),
+    ),
+    bits.MEDIUM,
+    bits.CONTROL,
+)
+STEERING = Message(
+    "STER",
+    (
+        Field("SteerIn", "h", source=M + "pilot.steering", scale=4500.0),
+        Field("SteerOut", "f", source=_MOTORS + "steering", scale=4500.0),
+        Field("DesLatAcc", "f", "o", "0", _STEERING + "lat_accel"),
+        Field("LatAcc", "f", "o", "0", _lateral),
+        Field("DesTurnRate", "f", "k", "0", _STEERING + "turn_rate", DEG),
+        Field("TurnRate", "f", "k", "0", E + "rates[2]", DEG),
+    ),
+    bits.MEDIUM,
+    bits.ROVER_STEERING,
+)
+NAVIGATION = Message(
+    "NTUN",
+    (
+        Field("WpDist", "f", "m", "0", _distance),
+        Field("WpBrg", "f", "h", "0", _bearing),
+        Field("DesYaw", "f", "h", "0", _heading),
+        Field("Yaw", "H", "d", "B", lambda s: np.mod(s(E + "euler[2]") * DEG * 100.0, 36000.0)),
+        Field("XTrack", "f", "m", "0", _beside),
+    ),
+    bits.MEDIUM,
+    bits.NAVIGATION,
+    when=_drives_itself,
+)
+"""NTUN: where it goes by itself; not in the pilot's modes."""
+
+
+def _at_work(s: Any) -> Array:
+    """The position controller runs."""
+    return (s.raw(_POSITION + "last_tick") > 0) & (s.raw(C + "tick") - s.raw(_POSITION + "last_tick") < _RECENT)
+
+
+def _position(axis: str, k: int) -> Message:
+    names = (("D", "P", "m", "pos_target"), ("T", "P", "m", "pos_target"), ("", "P", "m", E + "pos"),
+             ("D", "V", "n", "vel_desired"), ("T", "V", "n", "vel_target"), ("", "V", "n", E + "vel"),
+             ("D", "A", "o", "accel_desired"), ("T", "A", "o", "accel_target"),
+             ("", "A", "o", E + "acc_ned"))  # fmt: skip
+    fields = tuple(
+        Field(what + kind + axis, "f", unit, "0", f"{source if '.' in source else _POSITION + source}[{k}]")
+        for what, kind, unit, source in names
+    )
+    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=_at_work)
+
+
+def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
+    """All that this LOG_BITMASK asks for; ``simulated``: the record holds the truth."""
+    every = (
+        _attitude(bool(bitmask & bits.ATTITUDE_FAST)),
+        *common.SENSORS,
+        common.battery(A + "battery.voltage"),
+        THROTTLE,
+        STEERING,
+        NAVIGATION,
+        *(_position(axis, k) for k, axis in enumerate("NE")),
+        common.POSITION,
+        *common.gps(boot_unix_us),
+        common.magnetometer(bits.ROVER_COMPASS),
+        common.pulses_in(bits.ROVER_RC),
+        common.pulses_out(bits.ROVER_RC),
+        Message(
+            "WENC",
+            (
+                Field("Dist0", "f", "m", "0", S + "wheel_distance[0]"),
+                Field("Qual0", "b", "-", "-", 100),
+                Field("Dist1", "f", "m", "0", S + "wheel_distance[1]"),
+                Field("Qual1", "b", "-", "-", 100),
+            ),
+            bits.MEDIUM,
+            bits.CONTROL,
+            when=S + "wheel_count",
+        ),
+        common.pid("PIDS", _STEERING + "rate", "ATC_STR_RAT_", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        common.pid("PIDA", _SPEED + "loop", "ATC_SPEED_", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        *common.FILTER,
+        *((common.TRUTH,) if simulated else ()),
+    )
+    return tuple(m for m in every if m.bits & bitmask)
