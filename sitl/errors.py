@@ -13,6 +13,7 @@ from .option_error import OptionError
 from .pacing import SpeedupError
 from .physics.engine import EngineError
 from .plants.plant import PhysicsLostError
+from .recording.error import RecordingError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
 from .worlds import WorldError
@@ -29,6 +30,7 @@ USER_ERRORS: tuple[type[Exception], ...] = (
     OptionError,
     ParameterError,
     PhysicsLostError,
+    RecordingError,
     SpeedupError,
     WorldError,
 )

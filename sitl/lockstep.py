@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .bridge.services.grants import Grants
 from .simulation import Simulation
 from .standstill import Patience, Standstill
 
@@ -24,7 +23,7 @@ def serve_lockstep(
 
     While time stands a HEARTBEAT goes out about once a wall second: a client that waits for one finds the vehicle.
     """
-    grants = simulation.bridge.grants = Grants()
+    grants = simulation.bridge.push_clock()
     standstill, patience = Standstill(simulation), Patience(simulation)
     while running() and (until_us is None or simulation.time_us < until_us):
         patience.advance_to(simulation.time_us)  # hears clients; a reboot that they ask for happens here, too

@@ -7,10 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
+from .bridge.channel import COMPONENT
 from .bridge.links import LogLink
 from .bridge.links.address import LinkAddressError
 from .bridge.links.tcp import TcpServerLink
 from .bridge.links.udp import UdpOutLink
+from .logs.dataflash.attach import attach
+from .logs.dataflash.log import DataFlash
 from .logs.tlog import LogError, TlogWriter
 from .simulation import Simulation
 from .standstill import Patience
@@ -65,8 +68,9 @@ class ClientFrames:
         self._writer, self._system = writer, system
 
     def frame(self, time_us: int, raw: bytes) -> None:
-        """Keep the frame unless the vehicle sent it."""
-        if raw[5 if raw[0] == 0xFD else 3] != self._system:
+        """Keep the frame unless the autopilot sent it; a companion may have the vehicle's system id."""
+        at = 5 if raw[0] == 0xFD else 3
+        if raw[at] != self._system or raw[at + 1] != COMPONENT:
             self._writer.frame(time_us, raw)
 
 
@@ -98,7 +102,13 @@ def open_log(simulation: Simulation, folder: Path, name: str) -> Path:
     bridge.add_link(link)
     bridge.stream_to(link, LOG_STREAMS)
     bridge.taps.append(ClientFrames(writer, bridge.system))
+    open_dataflash(simulation, path.with_suffix(".bin"))
     return path
+
+
+def open_dataflash(simulation: Simulation, path: Path) -> DataFlash:
+    """Keep on-board logs (.bin) at ``path``, as LOG_BACKEND_TYPE and LOG_DISARMED say; clients can download them."""
+    return attach(simulation, path)
 
 
 def serve(

@@ -115,6 +115,8 @@ class Simulation:
             raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         self.airframe = vehicles.load(frame)
         self.seed, self.estimator, self.physics = checked_seed(seed or 0), estimator, physics
+        self.given: dict[str, Any] = {"frame": frame, "world": world, "start": start, "params": dict(params or {})}
+        """What it was made of, as it was told."""
         self.kind = KINDS[self.airframe.kind]
         self.firmware = self.kind.firmware
         self.fleet: Array = np.zeros(1, self.kind.dtype)
@@ -195,6 +197,8 @@ class Simulation:
         """
         bridge, plant = self.bridge, self.plant
         bridge.receive()
+        if bridge.board.journal is not None:
+            bridge.board.journal.attended()
         while True:
             if self._event_count() != self._events_seen:
                 self._follow_events()
@@ -206,7 +210,8 @@ class Simulation:
             if now >= stop:
                 return
             plant.prepare()
-            until = min(stop, bridge.next_due_us(), plant.due_us)
+            due = bridge.next_due_us()
+            until = min(stop, due, plant.due_us)
             for observer in self.observers:
                 until = min(until, observer.due_us - self.before_boot_us)
             ticks = (until - now + TICK_US - 1) // TICK_US
@@ -217,9 +222,11 @@ class Simulation:
                 lost = error
             if plant.due_us <= self._clock():
                 plant.measure()
-            if self._event_count() != self._events_seen:
+            told = self._event_count() != self._events_seen
+            if told:
                 self._follow_events()
-            bridge.service()
+            if told or due <= self._clock():  # not when only an observer wants to look
+                bridge.service()
             for observer in self.observers:
                 if observer.due_us <= self.time_us:
                     observer.observe()
@@ -255,6 +262,8 @@ class Simulation:
         if snapshot.physics != self.physics:
             raise OptionError(f"the snapshot is of physics {snapshot.physics}, this is {self.physics}")
         kept = self._record.tobytes()
+        if self.bridge.board.journal is not None:
+            self.bridge.board.journal.restored()
         self._record[:] = snapshot.record
         try:
             self.plant.restore(snapshot.plant)

@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from .bridge.dialect import message
 from .bridge.services.statustext import StatusTextService
 from .plants.plant import PhysicsLostError
 from .simulation import Simulation
 
 _WAIT_S = 0.2
 _WAITS_A_HEARTBEAT = 5
-_HEARTBEAT = message("HEARTBEAT").id
 _CRITICAL, _INFO = 2, 6
 """MAV_SEVERITY"""
 
@@ -26,9 +24,7 @@ class Standstill:
         """Wait a moment, or until a client says something."""
         bridge = self._simulation.bridge
         if self._waits % _WAITS_A_HEARTBEAT == 0:
-            for channel in bridge.channels:
-                bridge.send_now(channel, _HEARTBEAT)
-            bridge.flush()
+            bridge.beat()
         self._waits = 1 if bridge.wait(_WAIT_S) else self._waits + 1
 
 

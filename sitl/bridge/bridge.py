@@ -21,6 +21,8 @@ from .record_reader import RecordReader
 from .services import ALL_SERVICES
 from .services.events import EventService
 from .services.grants import Grants
+from .services.listener import Listener
+from .services.log_download import LogStore
 from .services.service import Handler, Service
 from .services.setpoints import SetpointService
 from .services.streams import StreamService
@@ -29,6 +31,7 @@ from .switchboard import Switchboard
 from .telemetry import Build, Context, build_all
 from .vehicle import Vehicle
 
+_HEARTBEAT = message("HEARTBEAT").id
 EPOCH_US = 1_767_225_600_000_000
 """Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
 
@@ -67,6 +70,10 @@ class Bridge:
         self._system = self.reader.field("autopilot.params.MAV_SYSID")
         self._time_us: Callable[[], int] = self.reader.field("time_us")
         self._parameters: dict[str, Callable[[], float]] = {}
+        self.listeners: list[Listener] = []
+        """Are told of texts and parameters: ``listeners.append(logger)``."""
+        self.logs: LogStore | None = None
+        """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
         """Set by who lets clients push the clock (``sitl.lockstep``)."""
         self.places = Places(self.reader)
@@ -158,6 +165,8 @@ class Bridge:
         Raises:
             KeyError: there is no such group.
         """
+        if self.board.journal is not None:
+            self.board.journal.streams(link, rates_hz)
         groups = {ending: number for number, (ending, _) in self.profile.groups.items()}
         for channel in self.channels:
             if channel.peer in link.peers:
@@ -167,6 +176,8 @@ class Bridge:
     def close(self) -> None:
         """Flush and close everything."""
         self.board.close()
+        if self.logs is not None:
+            self.logs.close()
 
     # ------------------------------------------------------------------ in
 
@@ -251,6 +262,27 @@ class Bridge:
         """Hand everything queued to the links."""
         self.board.flush()
 
+    def beat(self) -> None:
+        """While time stands: a HEARTBEAT to every channel."""
+        for channel in self.channels:
+            self.send_now(channel, _HEARTBEAT)
+        if self.board.journal is not None:
+            self.board.journal.beat()
+        self.flush()
+
+    def push_clock(self) -> Grants:
+        """Let clients push the clock from now on."""
+        self.grants = Grants()
+        if self.board.journal is not None:
+            self.board.journal.lockstep(True)
+        return self.grants
+
+    def free_clock(self) -> None:
+        """Clients push the clock no more."""
+        if self.grants is not None and self.board.journal is not None:
+            self.board.journal.lockstep(False)
+        self.grants = None
+
     # ------------------------------------------------------------------ what the autopilot says
 
     def get(self, kind: type[Any]) -> Any:
@@ -305,5 +337,6 @@ class Bridge:
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
         new.board.take_over(self.board)
         new.taps = new.board.taps
+        new.listeners, new.logs = self.listeners, self.logs
         new.grants = self.grants
         return new

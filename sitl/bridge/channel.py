@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -81,11 +81,13 @@ class Channel:
             self.statistics.sent += 1
             self.peer.outbox.append(frame)
 
-    def receive(self) -> list[Frame]:
-        """Frames that came in since the last call."""
+    def receive(self, heard: Callable[[Channel, bytes], None] | None = None) -> list[Frame]:
+        """Frames that came in since the last call; ``heard`` is told of the bytes."""
         data = self.peer.take()
         if not data:
             return []
+        if heard is not None:
+            heard(self, data)
         frames = self.splitter.feed(data)
         self.statistics.received += len(frames)
         expected = self._expected

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import selectors
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Protocol
 
 from .channel import Channel
@@ -18,6 +18,62 @@ class Tap(Protocol):
     def frame(self, time_us: int, raw: bytes) -> None:
         """One frame, sent or received at simulated ``time_us`` since the start of the simulation."""
         ...
+
+
+class Journal(Protocol):
+    """Is told of everything that comes to the vehicle from outside, and of what goes out (a recording).
+
+    Channels are told by their numbers, which no other channel of the run has, links by their place in the order in
+    which they were added.
+    """
+
+    def link_added(self, link: Link) -> None:
+        """A way for clients to reach the vehicle; its peers follow."""
+
+    def link_removed(self, link: Link) -> None:
+        """It is closed; its peers leave."""
+
+    def came(self, channel: Channel) -> None:
+        """A client appeared."""
+
+    def left(self, channel: Channel) -> None:
+        """It is gone."""
+
+    def heard(self, channel: Channel, data: bytes) -> None:
+        """Bytes that the client sent, read now."""
+
+    def acted(self) -> None:
+        """All that was heard has been acted on."""
+
+    def sent(self, channel: Channel, frames: list[bytes]) -> None:
+        """Frames on their way to the client."""
+
+    def flushed(self, channel: Channel) -> None:
+        """They were handed to its link."""
+
+    def streams(self, link: Link, rates_hz: Mapping[str, int]) -> None:
+        """Stream groups were asked for by this program for every client of a link."""
+
+    def attended(self) -> None:
+        """What clients asked for is being followed up: the vehicle is about to go on, even if only by no time."""
+
+    def beat(self) -> None:
+        """A HEARTBEAT went out while time stood."""
+
+    def lockstep(self, on: bool) -> None:
+        """From now on clients push the clock, or do so no more."""
+
+    def answered(self) -> None:
+        """Grants whose time has been reached are being answered."""
+
+    def logs(self) -> None:
+        """The vehicle keeps on-board logs from now on."""
+
+    def restored(self) -> None:
+        """The vehicle was put back to a snapshot."""
+
+    def close(self) -> None:
+        """The run ends; called once or more."""
 
 
 class Switchboard:
@@ -35,6 +91,7 @@ class Switchboard:
         self.dropped: list[str] = []
         """Why channels were lost or refused, for people."""
         self.taps: list[Tap] = []
+        self.journal: Journal | None = None
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
         self._sockets = 0
@@ -46,6 +103,7 @@ class Switchboard:
         """Links, clients, sockets and taps of ``old``, which must not be used any more."""
         self._selector.close()
         self.links, self.taps, self.dropped = old.links, old.taps, old.dropped
+        self.journal = old.journal
         self._selector, self._sockets = old._selector, old._sockets
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
@@ -54,21 +112,28 @@ class Switchboard:
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
         self.links.append(link)
+        if self.journal is not None:
+            self.journal.link_added(link)
         link.attach(self._selector, self._add_channel)
         self._sockets = len(self._selector.get_map())
 
     def remove_link(self, link: Link) -> None:
         """Close a link and forget its clients."""
+        if self.journal is not None:
+            self.journal.link_removed(link)
         link.close()
         self.links.remove(link)
         self._forget_closed()
         self._sockets = len(self._selector.get_map())
 
     def _add_channel(self, peer: Peer) -> None:
+        is_new = peer not in self._kept
         number = self._kept.pop(peer, self._numbers)
         self._numbers = max(self._numbers, number + 1)
         channel = Channel(peer, number, self._system())
         self.channels.append(channel)
+        if self.journal is not None and is_new:
+            self.journal.came(channel)
         self._added(channel)
 
     def _forget_closed(self) -> None:
@@ -76,6 +141,8 @@ class Switchboard:
             self.channels.remove(channel)
             if channel.peer.why_closed:
                 self.dropped.append(f"{channel.name}: {channel.peer.why_closed}")
+            if self.journal is not None:
+                self.journal.left(channel)
             self._removed(channel)
 
     def wait(self, seconds: float) -> bool:
@@ -91,12 +158,15 @@ class Switchboard:
                 if link.refusals:
                     self.dropped += link.refusals
                     link.refusals.clear()
+        heard = self.journal.heard if self.journal is not None else None
         for channel in self.channels:
-            frames = channel.receive()
+            frames = channel.receive(heard)
             for tap in self.taps:
                 for frame in frames:
                     tap.frame(self._clock(), frame.raw)
             yield channel, frames
+        if self.journal is not None:
+            self.journal.acted()
 
     def flush(self) -> None:
         """Hand everything queued to the links; notice who is gone."""
@@ -108,7 +178,13 @@ class Switchboard:
                 for tap in self.taps:
                     for raw in peer.outbox:
                         tap.frame(now, raw)
-            peer.flush()
+            if self.journal is not None:
+                if peer.outbox:
+                    self.journal.sent(channel, peer.outbox)
+                peer.flush()
+                self.journal.flushed(channel)
+            else:
+                peer.flush()
             closed = closed or peer.closed
         if closed:
             self._forget_closed()
@@ -116,6 +192,9 @@ class Switchboard:
     def close(self) -> None:
         """Flush and close everything."""
         self.flush()
+        if self.journal is not None:
+            self.journal.close()
+            self.journal = None
         for link in list(self.links):
             self.remove_link(link)
         self._selector.close()

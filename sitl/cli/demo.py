@@ -17,7 +17,7 @@ from ..core.extras import MissingExtra
 from ..logs import flight as flights
 from ..logs import plot
 from ..simulation import OptionError, Simulation
-from . import execute
+from . import execute, recordings
 from .options import VEHICLES, add_vehicle_options, build_simulation, open_folder
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -30,6 +30,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser("demo", help="run a MAVSDK example and draw what the vehicle did")
     parser.add_argument("vehicle", choices=sorted(VEHICLES))
     execute.add_speedup(parser, default="max")
+    recordings.add_recording_option(parser)
     add_vehicle_options(parser)
     parser.set_defaults(function=demo)
 
@@ -44,6 +45,7 @@ def demo(options: argparse.Namespace) -> int:
         options.speedup = "1"
     folder = open_folder(options.log_dir)
     simulation = build_simulation(options)
+    recordings.record(simulation, options)
     port = free_udp_port()
     runner.send_to_free_port(simulation, port)
     log = runner.open_log(simulation, folder, f"demo-{options.vehicle}")

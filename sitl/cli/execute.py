@@ -16,7 +16,7 @@ from ..pacing import Pacing, parse_speedup
 from ..simulation import OptionError, Simulation
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
-from . import run
+from . import recordings, run
 from .options import VEHICLES
 from .status import StatusLine
 
@@ -60,7 +60,9 @@ def execute(options: argparse.Namespace) -> int:
     command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
     try:
-        return run_script(simulation, command, options.speedup, options.duration, status.update)
+        code = run_script(simulation, command, options.speedup, options.duration, status.update)
+        recordings.say_why(simulation, f"script ended with exit code {code}")
+        return code
     finally:
         status.close()
         simulation.close()

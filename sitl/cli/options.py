@@ -123,10 +123,10 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
     return simulation
 
 
-def open_folder(folder: Path) -> Path:
-    """The folder, made if need be; OptionError when that cannot be done."""
+def open_folder(folder: Path, option: str = "--log-dir") -> Path:
+    """The folder of an option, made if need be; OptionError when that cannot be done."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OptionError(f"--log-dir {str(folder)!r} cannot be made: {error.strerror}") from None
+        raise OptionError(f"{option} {str(folder)!r} cannot be made: {error.strerror}") from None
     return folder

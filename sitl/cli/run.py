@@ -15,7 +15,7 @@ from ..foreign.choice import choose
 from ..lockstep import serve_lockstep
 from ..pacing import Pacing, parse_speedup
 from ..simulation import Simulation
-from . import foreign
+from . import foreign, recordings
 from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds
 from .status import StatusLine
 
@@ -29,6 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")
     add_run_options(parser)
     foreign.add_autopilot_options(parser)
+    recordings.add_from_option(parser)
     parser.set_defaults(function=run)
 
 
@@ -44,6 +45,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tcp", type=port, metavar="PORT", help="TCP port to serve (default 5760; 0: a free one)")
     parser.add_argument("--duration", type=seconds, metavar="SIM_SECONDS", help="stop after this simulated time")
     parser.add_argument("--quiet", action="store_true", help="no status line")
+    recordings.add_recording_option(parser)
     add_vehicle_options(parser)
 
 
@@ -58,7 +60,11 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
     links: list[Link] = [open_link(text) for text in outputs]
     tcp = runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp)
     links.append(tcp)
-    simulation = build_simulation(options, {"MAV_SYSID": 1.0 + options.instance} if options.instance else {})
+    if getattr(options, "from_file", None) is not None:
+        simulation = recordings.resume(options)
+    else:
+        simulation = build_simulation(options, {"MAV_SYSID": 1.0 + options.instance} if options.instance else {})
+        recordings.record(simulation, options)
     for link in links:
         simulation.bridge.add_link(link)
         print(f"MAVLink on {link.name}")
@@ -82,6 +88,7 @@ def run(options: argparse.Namespace) -> int:
     serve = serve_lockstep if options.lockstep else partial(runner.serve, pace=Pacing(speedup))
     try:
         serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=status.update)
+        recordings.say_why(simulation, signal.Signals(stopped[0]).name if stopped else "--duration")
     finally:
         status.close()
         simulation.close()

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Finds in a log what was done to the vehicle: commands, missions, parameters, sticks, set-points."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import Any
+
+from sitl.autopilot.mission.item import MissionItem
+from sitl.simulation import Home
+
+from .log import Log, Said
+from .steps import ARM, LEFT_OUT, PASSED, QUESTIONS, SET_MODE, Found, Send, Sender, Step, Upload, item_of
+
+ANSWER_S = 3.0
+"""An answer that comes later is none."""
+UPLOAD_S = 60.0
+"""An upload takes no longer than this."""
+GROUND_STATION: Sender = (255, 190)
+FLIGHT_PARAMETERS = {
+    "copter": ("WPNAV_", "WP_", "RTL_", "LAND_", "LOIT_", "PILOT_", "TKOFF_", "GUID_", "AUTO_", "MIS_", "CIRCLE_"),
+    "rover": ("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
+}
+"""Parameters that say how missions and commands are flown. Gains, sensors and failsafes are the airframe's."""
+
+
+@dataclass(frozen=True)
+class Script:
+    """What is to be flown."""
+
+    log: Log
+    home: Home | None
+    """Where the vehicle stood before it was armed; None: the log has no position."""
+    steps: list[Step]
+    parameters: dict[str, float]
+    """Of the vehicle, as far as they say how it is flown."""
+    notes: list[str]
+    """What could not be taken over, in words."""
+
+
+def extract(log: Log) -> Script:
+    """All that was done to the log's vehicle."""
+    notes: list[str] = []
+    found = _commanded(log)
+    flown = [step for step in found.steps if isinstance(step, Send) and step.command in (ARM, SET_MODE)]
+    moves = [step for step in found.steps if isinstance(step, Send) and step.name.startswith("SET_POSITION")]
+    armed = [time for time, state in log.changes("armed") if state]
+    if not flown and not moves:
+        found.steps += _observed(log)
+        notes.append(
+            "the log has no commands: modes, arming and mission are taken from what the vehicle says of itself"
+        )
+    elif armed and not any(step.command == ARM for step in flown):
+        found.steps += [step for step in _observed(log) if isinstance(step, Send) and step.command == ARM]
+        notes.append("nobody arms the vehicle by command: it is armed when it says that it is")
+    if log.clock_set:
+        notes.append(f"the clock of the log was set {log.clock_set} times: what it jumped is left out")
+    if armed and armed[0] <= 1.0:
+        notes.append("the log begins with an armed vehicle: here it begins on the ground")
+    found.steps.sort(key=lambda step: step.time)
+    notes += [f"left out: {what} ({count} messages)" for what, count in sorted(found.left_out.items())]
+    home = home_of(log)
+    if home is None:
+        notes.append("the log has no position of the vehicle: it starts at the default home")
+    return Script(log, home, found.steps, parameters_of(log), notes)
+
+
+def _commanded(log: Log) -> Found:
+    """Steps of what others said to the vehicle."""
+    found = Found()
+    answers: dict[int, list[tuple[float, int]]] = defaultdict(list)
+    for said in log.of_vehicle("COMMAND_ACK"):
+        answers[int(said.fields.command)].append((said.time, int(said.fields.result)))
+    heard = log.to_vehicle()
+    for at, said in enumerate(heard):
+        sender = (said.system, said.component)
+        if said.name == "MISSION_COUNT":
+            if getattr(said.fields, "mission_type", 0):
+                _count(found, "fences and rally points")
+            else:
+                _take(found, _upload(log, said, heard[at + 1 :], sender))
+        elif said.name in LEFT_OUT:
+            _count(found, LEFT_OUT[said.name])
+        elif said.name in PASSED:
+            fields: dict[str, Any] = said.fields._asdict()
+            step = Send(said.time, sender, said.name, fields)
+            if step.command in QUESTIONS:
+                continue
+            if step.command is not None:
+                step = Send(said.time, sender, said.name, fields, _answer(answers[step.command], said.time))
+            found.steps.append(step)
+    return found
+
+
+def _answer(answers: list[tuple[float, int]], time: float) -> int | None:
+    """The first answer from ``time`` on; it is used up."""
+    for at, (when, result) in enumerate(answers):
+        if when >= time:
+            if when > time + ANSWER_S:
+                return None
+            del answers[: at + 1]
+            return result
+    return None
+
+
+def _count(found: Found, what: str) -> None:
+    found.left_out[what] = found.left_out.get(what, 0) + 1
+
+
+def _take(found: Found, upload: Upload | None) -> None:
+    if upload is None:
+        _count(found, "a mission upload that is not whole in the log")
+    else:
+        found.steps.append(upload)
+
+
+def _upload(log: Log, count: Said, after: list[Said], sender: Sender) -> Upload | None:
+    """The upload that a MISSION_COUNT begins, if all of it is there."""
+    items: dict[int, MissionItem] = {}
+    end = count.time
+    for said in after:
+        if said.time > count.time + UPLOAD_S or len(items) == count.fields.count:
+            break
+        if (said.system, said.component) != sender:
+            continue
+        if said.name == "MISSION_COUNT":
+            return None  # begun again
+        if said.name in ("MISSION_ITEM", "MISSION_ITEM_INT") and not getattr(said.fields, "mission_type", 0):
+            items[int(said.fields.seq)] = item_of(said)
+            end = said.time
+    if len(items) < count.fields.count:
+        return None
+    answers = (s for s in log.of_vehicle("MISSION_ACK") if end <= s.time <= end + ANSWER_S)
+    result = next((int(s.fields.type) for s in answers), None)
+    return Upload(count.time, sender, tuple(items[seq] for seq in sorted(items)), result)
+
+
+def _observed(log: Log) -> list[Step]:
+    """Steps that would explain what the vehicle says of itself."""
+    steps: list[Step] = []
+    items = {int(said.fields.seq): item_of(said) for said in log.of_vehicle("MISSION_ITEM", "MISSION_ITEM_INT")}
+    armed = log.changes("armed")
+    first = next((time for time, state in armed if state), log.duration)
+    if items and sorted(items) == list(range(len(items))):
+        steps.append(Upload(max(first - 5.0, 0.0), GROUND_STATION, tuple(items[seq] for seq in sorted(items))))
+    for time, mode in log.changes("mode"):
+        fields = {"command": SET_MODE, "param1": 1.0, "param2": float(mode)}
+        steps.append(Send(time, GROUND_STATION, "COMMAND_LONG", fields, 0))
+    for time, state in armed:
+        if state:
+            fields = {"command": ARM, "param1": 1.0}
+            steps.append(Send(time, GROUND_STATION, "COMMAND_LONG", fields, 0))
+    last: tuple[int, ...] = ()
+    for said in log.of_vehicle("RC_CHANNELS"):
+        sticks = tuple(int(getattr(said.fields, f"chan{k}_raw")) for k in range(1, 5))
+        if sticks != last and all(800 <= value <= 2200 for value in sticks):
+            fields = {f"chan{k}_raw": value for k, value in enumerate(sticks, 1)}
+            steps.append(Send(said.time, GROUND_STATION, "RC_CHANNELS_OVERRIDE", fields))
+            last = sticks
+    return steps
+
+
+def home_of(log: Log) -> Home | None:
+    """Where the vehicle stood when it was first armed, or else where it was first; latitude, longitude [deg], altitude
+    [m], heading [deg]."""
+    armed = next((time for time, state in log.changes("armed") if state), math.inf)
+    home: tuple[float, float, float] | None = None
+    heading = 0.0
+    for said in log.of_vehicle("GLOBAL_POSITION_INT"):
+        f = said.fields
+        if (home is not None and said.time > armed) or not (f.lat or f.lon):
+            continue
+        home = (f.lat * 1e-7, f.lon * 1e-7, f.alt * 1e-3)
+        if f.hdg != 65535:
+            heading = f.hdg * 1e-2
+    if home is None:
+        fix = next((s.fields for s in log.of_vehicle("GPS_RAW_INT") if s.fields.fix_type >= 3), None)
+        home = (fix.lat * 1e-7, fix.lon * 1e-7, fix.alt * 1e-3) if fix is not None else None
+    return (*home, heading) if home is not None else None
+
+
+def parameters_of(log: Log) -> dict[str, float]:
+    """The vehicle's own values, before anybody set them, of what says how it is flown."""
+    found: dict[str, float] = {}
+    prefixes = FLIGHT_PARAMETERS[log.kind]
+    for said in log.of_vehicle("PARAM_VALUE"):
+        name = said.fields.param_id.decode(errors="replace")
+        if name.startswith(prefixes) and name not in found and math.isfinite(said.fields.param_value):
+            found[name] = float(said.fields.param_value)
+    for said in log.to_vehicle():
+        if said.name == "PARAM_SET":
+            found.pop(said.fields.param_id.decode(errors="replace"), None)
+    return found

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A .tlog as messages: who said what, when; and who of them is the vehicle."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from sitl.bridge.frame import Splitter
+from sitl.logs.tlog import LogError, read_tlog
+
+from ..files.document import KIND_OF_TYPE
+
+INVALID = 8
+"""MAV_AUTOPILOT_INVALID: what is no autopilot says so in its HEARTBEAT."""
+ARMED = 128
+"""MAV_MODE_FLAG_SAFETY_ARMED"""
+GAP_S, BACK_S = 3600.0, 1.0
+"""Nothing for longer than this, or stamps that go back further: the clock of who wrote the log was set."""
+
+
+class Said(NamedTuple):
+    """One message of the log."""
+
+    time: float
+    """Since the first frame [s]."""
+    system: int
+    component: int
+    name: str
+    fields: Any
+
+
+class Log:
+    """A log with its vehicle.
+
+    Args:
+        path: of the .tlog.
+        system: of the vehicle, when the log has several.
+
+    Raises:
+        LogError: the file cannot be read, or it has no vehicle that we have (or several).
+    """
+
+    def __init__(self, path: str | Path, system: int | None = None) -> None:
+        self.path = Path(path)
+        self.said, self.clock_set = _read(self.path)
+        """Messages, in order; how often the clock was set meanwhile. Their times leave these jumps out."""
+        types = Counter(
+            (s.system, int(s.fields.type))
+            for s in self.said
+            if s.name == "HEARTBEAT" and s.component == 1 and s.fields.autopilot != INVALID
+        )
+        found = {number: type_ for (number, type_), _ in reversed(types.most_common())}
+        title = f"log {str(path)!r}"
+        if not found:
+            raise LogError(f"{title} has no HEARTBEAT of an autopilot: it tells of no vehicle")
+        if system is None and len(found) > 1:
+            raise LogError(
+                f"{title} has vehicles {', '.join(str(n) for n in sorted(found))}: say which one with --system N"
+            )
+        self.system = next(iter(found)) if system is None else system
+        """System id of the vehicle."""
+        if self.system not in found:
+            raise LogError(f"{title} has no vehicle {system}; it has {', '.join(str(n) for n in sorted(found))}")
+        if found[self.system] not in KIND_OF_TYPE:
+            raise LogError(
+                f"{title}: vehicle {self.system} is of MAV_TYPE {found[self.system]}, neither a multicopter nor a rover"
+            )
+        self.kind: str = KIND_OF_TYPE[found[self.system]]
+        """"copter" or "rover"."""
+
+    @property
+    def duration(self) -> float:
+        """From the first frame to the last [s]."""
+        return self.said[-1].time if self.said else 0.0
+
+    def of_vehicle(self, *names: str) -> list[Said]:
+        """What the vehicle's autopilot said under these names."""
+        return [s for s in self.said if s.system == self.system and s.component == 1 and s.name in names]
+
+    def to_vehicle(self) -> list[Said]:
+        """What others said to the vehicle, or to everybody."""
+        return [
+            s
+            for s in self.said
+            if (s.system != self.system or s.component != 1)  # a companion may have the vehicle's system id
+            and getattr(s.fields, "target_system", 0) in (0, self.system)
+        ]
+
+    def changes(self, of: str) -> list[tuple[float, int]]:
+        """(time, value) whenever it changed: "mode" or "armed" of the vehicle's HEARTBEATs."""
+        found: list[tuple[float, int]] = []
+        for said in self.of_vehicle("HEARTBEAT"):
+            value = int(said.fields.custom_mode) if of == "mode" else int(bool(said.fields.base_mode & ARMED))
+            if not found or found[-1][1] != value:
+                found.append((said.time, value))
+        return found
+
+
+def _read(path: Path) -> tuple[list[Said], int]:
+    found: list[Said] = []
+    splitter = Splitter()
+    begin_us: int | None = None
+    time, jumps = 0.0, 0
+    try:
+        for stamp_us, raw in read_tlog(path):
+            begin_us = stamp_us if begin_us is None else begin_us
+            late = (stamp_us - begin_us) * 1e-6 - time
+            if late > GAP_S or late < -BACK_S:
+                begin_us, jumps = stamp_us - round(time * 1e6), jumps + 1
+            for frame in splitter.feed(raw):
+                time = max((stamp_us - begin_us) * 1e-6, time)  # another link's clock may be a little behind
+                found.append(
+                    Said(time, frame.system, frame.component, frame.kind.name, frame.kind.decode(frame.payload))
+                )
+    except OSError as error:
+        raise LogError(f"log {str(path)!r} cannot be read: {error.strerror or error}") from None
+    if not found:
+        raise LogError(f"log {str(path)!r} holds no MAVLink frame: it is no .tlog")
+    return found, jumps

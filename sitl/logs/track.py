@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is compared of a flight: where the vehicle believed to be, ten times a second, and what happened when."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.geodesy import offset_ne
+from .tlog import LogError
+
+Array = np.ndarray[Any, Any]
+
+STEP_US = 100_000
+"""Time between two samples [us]."""
+
+
+class Column(NamedTuple):
+    """One thing that is sampled."""
+
+    name: str
+    unit: str
+    quantum: float
+    """Step in which it is kept in bytes."""
+
+
+COLUMNS = (
+    Column("t", "s", 0.001),
+    Column("north", "m", 0.01),
+    Column("east", "m", 0.01),
+    Column("down", "m", 0.01),
+    Column("vn", "m/s", 0.01),
+    Column("ve", "m/s", 0.01),
+    Column("vd", "m/s", 0.01),
+    Column("roll", "rad", np.radians(0.1)),
+    Column("pitch", "rad", np.radians(0.1)),
+    Column("yaw", "rad", np.radians(0.1)),
+    Column("energy", "Wh", 0.01),
+)
+"""``t`` since the start of the simulation (a log of others: since its vehicle's boot), place from ``Track.home``, all
+NED; yaw within +-pi; energy taken from the battery."""
+NAMES = tuple(column.name for column in COLUMNS)
+QUANTA = np.array([column.quantum for column in COLUMNS])
+
+
+class TrackError(LogError):
+    """A track that is none, or a log that holds no flight."""
+
+
+@dataclass
+class Track:
+    """One vehicle's flight."""
+
+    kind: str
+    """"copter" or "rover"."""
+    data: Array
+    """(n, 11): ``COLUMNS``."""
+    home: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Latitude, longitude [deg], altitude above mean sea level [m] of the place that positions are counted from: home
+    as of the first arming."""
+    modes: list[tuple[float, str]] = field(default_factory=list)
+    """(time, mode) whenever it changed; the first is the mode at the start."""
+    items: list[tuple[float, int]] = field(default_factory=list)
+    """(time, mission item) as they were reached."""
+    texts: list[tuple[float, int, str]] = field(default_factory=list)
+    """(time, severity, text)"""
+    armed: list[tuple[float, bool]] = field(default_factory=list)
+    """(time, armed) whenever it changed."""
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+    def __getitem__(self, name: str) -> Array:
+        """A column."""
+        return np.asarray(self.data[:, NAMES.index(name)])
+
+    @property
+    def t(self) -> Array:
+        """Times of the samples [s]."""
+        return self["t"]
+
+    def between(self, begin: float, end: float) -> Track:
+        """What lies in [begin, end] [s]; modes begin with the one at that time."""
+        rows = (self.t >= begin - 1e-6) & (self.t <= end + 1e-6)
+        before = [mode for t, mode in self.modes if t <= begin]
+
+        def cut(events: list[Any]) -> list[Any]:
+            return [event for event in events if begin - 1e-6 <= event[0] <= end + 1e-6]
+
+        modes = [mode for mode in cut(self.modes) if mode[0] > begin]
+        modes = [(begin, before[-1]), *modes] if before else modes
+        return replace(
+            self, data=self.data[rows], modes=modes, items=cut(self.items), texts=cut(self.texts), armed=cut(self.armed)
+        )
+
+    def quantised(self) -> Track:
+        """As it comes back from bytes."""
+        data = np.round(self.data / QUANTA) * QUANTA
+
+        def at(events: list[Any]) -> list[Any]:
+            return [(round(event[0], 4), *event[1:]) for event in events]
+
+        return replace(
+            self, data=data, modes=at(self.modes), items=at(self.items), texts=at(self.texts), armed=at(self.armed)
+        )
+
+    def seen_from(self, home: tuple[float, float, float]) -> Track:
+        """The same flight with its places counted from another home."""
+        if home == self.home:
+            return self
+        north, east = offset_ne(home[0] * 1e7, home[1] * 1e7, self.home[0] * 1e7, self.home[1] * 1e7)
+        data = self.data.copy()
+        data[:, 1:4] += (north, east, home[2] - self.home[2])
+        return replace(self, data=data, home=home)
+
+    def to_bytes(self) -> bytes:
+        """All of it in few bytes (``track_bytes``): about 4 kB a minute."""
+        from . import track_bytes
+
+        return track_bytes.pack(self)
+
+    @staticmethod
+    def from_bytes(data: bytes) -> Track:
+        """A track from its bytes.
+
+        Raises:
+            TrackError: the bytes are no track, or damaged.
+        """
+        from . import track_bytes
+
+        return track_bytes.unpack(data)
+
+
+def sampled(times: Array, series: dict[str, tuple[Array, Array]], unwrap: Callable[[str], bool]) -> Array:
+    """Columns at the given times from series that have times of their own, straight between their samples.
+
+    ``series``: column -> (times, values); a column that is not there is 0. ``unwrap``: whether a column is an angle.
+    """
+    data = np.zeros((len(times), len(COLUMNS)))
+    data[:, 0] = times
+    for k, name in enumerate(NAMES[1:], 1):
+        if name in series and len(series[name][0]):
+            t, values = series[name]
+            found = np.interp(times, t, np.unwrap(values) if unwrap(name) else values)
+            data[:, k] = (found + np.pi) % (2.0 * np.pi) - np.pi if unwrap(name) else found
+    return data
+
+
+def is_angle(name: str) -> bool:
+    """Whether a column is in radians."""
+    return name in ("roll", "pitch", "yaw")

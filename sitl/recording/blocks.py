@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A recording as a file: a mark, then blocks, each with its kind, its length and a checksum.
+
+```
+mark     12 bytes: 0x89 "SITLREC" CR LF 0x1A, version (1 byte)
+block    kind (1 byte), packing (1 byte: 0 none, 1 zlib, 2 LZMA), length (u32), checksum (u32), packed bytes
+```
+
+Numbers are little-endian. The checksum is the CRC-32 of kind, packing, length and packed bytes, continued from the
+checksum of the block before: a block that is damaged, missing or out of its place is found where it stands. The last
+block is of kind END; a file without one belongs to a run that was killed, or has been cut short.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import lzma
+import struct
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+from .error import RecordingError
+
+MARK = b"\x89SITLREC\r\n\x1a"
+VERSION = 1
+HEADER, ENTRIES, SECTION, END = b"HESZ"
+"""Kinds of blocks: the run (JSON), entries, a named section, how it ended (JSON)."""
+PLAIN, ZLIB, LZMA = range(3)
+_HEAD = struct.Struct("<BBII")
+_BARE = struct.Struct("<BBI")
+_LONGEST = 1 << 28
+"""Bytes of a block, unpacked: what is longer is no recording of ours."""
+
+
+class Block(NamedTuple):
+    """One block, unpacked."""
+
+    kind: int
+    data: bytes
+    at: int
+    """Where it begins in the file [bytes]."""
+
+
+def _checksum(kind: int, packing: int, packed: bytes, before: int) -> int:
+    return zlib.crc32(packed, zlib.crc32(_BARE.pack(kind, packing, len(packed)), before))
+
+
+def pack(kind: int, data: bytes, before: int, packing: int = ZLIB) -> tuple[bytes, int]:
+    """(Bytes of a block, its checksum); ``before`` is the checksum of the block before."""
+    packed = data
+    if packing == LZMA:
+        dictionary = 1 << min(max(len(data).bit_length(), 12), 22)  # a small one is ready ten times as fast
+        packed = lzma.compress(data, lzma.FORMAT_ALONE, filters=[{"id": lzma.FILTER_LZMA1, "dict_size": dictionary}])
+    elif packing == ZLIB:
+        packed = zlib.compress(data, 6)
+    if len(packed) >= len(data):
+        packing, packed = PLAIN, data
+    checksum = _checksum(kind, packing, packed, before)
+    return _HEAD.pack(kind, packing, len(packed), checksum) + packed, checksum
+
+
+class BlockWriter:
+    """Writes a file block by block; each is with the operating system before the call returns.
+
+    Raises:
+        RecordingError: the file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._checksum = 0
+        with self._named():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file: BinaryIO = path.open("wb", buffering=0)
+            self._file.write(MARK + bytes([VERSION]))
+
+    @contextlib.contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise RecordingError(f"recording {str(self.path)!r} cannot be written: {error.strerror or error}") from None
+
+    def write(self, kind: int, data: bytes, packing: int = ZLIB) -> None:
+        """Append one block."""
+        raw, self._checksum = pack(kind, data, self._checksum, packing)
+        with self._named():
+            self._file.write(raw)
+
+    def close(self) -> None:
+        """Close the file."""
+        with self._named():
+            self._file.close()
+
+
+def is_recording(path: Path) -> bool:
+    """Whether the file begins as a recording does."""
+    try:
+        with path.open("rb") as file:
+            return file.read(len(MARK)) == MARK
+    except OSError:
+        return False
+
+
+class BlockReader:
+    """Reads blocks up to the end of a file, or to where it is damaged; ``fault`` then says what is wrong, and where.
+
+    Raises:
+        RecordingError: the file cannot be read, is no recording, or is of a newer version.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.fault = ""
+        self.is_cut = False
+        """The fault is that the file ends too early."""
+        try:
+            self._data = path.read_bytes()
+        except OSError as error:
+            raise RecordingError(f"recording {str(path)!r} cannot be read: {error.strerror or error}") from None
+        start = self._data[: len(MARK) + 1]
+        if not self._data:
+            raise RecordingError(f"recording {str(path)!r} is empty")
+        if start[: len(MARK)] != MARK:
+            raise RecordingError(f"{str(path)!r} is no recording of a run: it begins with {start[:8]!r}")
+        if len(start) <= len(MARK):
+            raise RecordingError(f"recording {str(path)!r} is cut short: it ends behind its mark")
+        if start[-1] != VERSION:
+            raise RecordingError(
+                f"recording {str(path)!r} is of format {start[-1]}; this program reads format {VERSION}"
+            )
+
+    def __iter__(self) -> Iterator[Block]:
+        data, at, before = self._data, len(MARK) + 1, 0
+        number = 0
+        while True:
+            if at + _HEAD.size > len(data):
+                left = len(data) - at
+                self._cut(f"ends at byte {len(data)} " + ("without its end mark" if not left else "in a block's head"))
+                return
+            kind, packing, length, checksum = _HEAD.unpack_from(data, at)
+            packed = data[at + _HEAD.size : at + _HEAD.size + length]
+            place = f"block {number} at byte {at} of {len(data)}"
+            if kind not in b"HESZ" or packing > LZMA or length > _LONGEST:
+                self.fault = f"is corrupted: {place} does not begin as a block does"
+                return
+            if len(packed) < length:
+                self._cut(f"ends at byte {len(data)} in the middle of {place}, which has {length} bytes")
+                return
+            if _checksum(kind, packing, packed, before) != checksum:
+                self.fault = f"is corrupted: {place} does not match its checksum"
+                return
+            try:
+                unpacked = _unpack(packing, packed)
+            except (zlib.error, lzma.LZMAError) as error:
+                self.fault = f"is corrupted: {place} cannot be unpacked ({error})"
+                return
+            yield Block(kind, unpacked, at)
+            at, before, number = at + _HEAD.size + length, checksum, number + 1
+            if kind == END:
+                if at < len(data):
+                    self.fault = f"is corrupted: {len(data) - at} bytes follow its end at byte {at}"
+                return
+
+    def _cut(self, fault: str) -> None:
+        self.fault, self.is_cut = fault, True
+
+
+def _unpack(packing: int, packed: bytes) -> bytes:
+    if packing == PLAIN:
+        return packed
+    unpacker = zlib.decompressobj() if packing == ZLIB else lzma.LZMADecompressor(lzma.FORMAT_ALONE)
+    data: bytes = unpacker.decompress(packed, _LONGEST)  # type: ignore[union-attr]
+    if not unpacker.eof and packing == ZLIB:
+        raise zlib.error("too long or incomplete")
+    return data

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a run was made of: all that decides what a vehicle does, besides what clients send."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import __version__, vehicles, worlds
+from ..core import compile as compiler
+from ..core.fingerprint import reached
+from ..kinds import Kind
+from ..physics.engines import NATIVE
+from ..simulation import Simulation
+from ..vehicles import Airframe
+from ..worlds import World
+
+ROOMS = ("autopilot", "bridge", "core", "physics", "plants", "vehicles")
+"""Packages whose sources decide what a vehicle does and says."""
+MODULES = ("advance", "kinds", "lidar", "sim_parameters", "simulation", "surroundings", "truth_estimator", "vehicle")
+_ROOT = Path(__file__).parents[1]
+
+
+def _digest(parts: list[bytes]) -> str:
+    out = hashlib.sha256()
+    for part in parts:
+        out.update(len(part).to_bytes(8, "little") + part)
+    return out.hexdigest()[:16]
+
+
+@cache
+def sources() -> dict[str, str]:
+    """Room of the program -> digest of its source files."""
+    found = {}
+    for room in ROOMS:
+        files = sorted((_ROOT / room).rglob("*.py"))
+        found[room] = _digest([b for f in files for b in (f.relative_to(_ROOT).as_posix().encode(), f.read_bytes())])
+    found["simulation"] = _digest([(_ROOT / f"{name}.py").read_bytes() for name in MODULES])
+    return found
+
+
+@cache
+def _compiled(entry: Any, path: str) -> str:
+    return _digest([compiler.unit_folder(unit, path).name.encode() for unit in reached(entry)])
+
+
+def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
+    """The version of all code that a vehicle of this kind runs on."""
+    found = {
+        "gym-sitl": __version__,
+        "sources": sources(),
+        "compiled core": _compiled(kind.advance, kind.record_path),
+    }
+    if physics != NATIVE:
+        try:
+            found[physics] = importlib.metadata.version(physics)
+        except importlib.metadata.PackageNotFoundError:
+            found[physics] = "of no version"
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def of_airframe(airframe: Airframe) -> dict[str, Any]:
+    """Name, figures and parameters."""
+    record = airframe.record()
+    figures = {name: _plain(record[name]) for name in record.dtype.names or ()}
+    return {"name": airframe.name, "figures": figures, "parameters": dict(airframe.parameters)}
+
+
+def of_world(world: World) -> str:
+    """Digest of all that a world's file says, but its words."""
+    parts = (world.solids, world.starts, world.floor_z, world.friction)
+    return _digest([repr(parts).encode()])
+
+
+def describe(simulation: Simulation) -> dict[str, Any]:
+    """What a simulation is made of, as JSON has it."""
+    given = simulation.given
+    frame, world = given["frame"], given["world"]
+    name = simulation.airframe.name
+    if not isinstance(frame, str):
+        frame = name if name in vehicles.names() and vehicles.load(name) is simulation.airframe else None
+    if not isinstance(world, str | Path):
+        found = simulation.world.name if simulation.world is not None else None
+        world = found if found in worlds.names() and worlds.load(found or "") is simulation.world else None
+    start = given["start"]
+    return {
+        "version": version(simulation.kind, simulation.physics),
+        "vehicle": simulation.kind.name,
+        "frame": frame,
+        "airframe": of_airframe(simulation.airframe),
+        "home": list(simulation.home),
+        "seed": simulation.seed,
+        "estimator": simulation.estimator,
+        "physics": simulation.physics,
+        "world": None
+        if simulation.world is None
+        else {
+            "file": str(world) if world is not None else None,
+            "name": simulation.world.name,
+            "digest": of_world(simulation.world),
+        },
+        "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
+        "params": {name: float(value) for name, value in given["params"].items()},
+        "epoch_us": simulation.bridge.epoch_us,
+    }
+
+
+def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """What differs between two runs' descriptions, in words: code first, then what is simulated."""
+    return [*code_differences(then["version"], now["version"]), *vehicle_differences(then, now)]
+
+
+def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """What differs between two versions of the code, in words."""
+    found = []
+    rooms = [name for name in now["sources"] if then["sources"].get(name) != now["sources"][name]]
+    if rooms:
+        found.append(f"other sources of {', '.join(rooms)}")
+    if then["compiled core"] != now["compiled core"]:
+        found.append("another compiled core" + ("" if rooms else " (compilers or processor)"))
+    for name in sorted({*then, *now} - {"sources", "compiled core"}):
+        if then.get(name) != now.get(name):
+            found.append(f"{name} {then.get(name)} then, {now.get(name)} now")
+    return found
+
+
+def vehicle_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """What differs between what was simulated, in words."""
+    found = []
+    if then["airframe"]["name"] != now["airframe"]["name"]:
+        found.append(f"airframe {then['airframe']['name']} -> {now['airframe']['name']}")
+        then = {**then, "airframe": now["airframe"]}
+    for group, title in (("figures", "figure"), ("parameters", "parameter")):
+        old, new = then["airframe"][group], now["airframe"][group]
+        for name in sorted({*old, *new}):
+            if old.get(name) != new.get(name):
+                found.append(f"airframe {then['airframe']['name']}: {title} {name} {old.get(name)} -> {new.get(name)}")
+    old, new = then["world"] or {}, now["world"] or {}
+    if (old.get("name"), old.get("digest")) != (new.get("name"), new.get("digest")):
+        same = old.get("name") == new.get("name")
+        found.append(
+            f"world {old.get('name')} has been changed" if same else f"world {old.get('name')} -> {new.get('name')}"
+        )
+    for name in ("vehicle", "home", "seed", "estimator", "physics", "start", "epoch_us"):
+        if then[name] != now[name]:
+            found.append(f"{name} {then[name]} -> {now[name]}")
+    old, new = then["params"], now["params"]
+    for name in sorted({*old, *new}):
+        if old.get(name) != new.get(name):
+            found.append(f"parameter {name} {old.get(name)} -> {new.get(name)}")
+    return found

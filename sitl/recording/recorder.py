@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes a recording while a simulation runs."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..bridge.channel import Channel
+from ..bridge.links.inprocess import InProcessLink
+from ..bridge.links.link import Link, Peer
+from ..bridge.links.log import LogLink
+from ..bridge.links.tcp import TcpServerLink
+from ..bridge.links.udp import UdpInLink, UdpOutLink
+from ..logs.track_observer import TrackObserver
+from ..simulation import Simulation
+from . import digests
+from .blocks import END, ENTRIES, HEADER, LZMA, SECTION, BlockReader, BlockWriter
+from .entries import Entry, Kind, encode, varint
+from .error import RecordingError
+from .identity import describe
+
+CHECK_US = 10_000_000
+"""Simulated time between two digests that say where a replay goes astray [us]."""
+BLOCK_BYTES = 1 << 18
+"""As much is kept at most before it is written; ``flush`` writes at once."""
+REPACKED_BYTES = 1 << 26
+"""A recording up to this size is packed anew when the run ends: smaller, and equal runs give equal files."""
+LOG, TCP, UDP, IN_PROCESS, OTHER = "log", "tcp", "udp", "inprocess", "other"
+_KINDS: tuple[tuple[type[Link], str], ...] = (
+    (LogLink, LOG),
+    (TcpServerLink, TCP),
+    (UdpOutLink, UDP),
+    (UdpInLink, UDP),
+    (InProcessLink, IN_PROCESS),
+)
+
+
+def kind_of(link: Link) -> str:
+    """What kind of link it is; a replayed one is what it was."""
+    given = getattr(link, "kind", None)
+    return given if isinstance(given, str) else next((name for type_, name in _KINDS if isinstance(link, type_)), OTHER)
+
+
+class Recorder:
+    """A journal of all that comes from outside, and a digest of all that goes out.
+
+    Args:
+        simulation: at power-on: no time has passed, and no client has been heard.
+        path: of the file; None: nothing is kept but the digests.
+        flush_us: simulated time after which what is collected is written [us]: a run that is killed loses no more.
+
+    Raises:
+        RecordingError: the simulation runs already, or the file cannot be written.
+    """
+
+    def __init__(self, simulation: Simulation, path: str | Path | None = None, flush_us: int = CHECK_US) -> None:
+        board = simulation.bridge.board
+        if simulation.time_us or any(channel.statistics.received for channel in board.channels):
+            raise RecordingError(f"a recording begins at power-on; {simulation.time_us * 1e-6:.3f} s have passed")
+        if board.journal is not None:
+            raise RecordingError("the simulation is being recorded already")
+        self.simulation = simulation
+        self.path = Path(path) if path is not None else None
+        self.stopped = "ended"
+        """What stopped the run, in a word or two."""
+        self.channels: dict[int, digests.Sent] = {}
+        """Channel -> what it was sent."""
+        self.checks: dict[int, bytes] | None = None
+        """Time [us] -> digests of that time; kept when a replay asks for it."""
+        self.sections: dict[str, Any] = {}
+        """Name -> function that gives the bytes of a section when the run ends: "track", what is compared."""
+        self.flush_us = flush_us
+        self._flush_due_us, self._check_us = flush_us, CHECK_US
+        self._writer: BlockWriter | None = None
+        self._pending: list[bytes] = []
+        self._size = self._total = 0
+        self._last_us = 0
+        self._links: dict[Link, int] = {}
+        self._link_count = 0
+        self._congested: set[Peer] = set()
+        self._hears = False
+        """Bytes have been read and not been acted on."""
+        self._later: list[Entry] = []
+        self._attended = False
+        self.is_closed = False
+        if self.path is not None:
+            self._writer = BlockWriter(self.path)
+            self.sections["track"] = TrackObserver(simulation).to_bytes
+            self._writer.write(HEADER, json.dumps(describe(simulation), sort_keys=True).encode())
+        for link in board.links:
+            self.link_added(link)
+        for channel in board.channels:
+            self.came(channel)
+        self.due_us = min(self._flush_due_us, self._check_us)
+        board.journal = self
+        simulation.observers.append(self)
+
+    # ------------------------------------------------------------------ entries
+
+    def _note(self, kind: Kind, number: int = 0, data: bytes = b"") -> None:
+        if self._writer is None:
+            return
+        now = self.simulation.time_us
+        entry = Entry(now, kind, number, data)
+        if self._hears and kind is not Kind.HEARD:
+            self._later.append(entry)
+            return
+        if self._attended and now == self._last_us:
+            self._append(Entry(now, Kind.ATTENDED))
+        self._attended = False
+        self._append(entry)
+
+    def _append(self, entry: Entry) -> None:
+        raw = encode(entry, self._last_us)
+        self._last_us = entry.time_us
+        self._pending.append(raw)
+        self._size += len(raw)
+        if self._size > BLOCK_BYTES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is collected: a run that is killed now can be flown again up to here.
+
+        Raises:
+            RecordingError: that cannot be done (a full disk); the recording ends here.
+        """
+        if self._writer is None or not self._pending:
+            return
+        data = b"".join(self._pending)
+        self._total += len(data)
+        self._pending.clear()
+        self._size = 0
+        try:
+            self._writer.write(ENTRIES, data)
+        except RecordingError:
+            self._writer = None
+            raise
+
+    # ------------------------------------------------------------------ what the bridge tells
+
+    def link_added(self, link: Link) -> None:
+        self._links[link] = self._link_count
+        self._note(Kind.LINK, self._link_count, json.dumps([kind_of(link), link.name]).encode())
+        self._link_count += 1
+
+    def link_removed(self, link: Link) -> None:
+        self._note(Kind.UNLINK, self._links.pop(link))
+
+    def came(self, channel: Channel) -> None:
+        self.channels[channel.number] = digests.Sent()
+        number = next(number for link, number in self._links.items() if channel.peer in link.peers)
+        self._note(Kind.CAME, channel.number, varint(number))
+
+    def left(self, channel: Channel) -> None:
+        self._congested.discard(channel.peer)
+        self._note(Kind.LEFT, channel.number, channel.peer.why_closed.encode())
+
+    def heard(self, channel: Channel, data: bytes) -> None:
+        self._note(Kind.HEARD, channel.number, data)
+        self._hears = True
+
+    def acted(self) -> None:
+        if self._hears:
+            self._hears = False
+            self._note(Kind.ACTED)
+            later, self._later = self._later, []
+            for entry in later:
+                self._append(entry)
+
+    def flushed(self, channel: Channel) -> None:
+        if channel.peer.congested != (channel.peer in self._congested):
+            self._congested ^= {channel.peer}
+            state = int(channel.peer in self._congested)
+            self._note(Kind.CONGESTED, channel.number, bytes([state]) + varint(self.channels[channel.number].count))
+
+    def streams(self, link: Link, rates_hz: Mapping[str, int]) -> None:
+        self._note(Kind.STREAMS, self._links[link], json.dumps(dict(rates_hz)).encode())
+
+    def attended(self) -> None:
+        self._attended = True
+
+    def beat(self) -> None:
+        self._note(Kind.BEAT)
+
+    def lockstep(self, on: bool) -> None:
+        self._note(Kind.LOCKSTEP, 0, b"" if on else b"\0")
+
+    def answered(self) -> None:
+        self._note(Kind.ANSWERED)
+
+    def logs(self) -> None:
+        self._note(Kind.LOGS)
+
+    def restored(self) -> None:
+        self._note(Kind.BROKEN, 0, b"the vehicle was put back to a snapshot")
+
+    def sent(self, channel: Channel, frames: list[bytes]) -> None:
+        self.channels[channel.number].add(self.simulation.time_us, frames)
+
+    # ------------------------------------------------------------------ as an observer
+
+    def observe(self) -> None:
+        """Write what is collected; now and then, note digests of the present."""
+        now = self.simulation.time_us
+        if now >= self._check_us:  # at times that do not depend on how often it is written
+            self._check_us = (now // CHECK_US + 1) * CHECK_US
+            found = digests.check(self.simulation, self.channels)
+            if self.checks is not None:
+                self.checks[now] = found
+            self._note(Kind.CHECK, 0, found)
+        if now >= self._flush_due_us:
+            self.flush()
+            self._flush_due_us = (now // self.flush_us + 1) * self.flush_us
+        self.due_us = min(self._flush_due_us, self._check_us)
+
+    # ------------------------------------------------------------------ the end
+
+    def result(self) -> dict[str, Any]:
+        """How it ends: when, why, digests of the vehicle's record and of each channel."""
+        return {
+            "time_us": self.simulation.time_us,
+            "stopped": self.stopped,
+            "state": digests.of_state(self.simulation),
+            "channels": {str(number): sent.digest().hex() for number, sent in sorted(self.channels.items())},
+        }
+
+    def close(self) -> None:
+        """Write the end; the simulation's own ``close`` does it, too."""
+        if self.is_closed:
+            return
+        self.is_closed = True
+        self.simulation.observers[:] = [o for o in self.simulation.observers if o is not self]
+        self.simulation.bridge.board.journal = None
+        if self._writer is None or self.path is None:
+            return
+        if self._attended and self.simulation.time_us == self._last_us:
+            self._append(Entry(self._last_us, Kind.ATTENDED))
+        self.flush()
+        for name, give in self.sections.items():
+            self._writer.write(SECTION, name.encode() + b"\0" + give())
+        self._writer.write(END, json.dumps(self.result(), sort_keys=True).encode())
+        self._writer.close()
+        self._writer = None
+        if self._total <= REPACKED_BYTES:
+            repack(self.path)
+
+
+def repack(path: Path) -> None:
+    """Pack a whole recording as tightly as can be, in place; it is there at every moment."""
+    blocks = list(BlockReader(path))
+    beside = path.with_name(path.name + ".packing")
+    writer = BlockWriter(beside)
+    entries = b"".join(block.data for block in blocks if block.kind == ENTRIES)
+    writer.write(HEADER, blocks[0].data, LZMA)
+    for at in range(0, len(entries), 1 << 22):
+        writer.write(ENTRIES, entries[at : at + (1 << 22)], LZMA)
+    for block in blocks:
+        if block.kind in (SECTION, END):
+            writer.write(block.kind, block.data)
+    writer.close()
+    try:
+        os.replace(beside, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+        raise RecordingError(f"recording {str(path)!r} cannot be written: {error.strerror or error}") from None

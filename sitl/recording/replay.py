@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Flies a recording again, without its clients."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections import defaultdict
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ..bridge.frame import Splitter
+from ..bridge.links.log import FrameWriter
+from ..core.compile import Progress
+from ..core_entry import Core
+from ..logs.dataflash.attach import attach
+from ..plants.choose import is_remote
+from ..simulation import Simulation
+from ..vehicles import Airframe, AirframeError
+from ..worlds import World, WorldError
+from . import identity
+from .digests import of_state
+from .entries import Entry, Kind, read_varint
+from .error import RecordingError
+from .recorder import LOG, Recorder
+from .recording import Recording
+from .replayed_link import Flip, ReplayedLink, ReplayedPeer
+
+_STRUCTURE = frozenset((Kind.LINK, Kind.UNLINK, Kind.CAME, Kind.LEFT, Kind.STREAMS))
+"""Entries that can contradict those before them."""
+WriterOf = Callable[[Simulation], FrameWriter]
+
+
+class Replay:
+    """A vehicle that is made as the recorded one was, and hears what that heard, when it did.
+
+    On the version that made the recording it sends the same bytes to every channel; on another it flies as that version
+    does. ``differences`` says what is not as it was.
+
+    Args:
+        recording: what to fly.
+        frame, world: instead of the recorded ones, for files that are elsewhere now.
+        physics: instead of the recorded one.
+        core: the core of this kind of vehicle, if it is loaded already.
+        record: write a recording of the replay there.
+        log: makes the writer of what the recorded run's log was sent, if it had one; one more for each time that the
+            run went on from a snapshot.
+        bin_file: gives where on-board logs go, when the recorded run began to keep some; None: kept only if a client
+            asked for them, and deleted in the end.
+
+    Raises:
+        RecordingError: the vehicle cannot be made again.
+        MissingExtra: the library of its physics is not installed.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        *,
+        frame: str | Airframe | None = None,
+        world: str | Path | World | None = None,
+        physics: str | None = None,
+        core: Core | None = None,
+        progress: Progress | None = None,
+        record: str | Path | None = None,
+        log: WriterOf | None = None,
+        bin_file: Callable[[], Path] | None = None,
+    ) -> None:
+        self.recording = recording
+        for entry in recording.entries:
+            if entry.kind is Kind.BROKEN:
+                raise RecordingError(f"{self._at_entry(entry)} {entry.data.decode()}: it cannot be flown")
+        self.simulation = _build(recording, frame, world, physics, core, progress)
+        try:
+            self.differences = identity.differences(recording.header, identity.describe(self.simulation))
+        except (KeyError, TypeError, AttributeError) as error:
+            raise RecordingError(f"{_title(recording)}: what it was made of cannot be understood: {error!r}") from None
+        """What is not as it was when the recording was made, in words."""
+        self.recorder = Recorder(self.simulation, record)
+        self.recorder.checks = {}
+        self.astray: list[str] = []
+        """What the vehicle did or sent otherwise than the recorded one, in words, first things first."""
+        self._log, self._bin_file = log, bin_file
+        self._scratch: tempfile.TemporaryDirectory[str] | None = None
+        self._at = 0
+        self._links: dict[int, ReplayedLink] = {}
+        self._peers: dict[int, ReplayedPeer] = {}
+        self._flips: dict[int, list[Flip]] = defaultdict(list)
+        self._good_us: dict[str, int] = {}
+        """What was compared -> when it was last the same."""
+        self._astray: set[str] = set()
+        for entry in recording.entries:
+            if entry.kind is Kind.CONGESTED:
+                sent, _ = read_varint(entry.data, 1)
+                self._flips[entry.number].append(Flip(entry.time_us, sent, bool(entry.data[0])))
+
+    # ------------------------------------------------------------------ going on
+
+    def next_us(self) -> int:
+        """When the next entry is due [us]; at its end, that of the recording."""
+        entries = self.recording.entries
+        return entries[self._at].time_us if self._at < len(entries) else self.recording.end_us
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all of it has been flown."""
+        return self._at >= len(self.recording.entries) and self.simulation.time_us >= self.recording.end_us
+
+    def advance_to(self, time_us: int) -> None:
+        """Fly on until ``time_us``, and hear all that was heard at that time; not beyond the recording's end."""
+        time_us = min(time_us, self.recording.end_us)
+        entries = self.recording.entries
+        while self._at < len(entries) and entries[self._at].time_us <= time_us:
+            entry = entries[self._at]
+            if self.simulation.time_us < entry.time_us:
+                self.simulation.advance_to(entry.time_us)
+            self._at += 1
+            try:
+                self._do(entry)
+            except (KeyError, IndexError, TypeError, ValueError) as error:
+                if isinstance(error, RecordingError) or entry.kind not in _STRUCTURE:
+                    raise
+                raise RecordingError(f"{self._at_entry(entry)} {entry.kind.name} makes no sense: {error!r}") from error
+        if self.simulation.time_us < time_us:
+            self.simulation.advance_to(time_us)
+
+    def run(self) -> list[str]:
+        """Fly all of it; returns what went otherwise (``astray``)."""
+        self.advance_to(self.recording.end_us)
+        return self.verify()
+
+    def _do(self, entry: Entry) -> None:
+        bridge, number, kind = self.simulation.bridge, entry.number, entry.kind
+        if kind is Kind.HEARD:
+            self._peer(entry).deliver(entry.data)
+        elif kind is Kind.ACTED:
+            bridge.receive()
+        elif kind is Kind.ATTENDED:
+            self.simulation.advance_to(self.simulation.time_us)
+        elif kind is Kind.LINK:
+            self._open(number, *json.loads(entry.data))
+        elif kind is Kind.UNLINK:
+            bridge.remove_link(self._links.pop(number))
+        elif kind is Kind.CAME:
+            link = self._links[read_varint(entry.data, 0)[0]]
+            peer = ReplayedPeer(link.name, self.simulation, self._flips[number], link.writer)
+            self._peers[number] = peer
+            link.add_peer(peer)
+        elif kind is Kind.LEFT:
+            peer = self._peers.pop(number)
+            peer.closed, peer.why_closed = True, entry.data.decode()
+            for link in self._links.values():
+                if peer in link.peers:
+                    link.peers.remove(peer)
+            bridge.flush()
+        elif kind is Kind.STREAMS:
+            bridge.stream_to(self._links[number], json.loads(entry.data))
+        elif kind is Kind.LOCKSTEP:
+            if entry.data:
+                bridge.free_clock()
+            else:
+                bridge.push_clock()
+        elif kind is Kind.ANSWERED:
+            if bridge.grants is not None:
+                bridge.grants.answer(bridge)
+        elif kind is Kind.BEAT:
+            bridge.beat()
+        elif kind is Kind.LOGS:
+            self._keep_logs()
+        elif kind is Kind.CHECK:
+            self._check(entry)
+
+    def _peer(self, entry: Entry) -> ReplayedPeer:
+        if entry.number not in self._peers:
+            raise RecordingError(f"{self._at_entry(entry)} client {entry.number} says something and is not there")
+        return self._peers[entry.number]
+
+    def _at_entry(self, entry: Entry) -> str:
+        return f"{_title(self.recording)}: at {entry.time_us * 1e-6:.3f} s"
+
+    def _open(self, number: int, kind: str, name: str) -> None:
+        writer = self._log(self.simulation) if kind == LOG and self._log is not None else None
+        link = self._links[number] = ReplayedLink(kind, name, writer)
+        self.simulation.bridge.add_link(link)
+
+    def _keep_logs(self) -> None:
+        if self._bin_file is not None:
+            attach(self.simulation, self._bin_file())
+        elif asks_for_logs(self.recording):
+            if self._scratch is None:
+                self._scratch = tempfile.TemporaryDirectory(prefix="sitl-replay-")
+            attach(self.simulation, Path(self._scratch.name) / "replay.bin")
+        else:
+            self.recorder.logs()  # a replay of this one may want them
+
+    # ------------------------------------------------------------------ was it the same?
+
+    def _check(self, entry: Entry) -> None:
+        checks = self.recorder.checks
+        found = checks.pop(entry.time_us, None) if checks is not None else None
+        for name, part in (("the vehicle's state", slice(4)), ("telemetry", slice(4, 8))):
+            if name in self._astray:
+                continue
+            if found is not None and found[part] == entry.data[part]:
+                self._good_us[name] = entry.time_us
+            else:
+                self._astray.add(name)
+                good, bad = self._good_us.get(name, 0) * 1e-6, entry.time_us * 1e-6
+                self.astray.append(f"{name} differs from some time between {good:.0f} and {bad:.0f} s on")
+
+    def verify(self) -> list[str]:
+        """At the end: compare the digests of the vehicle's state and of every channel."""
+        end = self.recording.end
+        if end is None or not self.is_over:
+            return self.astray
+        if end["state"] != of_state(self.simulation) and "the vehicle's state" not in self._astray:
+            self.astray.append(f"the vehicle's state differs at the end ({end['time_us'] * 1e-6:.3f} s)")
+        now = self.recorder.result()["channels"]
+        other = [number for number, digest in end["channels"].items() if now.get(number) != digest]
+        if other or len(now) != len(end["channels"]):
+            self.astray.append(f"the telemetry of {len(other)} of {len(end['channels'])} channels differs")
+        return self.astray
+
+    # ------------------------------------------------------------------ live from here
+
+    def go_live(self) -> Simulation:
+        """Take the recorded clients away: the vehicle is for others from here on."""
+        bridge = self.simulation.bridge
+        for link in list(self._links.values()):
+            bridge.remove_link(link)
+        self._links.clear()
+        self._peers.clear()
+        bridge.free_clock()
+        bridge.dropped.clear()  # of the recorded clients: nobody waits to hear of them
+        return self.simulation
+
+    def close(self, stopped: str = "") -> None:
+        """Close the simulation, and the recording of the replay if there is one."""
+        self.recorder.stopped = stopped or (self.recording.end or {}).get("stopped", "ended")
+        self.simulation.close()
+        if self._scratch is not None:
+            self._scratch.cleanup()
+
+
+def asks_for_logs(recording: Recording) -> bool:
+    """Whether a client asked for on-board logs: what it was sent depends on them."""
+    splitters: dict[int, Splitter] = defaultdict(Splitter)
+    return any(
+        frame.kind.name.startswith("LOG_REQUEST")
+        for entry in recording.entries
+        if entry.kind is Kind.HEARD
+        for frame in splitters[entry.number].feed(entry.data)
+    )
+
+
+def _title(recording: Recording) -> str:
+    return f"recording {str(recording.path)!r}"
+
+
+def _build(
+    recording: Recording,
+    frame: str | Airframe | None,
+    world: str | Path | World | None,
+    physics: str | None,
+    core: Core | None,
+    progress: Progress | None,
+) -> Simulation:
+    """The vehicle of a recording, at power-on."""
+    header: dict[str, Any] = recording.header
+    title = _title(recording)
+    physics = physics or header["physics"]
+    if is_remote(physics):
+        raise RecordingError(
+            f"{title}: its physics was at the other end of a link ({physics}), and what came from there is not in it; "
+            "give --physics NAME to fly it on an engine of this machine"
+        )
+    frame = frame or header["frame"]
+    if frame is None:
+        raise RecordingError(
+            f"{title}: its airframe {header['airframe']['name']!r} was made by a program; give it: --frame FILE"
+        )
+    if world is None and header["world"] is not None:
+        world = header["world"]["file"]
+        if world is None:
+            raise RecordingError(
+                f"{title}: its world {header['world']['name']!r} was made by a program; give it: --world FILE"
+            )
+    start = header["start"]
+    try:
+        return Simulation(
+            frame,
+            home=tuple(header["home"]),
+            seed=header["seed"],
+            estimator=header["estimator"],
+            params=header["params"],
+            core=core,
+            progress=progress,
+            world=world,
+            start=tuple(start) if isinstance(start, list) else start,
+            physics=physics,
+        )
+    except AirframeError as error:
+        raise RecordingError(f"{title}: {error}; --frame FILE gives another") from None
+    except WorldError as error:
+        raise RecordingError(f"{title}: {error}; --world FILE gives another") from None

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is wrong with a file is said with its name and the place."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from recorded_flights import Recorded
+
+from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
+from sitl.recording.entries import Entry, Kind, decode, encode, read_varint, varint
+from sitl.recording.error import RecordingError
+from sitl.recording.recorder import Recorder
+from sitl.recording.recording import read
+from sitl.recording.replay import Replay
+from sitl.simulation import Core, Simulation
+
+ENTRIES_OF_ANY_KIND = st.lists(
+    st.tuples(st.integers(0, 2**40), st.sampled_from(Kind), st.integers(0, 2**30), st.binary(max_size=300))
+)
+
+
+@given(ENTRIES_OF_ANY_KIND)
+def test_entries_survive_being_written(rows: list[tuple[int, Kind, int, bytes]]) -> None:
+    entries = [Entry(*row) for row in sorted(rows, key=lambda row: row[0])]
+    before, raw = 0, b""
+    for entry in entries:
+        raw += encode(entry, before)
+        before = entry.time_us
+    assert list(decode(raw, 0)) == entries
+    if raw:
+        with pytest.raises(ValueError):
+            list(decode(raw[:-1], 0))
+            raise ValueError  # cut between two entries: fewer of them
+
+
+@given(st.integers(0, 2**63))
+def test_numbers(value: int) -> None:
+    assert read_varint(varint(value), 0) == (value, len(varint(value)))
+
+
+def test_cut_anywhere(hopped: Recorded, tmp_path: Path) -> None:
+    data = hopped.path.read_bytes()
+    cut = tmp_path / "cut.rec"
+    for size in range(0, len(data), 97):
+        cut.write_bytes(data[:size])
+        with pytest.raises(
+            RecordingError, match=r"cut\.rec.*(empty|no recording|cut short|nothing of it|ends at byte)"
+        ):
+            read(cut)
+
+
+def test_damaged_anywhere(hopped: Recorded, tmp_path: Path) -> None:
+    data = bytearray(hopped.path.read_bytes())
+    bad = tmp_path / "bad.rec"
+    for at in range(0, len(data), 61):
+        data[at] ^= 0x10
+        bad.write_bytes(data)
+        with pytest.raises(RecordingError, match=r"bad\.rec"):
+            read(bad)
+        data[at] ^= 0x10
+    bad.write_bytes(data + b"more")
+    with pytest.raises(RecordingError, match=f"4 bytes follow its end at byte {len(data)}"):
+        read(bad)
+
+
+def test_the_place_of_damage_is_named(hopped: Recorded, tmp_path: Path) -> None:
+    data = bytearray(hopped.path.read_bytes())
+    blocks = list(BlockReader(hopped.path))
+    data[blocks[1].at + 40] ^= 1
+    bad = tmp_path / "bad.rec"
+    bad.write_bytes(data)
+    with pytest.raises(RecordingError, match=f"block 1 at byte {blocks[1].at} of {len(data)} does not match its check"):
+        read(bad)
+
+
+def test_foreign_files(tmp_path: Path) -> None:
+    file = tmp_path / "x.rec"
+    file.write_bytes(b"QGC WPL 110\n0 1 ...")
+    assert not is_recording(file)
+    with pytest.raises(RecordingError, match="no recording of a run: it begins with b'QGC WPL '"):
+        read(file)
+    file.write_bytes(MARK + b"\x07rest")
+    with pytest.raises(RecordingError, match="format 7; this program reads format 1"):
+        read(file)
+    with pytest.raises(RecordingError, match="cannot be read: No such file"):
+        read(tmp_path / "absent.rec")
+
+
+def test_a_header_that_misses_something(tmp_path: Path) -> None:
+    writer = BlockWriter(tmp_path / "x.rec")
+    writer.write(HEADER, json.dumps({"version": {}}).encode())
+    writer.write(END, b"{}")
+    writer.close()
+    with pytest.raises(RecordingError, match="block at byte 12: it misses airframe, epoch_us"):
+        read(tmp_path / "x.rec")
+
+
+def test_a_killed_run_can_be_flown_as_far_as_it_was_written(core: Core, tmp_path: Path) -> None:
+    from sitl.bridge.client import Client
+
+    path = tmp_path / "killed.rec"
+    simulation = Simulation(core=core)
+    recorder = Recorder(simulation, path, flush_us=1_000_000)
+    client = Client()
+    simulation.bridge.add_link(client.link)
+    for _ in range(25):
+        client.send("HEARTBEAT", type=6, autopilot=8)
+        simulation.advance(1.0)
+    assert recorder.path == path  # nothing is closed: as after SIGKILL
+    with pytest.raises(RecordingError, match=r"without its end mark; its run was killed.*goes up to 24\.000 s"):
+        read(path)
+    recording = read(path, unfinished=True)
+    assert sum(entry.kind is Kind.HEARD for entry in recording.entries) == 25
+    replay = Replay(recording, core=core)
+    assert replay.run() == [] and replay.simulation.time_us == 24_000_000
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"frame": "gone.py"}, "airframe file 'gone.py' cannot be read: No such file.*--frame FILE gives another"),
+        ({"frame": None}, "airframe 'erle_copter' was made by a program; give it: --frame FILE"),
+        ({"world": {"file": "gone.toml", "name": "w", "digest": ""}}, "world file 'gone.toml' cannot be read.*--world"),
+        ({"physics": "hil:tcp:127.0.0.1:1"}, "its physics was at the other end of a link"),
+    ],
+)
+def test_what_cannot_be_made_again(hopped: Recorded, core: Core, change: dict[str, object], message: str) -> None:
+    recording = read(hopped.path)
+    recording.header.update(change)
+    with pytest.raises(RecordingError, match=f"hop.rec.*{message}"):
+        Replay(recording, core=core)
+
+
+def test_entries_that_contradict_each_other(hopped: Recorded, core: Core) -> None:
+    for entry in (Entry(5, Kind.HEARD, 77, b"x"), Entry(5, Kind.UNLINK, 9), Entry(5, Kind.CAME, 3, b"\x07")):
+        recording = read(hopped.path)
+        recording.entries.insert(1, entry)
+        with pytest.raises(RecordingError, match=r"hop\.rec': at 0\.000 s"):
+            Replay(recording, core=core).run()
+    recording = read(hopped.path)
+    del recording.header["version"]["sources"]
+    with pytest.raises(RecordingError, match="what it was made of cannot be understood: KeyError"):
+        Replay(recording, core=core)
+
+
+def test_another_version_is_flown_and_named(hopped: Recorded, core: Core) -> None:
+    recording = read(hopped.path)
+    recording.header["version"]["sources"]["bridge"] = "0"
+    recording.header["version"]["gym-sitl"] = "0.0"
+    recording.header["airframe"]["figures"]["mass"] *= 1.01
+    replay = Replay(recording, core=core)
+    assert replay.run() == []
+    assert replay.differences[0] == "other sources of bridge"
+    assert replay.differences[1].startswith("gym-sitl 0.0 then")
+    assert replay.differences[2].startswith("airframe erle_copter: figure mass 1.15")
