@@ -47,6 +47,7 @@ OTHERS = (
     commands.DO_SET_ROI_LOCATION,
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
+    *commands.CAMERA_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME)

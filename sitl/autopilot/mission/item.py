@@ -16,6 +16,7 @@ NAV_LOITER_TIME = 19
 NAV_RETURN_TO_LAUNCH = 20
 NAV_LAND = 21
 NAV_TAKEOFF = 22
+NAV_SPLINE_WAYPOINT = 82
 NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
 CONDITION_DELAY = 112
@@ -30,6 +31,15 @@ DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
 NAV_SET_YAW_SPEED = 213
 DO_GUIDED_LIMITS = 222
+DO_DIGICAM_CONFIGURE = 202
+DO_DIGICAM_CONTROL = 203
+DO_MOUNT_CONTROL = 205
+DO_SET_CAM_TRIGG_DIST = 206
+DO_GIMBAL_MANAGER_PITCHYAW = 1000
+IMAGE_START_CAPTURE = 2000
+IMAGE_STOP_CAPTURE = 2001
+VIDEO_START_CAPTURE = 2500
+VIDEO_STOP_CAPTURE = 2501
 
 GLOBAL, MISSION, RELATIVE, GLOBAL_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT = 0, 2, 3, 5, 6, 10, 11
 """MAV_FRAMEs; MISSION counts as GLOBAL for a command with a place."""
@@ -53,6 +63,7 @@ COMMANDS = {
     NAV_RETURN_TO_LAUNCH: Command("RTL", True, False),
     NAV_LAND: Command("Land", True, True),
     NAV_TAKEOFF: Command("Takeoff", True, True),
+    NAV_SPLINE_WAYPOINT: Command("SplineWP", True, True),
     NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
     NAV_SET_YAW_SPEED: Command("SetYawSpd", True, False),
@@ -67,8 +78,30 @@ COMMANDS = {
     DO_SET_ROI_NONE: Command("SetROI", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
+    DO_DIGICAM_CONFIGURE: Command("DigiCamCfg", False, False),
+    DO_DIGICAM_CONTROL: Command("DigiCamCtrl", False, False),
+    DO_MOUNT_CONTROL: Command("MountControl", False, False),
+    DO_SET_CAM_TRIGG_DIST: Command("SetCamTrigDst", False, False),
+    DO_GIMBAL_MANAGER_PITCHYAW: Command("GimbalPitchYaw", False, False),
+    IMAGE_START_CAPTURE: Command("ImageStartCapture", False, False),
+    IMAGE_STOP_CAPTURE: Command("ImageStopCapture", False, False),
+    VIDEO_START_CAPTURE: Command("VideoStartCapture", False, False),
+    VIDEO_STOP_CAPTURE: Command("VideoStopCapture", False, False),
 }
-"""Every command that a firmware takes; ``commands.Commands.taken`` says which does."""
+"""Every command that mission files may hold; ``commands.Commands.taken`` says which a firmware takes."""
+
+CAMERA_COMMANDS = (
+    DO_DIGICAM_CONFIGURE,
+    DO_DIGICAM_CONTROL,
+    DO_MOUNT_CONTROL,
+    DO_SET_CAM_TRIGG_DIST,
+    DO_GIMBAL_MANAGER_PITCHYAW,
+    IMAGE_START_CAPTURE,
+    IMAGE_STOP_CAPTURE,
+    VIDEO_START_CAPTURE,
+    VIDEO_STOP_CAPTURE,
+)
+"""Taken, as surveys hold them, and without effect: no vehicle here has a camera."""
 
 RELATIVE_FRAMES = (RELATIVE, RELATIVE_INT)
 TERRAIN_FRAMES = (TERRAIN, TERRAIN_INT)

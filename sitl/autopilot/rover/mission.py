@@ -44,6 +44,7 @@ OTHERS = (
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
     commands.DO_GUIDED_LIMITS,
+    *commands.CAMERA_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 

@@ -47,6 +47,8 @@ class RoverPlanner(Planner):
         """With today's limits."""
         waypoint.set_limits(ap)
         super().begin(ap, time_us, target)
+        if ap.modes.nav.joined != 0 and ap.modes.nav.current.top_speed != ap.control.position.speed_max:
+            self.change_speed(ap)  # it was planned ahead, before the mission changed the speed
         waypoint.begin_leg(ap, time_us)
 
     def look_ahead(self, ap: Any, target: Point | None) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 DEFAULTS: dict[str, float] = {
     "EK3_VELD_M_NSE": 0.7,
     "EK3_VELNE_M_NSE": 0.5,
+    "LOG_BITMASK": 65535,
     "MAV1_EXTRA1": 1,
     "MAV1_EXTRA2": 1,
     "MAV1_EXTRA3": 1,

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mission files: "QGC WPL 110" text and QGroundControl's .plan, read and written.
+
+https://mavlink.io/en/file_formats/,
+https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
+"""
+
+from .document import Complex, FenceCircle, FencePolygon, MissionFile, RallyPoint
+from .mistakes import MissionFileError
+from .splines import straightened
+from .store import load, save
+
+__all__ = [
+    "Complex",
+    "FenceCircle",
+    "FencePolygon",
+    "MissionFile",
+    "MissionFileError",
+    "RallyPoint",
+    "load",
+    "save",
+    "straightened",
+]

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Complex items of plans: surveys, corridors and structures, as the items that they stand for.
+
+QGroundControl stores the items of surveys and corridors (``TransectStyleComplexItem.Items``); those are flown. Where
+they are missing, and for structures, the path is made here: the path only, a camera is not triggered.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sitl.autopilot.mission.item import GLOBAL, NAV_WAYPOINT, RELATIVE, TERRAIN, MissionItem
+from sitl.autopilot.mission.validate import HIGHEST, MAX_ITEMS
+
+from .items import make
+from .json_reader import Node
+from .plane import Plane, Point, area, shifted
+from .transects import FROM_END, FROM_RIGHT, across_polygon, along_corridor, there_and_back
+
+SURVEY, CORRIDOR, STRUCTURE = "survey", "CorridorScan", "StructureScan"
+KINDS = (SURVEY, CORRIDOR, STRUCTURE)
+LANDINGS = {"fwLandingPattern": "fixed-wing aircraft", "vtolLandingPattern": "VTOL aircraft"}
+STYLE = "TransectStyleComplexItem"
+FRAMES = {1: RELATIVE, 2: GLOBAL, 3: RELATIVE, 4: TERRAIN}
+"""Of CameraCalc.DistanceMode; 3, heights above terrain worked out by the ground station: here the ground is flat."""
+FARTHEST = 1e5
+"""Greatest width, spacing, turnaround [m]."""
+ENTRIES = (FROM_END, FROM_END | FROM_RIGHT, 0, FROM_RIGHT)
+"""Of entryLocation: top left, top right, bottom left, bottom right, when lines run upwards."""
+
+
+def kind(entry: Node) -> str:
+    """Which complex item it is.
+
+    Raises:
+        MissionFileError: none that copters or rovers fly.
+    """
+    found = entry["complexItemType"]
+    name = found.text
+    if name in LANDINGS:
+        raise found.fail(f"{name!r} is a landing of {LANDINGS[name]}; copters and rovers fly {', '.join(KINDS)}")
+    if name not in KINDS:
+        raise found.fail(f"{name!r} is not one of {', '.join(KINDS)}")
+    return name
+
+
+def stored(entry: Node) -> list[Node] | None:
+    """The items that the ground station stored; None when there are none."""
+    if kind(entry) == STRUCTURE or STYLE not in entry:
+        return None
+    items = entry[STYLE].get("Items", [])
+    return list(items) or None
+
+
+def expand(entry: Node) -> list[MissionItem]:
+    """The path that a complex item describes, as waypoints."""
+    makers = {SURVEY: _survey, CORRIDOR: _corridor, STRUCTURE: _structure}
+    return makers[kind(entry)](entry)
+
+
+def _survey(entry: Node) -> list[MissionItem]:
+    style = entry[STYLE]
+    plane, polygon = _polygon(entry)
+    spacing, turnaround = _spacing(style), style.get("TurnAroundDistance", 0.0).number(0.0, FARTHEST)
+    heading = math.radians(entry.get("angle", 0.0).number(-360.0, 360.0))
+    start = ENTRIES[entry.get("entryLocation", 0).whole(0, 1, 2, 3)]
+    alternate = entry.get("flyAlternateTransects", False).flag
+    path: list[Point] = []
+    for turn in (0.0, math.pi / 2.0) if style.get("Refly90Degrees", False).flag else (0.0,):
+        _limit(entry, max(math.dist(a, b) for a in polygon for b in polygon) / spacing)
+        lines = across_polygon(polygon, spacing, heading + turn)
+        path += there_and_back(lines, start, turnaround, alternate)
+    if not path:
+        raise entry["polygon"].fail("no line crosses it: its corners lie on one line")
+    height, frame = _height(style)
+    return [_waypoint(plane, point, height, frame, entry) for point in path]
+
+
+def _corridor(entry: Node) -> list[MissionItem]:
+    style = entry[STYLE]
+    places = [corner.place() for corner in entry["polyline"]]
+    if len(places) < 2:
+        raise entry["polyline"].fail(f"{len(places)} places; a corridor has two or more")
+    plane = Plane(places[0])
+    spacing, turnaround = _spacing(style), style.get("TurnAroundDistance", 0.0).number(0.0, FARTHEST)
+    width = entry["CorridorWidth"].number(0.0, FARTHEST)
+    _limit(entry, width / spacing * len(places))
+    lines = along_corridor([plane.point(place) for place in places], width, spacing)
+    path = there_and_back(lines, entry.get("EntryPoint", 0).whole(0, 1, 2, 3), turnaround)
+    height, frame = _height(style)
+    return [_waypoint(plane, point, height, frame, entry) for point in path]
+
+
+def _structure(entry: Node) -> list[MissionItem]:
+    """Round a structure at a distance, layer by layer, beginning and ending over its first corner."""
+    plane, polygon = _polygon(entry)
+    camera = entry["CameraCalc"]
+    if area(polygon) > 0.0:  # to its left is outside
+        polygon = [polygon[0], *polygon[:0:-1]]
+    ring = shifted(polygon, camera["DistanceToSurface"].number(0.0, FARTHEST), closed=True)
+    layer = camera["AdjustedFootprintFrontal"].number(0.01, FARTHEST)
+    if "ScanBottomAlt" in entry:  # version 3
+        bottom, top = entry["ScanBottomAlt"].number(-HIGHEST, HIGHEST), entry["StructureHeight"].number(0.0, HIGHEST)
+        entrance = entry["EntranceAltitude"].number(-HIGHEST, HIGHEST)
+        falls, frame = entry.get("StartFromTop", False).flag, RELATIVE
+    else:
+        bottom = entrance = entry["Altitude"].number(-HIGHEST, HIGHEST)
+        top, falls = bottom, False
+        frame = RELATIVE if entry.get("altitudeRelative", True).flag else GLOBAL
+    layers = entry["Layers"].number(1.0, MAX_ITEMS)
+    _limit(entry, layers * (len(ring) + 1))
+    heights = [top - layer * (k + 0.5) if falls else bottom + layer * (k + 0.5) for k in range(int(layers))]
+    around = [(point, height) for height in heights for point in (*ring, ring[0])]
+    path = [(ring[0], entrance), *around, (ring[0], entrance)]
+    return [_waypoint(plane, point, height, frame, entry) for point, height in path]
+
+
+def _polygon(entry: Node) -> tuple[Plane, list[Point]]:
+    places = [corner.place() for corner in entry["polygon"]]
+    if len(places) < 3:
+        raise entry["polygon"].fail(f"{len(places)} corners; a polygon has three or more")
+    plane = Plane(places[0])
+    return plane, [plane.point(place) for place in places]
+
+
+def _spacing(style: Node) -> float:
+    """Distance of neighbouring lines [m]."""
+    return style["CameraCalc"]["AdjustedFootprintSide"].number(0.01, FARTHEST)
+
+
+def _height(style: Node) -> tuple[float, int]:
+    """Height of a flat path [m] and its frame."""
+    camera = style["CameraCalc"]
+    height = camera["DistanceToSurface"].number(-HIGHEST, HIGHEST)
+    if "DistanceMode" in camera:
+        return height, FRAMES[camera["DistanceMode"].whole(*FRAMES)]
+    return height, RELATIVE if camera.get("DistanceToSurfaceRelative", True).flag else GLOBAL
+
+
+def _limit(entry: Node, lines: float) -> None:
+    """Refuse what would be more items than a mission holds."""
+    if lines > MAX_ITEMS:
+        raise entry.fail(f"about {lines:.0f} lines or corners; a mission holds {MAX_ITEMS} items")
+
+
+def _waypoint(plane: Plane, point: Point, height: float, frame: int, entry: Node) -> MissionItem:
+    lat, lon = plane.place(point)
+    return make(NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, math.nan, lat, lon, height), 1, entry.where)

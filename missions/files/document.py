@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a mission file holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from sitl.autopilot.mission.item import NAV_LAND, NAV_TAKEOFF
+from sitl.autopilot.mission.mission import Mission
+
+FIXED_WING, QUADROTOR, GROUND_ROVER, BOAT = 1, 2, 10, 11
+"""MAV_TYPE"""
+MULTIROTORS = (QUADROTOR, 13, 14, 15, 29, 35)
+"""MAV_TYPEs that a copter's firmware flies: quadrotor, hexarotor, octorotor, tricopter, dodecarotor, decarotor."""
+KIND_OF_TYPE = {**dict.fromkeys(MULTIROTORS, "copter"), GROUND_ROVER: "rover", BOAT: "rover"}
+TYPE_OF_KIND = {"copter": QUADROTOR, "rover": GROUND_ROVER}
+ARDUPILOT = 3
+"""MAV_AUTOPILOT_ARDUPILOTMEGA"""
+
+Place = tuple[float, float]
+"""Latitude, longitude [deg]."""
+
+
+@dataclass(frozen=True)
+class FenceCircle:
+    """A geofence circle."""
+
+    centre: Place
+    radius: float
+    """[m]"""
+    inclusion: bool = True
+    """To stay inside; else to stay out."""
+
+
+@dataclass(frozen=True)
+class FencePolygon:
+    """A geofence polygon."""
+
+    corners: tuple[Place, ...]
+    inclusion: bool = True
+
+
+@dataclass(frozen=True)
+class RallyPoint:
+    """A place to return to instead of home."""
+
+    place: Place
+    height: float
+    """Above home [m]."""
+
+
+@dataclass(frozen=True)
+class Complex:
+    """A complex item of a plan (survey, corridor, structure), and which items of the mission are its."""
+
+    kind: str
+    """"survey", "CorridorScan" or "StructureScan"."""
+    first: int
+    """Number of its first item in the mission."""
+    count: int
+    entry: Mapping[str, Any]
+    """As the plan has it."""
+    stored: bool
+    """Its items were in the file; else they were made here."""
+
+
+@dataclass(frozen=True)
+class MissionFile:
+    """A mission with what a plan says besides. Item 0 of the mission is home, (0, 0) when the file does not know it."""
+
+    mission: Mission
+    name: str = "mission"
+    """Path, for messages."""
+    vehicle_type: int | None = None
+    """MAV_TYPE; None: the format does not say."""
+    firmware_type: int = ARDUPILOT
+    """MAV_AUTOPILOT"""
+    cruise_speed: float | None = None
+    """Of vehicles on wings or wheels [m/s]; a ground station plans with it, no item carries it."""
+    hover_speed: float | None = None
+    """Of multirotors [m/s]."""
+    circles: tuple[FenceCircle, ...] = ()
+    polygons: tuple[FencePolygon, ...] = ()
+    breach_return: tuple[float, float, float] | None = None
+    """Where to after leaving the fence: degrees, m above home."""
+    rally: tuple[RallyPoint, ...] = ()
+    complexes: tuple[Complex, ...] = ()
+
+    @property
+    def home(self) -> tuple[float, float, float] | None:
+        """Planned home: latitude, longitude [deg], altitude above mean sea level [m]; None when the file has none."""
+        if not self.mission.items or self.mission.items[0].no_place:
+            return None
+        first = self.mission.items[0]
+        return (first.x * 1e-7, first.y * 1e-7, first.z)
+
+    @property
+    def kind(self) -> str | None:
+        """ "copter" or "rover"; None when neither the file nor its items tell."""
+        if self.vehicle_type is not None and self.vehicle_type in KIND_OF_TYPE:
+            return KIND_OF_TYPE[self.vehicle_type]
+        flies = any(item.command in (NAV_TAKEOFF, NAV_LAND) for item in self.mission.items)
+        return "copter" if flies else None
+
+    @property
+    def has_fence_or_rally(self) -> bool:
+        """Whether it holds more than a mission."""
+        return bool(self.circles or self.polygons or self.rally)
+
+    def simple(self) -> MissionFile:
+        """The same with the items of complex ones standing on their own."""
+        return replace(self, complexes=())

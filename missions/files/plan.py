@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""QGroundControl plans (JSON).
+
+https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
+"""
+
+from __future__ import annotations
+
+import json
+import math
+
+from sitl.autopilot.mission.item import COMMANDS, DO_JUMP, GLOBAL, NAV_WAYPOINT, RELATIVE, MissionItem
+from sitl.autopilot.mission.mission import Mission, MissionError
+
+from . import complex_items
+from .document import ARDUPILOT, Complex, FenceCircle, FencePolygon, MissionFile, RallyPoint
+from .items import make
+from .json_reader import Node
+from .mistakes import MissionFileError
+
+FARTHEST = 1e6
+"""Greatest radius of a fence, greatest height of a rally point [m]."""
+ABOVE_TERRAIN = 3
+"""AltitudeMode of a height above terrain; the ground station works out what it is above sea level."""
+
+
+def parse(text: str, name: str = "mission") -> MissionFile:
+    """The mission of a plan, home first, complex items as the items they stand for; fence and rally points.
+
+    Raises:
+        MissionFileError: names the member of the document.
+    """
+    try:
+        document = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise MissionFileError(f"{name}:{error.lineno}: {error.msg} (column {error.colno})") from None
+    except RecursionError:
+        raise MissionFileError(f"{name}: lists within lists without end") from None
+    except ValueError as error:  # a whole number of more digits than Python takes
+        raise MissionFileError(f"{name}: {str(error).partition(':')[0]}") from None
+    top = Node(document, name)
+    if not isinstance(document, dict) or document.get("fileType") != "Plan":
+        found = document.get("fileType") if isinstance(document, dict) else None
+        raise top.fail(f"fileType is {found!r}: not a plan of QGroundControl ('Plan')")
+    Node(top["version"].value, f"{name}: version").whole(1)
+    found = Node(top["mission"].value, f"{name}: mission")
+    found["version"].whole(2)
+    items, complexes = _mission(found)
+    try:
+        mission = Mission.of(items)
+    except MissionError as error:
+        raise found.fail(str(error)) from None
+    fence = Node(top.get("geoFence", {}).value, f"{name}: geoFence")
+    rally = Node(top.get("rallyPoints", {}).value, f"{name}: rallyPoints")
+    return MissionFile(
+        mission,
+        name,
+        vehicle_type=found["vehicleType"].whole() if "vehicleType" in found else None,
+        firmware_type=found.get("firmwareType", ARDUPILOT).whole(),
+        cruise_speed=found["cruiseSpeed"].number(0.0) if "cruiseSpeed" in found else None,
+        hover_speed=found["hoverSpeed"].number(0.0) if "hoverSpeed" in found else None,
+        circles=tuple(_circle(entry) for entry in fence.get("circles", [])),
+        polygons=tuple(_polygon(entry) for entry in fence.get("polygons", [])),
+        breach_return=_point(fence["breachReturn"]) if "breachReturn" in fence else None,
+        rally=tuple(RallyPoint(_point(p)[:2], _point(p)[2]) for p in rally.get("points", [])),
+        complexes=tuple(complexes),
+    )
+
+
+def _mission(found: Node) -> tuple[list[MissionItem], list[Complex]]:
+    """Home and the items of the object "mission"."""
+    home = tuple(0.0 if math.isnan(v) else v for v in found.get("plannedHomePosition", [0.0, 0.0, 0.0]).numbers(3))
+    where = found.get("plannedHomePosition", None).where
+    items = [make(NAV_WAYPOINT, GLOBAL, (0.0, 0.0, 0.0, 0.0, *home), 1, where)]
+    complexes: list[Complex] = []
+    numbers: dict[int, int] = {}
+    """doJumpId -> number of the item."""
+    inner: dict[int, int] = {}
+    """The same of items within complex ones, which some programs number for themselves."""
+    jumps: list[tuple[int, Node]] = []
+    for entry in found["items"]:
+        kind = entry["type"].text
+        if kind == "SimpleItem":
+            _add(items, entry, numbers, jumps)
+        elif kind == "ComplexItem":
+            first = len(items)
+            stored = complex_items.stored(entry)
+            if stored is not None:
+                for part in stored:
+                    _add(items, part, inner, jumps)
+            else:
+                items += complex_items.expand(entry)
+            name = entry["complexItemType"].text
+            complexes.append(Complex(name, first, len(items) - first, entry.value, stored is not None))
+        else:
+            raise entry["type"].fail(f"{kind!r} is not 'SimpleItem' or 'ComplexItem'")
+    for seq, entry in jumps:
+        target, known = items[seq].p1, {**inner, **numbers}
+        if target not in known:
+            raise entry["params"].fail(f"DO_JUMP to {target:g}: no item has this doJumpId")
+        items[seq] = items[seq]._replace(p1=float(known[int(target)]))
+    return items, complexes
+
+
+def _add(items: list[MissionItem], entry: Node, numbers: dict[int, int], jumps: list[tuple[int, Node]]) -> None:
+    """The next item, of an entry of type SimpleItem."""
+    item = simple(entry)
+    if "doJumpId" in entry:
+        numbers.setdefault(entry["doJumpId"].whole(), len(items))
+    else:
+        numbers.setdefault(len(items), len(items))
+    if item.command == DO_JUMP:
+        jumps.append((len(items), entry))
+    items.append(item)
+
+
+def simple(entry: Node) -> MissionItem:
+    """Item of an entry of type SimpleItem.
+
+    A place or a parameter of a do-command that is null counts as 0, as a parameter of a navigation command as NaN,
+    "keep the heading". The frame says what the altitude counts from; AltitudeMode says how it was entered. It counts
+    only where the ground station did not know the terrain yet: the altitude is null then, and Altitude is meant.
+    """
+    values = entry["params"].numbers(7)
+    command, frame = entry["command"].whole(), entry["frame"].whole()
+    if math.isnan(values[6]) and entry.get("AltitudeMode", 0).value == ABOVE_TERRAIN and "Altitude" in entry:
+        values, frame = (*values[:6], entry["Altitude"].number()), RELATIVE  # the ground is flat, as high as home
+    is_nav = command in COMMANDS and COMMANDS[command].is_nav
+    clean = [0.0 if math.isnan(v) and (k >= 4 or not is_nav) else v for k, v in enumerate(values)]
+    return make(command, frame, tuple(clean), int(entry.get("autoContinue", True).flag), entry.where)
+
+
+def _circle(entry: Node) -> FenceCircle:
+    circle = entry["circle"]
+    return FenceCircle(circle["center"].place(), circle["radius"].number(0.0, FARTHEST), _included(entry))
+
+
+def _polygon(entry: Node) -> FencePolygon:
+    corners = tuple(corner.place() for corner in entry["polygon"])
+    if len(corners) < 3:
+        raise entry["polygon"].fail(f"{len(corners)} corners; a polygon has three or more")
+    return FencePolygon(corners, _included(entry))
+
+
+def _included(entry: Node) -> bool:
+    return entry.get("inclusion", True).flag
+
+
+def _point(entry: Node) -> tuple[float, float, float]:
+    """[latitude, longitude, height]."""
+    if not isinstance(entry.value, list) or len(entry.value) != 3:
+        raise entry.fail("expected [latitude, longitude, height]")
+    height = list(entry)[2]
+    return (*entry.place(), height.number(-FARTHEST, FARTHEST))

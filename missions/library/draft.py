@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A mission drawn in metres north and east of its home."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from sitl.autopilot.mission import item as c
+from sitl.autopilot.mission.item import MissionItem
+from sitl.autopilot.mission.mission import Mission
+from sitl.core.geodesy import add_offset
+from sitl.physics.native.power_on import DEFAULT_HOME
+
+from ..files import FenceCircle, FencePolygon, MissionFile, RallyPoint, complex_items
+from ..files.document import TYPE_OF_KIND, Complex
+from ..files.json_reader import Node
+
+LAT, LON, ALT, _ = DEFAULT_HOME
+Place = tuple[float, float]
+
+
+def degrees(north: float, east: float) -> Place:
+    """Latitude and longitude [deg] of a place."""
+    lat, lon = add_offset(round(LAT * 1e7), round(LON * 1e7), north, east)
+    return (round(lat) * 1e-7, round(lon) * 1e-7)
+
+
+class Draft:
+    """A mission that grows item by item; each method gives the draft back."""
+
+    def __init__(self, kind: str, description: str, *, text: bool = False, **index: Any) -> None:
+        self.kind, self.description, self.index = kind, description, index
+        self.suffix = ".waypoints" if text else ".plan"
+        """Its format."""
+        self.speed: float | None = None
+        """[m/s]; None: the airframe's own."""
+        self._items = [c.home_item(round(LAT * 1e7), round(LON * 1e7), ALT)]
+        self._complexes: list[Complex] = []
+        self._fence: dict[str, Any] = {}
+
+    @property
+    def next(self) -> int:
+        """Number of the item that comes next."""
+        return len(self._items)
+
+    def add(
+        self, command: int, *params: float, at: Place | None = None, z: float = 0.0, frame: int = c.RELATIVE
+    ) -> Draft:
+        """Any command; ``at`` metres north and east of home."""
+        p1, p2, p3, p4 = (*params, *(0.0,) * (4 - len(params)))
+        x, y = (round(v * 1e7) for v in degrees(*at)) if at is not None else (0, 0)
+        self._items.append(MissionItem(command, frame, p1, p2, p3, p4, x, y, z))
+        return self
+
+    def take_off(self, height: float) -> Draft:
+        """Straight up."""
+        return self.add(c.NAV_TAKEOFF, z=height)
+
+    def to(self, *places: tuple[float, ...], z: float = 0.0, wait: float = 0.0, frame: int = c.RELATIVE) -> Draft:
+        """Waypoints (north, east[, height])."""
+        for place in places:
+            self.add(c.NAV_WAYPOINT, wait, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z, frame=frame)
+        return self
+
+    def curve(self, *places: tuple[float, ...], z: float = 0.0) -> Draft:
+        """Spline waypoints."""
+        for place in places:
+            self.add(c.NAV_SPLINE_WAYPOINT, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z)
+        return self
+
+    def land(self, at: Place | None = None) -> Draft:
+        """Land, at a place or where it is."""
+        return self.add(c.NAV_LAND, at=at)
+
+    def home(self) -> Draft:
+        """Return to launch."""
+        return self.add(c.NAV_RETURN_TO_LAUNCH)
+
+    def pace(self, speed: float) -> Draft:
+        """Ground speed from here on [m/s]."""
+        self.speed = self.speed or speed
+        return self.add(c.DO_CHANGE_SPEED, 1.0, speed, -1.0)
+
+    def jump(self, seq: int, times: int) -> Draft:
+        """Back to an item, so many times."""
+        return self.add(c.DO_JUMP, float(seq), float(times))
+
+    def complex(self, entry: dict[str, Any]) -> Draft:
+        """A survey, corridor or structure, of its description."""
+        node = Node({"type": "ComplexItem", **entry}, "draft")
+        items = complex_items.expand(node)
+        self._complexes.append(Complex(complex_items.kind(node), self.next, len(items), node.value, False))
+        self._items += items
+        return self
+
+    def fence(self, **parts: Any) -> Draft:
+        """Geofence and rally points."""
+        self._fence = parts
+        return self
+
+    def file(self) -> MissionFile:
+        """The mission file."""
+        return MissionFile(
+            Mission.of(self._items),
+            vehicle_type=TYPE_OF_KIND[self.kind],
+            cruise_speed=self.speed or (1.2 if self.kind == "rover" else 10.0),
+            hover_speed=self.speed or 5.0,
+            complexes=tuple(self._complexes),
+            **self._fence,
+        )
+
+
+def transects(spacing: float, height: float, turnaround: float = 0.0) -> dict[str, Any]:
+    """The part that surveys and corridors share."""
+    return {
+        "CameraCalc": {
+            "AdjustedFootprintFrontal": spacing,
+            "AdjustedFootprintSide": spacing,
+            "CameraName": "Manual (no camera specs)",
+            "DistanceMode": 1,
+            "DistanceToSurface": height,
+            "version": 2,
+        },
+        "CameraShots": 0,
+        "CameraTriggerInTurnAround": False,
+        "HoverAndCapture": False,
+        "Items": [],
+        "Refly90Degrees": False,
+        "TurnAroundDistance": turnaround,
+        "VisualTransectPoints": [],
+        "version": 2,
+    }
+
+
+def survey(corners: list[Place], angle: float, style: dict[str, Any], entry: int = 0) -> dict[str, Any]:
+    """A survey of a polygon (metres)."""
+    return {
+        "TransectStyleComplexItem": style,
+        "angle": angle,
+        "complexItemType": "survey",
+        "entryLocation": entry,
+        "flyAlternateTransects": False,
+        "polygon": [list(degrees(*corner)) for corner in corners],
+        "splitConcavePolygons": False,
+        "version": 5,
+    }
+
+
+def circle(centre: Place, radius: float, count: int, start_deg: float = 0.0) -> list[Place]:
+    """Places on a circle, clockwise from a direction."""
+    turns = [math.radians(start_deg + 360.0 * k / count) for k in range(count)]
+    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in turns]
+
+
+__all__ = ["Draft", "FenceCircle", "FencePolygon", "RallyPoint", "circle", "degrees", "survey", "transects"]
