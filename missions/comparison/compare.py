@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether a flight is as golden: figures with their limits, and the first divergence in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sitl.recording import identity
+
+from . import happenings, words
+from .alignment import Pair, pair
+from .flight import Flight
+from .happenings import Happening
+from .series import Differences, Series, measure
+from .tolerance import EVENTS, Tolerance, load
+
+_DECIDED = ("vehicle", "seed", "estimator", "physics", "home", "start")
+_EVENT_TITLES = {"items": "mission items", "modes": "modes", "texts": "texts"}
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One number that is judged."""
+
+    name: str
+    """As tolerances have it, "cross_track.max"."""
+    title: str
+    value: float
+    unit: str
+    limit: float
+    """Infinite: not judged."""
+    at: float | None = None
+    """When the largest was, since the common start [s]."""
+    words: str = ""
+    """Where and how, or what."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether it is within its limit."""
+        return self.value <= self.limit + 1e-9
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether it has a limit."""
+        return math.isfinite(self.limit)
+
+
+@dataclass(frozen=True)
+class Divergence:
+    """Where the new flight leaves golden."""
+
+    t: float
+    """Since the common start [s]."""
+    words: str
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two flights compared."""
+
+    golden: Flight
+    new: Flight
+    pair: Pair
+    tolerance: Tolerance
+    differences: Differences
+    happenings: list[Happening]
+    figures: list[Figure]
+    first: Divergence | None
+    """The first thing beyond its limit."""
+    first_trace: Divergence | None
+    """The first thing beyond rounding."""
+    notes: list[str]
+
+    @property
+    def ok(self) -> bool:
+        """Whether everything is within its limits."""
+        return all(figure.ok for figure in self.figures)
+
+    @property
+    def failed(self) -> list[Figure]:
+        """Figures beyond their limits."""
+        return [figure for figure in self.figures if not figure.ok]
+
+    @property
+    def headline(self) -> str:
+        """The verdict in one line."""
+        if self.ok:
+            return "flies like golden" + ("" if self.first_trace else ", to the last digit of its track")
+        what = self.first.words if self.first else self.failed[0].words
+        return f"does not fly like golden: {what}"
+
+
+def compare(golden: Flight, new: Flight, tolerance: str | Path | Mapping[str, Any] | None = None) -> Comparison:
+    """Compare a new flight with golden.
+
+    Args:
+        golden, new: flights.
+        tolerance: "same", "alike", a TOML file or a mapping of its shape (``tolerance.load``); None: "same" when both
+            are known to be of the same seed, vehicle and world, else "alike".
+
+    Raises:
+        ToleranceError, AlignmentError: there is nothing to compare them by.
+    """
+    limits = load(tolerance if tolerance is not None else default_tolerance(golden, new), golden.track.kind)
+    both = pair(golden.track, new.track, limits.align, golden.coarse or new.coarse)
+    differences = measure(both)
+    events = happenings.compare(both, limits)
+    figures = [figure for series in differences.series for figure in _of_series(both, series, differences, limits)]
+    figures += _totals(both, limits)
+    figures += [figure for kind in EVENTS for figure in _of_events(both, kind, events, limits)]
+    first = _first(both, differences, events, limits, figures)
+    return Comparison(
+        golden, new, both, limits, differences, events, figures, first, _trace(both, differences, events),
+        [*both.notes, *_notes(golden, new)],
+    )  # fmt: skip
+
+
+def default_tolerance(golden: Flight, new: Flight) -> str:
+    """The preset for two flights."""
+    if golden.header is None or new.header is None:
+        return "alike"
+    old, now = golden.header, new.header
+    same = all(old[name] == now[name] for name in _DECIDED) and old["world"] == now["world"]
+    same = same and old["airframe"]["name"] == now["airframe"]["name"]
+    names = {name for name in {*old["params"], *now["params"]} if name.startswith("SIM_")}
+    same = same and all(old["params"].get(name) == now["params"].get(name) for name in names)
+    return "same" if same else "alike"
+
+
+def _of_series(both: Pair, series: Series, differences: Differences, limits: Tolerance) -> list[Figure]:
+    k = series.worst()
+    value, at = series.max, float(series.t[k]) if len(series.t) else 0.0
+    text = f"{words.when(both, at)}: {words.deviation(series, k)}" if value > 0.0 else ""
+    if series.name == "cross_track" and differences.missed.max(initial=0.0) > value + 0.01:
+        g = int(np.argmax(differences.missed))
+        value, at = float(differences.missed[g]), float(both.golden.t[g])
+        north, east = (float(both.golden[name][g]) for name in ("north", "east"))
+        text = f"golden's place {north:.1f} m north, {east:.1f} m east of home (at {at:.1f} s) is passed this far away"
+    found = [
+        Figure(f"{series.name}.max", series.title, value, series.unit, limits.limit(f"{series.name}.max"), at, text)
+    ]
+    if series.name != "delay":
+        name = f"{series.name}.rms"
+        found.append(Figure(name, f"{series.title}, RMS", series.rms, series.unit, limits.limit(name)))
+    return found
+
+
+def _totals(both: Pair, limits: Tolerance) -> list[Figure]:
+    golden, new = both.golden, both.new
+    longer = float(new.t[-1] - golden.t[-1])
+    text = f"{new.t[-1]:.1f} s, golden {golden.t[-1]:.1f} s"
+    found = [Figure("duration.max", "duration", abs(longer), "s", limits.limit("duration.max"), words=text)]
+    old, now = float(golden["energy"][-1]), float(new["energy"][-1])
+    if old > 0.0 and now > 0.0:
+        change = 100.0 * abs(now - old) / old if abs(now - old) > 0.0101 else 0.0
+        text = f"{now:.2f} Wh, golden {old:.2f} Wh"
+        found.append(Figure("energy.max", "energy", change, "%", limits.limit("energy.max"), words=text))
+    return found
+
+
+def _of_events(both: Pair, kind: str, events: list[Happening], limits: Tolerance) -> list[Figure]:
+    limit, title = limits.limit(f"{kind}.time"), _EVENT_TITLES[kind]
+    mine = [event for event in events if event.kind == kind]
+    wrong = [event for event in mine if event.difference(math.inf)]
+    text = "; ".join(words.happening(event, event.difference(math.inf)) for event in wrong[:5])
+    text += f"; and {len(wrong) - 5} more" if len(wrong) > 5 else ""
+    at = wrong[0].time if wrong else None
+    order = 0.0 if math.isfinite(limit) else math.inf
+    found = [Figure(f"{kind}.order", f"{title}: missing or added", float(len(wrong)), "", order, at, text)]
+    worst = max(mine, key=lambda event: abs(event.shift), default=None)
+    late, when, text = 0.0, None, ""
+    if worst is not None and worst.shift:
+        late, when, text = abs(worst.shift), worst.time, words.happening(worst, happenings.SHIFTED)
+    found.append(Figure(f"{kind}.time", f"{title}: time", late, "s", limit, when, text))
+    return found
+
+
+def _first(
+    both: Pair, differences: Differences, events: list[Happening], limits: Tolerance, figures: list[Figure]
+) -> Divergence | None:
+    """The first thing that is beyond its limit, and how far it goes."""
+    found: list[Divergence] = []
+    for series in differences.series:
+        limit = limits.limit(f"{series.name}.max")
+        k = series.first_over(limit)
+        if k is None:
+            continue
+        text = f"{words.when(both, float(series.t[k]))}: {words.deviation(series, k)}"
+        worst = series.worst()
+        if series.max > 1.2 * float(series.size[k]):
+            at = words.when(both, float(series.t[worst]))
+            text += f"; at most {words.number(series.max, series.unit)}, {at}"
+        found.append(Divergence(float(series.t[k]), text))
+    for event in events:
+        limit = limits.limit(f"{event.kind}.time")
+        difference = event.difference(limit)
+        if difference and math.isfinite(limit):
+            at = words.when(both, event.time - 1e-3)
+            found.append(Divergence(event.time, f"{at}: {words.happening(event, difference)}"))
+    if not found:
+        worst_figure = next((figure for figure in figures if not figure.ok), None)
+        if worst_figure is None:
+            return None
+        value, limit_text = (words.number(x, worst_figure.unit) for x in (worst_figure.value, worst_figure.limit))
+        text = f"{worst_figure.title} {value}, {limit_text} allowed"
+        return Divergence(worst_figure.at or 0.0, f"{text} ({worst_figure.words})" if worst_figure.words else text)
+    first = min(found, key=lambda divergence: divergence.t)
+    place = differences["position"]
+    if "of golden" not in first.words and place.first_over(limits.limit("position.max")) is not None:
+        worst = place.worst()
+        far = f"farthest {words.deviation(place, worst)}, {words.when(both, float(place.t[worst]))}"
+        first = Divergence(first.t, f"{first.words}; {far}")
+    return first
+
+
+def _trace(both: Pair, differences: Differences, events: list[Happening]) -> Divergence | None:
+    """The first thing that is not the same."""
+    found = []
+    for series in differences.series:
+        k = series.first_over(series.quantum)
+        if k is not None:
+            t = float(series.t[k])
+            found.append(Divergence(t, f"{words.when(both, t)}: {words.deviation(series, k)}"))
+    for event in events:
+        difference = event.difference(0.0011)
+        if difference:
+            at = words.when(both, event.time - 1e-3)
+            found.append(Divergence(event.time, f"{at}: {words.happening(event, difference)}"))
+    return min(found, key=lambda divergence: divergence.t, default=None)
+
+
+def _notes(golden: Flight, new: Flight) -> list[str]:
+    """What is known of why they differ."""
+    notes = [f"golden: {note}" for note in golden.notes] + [f"new: {note}" for note in new.notes]
+    if golden.header is not None and new.header is not None:
+        notes += [f"differs: {text}" for text in identity.differences(golden.header, new.header)]
+    if golden.digests is not None and new.digests is not None:
+        same = golden.digests["state"] == new.digests["state"]
+        notes.append("the vehicle ends in " + ("the same state, bit for bit" if same else "another state, bit for bit"))
+    return notes

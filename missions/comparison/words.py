@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Says when and how a flight differs: "12.4 s after item 3: 0.8 m east of golden"."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .alignment import START_NAMES, Pair
+from .happenings import ADDED, MISSING, Happening
+from .series import Series
+
+_NED = (("north", "south"), ("east", "west"), ("below", "above"))
+
+
+def when(pair: Pair, t: float) -> str:
+    """A time by what the new flight had done last."""
+    before = [(at, f"item {seq}") for at, seq in pair.new.items if at <= t]
+    before += [(at, f"mode {mode}") for at, mode in pair.new.modes if 0.0 < at <= t]
+    since, what = max(before, default=(0.0, START_NAMES[pair.align]), key=lambda event: event[0])
+    return f"{t - since:.1f} s after {what}"
+
+
+def direction(gap: np.ndarray) -> str:
+    """ "0.80 m east", "0.51 m south and 0.43 m above": the parts that matter of a NED vector [m]."""
+    size = float(np.linalg.norm(gap))
+    parts = [
+        f"{abs(value):.2f} m {names[0 if value > 0 else 1]}"
+        for value, names in zip(gap, _NED, strict=True)
+        if abs(value) >= 0.4 * size
+    ]
+    return " and ".join(parts)
+
+
+def deviation(series: Series, k: int) -> str:
+    """Sample ``k`` of a difference, in words."""
+    value = float(series.values[k])
+    if series.gap is not None:
+        return direction(series.gap[k]) + (" of golden" if series.name == "position" else " of golden's way")
+    size = abs(value)
+    return {
+        "altitude": f"{size:.2f} m {'above' if value > 0 else 'below'} golden's way",
+        "delay": f"{size:.2f} s {'later' if value > 0 else 'earlier'} than golden at the same place",
+        "speed": f"{size:.2f} m/s {'faster' if value > 0 else 'slower'} than golden",
+        "climb": f"climb rate {size:.2f} m/s {'above' if value > 0 else 'below'} golden's",
+        "tilt": f"roll and pitch {size:.1f} deg from golden's",
+        "heading": f"heading {size:.1f} deg {'right' if value > 0 else 'left'} of golden's",
+    }[series.name]
+
+
+def happening(event: Happening, difference: str) -> str:
+    """What is wrong with something that happened."""
+    if difference == MISSING:
+        return f"{event.what} is missing (golden: at {event.golden or 0.0:.1f} s)"
+    if difference == ADDED:
+        return f"{event.what} is new"
+    return f"{event.what} comes {abs(event.shift):.2f} s {'later' if event.shift > 0 else 'earlier'} than in golden"
+
+
+def number(value: float, unit: str) -> str:
+    """A figure with its unit."""
+    if not math.isfinite(value):
+        return "-"
+    digits = 1 if unit == "deg" else 3 if 0.0 < value < 0.1 else 2
+    return f"{value:.{digits}f} {unit}" if unit else f"{value:g}"
