@@ -8,6 +8,8 @@ from hypothesis import HealthCheck, settings
 
 from sitl.simulation import Core, load_core
 
+pytest_plugins = ["pytester"]
+
 # How long an example takes is the machine's business: a busy one must not fail a test.
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("any machine")
