@@ -7,8 +7,6 @@ import contextlib
 import select
 import socket
 
-from sitl.bridge.links.echo import refuse_echo
-
 from ..options import EnvOptionError
 
 FORMS = (
@@ -52,6 +50,8 @@ class SocketEnd:
             if self._stream:
                 self._socket.settimeout(5.0)
                 self._socket.connect(address)
+                from sitl.bridge.links.echo import refuse_echo  # here: importing the package loads nothing of sitl
+
                 refuse_echo(self._socket)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             elif kind == "udpout":
