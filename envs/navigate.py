@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,11 +30,12 @@ class Navigate(gym.Env[Any, Any]):
         world: name (``sitl.worlds.names()``), .toml file or World.
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``) or Observation.
-        action: "discrete", "continuous", or an Action.
+        action: "discrete", "continuous", a table (name of an action -> numbers of its set-point), or an Action.
         setpoint: kind that named actions give, of those the robot takes (``setpoints``); None: its usual one.
         step_time: simulated time of a step [s], exact; None: the robot's.
-        start: name of one of the world's start poses, "random", a pose (x, y, yaw) or (x, y, z, yaw) in the world
-            file's frame [m, rad], or a function of a random generator that gives one; None: the world's for the robot.
+        start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
+            "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
+            or a function of a random generator that gives one; None: the world's for the robot.
         randomise: figure of the robot -> (low, high), drawn for each episode.
         render_mode: "rgb_array", "human" or None.
         robot_options: what this robot takes besides.
@@ -53,7 +54,7 @@ class Navigate(gym.Env[Any, Any]):
         world: str | Path | World = "circuit2",
         task: str | Task = "wander",
         observation: str | Observation = "scan",
-        action: str | Action = "discrete",
+        action: str | Mapping[str, Sequence[float]] | Action = "discrete",
         setpoint: str | None = None,
         step_time: float | None = None,
         start: StartOption | None = None,
@@ -89,6 +90,11 @@ class Navigate(gym.Env[Any, Any]):
     def world(self) -> World:
         """The world."""
         return self._session.robot.world
+
+    @property
+    def session(self) -> Session:
+        """The pieces that this environment is put together of."""
+        return self._session
 
     @property
     def task(self) -> Task:

@@ -77,6 +77,11 @@ class Digits:
         self._plan = (every, when_inf, highest, taken)
         return gym.spaces.MultiDiscrete(np.full(taken, highest + 1))
 
+    @property
+    def plan(self) -> tuple[int, int, int, int]:
+        """Each so-many-th reading, digit of inf, greatest digit, how many digits: known once the space is made."""
+        return self._plan
+
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         every, when_inf, highest, taken = self._plan

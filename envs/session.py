@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,13 +18,13 @@ from sitl import worlds
 from sitl.worlds import World, WorldError
 
 from . import robots
-from .actions import Action
+from .actions import Action, Discrete
 from .observations import OBSERVATIONS, Observation
 from .options import EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise
 from .rewards import ByAction, Step
 from .robots.robot import Robot
-from .setpoints import SETPOINTS, Setpoint
+from .setpoints import SETPOINTS
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
@@ -57,7 +57,7 @@ class Session:
         world: str | Path | World,
         task: str | Task,
         observation: str | Observation,
-        action: str | Action,
+        action: str | Mapping[str, Sequence[float]] | Action,
         setpoint: str | None,
         step_time: float | None,
         start: StartOption | None,
@@ -93,20 +93,22 @@ class Session:
             watch(self.task)
         self.observation_space = self.observation.space(self.robot)
 
-    def _choose_action(self, action: str | Action, setpoint: str | None) -> Action:
+    def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
         robot = self.robot
         kinds = {kind.name: kind for kind in robot.setpoints}
         if setpoint is not None and setpoint not in kinds:
             if setpoint in SETPOINTS:
                 raise EnvOptionError(f"setpoint {setpoint!r}: {robot.name} takes {', '.join(kinds)}")
             raise unknown("setpoint", setpoint, kinds)
+        usual = robot.setpoints[0] if setpoint is None else kinds[setpoint]
+        if isinstance(action, Mapping):
+            return Discrete(usual, action)
         if isinstance(action, str):
             if action not in FORMS:
                 raise unknown("action", action, FORMS)
-            kind: Setpoint = robot.setpoints[0] if setpoint is None else kinds[setpoint]
-            return robot.action(action, kind)
+            return robot.action(action, usual)
         if isinstance(action, type) or not hasattr(action, "commands"):
-            raise EnvOptionError(f"action {action!r} is neither a name ({', '.join(FORMS)}) nor an Action")
+            raise EnvOptionError(f"action {action!r} is neither a name ({', '.join(FORMS)}) nor a table nor an Action")
         if action.setpoint.name not in kinds:
             raise EnvOptionError(f"action gives {action.setpoint.name!r}; {robot.name} takes {', '.join(kinds)}")
         return action

@@ -25,11 +25,15 @@ CELL = 0.1
 _MOST_CELLS = 250_000
 """Above which cells are made larger, as long as no wall fits between two of them."""
 _FAR_TOO_MANY_CELLS = 4_000_000
+_MOST_POSES = 100_000
 _MARGIN = 0.1
 """A random place keeps this far from what would be a crash [m]."""
 
 StartOption = str | Sequence[float] | Callable[[np.random.Generator], Sequence[float]]
-"""Name of one of the world's start poses, "random", a pose, or a function that draws one."""
+"""Name of one of the world's start poses, "turned", "random", "random:N", a pose, or a function that draws one.
+
+"turned" is the world's start place for the robot, with a random heading. "random:N" is one of N random poses, always
+the same ones: a vehicle with an autopilot is made ready once for each pose, which then costs nothing."""
 
 
 @law
@@ -126,6 +130,33 @@ class ReachableCells:
                 return x, y
 
 
+class Turned:
+    """A place with a random heading.
+
+    Args:
+        position: x, y, z [m].
+    """
+
+    def __init__(self, position: Sequence[float]) -> None:
+        self.position = position
+
+    def __call__(self, rng: np.random.Generator) -> Pose:
+        """The start pose of an episode."""
+        x, y, z = self.position
+        return (x, y, z, float(rng.uniform(-math.pi, math.pi)))
+
+
+class OneOf:
+    """One of some poses, each as likely."""
+
+    def __init__(self, poses: Sequence[Pose]) -> None:
+        self.poses = poses
+
+    def __call__(self, rng: np.random.Generator) -> Pose:
+        """The start pose of an episode."""
+        return self.poses[int(rng.integers(len(self.poses)))]
+
+
 class Starts:
     """Draws start poses.
 
@@ -145,16 +176,32 @@ class Starts:
         self._pose: Pose | None = None
         if isinstance(option, str) and option == "random":
             self._cells = ReachableCells(robot)
+        elif isinstance(option, str) and option.startswith("random:"):
+            self._draw = self._few(option, ReachableCells(robot))
+        elif isinstance(option, str) and option == "turned":
+            start = robot.world.start(robot.name)
+            self._draw = Turned(start.position)
         elif option is None or isinstance(option, str):
             try:
                 start = robot.world.start(robot.name, option)
             except WorldError as error:
-                raise EnvOptionError(f'start {option!r}: {error}, and "random"') from None
+                raise EnvOptionError(f'start {option!r}: {error}, "turned" and "random"') from None
             self._pose = self.pose((*start.position, start.yaw))
         elif callable(option):
             self._draw = option
         else:
             self._pose = self.pose(option)
+
+    def _few(self, option: str, cells: ReachableCells) -> Callable[[np.random.Generator], Any]:
+        """Draws from so many random poses as ``option`` says."""
+        try:
+            count = int(option.removeprefix("random:"))
+        except ValueError:
+            count = 0
+        if not 1 <= count <= _MOST_POSES:
+            raise EnvOptionError(f'start {option!r}; it must be "random:N" with N from 1 to {_MOST_POSES}')
+        rng = np.random.default_rng(0)
+        return OneOf([(*cells.draw(rng), self._z, float(rng.uniform(-math.pi, math.pi))) for _ in range(count)])
 
     def pose(self, pose: Any) -> Pose:
         """x, y, z, yaw of a pose that may lack z.

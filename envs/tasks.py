@@ -69,6 +69,11 @@ class Task:
         """Called once, before the first episode."""
         self._range = robot.crash_range if self.crash_range is None else self.crash_range
 
+    @property
+    def limit(self) -> float:
+        """A reading below it is a crash [m], once the task is prepared."""
+        return self._range
+
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """An episode of one robot begins; it stands at its start pose."""
 

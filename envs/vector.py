@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,7 +56,7 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         world: str | Path | World = "circuit2",
         task: str | Task = "wander",
         observation: str | Observation = "scan",
-        action: str | Action = "discrete",
+        action: str | Mapping[str, Sequence[float]] | Action = "discrete",
         setpoint: str | None = None,
         step_time: float | None = None,
         start: StartOption | None = None,
@@ -89,6 +89,11 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
     def robot(self) -> Robot:
         """The robots: ``pose``, ``velocity``, ``scan``, ... with a row each."""
         return self._session.robot
+
+    @property
+    def step_time(self) -> float:
+        """Simulated time of a step [s]."""
+        return self._session.seconds
 
     def reset(  # type: ignore[override]
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None

@@ -104,6 +104,11 @@ class Turtlebots:
         """The same, each robot by its own number of ``ticks``."""
         self._advance(*self._arguments)
 
+    @property
+    def arguments(self) -> tuple[Any, ...]:
+        """What ``fleet.advance_fleet`` is called with: for laws of others that call it; the arrays stay in place."""
+        return self._arguments
+
     def look(self) -> None:
         """Read the lidars where the robots stand."""
         self.ticks[:] = 0

@@ -22,8 +22,8 @@ from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import Ready, Seat, Vehicles
 
-_MOST_READY = 64
-"""Start poses of which the state after take-off is kept."""
+_MOST_READY = 512
+"""Start poses of which the state after take-off is kept: some 40 kB each."""
 
 
 class InProcessVehicles(Vehicles):

@@ -69,6 +69,11 @@ class Turtlebot:
         self.collided = robots.fleet["body"]["collided"]
 
     @property
+    def robots(self) -> Turtlebots:
+        """The Turtlebots themselves."""
+        return self._robots
+
+    @property
     def pose(self) -> Floats:
         """See ``Robot``."""
         b = self._robots.fleet["body"]

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl compare``: a report that holds runs side by side."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..report.compare import compare
+from ..report.group import Group, unique_names
+from .options import positive
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser("compare", help="report on runs side by side: tables, curves, statistics over seeds")
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of runs, or of groups of seeds")
+    parser.add_argument(
+        "--out", type=Path, default=Path("reports/compare"), metavar="DIR", help="default: reports/compare"
+    )
+    parser.add_argument("--block", type=positive, metavar="N", help="episodes of an average (default: 200)")
+    parser.add_argument("--play", type=positive, default=0, metavar="N", help="also play N greedy episodes of each run")
+    parser.set_defaults(function=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command."""
+    groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
+    path = compare(groups, options.out, options.block, options.play)
+    print(path)
+    return 0

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Options that several commands have."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterable
+from typing import Any
+
+from ..errors import AgentError
+
+
+def positive(text: str) -> int:
+    """A whole number from 1 on; "10k" and "2M" are understood."""
+    factor = {"k": 1000, "M": 1_000_000}.get(text[-1:], 1)
+    try:
+        number = int(text if factor == 1 else text[:-1]) * factor
+    except ValueError:
+        number = 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 on")
+    return number
+
+
+def assignment(text: str) -> tuple[str, Any]:
+    """NAME=VALUE; a value that is no JSON is text."""
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise argparse.ArgumentTypeError(f"{text!r} must be NAME=VALUE")
+    try:
+        return name.strip(), json.loads(value)
+    except ValueError:
+        return name.strip(), value
+
+
+def assignments(pairs: Iterable[tuple[str, Any]] | None) -> dict[str, Any]:
+    """All of them.
+
+    Raises:
+        AgentError: a name comes twice.
+    """
+    out: dict[str, Any] = {}
+    for name, value in pairs or ():
+        if name in out:
+            raise AgentError(f"{name} is given twice")
+        out[name] = value
+    return out
+
+
+def add_jobs(parser: argparse.ArgumentParser) -> None:
+    """--jobs."""
+    parser.add_argument("--jobs", type=positive, default=1, metavar="N", help="processes that seeds are spread over")

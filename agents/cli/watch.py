@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl watch``: what a run has learnt, in a window or as a film."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .. import showing
+from ..runs import folder as folders
+from .options import assignment, assignments, positive
+
+SPEED = 5.0
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser(
+        "watch",
+        help="see what a run has learnt, in a window or as a film",
+        description="Plays what a run has learnt, without learning and exploring: in a window, or onto a film.",
+    )
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run; of several, the first is shown")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=".gif, or .mp4 by ffmpeg; default: a window")
+    parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="default 1")
+    parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run)")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the episodes")
+    parser.add_argument(
+        "--speed", type=_factor, default=SPEED, metavar="X", help=f"times real time (default {SPEED:g})"
+    )
+    parser.add_argument(
+        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+    )
+    parser.set_defaults(function=watch)
+
+
+def watch(options: argparse.Namespace) -> int:
+    """Run the command."""
+    run = folders.find(options.run)[0]
+    if options.max_steps is not None:
+        run.config = run.config.with_(max_steps=options.max_steps)
+    changes = assignments(options.option)
+    if options.out is None:
+        showing.window(run, options.episodes, options.seed, options.speed, _tell, **changes)
+        return 0
+    pictures = showing.film(run, options.out, options.episodes, options.seed, options.speed, _tell, **changes)
+    print(f"{options.out}: {pictures} pictures")
+    return 0
+
+
+def _tell(episode: int, steps: int, reward: float, terminated: bool) -> None:
+    print(f"episode {episode}: {steps} steps, reward {reward:.0f}{', ended by itself' if terminated else ''}")
+
+
+def _factor(text: str) -> float:
+    try:
+        factor = float(text)
+    except ValueError:
+        factor = 0.0
+    if not 0.01 <= factor <= 10_000.0:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a number from 0.01 to 10000")
+    return factor

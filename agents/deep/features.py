@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Observations as rows of numbers of about 0 .. 1, which networks learn from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import AgentError
+
+Rows = npt.NDArray[np.float32]
+_NEAR = 10.0
+"""Distance and coordinates that count as 1 [m]."""
+
+
+class Features:
+    """Makes features of the observations of one robot or many.
+
+    - a scan: of each sector the nearest reading r as log(1 + r) / log(1 + range), so that a decimetre counts more near
+      a wall than far from it; a lidar with other readings over the same field gives the same sectors;
+    - digits: as a share of the greatest;
+    - the way to a goal: distance, cosine and sine of the bearing; a pose: x, y, z, cosine and sine of the yaw.
+
+    Args:
+        space: of one robot's observations.
+        sectors: of a scan; 0: every reading for itself.
+
+    Raises:
+        AgentError: a kind of observation that is none of these.
+    """
+
+    def __init__(self, space: gym.Space[Any], sectors: int) -> None:
+        self._sectors = sectors
+        self._parts: list[tuple[str | None, Callable[[Any], Rows]]] = []
+        if isinstance(space, gym.spaces.Dict):
+            for name, part in space.spaces.items():
+                self._parts.append((name, self._part(name, part)))
+        else:
+            self._parts.append((None, self._part("scan", space)))
+        sample: Any = space.sample()
+        one = {k: v[None] for k, v in sample.items()} if isinstance(sample, dict) else sample[None]
+        self.width = int(self(one).shape[1])
+        """Numbers in a row."""
+
+    def _part(self, name: str, space: gym.Space[Any]) -> Callable[[Any], Rows]:
+        if name == "goal":
+            return _goal
+        if name == "pose":
+            return _pose
+        if isinstance(space, gym.spaces.MultiDiscrete):
+            highest = np.maximum(space.nvec - 1, 1).astype(np.float32)
+            return lambda digits: np.asarray(digits, np.float32) / highest
+        if isinstance(space, gym.spaces.Box) and len(space.shape) == 1 and bool(np.all(np.isfinite(space.high))):
+            scale = np.float32(1.0 / math.log1p(float(space.high.max())))
+            sectors = self._sectors
+            return lambda scan: np.log1p(nearest(np.asarray(scan, np.float32), sectors)) * scale
+        raise AgentError(f"observation {name!r} = {space} cannot be learnt from; scans, digits, goals and poses can")
+
+    def __call__(self, observations: Any) -> Rows:
+        """Features, shape (count, width), of observations with a row a robot."""
+        rows = [make(observations if name is None else observations[name]) for name, make in self._parts]
+        return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
+
+
+def nearest(scans: Rows, sectors: int) -> Rows:
+    """Nearest reading of each of so many sectors of equal width; scans have shape (count, readings)."""
+    readings = scans.shape[1]
+    if sectors == 0 or sectors >= readings:
+        return scans
+    edges = (np.arange(sectors) * readings) // sectors
+    out: Rows = np.minimum.reduceat(scans, edges, axis=1)
+    return out
+
+
+def _goal(goals: Any) -> Rows:
+    rows = np.asarray(goals, np.float32)
+    return np.stack([np.tanh(rows[:, 0] / _NEAR), np.cos(rows[:, 1]), np.sin(rows[:, 1])], axis=1)
+
+
+def _pose(poses: Any) -> Rows:
+    rows = np.asarray(poses, np.float32)
+    turned = np.stack([np.cos(rows[:, 3]), np.sin(rows[:, 3])], axis=1)
+    return np.concatenate([rows[:, :3] / np.float32(_NEAR), turned], axis=1)
+
+
+class Frames:
+    """The last few features of each robot, side by side, the newest first.
+
+    Args:
+        count: of robots.
+        frames: how many.
+        width: of features.
+    """
+
+    def __init__(self, count: int, frames: int, width: int) -> None:
+        self._width = width
+        self.rows: Rows = np.zeros((count, frames * width), np.float32)
+        """Shape (count, frames * width)."""
+
+    def begin(self, features: Rows, robots: Any = slice(None)) -> Rows:
+        """Episodes of these robots begin: what they see now was always so. Returns all rows."""
+        times = self.rows.shape[1] // self._width
+        self.rows[robots] = np.tile(features[robots], (1, times))
+        return self.rows
+
+    def push(self, features: Rows) -> Rows:
+        """A step was made; returns all rows."""
+        self.rows[:, self._width :] = self.rows[:, : -self._width].copy()
+        self.rows[:, : self._width] = features
+        return self.rows

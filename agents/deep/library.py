@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The libraries of deep agents, loaded when they are first needed."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from sitl.core.extras import MissingExtra
+
+CLASSES = {"dqn": "DQN", "ppo": "PPO", "sac": "SAC"}
+"""Algorithm -> its class in stable-baselines3."""
+LIBRARIES = ("torch", "stable-baselines3")
+"""Whose versions results depend on."""
+
+
+def stable_baselines3() -> Any:
+    """The module.
+
+    Raises:
+        MissingExtra: it is not installed.
+    """
+    try:
+        import stable_baselines3
+    except ImportError as missing:
+        raise MissingExtra(
+            "dqn, ppo and sac need stable-baselines3 and torch: pip install 'gym-sitl[rl]'; for a torch without GPU "
+            "libraries, before that: pip install torch --index-url https://download.pytorch.org/whl/cpu"
+        ) from missing
+    return stable_baselines3
+
+
+def torch(threads: int | None = None) -> Any:
+    """The module; with ``threads``, set to so many in this process.
+
+    Raises:
+        MissingExtra: it is not installed.
+    """
+    stable_baselines3()
+    import torch
+
+    if threads is not None:
+        torch.set_num_threads(min(threads, os.cpu_count() or 1))
+    return torch
+
+
+def algorithm_class(algorithm: str) -> Any:
+    """The class of "dqn", "ppo" or "sac"."""
+    return getattr(stable_baselines3(), CLASSES[algorithm])

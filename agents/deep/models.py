@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Settings as the arguments of stable-baselines3's algorithms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .library import algorithm_class
+from .settings import Dqn, OffPolicy, Ppo, Sac, Settings
+
+
+def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
+    """A model that has learnt nothing yet.
+
+    Args:
+        algorithm: "dqn", "ppo" or "sac".
+        settings: of that algorithm.
+        robots: that it will learn with.
+        seed: of its weights and choices.
+    """
+    hidden = [settings.width] * settings.layers
+    common: dict[str, Any] = {
+        "learning_rate": _falling(settings.learning_rate, settings.learning_rate_end),
+        "gamma": settings.gamma,
+        "batch_size": settings.batch,
+        "seed": seed,
+        "device": "cpu",
+    }
+    own: dict[str, Any] = {}
+    arch: Any = hidden
+    if isinstance(settings, Ppo):
+        arch = {"pi": hidden, "vf": hidden}
+        own = {
+            "n_steps": settings.rollout, "n_epochs": settings.epochs, "gae_lambda": settings.advantage_decay,
+            "clip_range": settings.clip, "ent_coef": settings.entropy,
+        }  # fmt: skip
+    if isinstance(settings, OffPolicy):
+        own = {
+            "buffer_size": settings.memory, "learning_starts": settings.warm_up,
+            "train_freq": settings.learn_every, "gradient_steps": settings.gradient_steps,
+        }  # fmt: skip
+    if isinstance(settings, Dqn):
+        own |= {
+            "target_update_interval": settings.target_period, "exploration_fraction": settings.epsilon_share,
+            "exploration_final_eps": settings.epsilon_end,
+        }  # fmt: skip
+    if isinstance(settings, Sac):
+        own |= {"tau": settings.tau}
+    return algorithm_class(algorithm)("MlpPolicy", robots, policy_kwargs={"net_arch": arch}, **common, **own)
+
+
+def _falling(first: float, last: float) -> float | Callable[[float], float]:
+    """Learning rate by the share of the run that is left."""
+    if first == last:
+        return first
+    return lambda left: last + (first - last) * max(left, 0.0)

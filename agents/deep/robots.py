@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A vector environment of this package as stable-baselines3 has them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from .library import stable_baselines3
+
+stable_baselines3()
+
+from stable_baselines3.common.vec_env import VecEnv  # noqa: E402 (after the message about the missing extra)
+
+from .actions import Actions  # noqa: E402
+from .features import Features, Frames  # noqa: E402
+from .tally import Tally  # noqa: E402
+
+
+class Robots(VecEnv):
+    """Many robots that learn together: features in frames, scaled rewards, actions of -1 to 1.
+
+    stable-baselines3 wants a robot whose episode has ended to be reset within the step that ended it; our vector
+    environments reset it in the next one. So it is reset here, with the same draws as there.
+
+    Args:
+        env: ``gymnasium.make_vec`` of one of this package's environments.
+        features: of its observations.
+        frames: how many are seen together.
+        actions: of its actions.
+        reward_scale: factor of rewards.
+        tally: told of every step.
+        seeds: of the first episodes, one a robot.
+    """
+
+    def __init__(
+        self,
+        env: gym.vector.VectorEnv[Any, Any, Any],
+        features: Features,
+        frames: int,
+        actions: Actions,
+        reward_scale: float,
+        tally: Tally,
+        seeds: Sequence[int],
+    ) -> None:
+        self._env, self._features, self._conversion, self._tally = env, features, actions, tally
+        self._frames = Frames(env.num_envs, frames, features.width)
+        self._scale, self._first = reward_scale, list(seeds)
+        self._actions: Any = None
+        room = gym.spaces.Box(-np.inf, np.inf, (frames * features.width,), np.float32)
+        super().__init__(env.num_envs, room, actions.space)
+
+    def reset(self) -> Any:
+        """See ``VecEnv``."""
+        observations, _ = self._env.reset(seed=self._first)  # type: ignore[arg-type]
+        return self._frames.begin(self._features(observations)).copy()
+
+    def step_async(self, actions: Any) -> None:
+        """See ``VecEnv``."""
+        self._actions = actions
+
+    def step_wait(self) -> Any:
+        """See ``VecEnv``."""
+        actions = self._conversion.to_environment(np.asarray(self._actions))
+        observations, rewards, terminated, truncated, _ = self._env.step(actions)
+        rows = self._frames.push(self._features(observations))
+        ended = terminated | truncated
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        told = self._tally.count(rewards, terminated, ended)
+        if told:
+            robots = np.flatnonzero(ended)
+            for index, (reward, steps) in zip(robots.tolist(), told, strict=True):
+                infos[index] = {
+                    "terminal_observation": rows[index].copy(),
+                    "TimeLimit.truncated": bool(truncated[index] and not terminated[index]),
+                    "episode": {"r": reward, "l": steps, "t": 0.0},
+                }
+            observations, _ = self._env.reset(options={"reset_mask": ended})
+            rows = self._frames.begin(self._features(observations), robots)
+        return rows.copy(), (rewards * self._scale).astype(np.float32), ended, infos
+
+    def memory(self) -> dict[str, Any]:
+        """Everything that ``recall`` needs to go on bit for bit; can be pickled."""
+        snapshots = self._env.unwrapped.snapshot()  # type: ignore[attr-defined]
+        return {"robots": snapshots, "frames": self._frames.rows, "tally": self._tally.memory()}
+
+    def recall(self, memory: dict[str, Any]) -> None:
+        """Go on from there."""
+        self._env.unwrapped.restore(memory["robots"])  # type: ignore[attr-defined]
+        self._frames.rows[...] = memory["frames"]
+        self._tally.recall(memory["tally"])
+
+    def close(self) -> None:
+        """See ``VecEnv``."""
+        self._env.close()
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """See ``VecEnv``: the vector environment's, the same for each robot."""
+        return [getattr(self._env, attr_name)] * len(list(self._get_indices(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """See ``VecEnv``: refused."""
+        raise NotImplementedError("all robots are one environment: nothing can be set for some")
+
+    def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> list[Any]:
+        """See ``VecEnv``: refused."""
+        raise NotImplementedError("all robots are one environment: no method can be called for some")
+
+    def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        """See ``VecEnv``."""
+        return [False] * len(list(self._get_indices(indices)))

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The environment of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+import gymnasium as gym
+import numpy as np
+
+import envs
+
+from .errors import AgentError
+from .runs.config import RunConfig
+
+_Env = TypeVar("_Env")
+
+
+def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
+    """Make the environment of a run.
+
+    Args:
+        config: of the run.
+        options: that replace the run's.
+
+    Raises:
+        AgentError: no such environment, or an option that it does not take.
+    """
+    return _made(lambda given: gym.make(config.env, max_episode_steps=config.max_steps, **given), config, options)
+
+
+def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:
+    """As ``make``, of so many robots at once."""
+
+    def call(given: dict[str, Any]) -> gym.vector.VectorEnv[Any, Any, Any]:
+        return gym.make_vec(config.env, num_envs=count, max_episode_steps=config.max_steps, **given)
+
+    return _made(call, config, options)
+
+
+def _made(call: Callable[[dict[str, Any]], _Env], config: RunConfig, options: Mapping[str, Any]) -> _Env:
+    given = {**config.env_options, **options}
+    given = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
+    try:
+        return call(given)
+    except (gym.error.Error, envs.EnvOptionError) as error:
+        raise AgentError(f"{config.env}: {error}") from None
+    except TypeError as error:
+        if "unexpected keyword" in str(error):
+            raise AgentError(f"{config.env}: {error}") from None
+        raise
+
+
+def seed_of(seed: int, episode: int) -> int:
+    """Seed of an episode's reset: follows from the run's, so that a run can go on from anywhere."""
+    return int(np.random.SeedSequence([seed, episode]).generate_state(1)[0])
+
+
+def step_time(env: gym.Env[Any, Any] | gym.vector.VectorEnv[Any, Any, Any]) -> float:
+    """Simulated time of a step [s]; nan for environments that do not say."""
+    return float(getattr(env.unwrapped, "step_time", math.nan))

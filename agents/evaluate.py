@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plays what a run has learnt, without learning and without exploring: rewards, laps, crashes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from . import algorithms, environments
+from .algorithms import Policy
+from .errors import AgentError
+from .laps import CENTRES, LapCounter
+from .runs.folder import RunFolder
+
+EPISODES = 100
+Pose = tuple[float, float, float]
+"""x, y [m], yaw [rad]."""
+
+
+@dataclass(frozen=True)
+class Played:
+    """One episode."""
+
+    reward: float
+    steps: int
+    terminated: bool
+    """It ended by itself: a crash, or a goal reached."""
+    crashed: bool
+    reached: bool
+    """A goal, where there is one."""
+    simulated_s: float
+    laps: float
+    """Net turns round the middle of the world; nan where there is no such thing."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Of many episodes."""
+
+    episodes: tuple[Played, ...]
+
+    @property
+    def mean_reward(self) -> float:
+        """Of an episode."""
+        return float(np.mean([played.reward for played in self.episodes]))
+
+    @property
+    def crash_rate(self) -> float:
+        """Share of the episodes that ended in a crash."""
+        return float(np.mean([played.crashed for played in self.episodes]))
+
+    @property
+    def mean_laps(self) -> float:
+        """Of an episode, whole laps only; nan where laps are not counted."""
+        return float(np.mean([math.floor(p.laps) if p.laps == p.laps else math.nan for p in self.episodes]))
+
+    @property
+    def lap_rate(self) -> float:
+        """Share of the episodes with a whole lap or more and no crash."""
+        return float(np.mean([played.laps >= 1.0 and not played.crashed for played in self.episodes]))
+
+    @property
+    def mean_simulated_s(self) -> float:
+        """Of an episode [s]."""
+        return float(np.mean([played.simulated_s for played in self.episodes]))
+
+    def sentence(self) -> str:
+        """For people."""
+        count = len(self.episodes)
+        crashes = sum(played.crashed for played in self.episodes)
+        parts = [f"{count} episodes: mean reward {self.mean_reward:.0f}", f"{crashes} crashes"]
+        if not math.isnan(self.mean_laps):
+            parts.append(f"{self.mean_laps:.1f} laps an episode")
+            parts.append(f"{100.0 * self.lap_rate:.0f} % of the episodes with a lap or more and no crash")
+        if any(played.reached for played in self.episodes):
+            parts.append(f"goal reached in {sum(played.reached for played in self.episodes)}")
+        if not math.isnan(self.mean_simulated_s):
+            parts.append(f"{self.mean_simulated_s:.0f} simulated s an episode")
+        return ", ".join(parts)
+
+
+def evaluate(
+    env: gym.Env[Any, Any],
+    policy: Policy,
+    episodes: int = EPISODES,
+    seed: int = 0,
+    poses: Sequence[Pose] | None = None,
+    watch: Callable[[Played], None] = lambda played: None,
+) -> Evaluation:
+    """Play episodes.
+
+    Args:
+        env: it must truncate its episodes.
+        policy: that plays.
+        episodes: how many.
+        seed: of the resets and of the policy's own choices.
+        poses: where the episodes start, in turn; None: where the environment says.
+        watch: called after each episode.
+
+    Raises:
+        AgentError: the policy is of other spaces than the environment.
+    """
+    policy.check(env.observation_space, env.action_space)
+    played = []
+    for episode in range(episodes):
+        one = environments.seed_of(seed, episode)
+        options = {"pose": poses[episode % len(poses)]} if poses else None
+        played.append(play(env, policy, one, options))
+        watch(played[-1])
+    return Evaluation(tuple(played))
+
+
+def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str, Any] | None = None) -> Played:
+    """Play one episode."""
+    observation, _ = env.reset(seed=seed, options=None if options is None else dict(options))
+    policy.begin(seed)
+    inner: Any = env.unwrapped
+    centre = CENTRES.get(getattr(getattr(inner, "world", None), "name", ""))
+    counter = None if centre is None else LapCounter(centre)
+    total, steps = 0.0, 0
+    while True:
+        if counter is not None:
+            counter.take(*inner.robot.pose[0, :2].tolist())
+        observation, reward, terminated, truncated, info = env.step(policy.act(observation))
+        total, steps = total + float(reward), steps + 1
+        if terminated or truncated:
+            break
+    if counter is not None:
+        counter.take(*inner.robot.pose[0, :2].tolist())
+    return Played(
+        reward=total,
+        steps=steps,
+        terminated=bool(terminated),
+        crashed=bool(info.get("crashed", terminated)),
+        reached=bool(info.get("reached", False)),
+        simulated_s=steps * environments.step_time(env),
+        laps=math.nan if counter is None else counter.laps,
+    )
+
+
+def evaluate_run(
+    run: RunFolder, episodes: int = EPISODES, seed: int = 0, jitter: float = 0.0, **options: Any
+) -> Evaluation:
+    """Play what a run has learnt in its environment, or in another.
+
+    Args:
+        run: that has a model.
+        episodes: how many.
+        seed: of the evaluation.
+        jitter: start poses are moved by up to so much, in x and y [m] and in yaw [rad].
+        options: of the environment, which replace the run's: ``world="circuit"``.
+
+    Raises:
+        AgentError: no model, or not of this environment.
+    """
+    env = environments.make(run.config, **options)
+    try:
+        poses = moved_starts(env, episodes, seed, jitter) if jitter > 0.0 else None
+        return evaluate(env, algorithms.policy_of(run), episodes, seed, poses)
+    finally:
+        env.close()
+
+
+def moved_starts(env: gym.Env[Any, Any], count: int, seed: int, jitter: float) -> list[Pose]:
+    """Start poses near the environment's own.
+
+    Raises:
+        AgentError: it is no environment with poses.
+    """
+    inner: Any = env.unwrapped
+    if not hasattr(inner, "robot"):
+        raise AgentError(f"{env}: start poses of this environment cannot be moved")
+    env.reset(seed=seed)
+    x, y, _, yaw = inner.robot.pose[0].tolist()
+    moves = np.random.default_rng([seed, 1]).uniform(-jitter, jitter, (count, 3)).tolist()
+    return [(x + dx, y + dy, yaw + turn) for dx, dy, turn in moves]

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures as a film: a GIF, or an MP4 where the program ffmpeg is installed."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.core.extras import MissingExtra
+
+from .errors import AgentError
+
+Picture = npt.NDArray[np.uint8]
+"""Shape (height, width, 3)."""
+FASTEST_S = 0.04
+"""Least time that a picture of a film stands: viewers slow down GIFs that change faster [s]."""
+_COLOURS = 64
+
+
+class Film(Protocol):
+    """Takes pictures; the file is whole when it is closed."""
+
+    def add(self, picture: Picture) -> None:
+        """The next picture; all are of one size."""
+
+    def close(self) -> None:
+        """Write what is not yet written."""
+
+
+class Gif:
+    """A GIF that repeats for ever."""
+
+    def __init__(self, path: Path, seconds: float) -> None:
+        self._path, self._ms = path, max(round(100.0 * seconds), 2) * 10  # GIFs count hundredths
+        self._pictures: list[Any] = []
+        self._palette: Any = None
+
+    def add(self, picture: Picture) -> None:
+        """See ``Film``."""
+        image = _pillow().fromarray(picture)
+        if self._palette is None:
+            self._palette = image.quantize(_COLOURS)
+        self._pictures.append(image.quantize(palette=self._palette, dither=0))
+
+    def close(self) -> None:
+        """See ``Film``."""
+        if not self._pictures:
+            return
+        first, *others = self._pictures
+        try:
+            first.save(self._path, "GIF", save_all=True, append_images=others, duration=self._ms, loop=0)
+        except OSError as error:
+            raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
+
+
+class Mp4:
+    """An MP4 (H.264), encoded by ffmpeg while it grows."""
+
+    def __init__(self, path: Path, seconds: float, program: str) -> None:
+        self._path, self._rate, self._program = path, 1.0 / seconds, program
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def add(self, picture: Picture) -> None:
+        """See ``Film``."""
+        if self._process is None:
+            height, width = picture.shape[:2]
+            raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{self._rate:.6g}"]
+            even = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]  # H.264 wants even sides
+            words = [self._program, "-loglevel", "error", "-y", *raw, "-i", "-", *even, str(self._path)]
+            self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(picture.tobytes())
+        except BrokenPipeError:
+            self.close()
+
+    def close(self) -> None:
+        """See ``Film``."""
+        if self._process is None:
+            return
+        _, said = self._process.communicate()
+        code, self._process = self._process.returncode, None
+        if code != 0:
+            last = said.decode(errors="replace").strip().splitlines()
+            raise AgentError(f"{self._path} cannot be written: ffmpeg: {last[-1] if last else f'exit code {code}'}")
+
+
+class Reel:
+    """A film in which every picture stands long enough: of steps that pass faster, some are left out.
+
+    Args:
+        path: .gif or .mp4.
+        step_s: how long a step shall last in the film [s].
+
+    Raises:
+        AgentError: another kind of file, or no ffmpeg for an MP4.
+        MissingExtra: no Pillow for a GIF.
+    """
+
+    def __init__(self, path: Path, step_s: float) -> None:
+        self.every = max(round(FASTEST_S / step_s), 1) if step_s < FASTEST_S else 1
+        """A picture each so many steps."""
+        seconds = self.every * step_s
+        self._steps, self.pictures = 0, 0
+        if not path.parent.is_dir():
+            raise AgentError(f"{path} cannot be written: there is no folder {path.parent}")
+        self._film: Film
+        if path.suffix == ".gif":
+            _pillow()
+            self._film = Gif(path, seconds)
+        elif path.suffix == ".mp4":
+            program = shutil.which("ffmpeg")
+            if program is None:
+                raise AgentError(f"{path}: an MP4 needs the program ffmpeg, which is not installed; a .gif does not")
+            self._film = Mp4(path, seconds, program)
+        else:
+            raise AgentError(f"{path}: a film is a .gif or an .mp4")
+
+    def wants(self) -> bool:
+        """Called once a step: whether its picture is taken."""
+        wanted = self._steps % self.every == 0
+        self._steps += 1
+        return wanted
+
+    def add(self, picture: Picture) -> None:
+        """The next picture."""
+        self._film.add(picture)
+        self.pictures += 1
+
+    def __enter__(self) -> Reel:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None):
+        self._film.close()
+
+
+def _pillow() -> Any:
+    try:
+        from PIL import Image
+    except ImportError:
+        raise MissingExtra("a GIF needs Pillow: pip install 'gym-sitl[viz]'") from None
+    return Image

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Learning curves: of a run as the paper drew them (raw and averaged), and of many runs side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..runs.folder import RunFolder
+from . import plots
+from .blocks import BLOCK, Floats, block_means, moving_mean, rewards_of
+from .statistics import mean_interval
+
+
+def draw_raw(axes: Any, rewards: Floats, title: str, block: int = BLOCK) -> None:
+    """One run on axes: each episode in blue, means of blocks in red, as the paper's figures."""
+    axes.plot(rewards, color=plots.COLOURS[0], linewidth=0.5)
+    means = block_means(rewards, block)
+    middles = np.minimum(np.arange(len(means)) * block + 0.5 * block, len(rewards) - 1)
+    axes.plot(middles, means, color=plots.COLOURS[1], linewidth=2.0, marker=".", label=f"mean of {block} episodes")
+    axes.set(title=title, xlabel="episode", ylabel="reward")
+    axes.grid(alpha=0.3)
+    axes.legend(loc="upper left")
+
+
+def draw_run(runs: Sequence[RunFolder], path: Path, block: int | None = None) -> Path:
+    """The curve of a run, or of the first run of a group beside the mean of all.
+
+    Raises:
+        AgentError: no episodes yet, or it cannot be written.
+        MissingExtra: matplotlib is not installed.
+    """
+    rewards = rewards_of(runs)
+    block = block or min(BLOCK, max(rewards.shape[1] // 15, 1))
+    config = runs[0].config
+    made, axes = plots.figure(columns=1 if len(runs) == 1 else 2, width=9.0 if len(runs) == 1 else 14.0, sharey=True)
+    draw_raw(axes[0, 0], rewards[0], f"{config.env}, {config.algorithm}, seed {config.seed}", block)
+    if len(runs) > 1:
+        draw_means(axes[0, 1], {f"mean of {len(runs)} seeds": rewards}, block)
+    return plots.save(made, path)
+
+
+def draw_means(axes: Any, groups: Mapping[str, Floats], window: int = BLOCK) -> None:
+    """Moving means of groups of runs: the mean over seeds with its 95 % interval."""
+    for colour, (name, rewards) in zip(plots.COLOURS * 9, groups.items()):
+        smooth = moving_mean(rewards, window)
+        mean, half = mean_interval(smooth)
+        episodes = np.arange(smooth.shape[1])
+        axes.plot(episodes, mean, color=colour, label=name)
+        if len(rewards) > 1:
+            axes.fill_between(episodes, mean - half, mean + half, color=colour, alpha=0.2, linewidth=0)
+    axes.set(xlabel="episode", ylabel=f"reward, mean of {window} episodes")
+    axes.grid(alpha=0.3)
+    axes.legend(loc="upper left")

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Matplotlib, when a picture is drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from sitl.core.extras import MissingExtra
+
+from ..errors import AgentError
+
+COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#8c564b", "#17becf", "#7f7f7f")
+
+
+def figure(width: float = 9.0, height: float = 5.0, rows: int = 1, columns: int = 1, **options: Any) -> Any:
+    """A figure without a screen and its axes, an array of shape (rows, columns).
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
+    made = Figure((width, height), layout="constrained")
+    FigureCanvasAgg(made)
+    return made, made.subplots(rows, columns, squeeze=False, **options)
+
+
+def save(made: Any, path: Path) -> Path:
+    """Write it as PNG, whole or not at all; returns the path.
+
+    Raises:
+        AgentError: it cannot be written.
+    """
+    temporary = path.with_name(f".{path.name}")
+    try:
+        made.savefig(temporary, format="png", dpi=110, metadata={"Software": None})
+        temporary.replace(path)
+    except OSError as error:
+        raise AgentError(f"{path} cannot be written: {error.strerror}") from None
+    return path

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a run is: environment, algorithm, settings, seed, length. Together with the versions it repeats the run."""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import sitl
+
+from ..errors import AgentError
+from .files import write_json
+
+EPISODES = 3000
+MAX_STEPS = 1500
+"""The paper's."""
+_LIBRARIES = ("numpy", "numba", "gymnasium")
+
+
+def versions(*libraries: str) -> dict[str, str]:
+    """Of this program, of Python, and of the libraries that results depend on."""
+    found = {"gym-sitl": sitl.__version__, "python": platform.python_version()}
+    return {**found, **{name: metadata.version(name) for name in (*_LIBRARIES, *libraries)}}
+
+
+@dataclass(frozen=True)
+class RunConfig:
+    """A run.
+
+    Raises:
+        AgentError: a length or a seed that cannot be.
+    """
+
+    env: str
+    """Id of the environment."""
+    algorithm: str
+    env_options: Mapping[str, Any] = field(default_factory=dict)
+    """Given to ``gymnasium.make``; what JSON can hold."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """Of the algorithm."""
+    seed: int = 0
+    episodes: int | None = EPISODES
+    """After so many it is done; None: ``steps`` says when."""
+    steps: int | None = None
+    """After so many, of all episodes together, it is done."""
+    max_steps: int = MAX_STEPS
+    """Of an episode."""
+    versions: Mapping[str, str] = field(default_factory=versions)
+    """That it was made with."""
+
+    def __post_init__(self) -> None:
+        for name in ("episodes", "steps", "max_steps"):
+            value = getattr(self, name)
+            if (value is None and name != "max_steps") or (isinstance(value, int) and value >= 1):
+                continue
+            raise AgentError(f"{name} = {value!r}; it must be a whole number from 1 on")
+        if not isinstance(self.seed, int) or not 0 <= self.seed < 2**32:
+            raise AgentError(f"seed = {self.seed!r}; it must be a whole number from 0 to 2^32 - 1")
+        if self.episodes is None and self.steps is None:
+            raise AgentError("a run needs an end: episodes or steps")
+
+    @property
+    def name(self) -> str:
+        """Of its folder, when the user does not say."""
+        return f"{self.env.replace(':', '-').replace('/', '-')}-{self.algorithm}"
+
+    def with_(self, **changes: Any) -> RunConfig:
+        """The same with some figures replaced."""
+        return replace(self, **changes)
+
+    def differences(self, other: RunConfig) -> list[str]:
+        """Names of the fields in which two differ, without versions and lengths."""
+        a, b = asdict(self), asdict(other)
+        return [name for name in a if name not in ("versions", "episodes", "steps") and a[name] != b[name]]
+
+    def save(self, path: Path) -> None:
+        """Write it as JSON."""
+        write_json(path, asdict(self))
+
+    @classmethod
+    def load(cls, path: Path) -> RunConfig:
+        """Read what ``save`` wrote.
+
+        Raises:
+            AgentError: it is something else.
+        """
+        try:
+            values = json.loads(path.read_text())
+        except FileNotFoundError:
+            raise AgentError(f"{path.parent} is no run: it has no {path.name}") from None
+        except (OSError, ValueError) as error:
+            raise AgentError(f"{path} cannot be read: {error}") from None
+        known = {item.name for item in fields(cls)}
+        if not isinstance(values, dict) or not {"env", "algorithm"} <= values.keys() or not values.keys() <= known:
+            raise AgentError(f"{path} does not describe a run")
+        return cls(**values)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files that are whole or not there: written beside the old one, then put in its place."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import AgentError
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Replace a file by this content.
+
+    Raises:
+        AgentError: it cannot be written.
+    """
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        temporary.write_bytes(content)
+        os.replace(temporary, path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise AgentError(f"{path} cannot be written: {error.strerror}") from None
+
+
+def write_json(path: Path, value: Any) -> None:
+    """The same, of what JSON can hold, for people to read."""
+    write_bytes(path, (json.dumps(value, indent=2) + "\n").encode())
+
+
+def write_arrays(path: Path, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+    """The same, of named arrays, as .npz."""
+    content = io.BytesIO()
+    np.savez_compressed(content, **arrays)  # type: ignore[arg-type]
+    write_bytes(path, content.getvalue())
+
+
+def read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
+    """What ``write_arrays`` wrote.
+
+    Raises:
+        AgentError: there is no such file, or it is something else.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            return dict(stored)
+    except FileNotFoundError:
+        raise AgentError(f"there is no model {path}") from None
+    except (OSError, ValueError, TypeError, zipfile.BadZipFile) as error:
+        raise AgentError(f"{path} is no model: {error}") from None

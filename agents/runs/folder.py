@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The folder of a run, and folders of several runs.
+
+A run has config.json (what it is), episodes.csv (what came of it), a model, curve.png. A folder whose subfolders are
+runs is a group: the same run with several seeds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from ..errors import AgentError
+from .config import RunConfig
+from .episodes import EpisodeLog
+
+CONFIG = "config.json"
+
+
+class RunFolder:
+    """One run.
+
+    Args:
+        path: of the folder, which has a config.json.
+
+    Raises:
+        AgentError: it has none.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.config = RunConfig.load(self.path / CONFIG)
+        self.episodes = EpisodeLog(self.path / "episodes.csv")
+
+    @classmethod
+    def create(cls, path: str | Path, config: RunConfig) -> RunFolder:
+        """Make the folder of a new run.
+
+        Raises:
+            AgentError: there is one already, or it cannot be made.
+        """
+        folder = Path(path)
+        if (folder / CONFIG).exists():
+            raise AgentError(f"{folder} is a run already; --resume goes on with it, another folder begins anew")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise AgentError(f"{folder} cannot be made: {error.strerror}") from None
+        config.save(folder / CONFIG)
+        return cls(folder)
+
+    def extend(self, episodes: int | None, steps: int | None) -> None:
+        """Set how long it is, for a resumed run that shall go on; None: as it was."""
+        config = self.config
+        self.config = config.with_(
+            episodes=config.episodes if episodes is None else episodes, steps=config.steps if steps is None else steps
+        )
+        if self.config != config:
+            self.config.save(self.path / CONFIG)
+
+    @property
+    def name(self) -> str:
+        """Of the folder."""
+        return self.path.name
+
+
+def is_run(path: Path) -> bool:
+    """Whether a folder is a run."""
+    return (path / CONFIG).is_file()
+
+
+def find(path: str | Path) -> list[RunFolder]:
+    """The run in a folder, or the runs of a group, by seed.
+
+    Raises:
+        AgentError: there is none.
+    """
+    folder = Path(path)
+    if is_run(folder):
+        return [RunFolder(folder)]
+    runs = [RunFolder(p) for p in folder.iterdir() if is_run(p)] if folder.is_dir() else []
+    if not runs:
+        raise AgentError(f"{folder} is neither a run nor a folder of runs")
+    return sorted(runs, key=lambda run: (run.config.seed, run.name))
+
+
+def seed_folder(path: Path, seed: int) -> Path:
+    """Folder of the run with a seed, in a group."""
+    return path / f"seed-{seed}"
+
+
+def common(runs: Iterable[RunFolder]) -> RunConfig:
+    """What the runs of a group are, with the first one's seed.
+
+    Raises:
+        AgentError: they differ in more than the seed.
+    """
+    first, *others = [run.config for run in runs]
+    for other in others:
+        different = [name for name in first.differences(other) if name != "seed"]
+        if different:
+            raise AgentError(f"these runs are not one group: they differ in {', '.join(different)}")
+    return first

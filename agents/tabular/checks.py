@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Now and then the table of a run plays greedily, and the best one is kept.
+
+With a constant step size a table never settles: the last one may crash where one of some episodes before drove for
+hours. Learning does not notice the checks: they draw nothing from its random numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from .. import environments
+from ..evaluate import moved_starts
+from ..runs.files import read_arrays, write_arrays
+from .compiled_loop import CompiledLoop
+from .learner import Learner
+from .loop import learn_episode
+from .outcome import Outcome
+
+JITTER = 0.1
+"""By which starts are moved [m, rad]; from the very start a robot without noise always does the same."""
+SEED = 2**31
+"""Of the starts, the resets, and the choices between equals: the same for every table."""
+
+
+def loop_of(env: gym.Env[Any, Any], learner: Learner) -> Callable[..., Outcome]:
+    """``learn_episode`` for these two, compiled where that is possible."""
+    return CompiledLoop(env, learner) if CompiledLoop.suits(env) else partial(learn_episode, env, learner)
+
+
+class Checks:
+    """Of one run.
+
+    Args:
+        env: that it learns in; it is reset for each check.
+        learner: whose table plays; its settings say how often.
+        path: of the best table.
+    """
+
+    def __init__(self, env: gym.Env[Any, Any], learner: Learner, path: Path) -> None:
+        self._learner, self._path = learner, path
+        self._every, count = learner.settings.check_every, learner.settings.check_episodes
+        self._best = -np.inf
+        if self._every == 0:
+            return
+        if path.exists():
+            self._best = float(read_arrays(path)["score"])
+        self._player = Learner(learner.algorithm, learner.settings, learner.table, frozen=True)
+        self._player.begin(0)
+        self._play = loop_of(env, self._player)
+        self._options: list[dict[str, Any] | None] = [None] * count
+        if hasattr(env.unwrapped, "robot"):
+            self._options = [{"pose": pose} for pose in moved_starts(env, count, SEED, JITTER)]
+
+    def after(self, episodes: int) -> None:
+        """So many episodes are done: check when it is time."""
+        if self._every == 0 or episodes % self._every:
+            return
+        score = self.score()
+        if score > self._best:
+            self._best = score
+            extra = {"score": np.array(score), "episodes": np.array(episodes)}
+            write_arrays(self._path, {**self._learner.table.arrays(), **extra})
+
+    def score(self) -> float:
+        """Mean reward of the episodes that the table plays now."""
+        player = self._player
+        player.table = self._learner.table
+        player.seed(SEED)
+        seeds = (environments.seed_of(SEED, k) for k in range(len(self._options)))
+        return float(np.mean([self._play(seed, options).reward for seed, options in zip(seeds, self._options)]))

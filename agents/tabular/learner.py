@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A tabular learner: a table, the figures it learns by, random numbers. It chooses, learns, is saved and goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.core import records
+from sitl.core.kernels import jit_disabled
+from sitl.core.rng import seed as seed_rng
+
+from ..errors import AgentError
+from .exploration import epsilon_in
+from .learn import choose_action, learn_step
+from .settings import EXPLORATIONS, RULES, Settings
+from .state import LEARNER_DTYPE
+from .table import Table
+
+
+class Learner:
+    """Q-learning or Sarsa.
+
+    Args:
+        algorithm: "qlearn" or "sarsa".
+        settings: hyper-parameters.
+        table: what it has learnt already; it goes on with it.
+        seed: of its random numbers.
+        frozen: it plays greedily and does not learn.
+
+    Raises:
+        AgentError: no such algorithm.
+    """
+
+    def __init__(self, algorithm: str, settings: Settings, table: Table, seed: int = 0, frozen: bool = False) -> None:
+        if algorithm not in RULES:
+            raise AgentError(f"algorithm {algorithm!r}; a table is learnt by one of {', '.join(RULES)}")
+        self.algorithm, self.settings, self.table = algorithm, settings, table
+        self.record = np.zeros(1, LEARNER_DTYPE)
+        self._view = view = records.view(self.record, 0)
+        view.rule = RULES.index(algorithm)
+        view.exploration = EXPLORATIONS.index(settings.exploration)
+        view.first_visit = int(settings.first_visit)
+        view.terminal_bootstrap = int(settings.terminal_bootstrap)
+        view.redraw, view.frozen = int(settings.redraw), int(frozen)
+        view.alpha, view.gamma = settings.alpha, settings.gamma
+        view.states = len(table)
+        self.seed(seed)
+        self._records: Any = [view] if jit_disabled() else self.record
+
+    @property
+    def epsilon(self) -> float:
+        """Probability of exploring."""
+        return float(self._view.epsilon)
+
+    @property
+    def states(self) -> int:
+        """How many states the table holds."""
+        return int(self._view.states)
+
+    def seed(self, seed: int) -> None:
+        """Begin its random numbers anew."""
+        seed_rng(self._view.rng, seed)
+
+    def begin(self, episode: int) -> None:
+        """An episode begins, the first being 0: epsilon is set."""
+        s = self.settings
+        self._view.epsilon = epsilon_in(episode, s.epsilon, s.epsilon_decay, s.epsilon_floor) * (not self._view.frozen)
+
+    def arguments(self, new_states: int) -> tuple[Any, ...]:
+        """Record and table as ``learn`` takes them, with room for so many states more."""
+        table = self.table
+        table.make_room(self.states, new_states)
+        return self._records, table.keys, table.values, table.visits
+
+    def first_key(self, observation: Any) -> int:
+        """Number of the state that an episode begins in."""
+        return self.table.key(observation) + (self.table.size if self.settings.first_state_apart else 0)
+
+    def choose(self, key: int) -> int:
+        """The first action of an episode."""
+        return int(choose_action(*self.arguments(1)[:3], key))
+
+    def learn(self, key: int, action: int, reward: float, after: int, terminated: bool) -> int:
+        """Learn from a step; returns the next action. See ``learn.learn``."""
+        return int(learn_step(*self.arguments(1), key, action, reward, after, int(terminated)))
+
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """All that ``restore`` needs to go on bit for bit."""
+        return {**self.table.arrays(), "random": self.record["rng"]["s"][0].copy()}
+
+    def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Go back to what ``arrays`` gave.
+
+        Raises:
+            AgentError: it is of another kind of table.
+        """
+        table = Table.of_arrays(arrays)
+        if table.radix.tolist() != self.table.radix.tolist() or table.actions != self.table.actions:
+            raise AgentError(
+                f"the model has digits {table.radix.tolist()} and {table.actions} actions; "
+                f"the environment {self.table.radix.tolist()} and {self.table.actions}"
+            )
+        self.table = table
+        self._view.states = len(table)
+        self.record["rng"]["s"][0] = arrays["random"]

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs of DQN, PPO and SAC: trained, interrupted, resumed, played."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3", reason="deep agents need the extra 'rl'")
+pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
+
+from deep_runs import CIRCUIT2, NAVIGATE, new, train, weights
+
+from agents import algorithms, environments
+from agents.deep import checkpoint, training
+from agents.deep.network import Network
+from agents.errors import AgentError
+from agents.evaluate import evaluate_run
+from agents.runs.folder import RunFolder
+from agents.runs.training import is_done
+
+ALGORITHMS = ("ppo", "dqn", "sac")
+
+
+def rows_of(run):
+    """All of the log that must repeat: nan as text, which equals itself."""
+    return [[repr(value) for value in row[:-1]] for row in run.episodes.rows()]
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_a_run_learns_to_its_end_and_plays(tmp_path, algorithm):
+    run = new(tmp_path / "run", algorithm)
+    told = train(run)
+    rows = run.episodes.rows()
+    assert [row.episode for row in rows] == [row.episode for row in told] == list(range(len(rows)))
+    assert sum(row.steps for row in rows) >= 400 and is_done(run)
+    assert all(row.steps == 50 or (row.steps < 50 and row.terminated) for row in rows)
+    assert all(row.simulated_s == pytest.approx(environments.make(run.config).unwrapped.step_time * row.steps)
+               for row in rows[:3])  # fmt: skip
+    assert np.isnan(rows[-1].epsilon) == (algorithm != "dqn")
+    found = evaluate_run(run, episodes=2, seed=5)
+    again = evaluate_run(RunFolder(run.path), episodes=2, seed=5)
+    assert found == again and all(1 <= played.steps <= 50 for played in found.episodes)
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, algorithm):
+    whole, parts = new(tmp_path / "whole", algorithm), new(tmp_path / "parts", algorithm)
+    train(whole)
+    train(parts, episodes=2)
+    between = len(parts.episodes.rows())
+    assert not is_done(parts) and between >= 2
+    train(RunFolder(parts.path), episodes=3)
+    train(RunFolder(parts.path))
+    assert rows_of(parts) == rows_of(whole)
+    assert weights(parts) == weights(whole)
+
+
+def test_another_seed_is_another_run_and_a_done_one_stays_as_it_is(tmp_path):
+    one, same, other = (new(tmp_path / str(k), seed=seed) for k, seed in enumerate((1, 1, 2)))
+    for run in (one, same, other):
+        train(run)
+    assert rows_of(one) == rows_of(same) != rows_of(other)
+    before = weights(one)
+    train(RunFolder(one.path))
+    assert weights(one) == before and rows_of(one) == rows_of(same)
+
+
+def test_learning_through_mavlink(tmp_path):
+    options = {"observation": "scan", "start": "random:3", "step_time": 0.2}
+    run = new(tmp_path / "run", env="GazeboMazeErleRoverLIDAR-v0", env_options=options, steps=150)
+    train(run)
+    assert is_done(run)
+    found = evaluate_run(run, episodes=3, start="turned", seed=2)
+    assert len(found.episodes) == 3
+
+
+def test_dictionaries_of_observations_are_learnt_from(tmp_path):
+    options = {"observation": "scan+pose+goal", "task": "goal", "world": "maze", "step_time": 0.3}
+    run = new(tmp_path / "run", env=NAVIGATE, env_options=options, steps=150)
+    train(run)
+    policy = training.policy(run)
+    env = environments.make(run.config)
+    policy.check(env.observation_space, env.action_space)
+    policy.begin(0)
+    assert env.action_space.contains(np.int64(policy.act(env.reset(seed=1)[0])))
+
+
+def test_a_log_that_knows_more_than_the_model_is_cut_and_a_model_of_others_refused(tmp_path):
+    run = new(tmp_path / "run")
+    train(run, episodes=2)
+    known = rows_of(run)
+    run.episodes.append(run.episodes.rows()[:1])
+    train(RunFolder(run.path), episodes=0)
+    assert rows_of(run)[: len(known)] == known and [row.episode for row in run.episodes.rows()] == list(
+        range(len(run.episodes.rows()))
+    )
+    other = new(tmp_path / "other", env_options={"observation": "digits"})
+    (other.path / checkpoint.MODEL).write_bytes((run.path / checkpoint.MODEL).read_bytes())
+    with pytest.raises(AgentError, match="cannot be gone on with"):
+        train(other)
+    with pytest.raises(AgentError, match="features"):
+        training.policy(run).check(environments.make(other.config).observation_space, None)
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_the_network_that_plays_is_the_one_that_learnt(tmp_path, algorithm):
+    run = new(tmp_path / "run", algorithm, steps=50)
+    train(run)
+    model = training.policy(run).model
+    network, rng = Network(model), np.random.default_rng(0)
+    for row in rng.uniform(-2.0, 2.0, (50, *model.observation_space.shape)).astype(np.float32):
+        expected, _ = model.predict(row, deterministic=True)
+        assert network(row) == pytest.approx(expected, abs=1e-5)
+
+
+def test_what_cannot_be_is_refused(tmp_path):
+    for name, value in (("gama", 0.9), ("gamma", 1.5), ("robots", 0), ("batch", 2.5), ("reward_scale", 0.0)):
+        with pytest.raises(AgentError, match=name):
+            training.settings("ppo", {name: value})
+    with pytest.raises(AgentError, match="'rollout' of sac"):
+        training.settings("sac", {"rollout": 3})
+    with pytest.raises(AgentError, match="sac learns continuous actions"):
+        train(new(tmp_path / "a", "sac", env_options={"action": "discrete"}))
+    with pytest.raises(AgentError, match="dqn learns discrete actions"):
+        train(new(tmp_path / "b", "dqn", env_options={"action": "continuous", "task": "wander"}))
+    with pytest.raises(AgentError, match="there is no model"):
+        algorithms.policy_of(new(tmp_path / "c"))
+    broken = new(tmp_path / "d", env=CIRCUIT2)
+    (broken.path / checkpoint.MODEL).write_bytes(b"no zip")
+    with pytest.raises(AgentError, match="is no model"):
+        train(broken)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Greedy play: crashes, laps, other worlds, starts that are moved."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from pytest import approx
+from small_runs import make, new
+
+from agents import environments
+from agents.errors import AgentError
+from agents.evaluate import evaluate, evaluate_run, moved_starts
+from agents.laps import CENTRES, LapCounter
+from agents.runs.watch import Watch
+from agents.tabular import training
+from agents.tabular.policy import TablePolicy
+from agents.tabular.slots import slot_of
+from agents.tabular.table import Table
+from envs.observations import Digits
+
+CIRCUIT2 = [(0.0, 0.0), (3.9, 0.0), (3.9, -3.8), (0.28, -3.8), (0.28, -7.65), (-3.7, -7.65), (-3.7, 0.0), (0.0, 0.0)]
+"""Corners of the middle of its corridors, clockwise [m]."""
+
+
+def forward_only(env):
+    """A table that knows one state after another as "forward"."""
+    table = Table.for_spaces(env.observation_space, env.action_space)
+
+    class Forward(TablePolicy):
+        def act(self, observation):
+            slot = slot_of(self.table.keys, self.table.key(observation))
+            self.table.keys[slot], self.table.values[slot] = self.table.key(observation), (1.0, 0.0, 0.0)
+            return super().act(observation)
+
+    return Forward(table)
+
+
+def walk(corners):
+    for (x0, y0), (x1, y1) in pairwise(corners):
+        for k in range(20):
+            yield x0 + (x1 - x0) * k / 20, y0 + (y1 - y0) * k / 20
+
+
+def test_going_round_is_a_lap_in_either_direction():
+    for corners in (CIRCUIT2, CIRCUIT2[::-1]):
+        counter = LapCounter(CENTRES["circuit2"])
+        for x, y in [*walk(corners), *walk(corners), corners[0]]:
+            counter.take(x, y)
+        assert counter.laps == approx(2.0)
+    counter = LapCounter(CENTRES["circuit2"])
+    for x, y in [*walk(CIRCUIT2), *walk(CIRCUIT2[::-1]), CIRCUIT2[0]]:
+        counter.take(x, y)
+    assert counter.laps == approx(0.0, abs=1e-9)
+
+
+def test_straight_on_crashes_every_time():
+    env = make()
+    found = evaluate(env, forward_only(env), 5)
+    assert found.crash_rate == 1.0 and found.lap_rate == 0.0 and found.mean_laps == 0.0
+    assert {played.reward for played in found.episodes} == {found.mean_reward}
+    steps = found.episodes[0].steps
+    assert found.mean_reward == 5.0 * (steps - 1) - 200.0 and found.mean_simulated_s == approx(0.6 * steps)
+    assert "5 episodes" in found.sentence() and "5 crashes" in found.sentence()
+
+
+def test_moved_starts_are_near_and_differ():
+    env = make()
+    poses = np.array(moved_starts(env, 50, 3, 0.1))
+    assert np.abs(poses).max() <= 0.1 and len({tuple(p) for p in poses.tolist()}) == 50
+    policy = forward_only(env)
+    found = evaluate(env, policy, 10, poses=moved_starts(env, 10, 3, 0.4))
+    assert len({played.reward for played in found.episodes}) > 1
+
+
+def test_a_run_plays_where_it_learnt_and_elsewhere(tmp_path):
+    run = new(tmp_path / "run", max_steps=100, episodes=60)
+    training.train(run, Watch())
+    here, there = evaluate_run(run, 2), evaluate_run(run, 2, world="maze")
+    assert len(here.episodes) == 2 and not math.isnan(here.mean_laps)
+    assert math.isnan(there.mean_laps) and "laps" not in there.sentence()
+    with pytest.raises(AgentError, match="the table is for digits"):
+        evaluate_run(run, 1, observation=Digits(parts=4))
+    with pytest.raises(AgentError, match="nowhere"):
+        evaluate_run(run, 1, world="nowhere")
+
+
+def test_first_state_apart_is_played_as_it_was_learnt():
+    table = Table([4], 2)
+    for key, values in ((1, (1.0, 0.0)), (1 + table.size, (0.0, 1.0))):
+        table.keys[slot_of(table.keys, key)] = key
+        table.values[slot_of(table.keys, key)] = values
+    policy = TablePolicy(table, first_state_apart=True)
+    policy.begin(0)
+    assert [policy.act(1), policy.act(1)] == [1, 0]
+    policy.begin(1)
+    assert policy.act(1) == 1
+
+
+def test_seeds_of_episodes_do_not_repeat():
+    seeds = {environments.seed_of(seed, episode) for seed in range(20) for episode in range(100)}
+    assert len(seeds) == 2000
+
+
+def test_environments_without_poses_have_no_moved_starts():
+    with pytest.raises(AgentError, match="cannot be moved"):
+        moved_starts(gym.make("CliffWalking-v1"), 1, 0, 0.1)

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl train``, ``sitl evaluate``, ``sitl compare`` and ``sitl benchmark paper`` as a user calls them."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+
+import pytest
+from small_runs import CHECKS, CIRCUIT2, result
+
+import agents.cli
+from agents.report.paper_figures import MEAN_REWARDS
+from agents.runs import folder as folders
+from sitl import errors
+
+pytest.importorskip("matplotlib")
+SHORT = ["--episodes", "20", "--max-steps", "60", *(w for k, v in CHECKS.items() for w in ("--set", f"{k}={v}"))]
+
+
+@pytest.fixture
+def sitl(monkeypatch, tmp_path, capsys):
+    """Runs a command in an empty folder; gives its code, output and errors, 2 and the message for a user's mistake."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words):
+        top = argparse.ArgumentParser(prog="sitl")
+        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+        options = top.parse_args([str(word) for word in words])
+        try:
+            code = options.function(options)
+        except errors.USER_ERRORS as error:
+            return 2, "", str(error)
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
+
+
+def test_train_writes_a_run_folder(sitl, tmp_path):
+    code, out, err = sitl("train", CIRCUIT2, "--algo", "sarsa", "--seed", 3, "--set", "alpha=0.1", *SHORT)
+    assert (code, out) == (0, f"runs/{CIRCUIT2}-sarsa\n") and "times" not in out and "x real time" in err
+    folder = tmp_path / out.strip()
+    found = {path.name for path in folder.iterdir()}
+    assert found == {"config.json", "episodes.csv", "model.npz", "best.npz", "curve.png"}
+    config = folders.find(folder)[0].config
+    assert (config.algorithm, config.seed, config.settings["alpha"], config.max_steps) == ("sarsa", 3, 0.1, 60)
+
+
+@pytest.mark.slow
+def test_seeds_in_processes_and_longer_by_resume(sitl):
+    assert sitl("train", CIRCUIT2, "--seeds", 3, "--out", "one", *SHORT)[0] == 0
+    assert sitl("train", CIRCUIT2, "--seeds", 3, "--jobs", 2, "--out", "two", *SHORT)[0] == 0
+    one, two = folders.find("one"), folders.find("two")
+    assert [run.config.seed for run in one] == [0, 1, 2]
+    assert [result(run) for run in one] == [result(run) for run in two]
+    assert "is done" in sitl("train", "--resume", "two")[1]
+    assert sitl("train", "--resume", "two", "--episodes", 30)[0] == 0
+    assert [len(run.episodes.rows()) for run in folders.find("two")] == [30, 30, 30]
+    assert sitl("train", CIRCUIT2, "--seeds", 4, "--out", "one", "--resume", *SHORT)[0] == 0
+    assert len(folders.find("one")) == 4
+
+
+def test_mistakes_are_told(sitl):
+    assert sitl("train", CIRCUIT2, "--out", "run", *SHORT)[0] == 0
+    for words, message in (
+        (("train", CIRCUIT2, "--out", "run", *SHORT), "is a run already"),
+        (("train", CIRCUIT2, "--out", "run", "--resume", "--set", "alpha=0.1"), "other settings"),
+        (("train", CIRCUIT2, "--out", "x", "--set", "alhpa=0.1"), "did you mean 'alpha'"),
+        (("train", CIRCUIT2, "--out", "y", "--option", "world=nowhere"), "nowhere"),
+        (("train", CIRCUIT2, "--out", "z", "--option", "observation=scan"), "observation = digits"),
+        (("train", "Nothing-v0", "--out", "n"), "Nothing"),
+        (("train",), "ENV is missing"),
+        (("train", "--resume", "run", "--algo", "sarsa"), "goes on with a run as it is"),
+        (("train", "--resume", "nothing"), "neither a run"),
+        (("compare", "run", "nothing"), "neither a run"),
+        (("evaluate", "run", "--option", "world=nowhere"), "nowhere"),
+    ):
+        code, _, error = sitl(*words)
+        assert code == 2 and message in error, (words, error)
+
+
+def test_evaluate_plays(sitl):
+    assert sitl("train", CIRCUIT2, "--out", "run", *SHORT)[0] == 0
+    code, out, _ = sitl("evaluate", "run", "--episodes", 3, "--jitter", 0.1)
+    assert code == 0 and out.startswith("run: 3 episodes: mean reward") and "laps an episode" in out
+    assert "laps" not in sitl("evaluate", "run", "--episodes", 1, "--option", "world=maze")[1]
+
+
+def test_compare_writes_a_report(sitl, tmp_path):
+    assert sitl("train", CIRCUIT2, "--out", "one", "--seeds", 2, *SHORT)[0] == 0
+    assert sitl("train", CIRCUIT2, "--out", "two", "--set", "gamma=0.5", *SHORT)[0] == 0
+    code, out, _ = sitl("compare", "one", "two", "--play", 1, "--block", 5)
+    assert code == 0
+    folder = (tmp_path / out.strip()).parent
+    text = (folder / "report.md").read_text()
+    assert "gamma = 0.5" in text and "| 15 to 20 |" in text and "one above two" in text and "without a crash" in text
+    assert "<table>" in (folder / "report.html").read_text()
+    files = {"blocks.csv", "aggregates.csv", "greedy.csv", "curves.png", "profile.png", "report.md", "report.html"}
+    assert {path.name for path in folder.iterdir()} == files
+    rows = list(csv.DictReader((folder / "blocks.csv").open()))
+    assert len(rows) == 3 * 4 and {row["group"] for row in rows} == {"one", "two"}
+    first = folders.find("one")[0].episodes.column("reward")
+    assert float(rows[0]["mean_reward"]) == pytest.approx(first[:5].mean())
+
+
+@pytest.mark.slow
+def test_benchmark_writes_the_papers_table_and_goes_on(sitl, tmp_path):
+    words = ("benchmark", "paper", "--seeds", 2, "--play", 1, "--out", "paper", "--jobs", 2)
+    code, out, _ = sitl(*words, "--episodes", 40)
+    assert (code, out) == (0, "paper/report.md\n")
+    text = (tmp_path / out.strip()).read_text()
+    for means in MEAN_REWARDS.values():
+        assert f"| {means[0]} |" in text
+    assert "Sarsa, as coded" in text and "at or above the paper's mean in" in text
+    rows = list(csv.DictReader((tmp_path / "paper" / "paper.csv").open()))
+    assert [row["episodes"] for row in rows] == ["0 to 200", "best episode"]
+    assert sitl(*words, "--episodes", 50)[0] == 0
+    runs = sorted((tmp_path / "paper" / "runs").iterdir())
+    assert len(runs) == 4 and all(len(run.episodes.rows()) == 50 for group in runs for run in folders.find(group))
+    assert sitl("benchmark", "paper", "--seeds", 1, "--play", 1, "--out", "paper", "--episodes", 50)[0] == 0
