@@ -33,6 +33,9 @@ class Algorithm(Protocol):
     LENGTH: Mapping[str, int]
     """Of a run when the user does not say: {"episodes": ...} or {"steps": ...}."""
 
+    LIBRARIES: tuple[str, ...]
+    """Whose versions its results depend on, besides those of every run."""
+
     def settings(self, algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
         """All settings, the given ones and defaults, checked. Raises AgentError."""
 

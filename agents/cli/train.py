@@ -14,7 +14,7 @@ from ..errors import AgentError
 from ..report import curves
 from ..runs import folder as folders
 from ..runs.bar import Bar
-from ..runs.config import MAX_STEPS, RunConfig
+from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
 from ..runs.training import is_done, train_all
 from .options import add_jobs, assignment, assignments, positive
@@ -101,6 +101,7 @@ def _config(options: argparse.Namespace) -> RunConfig:
         env=options.env,
         algorithm=algorithm,
         env_options=assignments(options.option),
+        versions=versions(*module.LIBRARIES),
         settings=module.settings(algorithm, assignments(options.set)),
         seed=options.seed or 0,
         max_steps=options.max_steps or MAX_STEPS,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from importlib.util import find_spec
 from typing import Any
 
 from sitl.core.extras import MissingExtra
@@ -14,19 +15,28 @@ LIBRARIES = ("torch", "stable-baselines3")
 """Whose versions results depend on."""
 
 
+def require() -> None:
+    """See that the libraries are there, without the seconds that loading them takes.
+
+    Raises:
+        MissingExtra: one is not installed.
+    """
+    if any(find_spec(name) is None for name in ("torch", "stable_baselines3")):
+        raise MissingExtra(
+            "dqn, ppo and sac need stable-baselines3 and torch: pip install 'gym-sitl[rl]'; for a torch without GPU "
+            "libraries, before that: pip install torch --index-url https://download.pytorch.org/whl/cpu"
+        )
+
+
 def stable_baselines3() -> Any:
     """The module.
 
     Raises:
         MissingExtra: it is not installed.
     """
-    try:
-        import stable_baselines3
-    except ImportError as missing:
-        raise MissingExtra(
-            "dqn, ppo and sac need stable-baselines3 and torch: pip install 'gym-sitl[rl]'; for a torch without GPU "
-            "libraries, before that: pip install torch --index-url https://download.pytorch.org/whl/cpu"
-        ) from missing
+    require()
+    import stable_baselines3
+
     return stable_baselines3
 
 

@@ -16,10 +16,12 @@ from ..runs.watch import Watch
 from . import checkpoint, models
 from .actions import Actions
 from .features import Features
-from .library import stable_baselines3, torch
+from .library import LIBRARIES, require, stable_baselines3, torch
 from .policy import DeepPolicy
 from .settings import Settings, as_dict, settings_of
 from .tally import Tally
+
+__all__ = ["LENGTH", "LIBRARIES", "policy", "settings", "train"]
 
 LENGTH = {"steps": 1_000_000}
 _PERIOD_S = 20.0
@@ -29,7 +31,12 @@ _SHARE = 20.0
 
 
 def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """See ``Algorithm``."""
+    """See ``Algorithm``.
+
+    Raises:
+        MissingExtra: a run could not be trained.
+    """
+    require()
     return as_dict(settings_of(algorithm, given))
 
 

@@ -26,6 +26,7 @@ from .table import Table
 
 MODEL, BEST = "model.npz", "best.npz"
 """The table as it is, with all that a run needs to go on; the best one of the checks."""
+LIBRARIES = ()
 LENGTH = {"episodes": EPISODES}
 
 

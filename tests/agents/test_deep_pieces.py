@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import builtins
 import math
 
 import gymnasium as gym
@@ -85,14 +84,7 @@ def test_the_tally_makes_a_row_of_each_episode_that_ends():
 
 
 def test_without_the_extra_the_message_says_how_to_get_it(monkeypatch):
-    whole = builtins.__import__
-
-    def without(name, *rest, **more):
-        if name.startswith(("stable_baselines3", "torch")):
-            raise ImportError(name)
-        return whole(name, *rest, **more)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    assert training.settings("ppo", {})["robots"] > 1  # settings can be read without it
-    with pytest.raises(MissingExtra, match=r"gym-sitl\[rl\]"):
-        library.stable_baselines3()
+    monkeypatch.setattr(library, "find_spec", lambda name: None if name == "torch" else name)
+    for use in (lambda: training.settings("ppo", {}), library.stable_baselines3, library.torch):
+        with pytest.raises(MissingExtra, match=r"gym-sitl\[rl\]"):
+            use()
