@@ -36,7 +36,8 @@ pilot.expect("nose east", ("ATTITUDE",), lambda a: abs(math.degrees(a.yaw) - 90)
 pilot.fly_for(4, lambda: local(BODY, VELOCITY, 0, 0, 0, 2, 0, 0))
 now = pilot.here()
 check("velocity ahead is east", abs(now.vy - 2) < 0.3 and abs(now.vx) < 0.4, (now.vx, now.vy, now.vz))
-pilot.expect("stands", ("LOCAL_POSITION_NED",), lambda p: math.hypot(p.vx, p.vy) < 0.05, 10.0)
+# a hovering copter's estimate wanders by up to 0.1 m/s with its GPS: a tenth of the speed it had is standing
+pilot.expect("stands", ("LOCAL_POSITION_NED",), lambda p: math.hypot(p.vx, p.vy) < 0.2, 10.0)
 
 now = pilot.here()
 local(BODY_OFFSET, POSITION, 5, 0, 0)
