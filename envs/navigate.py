@@ -36,8 +36,10 @@ class Navigate(gym.Env[Any, Any]):
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
             "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
             or a function of a random generator that gives one; None: the world's for the robot.
-        randomise: figure of the robot -> (low, high), drawn for each episode.
+        randomise: figure of the robot, or "latency", -> (low, high), drawn for each episode; "draws" -> N: of N sets.
         render_mode: "rgb_array", "human" or None.
+        latency: simulated time from a decision until its command reaches the robot [s], a whole number of its ticks;
+            until then the command before goes on, and at the begin of an episode it stands or hovers.
         robot_options: what this robot takes besides.
 
     ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" (and what the task tells).
@@ -60,13 +62,15 @@ class Navigate(gym.Env[Any, Any]):
         start: StartOption | None = None,
         randomise: Randomise | None = None,
         render_mode: str | None = None,
+        latency: float = 0.0,
         **robot_options: Any,
     ) -> None:
         if render_mode is not None and render_mode not in RENDER_MODES:
             raise unknown("render_mode", render_mode, RENDER_MODES)
         self._session = session = Session(
-            1, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options
-        )
+            1, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options,
+            latency,
+        )  # fmt: skip
         self.observation_space = session.observation_space
         self.action_space = session.action.space
         self.render_mode = render_mode

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Domain randomisation: figures of the robot, by name, drawn anew for every episode."""
+"""Domain randomisation: figures of the robot, and its latency, drawn anew for every episode."""
 
 from __future__ import annotations
 
@@ -9,31 +9,51 @@ from typing import Any
 
 import numpy as np
 
+from sitl.vehicles.figures.figure import Figure
+
+from .latency import LATENCY, Latency
 from .options import EnvOptionError, unknown
 from .robots.robot import Robot
 
-Randomise = Mapping[str, tuple[float, float] | Callable[[np.random.Generator], float]]
-"""Figure -> (low, high), of which it is drawn evenly, or a function that draws it."""
+Randomise = Mapping[str, tuple[float, float] | Callable[[np.random.Generator], float] | int]
+"""Figure -> (low, high), of which it is drawn evenly, or a function that draws it; DRAWS -> how many sets."""
+DRAWS = "draws"
+"""As a key: so many sets of figures are drawn once, always the same ones, and each episode takes one of them."""
+_MOST_DRAWS = 100_000
 
 
 class Randomisation:
     """Draws figures.
 
+    Args:
+        ranges: see ``Randomise``; "latency" is one of the figures.
+        robot: whose figures they are.
+        latency: of the robot's commands, None when it has none.
+
     Raises:
         EnvOptionError: no such figure, a range that is none, or one beyond the figure's limits.
     """
 
-    def __init__(self, ranges: Randomise, robot: Robot) -> None:
-        self.ranges = dict(ranges)
+    def __init__(self, ranges: Randomise, robot: Robot, latency: Latency | None = None) -> None:
+        self.ranges: dict[str, Any] = dict(ranges)
+        self._latency = latency
+        draws = self.ranges.pop(DRAWS, None)
+        known = {**robot.figures, LATENCY.name: LATENCY}
         for name, values in self.ranges.items():
-            if name not in robot.figures:
-                raise unknown("randomise: figure", name, robot.figures)
+            if name not in known:
+                raise unknown("randomise: figure", name, [*known, DRAWS])
             if not callable(values):
-                self._check(name, values, robot)
+                self._check(known[name], values, robot)
+        self._sets: list[dict[str, float]] | None = None
+        if draws is not None:
+            if not isinstance(draws, int) or isinstance(draws, bool) or not 1 <= draws <= _MOST_DRAWS:
+                raise EnvOptionError(f"randomise: {DRAWS} = {draws!r}; it must be a whole number 1 .. {_MOST_DRAWS}")
+            rng = np.random.default_rng(0)
+            self._sets = [self._drawn(rng) for _ in range(draws)]
 
     @staticmethod
-    def _check(name: str, values: Any, robot: Robot) -> None:
-        figure = robot.figures[name]
+    def _check(figure: Figure, values: Any, robot: Robot) -> None:
+        name = figure.name
         try:
             low, high = (float(v) for v in values)
         except (TypeError, ValueError):
@@ -41,13 +61,22 @@ class Randomisation:
         if not figure.low <= low <= high <= figure.high:
             limits = f"{figure.low:g} .. {figure.high:g} {figure.unit}".strip()
             raise EnvOptionError(f"randomise: {name} = {values!r}; it must be low <= high within {limits}")
-        if name == "range_max":
+        if name in ("range_max", "lidar_max"):
             robot.range_max = max(robot.range_max, high)
         if name == "radius":  # random places have room for the greatest
             robot.volume = replace(robot.volume, radius=max(robot.volume.radius, high))
 
+    def _drawn(self, rng: np.random.Generator) -> dict[str, float]:
+        return {
+            name: float(values(rng) if callable(values) else rng.uniform(*values))
+            for name, values in self.ranges.items()
+        }
+
     def draw(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """Give one robot its figures for the next episode."""
-        for name, values in self.ranges.items():
-            value = values(rng) if callable(values) else rng.uniform(*values)
-            robot.set_figure(index, name, float(value))
+        figures = self._drawn(rng) if self._sets is None else self._sets[int(rng.integers(len(self._sets)))]
+        for name, value in figures.items():
+            if name != LATENCY.name:
+                robot.set_figure(index, name, value)
+            elif self._latency is not None:
+                self._latency.set(index, value)

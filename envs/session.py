@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
@@ -19,11 +19,13 @@ from sitl.worlds import World, WorldError
 
 from . import robots
 from .actions import Action, Discrete
+from .latency import LATENCY, Latency
+from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
 from .options import EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise
 from .rewards import ByAction, Step
-from .robots.robot import Robot
+from .robots.robot import LateRobot, Robot
 from .setpoints import SETPOINTS
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
@@ -45,6 +47,8 @@ class Snapshot:
     """Of the episode so far; vector environments count them themselves."""
     ended: bool = False
     """Whether the next step of a vector environment begins another episode."""
+    late: Late | None = None
+    """What is under way to it; None: it has no latency."""
 
 
 class Session:
@@ -63,6 +67,7 @@ class Session:
         start: StartOption | None,
         randomise: Randomise | None,
         robot_options: Mapping[str, Any],
+        latency: float = 0.0,
     ) -> None:
         try:
             found = worlds.load(world)
@@ -70,16 +75,18 @@ class Session:
             raise EnvOptionError(str(error)) from None
         self.robot = robots.load(robot, found, count, robot_options)
         self.count = count
-        self.randomisation = Randomisation(randomise or {}, self.robot)
+        self.action = self._choose_action(action, setpoint)
+        self.seconds = self._check_step_time(step_time)
+        self.latency = self._make_latency(latency, randomise or {})
+        """None: commands arrive at once."""
+        self.randomisation = Randomisation(randomise or {}, self.robot, self.latency)
         self.starts = Starts(start, self.robot)
         self.task: Task = _named("task", task, TASKS, "judge")
         self.observation: Observation = _named("observation", observation, OBSERVATIONS, "observe")
-        self.action = self._choose_action(action, setpoint)
         if not isinstance(self.action.space, gym.spaces.Discrete) and any(
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
-        self.seconds = self._check_step_time(step_time)
         self.actions = self.action.room(count)
         """To be filled before ``advance``, a row a robot, with what ``action.check`` gives."""
         self.commands = np.zeros((count, self.action.setpoint.width))
@@ -121,6 +128,13 @@ class Session:
             raise EnvOptionError(f"step_time = {seconds!r}; it must be above 0 s and a whole number of {tick:g} s")
         return round(ticks * tick, 9)  # exact, also for a float32 or a sum of tenths
 
+    def _make_latency(self, seconds: float, randomise: Randomise) -> Latency | None:
+        drawn = LATENCY.name in randomise
+        if drawn and seconds != 0.0:
+            raise EnvOptionError(f"latency = {seconds!r}, and randomise draws one: give one of them")
+        none = isinstance(seconds, int | float) and not isinstance(seconds, bool) and seconds == 0.0 and not drawn
+        return None if none else Latency(self.robot, seconds, self.seconds, self.action.setpoint.width)
+
     def reset(self, index: int, rng: np.random.Generator, options: Mapping[str, Any] | None) -> None:
         """An episode of one robot begins; ``look`` follows. ``options``: "pose", a start pose for this episode."""
         for option in options or ():
@@ -131,6 +145,8 @@ class Session:
             pose = self.starts.pose(options["pose"])
         seed = int(rng.integers(1 << 32))
         self.randomisation.draw(index, self.robot, rng)
+        if self.latency is not None:
+            self.latency.begin(index)
         self.robot.reset(index, pose, seed)
         self.task.start(index, self.robot, rng)
 
@@ -141,13 +157,22 @@ class Session:
     def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """One step of these robots (None: all); fills ``rewards`` and ``terminated``."""
         self.action.commands(self.actions, self.commands)
-        self.robot.apply(self.action.setpoint, self.commands)
-        self.robot.advance(self.seconds, rows)
+        if self.latency is None:
+            self.robot.apply(self.action.setpoint, self.commands)
+            self.robot.advance(self.seconds, rows)
+        else:
+            self._advance_late(self.latency, rows)
         self.task.judge(self.step, self.rewards, self.terminated)
+
+    def _advance_late(self, latency: Latency, rows: npt.NDArray[np.bool_] | None) -> None:
+        latency.post(self.commands, rows)
+        self.robot.apply(self.action.setpoint, latency.due)
+        cast(LateRobot, self.robot).advance_late(self.seconds, latency.waits, rows)
 
     def snapshot(self, index: int, rng: np.random.Generator) -> Snapshot:
         """Of one robot, with the generator of its episodes."""
-        return Snapshot(self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state)
+        late = None if self.latency is None else self.latency.memory(index)
+        return Snapshot(self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late)
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
         """Put one robot back, and the generator of its episodes.
@@ -157,8 +182,12 @@ class Session:
         """
         if not isinstance(snapshot, Snapshot):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of an environment")
+        if (snapshot.late is None) != (self.latency is None):
+            raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has a latency")
         self.task.recall(index, snapshot.task)
         self.robot.restore(index, snapshot.robot)
+        if self.latency is not None and snapshot.late is not None:
+            self.latency.recall(index, snapshot.late)
         rng.bit_generator.state = dict(snapshot.rng)
 
 

@@ -62,6 +62,7 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         start: StartOption | None = None,
         randomise: Randomise | None = None,
         render_mode: str | None = None,
+        latency: float = 0.0,
         **robot_options: Any,
     ) -> None:
         if num_envs < 1:
@@ -71,8 +72,9 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         if render_mode is not None and render_mode not in VECTOR_RENDER_MODES:
             raise unknown("render_mode", render_mode, VECTOR_RENDER_MODES)
         self._session = session = Session(
-            num_envs, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options
-        )
+            num_envs, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options,
+            latency,
+        )  # fmt: skip
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.render_mode = render_mode

@@ -130,30 +130,42 @@ class Ranger:
         floor: float,
         cast: Cast | None = None,
     ) -> None:
-        a, self._sensors, self._counter = v.physics.airframe, v.sensors, name + "_count"
-        self._count = RecordReader(fleet, index).field(f"sensors.{name}_count")
-        self._period_us = 1e6 / float(a[name + "_rate"])
-        figures = [a[name + "_min"], a[name + "_max"], a[name + "_noise"], *a[name + "_at"], floor]
+        self._sensors, self._counter = v.sensors, name + "_count"
+        reader = RecordReader(fleet, index)
+        self._count = reader.field(f"sensors.{name}_count")
+        figures = ("rate", "min", "max", "noise", "at")
+        self._read = reader.fields(*(f"physics.airframe.{name}_{figure}" for figure in figures))
+        self._floor, self._figures = floor, np.empty(7)
+        self._known: tuple[float, ...] = ()
         rng: Any = [v.rng] if jit_disabled() else fleet["rng"][index : index + 1]
         origin, room, ranges = np.empty(3), np.empty_like(rays), np.empty(rays.shape[1])
-        body, numbers = v.physics.body, np.array(figures, np.float64)
+        body, numbers = v.physics.body, self._figures
         measure = partial(
             _measure.function(), rng, body.pos, body.q, numbers,
             geometry.solids, geometry.grid, geometry.cells, rays, origin, room, ranges, readings,
         )  # fmt: skip
         self._measure: Callable[[], None] = measure
         if cast is not None:
-            turn, read, reach = _aim.function(), _publish.function(), float(numbers[1])
+            turn, read = _aim.function(), _publish.function()
 
             def by_engine() -> None:
                 turn(body.pos, body.q, numbers, rays, origin, room)
-                if cast(origin, room, ranges, reach):
+                if cast(origin, room, ranges, float(numbers[1])):
                     read(rng, numbers, ranges, readings)
                 else:
                     measure()
 
             self._measure = by_engine
+        self.read_figures()
         self.find_due()
+
+    def read_figures(self) -> None:
+        """Take over the figures of the vehicle's airframe, as its record has them now."""
+        figures = self._read()
+        if figures != self._known:
+            self._known = figures
+            self._period_us = 1e6 / figures[0]
+            self._figures[:] = *figures[1:], self._floor
 
     def find_due(self) -> None:
         """Set ``due_us`` from how many measurements there have been."""
@@ -199,6 +211,11 @@ class Rangers:
             self.rangefinder = Ranger(v, fleet, index, "rangefinder", DOWN, s.rangefinder_range, geometry, floor, cast)
         self._all = [sensor for sensor in (self.lidar, self.rangefinder) if sensor is not None]
         self.find_due()
+
+    def read_figures(self) -> None:
+        """Take over the figures in the record: after it was written from outside."""
+        for sensor in self._all:
+            sensor.read_figures()
 
     def find_due(self) -> None:
         """Set ``due_us``, when the next one has to measure, from the record: after it was written from outside."""

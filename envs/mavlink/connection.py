@@ -30,6 +30,8 @@ class Connection:
     client: Client
     is_exact = True
     """Whether its clock goes exactly as far as it is told to."""
+    splits_steps = True
+    """Whether it can be spoken to within a step."""
     sees = False
     """Whether scans and touches come with it, not by MAVLink."""
     longest_interval_us = 1 << 62
@@ -196,6 +198,7 @@ class RealTime(Remote):
     """One that goes by its own clock; a step ends with the first position that is old enough."""
 
     is_exact = False
+    splits_steps = False
 
     def run(self, us: int) -> None:
         if us == 0:

@@ -107,9 +107,10 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
 
     _until(link, arms, _SECOND, "does not arm")
     if take_off > 0.0:
+        floor = heard.position[3]  # home is where it is armed, which is not the origin of local positions
         if link.command(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, take_off) != ACCEPTED:
             raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_told(link)}")
-        _until(link, lambda: abs(heard.position[3] + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
+        _until(link, lambda: abs(heard.position[3] - floor + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
                f"does not climb to {take_off:g} m")  # fmt: skip
     for _ in range(3):  # it may be lost on the way
         if heard.origin is None:

@@ -116,7 +116,9 @@ class AutopilotRobot:
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, had.shortest_step)
         self.figures: Mapping[str, Figure] = (
-            {f.name: f for f in airframe.known if f.length == 1 and not f.whole} if had.simulates else {}
+            {**{f.name: f for f in airframe.known if f.length == 1 and not f.whole}, **had.surroundings}
+            if had.simulates
+            else {}
         )
         self.volume = volume(airframe, take_off if airframe.kind == "copter" else 0.0)
         self.scan = np.full((count, readings), np.inf, np.float32)
@@ -164,7 +166,19 @@ class AutopilotRobot:
             self.close()
             raise
 
-    def _step(self, index: int, us: int) -> None:
+    def advance_late(
+        self, seconds: float, waits: npt.NDArray[np.int64], rows: npt.NDArray[np.bool_] | None = None
+    ) -> None:
+        """See ``Robot``: the message is sent after the wait."""
+        us, tick_us = round(1e6 * seconds), round(1e6 * self.tick)
+        try:
+            for index in range(self.count) if rows is None else np.flatnonzero(rows).tolist():
+                self._step(index, us, int(waits[index]) * tick_us)
+        except LinkLostError:
+            self.close()
+            raise
+
+    def _step(self, index: int, us: int, wait_us: int = 0) -> None:
         link, now, setpoint = self._vehicles.links[index], self._now[index], self._setpoint
         if link is None:
             raise LinkLostError(f"{self._vehicles.where} is not open; reset() opens it")
@@ -173,10 +187,15 @@ class AutopilotRobot:
         if now.setpoint != setpoint.name or now.interval_us != interval_us:
             now = self._change(link, now, setpoint.name, interval_us)
             self._now[index] = now
-        kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), heard, now.origin)
-        link.client.send_payload(kind, payload)
         hits, scans, goal_ms = heard.hits, heard.scans, heard.position[0] + us // 1000
-        link.run(us)
+        if wait_us > 0:
+            if not link.splits_steps:
+                raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
+            link.run(wait_us)
+        if wait_us < us:
+            kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), heard, now.origin)
+            link.client.send_payload(kind, payload)
+            link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
                 if heard.position[0] == heard.attitude[0] == goal_ms and heard.scans > scans:

@@ -106,3 +106,13 @@ class Robot(Protocol):
 
     def close(self) -> None:
         """Let go of what is open."""
+
+
+class LateRobot(Robot, Protocol):
+    """What the option ``latency`` needs besides."""
+
+    def advance_late(
+        self, seconds: float, waits: npt.NDArray[np.int64], rows: npt.NDArray[np.bool_] | None = None
+    ) -> None:
+        """As ``advance``, but the commands of ``apply`` reach robot i only after ``waits[i]`` ticks; until then it goes
+        on as before. A robot whose wait is as long as the step gets none."""

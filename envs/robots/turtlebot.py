@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,11 @@ class Turtlebot:
         self.collided = robots.fleet["body"]["collided"]
 
     @property
+    def airframe(self) -> TurtlebotAirframe:
+        """Figures that all start with."""
+        return self._robots.airframe
+
+    @property
     def robots(self) -> Turtlebots:
         """The Turtlebots themselves."""
         return self._robots
@@ -120,6 +126,26 @@ class Turtlebot:
             self._ticks[:] = ticks_in(seconds)
             self._seconds = seconds
         self._run()
+
+    def advance_late(
+        self, seconds: float, waits: npt.NDArray[np.int64], rows: npt.NDArray[np.bool_] | None = None
+    ) -> None:
+        """See ``Robot``. A robot that waits reads its lidar when the command arrives, too: its noise goes on."""
+        moving = np.ones(self.count, np.bool_) if rows is None else rows
+        first = np.where(moving, waits, 0)
+        late, touched = self._commands.copy(), np.zeros(self.count, np.bool_)
+        waiting = first > 0
+        if waiting.any():
+            self._commands[:] = math.nan
+            self._ticks[:] = np.where(waiting, first, -1)
+            self._run()
+            touched = waiting & (self.collided != 0)
+        rest = np.where(moving, ticks_in(seconds) - first, 0)
+        self._commands[:] = late
+        self._ticks[:] = np.where(moving & (rest == 0), -1, rest)
+        self._seconds = -1.0
+        self._run()
+        self.collided[touched] = 1
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         """A picture by the renderer of the robot's physics; None when it has none."""

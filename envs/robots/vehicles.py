@@ -12,6 +12,7 @@ from sitl.core.geodesy import offset_ne
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
 from sitl.vehicles import Airframe
+from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
 from ..mavlink import px4, setpoints
@@ -82,6 +83,11 @@ class Vehicles(ABC):
         """To each of them, once it was needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
         """Figures of each that are not the airframe's, by name."""
+
+    @property
+    def surroundings(self) -> Mapping[str, Figure]:
+        """Figures that may be changed besides the airframe's."""
+        return {}
 
     @property
     @abstractmethod

@@ -166,6 +166,7 @@ class LocalPlant(Plant):
         if self.engine is not None:
             self.engine.restore(state)
         if self.rangers is not None:
+            self.rangers.read_figures()
             self.rangers.find_due()
             self.due_us = self.rangers.due_us
 
