@@ -42,6 +42,8 @@ def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.Vecto
 
 def _made(call: Callable[[dict[str, Any]], _Env], config: RunConfig, options: Mapping[str, Any]) -> _Env:
     given = {**config.env_options, **options}
+    if "max_episode_steps" in given:
+        raise AgentError("max_episode_steps is no option of an environment; --max-steps limits an episode")
     given = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
     try:
         return call(given)

@@ -16,8 +16,8 @@ from .algorithms import Policy
 from .errors import AgentError
 from .laps import CENTRES, LapCounter
 from .runs.folder import RunFolder
+from .runs.plan import EPISODES
 
-EPISODES = 100
 Pose = tuple[float, float, float]
 """x, y [m], yaw [rad]."""
 
@@ -91,6 +91,7 @@ def evaluate(
     seed: int = 0,
     poses: Sequence[Pose] | None = None,
     watch: Callable[[Played], None] = lambda played: None,
+    first: int = 0,
 ) -> Evaluation:
     """Play episodes.
 
@@ -101,13 +102,14 @@ def evaluate(
         seed: of the resets and of the policy's own choices.
         poses: where the episodes start, in turn; None: where the environment says.
         watch: called after each episode.
+        first: number of the first one; each follows from its number and the seed alone.
 
     Raises:
         AgentError: the policy is of other spaces than the environment.
     """
     policy.check(env.observation_space, env.action_space)
     played = []
-    for episode in range(episodes):
+    for episode in range(first, first + episodes):
         one = environments.seed_of(seed, episode)
         options = {"pose": poses[episode % len(poses)]} if poses else None
         played.append(play(env, policy, one, options))
@@ -166,7 +168,9 @@ def evaluate_run(
         env.close()
 
 
-def moved_starts(env: gym.Env[Any, Any], count: int, seed: int, jitter: float) -> list[Pose]:
+def moved_starts(
+    env: gym.Env[Any, Any] | gym.vector.VectorEnv[Any, Any, Any], count: int, seed: int, jitter: float
+) -> list[Pose]:
     """Start poses near the environment's own.
 
     Raises:

@@ -7,20 +7,13 @@ import shutil
 import subprocess
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol
-
-import numpy as np
-import numpy.typing as npt
-
-from sitl.core.extras import MissingExtra
+from typing import Protocol
 
 from .errors import AgentError
+from .gif import Gif, Picture, pillow
 
-Picture = npt.NDArray[np.uint8]
-"""Shape (height, width, 3)."""
 FASTEST_S = 0.04
 """Least time that a picture of a film stands: viewers slow down GIFs that change faster [s]."""
-_COLOURS = 64
 
 
 class Film(Protocol):
@@ -31,32 +24,6 @@ class Film(Protocol):
 
     def close(self) -> None:
         """Write what is not yet written."""
-
-
-class Gif:
-    """A GIF that repeats for ever."""
-
-    def __init__(self, path: Path, seconds: float) -> None:
-        self._path, self._ms = path, max(round(100.0 * seconds), 2) * 10  # GIFs count hundredths
-        self._pictures: list[Any] = []
-        self._palette: Any = None
-
-    def add(self, picture: Picture) -> None:
-        """See ``Film``."""
-        image = _pillow().fromarray(picture)
-        if self._palette is None:
-            self._palette = image.quantize(_COLOURS)
-        self._pictures.append(image.quantize(palette=self._palette, dither=0))
-
-    def close(self) -> None:
-        """See ``Film``."""
-        if not self._pictures:
-            return
-        first, *others = self._pictures
-        try:
-            first.save(self._path, "GIF", save_all=True, append_images=others, duration=self._ms, loop=0)
-        except OSError as error:
-            raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
 
 
 class Mp4:
@@ -73,7 +40,9 @@ class Mp4:
             raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{self._rate:.6g}"]
             even = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"]  # H.264 wants even sides
             words = [self._program, "-loglevel", "error", "-y", *raw, "-i", "-", *even, str(self._path)]
-            self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+            pipe = subprocess.PIPE
+            # In a session of its own: a terminal's Ctrl-C shall end the play, and ffmpeg what it has begun.
+            self._process = subprocess.Popen(words, stdin=pipe, stderr=pipe, start_new_session=True)
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(picture.tobytes())
@@ -111,10 +80,10 @@ class Reel:
         if not path.parent.is_dir():
             raise AgentError(f"{path} cannot be written: there is no folder {path.parent}")
         self._film: Film
-        if path.suffix == ".gif":
-            _pillow()
+        if path.suffix.lower() == ".gif":
+            pillow()
             self._film = Gif(path, seconds)
-        elif path.suffix == ".mp4":
+        elif path.suffix.lower() == ".mp4":
             program = shutil.which("ffmpeg")
             if program is None:
                 raise AgentError(f"{path}: an MP4 needs the program ffmpeg, which is not installed; a .gif does not")
@@ -138,11 +107,3 @@ class Reel:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None):
         self._film.close()
-
-
-def _pillow() -> Any:
-    try:
-        from PIL import Image
-    except ImportError:
-        raise MissingExtra("a GIF needs Pillow: pip install 'gym-sitl[viz]'") from None
-    return Image

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+import os
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -19,6 +21,8 @@ from .errors import AgentError
 from .film import Reel
 from .runs.folder import RunFolder
 
+STEP_S = 1.0
+"""Of a step whose environment does not say how long it is [s]."""
 AfterStep = Callable[[Any], bool]
 """Called with the environment after each reset and step; False ends the show."""
 Ended = Callable[[int, int, float, bool], None]
@@ -62,14 +66,23 @@ def film(run: RunFolder, path: Path, episodes: int, seed: int, speed: float, end
     policy = policy_of(run)
     env = environments.make(run.config, render_mode="rgb_array", **options)
     try:
-        with Reel(path, environments.step_time(env) / speed) as reel:
+        with Reel(path, _step_s(env) / speed) as reel:
+            taken = False
 
             def after(shown: Any) -> bool:
-                if reel.wants():
+                nonlocal taken
+                taken = reel.wants()
+                if taken:
                     reel.add(shown.render())
                 return True
 
-            play(env, policy, episodes, seed, after, ended)
+            def at_end(*episode: Any) -> None:
+                if not taken:  # how it ended must be seen
+                    last: Any = env.render()
+                    reel.add(last)
+                ended(*episode)
+
+            play(env, policy, episodes, seed, after, at_end)
         return reel.pictures
     except DependencyNotInstalled as error:
         raise MissingExtra(str(error)) from None
@@ -85,9 +98,14 @@ def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended,
     """
     policy = policy_of(run)
     env = environments.make(run.config, render_mode="human", **options)
-    pace = Pace(environments.step_time(env) / speed)
+    pace = Pace(_step_s(env) / speed)
+
+    def after(shown: Any) -> bool:
+        _check_screen()
+        return pace() and not _window_closed()
+
     try:
-        play(env, policy, episodes, seed, lambda shown: pace() and not _window_closed(), ended)
+        play(env, policy, episodes, seed, after, ended)
     except DependencyNotInstalled as error:
         raise AgentError(str(error)) from None
     finally:
@@ -119,6 +137,21 @@ class Pace:
             now = self._next
         self._next = now + self._seconds
         return True
+
+
+def _step_s(env: gym.Env[Any, Any]) -> float:
+    """Simulated time of a step [s]."""
+    seconds = environments.step_time(env)
+    return STEP_S if math.isnan(seconds) else seconds
+
+
+def _check_screen() -> None:
+    """Raises AgentError when what is shown goes nowhere, without the user having asked for that."""
+    import pygame
+
+    if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_init():
+        if pygame.display.get_driver() in ("dummy", "offscreen"):
+            raise AgentError("there is no screen for a window; --out FILE.gif makes a film")
 
 
 def _window_closed() -> bool:

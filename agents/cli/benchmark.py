@@ -5,17 +5,18 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 from ..report import paper
 from ..report.group import Group
 from ..report.paper_figures import TITLES
+from ..runs.backends import Workers
 from ..runs.bar import Bar
 from ..runs.config import EPISODES
 from ..runs.folder import RunFolder
 from ..runs.training import is_done, train_all
-from .options import add_jobs, positive
+from . import benchmark_environments, benchmark_rehearsal
+from .options import add_jobs, positive, workers
 
 SEEDS = 10
 
@@ -42,11 +43,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     one.add_argument("--out", type=Path, default=Path("reports/paper"), metavar="DIR", help="default: reports/paper")
     one.set_defaults(function=run_paper)
+    benchmark_environments.declare(actions, _train)
+    benchmark_rehearsal.declare(actions, _train)
 
 
 def run_paper(options: argparse.Namespace) -> int:
     """Run ``sitl benchmark paper``."""
-    out, seeds = options.out, range(options.seeds)
+    out, seeds, crew = options.out, range(options.seeds), workers(options)
     wanted: list[tuple[str, list[RunFolder]]] = []
     main: dict[tuple[str, str], int] = {}
     for algorithm, title in TITLES.items():
@@ -65,15 +68,15 @@ def run_paper(options: argparse.Namespace) -> int:
                 runs = paper.runs_of(out, algorithm, paper.TEXTBOOK, seeds, options.episodes, step)
                 wanted.append((f"{title}, steps of {seconds:g} s", runs))
     todo = [run for _, runs in wanted for run in runs if not is_done(run)]
-    if todo and not _train(todo, options.jobs):
+    if todo and not _train(todo, crew):
         print("interrupted; the same command goes on", file=sys.stderr)
         return 130
     groups = [Group(name, runs) for name, runs in wanted]
     found = {key: groups[index] for key, index in main.items()}
-    print(paper.write_report(found, groups[len(main) :], out, options.play))
+    print(paper.write_report(found, groups[len(main) :], out, options.play, crew))
     return 0
 
 
-def _train(runs: list[RunFolder], jobs: int, train: Callable[..., bool] = train_all) -> bool:
+def _train(runs: list[RunFolder], crew: Workers) -> bool:
     with Bar(runs) as bar:
-        return train([run.path for run in runs], jobs, bar)
+        return train_all([run.path for run in runs], crew.jobs, bar, crew.each)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..report.compare import compare
 from ..report.group import Group, unique_names
-from .options import positive
+from .options import add_jobs, positive, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -20,12 +20,14 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("--block", type=positive, metavar="N", help="episodes of an average (default: 200)")
     parser.add_argument("--play", type=positive, default=0, metavar="N", help="also play N greedy episodes of each run")
+    add_jobs(parser)
     parser.set_defaults(function=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Run the command."""
+    crew = workers(options)
     groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
-    path = compare(groups, options.out, options.block, options.play)
+    path = compare(groups, options.out, options.block, options.play, crew)
     print(path)
     return 0

@@ -6,33 +6,39 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..evaluate import EPISODES, evaluate_run
+from ..evaluations import evaluate_runs
 from ..runs import folder as folders
-from .options import assignment, assignments, positive
+from .options import add_jobs, assignment, assignments, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("evaluate", help="let what a run has learnt play, and count crashes and laps")
+    parser = commands.add_parser(
+        "evaluate",
+        help="let what a run has learnt play, and count crashes and laps",
+        description="Plays greedy episodes. A run by a recipe has defaults of its own: how its recipe is evaluated.",
+    )
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or of several")
-    parser.add_argument("--episodes", type=positive, default=EPISODES, metavar="N", help=f"default {EPISODES}")
+    parser.add_argument("--episodes", type=positive, metavar="N", help="default: of the run, 100")
     parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the episodes")
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
     parser.add_argument(
-        "--jitter", type=float, default=0.0, metavar="X", help="starts are moved by up to X metres and X rad"
+        "--jitter", type=float, metavar="X", help="starts are moved by up to X m and X rad (default: of the run, 0)"
     )
     parser.add_argument(
         "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
     )
+    add_jobs(parser)
     parser.set_defaults(function=evaluate)
 
 
 def evaluate(options: argparse.Namespace) -> int:
     """Run the command."""
     changes = assignments(options.option)
-    for run in folders.find(options.run):
-        if options.max_steps is not None:
-            run.config = run.config.with_(max_steps=options.max_steps)
-        found = evaluate_run(run, options.episodes, options.seed, options.jitter, **changes)
+    crew, runs = workers(options), folders.find(options.run)
+    plans = [
+        run.config.evaluation.changed(options.episodes, options.jitter, options.max_steps, changes) for run in runs
+    ]
+    for run, found in zip(runs, evaluate_runs(runs, plans, options.seed, crew)):
         print(f"{run.path}: {found.sentence()}")
     return 0

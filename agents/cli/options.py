@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..errors import AgentError
+from ..runs.backends import BACKENDS, Workers
 
 
 def positive(text: str) -> int:
@@ -20,6 +21,17 @@ def positive(text: str) -> int:
         number = 0
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 on")
+    return number
+
+
+def whole(text: str) -> int:
+    """A whole number from 0 on, as a seed is."""
+    try:
+        number = int(text)
+    except ValueError:
+        number = -1
+    if number < 0:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 0 on")
     return number
 
 
@@ -49,5 +61,21 @@ def assignments(pairs: Iterable[tuple[str, Any]] | None) -> dict[str, Any]:
 
 
 def add_jobs(parser: argparse.ArgumentParser) -> None:
-    """--jobs."""
-    parser.add_argument("--jobs", type=positive, default=1, metavar="N", help="processes that seeds are spread over")
+    """--jobs, --backend, --address."""
+    parser.add_argument("--jobs", type=positive, default=1, metavar="N", help="how many at a time (default 1)")
+    parser.add_argument(
+        "--backend", choices=BACKENDS, default=BACKENDS[0], help="processes of this machine, or a Ray cluster"
+    )
+    parser.add_argument(
+        "--address", metavar="ADDRESS", help="of the Ray cluster (default: $RAY_ADDRESS, else one on this machine)"
+    )
+
+
+def workers(options: argparse.Namespace) -> Workers:
+    """What ``add_jobs`` added.
+
+    Raises:
+        AgentError: an address without ``--backend ray``.
+        MissingExtra: Ray is not installed.
+    """
+    return Workers(options.jobs, options.backend, options.address)

@@ -16,8 +16,11 @@ from ..runs import folder as folders
 from ..runs.bar import Bar
 from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
+from ..runs.sweep import Sweep, is_sweep
 from ..runs.training import is_done, train_all
-from .options import add_jobs, assignment, assignments, positive
+from .by_recipe import add_recipe, config_by_recipe, folder_name
+from .by_sweep import add_sweep, runs_of_sweep, tell_sweep
+from .options import add_jobs, assignment, assignments, positive, workers
 
 RUNS = Path("runs")
 
@@ -31,6 +34,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "Ctrl-C ends it after the episode; --resume goes on, and nothing is lost.",
     )
     parser.add_argument("env", nargs="?", metavar="ENV", help="id, as GazeboCircuit2TurtlebotLIDAR-v0")
+    add_recipe(parser)
     parser.add_argument("--algo", choices=tuple(algorithms.ALGORITHMS), help="default: qlearn")
     parser.add_argument("--episodes", type=positive, metavar="N", help="how many; default: of the algorithm")
     parser.add_argument("--steps", type=positive, metavar="N", help="how many, of all episodes together")
@@ -44,7 +48,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=maze"
     )
-    parser.add_argument("--out", type=Path, metavar="RUN", help="folder (default: runs/ENV-ALGO)")
+    add_sweep(parser)
+    parser.add_argument("--out", type=Path, metavar="RUN", help="folder (default: runs/ENV-ALGO, runs/RECIPE)")
     parser.add_argument(
         "--resume", nargs="?", const="", metavar="RUN", help="go on with a run: this one, or that of ENV and --out"
     )
@@ -53,38 +58,57 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def train(options: argparse.Namespace) -> int:
     """Run the command."""
+    crew = workers(options)
     path, runs = _runs(options)
     if all(is_done(run) for run in runs):
+        if is_sweep(path):
+            tell_sweep(path)
         print(f"{path} is done; --episodes or --steps lets it go on")
         return 0
     with Bar(runs) as bar:
-        done = train_all([run.path for run in runs], options.jobs, bar)
+        done = train_all([run.path for run in runs], crew.jobs, bar, crew.each)
         summary = f"{bar.steps:,} steps in {bar.wall_s:.1f} s: {bar.speed()}"
-    _draw(path, runs)
+    for folder, group in _groups(path, runs).items():
+        _draw(folder, group)
     print(summary, file=sys.stderr)
     if not done:
         print(f"interrupted; go on with: sitl train --resume {path}", file=sys.stderr)
         return 130
+    if is_sweep(path):
+        tell_sweep(path)
     print(path)
     return 0
 
 
+def _groups(path: Path, runs: list[RunFolder]) -> dict[Path, list[RunFolder]]:
+    if not is_sweep(path):
+        return {path: runs}
+    return {path / name: group for name, group in Sweep.load(path).groups().items()}
+
+
 def _runs(options: argparse.Namespace) -> tuple[Path, list[RunFolder]]:
     """The folder, and the runs in it that shall be trained."""
-    if options.resume and options.env is None:
-        if options.out is not None or options.algo or options.set or options.option or options.max_steps:
+    if options.resume and options.env is None and options.recipe is None:
+        if options.out is not None or any(
+            (options.algo, options.set, options.option, options.sweep, options.max_steps)
+        ):
             raise AgentError(
                 "--resume RUN goes on with a run as it is: give --episodes, --steps or --jobs, nothing else"
             )
         path = Path(options.resume)
-        runs = folders.find(path)
+        runs = [run for group in _groups(path, []).values() for run in group] or folders.find(path)
         for run in runs:
             run.extend(options.episodes, options.steps)
         return path, runs
-    if options.env is None:
-        raise AgentError("ENV is missing: the id of an environment, as GazeboCircuit2TurtlebotLIDAR-v0")
-    config = _config(options)
-    path = Path(options.resume) if options.resume else options.out or RUNS / config.name
+    if options.env is None and options.recipe is None:
+        raise AgentError("ENV is missing: the id of an environment, as GazeboCircuit2TurtlebotLIDAR-v0, or --recipe")
+    configure = _config if options.recipe is None else config_by_recipe
+    config = configure(options)
+    path = Path(options.resume) if options.resume else options.out or RUNS / folder_name(options, config)
+    if options.sweep:
+        if options.out is None and not options.resume:
+            path = path.with_name(f"{path.name}-sweep")
+        return path, runs_of_sweep(options, path, configure, _open)
     if options.seeds == 1:
         return path, [_open(path, config, options)]
     seeds = range(config.seed, config.seed + options.seeds)

@@ -7,8 +7,9 @@ import argparse
 from pathlib import Path
 
 from .. import showing
+from ..errors import AgentError
 from ..runs import folder as folders
-from .options import assignment, assignments, positive
+from .options import assignment, assignments, positive, whole
 
 SPEED = 5.0
 
@@ -24,7 +25,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--out", type=Path, metavar="FILE", help=".gif, or .mp4 by ffmpeg; default: a window")
     parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="default 1")
     parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run)")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the episodes")
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
     parser.add_argument(
         "--speed", type=_factor, default=SPEED, metavar="X", help=f"times real time (default {SPEED:g})"
     )
@@ -40,6 +41,8 @@ def watch(options: argparse.Namespace) -> int:
     if options.max_steps is not None:
         run.config = run.config.with_(max_steps=options.max_steps)
     changes = assignments(options.option)
+    if "render_mode" in changes:
+        raise AgentError("render_mode is chosen by --out: with it a film, without it a window")
     if options.out is None:
         showing.window(run, options.episodes, options.seed, options.speed, _tell, **changes)
         return 0

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import json
 import pickle
 import random
 import zipfile
@@ -18,7 +19,9 @@ from ..runs.files import write_bytes
 from .library import algorithm_class, torch
 
 MODEL = "model.zip"
-_SPACES, _STATE, _MEMORY = "spaces.pkl", "state.pkl", "memory.npz"
+_SPACES, _STATE, _MEMORY, _SCORE = "spaces.pkl", "state.pkl", "memory.npz", "score.json"
+Score = tuple[float, ...]
+"""How good a model is, the most important figure first; greater is better."""
 _REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 
 
@@ -44,6 +47,39 @@ def save(path: Path, model: Any, robots: Any, spaces: tuple[gym.Space[Any], gym.
         if memory is not None:
             archive.writestr(_MEMORY, _remembered(memory))
     write_bytes(path, content.getvalue())
+
+
+def save_best(path: Path, model: Any, spaces: tuple[gym.Space[Any], gym.Space[Any]], score: Score) -> None:
+    """Write a model that can be played, not gone on with.
+
+    Args:
+        path: of the file.
+        model: of stable-baselines3.
+        spaces: of the environment's observations and actions.
+        score: that it was kept for.
+
+    Raises:
+        AgentError: it cannot be written.
+    """
+    content = io.BytesIO()
+    model.save(content)
+    with zipfile.ZipFile(content, "a") as archive:
+        archive.writestr(_SPACES, pickle.dumps(spaces))
+        archive.writestr(_SCORE, json.dumps({"score": score, "steps": model.num_timesteps}))
+    write_bytes(path, content.getvalue())
+
+
+def score_of(path: Path) -> Score:
+    """The score of a model that ``save_best`` wrote.
+
+    Raises:
+        AgentError: it is no such file.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(_read(path))) as archive:
+            return tuple(float(figure) for figure in json.loads(archive.read(_SCORE))["score"])
+    except (ValueError, KeyError, TypeError) as error:
+        raise AgentError(f"{path} is no best model: {error}") from None
 
 
 def resume(path: Path, algorithm: str, robots: Any) -> Any:

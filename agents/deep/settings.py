@@ -41,10 +41,22 @@ class Settings:
     """How many are hidden."""
     threads: int = 1
     """Of torch; with more than one, sums may differ in their last bits from machine to machine."""
+    check_every: int = 100_000
+    """Steps between two checks: the network plays greedily, and the best one is kept, which plays. 0: none."""
+    check_episodes: int = 20
+    """That a check plays."""
+    check_by: str = "reward"
+    """What makes one the best: "reward", the highest mean reward, or "crashes", the fewest episodes that ended by
+    themselves (of equal ones, the highest mean reward)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value, kind = getattr(self, field.name), str(field.type)
+            if kind == "str":
+                if value not in _CHOICES[field.name]:
+                    allowed = ", ".join(_CHOICES[field.name])
+                    raise AgentError(f"{field.name} = {value!r}; it must be one of {allowed}")
+                continue
             low, high = _LIMITS.get(field.name, (1, math.inf) if kind == "int" else (0.0, 1.0))
             number = isinstance(value, int if kind == "int" else int | float) and not isinstance(value, bool)
             if not number or not low <= value <= high:
@@ -107,12 +119,14 @@ class Sac(OffPolicy):
     """How far target networks follow in a gradient step."""
 
 
+_CHOICES = {"check_by": ("reward", "crashes")}
 _LIMITS: dict[str, tuple[float, float]] = {
     "sectors": (0, math.inf),
     "frames": (1, 64),
     "reward_scale": (1e-9, math.inf),
     "learning_rate": (1e-9, 1.0),
     "warm_up": (0, math.inf),
+    "check_every": (0, math.inf),
 }
 _OF = {"dqn": Dqn, "ppo": Ppo, "sac": Sac}
 

@@ -15,6 +15,7 @@ from ..runs.folder import RunFolder
 from ..runs.watch import Watch
 from . import checkpoint, models
 from .actions import Actions
+from .checks import BEST, Checks
 from .features import Features
 from .library import LIBRARIES, require, stable_baselines3, torch
 from .policy import DeepPolicy
@@ -69,6 +70,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     else:
         model = models.make(config.algorithm, figures, robots, config.seed)
     folder.episodes.keep(tally.done)
+    checks = Checks(config, figures, folder.path / BEST, model.num_timesteps)
     last, spent = time.monotonic(), 0.0
 
     def save() -> None:
@@ -89,14 +91,19 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
         if rows:
             watch.told(rows)
             unwritten.extend(rows)
+        done = config.episodes is not None and tally.done >= config.episodes
+        done = done or (config.steps is not None and tally.done_steps >= config.steps)
+        checks.after(model, done)  # before the model is kept: one that is gone on with has been checked
         if time.monotonic() - last > max(_PERIOD_S, _SHARE * spent):
             save()
-        done = config.episodes is not None and tally.done >= config.episodes
-        return done or (config.steps is not None and tally.done_steps >= config.steps) or watch.stop
+        return done or watch.stop
 
     # learning rates and the like fall towards an end that the last, unfinished episodes cannot pass
     steps = config.steps if config.steps is not None else (config.episodes or 0) * config.max_steps
-    _learn(model, steps + figures.robots * config.max_steps - model.num_timesteps, between)
+    try:
+        _learn(model, steps + figures.robots * config.max_steps - model.num_timesteps, between)
+    finally:
+        checks.close()
     unwritten.extend(tally.take())
     save()
 
@@ -121,9 +128,11 @@ def _learn(model: Any, steps: int, between: Any) -> None:
 
 
 def policy(folder: RunFolder) -> DeepPolicy:
-    """See ``Algorithm``."""
+    """See ``Algorithm``: the best network of the checks, or the last one where there were none."""
     config = folder.config
     figures = settings_of(config.algorithm, config.settings)
     torch(figures.threads)
-    model, (observations, actions) = checkpoint.load(folder.path / checkpoint.MODEL, config.algorithm)
+    best = folder.path / BEST
+    path = best if best.exists() else folder.path / checkpoint.MODEL
+    model, (observations, actions) = checkpoint.load(path, config.algorithm)
     return DeepPolicy(model, figures, Features(observations, figures.sectors), Actions(actions, config.algorithm))

@@ -20,12 +20,15 @@ def rewards_of(runs: Sequence[RunFolder]) -> Floats:
     """Rewards of the episodes of runs, shape (runs, episodes); those episodes that all have.
 
     Raises:
-        AgentError: a run has none.
+        AgentError: a run has none, or one whose reward is no number.
     """
     rows = [run.episodes.column("reward") for run in runs]
     for run, row in zip(runs, rows):
         if not len(row):
             raise AgentError(f"{run.path} has no episodes yet")
+        if not np.isfinite(row).all():
+            first = int(np.argmin(np.isfinite(row)))
+            raise AgentError(f"{run.path}: the reward of episode {first} is {row[first]}; such runs cannot be compared")
     shortest = min(map(len, rows))
     return np.array([row[:shortest] for row in rows])
 
@@ -39,6 +42,11 @@ def block_means(rewards: Floats, block: int = BLOCK) -> Floats:
     """
     starts = range(0, rewards.shape[-1], block)
     return np.stack([rewards[..., start : start + block].mean(axis=-1) for start in starts], axis=-1)
+
+
+def block_names(episodes: int, block: int = BLOCK) -> list[str]:
+    """Of the blocks of ``block_means``: "0 to 200" are episodes 0, 1 ... 199; the last may be shorter."""
+    return [f"{start} to {min(start + block, episodes)}" for start in range(0, episodes, block)]
 
 
 def moving_mean(rewards: Floats, window: int) -> Floats:

@@ -17,7 +17,7 @@ from .statistics import mean_interval
 
 def draw_raw(axes: Any, rewards: Floats, title: str, block: int = BLOCK) -> None:
     """One run on axes: each episode in blue, means of blocks in red, as the paper's figures."""
-    axes.plot(rewards, color=plots.COLOURS[0], linewidth=0.5)
+    axes.plot(rewards, color=plots.COLOURS[0], linewidth=0.5, label="each episode")
     means = block_means(rewards, block)
     middles = np.minimum(np.arange(len(means)) * block + 0.5 * block, len(rewards) - 1)
     axes.plot(middles, means, color=plots.COLOURS[1], linewidth=2.0, marker=".", label=f"mean of {block} episodes")
@@ -36,7 +36,7 @@ def draw_run(runs: Sequence[RunFolder], path: Path, block: int | None = None) ->
     rewards = rewards_of(runs)
     block = block or min(BLOCK, max(rewards.shape[1] // 15, 1))
     config = runs[0].config
-    made, axes = plots.figure(columns=1 if len(runs) == 1 else 2, width=9.0 if len(runs) == 1 else 14.0, sharey=True)
+    made, axes = plots.figure(columns=1 if len(runs) == 1 else 2, width=9.0 if len(runs) == 1 else 14.0)
     draw_raw(axes[0, 0], rewards[0], f"{config.env}, {config.algorithm}, seed {config.seed}", block)
     if len(runs) > 1:
         draw_means(axes[0, 1], {f"mean of {len(runs)} seeds": rewards}, block)
@@ -44,14 +44,20 @@ def draw_run(runs: Sequence[RunFolder], path: Path, block: int | None = None) ->
 
 
 def draw_means(axes: Any, groups: Mapping[str, Floats], window: int = BLOCK) -> None:
-    """Moving means of groups of runs: the mean over seeds with its 95 % interval."""
-    for colour, (name, rewards) in zip(plots.COLOURS * 9, groups.items()):
-        smooth = moving_mean(rewards, window)
+    """Moving means of groups of runs: the mean over seeds with its 95 % interval.
+
+    A point is the mean of the ``window`` episodes that end there; there is none before so many are done. Intervals of
+    few seeds are wide: the axis goes by the means.
+    """
+    for (colour, style), (name, rewards) in zip(plots.styles(), groups.items()):
+        first = min(window, rewards.shape[1])
+        smooth = moving_mean(rewards, window)[:, first - 1 :]
         mean, half = mean_interval(smooth)
-        episodes = np.arange(smooth.shape[1])
-        axes.plot(episodes, mean, color=colour, label=name)
+        episodes = np.arange(first, first + smooth.shape[1])
+        axes.plot(episodes, mean, color=colour, linestyle=style, label=name, marker="." if len(episodes) == 1 else "")
         if len(rewards) > 1:
             axes.fill_between(episodes, mean - half, mean + half, color=colour, alpha=0.2, linewidth=0)
+    plots.fit_to_lines(axes)
     axes.set(xlabel="episode", ylabel=f"reward, mean of {window} episodes")
     axes.grid(alpha=0.3)
     axes.legend(loc="upper left")

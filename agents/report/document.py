@@ -51,7 +51,9 @@ class Document:
         self._add(text, f"<p>{_inline(text)}</p>")
 
     def points(self, texts: Sequence[str]) -> None:
-        """A list."""
+        """A list; nothing when it is empty."""
+        if not texts:
+            return
         items = "\n".join(f"<li>{_inline(text)}</li>" for text in texts)
         self._add("\n".join(f"- {text}" for text in texts), f"<ul>\n{items}\n</ul>")
 

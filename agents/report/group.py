@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import AgentError
 from ..runs import folder as folders
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
@@ -23,12 +24,19 @@ class Group:
         runs: at least one.
 
     Raises:
-        AgentError: they differ in more, or a run has no episodes yet.
+        AgentError: they differ in more, or two have the same seed and so are one run.
     """
 
     def __init__(self, name: str, runs: Sequence[RunFolder]) -> None:
         self.name, self.runs = name, list(runs)
         self.config: RunConfig = folders.common(self.runs)
+        by_seed: dict[int, RunFolder] = {}
+        for run in self.runs:
+            other = by_seed.setdefault(run.config.seed, run)
+            if other is not run:
+                raise AgentError(
+                    f"{other.path} and {run.path} both have seed {run.config.seed}: the same run counts once"
+                )
 
     @classmethod
     def load(cls, path: str | Path, name: str | None = None) -> Group:
@@ -37,8 +45,13 @@ class Group:
 
     @cached_property
     def rewards(self) -> Floats:
-        """Shape (seeds, episodes)."""
+        """Shape (seeds, episodes); those episodes that all seeds have. Raises AgentError, see ``rewards_of``."""
         return rewards_of(self.runs)
+
+    @cached_property
+    def lengths(self) -> list[int]:
+        """How many episodes each seed has."""
+        return [len(run.episodes.rows()) for run in self.runs]
 
     def first(self, episodes: int) -> Group:
         """The same, with its first episodes only."""

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import cycle, product
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,12 @@ from sitl.core.extras import MissingExtra
 from ..errors import AgentError
 
 COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#8c564b", "#17becf", "#7f7f7f")
+_LINES = ("-", "--", ":", "-.")
+
+
+def styles() -> Iterator[tuple[str, str]]:
+    """Colours and kinds of lines that tell curves apart, for as many as there are."""
+    return cycle((colour, line) for line, colour in product(_LINES, COLOURS))
 
 
 def figure(width: float = 9.0, height: float = 5.0, rows: int = 1, columns: int = 1, **options: Any) -> Any:
@@ -27,6 +35,14 @@ def figure(width: float = 9.0, height: float = 5.0, rows: int = 1, columns: int 
     made = Figure((width, height), layout="constrained")
     FigureCanvasAgg(made)
     return made, made.subplots(rows, columns, squeeze=False, **options)
+
+
+def fit_to_lines(axes: Any) -> None:
+    """Limits of y by the lines on axes, with a quarter of their extent around; wide bands do not squeeze them."""
+    drawn = [float(y) for line in axes.get_lines() for y in line.get_ydata()]
+    lowest, highest = min(drawn), max(drawn)
+    around = 0.25 * (highest - lowest) or 0.05 * abs(highest) or 1.0
+    axes.set_ylim(lowest - around, highest + around)
 
 
 def save(made: Any, path: Path) -> Path:

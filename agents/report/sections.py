@@ -16,11 +16,14 @@ import numpy as np
 from ..evaluate import Evaluation
 from ..runs.files import write_bytes
 from . import plots
-from .blocks import BLOCK
+from .blocks import BLOCK, block_names
 from .curves import draw_means, draw_raw
 from .document import Document
 from .group import Group
-from .statistics import bootstrap, improvement_interval, iqm, mean_interval, profile
+from .statistics import bootstrap, improvement_interval, iqm, mean_interval, profile_interval
+
+_FEW = 5
+"""Seeds below which a bootstrap has too little to draw from."""
 
 
 def write_csv(path: Path, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
@@ -37,14 +40,31 @@ def with_interval(mean: float, half: float) -> str:
     return f"{mean:.0f}" if math.isnan(half) else f"{mean:.0f} ± {half:.0f}"
 
 
+def with_range(value: float, low: float, high: float, digits: int = 0) -> str:
+    """A figure and its 95 % bootstrap interval as text."""
+    text = f"{value:.{digits}f}"
+    return text if math.isnan(low) else f"{text} ({low:.{digits}f} .. {high:.{digits}f})"
+
+
+def interval_text(groups: Sequence[Group]) -> str:
+    """What the figures of tables of blocks are."""
+    text = "Mean over seeds ± half of its 95 % interval (Student's)"
+    return f"{text}; a single seed has no interval." if any(len(g.runs) == 1 for g in groups) else f"{text}."
+
+
 def blocks_table(groups: Sequence[Group], block: int) -> tuple[list[str], list[list[str]]]:
     """Head and rows: mean reward of each block of episodes, with its 95 % interval over seeds."""
     columns = [mean_interval(group.blocks(block)) for group in groups]
-    longest = max(len(mean) for mean, _ in columns)
+    counts = [group.rewards.shape[1] for group in groups]
+    names = block_names(max(counts), block)
     rows = []
-    for k in range(longest):
-        cells = [with_interval(mean[k], half[k]) if k < len(mean) else "" for mean, half in columns]
-        rows.append([f"{k * block} to {(k + 1) * block}", *cells])
+    for k, name in enumerate(names):
+        cells = []
+        for (mean, half), count in zip(columns, counts):
+            cell = with_interval(mean[k], half[k]) if k < len(mean) else ""
+            own = block_names(count, block)[k] if cell else name
+            cells.append(cell if own == name else f"{cell} (to {count})")
+        rows.append([name, *cells])
     return ["episodes", *(group.name for group in groups)], rows
 
 
@@ -60,7 +80,7 @@ def blocks_csv(path: Path, groups: Sequence[Group], block: int) -> None:
 
 
 def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[str, Sequence[float]]) -> Path:
-    """Raw curves of the first seeds, and the means of all groups.
+    """Raw curves of the first seeds, on one scale, and the means of all groups.
 
     Args:
         path: of the picture.
@@ -72,58 +92,87 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
     flat = list(axes.flat)
     for place, group in zip(flat, groups):
         draw_raw(place, group.rewards[0], f"{group.name}, seed {group.runs[0].config.seed}", block)
+    raw = [place.get_ylim() for place in flat[: len(groups)]]
+    for place in flat[: len(groups)]:
+        place.set_ylim(min(low for low, _ in raw), max(high for _, high in raw))
     last = flat[len(groups)]
     draw_means(last, {group.name: group.rewards for group in groups}, block)
     for style, (name, means) in zip(("--", ":", "-."), paper.items()):
         last.plot((np.arange(len(means)) + 1) * block, means, style, color="black", label=name)
+    plots.fit_to_lines(last)
     last.legend(loc="upper left")
     for unused in flat[len(groups) + 1 :]:
         unused.set_visible(False)
     return plots.save(made, path)
 
 
-def draw_profile(path: Path, groups: Sequence[Group], block: int) -> Path:
-    """Performance profiles: the share of runs whose last block is above each level."""
+def curves_text(block: int) -> str:
+    """What ``draw_curves`` draws."""
+    return (
+        "One picture for each group: the episodes of its first seed (thin), and their means (thick). The last has the "
+        f"means over all seeds of the {block} episodes before each, with their 95 % intervals where there are several "
+        "seeds."
+    )
+
+
+def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> Path:
+    """Performance profiles: the share of runs whose last block is above each level, with its 95 % interval."""
     scores = [group.last(block) for group in groups]
-    levels = np.linspace(min(s.min() for s in scores) - 50.0, max(s.max() for s in scores) + 50.0, 400)
+    lowest, highest = min(s.min() for s in scores), max(s.max() for s in scores)
+    around = 0.05 * (highest - lowest) or 0.05 * abs(highest) or 1.0
+    levels = np.linspace(lowest - around, highest + around, 400)
     made, axes = plots.figure(9.0, 4.5)
-    for colour, group, score in zip(plots.COLOURS * 9, groups, scores):
-        axes[0, 0].step(levels, profile(score, levels), color=colour, label=group.name, where="post")
-    axes[0, 0].set(xlabel=f"mean reward of the last {block} episodes", ylabel="share of runs above", ylim=(-0.02, 1.02))
+    for (colour, style), group, score in zip(plots.styles(), groups, scores):
+        shares, low, high = profile_interval(score, levels)
+        axes[0, 0].step(levels, shares, color=colour, linestyle=style, label=group.name, where="post")
+        if len(score) > 1:
+            axes[0, 0].fill_between(levels, low, high, color=colour, alpha=0.15, linewidth=0, step="post")
+    axes[0, 0].set(xlabel=f"mean reward of {over}", ylabel="share of runs above", ylim=(-0.02, 1.02))
     axes[0, 0].grid(alpha=0.3)
     axes[0, 0].legend()
     return plots.save(made, path)
 
 
 def aggregates(document: Document, folder: Path, groups: Sequence[Group], block: int) -> None:
-    """Interquartile means, probabilities of improvement, performance profiles."""
+    """Interquartile means, probabilities of improvement, performance profiles, of groups of one length."""
+    count = groups[0].rewards.shape[1]
+    over = f"episodes {max(count - block, 0)} to {count}"
+    seeds = [len(group.runs) for group in groups]
     rows, table = [], []
     for group in groups:
-        figures = {f"last {block} episodes": group.last(block), "all episodes": group.whole()}
         cells = [group.name, str(len(group.runs))]
-        for name, scores in figures.items():
+        for name, scores in {over: group.last(block), "all episodes": group.whole()}.items():
             value, low, high = bootstrap(scores[None], iqm)
             rows.append((group.name, "interquartile mean", name, value, low, high))
-            cells.append(f"{value:.0f} ({low:.0f} .. {high:.0f})")
+            cells.append(with_range(value, low, high))
         table.append([*cells, f"{group.best:.0f}"])
     document.heading("Over all seeds")
-    document.paragraph("Interquartile mean of the mean reward, with a 95 % bootstrap interval over seeds.")
-    document.table(["", "seeds", f"last {block} episodes", "all episodes", "best episode"], table)
-    if len(groups) > 1:
-        pairs = []
-        for a, b in combinations(groups, 2):
-            value, low, high = improvement_interval(a.last(block), b.last(block))
-            rows.append(
-                (f"{a.name} > {b.name}", "probability of improvement", f"last {block} episodes", value, low, high)
-            )
-            pairs.append([f"{a.name} above {b.name}", f"{value:.2f} ({low:.2f} .. {high:.2f})"])
+    document.paragraph(
+        "A seed's score is its mean reward over the episodes named; rewards are of one environment and not normalised. "
+        "Interquartile mean: the mean of the scores without the least and the greatest quarter of them. In brackets a "
+        "95 % bootstrap interval over seeds."
+    )
+    if min(seeds) < _FEW:
         document.paragraph(
-            f"Probability that a seed of the one ends above a seed of the other (last {block} episodes), "
-            "with a 95 % bootstrap interval."
+            f"Some groups have fewer than {_FEW} seeds: their bootstrap intervals are narrower than the truth."
+            if max(seeds) > 1
+            else "Each group is a single seed: nothing here says how much another seed would differ."
+        )
+    document.table(["", "seeds", over, "all episodes", "best episode"], table)
+    pairs = []
+    for a, b in combinations(groups, 2):
+        value, low, high = improvement_interval(a.last(block), b.last(block))
+        rows.append((f"{a.name} > {b.name}", "probability of improvement", over, value, low, high))
+        pairs.append([f"{a.name} above {b.name}", with_range(value, low, high, 2)])
+    if pairs and max(seeds) > 1:
+        document.paragraph(
+            f"Probability of improvement: that a seed of the one has a higher score in {over} than a seed of the "
+            "other, equal scores counting half."
         )
         document.table(["", "probability"], pairs)
     write_csv(folder / "aggregates.csv", ("of", "figure", "over", "value", "low", "high"), rows)
-    document.picture(draw_profile(folder / "profile.png", groups, block), "performance profiles")
+    document.paragraph(f"Performance profiles: the share of seeds whose score in {over} is above each level.")
+    document.picture(draw_profile(folder / "profile.png", groups, block, over), "performance profiles")
 
 
 def greedy_play(document: Document, folder: Path, played: Mapping[str, Mapping[str, list[Evaluation]]]) -> None:
@@ -139,15 +188,21 @@ def greedy_play(document: Document, folder: Path, played: Mapping[str, Mapping[s
         for place, evaluations in places.items():
             rewards = [e.mean_reward for e in evaluations]
             crashes = [100.0 * e.crash_rate for e in evaluations]
-            laps, rates = [e.mean_laps for e in evaluations], [100.0 * e.lap_rate for e in evaluations]
+            laps = [e.mean_laps for e in evaluations]
+            rates = [math.nan if math.isnan(e.mean_laps) else 100.0 * e.lap_rate for e in evaluations]
             count = len(evaluations[0].episodes)
             cells = [f"{np.mean(rewards):.0f}", f"{100 - np.mean(crashes):.0f} %", f"{np.mean(laps):.1f}"]
-            cells = [cell.replace("nan", "-") for cell in cells]
-            best = int(np.argmax([r - c for r, c in zip(rates, crashes)]))
-            table.append([f"{name}, {place}", str(count), *cells, f"{rates[best]:.0f} %"])
+            best = max(zip(rates, crashes), key=lambda figures: figures[0] - figures[1])[0]
+            cells += [f"{np.mean(rates):.0f} %", f"{best:.0f} %"]
+            cells = ["-" if "nan" in cell else cell for cell in cells]
+            table.append([f"{name}, {place}", str(count), *cells])
             rows += [(name, place, k, *values) for k, values in enumerate(zip(rewards, crashes, laps, rates))]
-    head = ("", "episodes a seed", "mean reward", "without a crash", "laps an episode", "laps and no crash, best seed")
+    head = ("", "episodes a seed", "mean reward", "without a crash", "laps an episode", "lap and no crash", "best seed")
     document.table(head, table)
+    document.paragraph(
+        "Means over seeds. Lap and no crash: the share of episodes with a whole lap or more and no crash; the last "
+        "column has that of the best seed."
+    )
     write_csv(
         folder / "greedy.csv", ("group", "starts", "run", "mean_reward", "crash_percent", "laps", "lap_percent"), rows
     )

@@ -15,10 +15,12 @@ import sitl
 
 from ..errors import AgentError
 from .files import write_json
+from .plan import EvaluationPlan
 
 EPISODES = 3000
 MAX_STEPS = 1500
 """The paper's."""
+_NO_DIFFERENCE = ("versions", "episodes", "steps", "evaluation")
 _LIBRARIES = ("numpy", "numba", "gymnasium")
 
 
@@ -52,6 +54,8 @@ class RunConfig:
     """Of an episode."""
     versions: Mapping[str, str] = field(default_factory=versions)
     """That it was made with."""
+    evaluation: EvaluationPlan = field(default_factory=EvaluationPlan)
+    """How it is played when the user does not say."""
 
     def __post_init__(self) -> None:
         for name in ("episodes", "steps", "max_steps"):
@@ -74,9 +78,9 @@ class RunConfig:
         return replace(self, **changes)
 
     def differences(self, other: RunConfig) -> list[str]:
-        """Names of the fields in which two differ, without versions and lengths."""
+        """Names of the fields in which two trainings differ, but for versions and lengths."""
         a, b = asdict(self), asdict(other)
-        return [name for name in a if name not in ("versions", "episodes", "steps") and a[name] != b[name]]
+        return [name for name in a if name not in _NO_DIFFERENCE and a[name] != b[name]]
 
     def save(self, path: Path) -> None:
         """Write it as JSON."""
@@ -98,4 +102,7 @@ class RunConfig:
         known = {item.name for item in fields(cls)}
         if not isinstance(values, dict) or not {"env", "algorithm"} <= values.keys() or not values.keys() <= known:
             raise AgentError(f"{path} does not describe a run")
-        return cls(**values)
+        try:
+            return cls(**{**values, "evaluation": EvaluationPlan.of(values.get("evaluation", {}))})
+        except AgentError as error:
+            raise AgentError(f"{path}: {error}") from None

@@ -30,7 +30,7 @@ class Episode(NamedTuple):
     simulated_s: float
     """Simulated time that it took [s]."""
     wall_s: float
-    """Wall time that it took [s]."""
+    """Wall time that it took, with the check of the table after it [s]."""
 
 
 _KINDS = (int, int, float, float, int, float, float)

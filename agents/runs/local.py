@@ -108,7 +108,7 @@ def _serve(connection: Any, work: Work) -> None:
             try:
                 content = ("done", work(item, partial(_tell, connection), connection.poll))
             except Exception as error:
-                content = ("raised", _sendable(error))
+                content = ("raised", sendable(error))
             connection.send(content)
     except (EOFError, OSError):
         return
@@ -118,7 +118,8 @@ def _tell(connection: Any, message: Any) -> None:
     connection.send(("told", message))
 
 
-def _sendable(error: Exception) -> Exception:
+def sendable(error: Exception) -> Exception:
+    """The error, or its text where it cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
         return error

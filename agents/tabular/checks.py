@@ -16,6 +16,7 @@ import gymnasium as gym
 import numpy as np
 
 from .. import environments
+from ..errors import AgentError
 from ..evaluate import moved_starts
 from ..runs.files import read_arrays, write_arrays
 from .compiled_loop import CompiledLoop
@@ -46,11 +47,14 @@ class Checks:
     def __init__(self, env: gym.Env[Any, Any], learner: Learner, path: Path) -> None:
         self._learner, self._path = learner, path
         self._every, count = learner.settings.check_every, learner.settings.check_episodes
-        self._best = -np.inf
+        self._best: tuple[float, ...] = ()
         if self._every == 0:
             return
         if path.exists():
-            self._best = float(read_arrays(path)["score"])
+            arrays = read_arrays(path)
+            if "score" not in arrays:
+                raise AgentError(f"{path} has no score: it is not the best table of a run")
+            self._best = tuple(np.atleast_1d(arrays["score"]).tolist())
         self._player = Learner(learner.algorithm, learner.settings, learner.table, frozen=True)
         self._player.begin(0)
         self._play = loop_of(env, self._player)
@@ -68,10 +72,14 @@ class Checks:
             extra = {"score": np.array(score), "episodes": np.array(episodes)}
             write_arrays(self._path, {**self._learner.table.arrays(), **extra})
 
-    def score(self) -> float:
-        """Mean reward of the episodes that the table plays now."""
+    def score(self) -> tuple[float, ...]:
+        """How good the table is now, the most important figure first; greater is better."""
         player = self._player
         player.table = self._learner.table
         player.seed(SEED)
         seeds = (environments.seed_of(SEED, k) for k in range(len(self._options)))
-        return float(np.mean([self._play(seed, options).reward for seed, options in zip(seeds, self._options)]))
+        played = [self._play(seed, options) for seed, options in zip(seeds, self._options)]
+        reward = float(np.mean([one.reward for one in played]))
+        if player.settings.check_by == "crashes":
+            return -float(sum(one.terminated for one in played)), reward
+        return (reward,)

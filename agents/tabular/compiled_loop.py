@@ -124,7 +124,8 @@ class CompiledLoop:
         session = inner.session
         tables = [len(term.rewards) for term in session.task.terms if isinstance(term, ByAction)]
         return (
-            type(session.robot) is Turtlebot
+            session.latency is None
+            and type(session.robot) is Turtlebot
             and type(session.robot.robots) is Turtlebots
             and type(session.task) is Task
             and len(session.task.terms) == 1

@@ -96,8 +96,12 @@ class Learner:
         """Go back to what ``arrays`` gave.
 
         Raises:
-            AgentError: it is of another kind of table.
+            AgentError: it is of another kind of table, or has no random numbers.
         """
+        random = self.record["rng"]["s"][0]
+        stored = arrays.get("random", np.zeros(0))
+        if stored.shape != random.shape or stored.dtype != random.dtype:
+            raise AgentError("the model has no random numbers to go on with")
         table = Table.of_arrays(arrays)
         if table.radix.tolist() != self.table.radix.tolist() or table.actions != self.table.actions:
             raise AgentError(
@@ -106,4 +110,4 @@ class Learner:
             )
         self.table = table
         self._view.states = len(table)
-        self.record["rng"]["s"][0] = arrays["random"]
+        self.record["rng"]["s"][0] = stored

@@ -13,6 +13,7 @@ from ..errors import AgentError
 
 RULES = ("qlearn", "sarsa")
 EXPLORATIONS = ("uniform", "noise")
+CHECKS = ("reward", "crashes")
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,9 @@ class Settings:
     """After each so many episodes the table plays greedily, and the best one is kept (``checks.py``); 0: never."""
     check_episodes: int = 20
     """That it plays then."""
+    check_by: str = "reward"
+    """Which table is the best: "reward": that of the highest mean reward; "crashes": that whose episodes ended by
+    themselves least often, and the mean reward decides between equals."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -61,8 +65,9 @@ class Settings:
                 number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
                 if not number or not 0.0 <= value <= 1.0 or (field.name == "alpha" and value == 0.0):
                     raise AgentError(f"{field.name} = {value!r}; it must be a number from 0 to 1, alpha above 0")
-        if self.exploration not in EXPLORATIONS:
-            raise AgentError(f"exploration = {self.exploration!r}; it must be one of {', '.join(EXPLORATIONS)}")
+        for name, known in (("exploration", EXPLORATIONS), ("check_by", CHECKS)):
+            if getattr(self, name) not in known:
+                raise AgentError(f"{name} = {getattr(self, name)!r}; it must be one of {', '.join(known)}")
         if self.check_episodes == 0:
             raise AgentError("check_episodes = 0; it must be 1 or more (check_every = 0 checks never)")
 

@@ -104,15 +104,31 @@ class Table:
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, npt.NDArray[Any]]) -> Table:
-        """From what ``arrays`` gave."""
-        try:
-            table = cls(arrays["radix"].tolist(), arrays["values"].shape[1])
-            table.make_room(0, len(arrays["keys"]))
-            for key, values, visits in zip(arrays["keys"].tolist(), arrays["values"], arrays["visits"]):
-                slot = slot_of(table.keys, key)
-                table.keys[slot], table.values[slot], table.visits[slot] = key, values, visits
-        except (KeyError, IndexError) as error:
-            raise AgentError(f"this is no table: {error}") from None
+        """From what ``arrays`` gave.
+
+        Raises:
+            AgentError: something else.
+        """
+        missing = [name for name in ("radix", "keys", "values", "visits") if name not in arrays]
+        if missing:
+            raise AgentError(f"this is no table: it has no {', '.join(missing)}")
+        radix, keys, values, visits = (arrays[name] for name in ("radix", "keys", "values", "visits"))
+        for name, array, kind, axes in (
+            ("radix", radix, "i", 1), ("keys", keys, "i", 1), ("values", values, "f", 2), ("visits", visits, "i", 2),
+        ):  # fmt: skip
+            if array.dtype.kind != kind or array.ndim != axes:
+                raise AgentError(f"this is no table: its {name} are {array.dtype} of shape {array.shape}")
+        if values.shape != visits.shape or len(values) != len(keys):
+            raise AgentError(f"this is no table: {len(keys)} states, values {values.shape}, visits {visits.shape}")
+        table = cls(radix.tolist(), values.shape[1])
+        if len(np.unique(keys)) != len(keys) or (len(keys) and not 0 <= keys.min() <= keys.max() < 2 * table.size):
+            raise AgentError(f"this is no table: its states are not numbers from 0 to {2 * table.size - 1}, each once")
+        if not np.isfinite(values).all() or (visits < 0).any():
+            raise AgentError("this is no table: it has values that are no numbers")
+        table.make_room(0, len(keys))
+        for key, row, count in zip(keys.tolist(), values, visits):
+            slot = slot_of(table.keys, key)
+            table.keys[slot], table.values[slot], table.visits[slot] = key, row, count
         return table
 
     def save(self, path: str | Path) -> None:
@@ -126,4 +142,7 @@ class Table:
         Raises:
             AgentError: there is none, or it is something else.
         """
-        return cls.of_arrays(read_arrays(Path(path)))
+        try:
+            return cls.of_arrays(read_arrays(Path(path)))
+        except AgentError as error:
+            raise AgentError(str(error).replace("this is no table", f"{path} is no table")) from None

@@ -58,13 +58,12 @@ def train(folder: RunFolder, watch: Watch) -> None:
             start = time.perf_counter()
             learner.begin(done)
             outcome = episode_of(environments.seed_of(config.seed, done))
-            wall = time.perf_counter() - start
+            checks.after(done + 1)
             row = Episode(
                 done, outcome.steps, outcome.reward, learner.epsilon, int(outcome.terminated),
-                round(outcome.steps * seconds, 6), wall,
+                round(outcome.steps * seconds, 6), time.perf_counter() - start,
             )  # fmt: skip
             done, steps = done + 1, steps + outcome.steps
-            checks.after(done)
             keeper.take(row)
         keeper.save()
     finally:
@@ -97,11 +96,16 @@ def _resume(folder: RunFolder, learner: Learner) -> tuple[int, int]:
         (folder.path / BEST).unlink(missing_ok=True)
         return 0, 0
     arrays = read_arrays(path)
-    if "episodes" not in arrays:
+    done = [arrays.get(name, np.zeros(0)) for name in ("episodes", "steps")]
+    if any(number.shape != () or number.dtype.kind != "i" or number < 0 for number in done):
         raise AgentError(f"{path} is a table without a run's state: it cannot be gone on with")
-    learner.restore(arrays)
-    folder.episodes.keep(int(arrays["episodes"]))
-    return int(arrays["episodes"]), int(arrays["steps"])
+    try:
+        learner.restore(arrays)
+    except AgentError as error:
+        raise AgentError(f"{path} cannot be gone on with: {error}") from None
+    episodes, steps = (int(number) for number in done)
+    folder.episodes.keep(episodes)
+    return episodes, steps
 
 
 def _is_done(limit: int | None, count: int) -> bool:

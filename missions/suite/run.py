@@ -12,7 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from sitl.core.compile import Progress
-from sitl.core.extras import MissingExtra
+from sitl.core.on_ray import cluster
 from sitl.core_entry import load_core
 from sitl.kinds import KINDS
 from sitl.physics.engines import NATIVE
@@ -37,7 +37,7 @@ def run(
 
     Args:
         jobs: flights at a time; None: one a core.
-        backend: "local", or "ray": on the cluster that ``ray.init`` finds, else on this machine. Its machines see the
+        backend: "local", or "ray": on the cluster at ``$RAY_ADDRESS``, else on this machine. Its machines see the
             same folders.
         update, reports: as ``fly_case`` has them.
 
@@ -64,18 +64,13 @@ def run(
 
 
 def _on_ray(cases: Sequence[Case], jobs: int | None, update: bool, reports: str | None) -> Iterator[Result]:
-    try:
-        import ray
-    except ImportError:
-        raise MissingExtra("flying on Ray needs ray: pip install 'gym-sitl[ray]'") from None
-    if not ray.is_initialized():
-        ray.init(num_cpus=jobs, include_dashboard=False, log_to_driver=False)
-    task = ray.remote(fly_case)
     reports = str(Path(reports).resolve()) if reports is not None else None
-    waiting = [task.remote(_from_anywhere(case), update, reports) for case in cases]
-    while waiting:
-        done, waiting = ray.wait(waiting)
-        yield from ray.get(done)
+    with cluster(jobs) as ray:
+        task = ray.remote(fly_case)
+        waiting = [task.remote(_from_anywhere(case), update, reports) for case in cases]
+        while waiting:
+            done, waiting = ray.wait(waiting)
+            yield from ray.get(done)
 
 
 def _from_anywhere(case: Case) -> Case:

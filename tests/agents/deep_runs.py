@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import envs  # noqa: F401 (registers the environments)
-from agents.deep import training
+from agents.deep import checkpoint, training
 from agents.runs.config import RunConfig
 from agents.runs.folder import RunFolder
 from agents.runs.watch import Watch
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 NAVIGATE = "sitl/Navigate-v0"
-SMALL = {"robots": 4, "width": 8, "batch": 16}
+SMALL = {"robots": 4, "width": 8, "batch": 16, "check_every": 150, "check_episodes": 2}
 OF = {
     "ppo": {"rollout": 16, "epochs": 2},
     "dqn": {"memory": 400, "warm_up": 40, "target_period": 50},
@@ -36,7 +36,7 @@ def train(run, episodes=None):
     return seen
 
 
-def weights(run):
-    """What the networks are, as bytes."""
-    model = training.policy(run).model
+def weights(run, name=checkpoint.MODEL):
+    """What the networks of a model are, as bytes."""
+    model, _ = checkpoint.load(run.path / name, run.config.algorithm)
     return {name: values.numpy().tobytes() for name, values in model.policy.state_dict().items()}

@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import fields
+from pathlib import Path
 
 import gymnasium as gym
 import numpy as np
@@ -14,6 +17,7 @@ from hypothesis import strategies as st
 from agents.deep import library, training
 from agents.deep.actions import Actions
 from agents.deep.features import Features, Frames, nearest
+from agents.deep.settings import Dqn, Ppo, Sac
 from agents.deep.tally import Tally
 from agents.errors import AgentError
 from sitl.core.extras import MissingExtra
@@ -88,3 +92,12 @@ def test_without_the_extra_the_message_says_how_to_get_it(monkeypatch):
     for use in (lambda: training.settings("ppo", {}), library.stable_baselines3, library.torch):
         with pytest.raises(MissingExtra, match=r"gym-sitl\[rl\]"):
             use()
+
+
+def test_every_setting_is_explained():
+    page = (Path(__file__).parents[2] / "docs/learning.md").read_text().split("## DQN, PPO and SAC")[1]
+    for kind in (Ppo, Dqn, Sac):
+        for field in fields(kind):
+            row = next(line for line in page.splitlines() if line.startswith("| `") and f"`{field.name}`" in line)
+            defaults = row.split("|")[2].replace("as it begins", "0.0003")
+            assert str(field.default) in re.split("[ ,;]+", defaults), (kind, field.name)

@@ -13,6 +13,7 @@ from deep_runs import CIRCUIT2, NAVIGATE, new, train, weights
 
 from agents import algorithms, environments
 from agents.deep import checkpoint, training
+from agents.deep.checks import BEST
 from agents.deep.network import Network
 from agents.errors import AgentError
 from agents.evaluate import evaluate_run
@@ -53,7 +54,8 @@ def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, al
     train(RunFolder(parts.path), episodes=3)
     train(RunFolder(parts.path))
     assert rows_of(parts) == rows_of(whole)
-    assert weights(parts) == weights(whole)
+    assert weights(parts) == weights(whole) and weights(parts, BEST) == weights(whole, BEST)
+    assert checkpoint.score_of(parts.path / BEST) == checkpoint.score_of(whole.path / BEST)
 
 
 def test_another_seed_is_another_run_and_a_done_one_stays_as_it_is(tmp_path):
@@ -115,7 +117,14 @@ def test_the_network_that_plays_is_the_one_that_learnt(tmp_path, algorithm):
 
 
 def test_what_cannot_be_is_refused(tmp_path):
-    for name, value in (("gama", 0.9), ("gamma", 1.5), ("robots", 0), ("batch", 2.5), ("reward_scale", 0.0)):
+    for name, value in (
+        ("gama", 0.9),
+        ("gamma", 1.5),
+        ("robots", 0),
+        ("batch", 2.5),
+        ("reward_scale", 0.0),
+        ("check_by", "luck"),
+    ):
         with pytest.raises(AgentError, match=name):
             training.settings("ppo", {name: value})
     with pytest.raises(AgentError, match="'rollout' of sac"):

@@ -7,15 +7,17 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from agents.report.blocks import block_means, moving_mean
+from agents.report.blocks import block_means, block_names, moving_mean
 from agents.report.statistics import (
     bootstrap,
+    difference,
     improvement,
     improvement_interval,
     interquartile_mean,
     iqm,
     mean_interval,
     profile,
+    profile_interval,
     t_quantile,
 )
 
@@ -41,7 +43,47 @@ def test_interquartile_mean_leaves_out_a_quarter_at_each_end():
     samples = np.random.default_rng(1).normal(0.0, 1.0, 40)
     assert float(interquartile_mean(samples)) == approx(stats.trim_mean(samples, 0.25))
     assert float(interquartile_mean(np.array([-1e9, 1.0, 3.0, 1e9]))) == 2.0
-    assert float(interquartile_mean(np.array([0.0, 6.0, 100.0]))) == approx((0.25 * 0.0 + 6.0 + 0.25 * 100.0) / 1.5)
+    assert float(interquartile_mean(np.array([0.0, 6.0, 100.0]))) == approx(106.0 / 3.0)  # too few to leave one out
+    for count in range(1, 12):
+        assert float(interquartile_mean(samples[:count])) == approx(stats.trim_mean(samples[:count], 0.25))
+    rows = samples.reshape(4, 10)
+    assert interquartile_mean(rows, axis=0) == approx(stats.trim_mean(rows, 0.25, axis=0))
+
+
+SCORES = np.array([3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0, 5.0, 3.0])
+OTHERS = np.array([2.0, 7.0, 1.0, 8.0])
+IQM, BETTER = (11 / 3, 2.1667, 5.3333), (0.4625, 0.1, 0.8625)
+"""Figure, low and high end."""
+
+
+def test_figures_are_those_of_rliable():
+    """Made by rliable 1.2: aggregate_iqm, probability_of_improvement, get_interval_estimates (50,000 resamples)."""
+    value, low, high = bootstrap(SCORES[None], iqm)
+    assert (value, low, high) == (approx(IQM[0]), approx(IQM[1], abs=0.17), approx(IQM[2], abs=0.17))
+    value, low, high = improvement_interval(SCORES, OTHERS)
+    assert (value, low, high) == (approx(BETTER[0]), approx(BETTER[1], abs=0.03), approx(BETTER[2], abs=0.03))
+
+
+def test_a_single_run_has_no_interval():
+    one = np.array([5.0])
+    assert bootstrap(one[None], iqm) == (5.0, approx(np.nan, nan_ok=True), approx(np.nan, nan_ok=True))
+    assert improvement_interval(SCORES, one)[0] == approx(0.3) and np.isnan(improvement_interval(SCORES, one)[1:]).all()
+    shares, low, high = profile_interval(one, np.array([4.0, 6.0]))
+    assert shares.tolist() == [1.0, 0.0] and np.isnan([low, high]).all()
+    assert difference(SCORES, one)[0] == approx(-1.1) and np.isnan(difference(SCORES, one)[1])
+
+
+def test_difference_of_means_is_welchs():
+    stats = pytest.importorskip("scipy.stats")
+    rng = np.random.default_rng(2)
+    for sizes in ((10, 10), (40, 3), (5, 30)):
+        a, b = rng.normal(0.0, 1.0, sizes[0]), rng.normal(1.0, 4.0, sizes[1])
+        interval = stats.ttest_ind(a, b, equal_var=False).confidence_interval(0.95)
+        apart, half = difference(a, b)
+        assert apart == approx(a.mean() - b.mean()) and apart == approx((interval.high + interval.low) / 2)
+        right = (interval.high - interval.low) / 2
+        assert right - 1e-9 <= half * 1.001 and half <= 1.25 * right  # degrees of freedom are rounded down
+    assert difference(np.ones(3), np.zeros(3)) == (1.0, 0.0)
 
 
 def test_bootstrap_covers_the_truth_about_as_often_as_it_says():
@@ -66,6 +108,20 @@ def test_probability_of_improvement_counts_pairs():
 
 def test_profile_falls_from_one_to_zero():
     assert profile(np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.5, 3.0])).tolist() == approx([1.0, 2 / 3, 0.0])
+
+
+def test_interval_of_a_profile_holds_it_and_is_that_of_resampled_runs():
+    levels = np.array([0.0, 2.5, 4.5, 9.0])
+    shares, low, high = profile_interval(SCORES, levels)
+    assert shares.tolist() == profile(SCORES, levels).tolist() == [1.0, 0.7, 0.4, 0.0]
+    assert (low <= shares).all() and (shares <= high).all()
+    # A resample's share is binomial: 10 draws of 0.7.
+    assert (low[1], high[1]) == (approx(0.4), approx(1.0)) and (low[0], high[3]) == (1.0, 0.0)
+
+
+def test_names_of_blocks_end_where_the_episodes_end():
+    assert block_names(600, 200) == ["0 to 200", "200 to 400", "400 to 600"]
+    assert block_names(250, 200) == ["0 to 200", "200 to 250"] and block_names(3, 5) == ["0 to 3"]
 
 
 def test_means_of_blocks_and_moving_means():

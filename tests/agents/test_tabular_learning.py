@@ -133,6 +133,58 @@ def test_on_the_cliff_qlearning_takes_the_edge_and_sarsa_keeps_away():
     assert lengths["qlearn"] == 13 and 15 <= lengths["sarsa"] <= 25
 
 
+STATES, ACTIONS, GAMMA = 6, 3, 0.8
+
+
+def small_world(seed=3):
+    """Where each action leads, what it gives, whether the episode ends there; shapes (states, actions)."""
+    rng = np.random.default_rng(seed)
+    size = (STATES, ACTIONS)
+    return rng.integers(STATES, size=size), rng.normal(0.0, 2.0, size), rng.random(size) < 0.2
+
+
+def iterated(worth):
+    """Values of all pairs, by value iteration; ``worth`` of a table of values is that of each state."""
+    goes, gives, ends = small_world()
+    values = np.zeros((STATES, ACTIONS))
+    for _ in range(500):
+        values = gives + GAMMA * ~ends * worth(values)[goes]
+    return values
+
+
+def learnt(algorithm, epsilon, steps, alpha):
+    """Values that a learner has after so many steps; ``alpha`` of a step's number is its step size."""
+    goes, gives, ends = small_world()
+    table = Table([STATES], ACTIONS)
+    one = Learner(algorithm, Settings(gamma=GAMMA, epsilon=epsilon, epsilon_decay=1.0, epsilon_floor=0.0), table, 1)
+    one.begin(0)
+    rng = np.random.default_rng(1)
+    state, action = 0, one.choose(0)
+    for step in range(steps):
+        one._view.alpha = alpha(step)
+        after, ended = int(goes[state, action]), bool(ends[state, action])
+        following = one.learn(state, action, float(gives[state, action]), after, ended)
+        state, action = after, following
+        if ended or step % 20 == 19:
+            state = int(rng.integers(STATES))
+            action = one.choose(state)
+    return np.array([one.table.row(key) for key in range(STATES)])
+
+
+def test_qlearning_finds_the_values_of_value_iteration():
+    found = learnt("qlearn", 1.0, 20_000, lambda step: 1.0)
+    assert found == approx(iterated(lambda values: values.max(axis=1)), abs=1e-6)
+
+
+def test_sarsa_finds_the_values_of_the_policy_that_explores():
+    def worth(values):
+        return 0.6 * values.max(axis=1) + 0.4 * values.mean(axis=1)
+
+    found = learnt("sarsa", 0.4, 120_000, lambda step: max(0.3 * (1.0 - step / 100_000), 0.001))
+    right, best = iterated(worth), iterated(lambda values: values.max(axis=1))
+    assert np.abs(found - right).max() < 1.0 < 5.0 < np.abs(found - best).max()
+
+
 def test_settings_that_cannot_be_are_refused():
     for name, value in (("alpha", 0.0), ("gamma", 1.5), ("exploration", "none"), ("redraw", 1), ("epsilon", "x")):
         with pytest.raises(AgentError, match=name):

@@ -59,6 +59,50 @@ def test_files_that_are_no_tables_are_refused(tmp_path):
             Table.load(tmp_path / name)
 
 
+def stored():
+    """Arrays of a table of two states."""
+    table = Table([21] * 5, 3)
+    fill(table, [5, 7])
+    return table.arrays()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"keys": np.array([5, 5])}, {"keys": np.array([-1, 7])}, {"keys": np.array([5, 2 * 21**5])},
+        {"keys": np.array([5.0, 7.0])}, {"keys": np.array([5])}, {"radix": np.array(21)}, {"radix": np.array([21, 0])},
+        {"values": np.full((2, 3), np.nan)}, {"values": np.zeros((2, 2))}, {"values": np.zeros(6)},
+        {"values": np.array([["a"] * 3] * 2)}, {"visits": np.zeros((2, 3))}, {"visits": np.full((2, 3), -1)},
+    ],
+)  # fmt: skip
+def test_damaged_tables_are_refused(tmp_path, change):
+    assert len(Table.of_arrays(stored())) == 2
+    np.savez(tmp_path / "table.npz", **{**stored(), **change})
+    with pytest.raises(AgentError, match="table"):
+        Table.load(tmp_path / "table.npz")
+
+
+def test_damaged_files_are_refused_in_words(tmp_path):
+    path = tmp_path / "table.npz"
+    table = Table([21] * 5, 3)
+    fill(table, list(range(0, 3000, 7)))
+    table.save(path)
+    whole = path.read_bytes()
+    rng = np.random.default_rng(1)
+    damaged = [whole[:count] for count in (0, 1, 30, len(whole) // 2, len(whole) - 1)]
+    for place in rng.integers(len(whole), size=150).tolist():
+        damaged.append(whole[:place] + bytes([whole[place] ^ int(rng.integers(1, 256))]) + whole[place + 1 :])
+    refused = 0
+    for content in damaged:
+        path.write_bytes(content)
+        try:
+            assert len(Table.load(path)) == len(table)  # a byte that nobody reads
+        except AgentError as error:
+            assert str(path) in str(error)
+            refused += 1
+    assert refused > 100
+
+
 def test_only_discrete_spaces_have_tables():
     digits, three = gym.spaces.MultiDiscrete([7] * 5), gym.spaces.Discrete(3)
     assert Table.for_spaces(digits, three).size == 7**5

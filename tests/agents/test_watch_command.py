@@ -47,6 +47,70 @@ def test_a_gif_shows_each_step_in_its_time(run, tmp_path, capsys):
     assert f"{steps + 1} pictures" in told
 
 
+def test_a_gif_gets_colours_that_the_first_picture_did_not_have(tmp_path):
+    path = tmp_path / "film.gif"
+    rng = np.random.default_rng(1)
+    pictures = [np.full((40, 60, 3), 250, np.uint8) for _ in range(40)]
+    for k, picture in enumerate(pictures):  # a trail that grows, in colours of its own
+        picture[10, : k + 1] = (70, 130, 180)
+        picture[20:30, k : k + 10] = (200, 50, 40) if k > 20 else (40, 90, 160)
+        picture[35, :12] = rng.integers(0, 256, 3)
+    with Reel(path, 0.1) as reel:
+        for picture in pictures:
+            reel.add(picture)
+    with Image.open(path) as film:
+        assert film.n_frames == 40 and film.info["duration"] == 100
+        for k, picture in enumerate(pictures):
+            film.seek(k)
+            shown = np.asarray(film.convert("RGB")).astype(int)
+            assert np.abs(shown - picture)[(picture == (200, 50, 40)).all(axis=2)].max(initial=0) <= 16
+            assert k < 12 or np.abs(shown - picture).max() <= 16
+
+
+def test_a_gif_whose_pictures_do_not_change_has_them_all(tmp_path):
+    path = tmp_path / "film.gif"
+    with Reel(path, 0.1) as reel:
+        for _ in range(3):
+            reel.add(np.zeros((4, 6, 3), np.uint8))
+    assert reel.pictures == 3
+    with Image.open(path) as film:
+        assert film.n_frames == 3 and not np.asarray(film.convert("RGB")).any()
+    with Reel(tmp_path / "none.gif", 0.1):
+        pass
+    assert not (tmp_path / "none.gif").exists()
+
+
+def test_a_long_gif_is_written_as_it_grows(tmp_path):
+    path = tmp_path / "film.gif"
+    with Reel(path, 0.1) as reel:
+        sizes = []
+        for shade in range(40):
+            reel.add(np.random.default_rng(shade).integers(0, 256, (200, 300, 3), dtype=np.uint8))
+            sizes.append(path.stat().st_size)
+    assert sizes[-1] > sizes[20] > sizes[0] > 0
+
+
+def test_how_an_episode_ended_is_on_the_film(run, tmp_path, capsys):
+    path = tmp_path / "film.gif"
+    every = round(0.04 / (0.6 / 60.0))
+    counts = set()
+    for limit in range(7, 7 + every):
+        assert call(run.path, "--out", path, "--speed", 60, "--max-steps", limit) == 0
+        steps = int(capsys.readouterr().out.split(" steps")[0].split(": ")[1])
+        with Image.open(path) as film:
+            assert film.n_frames == len({*range(0, steps + 1, every), steps})
+        counts.add(steps % every)
+    assert len(counts) > 1
+
+
+def test_environments_that_do_not_say_how_long_a_step_is(tmp_path):
+    cliff = new(tmp_path / "cliff", env="CliffWalking-v1", max_steps=20, episodes=2)
+    training.train(cliff, Watch())
+    call(cliff.path, "--out", tmp_path / "film.GIF", "--max-steps", 4)
+    with Image.open(tmp_path / "film.GIF") as film:
+        assert film.info["duration"] == 200
+
+
 def test_a_fast_film_leaves_pictures_out(tmp_path):
     for step_s, every in ((1.0, 1), (0.04, 1), (0.01, 4), (0.001, 40)):
         reel = Reel(tmp_path / "film.gif", step_s)
@@ -83,6 +147,17 @@ def test_a_window_plays_until_it_is_closed(run, monkeypatch):
     assert calls == [True] * 4 and [row[:2] for row in ended] == [(0, 3)]
 
 
+def test_a_window_that_nobody_can_see_is_refused(run, monkeypatch):
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    import pygame
+
+    monkeypatch.setattr(pygame.display, "get_driver", lambda: "offscreen")
+    monkeypatch.setattr(pygame.display, "get_init", lambda: True)
+    monkeypatch.setattr("envs.rendering.Renderer.show", lambda renderer: None)
+    with pytest.raises(AgentError, match=r"no screen for a window; --out FILE\.gif"):
+        call(run.path)
+
+
 def test_the_pace_waits_for_what_is_left_of_a_step():
     now, slept = [10.0], []
 
@@ -108,7 +183,14 @@ def test_what_cannot_be_is_refused(run, tmp_path, monkeypatch):
     monkeypatch.setattr("shutil.which", lambda name: None)
     with pytest.raises(AgentError, match="ffmpeg"):
         call(run.path, "--out", tmp_path / "film.mp4")
-    with pytest.raises(SystemExit):
-        call(run.path, "--speed", "0")
+    for words in (("--speed", "0"), ("--speed", "nan"), ("--seed", "-1"), ("--episodes", "0")):
+        with pytest.raises(SystemExit):
+            call(run.path, *words)
+    with pytest.raises(AgentError, match="chosen by --out"):
+        call(run.path, "--option", "render_mode=human")
+    with pytest.raises(AgentError, match="--max-steps limits"):
+        call(run.path, "--out", tmp_path / "film.gif", "--option", "max_episode_steps=5")
+    with pytest.raises(AgentError, match="cannot be written"):
+        call(run.path, "--out", "/proc/film.gif", "--max-steps", "3")
     with pytest.raises(AgentError, match="neither a run"):
         call(tmp_path / "nothing")

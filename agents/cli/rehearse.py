@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl rehearse``: what was learnt in one simulation is tried in others that it has not seen."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from ..errors import AgentError
+from ..rehearsal import plan as plans
+from ..rehearsal.change import Change
+from ..rehearsal.rehearse import EPISODES, Rehearsed, rehearse, trials_of
+from ..rehearsal.report import write_report
+from ..rehearsal.trial import robot_name
+from ..report.group import Group, unique_names
+from ..runs.backends import Workers
+from ..runs.plan import EvaluationPlan
+from .options import add_jobs, positive, whole, workers
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    shipped = ", ".join(plans.names())
+    parser = commands.add_parser(
+        "rehearse",
+        help="try what was learnt in simulations that it has not seen",
+        description="Plays runs at home and under changes of the simulation: another world, other physics, vehicle "
+        "figures, sensor noise, latency. Reports how much of the reward transfers.",
+    )
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of runs, or of groups of seeds")
+    parser.add_argument("--plan", metavar="NAME", help=f"changes: a .toml file, or {shipped} (default: by robot)")
+    parser.add_argument("--only", action="append", metavar="CHANGE", help="a change or a group of changes, by name")
+    parser.add_argument(
+        "--episodes", type=positive, metavar="N", help=f"of each change and run (default: {EPISODES}, or the run's)"
+    )
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
+    parser.add_argument(
+        "--jitter", type=float, metavar="X", help="starts are moved by up to X metres and X rad (default: of the run)"
+    )
+    add_jobs(parser)
+    parser.add_argument(
+        "--out", type=Path, default=Path("reports/rehearsal"), metavar="DIR", help="default: reports/rehearsal"
+    )
+    parser.set_defaults(function=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command."""
+    crew = workers(options)
+    groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
+    environments = {group.config.env for group in groups}
+    if len(environments) > 1:
+        raise AgentError(f"runs in {' and '.join(sorted(environments))} cannot be held side by side; give one of them")
+    config = groups[0].config
+    plan = plans.load(options.plan) if options.plan else plans.plan_for(robot_name(config))
+    changes = plan.chosen(options.only or ())
+    EvaluationPlan().changed(jitter=options.jitter)  # refuses one that cannot be
+    found = with_bar(groups, changes, options.episodes, options.seed, options.jitter, crew)
+    if found is None:
+        print("interrupted; nothing was written", file=sys.stderr)
+        return 130
+    print(write_report({config.env: found}, options.out, options.seed))
+    return 0
+
+
+def with_bar(
+    groups: Sequence[Group],
+    changes: Sequence[Change],
+    episodes: int | None,
+    seed: int,
+    jitter: float | None,
+    crew: Workers,
+) -> list[Rehearsed] | None:
+    """``rehearse`` with a progress bar of all episodes."""
+    total = sum(trial.episodes for group in groups for trial in trials_of(group.runs, changes, episodes, seed))
+    with tqdm(total=total, unit="episode", file=sys.stderr, disable=None, smoothing=0.1) as bar:
+
+        def told(index: int, count: Any) -> None:
+            bar.update(count)
+
+        return rehearse(groups, changes, episodes, seed, jitter, crew.jobs, told, crew.each)

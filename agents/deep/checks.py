@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Now and then the network of a run plays greedily, and the best one is kept.
+
+The last network of a run is one of many: after an update it may crash where the one before it drove on. Learning does
+not notice the checks: they have robots of their own and draw nothing from the learner's random numbers.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from .. import environments
+from ..evaluate import Pose, moved_starts
+from ..runs.config import RunConfig
+from . import checkpoint
+from .actions import Actions
+from .features import Features, Frames
+from .settings import Settings
+
+BEST = "best.zip"
+JITTER = 0.1
+"""By which starts are moved [m, rad] where all are one."""
+SEED = 2**31
+"""Of the starts and the resets: the same for every network."""
+
+
+class Checks:
+    """Of one run.
+
+    Args:
+        config: of the run. Its episodes are played; where they all start at one place, starts are moved by up to
+            0.1 m and 0.1 rad.
+        figures: its settings; they say how often.
+        path: of the best model; what another run left there is removed.
+        begun: steps after which the run goes on; 0: it is new.
+    """
+
+    def __init__(self, config: RunConfig, figures: Settings, path: Path, begun: int) -> None:
+        self._config, self._figures, self._path = config, figures, path
+        self._every, self._count = figures.check_every, figures.check_episodes
+        self._due = self._next(begun)
+        self._best: checkpoint.Score = ()
+        if begun and path.exists():
+            self._best = checkpoint.score_of(path)
+        else:
+            path.unlink(missing_ok=True)
+        self._env: gym.vector.VectorEnv[Any, Any, Any] | None = None
+        self._poses: list[Pose] | None = None
+
+    def _next(self, steps: int) -> float:
+        """Steps after which the next check is due."""
+        return (steps // self._every + 1) * self._every if self._every else np.inf
+
+    def after(self, model: Any, done: bool = False) -> None:
+        """Rounds of learning are over, all of them if ``done``: check when it is time."""
+        steps = model.num_timesteps
+        if steps < self._due and not (done and self._every):
+            return
+        self._due = self._next(steps)
+        score = self.score(model)
+        if score > self._best:
+            self._best = score
+            assert self._env is not None
+            spaces = (self._env.single_observation_space, self._env.single_action_space)
+            checkpoint.save_best(self._path, model, spaces, score)
+
+    def score(self, model: Any) -> checkpoint.Score:
+        """How good the model is now: it plays all episodes at once."""
+        env = self._made()
+        features = Features(env.single_observation_space, self._figures.sectors)
+        frames = Frames(self._count, self._figures.frames, features.width)
+        actions = Actions(env.single_action_space, self._config.algorithm)
+        rows = frames.begin(features(self._begun(env)))
+        rewards, playing, crashes = np.zeros(self._count), np.ones(self._count, np.bool_), 0
+        while playing.any():
+            chosen, _ = model.predict(rows, deterministic=True)
+            observations, reward, terminated, truncated, _ = env.step(actions.to_environment(chosen))
+            rewards[playing] += reward[playing]
+            crashes += int(np.count_nonzero(terminated & playing))
+            playing &= ~(terminated | truncated)
+            rows = frames.push(features(observations))
+        mean = float(rewards.mean())
+        return (-float(crashes), mean) if self._figures.check_by == "crashes" else (mean,)
+
+    def _made(self) -> gym.vector.VectorEnv[Any, Any, Any]:
+        if self._env is None:
+            listeners = {"gcs": None} if "gcs" in self._config.env_options else {}
+            self._env = environments.make_many(self._config, self._count, **listeners)
+            if self._config.env_options.get("start") is None:
+                self._poses = moved_starts(self._env, self._count, SEED, JITTER)
+        return self._env
+
+    def _begun(self, env: gym.vector.VectorEnv[Any, Any, Any]) -> Any:
+        """What the robots see at the start of their episodes: the same in each check."""
+        seeds: Any = [environments.seed_of(SEED, k) for k in range(self._count)]
+        if self._poses is None:
+            return env.reset(seed=seeds)[0]
+        for robot, pose in enumerate(self._poses):
+            observations, _ = env.reset(
+                seed=seeds, options={"reset_mask": np.arange(self._count) == robot, "pose": pose}
+            )
+        return observations
+
+    def close(self) -> None:
+        """Let go of the robots."""
+        if self._env is not None:
+            self._env.close()

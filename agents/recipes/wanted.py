@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The runs of recipes over some seeds: made where they are not there yet, gone on with where they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from sitl.core.extras import MissingExtra
+
+from ..errors import AgentError
+from ..runs import folder as folders
+from ..runs.folder import RunFolder
+from .recipe import Recipe
+
+
+def check_all(recipes: Sequence[Recipe], seeds: int) -> None:
+    """See that all can be trained, before one is.
+
+    Raises:
+        MissingExtra: some need what is not installed; the message says which do not.
+        AgentError: a recipe that cannot be used, or two of one name.
+    """
+    chosen = [recipe.name for recipe in recipes]
+    for name in chosen:
+        if chosen.count(name) > 1:
+            raise AgentError(f"there are two recipes {name!r}; each needs a folder of its own")
+    missing: dict[str, MissingExtra] = {}
+    for recipe in recipes:
+        try:
+            recipe.config(seeds - 1)
+        except MissingExtra as error:
+            missing[recipe.name] = error
+    if missing:
+        rest = [name for name in chosen if name not in missing]
+        hint = f"; without: --only {' '.join(rest)}" if rest else ""
+        raise MissingExtra(f"recipes {', '.join(missing)}: {next(iter(missing.values()))}{hint}")
+
+
+def runs_of(out: Path, recipe: Recipe, seeds: int) -> list[RunFolder]:
+    """The runs of a recipe, made where they are not there yet, and at least as long as it says.
+
+    Raises:
+        AgentError: there are other runs in their place.
+    """
+    found = []
+    for seed in range(seeds):
+        config = recipe.config(seed)
+        path = folders.seed_folder(out / "runs" / recipe.name, seed)
+        if not folders.is_run(path):
+            found.append(RunFolder.create(path, config))
+            continue
+        run = RunFolder(path)
+        different = run.config.differences(config)
+        if different:
+            raise AgentError(f"{path} differs from its recipe in {', '.join(different)}; choose another --out")
+        run.extend(_longer(run.config.episodes, config.episodes), _longer(run.config.steps, config.steps))
+        found.append(run)
+    return found
+
+
+def _longer(there: int | None, asked: int | None) -> int | None:
+    return asked if there is None or asked is None else max(there, asked)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Greedy evaluations that keep where the robot went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from sitl.worlds import World
+from sitl.worlds.frames import from_ned
+
+from .. import algorithms, environments
+from ..evaluate import Evaluation, evaluate, moved_starts
+from ..runs.folder import RunFolder
+from ..runs.plan import EvaluationPlan
+
+Floats = npt.NDArray[np.float64]
+DRAWN = 20
+"""Episodes whose trails are kept."""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Of the environment that a run was evaluated in."""
+
+    world: World
+    robot: str
+    """Its name."""
+    observation: str
+    """In words."""
+    action: str
+    step_s: float
+    """Simulated time of a step [s]."""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """An evaluation."""
+
+    evaluation: Evaluation
+    trails: tuple[Floats, ...]
+    """x, y of the first episodes after each step [m], each of shape (steps + 1, 2)."""
+    facts: Facts
+
+
+class Trails(gym.Wrapper[Any, Any, Any, Any]):
+    """Notes where the robot is after each reset and step; changes nothing.
+
+    Args:
+        env: of one robot.
+        count: episodes that are noted.
+    """
+
+    def __init__(self, env: gym.Env[Any, Any], count: int) -> None:
+        super().__init__(env)
+        self._left = count
+        self._noted: list[list[tuple[float, float]]] = []
+        self._where = place_of(env)
+
+    def reset(self, **arguments: Any) -> Any:
+        """See ``gymnasium.Env``."""
+        found = self.env.reset(**arguments)
+        self._left -= 1
+        if self._left >= 0:
+            self._noted.append([self._where()])
+        return found
+
+    def step(self, action: Any) -> Any:
+        """See ``gymnasium.Env``."""
+        found = self.env.step(action)
+        if self._left >= 0:
+            self._noted[-1].append(self._where())
+        return found
+
+    @property
+    def trails(self) -> tuple[Floats, ...]:
+        """See ``Driven``."""
+        return tuple(np.array(points) for points in self._noted)
+
+
+def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
+    """Says where the robot of an environment really is: x, y [m]. The pose of a vehicle with an autopilot is what its
+    autopilot believes, which is metres off at times."""
+    robot: Any = env.unwrapped.robot  # type: ignore[attr-defined]
+    if not hasattr(robot, "simulation"):
+
+        def told() -> tuple[float, float]:
+            x, y = robot.pose[0, :2].tolist()
+            return x, y
+
+        return told
+
+    def true() -> tuple[float, float]:
+        return from_ned(*robot.simulation(0).v.physics.body.pos.tolist())[:2]
+
+    return true
+
+
+def drive(path: Path, plan: EvaluationPlan) -> Driven:
+    """Play what the run in a folder has learnt.
+
+    Args:
+        path: of the folder.
+        plan: how.
+
+    Raises:
+        AgentError: it has learnt nothing yet, or the plan's environment is another kind.
+    """
+    run = RunFolder(path)
+    config = run.config.with_(max_steps=plan.max_steps or run.config.max_steps)
+    env = environments.make(config, **plan.options)
+    try:
+        poses = moved_starts(env, plan.episodes, 0, plan.jitter) if plan.jitter > 0.0 else None
+        noted = Trails(env, DRAWN)
+        found = evaluate(noted, algorithms.policy_of(run), plan.episodes, poses=poses)
+        return Driven(found, noted.trails, _facts(env, {**config.env_options, **plan.options}))
+    finally:
+        env.close()
+
+
+def _facts(env: gym.Env[Any, Any], options: dict[str, Any]) -> Facts:
+    inner: Any = env.unwrapped
+    seen = options.get("observation", "digits")
+    space = env.observation_space
+    shape = f" ({space.shape[0]})" if space.shape else ""
+    acts = env.action_space
+    names = getattr(getattr(inner.session, "action", None), "names", ())
+    return Facts(
+        world=inner.robot.world,
+        robot=inner.robot.name,
+        observation=f"{seen if isinstance(seen, str) else type(seen).__name__}{shape}",
+        action=", ".join(names) if isinstance(acts, gym.spaces.Discrete) else f"{acts.shape[0]} set-points",  # type: ignore[index]
+        step_s=environments.step_time(env),
+    )

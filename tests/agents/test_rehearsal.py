@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rehearsals of short runs: paired episodes, shares, refusals, reports, the commands."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from small_runs import CIRCUIT2, new
+
+import agents.cli
+from agents import recipes
+from agents.errors import AgentError
+from agents.rehearsal import training
+from agents.rehearsal.change import Change, is_covered
+from agents.rehearsal.plan import Plan
+from agents.rehearsal.rehearse import rehearse, trials_of
+from agents.rehearsal.share import advantage, share
+from agents.rehearsal.trial import Trial, attempt
+from agents.rehearsal.truth import is_false_alarm, lidar_distance
+from agents.report.group import Group
+from agents.runs import folder as folders
+from agents.runs.plan import EvaluationPlan
+from agents.runs.training import train_one
+from sitl import errors
+
+CHANGES = [
+    Change("slow", "vehicle", set={"wheel_speed_max": 0.05}),
+    Change("late", "latency", latency=0.6, episodes=2),
+    Change("many rays", "sensors", options={"observation": "scan"}),
+]
+PLAN = """
+[[change]]
+name = "late"
+group = "latency"
+latency = 0.6
+[[change]]
+name = "noise"
+group = "sensors"
+set = { range_noise = 0.1 }
+[training]
+recipe = "RECIPE"
+[randomise]
+latency = [0.0, 0.2]
+[randomise.scale]
+wheel_radius_left = [0.95, 1.05]
+"""
+RECIPE = f"""
+env = "{CIRCUIT2}"
+algorithm = "sarsa"
+episodes = 12
+max_steps = 40
+[settings]
+check_every = 0
+[evaluation]
+episodes = 4
+jitter = 0.1
+"""
+
+
+def told_nothing(message):
+    pass
+
+
+@pytest.fixture(scope="module")
+def group(tmp_path_factory):
+    """Two seeds of a short run."""
+    path = tmp_path_factory.mktemp("runs") / "plain"
+    plan = EvaluationPlan(episodes=5, jitter=0.1)
+    for seed in (0, 1):
+        new(folders.seed_folder(path, seed), seed=seed, evaluation=plan)
+        train_one(folders.seed_folder(path, seed), told_nothing, lambda: False)
+    return Group.load(path)
+
+
+@pytest.fixture
+def sitl(monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words):
+        top = argparse.ArgumentParser(prog="sitl")
+        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+        options = top.parse_args([str(word) for word in words])
+        try:
+            code = options.function(options)
+        except errors.USER_ERRORS as error:
+            return 2, str(error)
+        return code, capsys.readouterr().out
+
+    return run
+
+
+def test_trials_are_paired_and_repeat(group):
+    counts = []
+    one, two = (rehearse([group], CHANGES, seed=3, told=lambda index, n: counts.append(n))[0] for _ in range(2))
+    assert one.home.rewards.shape == (2, 5) and len(counts) == 2 * 2 * (5 + 5 + 2)
+    assert np.array_equal(one.home.rewards, two.home.rewards)
+    assert np.array_equal(one.tried[0].rewards, two.tried[0].rewards)
+    assert one.tried[1].rewards.shape == (2, 2)
+    same = rehearse([group], [Change("nothing", "vehicle", scale={"radius": 1.0})], seed=3)[0]
+    assert np.array_equal(same.tried[0].rewards, same.home.rewards)
+
+
+def test_what_a_policy_cannot_play_in_is_told(group):
+    found = rehearse([group], CHANGES, episodes=1)[0]
+    assert "the table is for" in found.tried[2].refused or "digits" in found.tried[2].refused
+    assert found.shares()[2] is None and not found.tried[0].refused
+
+
+def test_at_home_it_must_play(tmp_path):
+    new(tmp_path / "run", env_options={"world": "nowhere"})
+    with pytest.raises(AgentError, match="run cannot be played at home: there is no model"):
+        attempt(Trial(tmp_path / "run", None, 1), told_nothing, lambda: False)
+
+
+def test_an_interrupt_ends_it(group):
+    assert attempt(Trial(group.runs[0].path, None, 5), told_nothing, lambda: True) is None
+
+
+def test_domain_randomisation_is_no_part_of_home(tmp_path):
+    wild = {"randomise": {"wheel_speed_max": [0.0, 0.0]}}
+    for name, options in (("plain", {}), ("wild", wild)):
+        new(tmp_path / name, env_options=options, episodes=1)
+        train_one(tmp_path / name, told_nothing, lambda: False)
+    table = (tmp_path / "plain" / "model.npz").read_bytes()
+    (tmp_path / "wild" / "model.npz").write_bytes(table)
+    homes = [attempt(Trial(tmp_path / name, None, 2), told_nothing, lambda: False) for name in ("plain", "wild")]
+    assert homes[0] == homes[1]
+
+
+def test_share_of_a_reward():
+    rng = np.random.default_rng(1)
+    home = rng.normal(100.0, 10.0, (3, 40))
+    half = share(home, 0.5 * home)
+    assert half == pytest.approx((0.5, 0.5, 0.5))  # paired: no spread at all
+    mixed = share(home, home * rng.uniform(0.0, 1.0, home.shape))
+    assert mixed.low < mixed.value < mixed.high and 0.4 < mixed.value < 0.6
+    seeds = share(home, home * np.array([[1.0], [0.2], [0.6]]))
+    assert seeds.high - seeds.low > 0.3  # the spread between seeds counts
+    assert share(home, home[:, :7]).value == pytest.approx(1.0)
+    assert math.isnan(share(-home, home).value)
+
+
+def test_advantage_has_one_measure_for_both():
+    rng = np.random.default_rng(2)
+    home = np.full((2, 30), 100.0)
+    first, other = rng.normal(60.0, 5.0, (2, 30)), rng.normal(50.0, 5.0, (3, 20))
+    found = advantage(home, first, other)
+    assert found.low < found.value < found.high < 0.0 and found.value == pytest.approx(-0.1, abs=0.03)
+    own = np.full((3, 20), 50.0)
+    assert share(own, other).value > share(home, first).value  # though it earns less
+    assert advantage(home, first, first).value == 0.0
+
+
+def test_what_training_covered_is_seen():
+    home = {"start": "random", "randomise": None}
+    drawn = {"mass": [1.0, 2.0], "latency": [0.0, 0.2]}
+    heavy, late = {"randomise": {"mass": (1.5, 1.5)}}, {"latency": 0.2}
+    assert is_covered({**home, **heavy}, home, drawn) and is_covered({**home, **heavy, **late}, home, drawn)
+    assert not is_covered({**home, **heavy}, home, None)
+    for other in ({"latency": 0.4}, {"world": "maze", **late}, {"randomise": {"mass": (1.5, 1.5), "grip": (1.0, 1.0)}}):
+        assert not is_covered({**home, **other}, home, drawn)
+
+
+def test_default_episodes_are_the_runs(group):
+    assert {t.episodes for t in trials_of(group.runs, CHANGES[:1])} == {5}
+    assert [t.episodes for t in trials_of(group.runs, CHANGES[1:2], 9)] == [9, 9, 2, 2]
+
+
+def test_the_command_reports_runs_side_by_side(sitl, group, tmp_path):
+    pytest.importorskip("matplotlib")
+    (tmp_path / "plan.toml").write_text(PLAN)
+    one, two = group.runs
+    code, out = sitl("rehearse", one.path, two.path, "--plan", "plan.toml", "--episodes", 3, "--out", "report")
+    assert (code, out) == (0, "report/report.md\n")
+    text = (tmp_path / "report" / "report.md").read_text()
+    assert "seed-0: share" in text and "seed-1: crashes" in text and "of 3 |" in text and "-0 %" not in text
+    names = {path.name for path in (tmp_path / "report").iterdir()}
+    assert {"report.html", "rehearsal.csv", "episodes.csv"} < names and any(n.endswith(".png") for n in names)
+    rows = list(csv.DictReader((tmp_path / "report" / "rehearsal.csv").open()))
+    assert [row["change"] for row in rows] == 2 * ["home", "late", "noise"]
+    assert len(list(csv.DictReader((tmp_path / "report" / "episodes.csv").open()))) == 2 * 3 * 3
+    code, error = sitl("rehearse", one.path, "--only", "nose")
+    assert code == 2 and "no change 'nose'" in error
+
+
+def test_the_benchmark_trains_plain_and_randomised_and_goes_on(sitl, tmp_path):
+    pytest.importorskip("matplotlib")
+    (tmp_path / "tiny.toml").write_text(RECIPE)
+    (tmp_path / "plan.toml").write_text(PLAN.replace("RECIPE", str(tmp_path / "tiny.toml")))
+    words = ("benchmark", "rehearsal", "--only", "plan.toml", "--episodes", 2, "--out", "report")
+    assert sitl(*words) == (0, "report/report.md\n")
+    runs = {path.name: folders.find(path)[0] for path in (tmp_path / "report" / "runs").iterdir()}
+    assert set(runs) == {"plan-plain", "plan-randomised"}
+    drawn = runs["plan-randomised"].config.env_options["randomise"]
+    assert drawn == {"wheel_radius_left": [0.03344, 0.03696], "latency": [0.0, 0.2]}
+    times = [run.path.joinpath("model.npz").stat().st_mtime_ns for run in runs.values()]
+    assert sitl(*words)[0] == 0
+    assert times == [run.path.joinpath("model.npz").stat().st_mtime_ns for run in runs.values()]
+    text = (tmp_path / "report" / "report.md").read_text()
+    assert "| wheel_radius_left, latency |" in text and "randomised - plain |" in text and "one seed" in text
+    rows = list(csv.DictReader((tmp_path / "report" / "rehearsal.csv").open()))
+    assert [row["above_first"] for row in rows if row["run"] == "plain" and row["group"]] in (2 * ["0.0"], 2 * ["nan"])
+
+
+def test_recipes_of_a_plan(tmp_path):
+    path = tmp_path / "tiny.toml"
+    path.write_text(RECIPE)
+    plan = Plan("p", (CHANGES[0],), training={"recipe": str(path), "steps": 500}, randomise={"latency": [0, 1]})
+    plain, wild = training.recipes_of(plan).values()
+    assert (plain.episodes, plain.steps, wild.options) == (None, 500, {"randomise": {"latency": [0.0, 1.0]}})
+    assert recipes.load(path).options == plain.options == {}
+    with pytest.raises(AgentError, match=r"needs training\.recipe"):
+        training.recipes_of(Plan("p", (CHANGES[0],)))
+
+
+def test_noise_that_calls_a_crash_is_told_apart(group):
+    loud = [Change("loud", "sensors", set={"range_noise": 0.5}), Change("quiet", "sensors", set={"range_noise": 0.0})]
+    found = rehearse([group], loud, episodes=5)[0]
+    assert found.tried[0].false_alarms.sum() > 5
+    assert found.tried[1].crashed.sum() > 0 == found.tried[1].false_alarms.sum()
+
+
+@pytest.mark.parametrize("name, limit", [(CIRCUIT2, 0.2), ("GazeboMazeErleRoverLIDAR-v0", 1.5)])
+def test_the_true_distance_is_what_a_lidar_without_noise_reads(name, limit):
+    env = gym.make(name, observation="scan")
+    env.reset(seed=1)
+    while True:
+        scan, _, terminated, _, _ = env.step(0)
+        if scan.min() < 3.0:
+            assert scan.min() - 0.3 < lidar_distance(env.unwrapped.robot) < scan.min() + 0.01
+        if terminated:
+            break
+    assert scan.min() < limit and not is_false_alarm(env)
