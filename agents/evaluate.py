@@ -77,6 +77,9 @@ class Evaluation:
         if not math.isnan(self.mean_laps):
             parts.append(f"{self.mean_laps:.1f} laps an episode")
             parts.append(f"{100.0 * self.lap_rate:.0f} % of the episodes with a lap or more and no crash")
+        ended = sum(played.terminated and not (played.crashed or played.reached) for played in self.episodes)
+        if ended:
+            parts.append(f"{ended} ended by themselves")
         if any(played.reached for played in self.episodes):
             parts.append(f"goal reached in {sum(played.reached for played in self.episodes)}")
         if not math.isnan(self.mean_simulated_s):
@@ -138,7 +141,7 @@ def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str
         reward=total,
         steps=steps,
         terminated=bool(terminated),
-        crashed=bool(info.get("crashed", terminated)),
+        crashed=bool(info.get("crashed", False)),  # an environment of another kind knows of no crashes
         reached=bool(info.get("reached", False)),
         simulated_s=steps * environments.step_time(env),
         laps=math.nan if counter is None else counter.laps,

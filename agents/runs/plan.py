@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
@@ -12,6 +11,8 @@ from typing import Any
 from ..errors import AgentError
 
 EPISODES = 100
+MOST_JITTER = 1.0
+"""Starts that are moved farther are in walls; ``start`` of the environment gives others."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ class EvaluationPlan:
             if not isinstance(value, int) or isinstance(value, bool) or value < 1:
                 raise AgentError(f"evaluation: {name} = {value!r}; it must be a whole number from 1 on")
         number = isinstance(self.jitter, int | float) and not isinstance(self.jitter, bool)
-        if not number or not math.isfinite(self.jitter) or self.jitter < 0.0:
-            raise AgentError(f"evaluation: jitter = {self.jitter!r}; it must be a number from 0 on [m, rad]")
+        if not number or not 0.0 <= self.jitter <= MOST_JITTER:
+            raise AgentError(f"evaluation: jitter = {self.jitter!r}; it must be a number 0 .. {MOST_JITTER:g} [m, rad]")
         if not isinstance(self.options, Mapping):
             raise AgentError(f"evaluation: options = {self.options!r}; it must be a table of names and values")
 

@@ -109,3 +109,18 @@ def test_seeds_of_episodes_do_not_repeat():
 def test_environments_without_poses_have_no_moved_starts():
     with pytest.raises(AgentError, match="cannot be moved"):
         moved_starts(gym.make("CliffWalking-v1"), 1, 0, 0.1)
+
+
+def test_in_an_environment_of_another_kind_an_end_is_no_crash():
+    class Walk:
+        def check(self, observations, actions):
+            pass
+
+        def begin(self, seed):
+            self.steps = iter([0, *[1] * 11, 2])  # up, along the cliff, down to the goal
+
+        def act(self, observation):
+            return next(self.steps)
+
+    found = evaluate(gym.make("CliffWalking-v1", max_episode_steps=20), Walk(), 2)
+    assert found.crash_rate == 0.0 and "0 crashes, 2 ended by themselves" in found.sentence()

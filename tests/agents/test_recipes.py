@@ -111,7 +111,7 @@ def test_single_things_are_replaced(small):
         ("episodes = 12", "episodes = 0", "episodes = 0; it must be a whole number from 1 on"),
         ("episodes = 12", "episodes = 1.5", "episodes = 1.5; it must be a whole number"),
         ("jitter", "jiter", "evaluation: key 'jiter' is not known; .*did you mean 'jitter'"),
-        ("jitter = 0.1", "jitter = -1", "evaluation: jitter = -1; it must be a number from 0 on"),
+        ("jitter = 0.1", "jitter = -1", "evaluation: jitter = -1; it must be a number 0 .. 1"),
         ('start = "random"', "start = 2020-01-01", "options has a date"),
         ("[options]", "[options", "small.toml: "),
     ],
