@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 import gymnasium as gym
@@ -29,6 +29,20 @@ def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
         AgentError: no such environment, or an option that it does not take.
     """
     return _made(lambda given: gym.make(config.env, max_episode_steps=config.max_steps, **given), config, options)
+
+
+def try_all(configs: Iterable[RunConfig]) -> None:
+    """See that the environments of runs can be made, for training and for their evaluation, before a folder is.
+
+    Raises:
+        AgentError: see ``make``.
+    """
+    tried: list[tuple[str, Mapping[str, Any]]] = []
+    for config in configs:
+        for options in (config.env_options, {**config.env_options, **config.evaluation.options}):
+            if (config.env, options) not in tried:
+                tried.append((config.env, options))
+                make(config, **options).close()
 
 
 def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:

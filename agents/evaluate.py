@@ -16,6 +16,7 @@ from .algorithms import Policy
 from .errors import AgentError
 from .laps import CENTRES, LapCounter
 from .runs.folder import RunFolder
+from .runs.local import Stopped, Tell
 from .runs.plan import EPISODES
 
 Pose = tuple[float, float, float]
@@ -118,6 +119,21 @@ def evaluate(
         played.append(play(env, policy, one, options))
         watch(played[-1])
     return Evaluation(tuple(played))
+
+
+class Interrupted(Exception):
+    """Ends an evaluation between two episodes."""
+
+
+def until_stopped(tell: Tell, stopped: Stopped) -> Callable[[Played], None]:
+    """A ``watch`` for work on many runs: tells 1 after each episode, and raises Interrupted when it shall end."""
+
+    def watch(played: Played) -> None:
+        tell(1)
+        if stopped():
+            raise Interrupted
+
+    return watch
 
 
 def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str, Any] | None = None) -> Played:

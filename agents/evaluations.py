@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from . import algorithms, environments
-from .evaluate import Evaluation, Played, evaluate, moved_starts
+from .evaluate import Evaluation, Interrupted, evaluate, moved_starts, until_stopped
 from .runs.backends import Workers
 from .runs.folder import RunFolder
 from .runs.local import Stopped, Tell
@@ -25,10 +25,6 @@ class Part:
     seed: int
     first: int
     count: int
-
-
-class _Stop(Exception):
-    """Ends a part between two episodes."""
 
 
 def evaluate_runs(
@@ -68,17 +64,12 @@ def play_part(part: Part, tell: Tell, stopped: Stopped) -> Evaluation | None:
     run, plan = RunFolder(part.run), part.plan
     config = run.config.with_(max_steps=plan.max_steps or run.config.max_steps)
 
-    def watch(played: Played) -> None:
-        tell(1)
-        if stopped():
-            raise _Stop
-
     env = environments.make(config, **plan.options)
     try:
         poses = moved_starts(env, plan.episodes, part.seed, plan.jitter) if plan.jitter > 0.0 else None
         policy = algorithms.policy_of(run)
-        return evaluate(env, policy, part.count, part.seed, poses, watch, part.first)
-    except _Stop:
+        return evaluate(env, policy, part.count, part.seed, poses, until_stopped(tell, stopped), part.first)
+    except Interrupted:
         return None
     finally:
         env.close()

@@ -7,8 +7,16 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+from sitl.option_error import OptionError
 
-class EnvOptionError(ValueError):
+COMMON = (
+    "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",
+    "render_mode",
+)  # fmt: skip
+"""Options that every environment takes, whatever its robot."""
+
+
+class EnvOptionError(OptionError):
     """An option of an environment that cannot be used; the message names it, its value and what is allowed."""
 
 

@@ -9,7 +9,7 @@ from .core.compile import BuildError
 from .core.extras import MissingExtra
 from .foreign.process import AutopilotEndedError
 from .logs.tlog import LogError
-from .option_error import OptionError
+from .option_error import OptionError, VehicleError
 from .pacing import SpeedupError
 from .physics.engine import EngineError
 from .plants.plant import PhysicsLostError
@@ -32,5 +32,6 @@ USER_ERRORS: tuple[type[Exception], ...] = (
     PhysicsLostError,
     RecordingError,
     SpeedupError,
+    VehicleError,
     WorldError,
 )

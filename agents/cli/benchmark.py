@@ -78,5 +78,11 @@ def run_paper(options: argparse.Namespace) -> int:
 
 
 def _train(runs: list[RunFolder], crew: Workers) -> bool:
-    with Bar(runs) as bar:
-        return train_all([run.path for run in runs], crew.jobs, bar, crew.each)
+    # a progress bar counts episodes or steps, not both
+    batches = [[run for run in runs if (run.config.episodes is None) is by_steps] for by_steps in (False, True)]
+    for batch in batches:
+        if batch:
+            with Bar(batch) as bar:
+                if not train_all([run.path for run in batch], crew.jobs, bar, crew.each):
+                    return False
+    return True

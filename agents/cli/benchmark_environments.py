@@ -50,11 +50,9 @@ def run(options: argparse.Namespace, train: Train) -> int:
     plots.figure()  # before hours are spent, see that pictures can be drawn
     runs = [runs_of(options.out, recipe, options.seeds) for recipe in chosen]
     todo = [one for group in runs for one in group if not is_done(one)]
-    # a progress bar counts episodes or steps, not both
-    batches = [[one for one in todo if (one.config.episodes is None) is by_steps] for by_steps in (False, True)]
     items = [(one.path, recipe) for recipe, group in zip(chosen, runs) for one in group]
     driven: list[Driven | None] = [None]
-    if all(train(batch, crew) for batch in batches if batch):
+    if not todo or train(todo, crew):
         print(f"playing {len(items)} runs", file=sys.stderr)
         driven = crew.each(environments.drive_one, items, crew.jobs)
     played = [one for one in driven if one is not None]

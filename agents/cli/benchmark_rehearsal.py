@@ -52,6 +52,7 @@ def run(options: argparse.Namespace, train: Train) -> int:
     """Run the command."""
     crew = workers(options)
     chosen = [plans.load(name) for name in options.only or plans.names()]
+    plans.check_names(chosen)
     recipes = {plan.name: recipes_of(plan, options.steps) for plan in chosen}
     check_all([recipe for pair in recipes.values() for recipe in pair.values()], options.seeds)
     plots.figure()  # before much is trained, see that pictures can be drawn
@@ -60,10 +61,8 @@ def run(options: argparse.Namespace, train: Train) -> int:
         for plan, pair in recipes.items()
     }
     todo = [one for pair in runs.values() for group in pair.values() for one in group if not is_done(one)]
-    # a progress bar counts episodes or steps, not both
-    batches = [[one for one in todo if (one.config.episodes is None) is by_steps] for by_steps in (False, True)]
     sections = {}
-    if all(train(batch, crew) for batch in batches if batch):
+    if not todo or train(todo, crew):
         for plan in chosen:
             groups = [Group(title, group) for title, group in runs[plan.name].items()]
             print(f"rehearsing {plan.name}: {PLAIN} and randomised", file=sys.stderr)

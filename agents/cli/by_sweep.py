@@ -46,7 +46,7 @@ def runs_of_sweep(options: argparse.Namespace, path: Path, configure: Configure,
     """
     found = sweeps.combinations(options.sweep)
     configs = [configure(_with(options, values)) for values in found]
-    _try_environments(configs)
+    environments.try_all(configs)
     Sweep.begin(path, found)
     runs = []
     for values, config in zip(found, configs):
@@ -71,15 +71,6 @@ def _with(options: argparse.Namespace, values: sweeps.Values) -> argparse.Namesp
         else:
             changed.set.append((name, value))
     return changed
-
-
-def _try_environments(configs: list[RunConfig]) -> None:
-    """An environment says what it cannot take when it is made."""
-    tried: list[Any] = []
-    for config in configs:
-        if config.env_options not in tried:
-            tried.append(config.env_options)
-            environments.make(config).close()
 
 
 def _axis(text: str) -> tuple[str, list[Any]]:

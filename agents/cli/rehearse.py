@@ -19,6 +19,7 @@ from ..rehearsal.report import write_report
 from ..rehearsal.trial import robot_name
 from ..report.group import Group, unique_names
 from ..runs.backends import Workers
+from ..runs.files import make_folder
 from ..runs.plan import EvaluationPlan
 from .options import add_jobs, positive, whole, workers
 
@@ -60,10 +61,14 @@ def run(options: argparse.Namespace) -> int:
     plan = plans.load(options.plan) if options.plan else plans.plan_for(robot_name(config))
     changes = plan.chosen(options.only or ())
     EvaluationPlan().changed(jitter=options.jitter)  # refuses one that cannot be
+    make_folder(options.out)  # before all is played, see that it can be written
     found = with_bar(groups, changes, options.episodes, options.seed, options.jitter, crew)
     if found is None:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130
+    refused = {change.name: None for one in found for change, tried in zip(one.changes, one.tried) if tried.refused}
+    if refused:
+        print(f"not played, for reasons that the report has: {', '.join(refused)}", file=sys.stderr)
     print(write_report({config.env: found}, options.out, options.seed))
     return 0
 

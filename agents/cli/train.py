@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sitl.core.extras import MissingExtra
 
-from .. import algorithms
+from .. import algorithms, environments
 from ..errors import AgentError
 from ..report import curves
 from ..runs import folder as folders
@@ -109,6 +109,8 @@ def _runs(options: argparse.Namespace) -> tuple[Path, list[RunFolder]]:
         if options.out is None and not options.resume:
             path = path.with_name(f"{path.name}-sweep")
         return path, runs_of_sweep(options, path, configure, _open)
+    if options.resume is None or not path.exists():  # a folder of what cannot be trained would only be in the way
+        environments.try_all([config])
     if options.seeds == 1:
         return path, [_open(path, config, options)]
     seeds = range(config.seed, config.seed + options.seeds)

@@ -32,15 +32,20 @@ class Checks:
     """Of one run.
 
     Args:
-        config: of the run. Its episodes are played; where they all start at one place, starts are moved by up to
-            0.1 m and 0.1 rad.
+        config: of the run. Episodes are played as those of its evaluation, which may have other starts and be longer
+            than those that are learnt from; where they all start at one place, starts are moved by up to 0.1 m and
+            0.1 rad.
         figures: its settings; they say how often.
         path: of the best model; what another run left there is removed.
         begun: steps after which the run goes on; 0: it is new.
     """
 
     def __init__(self, config: RunConfig, figures: Settings, path: Path, begun: int) -> None:
-        self._config, self._figures, self._path = config, figures, path
+        plan = config.evaluation
+        self._config = config.with_(
+            max_steps=plan.max_steps or config.max_steps, env_options={**config.env_options, **plan.options}
+        )
+        self._figures, self._path = figures, path
         self._every, self._count = figures.check_every, figures.check_episodes
         self._due = self._next(begun)
         self._best: checkpoint.Score = ()

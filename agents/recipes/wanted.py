@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sitl.core.extras import MissingExtra
 
+from .. import environments
 from ..errors import AgentError
 from ..runs import folder as folders
 from ..runs.folder import RunFolder
@@ -28,7 +29,11 @@ def check_all(recipes: Sequence[Recipe], seeds: int) -> None:
     missing: dict[str, MissingExtra] = {}
     for recipe in recipes:
         try:
-            recipe.config(seeds - 1)
+            config = recipe.config(seeds - 1)
+            try:
+                environments.try_all([config])
+            except AgentError as error:
+                raise AgentError(f"recipe {recipe.name}: {error}") from None
         except MissingExtra as error:
             missing[recipe.name] = error
     if missing:

@@ -54,6 +54,8 @@ class Change:
             for figure, value in _table(where, key, getattr(self, key)).items():
                 if not _is_number(value):
                     raise AgentError(f"{where}: {key}.{figure} = {value!r}; it must be a number")
+        for figure in {*self.scale} & {*self.set}:
+            raise AgentError(f"{where}: figure {figure!r} is both scaled and set; give one of them")
         if self.latency is not None and not (_is_number(self.latency) and self.latency >= 0.0):
             raise AgentError(f"{where}: latency = {self.latency!r}; it must be a number from 0 on [s]")
         if not _is_number(self.stretch) or not 0.1 <= self.stretch <= 10.0:

@@ -56,10 +56,14 @@ class Plan:
         """The changes with these names, or of these groups; none given: those that are tried by default.
 
         Raises:
-            AgentError: nothing is called so.
+            AgentError: nothing is called so, or none is tried by default.
         """
         if not only:
-            return [change for change in self.changes if change.by_default]
+            usual = [change for change in self.changes if change.by_default]
+            if not usual:
+                named = ", ".join(change.name for change in self.changes)
+                raise AgentError(f"plan {self.name} has no change that is tried by default; name some of {named}")
+            return usual
         for wanted in only:
             if not any(wanted in (change.name, change.group) for change in self.changes):
                 names = [change.name for change in self.changes]
@@ -102,6 +106,18 @@ def load(name: str | Path) -> Plan:
             raise AgentError(f"plan {name!r} is not known; it is a .toml file or one of {', '.join(names())}")
         return _read(_FOLDER / f"{name}.toml")
     return _read(Path(name))
+
+
+def check_names(plans: Sequence[Plan]) -> None:
+    """See that no two plans have the same name.
+
+    Raises:
+        AgentError: two have.
+    """
+    names = [plan.name for plan in plans]
+    for name in names:
+        if names.count(name) > 1:
+            raise AgentError(f"there are two plans {name!r}; each needs a folder of its own")
 
 
 def plan_for(robot: str) -> Plan:

@@ -13,6 +13,7 @@ from envs.randomisation import DRAWS
 
 from ..report import plots
 from ..report.document import Document
+from ..runs.files import make_folder
 from .change import GROUPS
 from .rehearse import Rehearsed, Tried
 from .share import Share, mean_of
@@ -41,7 +42,7 @@ def write_report(sections: Mapping[str, Sequence[Rehearsed]], folder: Path, seed
         AgentError: a file cannot be written.
         MissingExtra: matplotlib is not installed.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     document = Document("Mental rehearsal")
     document.paragraph(
         "What was learnt in one simulation, at home, plays in others that it has not seen. The share is the mean "
@@ -91,7 +92,7 @@ def _about(one: Rehearsed) -> list[str]:
 
 
 def _table(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
-    head = ["change", "of"]
+    head = ["change", "group"]
     for one in rehearsed:
         label = f"{one.name}: " if len(rehearsed) > 1 else ""
         head += [f"{label}reward", f"{label}share", f"{label}crashes"]
@@ -145,6 +146,9 @@ def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
             f"At home, too, {' and '.join(weak)} crashed in more than {100 * WEAK:.0f} % of the episodes: what is not "
             "learnt cannot transfer, and such shares say little (they may be above 100 %)."
         )
+    poor = [one.name for one in rehearsed if one.home.mean <= 0.0]
+    if poor:
+        out.append(f"At home {' and '.join(poor)} earned nothing (a mean reward of 0 or less): no share, written as -.")
     if any(len(one.runs) == 1 for one in rehearsed):
         out.append(
             "Where there is one seed the intervals do not hold the luck of training: another seed of the same run may "

@@ -11,14 +11,14 @@ from ..report.sections import write_csv
 from .rehearse import Rehearsed, Tried
 
 CHANGES = (
-    "of", "run", "change", "group", "mean_reward", "share", "low", "high", "crash_share", "false_alarm_share",
+    "section", "run", "change", "group", "mean_reward", "share", "low", "high", "crash_share", "false_alarm_share",
     "above_first", "above_first_low", "above_first_high", "seen", "refused",
 )  # fmt: skip
-EPISODES = ("of", "run", "run_seed", "change", "seed", "episode", "reward", "crashed", "false_alarm")
+EPISODES = ("section", "run", "run_seed", "change", "seed", "episode", "reward", "crashed", "false_alarm")
 
 
 def write_changes(path: Path, sections: Mapping[str, Sequence[Rehearsed]]) -> None:
-    """A row for each run and change, and one for each run at home.
+    """A row for each run and change, and one for each run at home. The first run is not held against itself.
 
     Raises:
         AgentError: it cannot be written.
@@ -27,7 +27,7 @@ def write_changes(path: Path, sections: Mapping[str, Sequence[Rehearsed]]) -> No
     for title, rehearsed in sections.items():
         for one in rehearsed:
             rows.append((title, one.name, "home", "", one.home.mean, 1.0, 1.0, 1.0, *_parts(one.home), *4 * [""], ""))
-            advantages = one.advantages(rehearsed[0])
+            advantages = [None] * len(one.changes) if one is rehearsed[0] else one.advantages(rehearsed[0])
             for change, tried, share, above in zip(one.changes, one.tried, one.shares(), advantages):
                 figures: Sequence[Any] = ("",) * 6 if share is None else (tried.mean, *share, *_parts(tried))
                 last = (*(above or ("", "", "")), int(tried.seen), tried.refused)

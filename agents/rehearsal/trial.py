@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import envs
 from envs.robots.turtlebot import Turtlebot
 from sitl.core.extras import MissingExtra
-from sitl.option_error import OptionError
+from sitl.option_error import OptionError, VehicleError
 
 from .. import algorithms, environments
 from ..errors import AgentError
-from ..evaluate import Played, evaluate, moved_starts
+from ..evaluate import Interrupted, Played, evaluate, moved_starts, until_stopped
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
 from ..runs.local import Stopped, Tell
@@ -24,7 +23,7 @@ from .truth import is_false_alarm
 
 JITTER = 0.1
 """[m, rad]"""
-_REFUSALS = (OptionError, envs.EnvOptionError, envs.NotReadyError, envs.LinkLostError, MissingExtra)
+_REFUSALS = (OptionError, VehicleError, MissingExtra)
 
 
 @dataclass(frozen=True)
@@ -56,10 +55,6 @@ class Result:
     """Whether the training's randomisation covers the change."""
     refused: str = ""
     """Why it was not played; "" when it was."""
-
-
-class _Stop(Exception):
-    """Ends a trial between two episodes."""
 
 
 def home_options(config: RunConfig) -> dict[str, Any]:
@@ -103,7 +98,7 @@ def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
     config = run.config.with_(max_steps=run.config.evaluation.max_steps or run.config.max_steps)
     try:
         return _play(run, config, trial, tell, stopped)
-    except _Stop:
+    except Interrupted:
         return None
     except _REFUSALS as error:
         if trial.change is None:
@@ -117,12 +112,11 @@ def _play(run: RunFolder, config: RunConfig, trial: Trial, tell: Tell, stopped: 
     env = environments.make(config, **options)
 
     false_alarms: list[bool] = []
+    go_on = until_stopped(tell, stopped)
 
     def watch(played: Played) -> None:
         false_alarms.append(played.crashed and is_false_alarm(env))
-        tell(1)
-        if stopped():
-            raise _Stop
+        go_on(played)
 
     try:
         jitter = jitter_of(config, _robot(env)) if trial.jitter is None else trial.jitter

@@ -11,6 +11,7 @@ from ..errors import AgentError
 from ..evaluate import Evaluation
 from ..evaluations import evaluate_groups
 from ..runs.backends import Workers
+from ..runs.files import make_folder
 from ..runs.plan import EvaluationPlan
 from .document import Document
 from .group import Group
@@ -50,10 +51,7 @@ def compare(
         raise AgentError(
             f"rewards of {' and '.join(sorted(environments))} cannot be compared; give runs of one of them"
         )
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise AgentError(f"{folder} cannot be made: {error.strerror}") from None
+    make_folder(folder)
     block = block_of(groups, block)
     document = Document("Comparison of runs")
     document.table(

@@ -16,7 +16,7 @@ from sitl.worlds import World
 from sitl.worlds.frames import from_ned
 
 from .. import algorithms, environments
-from ..evaluate import Evaluation, evaluate, moved_starts
+from ..evaluate import Evaluation, Played, evaluate, moved_starts
 from ..runs.folder import RunFolder
 from ..runs.plan import EvaluationPlan
 
@@ -102,12 +102,13 @@ def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
     return true
 
 
-def drive(path: Path, plan: EvaluationPlan) -> Driven:
+def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = lambda played: None) -> Driven:
     """Play what the run in a folder has learnt.
 
     Args:
         path: of the folder.
         plan: how.
+        watch: called after each episode.
 
     Raises:
         AgentError: it has learnt nothing yet, or the plan's environment is another kind.
@@ -118,7 +119,7 @@ def drive(path: Path, plan: EvaluationPlan) -> Driven:
     try:
         poses = moved_starts(env, plan.episodes, 0, plan.jitter) if plan.jitter > 0.0 else None
         noted = Trails(env, DRAWN)
-        found = evaluate(noted, algorithms.policy_of(run), plan.episodes, poses=poses)
+        found = evaluate(noted, algorithms.policy_of(run), plan.episodes, poses=poses, watch=watch)
         return Driven(found, noted.trails, _facts(env, {**config.env_options, **plan.options}))
     finally:
         env.close()

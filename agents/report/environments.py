@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..evaluate import Interrupted, until_stopped
 from ..recipes import Recipe, names
 from ..runs.local import Stopped, Tell
 from . import curves
@@ -50,10 +51,13 @@ class Dish:
         return [run.config.seed for run in self.group.runs]
 
 
-def drive_one(item: Item, tell: Tell, stopped: Stopped) -> Driven:
-    """Play what one run has learnt, as its recipe says; a ``Work``."""
+def drive_one(item: Item, tell: Tell, stopped: Stopped) -> Driven | None:
+    """Play what one run has learnt, as its recipe says; a ``Work``. Tells 1 after each episode; None when stopped."""
     path, recipe = item
-    return drive(path, recipe.evaluation)
+    try:
+        return drive(path, recipe.evaluation, until_stopped(tell, stopped))
+    except Interrupted:
+        return None
 
 
 def write_report(dishes: Sequence[Dish], folder: Path) -> Path:

@@ -16,6 +16,18 @@ import numpy.typing as npt
 from ..errors import AgentError
 
 
+def make_folder(path: Path) -> None:
+    """Make a folder, and those above it, where it is not there yet.
+
+    Raises:
+        AgentError: it cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise AgentError(f"{path} cannot be made: {error.strerror}") from None
+
+
 def write_bytes(path: Path, content: bytes) -> None:
     """Replace a file by this content.
 

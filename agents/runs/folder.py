@@ -13,6 +13,7 @@ from pathlib import Path
 from ..errors import AgentError
 from .config import RunConfig
 from .episodes import EpisodeLog
+from .files import make_folder
 
 CONFIG = "config.json"
 
@@ -37,15 +38,16 @@ class RunFolder:
         """Make the folder of a new run.
 
         Raises:
-            AgentError: there is one already, or it cannot be made.
+            AgentError: there is one already, there are runs below it or one above, or it cannot be made.
         """
         folder = Path(path)
         if (folder / CONFIG).exists():
             raise AgentError(f"{folder} is a run already; --resume goes on with it, another folder begins anew")
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise AgentError(f"{folder} cannot be made: {error.strerror}") from None
+        if is_run(folder.parent):
+            raise AgentError(f"{folder.parent} is a run already, which holds no others; choose another folder")
+        if any(any(folder.glob(f"{below}/{CONFIG}")) for below in ("*", "*/*")):
+            raise AgentError(f"{folder} is a folder of runs; choose another one for this run")
+        make_folder(folder)
         config.save(folder / CONFIG)
         return cls(folder)
 
@@ -95,9 +97,9 @@ def common(runs: Iterable[RunFolder]) -> RunConfig:
     Raises:
         AgentError: they differ in more than the seed.
     """
-    first, *others = [run.config for run in runs]
+    first, *others = runs
     for other in others:
-        different = [name for name in first.differences(other) if name != "seed"]
+        different = [name for name in first.config.differences(other.config) if name != "seed"]
         if different:
-            raise AgentError(f"these runs are not one group: they differ in {', '.join(different)}")
-    return first
+            raise AgentError(f"{first.path} and {other.path} are not one group: they differ in {', '.join(different)}")
+    return first.config

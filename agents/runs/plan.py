@@ -17,7 +17,7 @@ MOST_JITTER = 1.0
 
 @dataclass(frozen=True)
 class EvaluationPlan:
-    """Part of what a run is; nothing of its training depends on it.
+    """Part of what a run is. Nothing that is learnt depends on it, but which network is kept as the best does.
 
     Raises:
         AgentError: a figure that cannot be.

@@ -15,7 +15,7 @@ from typing import Any
 
 from ..errors import AgentError
 from . import folder as folders
-from .files import write_json
+from .files import make_folder, write_json
 from .folder import RunFolder
 
 FILE = "sweep.json"
@@ -97,10 +97,9 @@ class Sweep:
         """
         if folders.is_run(path):
             raise AgentError(f"{path} is a run; choose another --out for a sweep")
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise AgentError(f"{path} cannot be made: {error.strerror}") from None
+        if any(path.glob(f"*/{folders.CONFIG}")):
+            raise AgentError(f"{path} is a folder of runs; choose another --out for a sweep")
+        make_folder(path)
         sweep = cls(path, {folder_name(values): values for values in found})
         if (path / FILE).exists():
             before = cls.load(path)

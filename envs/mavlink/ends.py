@@ -7,6 +7,8 @@ import contextlib
 import select
 import socket
 
+from sitl.option_error import VehicleError
+
 from ..options import EnvOptionError
 
 FORMS = (
@@ -16,11 +18,11 @@ FORMS = (
 _BUFFER = 1 << 21
 
 
-class LinkLostError(ConnectionError):
+class LinkLostError(VehicleError, ConnectionError):
     """No vehicle there, or no longer; the message names the connection."""
 
 
-class NotReadyError(RuntimeError):
+class NotReadyError(VehicleError, RuntimeError):
     """A vehicle that does not become ready for an episode; the message says what it told."""
 
 

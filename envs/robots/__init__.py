@@ -10,7 +10,7 @@ from typing import Any
 
 from sitl.worlds import World
 
-from ..options import EnvOptionError, unknown
+from ..options import COMMON, EnvOptionError, unknown
 from .robot import Robot
 
 ROBOTS = {
@@ -49,5 +49,6 @@ def load(robot: str | Callable[..., Robot], world: World, count: int, options: M
     if not any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
         for option in options:
             if option not in parameters:
-                raise unknown("option", option, [p for p in parameters if p not in ("world", "count")])
+                own = [p for p in parameters if p not in ("world", "count")]
+                raise unknown("option", option, [*own, *COMMON])
     return made(world=world, count=count, **options)

@@ -18,8 +18,9 @@ from agents.errors import AgentError
 from agents.recipes.recipe import Recipe
 from agents.recipes.wanted import check_all, runs_of
 from agents.report.driven import Trails, place_of
-from agents.report.environments import with_range
+from agents.report.environments import drive_one, with_range
 from agents.runs.plan import EvaluationPlan
+from agents.runs.training import train_one
 from sitl.core.extras import MissingExtra
 
 pytest.importorskip("matplotlib")
@@ -94,6 +95,21 @@ def test_what_is_not_installed_is_told_before_anything_is_trained(tmp_path, monk
         bench("--only", "round", deep, "--out", tmp_path / "out")
     assert not (tmp_path / "out").exists()
     check_all([small()], 1)
+
+
+@pytest.mark.parametrize(
+    "fields", [{"options": {"world": "moon"}}, {"evaluation": EvaluationPlan(options={"world": "moon"})}]
+)
+def test_environments_that_cannot_be_are_told_before_anything_is_trained(fields):
+    with pytest.raises(AgentError, match=r"recipe small: .*world 'moon' is not known"):
+        check_all([Recipe("small", CIRCUIT2, "qlearn", **fields)], 1)
+
+
+def test_playing_ends_after_an_episode_when_it_is_interrupted(tmp_path):
+    run, told = runs_of(tmp_path, small(), 1)[0], []
+    train_one(run.path, lambda rows: None, lambda: False)
+    assert drive_one((run.path, small()), told.append, lambda: len(told) == 2) is None and told == [1, 1]
+    assert len(drive_one((run.path, small()), told.append, lambda: False).evaluation.episodes) == 3
 
 
 def test_recipes_of_one_name_are_refused():

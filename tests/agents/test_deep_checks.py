@@ -18,6 +18,7 @@ from agents.deep.settings import settings_of
 from agents.errors import AgentError
 from agents.evaluate import evaluate, moved_starts
 from agents.runs.folder import RunFolder
+from agents.runs.plan import EvaluationPlan
 
 
 def checks_of(run, begun=0, path=None):
@@ -87,3 +88,13 @@ def test_a_new_run_forgets_the_best_of_another(tmp_path):
     with pytest.raises(AgentError, match="is no model"):
         checks_of(run, 1)
     assert checks_of(RunFolder(run.path))._best == () and not (run.path / BEST).exists()
+
+
+def test_they_play_as_the_run_is_evaluated(tmp_path):
+    run = new(tmp_path / "run", evaluation=EvaluationPlan(max_steps=7, options={"start": "turned"}))
+    checks = checks_of(run)
+    env = checks._made()
+    checks._begun(env)
+    headings = env.unwrapped.robot.pose[:, 3]
+    assert env.unwrapped.max_episode_steps == 7 and len(set(headings.tolist())) == len(headings) > 1
+    checks.close()

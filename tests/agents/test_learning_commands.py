@@ -80,6 +80,21 @@ def test_mistakes_are_told(sitl):
         assert code == 2 and message in error, (words, error)
 
 
+def test_what_cannot_be_trained_or_played_leaves_no_folder(sitl, tmp_path):
+    assert "did you mean 'world'" in sitl("train", CIRCUIT2, "--option", "wrld=maze", "--out", "one", *SHORT)[2]
+    (tmp_path / "far.toml").write_text(
+        f'env = "{CIRCUIT2}"\nalgorithm = "qlearn"\n[evaluation]\noptions = {{ world = "moon" }}\n'
+    )
+    assert "world 'moon' is not known" in sitl("train", "--recipe", "far.toml", "--out", "two", *SHORT)[2]
+    assert not (tmp_path / "one").exists() and not (tmp_path / "two").exists()
+
+
+def test_a_start_in_a_wall_is_a_users_mistake(sitl):
+    sitl("train", CIRCUIT2, "--out", "one", *SHORT)
+    code, _, error = sitl("evaluate", "one", "--jitter", 1, "--episodes", 20)
+    assert code == 2 and "in world 'circuit2' is inside of" in error
+
+
 def test_evaluate_plays(sitl):
     assert sitl("train", CIRCUIT2, "--out", "run", *SHORT)[0] == 0
     code, out, _ = sitl("evaluate", "run", "--episodes", 3, "--jitter", 0.1)

@@ -18,7 +18,8 @@ from agents.errors import AgentError
 from agents.rehearsal import training
 from agents.rehearsal.change import Change, is_covered
 from agents.rehearsal.plan import Plan
-from agents.rehearsal.rehearse import rehearse, trials_of
+from agents.rehearsal.rehearse import Rehearsed, Tried, rehearse, trials_of
+from agents.rehearsal.report import write_report
 from agents.rehearsal.share import advantage, share
 from agents.rehearsal.trial import Trial, attempt
 from agents.rehearsal.truth import is_false_alarm, lidar_distance
@@ -188,6 +189,22 @@ def test_the_command_reports_runs_side_by_side(sitl, group, tmp_path):
     assert code == 2 and "no change 'nose'" in error
 
 
+def test_where_the_report_goes_is_seen_to_before_anything_is_played(sitl, group, tmp_path, monkeypatch):
+    (tmp_path / "plan.toml").write_text(PLAN)
+    monkeypatch.setattr("agents.cli.rehearse.with_bar", lambda *arguments: pytest.fail("it was played"))
+    words = ("rehearse", group.runs[0].path, "--plan", "plan.toml", "--out", "plan.toml")
+    assert sitl(*words) == (2, "plan.toml cannot be made: File exists")
+
+
+def test_a_home_without_reward_is_told(group, tmp_path):
+    pytest.importorskip("matplotlib")
+    nothing = Tried(np.full((2, 3), -200.0), np.ones((2, 3)), np.zeros((2, 3)))
+    found = Rehearsed("lost", group.runs, nothing, CHANGES[:1], [nothing])
+    text = write_report({"a": [found]}, tmp_path / "new").read_text()
+    assert "lost earned nothing (a mean reward of 0 or less): no share" in text
+    assert "| slow | vehicle | -200 | - | 6 of 6 |" in text
+
+
 def test_the_benchmark_trains_plain_and_randomised_and_goes_on(sitl, tmp_path):
     pytest.importorskip("matplotlib")
     (tmp_path / "tiny.toml").write_text(RECIPE)
@@ -204,7 +221,10 @@ def test_the_benchmark_trains_plain_and_randomised_and_goes_on(sitl, tmp_path):
     text = (tmp_path / "report" / "report.md").read_text()
     assert "| wheel_radius_left, latency |" in text and "randomised - plain |" in text and "one seed" in text
     rows = list(csv.DictReader((tmp_path / "report" / "rehearsal.csv").open()))
-    assert [row["above_first"] for row in rows if row["run"] == "plain" and row["group"]] in (2 * ["0.0"], 2 * ["nan"])
+    above = {row["run"]: row["above_first"] for row in rows if row["change"] == "late"}
+    assert above["plain"] == "" != above["randomised"]
+    code, error = sitl(*words[:4], "plan.toml", *words[4:])
+    assert code == 2 and "there are two plans 'plan'" in error
 
 
 def test_recipes_of_a_plan(tmp_path):

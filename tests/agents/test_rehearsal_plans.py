@@ -82,6 +82,7 @@ def test_a_stretched_world_is_larger_and_as_high():
         ({"latency": -1}, "latency = -1; it must be a number from 0 on"),
         ({"set": {"range_noise": "much"}}, "set.range_noise = 'much'; it must be a number"),
         ({"scale": 1.1}, "scale = 1.1; it must be a table"),
+        ({"scale": {"mass": 1.1}, "set": {"mass": 2.0}}, "figure 'mass' is both scaled and set"),
         ({"stretch": 0}, "stretch = 0; it must be a number from 0.1"),
         ({"mirror": 1}, "mirror = 1; it must be true or false"),
         ({"episodes": 0}, "episodes = 0"),
@@ -138,3 +139,7 @@ def test_changes_are_chosen_by_name_or_group():
     assert {one.group for one in plan.chosen(["latency"])} == {"latency"}
     with pytest.raises(AgentError, match="did you mean 'mass"):
         plan.chosen(["mass + 20 %"])
+    slow = plans.Plan("slow", (change(name="bullet", by_default=False),))
+    assert [one.name for one in slow.chosen(["bullet"])] == ["bullet"]
+    with pytest.raises(AgentError, match="no change that is tried by default; name some of bullet"):
+        slow.chosen()

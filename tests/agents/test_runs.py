@@ -175,8 +175,12 @@ def test_folders_and_groups(tmp_path):
     assert folders.common(folders.find(tmp_path / "group")).seed == 2
     with pytest.raises(AgentError, match="is a run already"):
         new(tmp_path / "group" / "seed-2")
+    with pytest.raises(AgentError, match="group is a folder of runs"):
+        new(tmp_path / "group")
+    with pytest.raises(AgentError, match="seed-2 is a run already, which holds no others"):
+        new(tmp_path / "group" / "seed-2" / "seed-0")
     new(tmp_path / "group" / "other", "sarsa")
-    with pytest.raises(AgentError, match="differ in algorithm, settings"):
+    with pytest.raises(AgentError, match=r"seed-2 and .*x are not one group: they differ in algorithm, settings"):
         folders.common(
             [RunFolder(tmp_path / "group" / "seed-2"), new(tmp_path / "x", settings={"alpha": 0.1}, algorithm="sarsa")]
         )

@@ -112,3 +112,11 @@ def test_bad_sweeps_are_refused_before_anything_is_made(train, tmp_path):
         assert code == 2 and message in error, (words, error)
     assert not (tmp_path / "s").exists()
     assert "as it is" in train("--resume", "s", "--sweep", "alpha=0.1")[2]
+
+
+def test_a_sweep_does_not_mix_with_other_runs(train, tmp_path):
+    train(CIRCUIT2, "--out", "group", "--seeds", 2, *SHORT)
+    assert "group is a folder of runs" in train(CIRCUIT2, "--out", "group", *SHORT, "--sweep", "gamma=0.5,0.9")[2]
+    train(CIRCUIT2, "--out", "s", *SHORT, "--sweep", "gamma=0.5,0.9", "--seeds", 2)
+    assert "s is a folder of runs" in train(CIRCUIT2, "--out", "s", *SHORT)[2]
+    assert {path.name for path in (tmp_path / "group").iterdir()} == {"seed-0", "seed-1", "curve.png"}

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 
 import gymnasium as gym
@@ -14,7 +15,9 @@ from pytest import approx
 
 from envs import EnvOptionError
 from envs.actions import Continuous, Discrete
+from envs.navigate import Navigate
 from envs.observations import Digits
+from envs.options import COMMON
 from envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
 from envs.setpoints import DRIVE, VELOCITY
 from envs.tasks import ReachGoal, Task
@@ -276,7 +279,8 @@ def test_numpy_integers_are_actions():
         ({"randomise": {"range_nois": (0, 1)}}, r"figure 'range_nois' .* did you mean 'range_noise'"),
         ({"randomise": {"range_noise": (0.2, 0.1)}}, r"range_noise = \(0.2, 0.1\); it must be low <= high within 0"),
         ({"randomise": {"range_noise": 0.1}}, r"range_noise = 0.1; it must be \(low, high\) or a function"),
-        ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics; did you mean 'lidar'"),
+        ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics, .*did you mean 'lidar'"),
+        ({"wrld": "maze"}, r"option 'wrld' .*did you mean 'world'"),
         ({"render_mode": "ascii"}, r"render_mode 'ascii' is not known"),
     ],
 )
@@ -284,6 +288,11 @@ def test_numpy_integers_are_actions():
 def test_wrong_options_are_named_with_what_is_allowed(options, message):
     with pytest.raises(EnvOptionError, match=message):
         gym.make(NAVIGATE, **options)
+
+
+def test_the_options_that_messages_list_are_those_that_there_are():
+    taken = inspect.signature(Navigate).parameters
+    assert set(COMMON) == {name for name in taken if name != "robot_options"}
 
 
 @pytest.mark.parametrize(
