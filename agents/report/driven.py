@@ -40,13 +40,37 @@ class Facts:
 
 
 @dataclass(frozen=True)
+class Whereabouts:
+    """Of an episode: without them one that shuttles in a corner, or has left for open ground, looks like any other
+    that does not crash."""
+
+    farthest_m: float
+    """Greatest distance from its start [m]."""
+    left: bool
+    """It ended outside of the rectangle that the walls of the world lie in."""
+
+
+@dataclass(frozen=True)
 class Driven:
     """An evaluation."""
 
     evaluation: Evaluation
     trails: tuple[Floats, ...]
     """x, y of the first episodes after each step [m], each of shape (steps + 1, 2)."""
+    whereabouts: tuple[Whereabouts, ...]
+    """Of all episodes."""
     facts: Facts
+
+    @property
+    def left(self) -> int:
+        """Episodes that ended outside of the world's walls, without a crash."""
+        pairs = zip(self.whereabouts, self.evaluation.episodes)
+        return sum(where.left and not played.crashed for where, played in pairs)
+
+    @property
+    def farthest_m(self) -> float:
+        """Greatest distance from the start [m], median of the episodes."""
+        return float(np.median([where.farthest_m for where in self.whereabouts]))
 
 
 class Trails(gym.Wrapper[Any, Any, Any, Any]):
@@ -54,34 +78,42 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
 
     Args:
         env: of one robot.
-        count: episodes that are noted.
     """
 
-    def __init__(self, env: gym.Env[Any, Any], count: int) -> None:
+    def __init__(self, env: gym.Env[Any, Any]) -> None:
         super().__init__(env)
-        self._left = count
         self._noted: list[list[tuple[float, float]]] = []
         self._where = place_of(env)
 
     def reset(self, **arguments: Any) -> Any:
         """See ``gymnasium.Env``."""
         found = self.env.reset(**arguments)
-        self._left -= 1
-        if self._left >= 0:
-            self._noted.append([self._where()])
+        self._noted.append([self._where()])
         return found
 
     def step(self, action: Any) -> Any:
         """See ``gymnasium.Env``."""
         found = self.env.step(action)
-        if self._left >= 0:
-            self._noted[-1].append(self._where())
+        self._noted[-1].append(self._where())
         return found
 
     @property
     def trails(self) -> tuple[Floats, ...]:
-        """See ``Driven``."""
+        """x, y after each step [m], of each episode."""
         return tuple(np.array(points) for points in self._noted)
+
+
+def whereabouts(trail: Floats, world: World) -> Whereabouts:
+    """Of an episode.
+
+    Args:
+        trail: x, y [m], shape (n, 2).
+        world: that it was in.
+    """
+    x0, y0, x1, y1 = world.bounds
+    x, y = trail[-1].tolist()
+    farthest = float(np.hypot(*(trail - trail[0]).T).max())
+    return Whereabouts(farthest, not (x0 <= x <= x1 and y0 <= y <= y1))
 
 
 def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
@@ -118,9 +150,11 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
     env = environments.make(config, **plan.options)
     try:
         poses = moved_starts(env, plan.episodes, 0, plan.jitter) if plan.jitter > 0.0 else None
-        noted = Trails(env, DRAWN)
+        noted = Trails(env)
         found = evaluate(noted, algorithms.policy_of(run), plan.episodes, poses=poses, watch=watch)
-        return Driven(found, noted.trails, _facts(env, {**config.env_options, **plan.options}))
+        facts = _facts(env, {**config.env_options, **plan.options})
+        trails = noted.trails
+        return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, facts.world) for trail in trails), facts)
     finally:
         env.close()
 

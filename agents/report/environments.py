@@ -101,12 +101,21 @@ def _played(document: Document, dishes: Sequence[Dish]) -> None:
                 laps,
                 with_range([one.mean_simulated_s / 60.0 for one in found], ".1f"),
                 f"{_limit_s(dish) / 60.0:.1f}",
+                with_range([driven.farthest_m for driven in dish.driven], ".0f"),
+                with_range([driven.left for driven in dish.driven], ".3g"),
                 with_range([one.mean_reward for one in found], ",.0f"),
             ]
         )
-    head = ["", "starts", "episodes without a crash", "laps an episode", "minutes an episode", "at most", "mean reward"]
+    head = [
+        "", "starts", "episodes without a crash", "laps an episode", "minutes an episode", "at most", "farthest [m]",
+        "left the world", "mean reward",
+    ]  # fmt: skip
     document.table(head, rows)
-    document.paragraph("Minutes are of simulated time, until a crash or the last step.")
+    document.paragraph(
+        "Minutes are of simulated time, until a crash or the last step. Farthest: the greatest distance from the start "
+        "in an episode, median of the episodes. Left the world: episodes that ended, without a crash, outside of the "
+        "rectangle that its walls lie in, by an exit or a window."
+    )
 
 
 def _trained(document: Document, dishes: Sequence[Dish]) -> None:
@@ -166,7 +175,8 @@ def _pictures(document: Document, dish: Dish, folder: Path) -> None:
 
 _HEAD = (
     "recipe", "seed", "environment", "algorithm", "episodes", "steps", "simulated_s", "wall_s", "times_real_time",
-    "paper_wall_s", "played", "without_crash", "laps", "minutes", "at_most_minutes", "mean_reward",
+    "paper_wall_s", "played", "without_crash", "laps", "minutes", "at_most_minutes", "farthest_m", "left",
+    "mean_reward",
 )  # fmt: skip
 
 
@@ -181,7 +191,8 @@ def _rows(dish: Dish) -> list[list[object]]:
                 dish.recipe.name, seed, dish.recipe.env, dish.recipe.algorithm, episodes, steps,
                 round(float(simulated), 1), round(float(wall), 2), round(float(simulated / wall), 1),
                 round(float(simulated) / dish.paper_speed, 1), count, round(count * (1.0 - found.crash_rate)),
-                found.mean_laps, found.mean_simulated_s / 60.0, _limit_s(dish) / 60.0, found.mean_reward,
+                found.mean_laps, found.mean_simulated_s / 60.0, _limit_s(dish) / 60.0, driven.farthest_m, driven.left,
+                found.mean_reward,
             ]
         )  # fmt: skip
     return rows

@@ -17,11 +17,12 @@ from agents.deep import library
 from agents.errors import AgentError
 from agents.recipes.recipe import Recipe
 from agents.recipes.wanted import check_all, runs_of
-from agents.report.driven import Trails, place_of
+from agents.report.driven import Trails, Whereabouts, place_of, whereabouts
 from agents.report.environments import drive_one, with_range
 from agents.runs.plan import EvaluationPlan
 from agents.runs.training import train_one
 from sitl.core.extras import MissingExtra
+from sitl.worlds import load
 
 pytest.importorskip("matplotlib")
 SMALL = f"""
@@ -63,6 +64,8 @@ def test_trains_plays_and_reports(tmp_path, capsys):
     assert [(row["recipe"], row["seed"], row["played"], row["episodes"]) for row in rows] == [
         ("small", "0", "3", "12"), ("small", "1", "3", "12"),
     ]  # fmt: skip
+    assert "left the world" in text and [row["left"] for row in rows] == ["0", "0"]
+    assert 0.5 < float(rows[0]["farthest_m"]) < 15.0
     assert float(rows[0]["paper_wall_s"]) == pytest.approx(float(rows[0]["simulated_s"]) / 60.0, abs=0.1)
 
     logs = [(out / f"runs/small/seed-{seed}/episodes.csv").read_bytes() for seed in (0, 1)]
@@ -117,16 +120,25 @@ def test_recipes_of_one_name_are_refused():
         check_all([recipes.load("round"), recipes.load("round")], 1)
 
 
-def test_trails_are_those_of_the_first_episodes():
+def test_trails_are_those_of_the_episodes():
     env = make(steps=4)
-    noted = Trails(env, 2)
-    for _ in range(3):
+    noted = Trails(env)
+    for _ in range(2):
         noted.reset(seed=1)
         for _ in range(4):
             noted.step(0)
     assert [trail.shape for trail in noted.trails] == [(5, 2), (5, 2)]
     np.testing.assert_array_equal(noted.trails[0], noted.trails[1])
     assert noted.trails[0][-1, 0] - noted.trails[0][0, 0] == pytest.approx(4 * 0.6 * 0.3, rel=0.05)
+
+
+def test_who_shuttles_and_who_leaves_is_known():
+    world = load("circuit2")
+    x0, y0, x1, y1 = world.bounds
+    there_and_back = np.array([(1.0, 1.0), (4.0, 5.0), (1.0, 1.0)])
+    assert whereabouts(there_and_back + (x0, y0), world) == Whereabouts(5.0, False)
+    away = np.array([(x1 - 1.0, y1), (x1 + 2.0, y1)])
+    assert whereabouts(away, world) == Whereabouts(3.0, True)
 
 
 def test_a_trail_is_where_a_vehicle_really_is():
