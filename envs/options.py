@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import Any
 
-from sitl.option_error import OptionError
+from sitl.option_error import OptionError, did_you_mean
 
 COMMON = (
     "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",
@@ -23,6 +22,5 @@ class EnvOptionError(OptionError):
 def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:
     """The error for a name that is not among those known, with the nearest of them."""
     names = list(known)
-    near = get_close_matches(str(value), names, 1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    hint = did_you_mean(str(value), names)
     return EnvOptionError(f"{option} {value!r} is not known; it is one of {', '.join(names)}{hint}")

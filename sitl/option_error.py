@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors of what a user asks for and cannot have, that other packages derive theirs from."""
+"""Errors of what a user asks for and cannot have, that other packages derive theirs from, and what they say."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
 
 
 class OptionError(ValueError):
@@ -10,3 +13,9 @@ class OptionError(ValueError):
 
 class VehicleError(Exception):
     """A vehicle that cannot be reached, or does not do what it must; the message says which, and what it told."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """The end of a message about a name that is not known: "; did you mean ...?" with the nearest, or nothing."""
+    near = get_close_matches(name, list(known), 1)
+    return f"; did you mean {near[0]!r}?" if near else ""

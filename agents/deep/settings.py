@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from difflib import get_close_matches
 from typing import Any
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 
@@ -141,8 +142,7 @@ def settings_of(algorithm: str, given: Mapping[str, Any]) -> Settings:
     known = [field.name for field in fields(kind)]
     for name in given:
         if name not in known:
-            near = get_close_matches(name, known, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
+            hint = did_you_mean(name, known)
             raise AgentError(f"setting {name!r} of {algorithm} is not known; it is one of {', '.join(known)}{hint}")
     return kind(**given)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import json
 import tomllib
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 from ..runs.plan import EvaluationPlan
@@ -49,8 +50,7 @@ def read(path: Path) -> Recipe:
 def _recipe(name: str, values: dict[str, Any]) -> Recipe:
     for key, value in values.items():
         if key not in KEYS:
-            near = get_close_matches(key, KEYS, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
+            hint = did_you_mean(key, KEYS)
             raise AgentError(
                 f"key {key!r} is not known; it is one of {', '.join(KEYS)}{hint} (settings of the algorithm stand "
                 "under [settings], options of the environment under [options])"

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 from .recipe import Recipe
@@ -28,7 +29,6 @@ def load(name: str | Path) -> Recipe:
         return read(Path(name))
     known = names()
     if name not in known:
-        near = get_close_matches(name, known, 1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
+        hint = did_you_mean(name, known)
         raise AgentError(f"recipe {name!r} is not known; it is a .toml file or one of {', '.join(known)}{hint}")
     return read(_FOLDER / f"{name}.toml")

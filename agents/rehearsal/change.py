@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
 from typing import Any
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 from .worlds import altered
@@ -88,8 +89,7 @@ class Change:
         known = [item.name for item in fields(cls)]
         for key in values:
             if key not in known:
-                near = get_close_matches(key, known, 1)
-                hint = f"; did you mean {near[0]!r}?" if near else ""
+                hint = did_you_mean(key, known)
                 title = f"change {values.get('name', '')!r}"
                 raise AgentError(f"{title}: key {key!r} is not known; it is one of {', '.join(known)}{hint}")
         for key in ("name", "group"):
@@ -144,8 +144,7 @@ def usual(robot: Any, figure: str) -> float:
         AgentError: it has none.
     """
     if figure not in robot.figures:
-        near = get_close_matches(figure, list(robot.figures), 1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
+        hint = did_you_mean(figure, robot.figures)
         raise AgentError(f"robot {robot.name!r} has no figure {figure!r}{hint}")
     airframe = getattr(robot, "airframe", None)
     try:

@@ -6,9 +6,10 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 from .change import Change, scaled
@@ -67,8 +68,7 @@ class Plan:
         for wanted in only:
             if not any(wanted in (change.name, change.group) for change in self.changes):
                 names = [change.name for change in self.changes]
-                near = get_close_matches(wanted, names, 1)
-                hint = f"; did you mean {near[0]!r}?" if near else ""
+                hint = did_you_mean(wanted, names)
                 raise AgentError(f"plan {self.name} has no change {wanted!r}; it has {', '.join(names)}{hint}")
         return [change for change in self.changes if change.name in only or change.group in only]
 
@@ -160,8 +160,7 @@ def _read(path: Path) -> Plan:
 def _known(title: str, values: Mapping[str, Any], known: Sequence[str]) -> None:
     for key in values:
         if key not in known:
-            near = get_close_matches(key, known, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
+            hint = did_you_mean(key, known)
             raise AgentError(f"{key!r} is none of {title}{hint}")
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
 from typing import Any
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 
@@ -57,8 +58,7 @@ class EvaluationPlan:
         known = [item.name for item in fields(cls)]
         for name in values:
             if name not in known:
-                near = get_close_matches(name, known, 1)
-                hint = f"; did you mean {near[0]!r}?" if near else ""
+                hint = did_you_mean(name, known)
                 raise AgentError(f"evaluation: key {name!r} is not known; it is one of {', '.join(known)}{hint}")
         return cls(**values)
 

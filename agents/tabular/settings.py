@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from difflib import get_close_matches
 from typing import Any
+
+from sitl.option_error import did_you_mean
 
 from ..errors import AgentError
 
@@ -81,8 +82,7 @@ class Settings:
         known = [field.name for field in fields(cls)]
         for name in figures:
             if name not in known:
-                near = get_close_matches(name, known, 1)
-                hint = f"; did you mean {near[0]!r}?" if near else ""
+                hint = did_you_mean(name, known)
                 raise AgentError(f"setting {name!r} is not known; it is one of {', '.join(known)}{hint}")
         return cls(**figures)
 
