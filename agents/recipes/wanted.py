@@ -48,21 +48,5 @@ def runs_of(out: Path, recipe: Recipe, seeds: int) -> list[RunFolder]:
     Raises:
         AgentError: there are other runs in their place.
     """
-    found = []
-    for seed in range(seeds):
-        config = recipe.config(seed)
-        path = folders.seed_folder(out / "runs" / recipe.name, seed)
-        if not folders.is_run(path):
-            found.append(RunFolder.create(path, config))
-            continue
-        run = RunFolder(path)
-        different = run.config.differences(config)
-        if different:
-            raise AgentError(f"{path} differs from its recipe in {', '.join(different)}; choose another --out")
-        run.extend(_longer(run.config.episodes, config.episodes), _longer(run.config.steps, config.steps))
-        found.append(run)
-    return found
-
-
-def _longer(there: int | None, asked: int | None) -> int | None:
-    return asked if there is None or asked is None else max(there, asked)
+    place = out / "runs" / recipe.name
+    return [RunFolder.ensure(folders.seed_folder(place, seed), recipe.config(seed)) for seed in range(seeds)]

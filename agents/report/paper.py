@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from .. import algorithms
-from ..errors import AgentError
 from ..evaluations import evaluate_groups
 from ..runs import folder as folders
 from ..runs.backends import Workers
@@ -84,17 +83,7 @@ def runs_of(
                 *(f"{k}-{v}" for k, v in (options or {}).items()),
             ]
         )
-        path = folders.seed_folder(folder / "runs" / name, seed)
-        if not folders.is_run(path):
-            found.append(RunFolder.create(path, config))
-            continue
-        run = RunFolder(path)
-        different = run.config.differences(config)
-        if different:
-            raise AgentError(f"{path} differs in {', '.join(different)}; choose another --out")
-        if (run.config.episodes or 0) < episodes:
-            run.extend(episodes, None)
-        found.append(run)
+        found.append(RunFolder.ensure(folders.seed_folder(folder / "runs" / name, seed), config))
     return found
 
 

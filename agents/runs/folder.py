@@ -60,10 +60,31 @@ class RunFolder:
         if self.config != config:
             self.config.save(self.path / CONFIG)
 
+    @classmethod
+    def ensure(cls, path: str | Path, config: RunConfig) -> RunFolder:
+        """The run in a folder, made where there is none yet, and at least as long as ``config`` says.
+
+        Raises:
+            AgentError: another run is there, or ``create`` says.
+        """
+        folder = Path(path)
+        if not is_run(folder):
+            return cls.create(folder, config)
+        run = cls(folder)
+        different = run.config.differences(config)
+        if different:
+            raise AgentError(f"{folder} differs in {', '.join(different)}; choose another --out")
+        run.extend(_longer(run.config.episodes, config.episodes), _longer(run.config.steps, config.steps))
+        return run
+
     @property
     def name(self) -> str:
         """Of the folder."""
         return self.path.name
+
+
+def _longer(there: int | None, asked: int | None) -> int | None:
+    return asked if there is None or asked is None else max(there, asked)
 
 
 def is_run(path: Path) -> bool:

@@ -86,7 +86,7 @@ def test_runs_go_on_and_are_never_other_ones(tmp_path):
     longer = Recipe("small", CIRCUIT2, "qlearn", episodes=9, max_steps=60)
     assert runs_of(tmp_path, longer, 1)[0].config.episodes == 9
     assert runs_of(tmp_path, small(), 1)[0].config.episodes == 9
-    with pytest.raises(AgentError, match=r"seed-0 differs from its recipe in settings; choose another --out"):
+    with pytest.raises(AgentError, match=r"seed-0 differs in settings; choose another --out"):
         runs_of(tmp_path, small(settings={"alpha": 0.3}), 1)
 
 

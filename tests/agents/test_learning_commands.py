@@ -3,38 +3,16 @@
 
 from __future__ import annotations
 
-import argparse
 import csv
 
 import pytest
 from small_runs import CHECKS, CIRCUIT2, result
 
-import agents.cli
 from agents.report.paper_figures import MEAN_REWARDS
 from agents.runs import folder as folders
-from sitl import errors
 
 pytest.importorskip("matplotlib")
 SHORT = ["--episodes", "20", "--max-steps", "60", *(w for k, v in CHECKS.items() for w in ("--set", f"{k}={v}"))]
-
-
-@pytest.fixture
-def sitl(monkeypatch, tmp_path, capsys):
-    """Runs a command in an empty folder; gives its code, output and errors, 2 and the message for a user's mistake."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*words):
-        top = argparse.ArgumentParser(prog="sitl")
-        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
-        options = top.parse_args([str(word) for word in words])
-        try:
-            code = options.function(options)
-        except errors.USER_ERRORS as error:
-            return 2, "", str(error)
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run
 
 
 def test_train_writes_a_run_folder(sitl, tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page docs/learning.md: its example runs, its commands are understood, its table names every setting."""
+"""The pages of learning: commands are understood; the example of docs/learning.md runs, its table has every setting."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ import shlex
 from dataclasses import fields
 from pathlib import Path
 
+import pytest
+
 import agents.cli
 from agents.tabular.settings import Settings
 
-PAGE = (Path(__file__).parents[2] / "docs/learning.md").read_text()
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "learning.md").read_text()
 
 
 def test_example_runs(capsys):
@@ -21,13 +24,16 @@ def test_example_runs(capsys):
     assert "states, last reward" in capsys.readouterr().out
 
 
-def test_commands_are_understood():
+@pytest.mark.parametrize(("page", "least"), [("learning", 7), ("mental-rehearsal", 7), ("results", 3)])
+def test_commands_are_understood(page, least):
     top = argparse.ArgumentParser()
     agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
-    lines = re.findall(r"^sitl (.*)$", PAGE, re.MULTILINE)
-    for line in lines:
-        assert callable(top.parse_args(shlex.split(line, comments=True)).function)
-    assert len(lines) >= 7
+    lines = re.findall(r"^sitl (.*)$|`sitl ([^`]*)`", (DOCS / f"{page}.md").read_text(), re.MULTILINE)
+    whole = [line for pair in lines for line in pair if " --" in line]
+    for line in whole:
+        words = shlex.split(line.replace("--seed K", "--seed 0"), comments=True)
+        assert callable(top.parse_args(words).function)
+    assert len(whole) >= least
 
 
 def test_every_setting_is_explained():

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import csv
 import math
 
@@ -12,7 +11,6 @@ import numpy as np
 import pytest
 from small_runs import CIRCUIT2, new
 
-import agents.cli
 from agents import recipes
 from agents.errors import AgentError
 from agents.rehearsal import training
@@ -27,7 +25,6 @@ from agents.report.group import Group
 from agents.runs import folder as folders
 from agents.runs.plan import EvaluationPlan
 from agents.runs.training import train_one
-from sitl import errors
 
 CHANGES = [
     Change("slow", "vehicle", set={"wheel_speed_max": 0.05}),
@@ -76,23 +73,6 @@ def group(tmp_path_factory):
         new(folders.seed_folder(path, seed), seed=seed, evaluation=plan)
         train_one(folders.seed_folder(path, seed), told_nothing, lambda: False)
     return Group.load(path)
-
-
-@pytest.fixture
-def sitl(monkeypatch, tmp_path, capsys):
-    monkeypatch.chdir(tmp_path)
-
-    def run(*words):
-        top = argparse.ArgumentParser(prog="sitl")
-        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
-        options = top.parse_args([str(word) for word in words])
-        try:
-            code = options.function(options)
-        except errors.USER_ERRORS as error:
-            return 2, str(error)
-        return code, capsys.readouterr().out
-
-    return run
 
 
 def test_trials_are_paired_and_repeat(group):
@@ -176,7 +156,7 @@ def test_the_command_reports_runs_side_by_side(sitl, group, tmp_path):
     pytest.importorskip("matplotlib")
     (tmp_path / "plan.toml").write_text(PLAN)
     one, two = group.runs
-    code, out = sitl("rehearse", one.path, two.path, "--plan", "plan.toml", "--episodes", 3, "--out", "report")
+    code, out, _ = sitl("rehearse", one.path, two.path, "--plan", "plan.toml", "--episodes", 3, "--out", "report")
     assert (code, out) == (0, "report/report.md\n")
     text = (tmp_path / "report" / "report.md").read_text()
     assert "seed-0: share" in text and "seed-1: crashes" in text and "of 3 |" in text and "-0 %" not in text
@@ -185,7 +165,7 @@ def test_the_command_reports_runs_side_by_side(sitl, group, tmp_path):
     rows = list(csv.DictReader((tmp_path / "report" / "rehearsal.csv").open()))
     assert [row["change"] for row in rows] == 2 * ["home", "late", "noise"]
     assert len(list(csv.DictReader((tmp_path / "report" / "episodes.csv").open()))) == 2 * 3 * 3
-    code, error = sitl("rehearse", one.path, "--only", "nose")
+    code, _, error = sitl("rehearse", one.path, "--only", "nose")
     assert code == 2 and "no change 'nose'" in error
 
 
@@ -193,7 +173,7 @@ def test_where_the_report_goes_is_seen_to_before_anything_is_played(sitl, group,
     (tmp_path / "plan.toml").write_text(PLAN)
     monkeypatch.setattr("agents.cli.rehearse.with_bar", lambda *arguments: pytest.fail("it was played"))
     words = ("rehearse", group.runs[0].path, "--plan", "plan.toml", "--out", "plan.toml")
-    assert sitl(*words) == (2, "plan.toml cannot be made: File exists")
+    assert sitl(*words) == (2, "", "plan.toml cannot be made: File exists")
 
 
 def test_a_home_without_reward_is_told(group, tmp_path):
@@ -210,7 +190,7 @@ def test_the_benchmark_trains_plain_and_randomised_and_goes_on(sitl, tmp_path):
     (tmp_path / "tiny.toml").write_text(RECIPE)
     (tmp_path / "plan.toml").write_text(PLAN.replace("RECIPE", str(tmp_path / "tiny.toml")))
     words = ("benchmark", "rehearsal", "--only", "plan.toml", "--episodes", 2, "--out", "report")
-    assert sitl(*words) == (0, "report/report.md\n")
+    assert sitl(*words)[:2] == (0, "report/report.md\n")
     runs = {path.name: folders.find(path)[0] for path in (tmp_path / "report" / "runs").iterdir()}
     assert set(runs) == {"plan-plain", "plan-randomised"}
     drawn = runs["plan-randomised"].config.env_options["randomise"]
@@ -223,7 +203,7 @@ def test_the_benchmark_trains_plain_and_randomised_and_goes_on(sitl, tmp_path):
     rows = list(csv.DictReader((tmp_path / "report" / "rehearsal.csv").open()))
     above = {row["run"]: row["above_first"] for row in rows if row["change"] == "late"}
     assert above["plain"] == "" != above["randomised"]
-    code, error = sitl(*words[:4], "plan.toml", *words[4:])
+    code, _, error = sitl(*words[:4], "plan.toml", *words[4:])
     assert code == 2 and "there are two plans 'plan'" in error
 
 

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of learning share."""
+
+from __future__ import annotations
+
+import argparse
+
+import pytest
+
+import agents.cli
+from sitl import errors
+
+
+@pytest.fixture
+def sitl(monkeypatch, tmp_path, capsys):
+    """Runs a command in an empty folder; gives its code, output and errors, 2 and the message for a user's mistake."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words):
+        top = argparse.ArgumentParser(prog="sitl")
+        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+        options = top.parse_args([str(word) for word in words])
+        try:
+            code = options.function(options)
+        except errors.USER_ERRORS as error:
+            return 2, "", str(error)
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
