@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import gymnasium as gym
 
 from .errors import AgentError
+from .runs.config import RunConfig
 from .runs.folder import RunFolder
 from .runs.watch import Watch
 
@@ -38,6 +39,9 @@ class Algorithm(Protocol):
 
     def settings(self, algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
         """All settings, the given ones and defaults, checked. Raises AgentError."""
+
+    def check(self, config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
+        """Raises AgentError when a run cannot learn in an environment of these spaces."""
 
     def train(self, folder: RunFolder, watch: Watch) -> None:
         """Train until the run is done or ``watch.stop``; from the model in the folder when there is one."""

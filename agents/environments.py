@@ -12,6 +12,7 @@ import numpy as np
 
 import envs
 
+from . import algorithms
 from .errors import AgentError
 from .runs.config import RunConfig
 
@@ -32,17 +33,23 @@ def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
 
 
 def try_all(configs: Iterable[RunConfig]) -> None:
-    """See that the environments of runs can be made, for training and for their evaluation, before a folder is.
+    """See that the environments of runs can be made and learnt in, for training and for their evaluation, before a
+    folder is.
 
     Raises:
-        AgentError: see ``make``.
+        AgentError: see ``make``, or the algorithm does not learn from such observations or actions.
     """
-    tried: list[tuple[str, Mapping[str, Any]]] = []
+    tried: list[tuple[str, Mapping[str, Any], tuple[gym.Space[Any], gym.Space[Any]]]] = []
     for config in configs:
+        check = algorithms.load(config.algorithm).check
         for options in (config.env_options, {**config.env_options, **config.evaluation.options}):
-            if (config.env, options) not in tried:
-                tried.append((config.env, options))
-                make(config, **options).close()
+            spaces = next((found for *asked, found in tried if asked == [config.env, options]), None)
+            if spaces is None:
+                env = make(config, **options)
+                spaces = (env.observation_space, env.action_space)
+                env.close()
+                tried.append((config.env, options, spaces))
+            check(config, *spaces)
 
 
 def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:

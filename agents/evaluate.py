@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,7 @@ from .errors import AgentError
 from .laps import CENTRES, LapCounter
 from .runs.folder import RunFolder
 from .runs.local import Stopped, Tell
-from .runs.plan import EPISODES
+from .runs.plan import EPISODES, EvaluationPlan
 
 Pose = tuple[float, float, float]
 """x, y [m], yaw [rad]."""
@@ -164,27 +165,38 @@ def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str
     )
 
 
-def evaluate_run(
-    run: RunFolder, episodes: int = EPISODES, seed: int = 0, jitter: float = 0.0, **options: Any
-) -> Evaluation:
-    """Play what a run has learnt in its environment, or in another.
+@contextmanager
+def stage(
+    run: RunFolder, plan: EvaluationPlan, seed: int = 0
+) -> Iterator[tuple[gym.Env[Any, Any], Policy, list[Pose] | None]]:
+    """What an evaluation of a run needs: environment, policy and, where the plan moves them, start poses.
+
+    Raises:
+        AgentError: no model, or an environment that cannot be made.
+    """
+    config = run.config.with_(max_steps=plan.max_steps or run.config.max_steps)
+    env = environments.make(config, **plan.options)
+    try:
+        poses = moved_starts(env, plan.episodes, seed, plan.jitter) if plan.jitter > 0.0 else None
+        yield env, algorithms.policy_of(run), poses
+    finally:
+        env.close()
+
+
+def evaluate_run(run: RunFolder, plan: EvaluationPlan | None = None, seed: int = 0) -> Evaluation:
+    """Play what a run has learnt.
 
     Args:
         run: that has a model.
-        episodes: how many.
+        plan: how; None: as the run says.
         seed: of the evaluation.
-        jitter: start poses are moved by up to so much, in x and y [m] and in yaw [rad].
-        options: of the environment, which replace the run's: ``world="circuit"``.
 
     Raises:
         AgentError: no model, or not of this environment.
     """
-    env = environments.make(run.config, **options)
-    try:
-        poses = moved_starts(env, episodes, seed, jitter) if jitter > 0.0 else None
-        return evaluate(env, algorithms.policy_of(run), episodes, seed, poses)
-    finally:
-        env.close()
+    plan = plan or run.config.evaluation
+    with stage(run, plan, seed) as (env, policy, poses):
+        return evaluate(env, policy, plan.episodes, seed, poses)
 
 
 def moved_starts(

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from . import algorithms, environments
-from .evaluate import Evaluation, Interrupted, evaluate, moved_starts, until_stopped
+from .evaluate import Evaluation, Interrupted, evaluate, stage, until_stopped
 from .runs.backends import Workers
 from .runs.folder import RunFolder
 from .runs.local import Stopped, Tell
@@ -61,18 +60,11 @@ def evaluate_runs(
 
 def play_part(part: Part, tell: Tell, stopped: Stopped) -> Evaluation | None:
     """Play a part; tells 1 after each episode. None when it was stopped."""
-    run, plan = RunFolder(part.run), part.plan
-    config = run.config.with_(max_steps=plan.max_steps or run.config.max_steps)
-
-    env = environments.make(config, **plan.options)
-    try:
-        poses = moved_starts(env, plan.episodes, part.seed, plan.jitter) if plan.jitter > 0.0 else None
-        policy = algorithms.policy_of(run)
-        return evaluate(env, policy, part.count, part.seed, poses, until_stopped(tell, stopped), part.first)
-    except Interrupted:
-        return None
-    finally:
-        env.close()
+    with stage(RunFolder(part.run), part.plan, part.seed) as (env, policy, poses):
+        try:
+            return evaluate(env, policy, part.count, part.seed, poses, until_stopped(tell, stopped), part.first)
+        except Interrupted:
+            return None
 
 
 def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
@@ -82,9 +74,10 @@ def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
 
 
 def evaluate_groups(
-    groups: Sequence[Sequence[RunFolder]], plan: EvaluationPlan, workers: Workers | None = None
+    groups: Sequence[Sequence[RunFolder]], plans: Sequence[EvaluationPlan], workers: Workers | None = None
 ) -> list[list[Evaluation]]:
-    """The same of groups of runs, all at once and in the same way; returns an evaluation for each run of each."""
+    """The same of groups of runs, all at once, with a plan for each group; an evaluation for each run of each."""
     runs = [run for group in groups for run in group]
-    found = iter(evaluate_runs(runs, [plan] * len(runs), workers=workers))
+    each = [plan for group, plan in zip(groups, plans) for _ in group]
+    found = iter(evaluate_runs(runs, each, workers=workers))
     return [[next(found) for _ in group] for group in groups]

@@ -11,6 +11,7 @@ from typing import Any
 import gymnasium as gym
 
 from .. import environments
+from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
 from ..runs.watch import Watch
 from . import checkpoint, models
@@ -22,7 +23,7 @@ from .policy import DeepPolicy
 from .settings import Settings, as_dict, settings_of
 from .tally import Tally
 
-__all__ = ["LENGTH", "LIBRARIES", "policy", "settings", "train"]
+__all__ = ["LENGTH", "LIBRARIES", "check", "policy", "settings", "train"]
 
 LENGTH = {"steps": 1_000_000}
 _PERIOD_S = 20.0
@@ -39,6 +40,12 @@ def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """
     require()
     return as_dict(settings_of(algorithm, given))
+
+
+def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
+    """See ``Algorithm``."""
+    Features(observations, settings_of(config.algorithm, config.settings).sectors)
+    Actions(actions, config.algorithm)
 
 
 def train(folder: RunFolder, watch: Watch) -> None:

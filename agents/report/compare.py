@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from ..errors import AgentError
 from ..evaluate import Evaluation
-from ..evaluations import evaluate_groups
 from ..runs.backends import Workers
 from ..runs.files import make_folder
 from ..runs.plan import EvaluationPlan
@@ -69,10 +69,10 @@ def compare(
     aggregates(document, folder, [group.first(common) for group in groups], block)
     if play:
         document.heading("Played greedily")
-        document.paragraph("What was learnt, without learning and exploring.")
-        found = evaluate_groups([group.runs for group in groups], EvaluationPlan(episodes=play), workers)
-        played = {group.name: {"as trained": evaluations} for group, evaluations in zip(groups, found)}
-        greedy_play(document, folder, played)
+        document.paragraph("What was learnt, without learning and exploring, as `sitl evaluate` plays it.")
+        plans = [group.config.evaluation.changed(episodes=play) for group in groups]
+        document.points(_unlike(groups, plans))
+        found = greedy_play(document, folder, groups, plans, workers)
         every = [evaluation for evaluations in found for evaluation in evaluations]
         same = sum(map(_all_same, every))
         if play > 1 and same:
@@ -112,6 +112,16 @@ def _remarks(groups: Sequence[Group]) -> list[str]:
                 f"first {min(group.lengths)}, which all have."
             )
     return texts
+
+
+def _unlike(groups: Sequence[Group], plans: Sequence[EvaluationPlan]) -> list[str]:
+    """What a reader must know where groups are not evaluated alike."""
+    how = [{**asdict(plan), "max_steps": plan.max_steps or g.config.max_steps} for g, plan in zip(groups, plans)]
+    names = [name for name in how[0] if any(one[name] != how[0][name] for one in how)]
+    if not names:
+        return []
+    texts = [f"{g.name}: {', '.join(f'{name} = {one[name]}' for name in names)}" for g, one in zip(groups, how)]
+    return [f"The groups are not evaluated alike, and their rewards may not mean the same. {'; '.join(texts)}."]
 
 
 def _all_same(evaluation: Evaluation) -> bool:

@@ -15,8 +15,8 @@ import numpy.typing as npt
 from sitl.worlds import World
 from sitl.worlds.frames import from_ned
 
-from .. import algorithms, environments
-from ..evaluate import Evaluation, Played, evaluate, moved_starts
+from .. import environments
+from ..evaluate import Evaluation, Played, evaluate, stage
 from ..runs.folder import RunFolder
 from ..runs.plan import EvaluationPlan
 
@@ -146,17 +146,12 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
         AgentError: it has learnt nothing yet, or the plan's environment is another kind.
     """
     run = RunFolder(path)
-    config = run.config.with_(max_steps=plan.max_steps or run.config.max_steps)
-    env = environments.make(config, **plan.options)
-    try:
-        poses = moved_starts(env, plan.episodes, 0, plan.jitter) if plan.jitter > 0.0 else None
+    with stage(run, plan) as (env, policy, poses):
         noted = Trails(env)
-        found = evaluate(noted, algorithms.policy_of(run), plan.episodes, poses=poses, watch=watch)
-        facts = _facts(env, {**config.env_options, **plan.options})
+        found = evaluate(noted, policy, plan.episodes, poses=poses, watch=watch)
+        facts = _facts(env, {**run.config.env_options, **plan.options})
         trails = noted.trails
         return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, facts.world) for trail in trails), facts)
-    finally:
-        env.close()
 
 
 def _facts(env: gym.Env[Any, Any], options: dict[str, Any]) -> Facts:

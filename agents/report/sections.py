@@ -14,7 +14,10 @@ from typing import Any
 import numpy as np
 
 from ..evaluate import Evaluation
+from ..evaluations import evaluate_groups
+from ..runs.backends import Workers
 from ..runs.files import write_bytes
+from ..runs.plan import EvaluationPlan
 from . import plots
 from .blocks import BLOCK, block_names
 from .curves import draw_means, draw_raw
@@ -175,37 +178,42 @@ def aggregates(document: Document, folder: Path, groups: Sequence[Group], block:
     document.picture(draw_profile(folder / "profile.png", groups, block, over), "performance profiles")
 
 
-def greedy_play(document: Document, folder: Path, played: Mapping[str, Mapping[str, list[Evaluation]]]) -> None:
-    """A table of greedy evaluations.
+def greedy_play(
+    document: Document, folder: Path, groups: Sequence[Group], plans: Sequence[EvaluationPlan], workers: Workers | None
+) -> list[list[Evaluation]]:
+    """Greedy evaluations and their table.
 
     Args:
         document: that it goes into.
         folder: for greedy.csv.
-        played: group -> where -> an evaluation for each seed.
+        groups: whose runs play.
+        plans: of each group.
+        workers: that play.
+
+    Returns:
+        an evaluation for each run of each group.
     """
+    found = evaluate_groups([group.runs for group in groups], plans, workers)
     table, rows = [], []
-    for name, places in played.items():
-        for place, evaluations in places.items():
-            rewards = [e.mean_reward for e in evaluations]
-            crashes = [100.0 * e.crash_rate for e in evaluations]
-            laps = [e.mean_laps for e in evaluations]
-            rates = [math.nan if math.isnan(e.mean_laps) else 100.0 * e.lap_rate for e in evaluations]
-            count = len(evaluations[0].episodes)
-            cells = [f"{np.mean(rewards):.0f}", f"{100 - np.mean(crashes):.0f} %", f"{np.mean(laps):.1f}"]
-            best = max(zip(rates, crashes), key=lambda figures: figures[0] - figures[1])[0]
-            cells += [f"{np.mean(rates):.0f} %", f"{best:.0f} %"]
-            cells = ["-" if "nan" in cell else cell for cell in cells]
-            table.append([f"{name}, {place}", str(count), *cells])
-            rows += [(name, place, k, *values) for k, values in enumerate(zip(rewards, crashes, laps, rates))]
+    for group, plan, evaluations in zip(groups, plans, found):
+        rewards = [e.mean_reward for e in evaluations]
+        crashes = [100.0 * e.crash_rate for e in evaluations]
+        laps = [e.mean_laps for e in evaluations]
+        rates = [math.nan if math.isnan(e.mean_laps) else 100.0 * e.lap_rate for e in evaluations]
+        cells = [f"{np.mean(rewards):.0f}", f"{100 - np.mean(crashes):.0f} %", f"{np.mean(laps):.1f}"]
+        best = max(zip(rates, crashes), key=lambda figures: figures[0] - figures[1])[0]
+        cells += [f"{np.mean(rates):.0f} %", f"{best:.0f} %"]
+        table.append([group.name, str(plan.episodes), *("-" if "nan" in cell else cell for cell in cells)])
+        seeds = [run.config.seed for run in group.runs]
+        rows += [(group.name, *values) for values in zip(seeds, rewards, crashes, laps, rates)]
     head = ("", "episodes a seed", "mean reward", "without a crash", "laps an episode", "lap and no crash", "best seed")
     document.table(head, table)
     document.paragraph(
         "Means over seeds. Lap and no crash: the share of episodes with a whole lap or more and no crash; the last "
         "column has that of the best seed."
     )
-    write_csv(
-        folder / "greedy.csv", ("group", "starts", "run", "mean_reward", "crash_percent", "laps", "lap_percent"), rows
-    )
+    write_csv(folder / "greedy.csv", ("group", "seed", "mean_reward", "crash_percent", "laps", "lap_percent"), rows)
+    return found
 
 
 def block_of(groups: Sequence[Group], block: int | None) -> int:

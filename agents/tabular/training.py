@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 
 from .. import environments
 from ..errors import AgentError
-from ..runs.config import EPISODES
+from ..runs.config import EPISODES, RunConfig
 from ..runs.episodes import Episode
 from ..runs.files import read_arrays, write_arrays
 from ..runs.folder import RunFolder
@@ -35,6 +36,11 @@ def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
     figures = dict(given)
     base = Settings.as_coded(algorithm) if figures.pop("as_coded", False) is True else Settings()
     return Settings.of({**base.as_dict(), **figures}).as_dict()
+
+
+def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
+    """See ``Algorithm``."""
+    Table.for_spaces(observations, actions)
 
 
 def train(folder: RunFolder, watch: Watch) -> None:

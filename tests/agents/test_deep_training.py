@@ -18,6 +18,7 @@ from agents.deep.network import Network
 from agents.errors import AgentError
 from agents.evaluate import evaluate_run
 from agents.runs.folder import RunFolder
+from agents.runs.plan import EvaluationPlan
 from agents.runs.training import is_done
 
 ALGORITHMS = ("ppo", "dqn", "sac")
@@ -39,8 +40,8 @@ def test_a_run_learns_to_its_end_and_plays(tmp_path, algorithm):
     assert all(row.simulated_s == pytest.approx(environments.make(run.config).unwrapped.step_time * row.steps)
                for row in rows[:3])  # fmt: skip
     assert np.isnan(rows[-1].epsilon) == (algorithm != "dqn")
-    found = evaluate_run(run, episodes=2, seed=5)
-    again = evaluate_run(RunFolder(run.path), episodes=2, seed=5)
+    found = evaluate_run(run, EvaluationPlan(episodes=2), seed=5)
+    again = evaluate_run(RunFolder(run.path), EvaluationPlan(episodes=2), seed=5)
     assert found == again and all(1 <= played.steps <= 50 for played in found.episodes)
 
 
@@ -73,7 +74,7 @@ def test_learning_through_mavlink(tmp_path):
     run = new(tmp_path / "run", env="GazeboMazeErleRoverLIDAR-v0", env_options=options, steps=150)
     train(run)
     assert is_done(run)
-    found = evaluate_run(run, episodes=3, start="turned", seed=2)
+    found = evaluate_run(run, EvaluationPlan(episodes=3, options={"start": "turned"}), seed=2)
     assert len(found.episodes) == 3
 
 
@@ -130,9 +131,10 @@ def test_what_cannot_be_is_refused(tmp_path):
     with pytest.raises(AgentError, match="'rollout' of sac"):
         training.settings("sac", {"rollout": 3})
     with pytest.raises(AgentError, match="sac learns continuous actions"):
-        train(new(tmp_path / "a", "sac", env_options={"action": "discrete"}))
+        environments.try_all([new(tmp_path / "a", "sac", env_options={"action": "discrete"}).config])
     with pytest.raises(AgentError, match="dqn learns discrete actions"):
-        train(new(tmp_path / "b", "dqn", env_options={"action": "continuous", "task": "wander"}))
+        options = {"action": "continuous", "task": "wander"}
+        environments.try_all([new(tmp_path / "b", "dqn", env_options=options).config])
     with pytest.raises(AgentError, match="there is no model"):
         algorithms.policy_of(new(tmp_path / "c"))
     broken = new(tmp_path / "d", env=CIRCUIT2)

@@ -16,6 +16,7 @@ from agents import environments
 from agents.errors import AgentError
 from agents.evaluate import evaluate, evaluate_run, moved_starts
 from agents.laps import CENTRES, LapCounter
+from agents.runs.plan import EvaluationPlan
 from agents.runs.watch import Watch
 from agents.tabular import training
 from agents.tabular.policy import TablePolicy
@@ -80,13 +81,15 @@ def test_moved_starts_are_near_and_differ():
 def test_a_run_plays_where_it_learnt_and_elsewhere(tmp_path):
     run = new(tmp_path / "run", max_steps=100, episodes=60)
     training.train(run, Watch())
-    here, there = evaluate_run(run, 2), evaluate_run(run, 2, world="maze")
+    here, there = (
+        evaluate_run(run, EvaluationPlan(episodes=2, options=options)) for options in ({}, {"world": "maze"})
+    )
     assert len(here.episodes) == 2 and not math.isnan(here.mean_laps)
     assert math.isnan(there.mean_laps) and "laps" not in there.sentence()
     with pytest.raises(AgentError, match="the table is for digits"):
-        evaluate_run(run, 1, observation=Digits(parts=4))
+        evaluate_run(run, EvaluationPlan(episodes=1, options={"observation": Digits(parts=4)}))
     with pytest.raises(AgentError, match="nowhere"):
-        evaluate_run(run, 1, world="nowhere")
+        evaluate_run(run, EvaluationPlan(episodes=1, options={"world": "nowhere"}))
 
 
 def test_first_state_apart_is_played_as_it_was_learnt():

@@ -35,15 +35,14 @@ def test_divided_episodes_are_those_of_one_evaluation(tmp_path):
 
     found = evaluate_runs(runs, [plan, EvaluationPlan(episodes=1)], 3, SimpleNamespace(jobs=5, each=each))
     assert asked == [[(0, 2), (2, 2), (4, 3), (0, 1)]]
-    runs[0].config = runs[0].config.with_(max_steps=50)
-    assert found[0] == evaluate_run(runs[0], 7, 3, 0.2, start="random") and len(found[1].episodes) == 1
+    assert found[0] == evaluate_run(runs[0], plan, 3) and len(found[1].episodes) == 1
 
 
 @pytest.mark.slow
 def test_so_are_those_of_other_processes_and_of_a_robot_with_an_autopilot(tmp_path):
     run = trained(tmp_path / "rover", env="GazeboMazeErleRoverLIDAR-v0", episodes=1, env_options=ROVER)
     plan = EvaluationPlan(episodes=4)
-    whole, parts = (evaluate_groups([[run]], plan, Workers(jobs)) for jobs in (1, 2))
+    whole, parts = (evaluate_groups([[run]], [plan], Workers(jobs)) for jobs in (1, 2))
     assert repr(whole) == repr(parts) and len({played.reward for played in whole[0][0].episodes}) > 1
 
 

@@ -64,7 +64,9 @@ def test_what_cannot_be_trained_or_played_leaves_no_folder(sitl, tmp_path):
         f'env = "{CIRCUIT2}"\nalgorithm = "qlearn"\n[evaluation]\noptions = {{ world = "moon" }}\n'
     )
     assert "world 'moon' is not known" in sitl("train", "--recipe", "far.toml", "--out", "two", *SHORT)[2]
-    assert not (tmp_path / "one").exists() and not (tmp_path / "two").exists()
+    words = ("--option", "observation=scan", "--out", "three", *SHORT)
+    assert "a table needs observations of digits" in sitl("train", CIRCUIT2, *words)[2]
+    assert not any((tmp_path / name).exists() for name in ("one", "two", "three"))
 
 
 def test_a_start_in_a_wall_is_a_users_mistake(sitl):
@@ -95,6 +97,24 @@ def test_compare_writes_a_report(sitl, tmp_path):
     assert len(rows) == 3 * 4 and {row["group"] for row in rows} == {"one", "two"}
     first = folders.find("one")[0].episodes.column("reward")
     assert float(rows[0]["mean_reward"]) == pytest.approx(first[:5].mean())
+    assert [row["seed"] for row in csv.DictReader((folder / "greedy.csv").open())] == ["0", "1", "0"]
+    assert "not evaluated alike" not in text
+
+
+def test_compare_plays_runs_as_they_are_evaluated(sitl, tmp_path):
+    (tmp_path / "moved.toml").write_text(
+        f'env = "{CIRCUIT2}"\nalgorithm = "qlearn"\n[evaluation]\njitter = 0.1\nmax_steps = 30\n'
+    )
+    assert sitl("train", "--recipe", "moved.toml", "--seed", 3, *SHORT)[0] == 0
+    assert sitl("train", CIRCUIT2, "--out", "still", *SHORT)[0] == 0
+    assert sitl("compare", "runs/moved", "still", "--play", 2, "--out", "report")[0] == 0
+    text = (tmp_path / "report" / "report.md").read_text()
+    assert (
+        "not evaluated alike" in text and "moved: jitter = 0.1, max_steps = 30; still: jitter = 0.0, max_steps" in text
+    )
+    row = next(csv.DictReader((tmp_path / "report" / "greedy.csv").open()))
+    _, played, _ = sitl("evaluate", "runs/moved", "--episodes", 2)
+    assert row["seed"] == "3" and f"mean reward {float(row['mean_reward']):.0f}," in played
 
 
 @pytest.mark.slow
