@@ -19,7 +19,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--out", type=Path, default=Path("reports/compare"), metavar="DIR", help="default: reports/compare"
     )
     parser.add_argument("--block", type=positive, metavar="N", help="episodes of an average (default: 200)")
-    parser.add_argument("--play", type=positive, default=0, metavar="N", help="also play N greedy episodes of each run, as sitl evaluate does")
+    parser.add_argument(
+        "--play",
+        type=positive,
+        default=0,
+        metavar="N",
+        help="also play N greedy episodes a run, as evaluate does",
+    )
     add_jobs(parser)
     parser.set_defaults(function=run)
 
