@@ -35,6 +35,8 @@ class Randomisation:
     """
 
     def __init__(self, ranges: Randomise, robot: Robot, latency: Latency | None = None) -> None:
+        if not isinstance(ranges, Mapping):
+            raise EnvOptionError(f"randomise = {ranges!r}; it must map figures to (low, high), or be None (null)")
         self.ranges: dict[str, Any] = dict(ranges)
         self._latency = latency
         draws = self.ranges.pop(DRAWS, None)
