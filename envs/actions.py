@@ -42,6 +42,15 @@ class Action(Protocol):
         """Set-points of the actions, shape (count, setpoint.width), into ``out``."""
 
 
+def _is_row(row: Any, width: int) -> bool:
+    """Whether it is so many finite numbers."""
+    try:
+        numbers = np.asarray(row, np.float64)
+    except (TypeError, ValueError):
+        return False
+    return numbers.shape == (width,) and bool(np.all(np.isfinite(numbers)))
+
+
 class Discrete:
     """A table of set-points; action k is row k.
 
@@ -54,7 +63,7 @@ class Discrete:
         self.setpoint = setpoint
         self.names = tuple(rows)
         for name, row in rows.items():
-            if len(row) != setpoint.width or not np.all(np.isfinite(row)):
+            if not _is_row(row, setpoint.width):
                 raise EnvOptionError(f"action {name!r} = {row!r}; it must be {setpoint.width} finite numbers: "
                                      f"{', '.join(setpoint.columns)}")  # fmt: skip
         if not rows:

@@ -22,6 +22,17 @@ DRAWS = "draws"
 _MOST_DRAWS = 100_000
 
 
+def ranges_of(randomise: Any) -> Randomise:
+    """The option, {} for None.
+
+    Raises:
+        EnvOptionError: it is no mapping.
+    """
+    if randomise is None or isinstance(randomise, Mapping):
+        return randomise or {}
+    raise EnvOptionError(f"randomise = {randomise!r}; it must map figures to (low, high), or be None (null)")
+
+
 class Randomisation:
     """Draws figures.
 
@@ -35,8 +46,6 @@ class Randomisation:
     """
 
     def __init__(self, ranges: Randomise, robot: Robot, latency: Latency | None = None) -> None:
-        if not isinstance(ranges, Mapping):
-            raise EnvOptionError(f"randomise = {ranges!r}; it must map figures to (low, high), or be None (null)")
         self.ranges: dict[str, Any] = dict(ranges)
         self._latency = latency
         draws = self.ranges.pop(DRAWS, None)

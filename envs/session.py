@@ -23,7 +23,7 @@ from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
 from .options import EnvOptionError, unknown
-from .randomisation import Randomisation, Randomise
+from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import LateRobot, Robot
 from .setpoints import SETPOINTS
@@ -33,6 +33,8 @@ from .tasks import TASKS, Task
 FORMS = ("discrete", "continuous")
 RESET_OPTIONS = ("pose", "reset_mask")
 """The second is of vector environments."""
+LONGEST_STEP_S = 3600.0
+"""Of simulated time; ticks are counted in integers."""
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,10 @@ class Session:
         self.count = count
         self.action = self._choose_action(action, setpoint)
         self.seconds = self._check_step_time(step_time)
-        self.latency = self._make_latency(latency, randomise or {})
+        ranges = ranges_of(randomise)
+        self.latency = self._make_latency(latency, ranges)
         """None: commands arrive at once."""
-        self.randomisation = Randomisation(randomise or {}, self.robot, self.latency)
+        self.randomisation = Randomisation(ranges, self.robot, self.latency)
         self.starts = Starts(start, self.robot)
         self.task: Task = _named("task", task, TASKS, "judge")
         self.observation: Observation = _named("observation", observation, OBSERVATIONS, "observe")
@@ -103,8 +106,8 @@ class Session:
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
         robot = self.robot
         kinds = {kind.name: kind for kind in robot.setpoints}
-        if setpoint is not None and setpoint not in kinds:
-            if setpoint in SETPOINTS:
+        if setpoint is not None and (not isinstance(setpoint, str) or setpoint not in kinds):
+            if isinstance(setpoint, str) and setpoint in SETPOINTS:
                 raise EnvOptionError(f"setpoint {setpoint!r}: {robot.name} takes {', '.join(kinds)}")
             raise unknown("setpoint", setpoint, kinds)
         usual = robot.setpoints[0] if setpoint is None else kinds[setpoint]
@@ -124,8 +127,11 @@ class Session:
         seconds, tick = self.robot.step_time if step_time is None else step_time, self.robot.tick
         valid = isinstance(seconds, int | float | np.number) and math.isfinite(seconds)
         ticks = round(seconds / tick) if valid else 0
-        if ticks < 1 or abs(seconds / tick - ticks) > 1e-5:
-            raise EnvOptionError(f"step_time = {seconds!r}; it must be above 0 s and a whole number of {tick:g} s")
+        if not 1 <= ticks <= LONGEST_STEP_S / tick or abs(seconds / tick - ticks) > 1e-5:
+            raise EnvOptionError(
+                f"step_time = {seconds!r}; it must be above 0 s, at most {LONGEST_STEP_S:g} s, and a whole number of "
+                f"{tick:g} s"
+            )
         return round(ticks * tick, 9)  # exact, also for a float32 or a sum of tenths
 
     def _make_latency(self, seconds: float, randomise: Randomise) -> Latency | None:

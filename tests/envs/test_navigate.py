@@ -270,7 +270,7 @@ def test_numpy_integers_are_actions():
         ({"action": Continuous(VELOCITY, (0,) * 4, (1,) * 4)}, r"action gives 'velocity'; turtlebot takes drive"),
         ({"setpoint": "velocity"}, r"setpoint 'velocity': turtlebot takes drive"),
         ({"setpoint": "drives"}, r"setpoint 'drives' .* did you mean 'drive'"),
-        ({"step_time": 0.0}, r"step_time = 0.0; it must be above 0 s and a whole number of 0.01 s"),
+        ({"step_time": 0.0}, r"step_time = 0.0; it must be above 0 s, at most 3600 s, and a whole number of 0.01 s"),
         ({"step_time": 0.123}, r"step_time = 0.123"),
         ({"step_time": math.nan}, r"step_time = nan"),
         ({"step_time": "fast"}, r"step_time = 'fast'"),
@@ -327,10 +327,25 @@ def test_foreign_snapshots_are_refused():
         env.restore(other.snapshot())
 
 
-@pytest.mark.parametrize("step_time", [1e-9, 1e-8, 0.600001, np.float32(0.605)])
+@pytest.mark.parametrize("step_time", [1e-9, 1e-8, 0.600001, np.float32(0.605), 1e300])
 def test_step_time_that_is_no_whole_number_of_ticks_is_refused(step_time):
     with pytest.raises(EnvOptionError, match=r"step_time = .* a whole number of 0.01 s"):
         make(step_time=step_time)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "message"),
+    [
+        ("randomise", "none", r"randomise = 'none'; it must map figures to \(low, high\), or be None"),
+        ("randomise", 1.5, r"randomise = 1.5; it must map"),
+        ("setpoint", ["rc"], r"setpoint \['rc'\] is not known; it is one of"),
+        ("action", {"ahead": 1}, r"action 'ahead' = 1; it must be 2 finite numbers"),
+        ("action", {"ahead": "ab"}, r"action 'ahead' = 'ab'; it must be 2 finite numbers"),
+    ],
+)
+def test_options_of_another_kind_are_refused(option, value, message):
+    with pytest.raises(EnvOptionError, match=message):
+        make(**{option: value})
 
 
 @pytest.mark.parametrize("step_time", [np.float32(0.1), 0.1 + 0.2 - 0.2, 0.100000005])
