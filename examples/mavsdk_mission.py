@@ -42,9 +42,7 @@ def square(lat_deg: float, lon_deg: float) -> list[MissionItem]:
     east = north / math.cos(math.radians(lat_deg))
     corners = [(north, 0.0), (north, east), (0.0, east), (0.0, 0.0)]
     items = [item(0, WAYPOINT, lat_deg, lon_deg), item(1, TAKEOFF, alt_m=ALTITUDE_M)]
-    items += [
-        item(seq, WAYPOINT, lat_deg + n, lon_deg + e, ALTITUDE_M) for seq, (n, e) in enumerate(corners, start=2)
-    ]
+    items += [item(seq, WAYPOINT, lat_deg + n, lon_deg + e, ALTITUDE_M) for seq, (n, e) in enumerate(corners, start=2)]
     return [*items, item(len(items), RETURN_TO_LAUNCH)]
 
 

@@ -43,7 +43,7 @@ class Kind:
 
     @property
     def name(self) -> str:
-        """"copter" or "rover"."""
+        """ "copter" or "rover"."""
         return self.firmware.name
 
     @property

@@ -122,9 +122,7 @@ def run_script(
         except OSError as error:
             raise OptionError(f"command {command[0]!r} cannot be started: {error.strerror or error}") from None
         stack.callback(end, script, page)
-        runner.serve(
-            simulation, pace, until_us=until, running=lambda: script.poll() is None, on_slice=on_slice
-        )
+        runner.serve(simulation, pace, until_us=until, running=lambda: script.poll() is None, on_slice=on_slice)
         if script.poll() is None:
             return 0
     code = script.returncode

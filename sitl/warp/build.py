@@ -91,9 +91,7 @@ def static_runtime() -> Path:
     ]
     if platform.machine() == "aarch64":
         flags.append("-mno-outline-atomics")  # those are in a library that this program does without
-    return _cached(
-        "sitl-static-runtime", "static", flags, ["-fPIE", "-pie", "-nostdlib", "-Wl,--no-dynamic-linker"]
-    )
+    return _cached("sitl-static-runtime", "static", flags, ["-fPIE", "-pie", "-nostdlib", "-Wl,--no-dynamic-linker"])
 
 
 def _cached(name: str, folder: str, compile_flags: list[str], link_flags: list[str]) -> Path:
@@ -127,8 +125,6 @@ def _compile(words: list[str]) -> None:
     try:
         done = subprocess.run(words, capture_output=True, text=True)
     except OSError as error:
-        raise CannotBuild(
-            f"cannot run the C compiler {words[0]}: {error}. Set CC to one that works."
-        ) from error
+        raise CannotBuild(f"cannot run the C compiler {words[0]}: {error}. Set CC to one that works.") from error
     if done.returncode:
         raise CannotBuild(f"the C compiler failed: {shlex.join(words)}\n{done.stderr.strip()}")

@@ -46,9 +46,7 @@ class ClockPage:
     waiting for a simulator that is gone) and the file is removed.
     """
 
-    def __init__(
-        self, epoch_ns: int | None = None, uptime_ns: int | None = None, folder: str | None = None
-    ) -> None:
+    def __init__(self, epoch_ns: int | None = None, uptime_ns: int | None = None, folder: str | None = None) -> None:
         """Make a page whose clock stands at simulated time zero until the first :meth:`publish`.
 
         `epoch_ns`: what scripts read as the date (CLOCK_REALTIME, ns) at simulated time zero; the present
@@ -84,9 +82,7 @@ class ClockPage:
         The clock never goes back: where it has already passed `sim_us` it waits for the simulation.
         """
         if rate < 0 or grant_us < 0:
-            raise ValueError(
-                f"clock page: rate {rate} and grant_us {grant_us} must be 0 or more; 0 stops the clock"
-            )
+            raise ValueError(f"clock page: rate {rate} and grant_us {grant_us} must be 0 or more; 0 stops the clock")
         wall_ns = time.monotonic_ns()
         start_ns = max(self._at(wall_ns), sim_us * 1000)
         self._ceiling_ns = max(start_ns, (sim_us + grant_us) * 1000)
@@ -158,9 +154,7 @@ class PageReader:
             self._map = mmap.mmap(file.fileno(), PAGE_BYTES, access=mmap.ACCESS_READ)
         magic, size, self.epoch_ns, self.uptime_ns, self.writer = _HEADER.unpack_from(self._map, 0)
         if magic != MAGIC or size != PAGE_BYTES:
-            raise ValueError(
-                f"clock page {path}: starts with {magic:#x}, not {MAGIC:#x}; pass the path of a ClockPage"
-            )
+            raise ValueError(f"clock page {path}: starts with {magic:#x}, not {MAGIC:#x}; pass the path of a ClockPage")
 
     def line(self) -> tuple[int, int, int, float, int, int]:
         """The piece published last: (count, wall_ns, sim_ns, rate, ceiling_ns, state)."""

@@ -141,9 +141,7 @@ class FakeAutopilot:
 class Client:
     """A ground station in the same process: pymavlink packs and parses."""
 
-    def __init__(
-        self, link: InProcessLink, system: int = 255, component: int = 190, version: int = 2
-    ) -> None:
+    def __init__(self, link: InProcessLink, system: int = 255, component: int = 190, version: int = 2) -> None:
         self.link = link
         self.mav = mavlink.MAVLink(None, srcSystem=system, srcComponent=component)
         self.mav.robust_parsing = True

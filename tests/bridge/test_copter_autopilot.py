@@ -78,22 +78,15 @@ def test_takeoff_and_disarm(copter: CopterBench) -> None:
     copter.vehicle.v.autopilot.arming.landed = 0
     assert copter.command(400, 0) == 4
     assert copter.command(400, 0, 21196) == 0
-    assert (
-        "Disarming motors" in [m.text for m in copter.client.receive("STATUSTEXT")]
-        or not copter.autopilot.armed()
-    )
+    assert "Disarming motors" in [m.text for m in copter.client.receive("STATUSTEXT")] or not copter.autopilot.armed()
 
 
 def test_set_points_reach_guided(copter: CopterBench) -> None:
     copter.ready()
     guided = copter.vehicle.v.autopilot.modes.guided
-    copter.ask(
-        mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, 1, 0xDF8, 5, 6, -7, *(math.nan,) * 8)
-    )
+    copter.ask(mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, 1, 0xDF8, 5, 6, -7, *(math.nan,) * 8))
     assert list(guided.pos) == [5.0, 6.0, -7.0]
-    copter.ask(
-        mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, 1, 0xDC7, 0, 0, 0, 1, 2, 3, *(0,) * 5)
-    )
+    copter.ask(mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, 1, 0xDC7, 0, 0, 0, 1, 2, 3, *(0,) * 5))
     assert list(guided.vel) == [1.0, 2.0, 3.0]
     copter.ask(mavlink.MAVLink_set_attitude_target_message(0, 1, 1, 7, [1, 0, 0, 0], 0, 0, 0, 0.6))
     assert guided.thrust == pytest.approx(0.6)

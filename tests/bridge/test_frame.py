@@ -39,9 +39,7 @@ def random_values(kind: type, rng: random.Random) -> list[object]:
                 values.append(b"a")
                 continue
             top = 2 ** (bits - 1) - 1
-            values.append(
-                [rng.randint(0, top) for _ in range(n)] if n else rng.choice((0, rng.randint(0, top)))
-            )
+            values.append([rng.randint(0, top) for _ in range(n)] if n else rng.choice((0, rng.randint(0, top))))
     return values
 
 

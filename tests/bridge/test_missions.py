@@ -124,9 +124,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("bad", "result"), BAD)
-def test_a_bad_item_ends_the_upload_and_leaves_the_old_mission(
-    bench: Bench, bad: MissionItem, result: int
-) -> None:
+def test_a_bad_item_ends_the_upload_and_leaves_the_old_mission(bench: Bench, bad: MissionItem, result: int) -> None:
     old = tuple(SQUARE)
     bench.autopilot.items = old
     assert upload(bench, bench.client, [SQUARE[0], SQUARE[1], bad]) == result
@@ -190,9 +188,7 @@ def test_partial_write(bench: Bench) -> None:
     assert ack.type == ACCEPTED
     assert bench.autopilot.items == (*SQUARE[:3], new, *SQUARE[4:])
     for first, last in ((3, 2), (0, 99), (-1, 2)):
-        (ack,) = bench.ask(
-            mavlink.MAVLink_mission_write_partial_list_message(1, 1, first, last), "MISSION_ACK"
-        )
+        (ack,) = bench.ask(mavlink.MAVLink_mission_write_partial_list_message(1, 1, first, last), "MISSION_ACK")
         assert ack.type == INVALID_SEQUENCE
 
 

@@ -76,9 +76,7 @@ def fetch_all(bench: Bench, client: Client) -> dict[str, float]:
 @pytest.mark.parametrize("drop", [0.0, 0.05, 0.3])
 def test_the_whole_list_even_over_a_lossy_link(bench: Bench, drop: float) -> None:
     rng = random.Random(1)
-    client = bench.connect(
-        drop_to_client=lambda _: rng.random() < drop, drop_to_vehicle=lambda _: rng.random() < drop
-    )
+    client = bench.connect(drop_to_client=lambda _: rng.random() < drop, drop_to_vehicle=lambda _: rng.random() < drop)
     values = fetch_all(bench, client)
     assert values.keys() == set(TABLE.names())
     for name, value in values.items():

@@ -102,15 +102,10 @@ def test_a_force_is_not_flown(guided: Bench) -> None:
 def test_other_modes_ignore_set_points(guided: Bench, mode: int) -> None:
     guided.vehicle.v.autopilot.modes.number = mode
     assert call(guided, local(POSITION)) == ()
-    assert (
-        call(guided, mavlink.MAVLink_set_attitude_target_message(0, 1, 1, 0, [1, 0, 0, 0], 0, 0, 0, 0.5))
-        == ()
-    )
+    assert call(guided, mavlink.MAVLink_set_attitude_target_message(0, 1, 1, 0, [1, 0, 0, 0], 0, 0, 0, 0.5)) == ()
 
 
-@pytest.mark.parametrize(
-    ("frame", "z"), [(0, 594.0), (5, 594.0), (3, 10.0), (6, 10.0), (10, 10.0), (11, 10.0)]
-)
+@pytest.mark.parametrize(("frame", "z"), [(0, 594.0), (5, 594.0), (3, 10.0), (6, 10.0), (10, 10.0), (11, 10.0)])
 def test_global_frames(guided: Bench, frame: int, z: float) -> None:
     message = mavlink.MAVLink_set_position_target_global_int_message(
         0, 1, 1, frame, POSITION, HOME[0] + 1000, HOME[1], z, 0, 0, 0, 0, 0, 0, 0, 0

@@ -104,9 +104,7 @@ def test_nothing_in_the_record_can_break_a_message(bench: Bench, value: float) -
     keep = bench.vehicle.fleet.copy()
     for name in ("estimate", "battery", "home", "control"):
         offset = bench.vehicle.fleet.dtype["autopilot"].fields[name][1]
-        start = (
-            bench.vehicle.fleet.itemsize + bench.vehicle.fleet.dtype.fields["autopilot"][1] + offset
-        ) // 8
+        start = (bench.vehicle.fleet.itemsize + bench.vehicle.fleet.dtype.fields["autopilot"][1] + offset) // 8
         size = bench.vehicle.fleet.dtype["autopilot"][name].itemsize // 8
         words[start : start + size] = value
     estimate = bench.vehicle.v.autopilot.estimate

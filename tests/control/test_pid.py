@@ -21,9 +21,7 @@ def fresh(integrator=0.0):
     )
 
 
-def saturating(
-    pid, target, measurement, saturated=False, kp=0.0, ki=0.0, kd=0.0, imax=0.5, hz_error=0.0, pd_max=0.0
-):
+def saturating(pid, target, measurement, saturated=False, kp=0.0, ki=0.0, kd=0.0, imax=0.5, hz_error=0.0, pd_max=0.0):
     return update_saturating(
         pid, target, measurement, DT, saturated, kp, ki, kd, 0.0, 0.0, imax, pd_max, 0.0, hz_error, 0.0
     )

@@ -99,9 +99,7 @@ def test_horizontal_shaping_reaches_a_point_from_any_motion(gx, gy, vx, vy):
     dt = 0.01
     for _ in range(4000):
         px, py, vx, vy = advance_2d(px, py, vx, vy, ax, ay, dt, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        nx, ny = shape_pos_vel_accel_2d(
-            gx, gy, 0.0, 0.0, 0.0, 0.0, px, py, vx, vy, ax, ay, 5.0, 2.5, 5.0, dt, 0
-        )
+        nx, ny = shape_pos_vel_accel_2d(gx, gy, 0.0, 0.0, 0.0, 0.0, px, py, vx, vy, ax, ay, 5.0, 2.5, 5.0, dt, 0)
         assert math.hypot(nx - ax, ny - ay) <= 5.0 * dt * (1 + 1e-9)
         ax, ay = nx, ny
         assert math.hypot(ax, ay) <= 2.5 * (1 + 1e-9)

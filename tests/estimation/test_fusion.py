@@ -51,9 +51,7 @@ def test_injection_moves_state_past_and_keeps_the_output_steady(ap) -> None:
     assert ekf.q == pytest.approx([np.cos(0.05), 0, 0, np.sin(0.05)])
     assert ekf.pos[0] == 3.0 and ekf.vel[0] == 0.5
     assert ekf.pos[0] + ekf.lag_pos[0] == 1.0 and ekf.vel[0] + ekf.lag_vel[0] == 0.0
-    assert ekf.ring_pos[:5, 0] - before[:, 0] == pytest.approx(
-        [2 - 0.5 * age for age in (0.4, 0.3, 0.2, 0.1, 0)]
-    )
+    assert ekf.ring_pos[:5, 0] - before[:, 0] == pytest.approx([2 - 0.5 * age for age in (0.4, 0.3, 0.2, 0.1, 0)])
     assert not np.any(ekf.dx)
 
 

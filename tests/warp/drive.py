@@ -37,9 +37,7 @@ def patiently(check: Callable[[], None]) -> None:
     return check()
 
 
-def run(
-    argv: list[str], speedup: float | str, vehicle: object = None, wall_limit_s: float = 60.0
-) -> tuple[str, float]:
+def run(argv: list[str], speedup: float | str, vehicle: object = None, wall_limit_s: float = 60.0) -> tuple[str, float]:
     """Run `argv` at `speedup` with `vehicle.advance_to(sim_us)` as the simulator; returns its output and
     sim seconds.
 
@@ -58,9 +56,7 @@ def run(
             pacer.pace(sim_us)
         script.kill()
         output = script.communicate()[0]
-    assert script.returncode == 0, (
-        f"{argv} ended with {script.returncode} after {sim_us / 1e6} s simulated: {output}"
-    )
+    assert script.returncode == 0, f"{argv} ended with {script.returncode} after {sim_us / 1e6} s simulated: {output}"
     return output, sim_us / 1e6
 
 

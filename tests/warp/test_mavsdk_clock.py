@@ -42,9 +42,7 @@ def test_native_mavsdk_behaves_as_at_real_time(speedup):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(
-    installed("mavsdk") != 3 and not installed("mavsdk-grpc"), reason="needs mavsdk 3 or mavsdk-grpc"
-)
+@pytest.mark.skipif(installed("mavsdk") != 3 and not installed("mavsdk-grpc"), reason="needs mavsdk 3 or mavsdk-grpc")
 def test_grpc_mavsdk_behaves_as_at_real_time():
     patiently(lambda: check(*fly("grpc_mavsdk.py", 20.0)))
 

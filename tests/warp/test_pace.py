@@ -57,6 +57,7 @@ print(json.dumps(time.monotonic() - start))
 
 def test_at_max_a_script_computes_as_in_real_time():
     need_library()
+
     # 0.1 s of work and 0.9 s of sleep. A machine shared with others makes the work longer, at any speed.
     def check() -> None:
         assert 1.0 <= run_python(WORK, "max") < 5.0

@@ -26,9 +26,7 @@ def hold(ap, now_us):
     if ap.arming.armed == 0:
         for k in range(2):
             fusion.fuse_state(ekf, VEL + k, -ekf.vel[k], noise.STILL_VELOCITY * noise.STILL_VELOCITY)
-            fusion.fuse_state(
-                ekf, POS + k, ekf.hold_pos[k] - ekf.pos[k], noise.STILL_POSITION * noise.STILL_POSITION
-            )
+            fusion.fuse_state(ekf, POS + k, ekf.hold_pos[k] - ekf.pos[k], noise.STILL_POSITION * noise.STILL_POSITION)
     else:
         sigma = ap.params.EK3_NOAID_M_NSE
         for k in range(2):

@@ -19,9 +19,7 @@ class _VehicleEnd(Peer):
 
     def flush(self) -> None:
         if self.outbox:
-            self.sent.extend(
-                self.outbox if self.drop is None else [f for f in self.outbox if not self.drop(f)]
-            )
+            self.sent.extend(self.outbox if self.drop is None else [f for f in self.outbox if not self.drop(f)])
             self.outbox.clear()
 
 

@@ -53,9 +53,7 @@ class _TcpPeer(Peer):
                 del self._pending[: self._socket.send(memoryview(self._pending)[: 1 << 16].tobytes())]
         except BlockingIOError:
             if len(self._pending) > QUEUE_BYTES:
-                self.drop(
-                    f"client does not read: {len(self._pending)} bytes unsent, at most {QUEUE_BYTES} are kept"
-                )
+                self.drop(f"client does not read: {len(self._pending)} bytes unsent, at most {QUEUE_BYTES} are kept")
         except OSError as error:
             self.drop(f"connection lost: {error.strerror or error}")
 

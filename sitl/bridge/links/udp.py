@@ -108,9 +108,7 @@ class UdpOutLink(_UdpLink):
 
     def __init__(self, host: str, port: int) -> None:
         target = socket.getaddrinfo(host, port, socket.AF_INET, socket.SOCK_DGRAM)[0][4]
-        super().__init__(
-            f"udpout:{host}:{port}", ("127.0.0.1" if str(target[0]).startswith("127.") else "0.0.0.0", 0)
-        )
+        super().__init__(f"udpout:{host}:{port}", ("127.0.0.1" if str(target[0]).startswith("127.") else "0.0.0.0", 0))
         self._peer((str(target[0]), int(target[1])))
 
 

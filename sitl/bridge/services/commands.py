@@ -46,16 +46,12 @@ class CommandService(Service):
             return
         self._run(channel, entry, from_int(fields, entry), fields.command, sender)
 
-    def _run(
-        self, channel: Channel, entry: Entry, command: Command | None, number: int, sender: Sender
-    ) -> None:
+    def _run(self, channel: Channel, entry: Entry, command: Command | None, number: int, sender: Sender) -> None:
         result = DENIED if command is None else entry.run(self.bridge, channel, command)
         self._ack(channel, number, result, sender)
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        as_command = Command(
-            DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0
-        )
+        as_command = Command(DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)
         result = commands_vehicle.do_set_mode(self.bridge, channel, as_command)
         self._ack(channel, message("SET_MODE").id, result, sender)
 

@@ -88,9 +88,7 @@ class FtpService(Service):
         fields = {"target_system": sender[0], "target_component": sender[1], "payload": tuple(body)}
         channel.send(KIND, KIND.payload(**fields))
 
-    def _nak(
-        self, channel: Channel, sender: Sender, sequence: int, session: int, request: int, error: int
-    ) -> None:
+    def _nak(self, channel: Channel, sender: Sender, sequence: int, session: int, request: int, error: int) -> None:
         self._reply(channel, sender, sequence, session, NAK, request, 0, bytes((error,)))
 
     def _open(

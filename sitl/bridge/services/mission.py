@@ -114,9 +114,7 @@ class MissionService(Service):
             else:
                 self._begin(channel, sender, first, last + 1, items)
 
-    def _begin(
-        self, channel: Channel, sender: Sender, first: int, stop: int, base: tuple[MissionItem, ...]
-    ) -> None:
+    def _begin(self, channel: Channel, sender: Sender, first: int, stop: int, base: tuple[MissionItem, ...]) -> None:
         self.upload = Upload(channel, sender, first, stop, base, self.bridge.now_us)
         self._last = None
         self._request_next(self.upload)
@@ -131,11 +129,7 @@ class MissionService(Service):
         self._item(channel, fields, sender, *from_int(fields, self._taken))
 
     def _item_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        if (
-            self.upload is not None
-            and fields.current not in (GUIDED_TARGET, ALTITUDE_CHANGE)
-            and fields.seq == 0
-        ):
+        if self.upload is not None and fields.current not in (GUIDED_TARGET, ALTITUDE_CHANGE) and fields.seq == 0:
             say = self.bridge.get(StatusTextService).say
             say(WARNING, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")
         self._item(channel, fields, sender, *from_float(fields, self._taken))
@@ -190,11 +184,7 @@ class MissionService(Service):
         The end of a download is acknowledged in the same way and needs no action.
         """
         upload = self.upload
-        if (
-            upload is not None
-            and (upload.channel, upload.sender) == (channel, sender)
-            and fields.type != ACCEPTED
-        ):
+        if upload is not None and (upload.channel, upload.sender) == (channel, sender) and fields.type != ACCEPTED:
             self.upload = None
 
     def snapshot(self) -> Any:

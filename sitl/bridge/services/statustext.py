@@ -42,9 +42,7 @@ class StatusTextService(Service):
         self._id = self._id % 65535 + 1
         count = len(data) // TEXT_BYTES + 1  # a text of 100 bytes needs an empty third piece for its NUL
         parts = [data[k * TEXT_BYTES : (k + 1) * TEXT_BYTES] for k in range(count)]
-        return [
-            KIND.payload(severity=severity, text=p, id=self._id, chunk_seq=k) for k, p in enumerate(parts)
-        ]
+        return [KIND.payload(severity=severity, text=p, id=self._id, chunk_seq=k) for k, p in enumerate(parts)]
 
     @staticmethod
     def _send(channel: Channel, pieces: list[bytes]) -> None:

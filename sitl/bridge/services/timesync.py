@@ -24,8 +24,6 @@ class TimesyncService(Service):
     def _timesync(self, channel: Channel, m: Any, sender: Sender) -> None:
         if m.tc1 == 0:
             extension = (
-                {"target_system": sender[0], "target_component": sender[1]}
-                if "target_system" in KIND.fields
-                else {}
+                {"target_system": sender[0], "target_component": sender[1]} if "target_system" in KIND.fields else {}
             )
             channel.send(KIND, KIND.payload(tc1=self.bridge.now_us * 1000, ts1=m.ts1, **extension))

@@ -127,9 +127,7 @@ def gps_raw_int(context: Context) -> Build:
         has_fix = fix >= 2
         eph, epv = (uint16(eph), uint16(epv)) if has_fix else (65535, 65535)
         accuracies = (alt, eph * 3, epv * 5, 0, 0, 0) if has_fix else (alt, 0, 0, 0, 0, 0)
-        return pack(
-            t, lat, lon, alt, eph, epv, speed, course, fix & 0xFF, min(max(satellites, 0), 255), *accuracies
-        )
+        return pack(t, lat, lon, alt, eph, epv, speed, course, fix & 0xFF, min(max(satellites, 0), 255), *accuracies)
 
     return build
 

@@ -53,9 +53,7 @@ def highres_imu(context: Context) -> Build:
 
     def build() -> bytes:
         t, *imu, pressure, temperature = read()
-        altitude = (
-            44330.77 * (1.0 - math.pow(max(pressure, 0.0) / 1013.25, 0.1902632)) if pressure >= 0.0 else 0.0
-        )
+        altitude = 44330.77 * (1.0 - math.pow(max(pressure, 0.0) / 1013.25, 0.1902632)) if pressure >= 0.0 else 0.0
         return pack(t, *imu, pressure, 0.0, altitude, temperature, all_but_differential_pressure, 0)
 
     return build

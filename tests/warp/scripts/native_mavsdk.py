@@ -23,9 +23,7 @@ offboard, mission = Offboard(system), MissionRaw(system)
 
 action.arm()
 item = MissionItem
-items = [
-    item(n, 3, 16, int(n == 0), 1, 0, 0, 0, float("nan"), 473977420, 85455940, 10.0, 0) for n in range(5)
-]
+items = [item(n, 3, 16, int(n == 0), 1, 0, 0, 0, float("nan"), 473977420, 85455940, 10.0, 0) for n in range(5)]
 start = time.monotonic()
 mission.upload_mission(items)
 measured["upload_s"] = time.monotonic() - start

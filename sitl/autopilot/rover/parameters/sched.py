@@ -6,7 +6,5 @@ from __future__ import annotations
 from ...params.parameter import INT16, Parameter
 
 PARAMETERS = (
-    Parameter(
-        "SCHED_LOOP_RATE", 50, 50, 50, "Hz", "Rate of the main loop; this firmware runs at 50 Hz only", INT16
-    ),
+    Parameter("SCHED_LOOP_RATE", 50, 50, 50, "Hz", "Rate of the main loop; this firmware runs at 50 Hz only", INT16),
 )
