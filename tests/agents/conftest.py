@@ -19,11 +19,13 @@ def sitl(monkeypatch, tmp_path, capsys):
     def run(*words):
         top = argparse.ArgumentParser(prog="sitl")
         agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
-        options = top.parse_args([str(word) for word in words])
         try:
+            options = top.parse_args([str(word) for word in words])
             code = options.function(options)
         except errors.USER_ERRORS as error:
             return 2, "", str(error)
+        except SystemExit:
+            return 2, "", capsys.readouterr().err
         captured = capsys.readouterr()
         return code, captured.out, captured.err
 

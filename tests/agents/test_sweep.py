@@ -3,41 +3,24 @@
 
 from __future__ import annotations
 
-import argparse
 import csv
+from functools import partial
 
 import pytest
 from small_runs import CHECKS, CIRCUIT2, result
 
-import agents.cli
 from agents.errors import AgentError
 from agents.runs import folder as folders
 from agents.runs import sweep as sweeps
 from agents.runs.sweep import Sweep
-from sitl import errors
 
 SHORT = ["--episodes", "20", "--max-steps", "60", *(w for k, v in CHECKS.items() for w in ("--set", f"{k}={v}"))]
 
 
 @pytest.fixture
-def train(monkeypatch, tmp_path, capsys):
-    """Runs ``sitl train`` in an empty folder; gives its code, output and errors, 2 and the message for a mistake."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*words):
-        top = argparse.ArgumentParser(prog="sitl")
-        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
-        try:
-            options = top.parse_args(["train", *(str(word) for word in words)])
-            code = options.function(options)
-        except errors.USER_ERRORS as error:
-            return 2, "", str(error)
-        except SystemExit:
-            return 2, "", capsys.readouterr().err
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run
+def train(sitl):
+    """Runs ``sitl train``, see ``sitl``."""
+    return partial(sitl, "train")
 
 
 def test_axes_and_their_combinations():

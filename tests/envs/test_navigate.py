@@ -1,34 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pieces of an environment and their combinations; what happens to options that cannot be used."""
+"""The pieces of an environment and their combinations."""
 
 from __future__ import annotations
 
-import inspect
 import math
 
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
+from navigation import NAVIGATE, make
 from pytest import approx
 
 from envs import EnvOptionError
-from envs.actions import Continuous, Discrete
-from envs.navigate import Navigate
+from envs.actions import Discrete
 from envs.observations import Digits
-from envs.options import COMMON
 from envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
-from envs.setpoints import DRIVE, VELOCITY
+from envs.setpoints import DRIVE
 from envs.tasks import ReachGoal, Task
 from sitl import worlds
 from sitl.vehicles.turtlebot import Lidar
-
-NAVIGATE = "sitl/Navigate-v0"
-
-
-def make(**options):
-    return gym.make(NAVIGATE, **options).unwrapped
 
 
 @pytest.mark.parametrize("world", worlds.names())
@@ -233,119 +224,11 @@ def test_pieces_of_ones_own():
     assert env.step(1)[1] == 0.0
 
 
-@pytest.mark.parametrize("action", [3, -1, 1.5, None, "0", [0, 1], np.array([0.0])])
-def test_actions_outside_of_a_table_are_refused(action):
-    env = make()
-    env.reset()
-    with pytest.raises(InvalidAction, match=r"not in Discrete\(3\): 0 forward, 1 left, 2 right"):
-        env.step(action)
-
-
-@pytest.mark.parametrize("action", [[0.4, 0.0], [0.1], [math.nan, 0.0], 1, "ab", None, [0.1, 0.1, 0.1]])
-def test_actions_outside_of_a_box_are_refused(action):
-    env = make(action="continuous")
-    env.reset()
-    with pytest.raises(InvalidAction, match=r"forward \[m/s\] 0 .. 0.3, turn \[rad/s\] -0.3 .. 0.3"):
-        env.step(action)
-
-
 def test_numpy_integers_are_actions():
     env = make()
     env.reset()
     for action in (np.int64(1), np.array(1), np.uint8(2)):
         env.step(action)
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"robot": "turtelbot"}, r"robot 'turtelbot' is not known; .*did you mean 'turtlebot'"),
-        ({"robot": 3}, r"robot 3 is neither a name"),
-        ({"world": "moon"}, r"world 'moon' is not known; it is one of circuit"),
-        ({"task": "wonder"}, r"task 'wonder' .*did you mean 'wander'"),
-        ({"task": Task}, r"task .* nor an object with judge"),
-        ({"observation": "camera"}, r"observation 'camera' is not known; it is one of digits, scan"),
-        ({"action": "jump"}, r"action 'jump' is not known; it is one of discrete, continuous"),
-        ({"action": 3}, r"action 3 is neither a name"),
-        ({"action": Continuous(VELOCITY, (0,) * 4, (1,) * 4)}, r"action gives 'velocity'; turtlebot takes drive"),
-        ({"setpoint": "velocity"}, r"setpoint 'velocity': turtlebot takes drive"),
-        ({"setpoint": "drives"}, r"setpoint 'drives' .* did you mean 'drive'"),
-        ({"step_time": 0.0}, r"step_time = 0.0; it must be above 0 s, at most 3600 s, and a whole number of 0.01 s"),
-        ({"step_time": 0.123}, r"step_time = 0.123"),
-        ({"step_time": math.nan}, r"step_time = nan"),
-        ({"step_time": "fast"}, r"step_time = 'fast'"),
-        ({"start": "pole"}, r"start 'pole': .*original.* and \"random\""),
-        ({"start": (1.0,)}, r"start: pose \(1.0,\)"),
-        ({"randomise": {"range_nois": (0, 1)}}, r"figure 'range_nois' .* did you mean 'range_noise'"),
-        ({"randomise": {"range_noise": (0.2, 0.1)}}, r"range_noise = \(0.2, 0.1\); it must be low <= high within 0"),
-        ({"randomise": {"range_noise": 0.1}}, r"range_noise = 0.1; it must be \(low, high\) or a function"),
-        ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics, .*did you mean 'lidar'"),
-        ({"wrld": "maze"}, r"option 'wrld' .*did you mean 'world'"),
-        ({"render_mode": "ascii"}, r"render_mode 'ascii' is not known"),
-    ],
-)
-@pytest.mark.filterwarnings("ignore:.*render_mode.*")
-def test_wrong_options_are_named_with_what_is_allowed(options, message):
-    with pytest.raises(EnvOptionError, match=message):
-        gym.make(NAVIGATE, **options)
-
-
-def test_the_options_that_messages_list_are_those_that_there_are():
-    taken = inspect.signature(Navigate).parameters
-    assert set(COMMON) == {name for name in taken if name != "robot_options"}
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: Task(["speed"]), r"reward 'speed' is not known; it is one of forward"),
-        (lambda: Task([3]), r"reward 3 is neither"),
-        (lambda: Task(crash_range=-1.0), r"crash_range = -1.0"),
-        (lambda: ReachGoal((1.0, math.nan)), r"goal = "),
-        (lambda: ReachGoal(radius=0.0), r"radius = 0.0"),
-        (lambda: Digits(parts=0), r"parts=0"),
-        (lambda: Nearness(0.0), r"distance=0.0"),
-        (lambda: Discrete(DRIVE, {"go": (1.0,)}), r"action 'go' = \(1.0,\); it must be 2 finite numbers"),
-        (lambda: Discrete(DRIVE, {}), r"needs a row"),
-        (lambda: Continuous(DRIVE, (0.0,), (1.0, 1.0)), r"are not 2 numbers"),
-        (lambda: Continuous(DRIVE, (0.0, 1.0), (1.0, 1.0)), r"less than"),
-    ],
-)
-def test_wrong_figures_of_pieces_are_named(call, message):
-    with pytest.raises(EnvOptionError, match=message):
-        call()
-
-
-def test_foreign_snapshots_are_refused():
-    env = make()
-    env.reset()
-    with pytest.raises(EnvOptionError, match="no snapshot"):
-        env.restore(3)
-    other = make(lidar=Lidar(10, 10, 1.0))
-    other.reset()
-    with pytest.raises(EnvOptionError, match="snapshot"):
-        env.restore(other.snapshot())
-
-
-@pytest.mark.parametrize("step_time", [1e-9, 1e-8, 0.600001, np.float32(0.605), 1e300])
-def test_step_time_that_is_no_whole_number_of_ticks_is_refused(step_time):
-    with pytest.raises(EnvOptionError, match=r"step_time = .* a whole number of 0.01 s"):
-        make(step_time=step_time)
-
-
-@pytest.mark.parametrize(
-    ("option", "value", "message"),
-    [
-        ("randomise", "none", r"randomise = 'none'; it must map figures to \(low, high\), or be None"),
-        ("randomise", 1.5, r"randomise = 1.5; it must map"),
-        ("setpoint", ["rc"], r"setpoint \['rc'\] is not known; it is one of"),
-        ("action", {"ahead": 1}, r"action 'ahead' = 1; it must be 2 finite numbers"),
-        ("action", {"ahead": "ab"}, r"action 'ahead' = 'ab'; it must be 2 finite numbers"),
-    ],
-)
-def test_options_of_another_kind_are_refused(option, value, message):
-    with pytest.raises(EnvOptionError, match=message):
-        make(**{option: value})
 
 
 @pytest.mark.parametrize("step_time", [np.float32(0.1), 0.1 + 0.2 - 0.2, 0.100000005])
@@ -362,30 +245,6 @@ def test_start_can_be_an_array():
     assert env.robot.pose[0] == approx([0.5, 0.1, 0.0, 0.2])
 
 
-PILLAR = worlds.World(
-    "pillar", (worlds.Cylinder((0.0, 0.0, 0.5), 0.5, 1.0, "post"),), (worlds.Start("o", (0.0, 0.0, 0.0), 0.0),)
-)
-
-
-def test_starts_inside_of_solids_are_refused():
-    with pytest.raises(EnvOptionError, match=r"start: \(0, 0, 0\) in world 'pillar' is inside of cylinder 'post'"):
-        make(world=PILLAR)
-    with pytest.raises(EnvOptionError, match=r"turtlebot has no room at start 'o'"):
-        make(world=PILLAR, start="random")
-    env = make(world=PILLAR, start=lambda rng: (0.4, 0.0, 0.0))
-    with pytest.raises(EnvOptionError, match="inside of"):
-        env.reset()
-    env = make(world=PILLAR, start=(2.0, 0.0, 0.0))
-    env.reset()
-    with pytest.raises(EnvOptionError, match="inside of"):
-        env.reset(options={"pose": (0.0, 0.3, 0.0)})
-
-
-def test_reset_options_that_are_not_known_are_named():
-    with pytest.raises(EnvOptionError, match=r"reset: option 'psoe' is not known; it is one of pose; did you mean"):
-        make().reset(options={"psoe": (0.0, 0.0, 0.0)})
-
-
 def test_random_starts_leave_room_for_the_greatest_robot():
     env = make(start="random", randomise={"radius": (0.4, 0.45)})
     for seed in range(40):
@@ -400,22 +259,6 @@ def test_random_goals_are_not_where_the_robot_starts():
         assert not env.step(1)[4]["reached"]
 
 
-def test_reward_by_action_needs_a_table():
-    with pytest.raises(EnvOptionError, match="needs a table of actions"):
-        make(task="paper", action="continuous")
-
-
-def test_a_class_of_actions_is_no_action():
-    with pytest.raises(EnvOptionError, match="nor an Action"):
-        make(action=Discrete)
-
-
-@pytest.mark.parametrize("columns", [(2,), (-1,)])
-def test_columns_of_actions_are_those_of_the_setpoint(columns):
-    with pytest.raises(EnvOptionError, match=r"columns .* 0 \.\. 1"):
-        Continuous(DRIVE, (0.0,), (1.0,), columns)
-
-
 def test_digits_stay_in_the_space_whatever_a_function_draws():
     wall = worlds.Box((40.0, 0.0, 0.5), (1.0, 90.0, 1.0))
     world = worlds.World("far", (wall,), (worlds.Start("o", (0.0, 0.0, 0.0), 0.0),))
@@ -423,13 +266,6 @@ def test_digits_stay_in_the_space_whatever_a_function_draws():
     observation, _ = env.reset()
     assert env.robot.scan[0, 8] == approx(42.4, abs=0.1) and observation[2] == 20
     assert env.observation_space.contains(observation)
-
-
-def test_snapshot_of_another_task_is_refused():
-    env, other = make(task="goal"), make()
-    env.reset(seed=1), other.reset(seed=1)
-    with pytest.raises(EnvOptionError, match="a task without a goal"):
-        env.restore(other.snapshot())
 
 
 def yard(half):
