@@ -46,7 +46,7 @@ class Witness(Pilot):
         v = self.simulation.v
         body, battery, controls = v.physics.body, v.physics.battery, v.actuators.controls
         if self.simulation.kind.name == "copter":
-            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))
+            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))  # type: ignore[attr-defined]
         else:
             output = float(controls[2])
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0

@@ -27,6 +27,7 @@ import platformdirs
 from .fingerprint import fingerprint, reached
 from .kernels import LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import law_options, quick
+from .records import Record
 
 Progress = Callable[[str, int, int], None]
 """Called as ``progress(unit name, units done, units to build)``."""
@@ -77,10 +78,10 @@ def toolchain() -> str:
     return " ".join((*versions, platform.machine(), processor, features, repr(law_options())))
 
 
-def record_type(path: str) -> np.dtype[Any]:
-    """The record type at ``package.module.NAME``."""
+def record_class(path: str) -> type[Record]:
+    """The record class at ``package.module.NAME``."""
     module, name = path.rsplit(".", 1)
-    found: np.dtype[Any] = getattr(importlib.import_module(module), name)
+    found: type[Record] = getattr(importlib.import_module(module), name)
     return found
 
 
@@ -93,7 +94,7 @@ def unit_folder(unit: Unit, path: str) -> Path:
     """Where the unit's current machine code for the record type at ``path`` is or will be."""
     key = (unit.name, path)
     if key not in _fingerprints:
-        _fingerprints[key] = fingerprint(unit, record_type(path), f"{toolchain()} {path}")
+        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), f"{toolchain()} {path}")
     return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
 
 
@@ -153,7 +154,7 @@ def _wrapper_source(unit: Unit) -> str:
     return (
         f"# The C entry of unit {unit.name}.\n"
         f"def {ENTRY}(vehicles, count, index{integers}):\n"
-        f"    body(carray(vehicles, count, DTYPE), index{integers})\n"
+        f"    body(carray(vehicles, count), index{integers})\n"
     )
 
 
@@ -169,8 +170,9 @@ def load_unit(unit: Unit, path: str) -> Any:
     from numba import types
 
     make_jitable()
-    dtype = record_type(path)
-    record = numba.from_dtype(dtype)
+    from .numba_records import numba_type
+
+    record = numba_type(record_class(path))
     if _records.setdefault(record, path) != path:
         raise BuildError(f"{path} and {_records[record]} are the same record type; one of them will do")
     folder, name = unit_folder(unit, path), symbol(unit, path)
@@ -183,7 +185,7 @@ def load_unit(unit: Unit, path: str) -> Any:
         os.replace(temporary, source)
     module = ModuleType(name)  # in sys.modules, because Numba's cache looks the entry's module up by name
     sys.modules[name] = module
-    vars(module).update(carray=numba.carray, DTYPE=dtype, body=_body(unit))
+    vars(module).update(carray=numba.carray, body=_body(unit))
     exec(compile(source.read_text(), str(source), "exec"), vars(module))
     signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)

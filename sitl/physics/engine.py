@@ -44,7 +44,7 @@ class Seat:
     """Where an engine finds its vehicle."""
 
     v: Any
-    """View of the record (``sitl.core.records.view``)."""
+    """The record."""
     fleet: Array
     index: int
     """The record is ``fleet[index]``; its memory stays in place."""

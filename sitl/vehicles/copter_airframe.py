@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from .airframe import Airframe, AirframeError
-from .figures.copter import FIGURES, FIGURES_DTYPE, HUBS, MODEL, ROTORS_MAX
+from .figures.copter import FIGURES, FIGURES_RECORD, HUBS, MODEL, ROTORS_MAX
 
 CCW, CW = 1.0, -1.0
 """Sense of rotation seen from above."""
@@ -35,7 +35,7 @@ class CopterAirframe(Airframe):
 
     kind: ClassVar[str] = "copter"
     known = tuple(figure for figure in FIGURES if figure not in HUBS)
-    dtype = FIGURES_DTYPE
+    dtype = FIGURES_RECORD.dtype
     model = MODEL
 
     rotors: tuple[Rotor, ...]

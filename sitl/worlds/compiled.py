@@ -14,8 +14,6 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-
 from ..core import compile as compiler
 from ..core.fingerprint import fingerprint
 from ..core.kernels import Unit, jit_disabled
@@ -56,7 +54,7 @@ def _load(wanted: Kernel) -> Callable[..., Any]:
 
     unit = Unit(wanted.name, wanted.law, 0)
     signature = wanted.signature if isinstance(wanted.signature, str) else wanted.signature()
-    key = fingerprint(unit, np.dtype("f8"), f"{compiler.toolchain()} {signature}")
+    key = fingerprint(unit, "", f"{compiler.toolchain()} {signature}")
     folder = compiler.cache_folder() / f"{wanted.name}-{key}"
     compiler.make_jitable()
     count = wanted.law.__code__.co_argcount

@@ -8,7 +8,6 @@ import pytest
 from fakes import FakeVehicle
 
 from sitl.bridge.record_reader import RecordReader, UnknownFieldError
-from sitl.core.records import record
 
 
 def fill(vehicle: FakeVehicle) -> None:
@@ -34,6 +33,6 @@ def test_unknown_fields_are_named(path: str) -> None:
 
 
 def test_small_types() -> None:
-    fleet = np.zeros(2, record(("a", "f4"), ("b", "i4", 3), ("c", "i8")))
+    fleet = np.zeros(2, np.dtype([("a", "f4"), ("b", "i4", 3), ("c", "i8")], align=True))
     fleet["a"], fleet["b"], fleet["c"] = 1.5, [1, 2, 3], -4
     assert RecordReader(fleet, 1).fields("c", "b", "a")() == (-4, 1, 2, 3, 1.5)

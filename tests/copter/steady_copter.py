@@ -12,15 +12,14 @@ from sitl.autopilot import home
 from sitl.autopilot.copter.control.init import init as init_control
 from sitl.autopilot.copter.modes.init import init as init_modes
 from sitl.autopilot.copter.table import TABLE
-from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle import Copter
 
 READY_US = 60_000_000
 
 
 def make() -> Any:
     """A healthy vehicle, disarmed at home a minute after boot, in STABILIZE."""
-    v = records.view(np.zeros(1, COPTER_DTYPE), 0)
+    v = Copter()
     ap = v.autopilot
     TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0

@@ -31,4 +31,4 @@ def flown(truth, tick):
 @pytest.fixture
 def ap():
     """An autopilot record at power-on, with attribute access."""
-    return sf.view(sf.new(), 0).autopilot
+    return sf.Copter.of(sf.new(), 0).autopilot

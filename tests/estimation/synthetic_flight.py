@@ -17,8 +17,7 @@ from sitl.autopilot.estimation import update
 from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
-from sitl.core.records import view
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle import Copter
 
 DT = 0.0025
 TAKE_OFF = 50.0
@@ -29,16 +28,16 @@ GRAVITY = 9.80665
 
 def new() -> np.ndarray:
     """A fleet of one vehicle at power-on, with default parameters."""
-    fleet = np.zeros(1, COPTER_DTYPE)
-    TABLE.set_defaults(view(fleet, 0).autopilot.params)
+    fleet = Copter.fleet(1)
+    TABLE.set_defaults(Copter.of(fleet, 0).autopilot.params)
     return fleet
 
 
 def updater() -> Any:
     """``f(fleet)``: one tick of the estimator, compiled unless Numba is switched off."""
-    call = compiler.load(update.update, "sitl.vehicle.COPTER_DTYPE")
+    call = compiler.load(update.update, "sitl.vehicle.Copter")
     if call is None:
-        return lambda fleet: update.update(fleet.view(np.recarray), 0)
+        return lambda fleet: update.update({0: Copter.of(fleet, 0)}, 0)
     return lambda fleet: call(fleet.ctypes.data, 1, 0)
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 import synthetic_flight as sf
 
@@ -30,7 +29,7 @@ def test_plain_python_agrees_with_compiled(tick) -> None:
             plain["sensors"], plain["time_us"] = compiled["sensors"], compiled["time_us"]
         tick(compiled)
         if plain is not None:
-            update.update(plain.view(np.recarray), 0)
+            update.update({0: sf.Copter.of(plain, 0)}, 0)
     assert plain is not None
     difference = first_difference(plain[0], compiled[0])
     assert difference is None

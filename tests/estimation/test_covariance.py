@@ -15,7 +15,7 @@ from sitl.autopilot.estimation.state import BA, BG, BM, POS, THETA, VEL, N
 
 def _random(seed: int):
     r = np.random.default_rng(seed)
-    ap = sf.view(sf.new(), 0).autopilot
+    ap = sf.Copter.of(sf.new(), 0).autopilot
     a = r.normal(size=(N, N))
     ap.ekf.P[:] = a @ a.T
     q = r.normal(size=4)

@@ -17,7 +17,7 @@ from sitl.autopilot.estimation.state import POS, THETA, VEL, N
 @settings(max_examples=20, deadline=None)
 def test_two_scalars_one_after_the_other_are_the_joint_update(seed: int) -> None:
     r = np.random.default_rng(seed)
-    ekf = sf.view(sf.new(), 0).autopilot.ekf
+    ekf = sf.Copter.of(sf.new(), 0).autopilot.ekf
     a = r.normal(size=(N, N))
     P = a @ a.T
     ekf.P[:] = P

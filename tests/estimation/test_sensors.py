@@ -12,7 +12,7 @@ from sitl.autopilot.estimation import barometer, gps, magnetometer, origin
 
 
 def _vehicle():
-    v = sf.view(sf.new(), 0)
+    v = sf.Copter.of(sf.new(), 0)
     s = v.sensors
     s.gps_fix, s.gps_satellites, s.gps_eph = 3, 10, 121
     s.gps_lat, s.gps_lon, s.gps_alt = -353632620, 1491652370, 584000

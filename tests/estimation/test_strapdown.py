@@ -44,7 +44,7 @@ def test_bias_is_taken_off(ap) -> None:
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf"), 1e30])
 @pytest.mark.parametrize("name", ["gyro", "acc"])
 def test_a_broken_sample_is_replaced_by_the_last_good_one(bad: float, name: str) -> None:
-    v = sf.view(sf.new(), 0)
+    v = sf.Copter.of(sf.new(), 0)
     v.sensors.gyro[:], v.sensors.acc[:] = (0.1, 0.2, 0.3), (0, 0, -9.8)
     ekf = v.autopilot.ekf
     strapdown.read_imu(ekf, v.sensors)

@@ -11,9 +11,8 @@ from sitl.bridge.dialect import message
 from sitl.bridge.hil.autopilot_end import AutopilotEnd
 from sitl.bridge.hil.physics_end import PhysicsEnd
 from sitl.bridge.hil.sender import Sender
-from sitl.core import records
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle import COPTER_DTYPE, TICK_US
+from sitl.vehicle import TICK_US, Copter
 from sitl.vehicles import apply, load
 
 
@@ -21,9 +20,9 @@ class Vehicle:
     """A record of an Erle-Copter."""
 
     def __init__(self) -> None:
-        self.fleet = np.zeros(2, COPTER_DTYPE)
+        self.fleet = Copter.fleet(2)
         self.index = 1
-        self.v: Any = records.view(self.fleet, 1)
+        self.v: Any = Copter.of(self.fleet, 1)
         apply(load("erle_copter"), self.v)
 
 

@@ -17,7 +17,6 @@ from sitl.bridge.hil.inbox import Inbox
 from sitl.bridge.hil.measurements import Measurements
 from sitl.bridge.hil.numbers import RefusedError
 from sitl.bridge.record_reader import RecordReader
-from sitl.core import records
 from sitl.core.records import first_difference
 from sitl.kinds import KINDS
 from sitl.physics.carried import Carried
@@ -187,8 +186,7 @@ def test_controls(outputs: list[float], armed: bool) -> None:
 )
 def test_parts_of_the_rotors_range(frame: str, lowest: float, highest: float) -> None:
     airframe = load(frame)
-    fleet = np.zeros(1, KINDS[airframe.kind].dtype)
-    v = records.view(fleet, 0)
+    v = KINDS[airframe.kind].record()
     apply(airframe, v)
     span = controls.rotor_range(v.physics.airframe)
     assert span == pytest.approx((lowest, highest))

@@ -3,20 +3,18 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.autopilot.radio import RECEIVER_PULSES, receive
-from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle import Copter
 
 TIMEOUT = 1.0
 
 
 @pytest.fixture
 def v():
-    vehicle = records.view(np.zeros(1, COPTER_DTYPE), 0)
+    vehicle = Copter()
     FIRMWARE.table.set_defaults(vehicle.autopilot.params)
     vehicle.autopilot.rc.has_receiver = 1
     vehicle.time_us = 10_000_000

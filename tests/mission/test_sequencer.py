@@ -38,8 +38,7 @@ from sitl.autopilot.navigation.state import (
     STOPPED,
     WAYPOINT,
 )
-from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle import Copter
 
 LAT, LON, ALT = -353632621, 1491652371, 584.0
 WP = MissionItem(c.NAV_WAYPOINT, x=LAT + 1000, y=LON, z=10.0)
@@ -56,8 +55,8 @@ class Vehicle:
     """A vehicle in AUTO, 10 m over home, whose commands complete when the test says so."""
 
     def __init__(self, *items: MissionItem) -> None:
-        self.fleet = np.zeros(1, COPTER_DTYPE)
-        self.v: Any = records.view(self.fleet, 0)
+        self.fleet = Copter.fleet(1)
+        self.v: Any = Copter.of(self.fleet, 0)
         ap = self.v.autopilot
         TABLE.set_defaults(ap.params)
         ap.estimate.origin_set = 1

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.navigation.leg import LegError, Limits, Profile, axis_limits, plan, write
 from sitl.autopilot.navigation.profile import clear, evaluate, finished, remaining, step
-from sitl.autopilot.navigation.state import LEG_DTYPE, SEGMENTS
+from sitl.autopilot.navigation.state import SEGMENTS, Leg
 
 DEFAULT = Limits(10.0, 2.5, 1.0, 0.3)
 limits = st.builds(
@@ -26,7 +26,7 @@ limits = st.builds(
 
 def record(profile: Profile, length: float):
     """The leg in a record."""
-    leg = np.zeros(1, LEG_DTYPE).view(np.recarray)[0]
+    leg = Leg()
     write(leg, profile, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), length)
     return leg
 

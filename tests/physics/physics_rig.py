@@ -5,14 +5,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from sitl import vehicles
-from sitl.autopilot.state import ACTUATORS_DTYPE, SENSORS_DTYPE
+from sitl.autopilot.state import Actuators, Sensors
 from sitl.core import compile as compiler
-from sitl.core import records
 from sitl.core.kernels import UNITS
-from sitl.core.rng import RNG_DTYPE
+from sitl.core.records import Record
+from sitl.core.rng import Rng
 from sitl.physics.native.copter import init as copter_init
 from sitl.physics.native.copter import state as copter_state
 from sitl.physics.native.copter import step as copter_step
@@ -23,19 +21,26 @@ from sitl.physics.native.rover import step as rover_step
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 
 
-def _vehicle(physics: Any) -> Any:
-    return records.record(
-        ("time_us", "i8"),
-        ("tick", "i8"),
-        ("rng", RNG_DTYPE),
-        ("physics", physics),
-        ("sensors", SENSORS_DTYPE),
-        ("actuators", ACTUATORS_DTYPE),
-    )
+class Copter(Record):
+    """A copter without autopilot."""
+
+    time_us: int
+    tick: int
+    rng: Rng
+    physics: copter_state.Physics
+    sensors: Sensors
+    actuators: Actuators
 
 
-COPTER_DTYPE = _vehicle(copter_state.PHYSICS_DTYPE)
-ROVER_DTYPE = _vehicle(rover_state.PHYSICS_DTYPE)
+class Rover(Record):
+    """A rover without autopilot."""
+
+    time_us: int
+    tick: int
+    rng: Rng
+    physics: rover_state.Physics
+    sensors: Sensors
+    actuators: Actuators
 
 
 class Rig:
@@ -44,11 +49,11 @@ class Rig:
     def __init__(self, frame: str = "ardupilot_quad", seed: int = 1, heading: float = 0.0, **figures: Any):
         self.airframe = vehicles.load(frame).changed(**figures)
         copter = self.airframe.kind == "copter"
-        self._dtype = "COPTER_DTYPE" if copter else "ROVER_DTYPE"
+        self._record = Copter if copter else Rover
         self._step = (copter_step if copter else rover_step).step
         self._init = (copter_init if copter else rover_init).init
-        self.fleet = np.zeros(1, COPTER_DTYPE if copter else ROVER_DTYPE)
-        self.v = records.view(self.fleet, 0)
+        self.fleet = self._record.fleet(1)
+        self.v: Any = self._record.of(self.fleet, 0)
         self.power_on(seed, heading)
         self.p = self.v.physics
 
@@ -64,7 +69,7 @@ class Rig:
     def compiled(self) -> Any:
         """The compiled step, ``(address, count, index)``."""
         name = self._step.__module__.removeprefix("sitl.") + ".step"
-        return compiler.load_unit(UNITS[name], f"physics_rig.{self._dtype}").ctypes
+        return compiler.load_unit(UNITS[name], f"physics_rig.{self._record.__name__}").ctypes
 
     def command(self, *controls: float) -> None:
         """Actuator controls: of each rotor or of all, of a rover steering and throttle (or left and right)."""

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from sitl import vehicles
-from sitl.core import records
 from sitl.core.rotations import quat_from_euler
 from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.copter import pieces
 from sitl.physics.native.copter.init import init
 from sitl.physics.pybullet.engine import BulletEngine
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle import Copter
 from sitl.vehicles import Airframe
 from sitl.worlds import World
 
@@ -31,8 +30,8 @@ def copter(
 ) -> BulletEngine:
     """A copter with power on, put down at a place: NED [m]; roll, pitch, yaw [rad]."""
     airframe = vehicles.load(frame)
-    fleet = np.zeros(1, COPTER_DTYPE)
-    v = records.view(fleet, 0)
+    fleet = Copter.fleet(1)
+    v = Copter.of(fleet, 0)
     init(v, airframe, HOME, seed)
     floor = 0.0 if world is None else world.floor_z
     laws = Laws(lambda: pieces.begin([v], 0), lambda: pieces.load([v], 0), lambda: pieces.sense([v], 0))

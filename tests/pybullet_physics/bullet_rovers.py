@@ -5,10 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from sitl import vehicle, vehicles, worlds
-from sitl.core import records
 from sitl.core_entry import bind_unit
 from sitl.kinds import ROVER
 from sitl.physics.engine import Laws, Seat
@@ -25,8 +22,8 @@ class Rover:
 
     def __init__(self, frame: str, world: str | World | None = None, physics: str = "pybullet", **figures: Any) -> None:
         airframe = vehicles.load(frame).changed(noise_scale=0.0, **figures)
-        self.fleet = fleet = np.zeros(1, vehicle.ROVER_DTYPE)
-        self.v = records.view(fleet, 0)
+        self.fleet = fleet = vehicle.Rover.fleet(1)
+        self.v = vehicle.Rover.of(fleet, 0)
         init(self.v, airframe, HOME, 1)
         self.full = float(airframe.value("control_full"))
         self.engine: BulletRover | None = None

@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from sitl.core import records
 from sitl.core.records import first_difference
-from sitl.physics.native.turtlebot.state import TURTLEBOT_DTYPE
+from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from sitl.physics.native.turtlebot.step import wheel_speeds
 from sitl.turtlebot import Turtlebot, Turtlebots
 from sitl.vehicles import AirframeError
@@ -29,9 +28,9 @@ EVEN = AIRFRAME.changed(wheel_radius_left=0.035)
 
 
 def figures(airframe=AIRFRAME):
-    fleet = np.zeros(1, TURTLEBOT_DTYPE)
+    fleet = TurtlebotRecord.fleet(1)
     fleet["figures"] = airframe.record()
-    return records.view(fleet, 0).figures
+    return TurtlebotRecord.of(fleet, 0).figures
 
 
 def test_wheels_follow_speed_and_turn():

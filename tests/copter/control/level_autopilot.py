@@ -7,20 +7,17 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from sitl.autopilot.copter.control import motors, rate, throttle_mix
 from sitl.autopilot.copter.control.init import init
-from sitl.autopilot.copter.state import AUTOPILOT_DTYPE
+from sitl.autopilot.copter.state import Autopilot
 from sitl.autopilot.copter.table import TABLE
-from sitl.autopilot.state import ACTUATORS_DTYPE
-from sitl.core import records
+from sitl.autopilot.state import Actuators
 from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_normalise, quat_to_euler
 
 
 def make_autopilot() -> Any:
     """A view of one autopilot record; controllers initialised, disarmed."""
-    ap = records.view(np.zeros(1, AUTOPILOT_DTYPE), 0)
+    ap = Autopilot()
     TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0
     ap.estimate.q[0] = 1.0
@@ -30,7 +27,7 @@ def make_autopilot() -> Any:
 
 def make_actuators() -> Any:
     """A view of one actuators record."""
-    return records.view(np.zeros(1, ACTUATORS_DTYPE), 0)
+    return Actuators()
 
 
 def arm(ap: Any, throttle: float = 0.35) -> None:

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from sitl.autopilot.copter.control import position
 from sitl.autopilot.copter.mission import COMMANDS
 from sitl.autopilot.copter.navigation import command
@@ -18,8 +16,7 @@ from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.navigation.command import check_condition, complete
 from sitl.autopilot.navigation.state import LAND, NONE, TAKEOFF
-from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE, TICK_US
+from sitl.vehicle import TICK_US, Copter
 
 ORIGIN = (-353632621, 1491652371, 584.0)
 DT = TICK_US * 1e-6
@@ -35,8 +32,8 @@ class PointMass:
         lag: float = 0.25,
         follow: bool = True,
     ) -> None:
-        self.fleet = np.zeros(1, COPTER_DTYPE)
-        self.v: Any = records.view(self.fleet, 0)
+        self.fleet = Copter.fleet(1)
+        self.v: Any = Copter.of(self.fleet, 0)
         self.lag = lag
         self.follow = follow
         """Fly by the controllers; else be on the target always."""

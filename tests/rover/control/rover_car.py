@@ -10,24 +10,33 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from sitl.autopilot.params.table import collect
 from sitl.autopilot.rover import parameters
 from sitl.autopilot.rover.control import update
 from sitl.autopilot.rover.control.init import init
-from sitl.autopilot.rover.control.state import CONTROL_DTYPE, DT, PERIOD_US
-from sitl.autopilot.state import ACTUATORS_DTYPE, SENSORS_DTYPE, autopilot_dtype
-from sitl.core import records
+from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control
+from sitl.autopilot.state import Actuators, Autopilot, Sensors
+from sitl.core.records import Record
 
 TABLE = collect(parameters, parameters.DEFAULTS)
-NO_MODES = records.record(("none", "i8"))
-VEHICLE_DTYPE = records.record(
-    ("time_us", "i8"),
-    ("sensors", SENSORS_DTYPE),
-    ("actuators", ACTUATORS_DTYPE),
-    ("autopilot", autopilot_dtype(TABLE.dtype, NO_MODES, CONTROL_DTYPE)),
-)
+
+
+class CarAutopilot(Autopilot):
+    """A firmware without modes."""
+
+    params: TABLE.record
+    control: Control
+
+
+class CarRecord(Record):
+    """A vehicle without physics."""
+
+    time_us: int
+    sensors: Sensors
+    actuators: Actuators
+    autopilot: CarAutopilot
+
+
 HORIZONTAL = 1 | 2 | 8 | 16  # EKF_STATUS_FLAGS: attitude, velocity, position
 STEPS = 24  # of physics in a period: 1200 Hz, as recorded
 RECORDED = {
@@ -45,8 +54,7 @@ RECORDED = {
 
 def make_vehicle(**params: float) -> Any:
     """One vehicle's view: at the origin, facing north, estimate valid, disarmed; ``params`` over the defaults."""
-    fleet = np.zeros(1, VEHICLE_DTYPE)
-    v = records.view(fleet, 0)
+    v = CarRecord()
     TABLE.set_defaults(v.autopilot.params)
     for name, value in params.items():
         setattr(v.autopilot.params, name, value)

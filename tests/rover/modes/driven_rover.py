@@ -10,8 +10,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from sitl.autopilot import events
 from sitl.autopilot.rover import arming, texts
 from sitl.autopilot.rover.control import update as control
@@ -20,18 +18,22 @@ from sitl.autopilot.rover.firmware import power_on
 from sitl.autopilot.rover.modes import guided
 from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
-from sitl.autopilot.rover.state import AUTOPILOT_DTYPE
+from sitl.autopilot.rover.state import Autopilot
 from sitl.autopilot.rover.table import TABLE
-from sitl.autopilot.state import ACTUATORS_DTYPE, SENSORS_DTYPE
-from sitl.core import records
+from sitl.autopilot.state import Actuators, Sensors
+from sitl.core.records import Record
 
-VEHICLE_DTYPE = records.record(
-    ("time_us", "i8"),
-    ("tick", "i8"),
-    ("sensors", SENSORS_DTYPE),
-    ("actuators", ACTUATORS_DTYPE),
-    ("autopilot", AUTOPILOT_DTYPE),
-)
+
+class DrivenRover(Record):
+    """A rover without physics."""
+
+    time_us: int
+    tick: int
+    sensors: Sensors
+    actuators: Actuators
+    autopilot: Autopilot
+
+
 HORIZONTAL = 1 | 2 | 8 | 16  # EKF_STATUS_FLAGS: attitude, velocity, position
 RECORDED = {
     "CRUISE_SPEED": 5.0,
@@ -60,7 +62,7 @@ class Rover:
     """One vehicle: its record ``v``, and what happens to it."""
 
     def __init__(self, **params: float) -> None:
-        self.v: Any = records.view(np.zeros(1, VEHICLE_DTYPE), 0)
+        self.v: Any = DrivenRover()
         self.ap: Any = self.v.autopilot
         TABLE.set_defaults(self.ap.params)
         for name, value in {**RECORDED, **params}.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Views of records against numpy's own access."""
+"""Records against numpy's own access to the same memory."""
 
 from __future__ import annotations
 
@@ -8,12 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.core.records import RecordView, as_dict, record, view
-from sitl.vehicle import COPTER_DTYPE
+from sitl.core.records import Float32, Ints, Record, array, as_dict
+from sitl.vehicle import Copter
+
+
+class Small(Record):
+    a: Float32
+    b: Ints = array(3, stored="i4")
+    c: int
 
 
 def filled() -> np.ndarray[Any, Any]:
-    fleet = np.zeros(2, COPTER_DTYPE)
+    fleet = Copter.fleet(2)
     words = fleet.view("u1").reshape(-1)
     words[:] = np.random.default_rng(1).integers(0, 63, words.size, dtype="u1")
     return fleet
@@ -24,7 +30,7 @@ def compare(ours: Any, theirs: Any) -> int:
     count = 0
     for name in theirs.dtype.names:
         a, b = getattr(ours, name), theirs[name]
-        if isinstance(a, RecordView):
+        if isinstance(a, Record):
             count += compare(a, b)
         else:
             assert np.array_equal(a, b), name
@@ -35,15 +41,15 @@ def compare(ours: Any, theirs: Any) -> int:
 
 def test_the_view_reads_every_field() -> None:
     fleet = filled()
-    assert compare(view(fleet, 1), fleet[1]) > 300
-    assert compare(view(fleet, -2), fleet[0]) > 300
+    assert compare(Copter.of(fleet, 1), fleet[1]) > 300
+    assert compare(Copter.of(fleet, -2), fleet[0]) > 300
     with pytest.raises(IndexError):
-        view(fleet, 2)
+        Copter.of(fleet, 2)
 
 
 def test_writes_go_to_the_fleet() -> None:
     fleet = filled()
-    ours, theirs, other = view(fleet, 1), fleet[1]["autopilot"], fleet[0].copy()
+    ours, theirs, other = Copter.of(fleet, 1), fleet[1]["autopilot"], fleet[0].copy()
     ours.autopilot.estimate.pos[1] = 5.5
     ours.autopilot.estimate.vel = (1.0, 2.0, 3.0)
     ours.autopilot.modes.number = True
@@ -58,26 +64,26 @@ def test_writes_go_to_the_fleet() -> None:
 
 def test_whole_records_are_copied() -> None:
     fleet = filled()
-    ours = view(fleet, 0)
-    ours.physics = np.zeros((), COPTER_DTYPE["physics"])
-    ours["autopilot"].home = view(fleet, 1).autopilot.home
+    ours = Copter.of(fleet, 0)
+    ours.physics = np.zeros((), Copter.dtype["physics"])
+    ours["autopilot"].home = Copter.of(fleet, 1).autopilot.home
     assert not fleet[0]["physics"].tobytes().strip(b"\0")
     assert fleet[0]["autopilot"]["home"] == fleet[1]["autopilot"]["home"]
     assert as_dict(ours.autopilot.home) == as_dict(fleet[1]["autopilot"]["home"])
     with pytest.raises((TypeError, ValueError)):
-        ours.physics = np.zeros((), record(("a", "f8")))
+        ours.physics = np.zeros((), [("a", "f8")])
 
 
 def test_a_view_has_no_other_fields() -> None:
     with pytest.raises(AttributeError):
-        view(filled(), 0).autopilot.nonsense = 1
+        Copter.of(filled(), 0).autopilot.nonsense = 1
 
 
 def test_small_types() -> None:
-    fleet = np.zeros(3, record(("a", "f4"), ("b", "i4", 3), ("c", "i8")))
+    fleet = Small.fleet(3)
     fleet["c"] = -4
-    ours = view(fleet, 1)
+    ours = Small.of(fleet, 1)
     ours.a, ours.c = 2.5, 9.0
     assert fleet["a"].tolist() == [0.0, 2.5, 0.0] and fleet["c"].tolist() == [-4, 9, -4]
     with pytest.raises(ValueError, match="one block"):
-        view(fleet[::2], 0)
+        Small.of(fleet[::2], 0)
