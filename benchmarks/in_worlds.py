@@ -13,8 +13,8 @@ import time
 from collections.abc import Callable
 
 from missions.pilot import TAKEOFF, Pilot
-from sitl.kinds import KINDS
 from sitl.simulation import Core, Simulation, load_core
+from sitl.vehicle.kinds import KINDS
 
 VEHICLES = {"copter": ("erle_copter", "office_erlecopter"), "rover": ("erle_rover", "maze_erlerover")}
 SECONDS = 40.0

@@ -9,9 +9,9 @@ from missions import compare, engines
 from missions.figures import table
 from sitl.autopilot.params import docs
 from sitl.bridge import docs as mavlink
-from sitl.kinds import KINDS
 from sitl.physics.engines import BACKENDS
 from sitl.simulation import ESTIMATORS
+from sitl.vehicle.kinds import KINDS
 
 HERE = Path(__file__).parent
 

@@ -10,8 +10,8 @@ from typing import Any, Protocol
 import gymnasium as gym
 import numpy as np
 
+from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
-from sitl.worlds.compiled import kernel
 
 from .options import EnvOptionError
 from .robots.robot import Robot

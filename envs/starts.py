@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
-from sitl.turtlebot import full_pose
+from sitl.turtlebots.native import full_pose
 from sitl.worlds import WorldError
-from sitl.worlds.compiled import kernel
 from sitl.worlds.contact import clearance, nearest_of
 from sitl.worlds.frames import to_ned
 

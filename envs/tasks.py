@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
-from sitl.worlds.compiled import kernel
 
 from .options import EnvOptionError, unknown
 from .rewards import TERMS, ByAction, EachStep, Floats, Forward, Step, Term

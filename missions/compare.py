@@ -8,9 +8,9 @@ from collections.abc import Callable
 from typing import Any
 
 from sitl.foreign.choice import ARDUPILOT, FORMS, Choice, choose
-from sitl.kinds import KINDS
 from sitl.option_error import OptionError
 from sitl.simulation import ESTIMATORS, Simulation, load_core
+from sitl.vehicle.kinds import KINDS
 
 from . import copter, rover
 from .figures import Figure, table

@@ -8,10 +8,10 @@ from sitl import vehicles
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.foreign.choice import Choice
 from sitl.foreign.cutter import Cutter
-from sitl.kinds import KINDS
 from sitl.physics.engines import NATIVE
 from sitl.physics.native.power_on import Home
 from sitl.plants.alone import stand_alone
+from sitl.vehicle.kinds import KINDS
 
 _PATIENCE_S = 30.0
 

@@ -11,8 +11,8 @@ import pytest
 from sitl.autopilot.params import docs
 from sitl.cli import parser
 from sitl.core import compile as compiler
-from sitl.kinds import KINDS
 from sitl.simulation import Core
+from sitl.vehicle.kinds import KINDS
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])

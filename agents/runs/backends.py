@@ -54,9 +54,9 @@ def check(backend: str, address: str | None = None) -> None:
     if address is not None and backend != "ray":
         raise AgentError(f"address {address!r}: only the backend ray has one")
     if backend == "ray":
-        from sitl.core import on_ray
+        from sitl.core import ray_cluster
 
-        on_ray.require()
+        ray_cluster.require()
 
 
 @dataclass(frozen=True)

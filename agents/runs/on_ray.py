@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from sitl.core.on_ray import cluster
+from sitl.core.ray_cluster import cluster
 
 from ..errors import AgentError
 from . import parcels

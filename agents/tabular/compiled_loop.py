@@ -19,11 +19,11 @@ from envs.observations import Digits, digits_of
 from envs.rewards import ByAction
 from envs.robots.turtlebot import Turtlebot
 from envs.tasks import Task, count_crashes
+from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
 from sitl.physics.native.turtlebot.fleet import advance_fleet
 from sitl.physics.native.turtlebot.state import TURTLEBOT_DTYPE
-from sitl.turtlebot import Turtlebots, ticks_in
-from sitl.worlds.compiled import kernel
+from sitl.turtlebots.native import Turtlebots, ticks_in
 
 from .learn import choose_first, learn_first, learners_type
 from .learner import Learner

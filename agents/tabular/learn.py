@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
-from sitl.worlds.compiled import kernel
 
 from .exploration import choose
 from .qlearn import best_value

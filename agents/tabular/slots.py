@@ -6,8 +6,8 @@ States are whole numbers from 0 on. The layout never changes what a learner lear
 
 from __future__ import annotations
 
+from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
-from sitl.worlds.compiled import kernel
 
 EMPTY = -1
 """Key of a row that no state has taken."""

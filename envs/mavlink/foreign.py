@@ -23,7 +23,7 @@ from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
 from sitl.option_error import OptionError
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
-from sitl.runner import BASE_TCP_PORT
+from sitl.run.runner import BASE_TCP_PORT
 
 from .connection import ACCEPTED, Connection
 from .ends import LinkLostError, NotReadyError, SocketEnd

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.physics.native.turtlebot.state import TICK_S
-from sitl.turtlebot import Turtlebots, ticks_in
+from sitl.turtlebots.native import Turtlebots, ticks_in
 from sitl.vehicles.figures.figure import Figure
 from sitl.vehicles.turtlebot import AIRFRAME, FIGURES, LIDAR, Lidar, TurtlebotAirframe
 from sitl.worlds import World, planar
@@ -185,7 +185,7 @@ def _fleet(physics: str) -> type[Turtlebots]:
     if physics == "native":
         return Turtlebots
     if physics == "pybullet":
-        from sitl.bullet_turtlebots import BulletTurtlebots
+        from sitl.turtlebots.bullet import BulletTurtlebots
 
         return BulletTurtlebots
     raise EnvOptionError(f"physics {physics!r} cannot move a Turtlebot; 'native' and 'pybullet' can")

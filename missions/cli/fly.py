@@ -8,12 +8,12 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from sitl import runner
 from sitl.bridge.links.address import open_link
 from sitl.cli import recordings
 from sitl.cli.options import VEHICLES, add_vehicle_options, build_simulation, open_folder, seconds
 from sitl.option_error import OptionError
-from sitl.pacing import Pacing, parse_speedup
+from sitl.run import runner
+from sitl.run.pacing import Pacing, parse_speedup
 from sitl.simulation import Simulation
 from sitl.vehicles import load as load_airframe
 

@@ -8,20 +8,20 @@ import sys
 import time
 from pathlib import Path
 
-from sitl import runner
 from sitl.cli.options import add_vehicle_options, open_folder, seconds
 from sitl.cli.progress import CompileProgress
 from sitl.cli.recordings import new_file
 from sitl.cli.status import StatusLine
 from sitl.logs.tlog import TlogWriter
 from sitl.option_error import OptionError
-from sitl.pacing import Pacing, parse_speedup
 from sitl.physics.engines import NATIVE
 from sitl.recording.blocks import is_recording
 from sitl.recording.entries import Kind
 from sitl.recording.recorder import LOG
 from sitl.recording.recording import Recording, read
 from sitl.recording.replay import Replay
+from sitl.run import runner
+from sitl.run.pacing import Pacing, parse_speedup
 from sitl.simulation import Simulation
 
 DECIDED = ("home", "start", "seed", "params")

@@ -6,13 +6,13 @@ from __future__ import annotations
 import argparse
 import time
 
-from sitl import runner
 from sitl.cli import recordings
 from sitl.cli.options import build_simulation, open_folder
 from sitl.cli.status import StatusLine
 from sitl.option_error import OptionError
-from sitl.pacing import Pacing, parse_speedup
 from sitl.recording.recorder import Recorder
+from sitl.run import runner
+from sitl.run.pacing import Pacing, parse_speedup
 
 from ..tlog_replay.extract import extract
 from ..tlog_replay.fly import LogFlight

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from sitl import vehicles
-from sitl.kinds import KINDS
 from sitl.option_error import OptionError
 from sitl.physics.engines import NATIVE
+from sitl.vehicle.kinds import KINDS
 
 from .. import library
 from ..comparison.tolerance import load as load_tolerance

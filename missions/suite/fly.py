@@ -11,15 +11,15 @@ from functools import cache
 from pathlib import Path
 
 from sitl import vehicles
-from sitl.core_entry import Core, load_core
 from sitl.errors import USER_ERRORS
-from sitl.kinds import KINDS
 from sitl.logs.tlog import LogError
 from sitl.physics.engines import NATIVE
 from sitl.recording.error import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.simulation import Simulation
+from sitl.vehicle.core_entry import Core, load_core
+from sitl.vehicle.kinds import KINDS
 
 from ..comparison import report
 from ..comparison.alignment import AlignmentError

@@ -12,10 +12,10 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from sitl.core.compile import Progress
-from sitl.core.on_ray import cluster
-from sitl.core_entry import load_core
-from sitl.kinds import KINDS
+from sitl.core.ray_cluster import cluster
 from sitl.physics.engines import NATIVE
+from sitl.vehicle.core_entry import load_core
+from sitl.vehicle.kinds import KINDS
 
 from .cases import Case
 from .fly import fly_case

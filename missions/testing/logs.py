@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sitl import runner
 from sitl.logs.track_observer import TrackObserver
 from sitl.plants.choose import is_remote
 from sitl.recording.digests import of_state
 from sitl.recording.recorder import Recorder
+from sitl.run import runner
 from sitl.simulation import Simulation
 
 from .moments import Forking

@@ -11,12 +11,12 @@ from pathlib import Path
 from sitl import vehicles
 from sitl.autopilot.params import files
 from sitl.core.compile import Progress
-from sitl.core_entry import Core, load_core
-from sitl.kinds import KINDS
 from sitl.option_error import OptionError
 from sitl.physics.engines import NATIVE
+from sitl.plants.surroundings import StartPose
 from sitl.simulation import Simulation
-from sitl.surroundings import StartPose
+from sitl.vehicle.core_entry import Core, load_core
+from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 from sitl.worlds import World
 

@@ -21,7 +21,7 @@ from agents.runs import local
 from agents.runs.backends import Workers, each
 from agents.runs.folder import RunFolder
 from agents.runs.training import train_all, train_one
-from sitl.core import on_ray as instances
+from sitl.core import ray_cluster as instances
 from sitl.core.extras import MissingExtra
 from sitl.option_error import OptionError
 

@@ -12,11 +12,11 @@ from missions import library
 from missions.comparison.flight import Flight, read
 from missions.files import load
 from missions.fly import fly
-from sitl import runner
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.logs.track import Track
 from sitl.recording.recorder import Recorder
+from sitl.run import runner
 from sitl.simulation import Simulation
 
 Change = Callable[[tuple[MissionItem, ...]], tuple[MissionItem, ...]]

@@ -30,8 +30,8 @@ from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
+from sitl.run.standstill import Patience
 from sitl.simulation import Simulation
-from sitl.standstill import Patience
 
 
 def go_on(simulation: Simulation, time_us: int, tries: int = 1000) -> int:

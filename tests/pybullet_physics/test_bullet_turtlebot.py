@@ -18,8 +18,8 @@ from pytest import approx
 import envs  # noqa: F401
 from envs.options import EnvOptionError
 from envs.robots.turtlebot import Turtlebot
-from sitl.bullet_turtlebots import BulletTurtlebots
-from sitl.turtlebot import Turtlebots
+from sitl.turtlebots.bullet import BulletTurtlebots
+from sitl.turtlebots.native import Turtlebots
 from sitl.vehicles.turtlebot import AIRFRAME
 from sitl.worlds import Box, Start, World
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Turtlebots with physics by PyBullet; in all else as ``sitl.turtlebot``."""
+"""Turtlebots with physics by PyBullet; in all else as ``native``."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .core import records
-from .physics.engine import EngineError
-from .physics.native.turtlebot.state import TURTLEBOT_DTYPE
-from .physics.pybullet.turtlebot import BulletTurtlebot
-from .turtlebot import Pose, Turtlebots, full_pose, ticks_in
-from .worlds.frames import to_heading, to_ned
+from ..core import records
+from ..physics.engine import EngineError
+from ..physics.native.turtlebot.state import TURTLEBOT_DTYPE
+from ..physics.pybullet.turtlebot import BulletTurtlebot
+from ..worlds.frames import to_heading, to_ned
+from .native import Pose, Turtlebots, full_pose, ticks_in
 
 
 class BulletTurtlebots(Turtlebots):

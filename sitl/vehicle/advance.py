@@ -9,13 +9,13 @@ solids. The border is crossed once a tick: physics writes ``sensors``, the autop
 
 from __future__ import annotations
 
-from .autopilot.copter import firmware as copter
-from .autopilot.events import HIT_GROUND, HIT_OBSTACLE, emit
-from .autopilot.inertial_ring import remember
-from .autopilot.rover import firmware as rover
-from .core.kernels import law, unit
-from .physics.native.copter.step import step as step_copter
-from .physics.native.rover.step import step as step_rover
+from ..autopilot.copter import firmware as copter
+from ..autopilot.events import HIT_GROUND, HIT_OBSTACLE, emit
+from ..autopilot.inertial_ring import remember
+from ..autopilot.rover import firmware as rover
+from ..core.kernels import law, unit
+from ..physics.native.copter.step import step as step_copter
+from ..physics.native.rover.step import step as step_rover
 from .truth_estimator import observe
 
 

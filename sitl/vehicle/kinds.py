@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from . import advance, sim_parameters, vehicle
-from .autopilot.copter.firmware import FIRMWARE as COPTER_FIRMWARE
-from .autopilot.firmware import Firmware
-from .autopilot.rover.firmware import FIRMWARE as ROVER_FIRMWARE
-from .physics.native.copter import pieces as copter_pieces
-from .physics.native.copter.init import init as init_copter
-from .physics.native.copter.step import step as step_copter
-from .physics.native.rover import pieces as rover_pieces
-from .physics.native.rover.init import init as init_rover
-from .physics.native.rover.step import step as step_rover
+from ..autopilot.copter.firmware import FIRMWARE as COPTER_FIRMWARE
+from ..autopilot.firmware import Firmware
+from ..autopilot.rover.firmware import FIRMWARE as ROVER_FIRMWARE
+from ..physics.native.copter import pieces as copter_pieces
+from ..physics.native.copter.init import init as init_copter
+from ..physics.native.copter.step import step as step_copter
+from ..physics.native.rover import pieces as rover_pieces
+from ..physics.native.rover.init import init as init_rover
+from ..physics.native.rover.step import step as step_rover
+from . import advance, record, sim_parameters
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Kind:
 
     firmware: Firmware
     record: str
-    """Name of its record in ``sitl.vehicle``."""
+    """Name of its record in ``sitl.vehicle.record``."""
     advance: Callable[[Any, int, int], None]
-    """Entry of its core (``sitl.advance``): native physics and autopilot."""
+    """Entry of its core (``sitl.vehicle.advance``): native physics and autopilot."""
     fly: Callable[[Any, int], None]
     """Unit of one tick of its autopilot alone."""
     step: Callable[[Any, int], None]
@@ -49,12 +49,12 @@ class Kind:
     @property
     def record_path(self) -> str:
         """Where its record is: the core is compiled for it."""
-        return f"{vehicle.__name__}.{self.record}"
+        return f"{record.__name__}.{self.record}"
 
     @property
     def dtype(self) -> np.dtype[Any]:
         """Its record."""
-        found: np.dtype[Any] = getattr(vehicle, self.record)
+        found: np.dtype[Any] = getattr(record, self.record)
         return found
 
 

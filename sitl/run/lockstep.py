@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .simulation import Simulation
+from ..simulation import Simulation
 from .standstill import Patience, Standstill
 
 SLICE_US = 500_000

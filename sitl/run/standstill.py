@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from .bridge.services.statustext import StatusTextService
-from .plants.plant import PhysicsLostError
-from .simulation import Simulation
+from ..bridge.services.statustext import StatusTextService
+from ..plants.plant import PhysicsLostError
+from ..simulation import Simulation
 
 _WAIT_S = 0.2
 _WAITS_A_HEARTBEAT = 5

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from . import worlds
-from .bridge.record_reader import RecordReader
-from .option_error import OptionError
-from .physics.native.obstacles import OBSTACLES_MAX
-from .vehicles import Airframe
-from .worlds import World, contact
-from .worlds.frames import to_heading, to_ned
-from .worlds.geometry import BOTTOM, TOP
+from .. import worlds
+from ..core.record_reader import RecordReader
+from ..option_error import OptionError
+from ..physics.native.obstacles import OBSTACLES_MAX
+from ..vehicles import Airframe
+from ..worlds import World, contact
+from ..worlds.frames import to_heading, to_ned
+from ..worlds.geometry import BOTTOM, TOP
 
 StartPose = str | Sequence[float]
 """Name of a start pose of the world, or x, y, z [m], yaw [deg] in the world's frame."""

@@ -8,18 +8,15 @@ Python.
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from ..core import compile as compiler
-from ..core.fingerprint import fingerprint
-from ..core.kernels import Unit, jit_disabled
-from ..core.numba_tuning import quick
+from .code_cache import ENTRY, cache_folder, load_entry
+from .compile import make_jitable, toolchain
+from .fingerprint import fingerprint
+from .kernels import Unit, jit_disabled
 
 KERNELS: dict[str, Kernel] = {}
 Signature = str | Callable[[], Any]
@@ -56,34 +53,11 @@ def _load(wanted: Kernel) -> Callable[..., Any]:
 
     unit = Unit(wanted.name, wanted.law, 0)
     signature = wanted.signature if isinstance(wanted.signature, str) else wanted.signature()
-    key = fingerprint(unit, np.dtype("f8"), f"{compiler.toolchain()} {signature}")
-    folder = compiler.cache_folder() / f"{wanted.name}-{key}"
-    compiler.make_jitable()
-    count = wanted.law.__code__.co_argcount
-    names = ", ".join(f"a{k}" for k in range(count))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        source = folder / "unit.py"
-        if not source.exists():
-            temporary = folder / f"unit.{os.getpid()}"
-            temporary.write_text(
-                f"# The entry of kernel {wanted.name}.\ndef {compiler.ENTRY}({names}):\n    return law({names})\n"
-            )
-            os.utime(temporary, (0, 0))
-            os.replace(temporary, source)
-    except OSError as error:
-        raise compiler.BuildError(
-            f"{folder}: {error.strerror}. Set SITL_CACHE_DIR to a folder that can be written"
-        ) from None
-    module = ModuleType("sitl_kernel_" + wanted.name.replace(".", "_"))
-    sys.modules[module.__name__] = module  # Numba's cache looks the entry's module up by name
-    vars(module)["law"] = wanted.law
-    exec(compile(source.read_text(), str(source), "exec"), vars(module))
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
-    try:
-        with quick(compiler.ENTRY):
-            function = numba.njit([signature], cache=True, error_model="numpy")(vars(module)[compiler.ENTRY])
-    finally:
-        numba.config.CACHE_DIR = before
-    (folder / "built").touch()
-    return function  # type: ignore[no-any-return]
+    key = fingerprint(unit, np.dtype("f8"), f"{toolchain()} {signature}")
+    folder = cache_folder() / f"{wanted.name}-{key}"
+    make_jitable()
+    names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))
+    source = f"# The entry of kernel {wanted.name}.\ndef {ENTRY}({names}):\n    return law({names})\n"
+    module_name = "sitl_kernel_" + wanted.name.replace(".", "_")
+    compile_entry = numba.njit([signature], cache=True, error_model="numpy")
+    return load_entry(folder, module_name, source, {"law": wanted.law}, compile_entry)  # type: ignore[no-any-return]

@@ -7,15 +7,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from .bridge.channel import COMPONENT
-from .bridge.links import LogLink
-from .bridge.links.address import LinkAddressError
-from .bridge.links.tcp import TcpServerLink
-from .bridge.links.udp import UdpOutLink
-from .logs.dataflash.attach import attach
-from .logs.dataflash.log import DataFlash
-from .logs.tlog import LogError, TlogWriter
-from .simulation import Simulation
+from ..bridge.channel import COMPONENT
+from ..bridge.links import LogLink
+from ..bridge.links.address import LinkAddressError
+from ..bridge.links.tcp import TcpServerLink
+from ..bridge.links.udp import UdpOutLink
+from ..logs.dataflash.attach import attach
+from ..logs.dataflash.log import DataFlash
+from ..logs.tlog import LogError, TlogWriter
+from ..simulation import Simulation
 from .standstill import Patience
 
 HOST = "127.0.0.1"

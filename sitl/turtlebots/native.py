@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .core import records
-from .core.kernels import jit_disabled
-from .physics.native.turtlebot.fleet import advance
-from .physics.native.turtlebot.init import place
-from .physics.native.turtlebot.state import TICK_US, TURTLEBOT_DTYPE
-from .vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
-from .worlds import World, load, planar
-from .worlds.frames import from_heading, from_ned, to_heading, to_ned
+from ..core import records
+from ..core.kernels import jit_disabled
+from ..physics.native.turtlebot.fleet import advance
+from ..physics.native.turtlebot.init import place
+from ..physics.native.turtlebot.state import TICK_US, TURTLEBOT_DTYPE
+from ..vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
+from ..worlds import World, load, planar
+from ..worlds.frames import from_heading, from_ned, to_heading, to_ned
 
 Pose = Sequence[float]
 """x, y [m], yaw [rad], or x, y, z [m], yaw [rad]."""

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from .core.kernels import law
-from .core.rotations import quat_to_euler
+from ..core.kernels import law
+from ..core.rotations import quat_to_euler
 
 # EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
 # predicted relative and absolute position.

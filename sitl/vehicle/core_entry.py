@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from .core import compile as compiler
-from .core import records
-from .core.compile import Progress
+from ..core import compile as compiler
+from ..core import records
+from ..core.compile import Progress
 from .kinds import COPTER, Kind
 
 Array = np.ndarray[Any, Any]

@@ -12,16 +12,16 @@ import socket
 import time
 from collections.abc import Callable
 
-from .autopilot.params.table import stored
-from .bridge.hil.numbers import BASE_PORT, MAV_TYPES
-from .bridge.hil.physics_end import PhysicsEnd, text_frame
-from .bridge.links.address import LOCAL, LinkAddressError
-from .physics.carried import Carried
-from .plants.alone import restart
-from .plants.hil_link import tune
-from .plants.local import LocalPlant
-from .sim_parameters import PREFIX
-from .vehicle import TICK_US
+from ..autopilot.params.table import stored
+from ..bridge.hil.numbers import BASE_PORT, MAV_TYPES
+from ..bridge.hil.physics_end import PhysicsEnd, text_frame
+from ..bridge.links.address import LOCAL, LinkAddressError
+from ..physics.carried import Carried
+from ..vehicle.record import TICK_US
+from ..vehicle.sim_parameters import PREFIX
+from .alone import restart
+from .hil_link import tune
+from .local import LocalPlant
 
 TICK_S = 1e-6 * TICK_US
 _CATCH_UP_S = 0.05

@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from .bridge.record_reader import RecordReader
-from .core.kernels import jit_disabled, law
-from .core.rng import RNG_DTYPE, normal
-from .core.rotations import quat_rotate
-from .worlds import Geometry, planar
-from .worlds.compiled import kernel
-from .worlds.planar import publish_readings
-from .worlds.raycast import scan_rays
+from ..core.array_kernels import kernel
+from ..core.kernels import jit_disabled, law
+from ..core.record_reader import RecordReader
+from ..core.rng import RNG_DTYPE, normal
+from ..core.rotations import quat_rotate
+from ..worlds import Geometry, planar
+from ..worlds.planar import publish_readings
+from ..worlds.raycast import scan_rays
 
 Cast = Callable[..., bool]
 NEVER = 1 << 62

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from .autopilot.copter.state import AUTOPILOT_DTYPE as COPTER_AUTOPILOT
-from .autopilot.rover.state import AUTOPILOT_DTYPE as ROVER_AUTOPILOT
-from .autopilot.state import ACTUATORS_DTYPE, SENSORS_DTYPE
-from .core.records import record
-from .core.rng import RNG_DTYPE
-from .physics.native.copter.state import PHYSICS_DTYPE as COPTER_PHYSICS
-from .physics.native.rover.state import PHYSICS_DTYPE as ROVER_PHYSICS
+from ..autopilot.copter.state import AUTOPILOT_DTYPE as COPTER_AUTOPILOT
+from ..autopilot.rover.state import AUTOPILOT_DTYPE as ROVER_AUTOPILOT
+from ..autopilot.state import ACTUATORS_DTYPE, SENSORS_DTYPE
+from ..core.records import record
+from ..core.rng import RNG_DTYPE
+from ..physics.native.copter.state import PHYSICS_DTYPE as COPTER_PHYSICS
+from ..physics.native.rover.state import PHYSICS_DTYPE as ROVER_PHYSICS
 
 TICK_US = 2500
 """One autopilot and physics tick: 400 Hz."""
