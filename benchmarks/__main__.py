@@ -15,9 +15,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from missions.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, load_core
 from sitl.vehicle.kinds import KINDS
 

@@ -12,7 +12,7 @@ import statistics
 import time
 from collections.abc import Callable
 
-from missions.pilot import TAKEOFF, Pilot
+from sitl.missions.pilot import TAKEOFF, Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.core import records
+from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicle.advance import advance_copter

@@ -11,11 +11,11 @@ import pytest
 from recorded_flights import Recorded, hop
 
 import sitl.cli
-from missions.cli import replay
 from sitl.bridge.client import Client
 from sitl.cli import run
 from sitl.cli.recordings import resume
 from sitl.errors import USER_ERRORS
+from sitl.missions.cli import replay
 from sitl.recording.error import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read

@@ -19,7 +19,7 @@ from .trial import Result, Trial, attempt
 
 EPISODES = 50
 Each = Callable[..., list[Any]]
-"""As ``agents.runs.local.each``."""
+"""As ``sitl.agents.runs.local.each``."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def rehearse(
         changes, episodes, seed, jitter: see ``trials_of``.
         jobs: how many processes.
         told: called with the number of a trial and 1 for each of its episodes.
-        do: does the work for all trials, as ``agents.runs.local.each``.
+        do: does the work for all trials, as ``sitl.agents.runs.local.each``.
 
     Raises:
         AgentError: a run cannot be played at home.

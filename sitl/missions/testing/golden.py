@@ -21,7 +21,7 @@ from .logs import NOT_AGAIN, fly_again
 from .moments import Forking
 
 Limits = str | Path | Mapping[str, Any] | None
-"""See ``missions.comparison.tolerance.load``."""
+"""See ``sitl.missions.comparison.tolerance.load``."""
 
 
 class FlightChanged(UserWarning):

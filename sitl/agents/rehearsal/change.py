@@ -101,7 +101,7 @@ class Change:
         """Options of the environment that make it.
 
         Args:
-            robot: of the environment at home (``envs.robots.robot.Robot``).
+            robot: of the environment at home (``sitl.envs.robots.robot.Robot``).
             home: options of the environment at home.
 
         Raises:

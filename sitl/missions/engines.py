@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m missions.engines``: the same flights under the same firmware and parameters, on every physics engine.
+"""``python -m sitl.missions.engines``: the same flights, firmware and parameters on every physics engine.
 
 Each vehicle goes through two scripts: commands in GUIDED, and a mission. All figures are of the simulator's truth, not
 of the estimate, at equal times since the beginning of each phase.
@@ -264,7 +264,7 @@ def fly_all(frame: str, engines: list[str]) -> dict[str, dict[str, Flown]]:
 
 def main() -> None:
     """Print the tables; draw the pictures."""
-    parser = argparse.ArgumentParser(prog="python -m missions.engines", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m sitl.missions.engines", description=__doc__)
     parser.add_argument("frame", nargs="?", choices=sorted(FLIGHTS), help="vehicle (default: all)")
     parser.add_argument(
         "--engine", action="append", choices=BACKENDS[1:], help="beside native (repeatable; default all)"

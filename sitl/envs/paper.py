@@ -58,7 +58,7 @@ PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
     "maze-erle-rover": lambda: autopilot("erle_rover", "maze_erlerover"),
     "office-erle-copter": lambda: autopilot("erle_copter", "office_erlecopter"),
 }
-"""Options of ``Navigate`` by the preset's name; ``envs.PAPER`` says which environment has which."""
+"""Options of ``Navigate`` by the preset's name; ``sitl.envs.PAPER`` says which environment has which."""
 
 
 class PaperNavigate(Navigate):

@@ -204,7 +204,7 @@ def _actor_class() -> type:
 
             place = socket.gethostname()
             try:
-                from agents.runs.ray_worker import Worker, libraries
+                from sitl.agents.runs.ray_worker import Worker, libraries
             except Exception as error:
                 return {"place": place, "error": str(error)}
             self._worker = Worker()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The missions that come with the simulator: files, and an index that says what each is and where it is flown.
 
-``python -m missions.library.make`` writes the files.
+``python -m sitl.missions.library.make`` writes the files.
 """
 
 from __future__ import annotations

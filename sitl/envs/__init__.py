@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gymnasium environments: ``import envs``, then ``gymnasium.make``. Nothing heavy is loaded before that.
+"""Gymnasium environments: ``import sitl.envs``, then ``gymnasium.make``. Nothing heavy is loaded before that.
 
 ``sitl/Navigate-v0`` is any robot in any world; the others are the paper's, under its names ("...LIDAR-v0") and under
 those of the original code ("...Lidar-v0").
@@ -35,16 +35,16 @@ def register() -> None:
         return
     gym.register(
         "sitl/Navigate-v0",
-        entry_point="envs.navigate:Navigate",
-        vector_entry_point="envs.vector:NavigateVector",
+        entry_point="sitl.envs.navigate:Navigate",
+        vector_entry_point="sitl.envs.vector:NavigateVector",
         max_episode_steps=MAX_EPISODE_STEPS,
     )
     for paper_id, preset in PAPER.items():
         for name in (paper_id, paper_id.replace("LIDAR", "Lidar")):
             gym.register(
                 name,
-                entry_point="envs.paper:PaperNavigate",
-                vector_entry_point="envs.paper:PaperNavigateVector",
+                entry_point="sitl.envs.paper:PaperNavigate",
+                vector_entry_point="sitl.envs.paper:PaperNavigateVector",
                 max_episode_steps=MAX_EPISODE_STEPS,
                 kwargs={"preset": preset},
             )

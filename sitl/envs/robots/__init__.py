@@ -14,10 +14,10 @@ from ..options import COMMON, EnvOptionError, unknown
 from .robot import Robot
 
 ROBOTS = {
-    "turtlebot": "envs.robots.turtlebot:Turtlebot",
-    "erle_copter": "envs.robots.autopilot:ErleCopter",
-    "erle_rover": "envs.robots.autopilot:ErleRover",
-    "autopilot": "envs.robots.autopilot:AutopilotRobot",
+    "turtlebot": "sitl.envs.robots.turtlebot:Turtlebot",
+    "erle_copter": "sitl.envs.robots.autopilot:ErleCopter",
+    "erle_rover": "sitl.envs.robots.autopilot:ErleRover",
+    "autopilot": "sitl.envs.robots.autopilot:AutopilotRobot",
 }
 """Name -> class."""
 

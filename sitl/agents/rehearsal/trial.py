@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from envs.robots.turtlebot import Turtlebot
 from sitl.core.extras import MissingExtra
+from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.option_error import OptionError, VehicleError
 
 from .. import algorithms, environments

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from envs.randomisation import DRAWS
+from sitl.envs.randomisation import DRAWS
 
 from ..report import plots
 from ..report.document import Document

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m missions.library.make``: writes the library's files and its index from the drafts."""
+"""``python -m sitl.missions.library.make``: writes the library's files and its index from the drafts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from . import FOLDER, copter_drafts, rover_drafts
 from .draft import Draft
 
 HEAD = """# SPDX-License-Identifier: BSD-3-Clause
-# Made by `python -m missions.library.make`: each mission, its file, and the vehicle and world it is flown with.
+# Made by `python -m sitl.missions.library.make`: each mission, its file, and the vehicle and world it is flown with.
 """
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import gymnasium as gym
 import numpy as np
 
-import envs
+from sitl import envs
 
 from . import algorithms
 from .errors import AgentError

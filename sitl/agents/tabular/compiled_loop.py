@@ -13,14 +13,14 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from envs.actions import Discrete
-from envs.navigate import Navigate
-from envs.observations import Digits, digits_of
-from envs.rewards import ByAction
-from envs.robots.turtlebot import Turtlebot
-from envs.tasks import Task, count_crashes
 from sitl.core.array_kernels import kernel
 from sitl.core.kernels import law
+from sitl.envs.actions import Discrete
+from sitl.envs.navigate import Navigate
+from sitl.envs.observations import Digits, digits_of
+from sitl.envs.rewards import ByAction
+from sitl.envs.robots.turtlebot import Turtlebot
+from sitl.envs.tasks import Task, count_crashes
 from sitl.physics.native.turtlebot.fleet import advance_fleet
 from sitl.physics.native.turtlebot.state import TURTLEBOT_DTYPE
 from sitl.turtlebots.native import Turtlebots, ticks_in

@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from envs.robots.autopilot import AutopilotRobot
-from envs.robots.turtlebot import Turtlebot
 from sitl.core.rotations import quat_to_euler
+from sitl.envs.robots.autopilot import AutopilotRobot
+from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.worlds.contact import clearance
 from sitl.worlds.frames import to_ned
 

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from envs.mavlink.foreign import Foreign, launch
 from sitl import vehicles
 from sitl.bridge.links.inprocess import InProcessLink
+from sitl.envs.mavlink.foreign import Foreign, launch
 from sitl.foreign.choice import Choice
 from sitl.foreign.cutter import Cutter
 from sitl.physics.engines import NATIVE

@@ -51,11 +51,11 @@ class Algorithm(Protocol):
 
 
 ALGORITHMS = {
-    "qlearn": "agents.tabular.training",
-    "sarsa": "agents.tabular.training",
-    "dqn": "agents.deep.training",
-    "ppo": "agents.deep.training",
-    "sac": "agents.deep.training",
+    "qlearn": "sitl.agents.tabular.training",
+    "sarsa": "sitl.agents.tabular.training",
+    "dqn": "sitl.agents.deep.training",
+    "ppo": "sitl.agents.deep.training",
+    "sac": "sitl.agents.deep.training",
 }
 """Name -> module."""
 TABULAR = ("qlearn", "sarsa")
