@@ -22,7 +22,7 @@ from .bridge.services.statustext import StatusTextService
 from .core import records
 from .core.compile import Progress
 from .core.record_reader import RecordReader
-from .option_error import OptionError
+from .errors import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
 from .physics.native.power_on import DEFAULT_HOME, Home

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from sitl.core.rotations import quat_to_euler
-from sitl.errors import USER_ERRORS
+from sitl.errors import SitlError
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
@@ -274,7 +274,7 @@ def main() -> None:
     for frame in [options.frame] if options.frame else sorted(FLIGHTS):
         try:
             flown = fly_all(frame, [NATIVE, *(options.engine or BACKENDS[1:])])
-        except USER_ERRORS as error:
+        except SitlError as error:
             parser.error(str(error))
         print(f"{frame}\n\n{table(flown)}\n")
         if options.plots:

@@ -11,7 +11,7 @@ from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_RETURN_TO_LAUNCH
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.navigation.state import COMPLETE
 from sitl.core.geodesy import offset_ne
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.simulation import Simulation
 
 from .path import Deviation, PathWatch

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from sitl.bridge.client import Client
+from sitl.errors import SitlError
 from sitl.simulation import Simulation
 
 from .recording import COLUMNS, Recording
@@ -23,7 +24,7 @@ POSITION_ONLY, VELOCITY_ONLY = 0b0000110111111000, 0b0000110111000111
 SAMPLE_US = 40_000
 
 
-class FlightError(RuntimeError):
+class FlightError(SitlError, RuntimeError):
     """A flight that did not go as its script needs it to (not ready, not disarmed in time)."""
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import RESULT_NAMES
 from sitl.bridge.client import Client
+from sitl.errors import SitlError
 from sitl.simulation import Simulation
 
 from .pilot import ARM, MISSION_START, PREARM_BIT, SET_MODE
@@ -22,7 +23,7 @@ _SEVERE = 4
 """MAV_SEVERITY_WARNING: what is this grave may be a reason."""
 
 
-class StationError(RuntimeError):
+class StationError(SitlError, RuntimeError):
     """The vehicle did not do what it was asked to; says what and why."""
 
 

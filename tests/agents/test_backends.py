@@ -23,7 +23,7 @@ from sitl.agents.runs.folder import RunFolder
 from sitl.agents.runs.training import train_all, train_one
 from sitl.core import ray_cluster as instances
 from sitl.core.extras import MissingExtra
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 REASON = "Ray is not installed: pip install 'gym-sitl[ray]'"
 on_ray = partial(each, backend="ray")

@@ -103,7 +103,7 @@ def test_importing_the_package_loads_no_compiler():
         "sitl.envs.mavlink",
         "sitl.envs.mavlink.ends",
         "sitl.envs.options",
-        "sitl.option_error",
+        "sitl.errors",
     ]
     assert out.stdout == f"[] {ours}\n", out.stderr
 

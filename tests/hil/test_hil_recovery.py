@@ -25,8 +25,8 @@ from sitl.bridge.hil.physics_end import HEARTBEAT
 from sitl.bridge.hil.sender import Sender
 from sitl.cli import main
 from sitl.core.records import first_difference
+from sitl.errors import OptionError
 from sitl.missions.pilot import TAKEOFF, Pilot
-from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-import sitl.missions.cli as missions_cli
 from sitl import cli
+from sitl.missions import cli as missions_cli
 from sitl.missions.files import load, save
 from sitl.missions.library.draft import Draft
 

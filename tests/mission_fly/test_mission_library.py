@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from sitl import vehicles, worlds
+from sitl.errors import OptionError
 from sitl.missions import library
 from sitl.missions.files import load
 from sitl.missions.library import make
-from sitl.option_error import OptionError
 
 
 def test_the_files_are_what_the_drafts_make(tmp_path: Path) -> None:

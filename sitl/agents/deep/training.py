@@ -10,6 +10,8 @@ from typing import Any
 
 import gymnasium as gym
 
+from sitl.errors import SitlError
+
 from .. import environments
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
@@ -115,7 +117,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     save()
 
 
-class _Enough(Exception):
+class _Enough(SitlError):
     """Ends learning between two rounds."""
 
 

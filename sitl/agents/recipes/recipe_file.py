@@ -8,7 +8,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from sitl.option_error import did_you_mean
+from sitl.errors import did_you_mean
 
 from ..errors import AgentError
 from ..runs.plan import EvaluationPlan

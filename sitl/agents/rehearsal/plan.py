@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sitl.option_error import did_you_mean
+from sitl.errors import did_you_mean
 
 from ..errors import AgentError
 from .change import Change, scaled

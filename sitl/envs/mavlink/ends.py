@@ -7,7 +7,7 @@ import contextlib
 import select
 import socket
 
-from sitl.option_error import VehicleError
+from sitl.errors import VehicleError
 
 from ..options import EnvOptionError
 

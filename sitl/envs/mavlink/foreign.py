@@ -14,13 +14,13 @@ from typing import Protocol
 
 from sitl.bridge.client import Client
 from sitl.bridge.hil.numbers import BASE_PORT
+from sitl.errors import OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
 from sitl.foreign.ports import HOST, free_tcp_run
 from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
-from sitl.option_error import OptionError
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import math
 
+from sitl.errors import OptionError
 from sitl.foreign.choice import PX4, Choice
-from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError

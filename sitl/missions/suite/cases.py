@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sitl import vehicles
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import KINDS
 

@@ -11,7 +11,7 @@ from typing import Any
 from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import RESULT_NAMES, Mission
 from sitl.bridge.client import Received
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 from .. import library
 from ..files import load, straightened

@@ -9,10 +9,12 @@ from types import TracebackType
 
 import numpy as np
 
+from sitl.errors import SitlError
+
 from .connected import ANSWER_S, Connected
 
 
-class UnknownName(ValueError):
+class UnknownName(SitlError, ValueError):
     """A parameter, mode, channel or fault that this vehicle does not have; says which there are."""
 
 
