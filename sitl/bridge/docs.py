@@ -84,7 +84,7 @@ class _Nobody:
 
     def __init__(self, name: str) -> None:
         self.firmware = _firmware(name)
-        record = getattr(importlib.import_module("sitl.vehicle"), name.capitalize())
+        record = getattr(importlib.import_module("sitl.vehicle.record"), name.capitalize())
         self.fleet = record.fleet(1)
         self.v = record.of(self.fleet, 0)
 

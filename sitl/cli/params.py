@@ -7,7 +7,7 @@ import argparse
 
 from .. import vehicles
 from ..autopilot.params import docs, files
-from ..kinds import KINDS
+from ..vehicle.kinds import KINDS
 from .options import check_kind
 
 

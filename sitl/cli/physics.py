@@ -9,7 +9,7 @@ from collections.abc import Callable
 from importlib import import_module
 
 from .. import vehicles
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..physics.engines import BACKENDS, NATIVE
 from ..physics.native.power_on import DEFAULT_HOME
 from ..plants.alone import stand_alone
@@ -20,7 +20,7 @@ from .progress import CompileProgress
 Serve = Callable[[LocalPlant, str, int, Callable[[str], None], Callable[[], bool]], None]
 """``serve(plant, address, instance, say, running)``: listens at the address until ``running()`` is false."""
 
-LISTENERS = {"tcp": "sitl.physics_server", "json": "sitl.foreign.json_server"}
+LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_server"}
 """Kind of ``--listen`` -> module that has ``serve``."""
 
 

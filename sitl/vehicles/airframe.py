@@ -10,13 +10,14 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
+from ..errors import SitlError
 from .figures.figure import Figure
 
 Figures = Mapping[str, float | Sequence[float]]
 A = TypeVar("A", bound="Airframe")
 
 
-class AirframeError(ValueError):
+class AirframeError(SitlError, ValueError):
     """An airframe, or a figure of one, that cannot be used; the message names it, its value, the limits."""
 
 

@@ -19,7 +19,7 @@ from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
 from sitl.core import rng
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle import Copter, Rover
+from sitl.vehicle.record import Copter, Rover
 
 TICK_US = 2500
 HOME = (-353632620, 1491652370, 584.0)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fakes import FakeVehicle
-
 from sitl.bridge.record_reader import RecordReader, UnknownFieldError
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from missions import compare
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
+from sitl.missions import compare
 
 
 @pytest.mark.slow

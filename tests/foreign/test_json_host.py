@@ -8,8 +8,8 @@ import contextlib
 import json_peer
 import pytest
 
+from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
-from sitl.option_error import OptionError
 from sitl.plants.alone import stand_alone
 from sitl.simulation import DEFAULT_HOME
 

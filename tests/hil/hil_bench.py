@@ -12,7 +12,7 @@ from sitl.bridge.hil.autopilot_end import AutopilotEnd
 from sitl.bridge.hil.physics_end import PhysicsEnd
 from sitl.bridge.hil.sender import Sender
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle import TICK_US, Copter
+from sitl.vehicle.record import TICK_US, Copter
 from sitl.vehicles import apply, load
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from missions.library import entries
-from missions.testing.factory import VehicleFactory
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
+from sitl.missions.library import entries
+from sitl.missions.testing.factory import VehicleFactory
 
 
 def test_a_velocity_stays_until_another_order(make: VehicleFactory) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from sitl import vehicle, vehicles, worlds
-from sitl.core_entry import bind_unit
-from sitl.kinds import ROVER
+from sitl import vehicles, worlds
 from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.rover.init import init
 from sitl.physics.pybullet.rover import BulletRover
+from sitl.vehicle.core_entry import bind_unit
+from sitl.vehicle.kinds import ROVER
+from sitl.vehicle.record import Rover as RoverRecord
 from sitl.worlds import World
 
 HOME = (-35.36, 149.16, 584.0, 0.0)
@@ -22,8 +23,8 @@ class Rover:
 
     def __init__(self, frame: str, world: str | World | None = None, physics: str = "pybullet", **figures: Any) -> None:
         airframe = vehicles.load(frame).changed(noise_scale=0.0, **figures)
-        self.fleet = fleet = vehicle.Rover.fleet(1)
-        self.v = vehicle.Rover.of(fleet, 0)
+        self.fleet = fleet = RoverRecord.fleet(1)
+        self.v = RoverRecord.of(fleet, 0)
         init(self.v, airframe, HOME, 1)
         self.full = float(airframe.value("control_full"))
         self.engine: BulletRover | None = None

@@ -16,7 +16,7 @@ from pytest import approx
 from sitl.core.records import first_difference
 from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from sitl.physics.native.turtlebot.step import wheel_speeds
-from sitl.turtlebot import Turtlebot, Turtlebots
+from sitl.turtlebots.native import Turtlebot, Turtlebots
 from sitl.vehicles import AirframeError
 from sitl.vehicles.turtlebot import AIRFRAME, Lidar
 from sitl.worlds import Box, Start, World
@@ -170,7 +170,7 @@ def test_fleet_is_the_same_as_single_robots():
 
 DRIVE = """
 import hashlib
-from sitl.turtlebot import Turtlebot
+from sitl.turtlebots.native import Turtlebot
 from sitl.vehicles.turtlebot import AIRFRAME
 robot = Turtlebot("round", AIRFRAME.changed(range_noise=0.01))
 robot.reset(seed=5)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import ruckig
 
+from ...errors import SitlError
 from .state import SEGMENTS
 
 SHORTEST = 1e-4
@@ -27,7 +28,7 @@ _CRUISE = 3
 """Ruckig's phase without jerk and acceleration, of seven."""
 
 
-class LegError(ValueError):
+class LegError(SitlError, ValueError):
     """A leg that cannot be planned; says which number is wrong."""
 
 

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a deep agent learns by: what all algorithms have, and what each has of its own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from sitl.errors import did_you_mean
+
+from ..errors import AgentError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What all have.
+
+    Raises:
+        AgentError: a figure outside its limits.
+    """
+
+    robots: int = 16
+    """How many learn at once, in one vector environment."""
+    sectors: int = 48
+    """Into how many a scan is divided; of each the nearest reading counts. 0: all readings."""
+    frames: int = 3
+    """Observations that the agent sees together: this one and those of the steps before."""
+    reward_scale: float = 0.05
+    """Factor of rewards before they are learnt from; the run's log has them as they are."""
+    gamma: float = 0.99
+    """Discount of a step, 0 .. 1."""
+    learning_rate: float = 3e-4
+    learning_rate_end: float = 3e-4
+    """It falls to this by the end of the run, linearly."""
+    batch: int = 256
+    """Samples of a gradient step."""
+    width: int = 64
+    """Of each hidden layer."""
+    layers: int = 2
+    """How many are hidden."""
+    threads: int = 1
+    """Of torch; with more than one, sums may differ in their last bits from machine to machine."""
+    check_every: int = 100_000
+    """Steps between two checks: the network plays greedily, and the best one is kept, which plays. 0: none."""
+    check_episodes: int = 20
+    """That a check plays."""
+    check_by: str = "reward"
+    """What makes one the best: "reward", the highest mean reward, or "crashes", the fewest episodes that ended by
+    themselves (of equal ones, the highest mean reward)."""
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value, kind = getattr(self, field.name), str(field.type)
+            if kind == "str":
+                if value not in _CHOICES[field.name]:
+                    allowed = ", ".join(_CHOICES[field.name])
+                    raise AgentError(f"{field.name} = {value!r}; it must be one of {allowed}")
+                continue
+            low, high = _LIMITS.get(field.name, (1, math.inf) if kind == "int" else (0.0, 1.0))
+            number = isinstance(value, int if kind == "int" else int | float) and not isinstance(value, bool)
+            if not number or not low <= value <= high:
+                what = "whole number" if kind == "int" else "number"
+                limits = f"from {low:g} on" if high == math.inf else f"from {low:g} to {high:g}"
+                raise AgentError(f"{field.name} = {value!r}; it must be a {what} {limits}")
+
+
+@dataclass(frozen=True)
+class Ppo(Settings):
+    """PPO. Source: Schulman et al., "Proximal Policy Optimization Algorithms", arXiv:1707.06347."""
+
+    robots: int = 32
+    batch: int = 512
+    learning_rate: float = 7e-4
+    rollout: int = 128
+    """Steps of each robot between two updates."""
+    epochs: int = 8
+    """How often each sample is learnt from."""
+    advantage_decay: float = 0.95
+    """Lambda of the generalised advantage estimate."""
+    clip: float = 0.2
+    """By how much the probability ratio of an action may leave 1."""
+    entropy: float = 0.01
+    """Weight of the policy's entropy: exploration."""
+    learning_rate_end: float = 3e-5
+
+
+@dataclass(frozen=True)
+class OffPolicy(Settings):
+    """DQN and SAC: both learn from a memory of past steps."""
+
+    memory: int = 200_000
+    """Steps that are remembered, of all robots together."""
+    warm_up: int = 5_000
+    """Steps of random actions before learning begins."""
+    learn_every: int = 1
+    """Steps of each robot between two rounds of learning."""
+    gradient_steps: int = 2
+    """In each round."""
+
+
+@dataclass(frozen=True)
+class Dqn(OffPolicy):
+    """DQN. Source: Mnih et al., "Human-level control through deep reinforcement learning", Nature 518, 2015."""
+
+    target_period: int = 2_000
+    """Steps between two copies of the network that targets are computed with."""
+    epsilon_end: float = 0.05
+    """Probability of a random action, once it has fallen from 1."""
+    epsilon_share: float = 0.3
+    """Share of the run in which it falls."""
+
+
+@dataclass(frozen=True)
+class Sac(OffPolicy):
+    """SAC. Source: Haarnoja et al., "Soft Actor-Critic Algorithms and Applications", arXiv:1812.05905."""
+
+    tau: float = 0.005
+    """How far target networks follow in a gradient step."""
+
+
+_CHOICES = {"check_by": ("reward", "crashes")}
+_LIMITS: dict[str, tuple[float, float]] = {
+    "sectors": (0, math.inf),
+    "frames": (1, 64),
+    "reward_scale": (1e-9, math.inf),
+    "learning_rate": (1e-9, 1.0),
+    "warm_up": (0, math.inf),
+    "check_every": (0, math.inf),
+}
+_OF = {"dqn": Dqn, "ppo": Ppo, "sac": Sac}
+
+
+def settings_of(algorithm: str, given: Mapping[str, Any]) -> Settings:
+    """Settings of an algorithm: the given ones, the others as usual.
+
+    Raises:
+        AgentError: no such setting, or a value that cannot be.
+    """
+    kind = _OF[algorithm]
+    known = [field.name for field in fields(kind)]
+    for name in given:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise AgentError(f"setting {name!r} of {algorithm} is not known; it is one of {', '.join(known)}{hint}")
+    return kind(**given)
+
+
+def as_dict(settings: Settings) -> dict[str, Any]:
+    """Names and values."""
+    return asdict(settings)

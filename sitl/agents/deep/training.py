@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trains runs of DQN, PPO and SAC. Progress is kept between two rounds of learning, so that nothing is done twice."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import Any
+
+import gymnasium as gym
+
+from sitl.errors import SitlError
+
+from .. import environments
+from ..runs.config import RunConfig
+from ..runs.folder import RunFolder
+from ..runs.watch import Watch
+from . import checkpoint, models
+from .actions import Actions
+from .checks import BEST, Checks
+from .features import Features
+from .library import LIBRARIES, require, stable_baselines3, torch
+from .policy import DeepPolicy
+from .settings import Settings, as_dict, settings_of
+from .tally import Tally
+
+__all__ = ["LENGTH", "LIBRARIES", "check", "policy", "settings", "train"]
+
+LENGTH = {"steps": 1_000_000}
+_PERIOD_S = 20.0
+"""Least wall time between checkpoints."""
+_SHARE = 20.0
+"""They come no more often than takes this many times as long as one."""
+
+
+def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """See ``Algorithm``.
+
+    Raises:
+        MissingExtra: a run could not be trained.
+    """
+    require()
+    return as_dict(settings_of(algorithm, given))
+
+
+def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
+    """See ``Algorithm``."""
+    Features(observations, settings_of(config.algorithm, config.settings).sectors)
+    Actions(actions, config.algorithm)
+
+
+def train(folder: RunFolder, watch: Watch) -> None:
+    """See ``Algorithm``."""
+    stable_baselines3()
+    config = folder.config
+    figures = settings_of(config.algorithm, config.settings)
+    torch(figures.threads)
+    env = environments.make_many(config, figures.robots)
+    try:
+        _train(folder, watch, figures, env)
+    finally:
+        env.close()
+
+
+def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.VectorEnv[Any, Any, Any]) -> None:
+    from .robots import Robots
+
+    config, path = folder.config, folder.path / checkpoint.MODEL
+    spaces = (env.single_observation_space, env.single_action_space)
+    tally = Tally(figures.robots, environments.step_time(env))
+    seeds = [environments.seed_of(config.seed, robot) for robot in range(figures.robots)]
+    robots = Robots(
+        env, Features(spaces[0], figures.sectors), figures.frames, Actions(spaces[1], config.algorithm),
+        figures.reward_scale, tally, seeds,
+    )  # fmt: skip
+    if path.exists():
+        model = checkpoint.resume(path, config.algorithm, robots)
+    else:
+        model = models.make(config.algorithm, figures, robots, config.seed)
+    folder.episodes.keep(tally.done)
+    checks = Checks(config, figures, folder.path / BEST, model.num_timesteps)
+    last, spent = time.monotonic(), 0.0
+
+    def save() -> None:
+        nonlocal last, spent
+        start = time.monotonic()
+        folder.episodes.append(unwritten)  # first: the log may know more than the model, not less
+        unwritten.clear()
+        checkpoint.save(path, model, robots, spaces)
+        last = time.monotonic()
+        spent = last - start
+
+    unwritten: list[Any] = []
+
+    def between() -> bool:
+        """Between two rounds; returns whether the run ends here."""
+        tally.epsilon = float(getattr(model, "exploration_rate", "nan"))
+        rows = tally.take()
+        if rows:
+            watch.told(rows)
+            unwritten.extend(rows)
+        done = config.episodes is not None and tally.done >= config.episodes
+        done = done or (config.steps is not None and tally.done_steps >= config.steps)
+        checks.after(model, done)  # before the model is kept: one that is gone on with has been checked
+        if time.monotonic() - last > max(_PERIOD_S, _SHARE * spent):
+            save()
+        return done or watch.stop
+
+    # learning rates and the like fall towards an end that the last, unfinished episodes cannot pass
+    steps = config.steps if config.steps is not None else (config.episodes or 0) * config.max_steps
+    try:
+        _learn(model, steps + figures.robots * config.max_steps - model.num_timesteps, between)
+    finally:
+        checks.close()
+    unwritten.extend(tally.take())
+    save()
+
+
+class _Enough(SitlError):
+    """Ends learning between two rounds."""
+
+
+def _learn(model: Any, steps: int, between: Any) -> None:
+    from stable_baselines3.common.callbacks import BaseCallback
+
+    class Between(BaseCallback):
+        def _on_rollout_start(self) -> None:
+            if between():
+                raise _Enough
+
+        def _on_step(self) -> bool:
+            return True
+
+    with suppress(_Enough):
+        model.learn(steps, Between(), log_interval=None, reset_num_timesteps=model.num_timesteps == 0)
+
+
+def policy(folder: RunFolder) -> DeepPolicy:
+    """See ``Algorithm``: the best network of the checks, or the last one where there were none."""
+    config = folder.config
+    figures = settings_of(config.algorithm, config.settings)
+    torch(figures.threads)
+    best = folder.path / BEST
+    path = best if best.exists() else folder.path / checkpoint.MODEL
+    model, (observations, actions) = checkpoint.load(path, config.algorithm)
+    return DeepPolicy(model, figures, Features(observations, figures.sectors), Actions(actions, config.algorithm))

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plays what a run has learnt, without learning and without exploring: rewards, laps, crashes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from sitl.errors import SitlError
+
+from . import algorithms, environments
+from .algorithms import Policy
+from .errors import AgentError
+from .laps import CENTRES, LapCounter
+from .runs.folder import RunFolder
+from .runs.local import Stopped, Tell
+from .runs.plan import EPISODES, EvaluationPlan
+
+Pose = tuple[float, float, float]
+"""x, y [m], yaw [rad]."""
+
+
+@dataclass(frozen=True)
+class Played:
+    """One episode."""
+
+    reward: float
+    steps: int
+    terminated: bool
+    """It ended by itself: a crash, or a goal reached."""
+    crashed: bool
+    reached: bool
+    """A goal, where there is one."""
+    simulated_s: float
+    laps: float
+    """Net turns round the middle of the world; nan where there is no such thing."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Of many episodes."""
+
+    episodes: tuple[Played, ...]
+
+    @property
+    def mean_reward(self) -> float:
+        """Of an episode."""
+        return float(np.mean([played.reward for played in self.episodes]))
+
+    @property
+    def crash_rate(self) -> float:
+        """Share of the episodes that ended in a crash."""
+        return float(np.mean([played.crashed for played in self.episodes]))
+
+    @property
+    def mean_laps(self) -> float:
+        """Of an episode, whole laps only; nan where laps are not counted."""
+        return float(np.mean([math.floor(p.laps) if p.laps == p.laps else math.nan for p in self.episodes]))
+
+    @property
+    def lap_rate(self) -> float:
+        """Share of the episodes with a whole lap or more and no crash."""
+        return float(np.mean([played.laps >= 1.0 and not played.crashed for played in self.episodes]))
+
+    @property
+    def mean_simulated_s(self) -> float:
+        """Of an episode [s]."""
+        return float(np.mean([played.simulated_s for played in self.episodes]))
+
+    def sentence(self) -> str:
+        """For people."""
+        count = len(self.episodes)
+        crashes = sum(played.crashed for played in self.episodes)
+        parts = [f"{count} episodes: mean reward {self.mean_reward:.0f}", f"{crashes} crashes"]
+        if not math.isnan(self.mean_laps):
+            parts.append(f"{self.mean_laps:.1f} laps an episode")
+            parts.append(f"{100.0 * self.lap_rate:.0f} % of the episodes with a lap or more and no crash")
+        ended = sum(played.terminated and not (played.crashed or played.reached) for played in self.episodes)
+        if ended:
+            parts.append(f"{ended} ended by themselves")
+        if any(played.reached for played in self.episodes):
+            parts.append(f"goal reached in {sum(played.reached for played in self.episodes)}")
+        if not math.isnan(self.mean_simulated_s):
+            parts.append(f"{self.mean_simulated_s:.0f} simulated s an episode")
+        return ", ".join(parts)
+
+
+def evaluate(
+    env: gym.Env[Any, Any],
+    policy: Policy,
+    episodes: int = EPISODES,
+    seed: int = 0,
+    poses: Sequence[Pose] | None = None,
+    watch: Callable[[Played], None] = lambda played: None,
+    first: int = 0,
+) -> Evaluation:
+    """Play episodes.
+
+    Args:
+        env: it must truncate its episodes.
+        policy: that plays.
+        episodes: how many.
+        seed: of the resets and of the policy's own choices.
+        poses: where the episodes start, in turn; None: where the environment says.
+        watch: called after each episode.
+        first: number of the first one; each follows from its number and the seed alone.
+
+    Raises:
+        AgentError: the policy is of other spaces than the environment.
+    """
+    policy.check(env.observation_space, env.action_space)
+    played = []
+    for episode in range(first, first + episodes):
+        one = environments.seed_of(seed, episode)
+        options = {"pose": poses[episode % len(poses)]} if poses else None
+        played.append(play(env, policy, one, options))
+        watch(played[-1])
+    return Evaluation(tuple(played))
+
+
+class Interrupted(SitlError):
+    """Ends an evaluation between two episodes."""
+
+
+def until_stopped(tell: Tell, stopped: Stopped) -> Callable[[Played], None]:
+    """A ``watch`` for work on many runs: tells 1 after each episode, and raises Interrupted when it shall end."""
+
+    def watch(played: Played) -> None:
+        tell(1)
+        if stopped():
+            raise Interrupted
+
+    return watch
+
+
+def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str, Any] | None = None) -> Played:
+    """Play one episode."""
+    observation, _ = env.reset(seed=seed, options=None if options is None else dict(options))
+    policy.begin(seed)
+    inner: Any = env.unwrapped
+    centre = CENTRES.get(getattr(getattr(inner, "world", None), "name", ""))
+    counter = None if centre is None else LapCounter(centre)
+    total, steps = 0.0, 0
+    while True:
+        if counter is not None:
+            counter.take(*inner.robot.pose[0, :2].tolist())
+        observation, reward, terminated, truncated, info = env.step(policy.act(observation))
+        total, steps = total + float(reward), steps + 1
+        if terminated or truncated:
+            break
+    if counter is not None:
+        counter.take(*inner.robot.pose[0, :2].tolist())
+    return Played(
+        reward=total,
+        steps=steps,
+        terminated=bool(terminated),
+        crashed=bool(info.get("crashed", False)),  # an environment of another kind knows of no crashes
+        reached=bool(info.get("reached", False)),
+        simulated_s=steps * environments.step_time(env),
+        laps=math.nan if counter is None else counter.laps,
+    )
+
+
+@contextmanager
+def stage(
+    run: RunFolder, plan: EvaluationPlan, seed: int = 0
+) -> Iterator[tuple[gym.Env[Any, Any], Policy, list[Pose] | None]]:
+    """What an evaluation of a run needs: environment, policy and, where the plan moves them, start poses.
+
+    Raises:
+        AgentError: no model, or an environment that cannot be made.
+    """
+    config = run.config.with_(max_steps=plan.max_steps or run.config.max_steps)
+    env = environments.make(config, **plan.options)
+    try:
+        poses = moved_starts(env, plan.episodes, seed, plan.jitter) if plan.jitter > 0.0 else None
+        yield env, algorithms.policy_of(run), poses
+    finally:
+        env.close()
+
+
+def evaluate_run(run: RunFolder, plan: EvaluationPlan | None = None, seed: int = 0) -> Evaluation:
+    """Play what a run has learnt.
+
+    Args:
+        run: that has a model.
+        plan: how; None: as the run says.
+        seed: of the evaluation.
+
+    Raises:
+        AgentError: no model, or not of this environment.
+    """
+    plan = plan or run.config.evaluation
+    with stage(run, plan, seed) as (env, policy, poses):
+        return evaluate(env, policy, plan.episodes, seed, poses)
+
+
+def moved_starts(
+    env: gym.Env[Any, Any] | gym.vector.VectorEnv[Any, Any, Any], count: int, seed: int, jitter: float
+) -> list[Pose]:
+    """Start poses near the environment's own.
+
+    Raises:
+        AgentError: it is no environment with poses.
+    """
+    inner: Any = env.unwrapped
+    if not hasattr(inner, "robot"):
+        raise AgentError(f"{env}: start poses of this environment cannot be moved")
+    env.reset(seed=seed)
+    x, y, _, yaw = inner.robot.pose[0].tolist()
+    moves = np.random.default_rng([seed, 1]).uniform(-jitter, jitter, (count, 3)).tolist()
+    return [(x + dx, y + dy, yaw + turn) for dx, dy, turn in moves]

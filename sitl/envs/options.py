@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a user may choose, and the errors when it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from sitl.errors import OptionError, did_you_mean
+
+COMMON = (
+    "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",
+    "render_mode",
+)  # fmt: skip
+"""Options that every environment takes, whatever its robot."""
+
+
+class EnvOptionError(OptionError):
+    """An option of an environment that cannot be used; the message names it, its value and what is allowed."""
+
+
+def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:
+    """The error for a name that is not among those known, with the nearest of them."""
+    names = list(known)
+    hint = did_you_mean(str(value), names)
+    return EnvOptionError(f"{option} {value!r} is not known; it is one of {', '.join(names)}{hint}")

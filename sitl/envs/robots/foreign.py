@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Vehicles with an autopilot that is not ours, on our physics: its program is started anew, or rebooted, for every
+episode."""
+
+from __future__ import annotations
+
+import math
+
+from sitl.errors import OptionError
+from sitl.foreign.choice import PX4, Choice
+from sitl.physics.engine import EngineError
+from sitl.plants.alone import stand_alone
+from sitl.vehicles import Airframe, AirframeError
+
+from ..mavlink.connection import Connection
+from ..mavlink.foreign import Foreign, launch
+from ..options import EnvOptionError
+from .robot import Pose
+from .vehicles import INPROCESS, Ready, Seat, Vehicles
+
+
+class ForeignVehicles(Vehicles):
+    """See ``Vehicles``.
+
+    Args:
+        seat: what they are made of.
+        choice: the autopilot.
+    """
+
+    def __init__(self, seat: Seat, choice: Choice) -> None:
+        self._choice = choice
+        options, airframe = seat.options, seat.airframe
+        if choice.kind == PX4 and airframe.kind != "copter":
+            raise EnvOptionError(f"{self.where} flies copters here; {airframe.name} is a {airframe.kind}")
+        if options["connection"] != INPROCESS:
+            raise EnvOptionError(f"{self.where}: it needs no connection besides")
+        if options["gcs"] is not None:
+            raise EnvOptionError(f"{self.where}: gcs is for our own autopilot in process")
+        if choice.program is None and (options["count"] > 1 or options["params"]):
+            raise EnvOptionError(f"{self.where} is one vehicle as it is: no count or params")
+        super().__init__(seat)
+
+    @property
+    def where(self) -> str:
+        return f"autopilot {self._choice.name}"
+
+    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
+        figures, airframe = self.changed[index], self.seat.airframe
+        before, self.links[index] = self.links[index], None
+        link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
+        self.links[index] = link
+        link.heard.angles = self.seat.angles
+        return self.begun(index, self.prepare(link, pose))
+
+    def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:
+        """A foreign autopilot that has just booted on physics at power-on.
+
+        Args:
+            before: link of the episode before: closed, or rebooted when its program is not ours to start.
+            airframe: with the figures of this episode.
+            pose: that it stands at.
+            seed: of the physics.
+        """
+        choice, options = self._choice, self.options
+        rebooted = before if isinstance(before, Foreign) and choice.program is None else None
+        if before is not None and rebooted is None:
+            before.close()
+        try:
+            plant = stand_alone(
+                airframe, home=options["home"], backend=options["physics"], seed=seed, world=self.seat.world,
+                start=(*pose[:3], math.degrees(pose[3])),
+            )  # fmt: skip
+            if rebooted is None:
+                return launch(choice, plant, options["params"] or {}, len(self.seat.angles), options["patience"])
+            try:
+                rebooted.restart(plant)
+            except BaseException:
+                rebooted.close()
+                raise
+            return rebooted
+        except (OptionError, AirframeError, EngineError) as error:
+            raise EnvOptionError(str(error)) from None
+
+    def time_us(self, index: int) -> int:
+        link = self.links[index]
+        assert isinstance(link, Foreign)
+        return link.time_us

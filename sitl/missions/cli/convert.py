@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl mission convert``: from one format of mission files to the other."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from sitl.errors import OptionError
+
+from ..files import load, save, straightened
+from ..files.document import TYPE_OF_KIND
+
+
+def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = actions.add_parser("convert", help="convert between .plan and .waypoints")
+    parser.add_argument("source", metavar="FROM", help=".plan, .waypoints or .txt")
+    parser.add_argument("target", metavar="TO", help="the suffix says the format")
+    parser.add_argument("--vehicle", choices=sorted(TYPE_OF_KIND), help="whom a .plan is for")
+    parser.add_argument(
+        "--expand", action="store_true", help="write surveys, corridors, structures and splines as waypoints"
+    )
+    parser.add_argument("--force", action="store_true", help="replace TO if it is there")
+    parser.set_defaults(function=convert)
+
+
+def convert(options: argparse.Namespace) -> int:
+    """Read, write, say what was left out."""
+    file = load(options.source)
+    target = Path(options.target)
+    if target.exists() and not options.force:
+        raise OptionError(f"{target} is there already; --force replaces it")
+    kind = options.vehicle or (file.kind if file.vehicle_type is None else None)
+    if kind is not None:
+        file = replace(file, vehicle_type=TYPE_OF_KIND[kind])
+    if options.expand:
+        file = straightened(file).simple()
+    save(file, target)
+    if file.has_fence_or_rally and target.suffix.lower() != ".plan":
+        print(f"{target}: geofence and rally points are left out: the format has no place for them", file=sys.stderr)
+    print(f"{target}: {max(len(file.mission) - 1, 0)} items")
+    return 0

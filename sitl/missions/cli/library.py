@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl mission library``: the missions that come with the simulator."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+from pathlib import Path
+
+from sitl.errors import OptionError
+
+from .. import library
+
+
+def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = actions.add_parser("library", help="list or copy the missions that come with the simulator")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="such as copter/square (default: all)")
+    parser.add_argument("--copy", type=Path, metavar="DIR", help="copy their files there")
+    parser.set_defaults(function=show)
+
+
+def show(options: argparse.Namespace) -> int:
+    """List them, or copy their files."""
+    chosen = [library.find(name) for name in options.names] or list(library.entries().values())
+    for entry in chosen:
+        if options.copy is None:
+            where = f" [{entry.frame}{', world ' + entry.world if entry.world else ''}]"
+            print(f"{entry.name:24s} {entry.description}{where}")
+            continue
+        target = options.copy / entry.file
+        if target.exists():
+            raise OptionError(f"{target} is there already")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(entry.path, target)
+        print(target)
+    return 0

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Brings two flights together: in time, from where their missions begin; and along the way, whatever the time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sitl.core.geodesy import offset_ne
+from sitl.errors import OptionError
+from sitl.logs.track import NAMES, Track, is_angle, sampled
+
+Array = np.ndarray[Any, Any]
+
+STEP = 0.1
+"""Between two samples [s]."""
+ELSEWHERE = 500.0
+"""Flights whose homes are farther apart are compared each from its own home [m]."""
+BAND = 20.0
+"""A place of the way is looked for this far around the same time, beyond what the flights differ in length [s]."""
+LONGER = 120.0
+"""... but not by more than this [s]."""
+HEARTBEAT = 2.0
+"""What a ground station's log tells of modes may be this late [s]."""
+LAZY = 0.05
+"""Where many samples are at the same place (a hover), the one at the same time is meant: weight of time [m/s]."""
+MOVING = 0.5
+"""Where one of the two goes slower than this in golden's direction, a place says nothing about time [m/s]."""
+START_NAMES = {"AUTO": "AUTO began", "armed": "arming", "start": "power-on"}
+
+
+class AlignmentError(OptionError):
+    """Two flights that have nothing in common to compare."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two flights on one clock, which begins where both begin, and from one home."""
+
+    golden: Track
+    new: Track
+    """Samples every 0.1 s from 0 on; event times since the same start."""
+    align: str
+    """"AUTO", "armed" or "start"."""
+    starts: tuple[float, float]
+    """Each flight's own time of that [s]."""
+    notes: tuple[str, ...]
+
+
+def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -> Pair:
+    """Align two flights.
+
+    Args:
+        golden, new: the two.
+        align: as a tolerance has it.
+        coarse: the start of one is known to a heartbeat only: then their ways bring the clocks together.
+
+    Raises:
+        AlignmentError: they are of different kinds of vehicles, or one lacks the start that is asked for.
+    """
+    if golden.kind != new.kind:
+        raise AlignmentError(f"golden is a {golden.kind}'s flight, the new one a {new.kind}'s")
+    for title, track in (("golden", golden), ("the new flight", new)):
+        if len(track) < 2:
+            raise AlignmentError(f"{title} has no samples: its estimator never had an origin")
+    golden, new = golden.quantised(), new.quantised()
+    notes = []
+    north, east = offset_ne(golden.home[0] * 1e7, golden.home[1] * 1e7, new.home[0] * 1e7, new.home[1] * 1e7)
+    away = float(np.hypot(north, east))
+    if away <= ELSEWHERE:
+        new = new.seen_from((golden.home[0], golden.home[1], new.home[2]))  # heights stay above each one's home
+    else:
+        notes.append(f"flown {away / 1000.0:.1f} km from golden's home: each is compared from its own home")
+    for name in ("AUTO", "armed", "start") if align == "auto" else (align,):
+        first, second = begin(golden, name), begin(new, name)
+        if first is not None and second is not None:
+            found = Pair(_from(golden, first), _from(new, second), name, (first, second), tuple(notes))
+            return _brought_together(found, golden, new) if coarse else found
+    which = "golden" if begin(golden, align) is None else "the new flight"
+    raise AlignmentError(f"align = {align!r}: {which} has no such moment ({START_NAMES.get(align, align)})")
+
+
+def _brought_together(found: Pair, golden: Track, new: Track) -> Pair:
+    """The same with the clocks shifted by what the new flight is late along the way, if that is a heartbeat's."""
+    matched = match(found.new, found.golden)
+    moving = matched.of(np.linalg.norm(found.golden.data[:, 4:7], axis=1)) > MOVING
+    late = float(np.median(matched.delay[moving])) if moving.any() else 0.0
+    if not STEP / 2.0 < abs(late) <= HEARTBEAT:
+        return found
+    first, second = found.starts
+    note = f"clocks brought together by {late:+.2f} s: a log tells when {START_NAMES[found.align]} to a heartbeat only"
+    return Pair(
+        _from(golden, first),
+        _from(new, second + late, second),
+        found.align,
+        (first, second + late),
+        (*found.notes, note),
+    )
+
+
+def begin(track: Track, align: str) -> float | None:
+    """When it is, by the flight's own clock [s]."""
+    armed = next((t for t, state in track.armed if state), None)
+    if align == "armed":
+        return armed
+    if align == "AUTO":
+        return (
+            None if armed is None else next((t for t, mode in track.modes if mode == "AUTO" and t >= armed - 2.0), None)
+        )
+    return 0.0
+
+
+def _from(track: Track, start: float, told: float | None = None) -> Track:
+    """From a time to the disarming that follows, or to the end; on a clock that begins there.
+
+    Args:
+        track: the whole flight.
+        start: where the clock begins [s].
+        told: when the log tells of that moment [s]: what happened counts from then on. None: at ``start``.
+    """
+    stop = next((t for t, state in track.armed if not state and t > start), float(track.t[-1]))
+    t = track.t
+    times = start + np.arange(int((min(stop, t[-1]) - start) / STEP + 1e-6) + 1) * STEP
+    times = times[times >= t[0] - 1e-6]
+    series = {name: (t, track[name]) for name in NAMES[1:]}
+    cut = track.between(start if told is None else told, stop + 1.0)
+    if told is not None and cut.modes:
+        cut.modes[0] = (start, cut.modes[0][1])
+
+    def shifted(events: list[Any]) -> list[Any]:
+        return [(event[0] - start, *event[1:]) for event in events]
+
+    if not len(times):
+        raise AlignmentError(f"nothing was sampled after {start:.1f} s: there is nothing to compare")
+    data = sampled(times, series, is_angle)
+    data[:, 0] -= start
+    data[:, -1] -= data[0, -1]  # energy
+    return Track(
+        track.kind, data, track.home, shifted(cut.modes), shifted(cut.items), shifted(cut.texts), shifted(cut.armed)
+    )
+
+
+@dataclass(frozen=True)
+class Matched:
+    """For each sample of a flight, the place of another's way that is meant."""
+
+    index: Array
+    """As a broken index into the other's samples."""
+    cross: Array
+    """Distance from that place in the plane [m]."""
+    delay: Array
+    """Time at which the flight is there, less the other's [s]."""
+
+    def of(self, column: Array) -> Array:
+        """The other's values at these places."""
+        return np.interp(self.index, np.arange(len(column)), column)
+
+
+def match(flight: Track, other: Track) -> Matched:
+    """Find each sample of ``flight`` on the way of ``other``: never going back on it, and as near as can be."""
+    f, o = flight.data[:, 1:4], other.data[:, 1:4]
+    if flight.data.shape == other.data.shape and (flight.data[:, :4] == other.data[:, :4]).all():
+        return Matched(np.arange(len(f), dtype=float), np.zeros(len(f)), np.zeros(len(f)))
+    nearest = _warp(f, o, flight.t, other.t)
+    return _refined(f, o, flight.t, other.t, nearest)
+
+
+def _warp(f: Array, o: Array, tf: Array, to: Array) -> Array:
+    """Dynamic time warping within a band: index into ``o`` of each row of ``f``, never falling."""
+    first = round((tf[0] - to[0]) / STEP)
+    width = int((BAND + min(abs(tf[-1] - to[-1]), LONGER)) / STEP)
+    offsets = np.arange(-width, width + 1)
+    total = np.zeros(len(offsets))
+    came = np.zeros((len(f), len(offsets)), np.int32)
+    for i in range(len(f)):
+        j = i + first + offsets
+        near = o[np.clip(j, 0, len(o) - 1)] - f[i]
+        late = LAZY * STEP * offsets
+        cost = (near * near).sum(axis=1) + late * late
+        if i:
+            best = np.minimum.accumulate(total)
+            where = np.maximum.accumulate(np.where(total == best, np.arange(len(total)), 0))
+            after = np.minimum(np.arange(len(total)) + 1, len(total) - 1)  # the other's index may stay or grow
+            came[i], cost = where[after], cost + best[after]
+        total = cost
+    out = np.zeros(len(f), np.int64)
+    k = int(np.argmin(total))
+    for i in range(len(f) - 1, -1, -1):
+        out[i] = i + first + offsets[k]
+        k = int(came[i, k])
+    return np.clip(out, 0, len(o) - 1)
+
+
+def _refined(f: Array, o: Array, tf: Array, to: Array, nearest: Array) -> Matched:
+    """The nearest point of the two lines that meet in each matched sample."""
+    best = np.full(len(f), np.inf)
+    index = nearest.astype(float)
+    for step in (-1, 1):
+        end = np.clip(nearest + step, 0, len(o) - 1)
+        along = o[end] - o[nearest]
+        square = (along * along).sum(axis=1)
+        share = np.where(square > 1e-9, ((f - o[nearest]) * along).sum(axis=1) / np.maximum(square, 1e-9), 0.0)
+        share = np.clip(share, 0.0, 1.0)
+        gap = f - o[nearest] - share[:, None] * along
+        away = (gap * gap).sum(axis=1)
+        better = away < best - 1e-12
+        best = np.where(better, away, best)
+        index = np.where(better, nearest + step * share * (end != nearest), index)
+    rows = np.arange(len(o))
+    place = np.stack([np.interp(index, rows, o[:, k]) for k in range(2)], axis=1)
+    cross = np.hypot(*(f[:, :2] - place).T)
+    return Matched(index, cross, tf - np.interp(index, rows, to))

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How much two flights may differ: a TOML file, over one of the presets in ``presets/``."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from sitl.errors import OptionError
+
+SERIES = ("position", "cross_track", "altitude", "delay", "speed", "climb", "tilt", "heading")
+TOTALS = ("duration", "energy")
+EVENTS = ("items", "modes", "texts")
+PRESETS = ("same", "alike")
+ALIGNMENTS = ("auto", "AUTO", "armed", "start")
+_KINDS = ("copter", "rover")
+_KEYS: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(SERIES, ("max", "rms")),
+    **dict.fromkeys(TOTALS, ("max",)),
+    "items": ("time",),
+    "modes": ("time",),
+    "texts": ("time", "ignore", "numbers"),
+}
+
+
+class ToleranceError(OptionError):
+    """A tolerance file that says what no tolerance says; names file, key and what is allowed."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Limits of one comparison."""
+
+    name: str
+    align: str
+    """Where time begins: "AUTO" (the mode's first begin while armed), "armed" (first arming), "start" (power-on);
+    "auto": the first of these that both flights have."""
+    limits: Mapping[str, float]
+    """"cross_track.max" -> limit in the figure's unit; infinite: it is told, and not judged."""
+    ignore: tuple[re.Pattern[str], ...]
+    """Texts that do not count."""
+    numbers: bool
+    """Whether numbers in texts count."""
+
+    def limit(self, figure: str) -> float:
+        """Of "cross_track.max"."""
+        return self.limits.get(figure, math.inf)
+
+
+def load(given: str | Path | Mapping[str, Any], kind: str = "copter") -> Tolerance:
+    """A preset by its name, a TOML file, or a mapping of the same shape; for a kind of vehicle.
+
+    What a file does not say is as in its ``base``, "same" unless it says another.
+
+    Raises:
+        ToleranceError: no such preset or file, or it says something that is not known.
+    """
+    if isinstance(given, Mapping):
+        return _build("tolerance", given, kind)
+    if isinstance(given, str) and given in PRESETS:
+        return _build(given, _preset(given), kind)
+    file = Path(given)
+    try:
+        table = tomllib.loads(file.read_text())
+    except OSError as error:
+        raise ToleranceError(
+            f"tolerance {str(given)!r} cannot be read ({error.strerror or error}), and is none of {', '.join(PRESETS)}"
+        ) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ToleranceError(f"tolerance {str(given)!r} is no TOML: {error}") from None
+    return _build(str(given), table, kind)
+
+
+def _preset(name: str) -> dict[str, Any]:
+    return tomllib.loads((resources.files(__package__) / "presets" / f"{name}.toml").read_text())
+
+
+def _build(title: str, table: Mapping[str, Any], kind: str) -> Tolerance:
+    base = table.get("base", "same")
+    if base not in PRESETS:
+        raise ToleranceError(f"{title}: base {base!r} is none of {', '.join(PRESETS)}")
+    found: dict[str, Any] = {}
+    for other in _KINDS:
+        if not isinstance(table.get(other, {}), Mapping):
+            raise ToleranceError(f"{title}: [{other}] is a table, not {table[other]!r}")
+    for name, layer in (base, _preset(base)), (title, table):
+        _lay(found, layer, name, ("base", "align", *_KEYS, *_KINDS))
+        _lay(found, layer.get(kind, {}), f"{name}: [{kind}]", tuple(_KEYS))
+    if found["align"] not in ALIGNMENTS:
+        raise ToleranceError(f"{title}: align {found['align']!r} is none of {', '.join(ALIGNMENTS)}")
+    limits = {}
+    for name, keys in _KEYS.items():
+        for key in keys:
+            value = found.get(f"{name}.{key}", False)
+            if key not in ("ignore", "numbers"):
+                limits[f"{name}.{key}"] = _limit(title, f"{name}.{key}", value)
+    patterns, numbers = found["texts.ignore"], found["texts.numbers"]
+    if not isinstance(patterns, list | tuple):
+        raise ToleranceError(f"{title}: texts.ignore is a list of regular expressions, not {patterns!r}")
+    if not isinstance(numbers, bool):
+        raise ToleranceError(f"{title}: texts.numbers is true or false, not {numbers!r}")
+    try:
+        ignore = tuple(re.compile(pattern) for pattern in patterns)
+    except (re.error, TypeError) as error:
+        raise ToleranceError(f"{title}: texts.ignore is a list of regular expressions: {error}") from None
+    return Tolerance(title, found["align"], limits, ignore, numbers)
+
+
+def _lay(found: dict[str, Any], layer: Mapping[str, Any], title: str, known: tuple[str, ...]) -> None:
+    """Put one table over what there is."""
+    for name, entry in layer.items():
+        if name not in known:
+            raise ToleranceError(f"{title}: {name!r} is not known; there are {', '.join(known)}")
+        if name in _KEYS:
+            if not isinstance(entry, Mapping):
+                raise ToleranceError(f"{title}: {name} is a table of {', '.join(_KEYS[name])}, not {entry!r}")
+            for key, value in entry.items():
+                if key not in _KEYS[name]:
+                    raise ToleranceError(f"{title}: {name}.{key} is not known; there is {', '.join(_KEYS[name])}")
+                found[f"{name}.{key}"] = value
+        elif name == "align":
+            found[name] = entry
+
+
+def _limit(title: str, name: str, value: Any) -> float:
+    if value is False:
+        return math.inf
+    if isinstance(value, bool) or not isinstance(value, int | float) or not value >= 0.0:
+        raise ToleranceError(f"{title}: {name} = {value!r} is neither a number from 0 on nor false (not judged)")
+    return float(value)
