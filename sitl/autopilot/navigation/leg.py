@@ -51,7 +51,8 @@ def bounded(limits: Limits) -> Limits:
     A client may set a parameter to any value of its range, also to 1e-30. ArduPilot gives no leg at all for such a
     value (an internal error, and the vehicle stands); here it is the floor that counts.
     """
-    return Limits(*(max(limit, MIN_LIMIT) for limit in limits[:3]), min(limits.rise, MAX_RISE))
+    speed, acceleration, jerk = (max(limit, MIN_LIMIT) for limit in limits[:3])
+    return Limits(speed, acceleration, jerk, min(limits.rise, MAX_RISE))
 
 
 class Segment(NamedTuple):
