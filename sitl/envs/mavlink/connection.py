@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Callable
 from typing import Any
@@ -19,7 +20,15 @@ from .telemetry import Telemetry
 
 COMMAND_INT = message("COMMAND_INT")
 ACCEPTED, IN_PROGRESS = 0, 5
+REQUEST_MESSAGE, AUTOPILOT_VERSION = 512, message("AUTOPILOT_VERSION").id
+PROOF = "SIM_WIND_SPD"
+"""A parameter that only simulators have (``simulator``)."""
 _TRIES = 4
+_ANSWER_US = 1_000_000
+"""Time within which a parameter is answered by a vehicle that goes by its own clock [us]."""
+_LOOK_US = 20_000
+_PROOF_S = 3.0
+"""Wall time that a vehicle which answers other questions has for the parameter that proves a simulator [s]."""
 _REPEAT_S = 0.5
 """Wall time after which a datagram that is not answered is taken for lost."""
 
@@ -36,6 +45,8 @@ class Connection:
     """Whether scans and touches come with it, not by MAVLink."""
     longest_interval_us = 1 << 62
     """Greatest interval of telemetry that is new enough at the end of a step [us]."""
+    is_simulator = False
+    """Whether it has proved to be one."""
     was_rebooted = False
     learned: float | None = None
     """What the vehicle may have changed by itself, as it was at first (``preparation.reboot``)."""
@@ -64,6 +75,23 @@ class Connection:
             if result is not None:
                 return result
         raise LinkLostError(f"connection {self.name}: the vehicle does not answer command {number}")
+
+    def parameter(self, name: str) -> float | None:
+        """A parameter as it is now; None when the vehicle does not give it."""
+        self.heard.parameters.pop(name, None)
+        for _ in range(_TRIES):
+            self._ask_parameter(name)
+            for _ in range(1 if self.is_exact else _ANSWER_US // _LOOK_US):
+                self.pause(0 if self.is_exact else _LOOK_US)
+                if name in self.heard.parameters:
+                    return self.heard.parameters[name]
+        return None
+
+    def _ask_parameter(self, name: str) -> None:
+        self.client.send(
+            "PARAM_REQUEST_READ", target_system=self.heard.system, target_component=1, param_id=name.encode(),
+            param_index=-1,
+        )  # fmt: skip
 
     def _answer(self, number: int) -> int | None:
         self.run(0)
@@ -162,6 +190,24 @@ class Remote(Connection):
                 sent = now
             self.end.wait(_REPEAT_S)
 
+    def ask_who_it_is(self) -> None:
+        """Find out whether it is a simulator, by questions that change no vehicle.
+
+        Raises:
+            LinkLostError: it answers none of them.
+        """
+        heard = self.heard
+        self._ask_parameter(PROOF)
+        self.client.command(REQUEST_MESSAGE, AUTOPILOT_VERSION, target=heard.system)
+        self.exchange(
+            lambda: PROOF in heard.parameters or self._result(REQUEST_MESSAGE) is not None, within=self.patience
+        )
+        if PROOF not in heard.parameters:
+            self._ask_parameter(PROOF)
+            with contextlib.suppress(LinkLostError):
+                self.exchange(lambda: PROOF in heard.parameters, within=min(self.patience, _PROOF_S))
+        self.is_simulator = PROOF in heard.parameters
+
     def close(self) -> None:
         self.end.close()
 
@@ -223,7 +269,9 @@ class RealTime(Remote):
 
 
 def connect(text: str, readings: int, patience: float) -> Remote:
-    """Find the vehicle, and whether its time can be held; one whose cannot is used in real time, with a warning.
+    """Find the vehicle, whether it proves to be a simulator, and whether its time can be held.
+
+    It is only asked questions. One whose time cannot be held is used in real time, with a warning.
 
     Raises:
         EnvOptionError, LinkLostError: no such form of connection; nobody there.
@@ -232,6 +280,9 @@ def connect(text: str, readings: int, patience: float) -> Remote:
     probe = Remote(end, readings, patience)
     answer: list[Any] = []
 
+    def holds() -> bool:
+        return bool(answer) and answer[0].result == ACCEPTED
+
     def answered() -> bool:
         answer.extend(ack for ack in probe.heard.acks if ack.command == GRANT)
         return bool(answer)
@@ -239,18 +290,22 @@ def connect(text: str, readings: int, patience: float) -> Remote:
     try:
         if text.startswith(("udp:", "udpin:")):
             probe.exchange(lambda: probe.heard.system != 0, within=patience)
-        probe.client.send("COMMAND_INT", target_component=1, command=GRANT, x=0)
-        probe.exchange(answered, within=patience)
-        if probe.heard.system == 0 and answer[0].result != ACCEPTED:
+        probe.ask_who_it_is()
+        if probe.is_simulator:  # to others it is somebody else's command
+            probe.client.send("COMMAND_INT", target_component=1, command=GRANT, x=0)
+            probe.exchange(answered, within=patience)
+        if probe.heard.system == 0 and not holds():
             probe.exchange(lambda: probe.heard.system != 0, within=patience)
     except LinkLostError:
         end.close()
         raise LinkLostError(f"connection {text}: no vehicle answers within {patience:g} s") from None
     found: Remote
-    if answer[0].result == ACCEPTED:
+    if holds():
         found = Lockstep(end, readings, patience, answer[0].result_param2)
     else:
         logger.warn(f"connection {text}: the vehicle's clock cannot be held (no sitl run --lockstep); real time")
         found = RealTime(end, readings, patience)
+    found.is_simulator = probe.is_simulator
     found.heard.system = probe.heard.system or 1
+    found.heard.mode, found.heard.armed = probe.heard.mode, probe.heard.armed
     return found

@@ -26,6 +26,10 @@ class NotReadyError(VehicleError, RuntimeError):
     """A vehicle that does not become ready for an episode; the message says what it told."""
 
 
+class NotASimulatorError(NotReadyError):
+    """A vehicle that is not reset, because nothing proves that it is a simulator; nothing was sent that changes it."""
+
+
 class SocketEnd:
     """A socket as ``sitl.bridge.client.Client`` wants it; nothing blocks but ``wait``.
 

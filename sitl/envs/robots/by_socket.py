@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle that is reached by a socket, as it is: it reboots for every episode."""
+"""A vehicle that is reached by a socket, as it is: a simulator reboots for every episode."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from ..mavlink.connection import Lockstep, connect
 from ..mavlink.preparation import reboot
+from ..mavlink.simulator import REBOOT, is_simulator, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import Ready, Seat, Vehicles
@@ -40,6 +41,11 @@ class SocketVehicles(Vehicles):
             link = connect(self._connection, len(self.seat.angles), self.options["patience"])
             link.heard.angles = self.seat.angles
             self.links[0] = link
+        else:
+            link.is_simulator = is_simulator(link)
+        if not link.is_simulator and self.options["reset"] != REBOOT:
+            self.close()
+            raise refusal(link)
         reboot(link)
         origin = self.prepare(link, pose)
         if isinstance(link, Lockstep):
