@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from wire_messages import messages, numbers
 
 from sitl.autopilot.rover.firmware import FIRMWARE
 from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, RTL, SMART_RTL, is_known
@@ -19,6 +18,7 @@ from sitl.bridge.rover.commands import COMMANDS
 from sitl.core.records import as_dict
 from sitl.missions.pilot import MISSION_START, SET_MODE, Pilot, upload
 from sitl.simulation import Simulation, Snapshot
+from tests.bridge.wire_messages import messages, numbers
 
 MISSION = [
     (0, 16, -353632621, 1491652371, 584.0), (3, 16, -353630824, 1491652371, 0.0), (3, 16, -353630824, 1491654574, 0.0),

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import gymnasium as gym
 import pytest
-from real_vehicle import RealVehicle
 
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, NotASimulatorError
 from sitl.missions.pilot import TAKEOFF, Pilot
 from sitl.simulation import Simulation
+from tests.envs.real_vehicle import RealVehicle
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 DISARM, MODE, REBOOT, REQUEST_MESSAGE = 400, 176, 246, 512

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from witness import TAKEOFF_ITEM, WAYPOINT, Item, Witness
 
 from sitl.autopilot.params.parameter import FLOAT, Parameter
 from sitl.missions.pilot import ARM, POSITION_ONLY, TAKEOFF, VELOCITY_ONLY
 from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
+from tests.pilots.witness import TAKEOFF_ITEM, WAYPOINT, Item, Witness
 
 FRAMES = {"copter": "erle_copter", "rover": "ardupilot_rover"}
 AUTO, GUIDED, RTL = {"copter": 3, "rover": 10}, {"copter": 4, "rover": 15}, {"copter": 6, "rover": 11}

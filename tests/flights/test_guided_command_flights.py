@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, GUIDED, LAND, LOITER, Aviator
-from guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
 
 from sitl.missions.pilot import TAKEOFF
 from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES, GUIDED, LAND, LOITER, Aviator
+from tests.flights.guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 DENIED = 2

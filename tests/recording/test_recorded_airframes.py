@@ -6,13 +6,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from recorded_flights import hop
 
 from sitl import vehicles
 from sitl.recording.identity import of_airframe
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.simulation import Core
+from tests.recording.recorded_flights import hop
 
 AIRFRAME = """
 from sitl import vehicles

@@ -8,7 +8,6 @@ import shlex
 from pathlib import Path
 
 import pytest
-from recorded_flights import Recorded, hop
 
 import sitl.cli
 from sitl.bridge.client import Client
@@ -22,6 +21,7 @@ from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.run.lockstep import serve_lockstep
 from sitl.simulation import Core, Simulation
+from tests.recording.recorded_flights import Recorded, hop
 
 
 def typed(text: str) -> int:

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from recorded_flights import Recorded
 
 from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
 from sitl.recording.entries import Entry, Kind, decode, encode, read_varint, varint
@@ -18,6 +17,7 @@ from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.simulation import Core, Simulation
+from tests.recording.recorded_flights import Recorded
 
 ENTRIES_OF_ANY_KIND = st.lists(
     st.tuples(st.integers(0, 2**40), st.sampled_from(Kind), st.integers(0, 2**30), st.binary(max_size=300))
