@@ -9,9 +9,8 @@ corrects the rest. Backward speeds are negative.
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain, finite
 from ...control.pid import reset_filter, update_saturating
-from ...control.shaping import finite
 from . import motors
 from .forward_speed import forward_speed
 from .recent import now_tick, recent

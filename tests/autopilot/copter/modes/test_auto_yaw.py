@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.modes import auto_yaw, guided
-from sitl.core.rotations import wrap_pi
+from sitl.core.scalars import wrap_pi
 from tests.autopilot.copter.steady_copter import fly, make, turn_to
 
 DEG = math.pi / 180.0
