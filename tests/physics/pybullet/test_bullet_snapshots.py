@@ -115,7 +115,8 @@ def test_goes_on_bit_for_bit_in_another_process(tmp_path: Path) -> None:
     (tmp_path / "state").write_bytes(engine.snapshot())
     (tmp_path / "record").write_bytes(record_of(engine))
     script = (
-        "import sys; from bullet_copters import by_dice, copter; from pathlib import Path; e = copter();"
+        "import sys; from pathlib import Path; from tests.physics.pybullet.bullet_copters import by_dice, copter;"
+        "e = copter();"
         "e.seat.fleet.view('u1')[:] = bytearray(Path('record').read_bytes());"
         "e.restore(Path('state').read_bytes()); sys.stdout.buffer.write(by_dice(e, 200, 9))"
     )
