@@ -20,6 +20,7 @@ from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.services.statustext import StatusTextService
 from .core.compile import Progress
+from .core.constants import TICK_US
 from .core.record_reader import RecordReader
 from .errors import OptionError
 from .physics.carried import Carried
@@ -32,7 +33,6 @@ from .plants.surroundings import StartPose
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
 from .vehicle.kinds import KINDS
-from .vehicle.record import TICK_US
 from .vehicles import Airframe, AirframeError
 from .worlds import World
 

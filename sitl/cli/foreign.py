@@ -26,7 +26,8 @@ from ..plants.local import LocalPlant
 from ..run import runner
 from ..run.pacing import parse_speedup
 from ..simulation import DEFAULT_HOME
-from .options import VEHICLES, check_kind, open_folder
+from ..vehicle.kinds import KINDS
+from .options import check_kind, open_folder
 from .progress import CompileProgress
 
 
@@ -98,7 +99,7 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
 
 def build_plant(options: argparse.Namespace) -> LocalPlant:
     """Physics and world as the options say; SIM_ parameters of the files that we know act on them."""
-    airframe = vehicles.load(options.frame or VEHICLES[options.vehicle])
+    airframe = vehicles.load(options.frame or KINDS[options.vehicle].default_frame)
     check_kind(options.frame, airframe, options.vehicle)
     values: dict[str, float] = {}
     for path in options.params:

@@ -14,10 +14,8 @@ from ..physics.engines import NATIVE
 from ..plants.choose import FORMS
 from ..plants.surroundings import StartPose
 from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation, checked_home
+from ..vehicle.kinds import DEFAULT, KINDS
 from .progress import CompileProgress
-
-VEHICLES = {"copter": "erle_copter", "rover": "erle_rover"}
-"""Vehicle kinds and the airframe each flies by default."""
 
 
 def home(text: str) -> Home:
@@ -98,8 +96,8 @@ def check_kind(frame: str, airframe: vehicles.Airframe, vehicle: str) -> None:
 
 def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
-    vehicle = getattr(options, "vehicle", "copter")
-    airframe = vehicles.load(options.frame or VEHICLES[vehicle])
+    vehicle = getattr(options, "vehicle", DEFAULT)
+    airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
     check_kind(options.frame, airframe, vehicle)
     values: dict[str, float] = dict(overrides or {})
     for path in options.params:

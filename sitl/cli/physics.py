@@ -14,6 +14,7 @@ from ..physics.engines import BACKENDS, NATIVE
 from ..physics.native.power_on import DEFAULT_HOME
 from ..plants.alone import stand_alone
 from ..plants.local import LocalPlant
+from ..vehicle.kinds import KINDS
 from . import options as shared
 from .progress import CompileProgress
 
@@ -27,7 +28,7 @@ LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_ser
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("physics", help="run the physics of a vehicle whose autopilot is elsewhere")
-    parser.add_argument("vehicle", choices=sorted(shared.VEHICLES))
+    parser.add_argument("vehicle", choices=sorted(KINDS))
     parser.add_argument("--backend", choices=BACKENDS, default=NATIVE, help=f"what simulates it (default {NATIVE})")
     parser.add_argument(
         "--listen",
@@ -56,7 +57,7 @@ def physics(options: argparse.Namespace) -> int:
     if kind not in LISTENERS:
         raise OptionError(f"--listen {options.listen!r}: {kind!r} is not known; it is one of {', '.join(LISTENERS)}")
     serve: Serve = import_module(LISTENERS[kind]).serve
-    airframe = vehicles.load(options.frame or shared.VEHICLES[options.vehicle])
+    airframe = vehicles.load(options.frame or KINDS[options.vehicle].default_frame)
     shared.check_kind(options.frame, airframe, options.vehicle)
     with CompileProgress() as progress:
         plant = stand_alone(

@@ -44,11 +44,8 @@ class Witness(Pilot):
     def note(self) -> None:
         super().note()
         v = self.simulation.v
-        body, battery, controls = v.physics.body, v.physics.battery, v.actuators.controls
-        if self.simulation.kind.name == "copter":
-            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))  # type: ignore[attr-defined]
-        else:
-            output = float(controls[2])
+        body, battery = v.physics.body, v.physics.battery
+        output = self.simulation.kind.motor_output(v)
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0
         row = (*body.pos.tolist(), *body.vel.tolist(), *quat_to_euler(*body.q.tolist()))
         self.truth.append((self.now, *row, output, self._wh))

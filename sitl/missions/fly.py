@@ -171,19 +171,19 @@ class _Flight:
         outcome.started = station.now
         self.watch = PathWatch(self.simulation)
         station.choose_mode("AUTO")
-        if self.simulation.kind.name == "copter":
+        if self.simulation.kind.flies:
             station.start_mission()
         if not station.wait(self.limit_s, self._is_over):
             outcome.reason = f"not ended after {self.limit_s:g} s, at item {self._current} of {len(self.items) - 1}"
             return
-        if station.armed and self.simulation.kind.name == "rover":
+        if station.armed and not self.simulation.kind.flies:
             self._stop_rover()
         self._judge()
 
     def _is_over(self) -> bool:
         """Disarmed, or the mission is complete and nothing more will come (a copter on the ground disarms)."""
         ap = self.simulation.v.autopilot
-        stays = self.simulation.kind.name == "rover" or int(ap.arming.landed) == 0
+        stays = not self.simulation.kind.flies or int(ap.arming.landed) == 0
         self._is_complete = int(ap.modes.nav.mission_state) == COMPLETE
         return not self.station.armed or (self._is_complete and stays)
 

@@ -36,7 +36,7 @@ class PathWatch:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._flat = simulation.kind.name == "rover"
+        self._flat = not simulation.kind.flies
         self.distance = self.top_speed = 0.0
         """[m], [m/s] along the ground."""
         self.top_height = 0.0

@@ -17,6 +17,7 @@ from collections.abc import Callable
 from ..bridge.ardupilot_json.autopilot_end import LONGEST_S, AutopilotEnd
 from ..bridge.ardupilot_json.motion import Motion
 from ..core import rng
+from ..core.constants import TICK_US
 from ..core.record_reader import locate
 from ..core.rotations import quat_multiply, quat_rotate
 from ..physics.carried import Carried, carried
@@ -25,7 +26,6 @@ from ..physics.native.body import GRAVITY
 from ..physics.native.power_on import DEFAULT_HOME, Home
 from ..physics.native.tick import TICK_S
 from ..vehicle.core_entry import bind_unit
-from ..vehicle.record import TICK_US
 from .json_link import WAIT_S, JsonLink, parse_address
 from .plant import Craft, PhysicsLostError, Plant
 
@@ -87,7 +87,7 @@ class JsonPlant(Plant):
         self._memory = memoryview(craft.fleet.view("u1"))  # type: ignore[arg-type]
         self._body_at = craft.index * craft.fleet.dtype.itemsize + locate(craft.fleet.dtype, "physics.body.pos")[0]
         self._units: tuple[Callable[[], None], ...] = ()
-        self._substeps = int(craft.airframe.value("substeps")) if craft.kind.name == "copter" else 0
+        self._substeps = int(craft.airframe.value("substeps")) if craft.airframe.has("substeps") else 0
         self._note = ""
         """Why lines were not taken."""
 

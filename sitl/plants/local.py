@@ -58,7 +58,7 @@ class LocalPlant(Plant):
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
-            self.engine = make(backend, self._seat())
+            self.engine = make(backend, self._seat(), craft.kind.engines)
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
         self._told = craft.reader.field("autopilot.events.count")

@@ -17,7 +17,7 @@ from ..core import compile as compiler
 from ..core.fingerprint import reached
 from ..physics.engines import NATIVE
 from ..simulation import Simulation
-from ..vehicle.kinds import Kind
+from ..vehicle.kind import Kind
 from ..vehicles import Airframe
 from ..worlds import World
 

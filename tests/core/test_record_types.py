@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sitl.core.records import Float32, Ints, Record, array, as_dict
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 
 
 class Small(Record):

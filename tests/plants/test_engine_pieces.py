@@ -13,7 +13,8 @@ from sitl.physics.native.obstacles import settle
 from sitl.physics.native.rover import pieces as rover
 from sitl.physics.native.rover.motion import roll
 from sitl.physics.native.rover.step import step as step_rover
-from sitl.vehicle.kinds import COPTER, ROVER
+from sitl.vehicle.copter import COPTER
+from sitl.vehicle.rover import ROVER
 from sitl.vehicles import load
 
 HOME = (-35.0, 149.0, 100.0, 30.0)

@@ -33,10 +33,10 @@ from ..mavlink.preparation import ALIGN_US, hear_again, set_intervals, set_mode
 from ..mavlink.simulator import RESETS, SIMULATOR
 from ..options import EnvOptionError, unknown
 from ..setpoints import Setpoint
-from .autopilot_kinds import KINDS, PX4_KIND, volume
 from .by_socket import SocketVehicles
 from .foreign import ForeignVehicles
 from .in_process import InProcessVehicles
+from .kind import robot_kind, volume
 from .robot import Floats, Pose
 from .vehicles import INPROCESS, NOWHERE, Ready, Seat, Vehicles
 
@@ -103,18 +103,20 @@ class AutopilotRobot:
             raise EnvOptionError(str(error)) from None
         self.world, self.count = worlds.load(world), count
         self.name = airframe.name
-        self.kind = kind = KINDS[airframe.kind]
+        self.kind = kind = robot_kind(airframe.kind)
         readings = int(airframe.value("lidar_samples"))
         if readings < 1:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
-        if airframe.kind == "copter" and not 0.5 <= take_off <= 100.0:
+        if kind.takes_off and not 0.5 <= take_off <= 100.0:
             raise EnvOptionError(f"take_off = {take_off}; it must be 0.5 .. 100 m")
         try:
             choice = choose(autopilot, airframe.kind, autopilot_path)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         if choice is not None and choice.kind == PX4:
-            self.kind = kind = PX4_KIND
+            if kind.with_px4 is None:
+                raise EnvOptionError(f"autopilot {choice.name} flies no {airframe.kind} here; {self.name} is one")
+            self.kind = kind = kind.with_px4
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
@@ -126,7 +128,7 @@ class AutopilotRobot:
             if had.simulates
             else {}
         )
-        self.volume = volume(airframe, take_off if airframe.kind == "copter" else 0.0)
+        self.volume = volume(airframe, take_off if kind.takes_off else 0.0)
         self.scan = np.full((count, readings), np.inf, np.float32)
         self.collided = np.zeros(count, np.int64)
         self._state = np.zeros((count, 8))
@@ -137,7 +139,7 @@ class AutopilotRobot:
         self._now = [NOWHERE] * count
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The kind's own: see ``autopilot_kinds``."""
+        """The kind's own: see ``kind``."""
         return self.kind.action(form, setpoint)
 
     # ------------------------------------------------------------------ episodes

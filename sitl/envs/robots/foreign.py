@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 
 from sitl.errors import OptionError
-from sitl.foreign.choice import PX4, Choice
+from sitl.foreign.choice import Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError
@@ -30,9 +30,7 @@ class ForeignVehicles(Vehicles):
 
     def __init__(self, seat: Seat, choice: Choice) -> None:
         self._choice = choice
-        options, airframe = seat.options, seat.airframe
-        if choice.kind == PX4 and airframe.kind != "copter":
-            raise EnvOptionError(f"{self.where} flies copters here; {airframe.name} is a {airframe.kind}")
+        options = seat.options
         if options["connection"] != INPROCESS:
             raise EnvOptionError(f"{self.where}: it needs no connection besides")
         if options["gcs"] is not None:

@@ -31,7 +31,8 @@ WIND = {
     "wind_direction": ("SIM_WIND_DIR", Figure("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0)),
     "wind_turbulence": ("SIM_WIND_TURB", Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0)),
 }
-"""Figures that are no airframe's: the parameters that make the wind, and what is allowed. A rover does not feel it."""
+"""Figures that are no airframe's: the parameters that make the wind, and what is allowed. Not every kind of vehicle
+feels it."""
 
 
 class InProcessVehicles(Vehicles):
@@ -53,7 +54,7 @@ class InProcessVehicles(Vehicles):
 
     @property
     def surroundings(self) -> Mapping[str, Figure]:
-        return {name: figure for name, (_, figure) in WIND.items()} if self.seat.airframe.kind == "copter" else {}
+        return {name: figure for name, (_, figure) in WIND.items()} if self.seat.kind.feels_wind else {}
 
     @property
     def where(self) -> str:

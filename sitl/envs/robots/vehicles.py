@@ -19,7 +19,7 @@ from ..mavlink import px4, setpoints
 from ..mavlink.connection import Connection
 from ..mavlink.preparation import INTERVAL_US, prepare
 from ..options import EnvOptionError
-from .autopilot_kinds import PX4_KIND, Kind
+from .kind import RobotKind
 from .robot import Floats, Pose
 
 INPROCESS = "inprocess"
@@ -52,7 +52,7 @@ class Seat:
     options: Mapping[str, Any]
     """Of the robot, by name."""
     airframe: Airframe
-    kind: Kind
+    kind: RobotKind
     world: World
     angles: Floats
     """Of the lidar's readings [rad]."""
@@ -134,12 +134,12 @@ class Vehicles(ABC):
     def prepare(self, link: Connection, pose: Pose) -> tuple[float, float, float]:
         """Get one ready that has just booted; returns NED of its local origin in the world."""
         kind, heard = self.seat.kind, link.heard
-        take_off = self.options["take_off"] if self.seat.airframe.kind == "copter" else 0.0
+        take_off = self.options["take_off"] if kind.takes_off else 0.0
 
         def hold_sticks() -> None:
             link.client.send_payload(*setpoints.override(_AT_REST, heard, ()))
 
-        if kind is PX4_KIND:
+        if kind.guided == px4.OFFBOARD:
             px4.prepare(link, take_off)
         else:
             prepare(link, kind.guided, take_off, hold_sticks)

@@ -12,6 +12,7 @@ from ..native.obstacles import HIT_PAUSE_US
 from . import copter_aircraft, memory
 from .copter_aircraft import GOES
 from .craft import Craft
+from .engine import JsbsimEngine
 from .model import NAME
 from .properties import Properties
 
@@ -102,3 +103,13 @@ class CopterCraft(Craft):
         _, x, y, _ = self._body.q.tolist()
         if 1.0 - 2.0 * (x * x + y * y) < self._upright:
             g.state = GROUND_LYING
+
+
+def make(seat: Seat) -> JsbsimEngine:
+    """JSBSim for a copter.
+
+    Raises:
+        EngineError: its world is nothing for JSBSim.
+        MissingExtra: JSBSim is not installed.
+    """
+    return JsbsimEngine(seat, CopterCraft(seat))

@@ -12,6 +12,7 @@ from ..native.rover.steering import curvature
 from ..native.tick import TICK_S
 from . import memory, rover_aircraft
 from .craft import Craft
+from .engine import JsbsimEngine
 from .model import NAME
 from .properties import Properties
 from .rover_aircraft import FRONT_LEFT, FRONT_RIGHT
@@ -73,3 +74,13 @@ class RoverCraft(Craft):
             left, right = left + differ, left - differ
         rolled = self._rolled.tolist()
         self._write_distance(rolled[0] + TICK_S * left, rolled[1] + TICK_S * right)
+
+
+def make(seat: Seat) -> JsbsimEngine:
+    """JSBSim for a rover.
+
+    Raises:
+        EngineError: its world is nothing for JSBSim.
+        MissingExtra: JSBSim is not installed.
+    """
+    return JsbsimEngine(seat, RoverCraft(seat))

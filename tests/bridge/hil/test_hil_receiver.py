@@ -7,7 +7,7 @@ import pytest
 
 from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.autopilot.radio import RECEIVER_PULSES, receive
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 
 TIMEOUT = 1.0
 
