@@ -11,7 +11,7 @@ from ..core import rng
 from ..core.compile import Progress
 from ..physics.carried import Carried, carried
 from ..physics.engine import Engine, Laws, Seat
-from ..physics.engines import NATIVE, make
+from ..physics.engines import NATIVE, find
 from ..physics.native.power_on import Home
 from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..worlds import World
@@ -58,7 +58,7 @@ class LocalPlant(Plant):
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
-            self.engine = make(backend, self._seat(), craft.kind.engines)
+            self.engine = find(backend, craft.kind.name, craft.kind.engines)(self._seat())
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
         self._told = craft.reader.field("autopilot.events.count")

@@ -18,6 +18,7 @@ from ..logs.dataflash.attach import attach
 from ..plants.choose import is_remote
 from ..simulation import Simulation
 from ..vehicle.core_entry import Core
+from ..vehicle.kinds import KINDS
 from ..vehicles import Airframe, AirframeError
 from ..worlds import World, WorldError
 from . import identity
@@ -267,7 +268,7 @@ def _airframe(header: dict[str, Any]) -> str | Airframe:
     frame = header["frame"]
     if isinstance(frame, str) and not frame.endswith(".py"):
         return frame
-    return vehicles.of_data(header["vehicle"], header["airframe"])
+    return vehicles.of_data(KINDS[header["vehicle"]].airframe, header["airframe"])
 
 
 def _build(

@@ -61,7 +61,7 @@ class Kind:
     motor_output: Callable[[Any], float]
     """Mean control of the motors of a vehicle ``v``, of the full range."""
     engines: Mapping[str, str] = field(default_factory=dict)
-    """Physics engine -> "module:FUNCTION" that makes it for a vehicle (``sitl.physics.engines.make``)."""
+    """Physics engine -> "module:FUNCTION" that makes it for a vehicle (``sitl.physics.engines.find``)."""
     demo_script: str | None = None
     """Example that ``sitl demo`` runs."""
     programs: Mapping[str, str] = field(default_factory=dict)

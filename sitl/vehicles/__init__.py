@@ -59,19 +59,20 @@ def _installed() -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=GROUP)}
 
 
-def of_data(kind: str, data: Mapping[str, Any]) -> Airframe:
+def of_data(kind: type[Airframe], data: Mapping[str, Any]) -> Airframe:
     """An airframe from a data file: "name", "figures", "parameters", as ``recording.identity.of_airframe`` has them.
 
     Nothing that the data names is loaded or run.
 
+    Args:
+        kind: class of the airframe.
+        data: as above.
+
     Raises:
-        AirframeError: there is no such kind; the data make no airframe.
+        AirframeError: the data make no airframe.
     """
-    known: dict[str, type[Airframe]] = {"copter": CopterAirframe, "rover": RoverAirframe}
-    if kind not in known:
-        raise AirframeError(f"airframe of the kind {kind!r}: it is one of {', '.join(known)}")
     try:
-        return known[kind].of_record(str(data["name"]), data["figures"], data["parameters"])
+        return kind.of_record(str(data["name"]), data["figures"], data["parameters"])
     except AirframeError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError) as error:
