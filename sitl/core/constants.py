@@ -12,8 +12,3 @@ TICK_S = 0.0025
 """The same [s]."""
 TICK_HZ = 400
 """Ticks a second [Hz]."""
-
-DEG_TO_E7 = 1e7
-"""Degrees -> degE7, as latitudes and longitudes are sent and stored."""
-E7_TO_DEG = 1e-7
-"""degE7 -> degrees."""

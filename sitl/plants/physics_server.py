@@ -16,14 +16,13 @@ from ..autopilot.params.table import stored
 from ..bridge.hil.numbers import BASE_PORT
 from ..bridge.hil.physics_end import PhysicsEnd, text_frame
 from ..bridge.links.address import LOCAL, LinkAddressError
-from ..core.constants import TICK_US
+from ..core.constants import TICK_S
 from ..physics.carried import Carried
 from ..vehicle.sim_parameters import PREFIX
 from .alone import restart
 from .hil_link import tune
 from .local import LocalPlant
 
-TICK_S = 1e-6 * TICK_US
 _CATCH_UP_S = 0.05
 
 PATIENCE_S = 5.0

@@ -7,23 +7,19 @@ Body positions are NED from the world's origin on the floor; the world's own hei
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from .. import worlds
 from ..core.record_reader import RecordReader
 from ..errors import OptionError
 from ..physics.native.obstacles import OBSTACLES_MAX
+from ..scenario import StartPose
 from ..vehicles import Airframe
 from ..worlds import World, contact
 from ..worlds.frames import to_heading, to_ned
 from ..worlds.geometry import BOTTOM, TOP
-
-StartPose = str | Sequence[float]
-"""Name of a start pose of the world, or x, y, z [m], yaw [deg] in the world's frame."""
 
 REACH = 30.0
 """Solids farther away than this are not listed [m]."""
@@ -104,20 +100,6 @@ class Surroundings:
                     f"start at x {x:g}, y {y:g} m, yaw {math.degrees(yaw):g} deg: {airframe.name} would stand in solid "
                     f"{name} of world {self.world.name!r} ({-at.distance:.3f} m deep)"
                 )
-
-
-def checked_world(world: str | Path | World | None, start: StartPose | None) -> World | None:
-    """The world to load, if any.
-
-    Raises:
-        OptionError: a start pose without a world.
-        WorldError: no such world.
-    """
-    if world is None:
-        if start is not None:
-            raise OptionError(f"start {start!r} needs a world; without one a vehicle starts at its home")
-        return None
-    return worlds.load(world)
 
 
 def start_pose(world: World, start: StartPose | None, robot: str) -> tuple[float, float, float, float]:

@@ -12,11 +12,24 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .airframe import Airframe, AirframeError, apply
 from .copter_airframe import CopterAirframe, Rotor
 from .rover_airframe import RoverAirframe
 
-__all__ = ["Airframe", "AirframeError", "CopterAirframe", "Rotor", "RoverAirframe", "apply", "load", "names", "of_data"]
+__all__ = [
+    "Airframe",
+    "AirframeError",
+    "CopterAirframe",
+    "Rotor",
+    "RoverAirframe",
+    "apply",
+    "load",
+    "names",
+    "of_data",
+    "to_data",
+]
 
 _MODULES = ("erle_copter", "ardupilot_quad", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover")
 GROUP = "sitl.airframes"
@@ -59,8 +72,22 @@ def _installed() -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=GROUP)}
 
 
+def to_data(airframe: Airframe) -> dict[str, Any]:
+    """An airframe as JSON has it: "name", "figures", "parameters"."""
+    record = airframe.record()
+    figures = {name: _plain(record[name]) for name in record.dtype.names or ()}
+    return {"name": airframe.name, "figures": figures, "parameters": dict(airframe.parameters)}
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.item() if isinstance(value, np.generic) else value
+
+
 def of_data(kind: type[Airframe], data: Mapping[str, Any]) -> Airframe:
-    """An airframe from a data file: "name", "figures", "parameters", as ``recording.identity.of_airframe`` has them.
+    """An airframe from a data file: "name", "figures", "parameters", as ``to_data`` has them.
 
     Nothing that the data names is loaded or run.
 

@@ -20,7 +20,8 @@ from sitl import vehicles, worlds
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
-from sitl.simulation import DEFAULT_HOME, Home, OptionError, Simulation
+from sitl.scenario import DEFAULT_HOME, Home, Scenario
+from sitl.simulation import OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
@@ -120,7 +121,11 @@ class AutopilotRobot:
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
-        self._vehicles = had = have(Seat(self._options, airframe, kind, self.world, self.angles), choice)
+        try:
+            scenario = Scenario(airframe, home, params=params, world=self.world, physics=physics)
+        except OptionError as error:
+            raise EnvOptionError(str(error)) from None
+        self._vehicles = had = have(Seat(self._options, airframe, kind, self.world, scenario, self.angles), choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, had.shortest_step)
         self.figures: Mapping[str, Figure] = (

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sitl.autopilot.copter.modes import numbers
+from sitl.core.constants import TICK_S
 
 from ..mavlink import px4, setpoints
 from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
@@ -16,7 +17,7 @@ _ARDUPILOT = RobotKind(
     modes={"rc": numbers.ALT_HOLD, "velocity": numbers.GUIDED, "position": numbers.GUIDED, "attitude": numbers.GUIDED},
     guided=numbers.GUIDED,
     encode=setpoints.COPTER,
-    tick=0.0025,
+    tick=TICK_S,
     crash_range=0.2,
     discrete={
         "rc": {  # the paper's

@@ -5,6 +5,7 @@ episode."""
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from sitl.errors import OptionError
 from sitl.foreign.choice import Choice
@@ -65,10 +66,8 @@ class ForeignVehicles(Vehicles):
         if before is not None and rebooted is None:
             before.close()
         try:
-            plant = stand_alone(
-                airframe, home=options["home"], backend=options["physics"], seed=seed, world=self.seat.world,
-                start=(*pose[:3], math.degrees(pose[3])),
-            )  # fmt: skip
+            start = (*pose[:3], math.degrees(pose[3]))
+            plant = stand_alone(replace(self.seat.scenario, frame=airframe, seed=seed, start=start, params={}))
             if rebooted is None:
                 found = launch(choice, plant, options["params"] or {}, len(self.seat.angles), options["patience"])
                 try:

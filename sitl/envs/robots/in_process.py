@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
@@ -83,21 +84,19 @@ class InProcessVehicles(Vehicles):
         return ready
 
     def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
-        options, airframe = self.options, self.seat.airframe
+        scenario, airframe = self.seat.scenario, self.seat.airframe
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
         own = {name: value for name, value in figures if name not in WIND}
-        params = {**(options["params"] or {}), **wind} if wind else options["params"]
+        params = {**(scenario.params or {}), **wind}
         try:
-            simulation = Simulation(
-                airframe.changed(**own) if own else airframe, world=self.seat.world, start=start,
-                home=options["home"], params=params, core=self._core, physics=options["physics"],
-            )  # fmt: skip
+            scenario = replace(scenario, frame=airframe.changed(**own) if own else airframe, params=params, start=start)
+            simulation = Simulation(scenario, core=self._core)
         except (OptionError, AirframeError, EngineError, ParameterError) as error:
             raise EnvOptionError(str(error)) from None
         if simulation.unknown_parameters:
             raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
-        if options["physics"] == NATIVE:
+        if scenario.physics == NATIVE:
             self._core = simulation.core
         return simulation
 

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from sitl.core.geodesy import offset_ne
 from sitl.physics.engines import BACKENDS, NATIVE
+from sitl.scenario import Scenario
 from sitl.simulation import Simulation
 from sitl.vehicles import Airframe
 from sitl.vehicles.figures.figure import Figure
@@ -54,6 +55,8 @@ class Seat:
     airframe: Airframe
     kind: RobotKind
     world: World
+    scenario: Scenario
+    """What is simulated, without start and seed of an episode."""
     angles: Floats
     """Of the lidar's readings [rad]."""
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.simulation import Home
+from sitl.scenario import Home
 from sitl.vehicle.kinds import KINDS
 
 from .log import Log, Said
