@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib.metadata import EntryPoint
 
 import pytest
 
+from sitl import vehicles
 from sitl.bridge.client import Client
 from sitl.bridge.profile import Profile
 from sitl.bridge.telemetry.builder import builders
@@ -15,13 +17,14 @@ from sitl.errors import OptionError
 from sitl.logs.kind import logs_of
 from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation
+from sitl.vehicle import kinds
 from sitl.vehicle.kind import Kind, MissingPartError
-from sitl.vehicle.kinds import BUILT_IN, KINDS, UnknownKindError
+from sitl.vehicle.kinds import BUILT_IN, KINDS, Kinds, UnknownKindError
 
 from .boat.kind import BOAT
 from .boat.physics import AIRFRAME
 
-ARM, REQUEST = 400, 512
+ARM = 400
 
 
 @pytest.fixture
@@ -55,6 +58,27 @@ def test_an_unknown_kind_is_refused_and_those_there_are_named() -> None:
         KINDS["coptr"]
     with pytest.raises(UnknownKindError, match="vehicle 'boat' is none of copter, rover"):
         Simulation(AIRFRAME)
+
+
+def test_a_kind_of_an_installed_package_is_found_by_its_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    point = EntryPoint("boat", f"{__package__}.boat.kind:BOAT", kinds.GROUP)
+    monkeypatch.setattr(kinds, "_installed", lambda: {"boat": point})
+    every = Kinds()
+    assert tuple(every) == (*BUILT_IN, "boat") and "boat" in every
+    assert every["boat"] is BOAT and every.of_mav_type(2) is KINDS["copter"]
+
+
+def test_an_entry_point_that_is_no_kind_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    point = EntryPoint("ship", f"{__package__}.boat.kind:BOAT", kinds.GROUP)
+    monkeypatch.setattr(kinds, "_installed", lambda: {"ship": point})
+    with pytest.raises(UnknownKindError, match=r"entry point 'ship' of group sitl\.kinds: .* is no Kind of this name"):
+        Kinds()["ship"]
+
+
+def test_an_airframe_of_an_installed_package_is_found_by_its_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    point = EntryPoint("dinghy", f"{__package__}.boat.physics:AIRFRAME", vehicles.GROUP)
+    monkeypatch.setattr(vehicles, "_installed", lambda: {"dinghy": point})
+    assert vehicles.load("dinghy") is AIRFRAME and vehicles.names("boat") == ("dinghy",)
 
 
 def test_two_kinds_cannot_have_one_name(boat: Kind) -> None:
