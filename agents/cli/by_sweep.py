@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import environments
+from ..report.statistics import scipy_stats
 from ..report.sweep import write_table
 from ..runs import folder as folders
 from ..runs import sweep as sweeps
@@ -43,7 +44,9 @@ def runs_of_sweep(options: argparse.Namespace, path: Path, configure: Configure,
 
     Raises:
         AgentError: a name or a value that cannot be; then no folder was made.
+        MissingExtra: no SciPy, which the sweep's table needs at the end.
     """
+    scipy_stats()
     found = sweeps.combinations(options.sweep)
     configs = [configure(_with(options, values)) for values in found]
     environments.try_all(configs)

@@ -31,7 +31,7 @@ def figure(width: float = 9.0, height: float = 5.0, rows: int = 1, columns: int 
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
+        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[report]'") from None
     made = Figure((width, height), layout="constrained")
     FigureCanvasAgg(made)
     return made, made.subplots(rows, columns, squeeze=False, **options)

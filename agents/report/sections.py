@@ -23,7 +23,7 @@ from .blocks import BLOCK, block_names
 from .curves import draw_means, draw_raw
 from .document import Document
 from .group import Group
-from .statistics import bootstrap, improvement_interval, iqm, mean_interval, profile_interval
+from .statistics import improvement_interval, iqm_interval, mean_interval, profile_interval
 
 _FEW = 5
 """Seeds below which a bootstrap has too little to draw from."""
@@ -145,7 +145,7 @@ def aggregates(document: Document, folder: Path, groups: Sequence[Group], block:
     for group in groups:
         cells = [group.name, str(len(group.runs))]
         for name, scores in {over: group.last(block), "all episodes": group.whole()}.items():
-            value, low, high = bootstrap(scores[None], iqm)
+            value, low, high = iqm_interval(scores)
             rows.append((group.name, "interquartile mean", name, value, low, high))
             cells.append(with_range(value, low, high))
         table.append([*cells, f"{group.best:.0f}"])
