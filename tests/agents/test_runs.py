@@ -12,11 +12,13 @@ import time
 
 import numpy as np
 import pytest
+import ray_works
 from small_runs import config, new, result
 
 from agents import environments
 from agents.errors import AgentError
 from agents.runs import folder as folders
+from agents.runs import local
 from agents.runs.episodes import Episode, EpisodeLog
 from agents.runs.files import read_arrays
 from agents.runs.folder import RunFolder
@@ -128,6 +130,20 @@ def test_an_error_in_a_process_is_raised_here(tmp_path):
     good, bad = new(tmp_path / "good"), new(tmp_path / "bad", env_options={"world": "nowhere"})
     with pytest.raises(AgentError, match="nowhere"):
         train_all([good.path, bad.path], 2)
+
+
+def test_a_process_that_dies_or_raises_what_cannot_be_pickled_is_reported():
+    with pytest.raises(RuntimeError, match=r"a process .* died"):
+        local.each(ray_works.die, [1, 2], 2)
+    with pytest.raises(RuntimeError, match="OddError: this and that"):
+        local.each(ray_works.fail_oddly, [1, 2], 2)
+
+
+def test_items_not_begun_before_an_interrupt_have_no_result(tmp_path):
+    runs = [new(tmp_path / str(seed), seed=seed, episodes=200_000) for seed in range(4)]
+    told = lambda index, message: isinstance(message, int) and signal.raise_signal(signal.SIGTERM)  # noqa: E731
+    results = local.each(ray_works.train_eagerly, [run.path for run in runs], 2, told)
+    assert results[0] is False and results[2:] == [None, None]
 
 
 SLOW = "import sys; from pathlib import Path; from agents.runs.training import train_all; " + (
