@@ -12,7 +12,7 @@ from sitl.core.extras import MissingExtra
 
 from . import junit, words
 from .compare import Comparison, Figure
-from .happenings import SHIFTED, Happening
+from .events import SHIFTED, Event
 
 HTML, JUNIT = "report.html", "junit.xml"
 STYLE = """
@@ -94,7 +94,7 @@ def html(comparison: Comparison, title: str = "") -> str:
         _pictures(comparison),
         "<h2>What happened</h2><section><table><tr><th></th><th class=n>golden</th><th class=n>new</th>"
         "<th class=n>shift</th><th>event</th></tr>",
-        *(_event(comparison, event) for event in comparison.happenings),
+        *(_event(comparison, event) for event in comparison.events),
         "</table></section>",
     ]
     return (
@@ -129,7 +129,7 @@ def _row(figure: Figure) -> str:
     )
 
 
-def _event(comparison: Comparison, event: Happening) -> str:
+def _event(comparison: Comparison, event: Event) -> str:
     limit = comparison.tolerance.limit(f"{event.kind}.time")
     difference = event.difference(limit)
     is_bad = bool(difference) and math.isfinite(limit)

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from .alignment import START_NAMES, Pair
-from .happenings import ADDED, MISSING, Happening
+from .events import ADDED, MISSING, Event
 from .series import Series
 
 _NED = (("north", "south"), ("east", "west"), ("below", "above"))
@@ -49,8 +49,8 @@ def deviation(series: Series, k: int) -> str:
     }[series.name]
 
 
-def happening(event: Happening, difference: str) -> str:
-    """What is wrong with something that happened."""
+def event_text(event: Event, difference: str) -> str:
+    """How an event of the new flight differs from golden, in words."""
     if difference == MISSING:
         return f"{event.what} is missing (golden: at {event.golden or 0.0:.1f} s)"
     if difference == ADDED:

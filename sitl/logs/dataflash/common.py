@@ -74,7 +74,7 @@ COMMAND = (
     Field("Frame", "B"),
 )
 
-HAPPENINGS = (
+EVENT_MESSAGES = (
     Message("PARM", (Field("Name", "N"), Field("Value", "f"), Field("Default", "f"))),
     Message("MSG", (Field("Message", "Z"),)),
     Message(
@@ -99,7 +99,7 @@ HAPPENINGS = (
         ),
     ),
 )  # fmt: skip
-"""Written when something happens, by ``happenings``."""
+"""Event messages, encoded by ``events.EventEncoder``."""
 
 POSITION = Message(
     "POS",
