@@ -17,7 +17,7 @@ from .algorithms import Policy
 from .errors import AgentError
 from .laps import CENTRES, LapCounter
 from .runs.folder import RunFolder
-from .runs.local import Stopped, Tell
+from .runs.local import SendProgress, Stopped
 from .runs.plan import EPISODES, EvaluationPlan
 
 Pose = tuple[float, float, float]
@@ -126,11 +126,11 @@ class Interrupted(Exception):
     """Ends an evaluation between two episodes."""
 
 
-def until_stopped(tell: Tell, stopped: Stopped) -> Callable[[Played], None]:
+def until_stopped(send_progress: SendProgress, stopped: Stopped) -> Callable[[Played], None]:
     """A ``watch`` for work on many runs: tells 1 after each episode, and raises Interrupted when it shall end."""
 
     def watch(played: Played) -> None:
-        tell(1)
+        send_progress(1)
         if stopped():
             raise Interrupted
 

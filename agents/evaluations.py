@@ -11,7 +11,7 @@ from pathlib import Path
 from .evaluate import Evaluation, Interrupted, evaluate, stage, until_stopped
 from .runs.backends import Workers
 from .runs.folder import RunFolder
-from .runs.local import Stopped, Tell
+from .runs.local import SendProgress, Stopped
 from .runs.plan import EvaluationPlan
 
 
@@ -58,11 +58,13 @@ def evaluate_runs(
     return out
 
 
-def play_part(part: Part, tell: Tell, stopped: Stopped) -> Evaluation | None:
+def play_part(part: Part, send_progress: SendProgress, stopped: Stopped) -> Evaluation | None:
     """Play a part; tells 1 after each episode. None when it was stopped."""
     with stage(RunFolder(part.run), part.plan, part.seed) as (env, policy, poses):
         try:
-            return evaluate(env, policy, part.count, part.seed, poses, until_stopped(tell, stopped), part.first)
+            return evaluate(
+                env, policy, part.count, part.seed, poses, until_stopped(send_progress, stopped), part.first
+            )
         except Interrupted:
             return None
 

@@ -12,7 +12,7 @@ import numpy as np
 from ..report.group import Group
 from ..runs import folder as folders
 from ..runs.folder import RunFolder
-from ..runs.local import Told, each
+from ..runs.local import OnProgress, each
 from .change import Change
 from .share import Floats, Share, advantage, share
 from .trial import Result, Trial, attempt
@@ -111,7 +111,7 @@ def rehearse(
     seed: int = 0,
     jitter: float | None = None,
     jobs: int = 1,
-    told: Told = lambda index, message: None,
+    on_progress: OnProgress = lambda index, message: None,
     do: Each = each,
 ) -> list[Rehearsed] | None:
     """Try groups of runs; None when it was interrupted.
@@ -120,14 +120,14 @@ def rehearse(
         groups: names and runs.
         changes, episodes, seed, jitter: see ``trials_of``.
         jobs: how many processes.
-        told: called with the number of a trial and 1 for each of its episodes.
+        on_progress: called with the number of a trial and 1 for each of its episodes.
         do: does the work for all trials, as ``agents.runs.local.each``.
 
     Raises:
         AgentError: a run cannot be played at home.
     """
     trials = [trials_of(group.runs, changes, episodes, seed, jitter) for group in groups]
-    found = do(attempt, [trial for some in trials for trial in some], jobs, told)
+    found = do(attempt, [trial for some in trials for trial in some], jobs, on_progress)
     if any(result is None for result in found):
         return None
     out, first = [], 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One run under one change: episodes are played, or it is told why they cannot be."""
+"""One run under one change: episodes are played, or the reason why they cannot be is recorded."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..errors import AgentError
 from ..evaluate import Interrupted, Played, evaluate, moved_starts, until_stopped
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
-from ..runs.local import Stopped, Tell
+from ..runs.local import SendProgress, Stopped
 from .change import Change, is_covered
 from .truth import is_false_alarm
 
@@ -88,7 +88,7 @@ def robot_name(config: RunConfig) -> str:
         env.close()
 
 
-def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
+def attempt(trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result | None:
     """Play a trial; tells 1 after each episode. None when it was stopped.
 
     Raises:
@@ -97,7 +97,7 @@ def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
     run = RunFolder(trial.run)
     config = run.config.with_(max_steps=run.config.evaluation.max_steps or run.config.max_steps)
     try:
-        return _play(run, config, trial, tell, stopped)
+        return _play(run, config, trial, send_progress, stopped)
     except Interrupted:
         return None
     except _REFUSALS as error:
@@ -106,13 +106,13 @@ def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
         return Result(refused=str(error))
 
 
-def _play(run: RunFolder, config: RunConfig, trial: Trial, tell: Tell, stopped: Stopped) -> Result:
+def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result:
     policy = algorithms.policy_of(run)
     options = _options(config, trial.change)
     env = environments.make(config, **options)
 
     false_alarms: list[bool] = []
-    go_on = until_stopped(tell, stopped)
+    go_on = until_stopped(send_progress, stopped)
 
     def watch(played: Played) -> None:
         false_alarms.append(played.crashed and is_false_alarm(env))

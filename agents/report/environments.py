@@ -13,7 +13,7 @@ import numpy as np
 
 from ..evaluate import Interrupted, until_stopped
 from ..recipes import Recipe, names
-from ..runs.local import Stopped, Tell
+from ..runs.local import SendProgress, Stopped
 from . import curves
 from .document import Document
 from .driven import Driven, drive
@@ -51,11 +51,11 @@ class Dish:
         return [run.config.seed for run in self.group.runs]
 
 
-def drive_one(item: Item, tell: Tell, stopped: Stopped) -> Driven | None:
+def drive_one(item: Item, send_progress: SendProgress, stopped: Stopped) -> Driven | None:
     """Play what one run has learnt, as its recipe says; a ``Work``. Tells 1 after each episode; None when stopped."""
     path, recipe = item
     try:
-        return drive(path, recipe.evaluation, until_stopped(tell, stopped))
+        return drive(path, recipe.evaluation, until_stopped(send_progress, stopped))
     except Interrupted:
         return None
 

@@ -83,8 +83,8 @@ class RunFolder:
         return self.path.name
 
 
-def _longer(there: int | None, asked: int | None) -> int | None:
-    return asked if there is None or asked is None else max(there, asked)
+def _longer(there: int | None, requested: int | None) -> int | None:
+    return requested if there is None or requested is None else max(there, requested)
 
 
 def is_run(path: Path) -> bool:

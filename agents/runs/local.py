@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same work for many items, in this process or in several of this machine."""
+"""One function applied to many items, in this process or in several processes of this machine."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from typing import Any
 
 from .watch import Interrupts
 
-Tell = Callable[[Any], None]
+SendProgress = Callable[[Any], None]
 Stopped = Callable[[], bool]
-Work = Callable[[Any, Tell, Stopped], Any]
-"""``work(item, tell, stopped)``: tells of its progress, ends early when ``stopped()``, returns a result."""
-Told = Callable[[int, Any], None]
-"""Called with the number of an item and what its work told."""
+Work = Callable[[Any, SendProgress, Stopped], Any]
+"""``work(item, send_progress, stopped)`` reports its progress, returns early when ``stopped()``, returns a result."""
+OnProgress = Callable[[int, Any], None]
+"""Called with the index of an item and a message that its work sent."""
 _POLL_S, _GRACE_S = 0.1, 2.0
 """Wall time between two looks for messages and interrupts; for how long processes may end by themselves."""
 _messages: Any
@@ -29,29 +29,34 @@ _stop: Any
 """In a process of the pool: the queue of (number of an item, message), and the event that asks to stop."""
 
 
-def each(work: Work, items: Sequence[Any], jobs: int = 1, told: Told = lambda index, message: None) -> list[Any]:
-    """Do the work for all items; returns the results in their order, None for those not begun before an interrupt.
+def each(
+    work: Work, items: Sequence[Any], jobs: int = 1, on_progress: OnProgress = lambda index, message: None
+) -> list[Any]:
+    """Call ``work`` for each item; returns the results in order, None for items not started before an interrupt.
 
     Args:
-        work: a function of a module, so that other processes find it.
-        items: can be pickled.
-        jobs: how many processes; 1: this one.
-        told: see ``Told``.
+        work: a module-level function, so that other processes can import it.
+        items: picklable arguments of ``work``.
+        jobs: number of processes; 1: this process.
+        on_progress: see ``OnProgress``.
 
     Raises:
-        Exception: what the work raised for an item; the others are stopped.
+        Exception: what ``work`` raised for an item; the other items are stopped.
+        RuntimeError: a process died.
     """
-    with Interrupts() as asked:
+    with Interrupts() as interrupted:
         if min(jobs, len(items)) <= 1:
             results: list[Any] = [None] * len(items)
             for index, item in enumerate(items):
-                if not asked():
-                    results[index] = work(item, partial(told, index), asked)
+                if not interrupted():
+                    results[index] = work(item, partial(on_progress, index), interrupted)
             return results
-        return _in_processes(work, items, min(jobs, len(items)), told, asked)
+        return _in_processes(work, items, min(jobs, len(items)), on_progress, interrupted)
 
 
-def _in_processes(work: Work, items: Sequence[Any], jobs: int, told: Told, asked: Interrupts) -> list[Any]:
+def _in_processes(
+    work: Work, items: Sequence[Any], jobs: int, on_progress: OnProgress, interrupted: Interrupts
+) -> list[Any]:
     context = multiprocessing.get_context("spawn")
     messages, stop = context.SimpleQueue(), context.Event()
     others = set(multiprocessing.active_children())
@@ -63,14 +68,14 @@ def _in_processes(work: Work, items: Sequence[Any], jobs: int, told: Told, asked
         while running:
             finished, running = wait(running, _POLL_S, FIRST_COMPLETED)
             while not messages.empty():
-                told(*messages.get())
+                on_progress(*messages.get())
             for future in finished:
                 future.result()
-            if asked():
+            if interrupted():
                 stop.set()
         return [future.result() for future in futures]
     except BrokenProcessPool:
-        if asked():  # a terminal's Ctrl-C met a process before that ignored it
+        if interrupted():  # a terminal's Ctrl-C met a process before that ignored it
             return [future.result() if not future.exception() else None for future in futures]
         raise RuntimeError("a process that worked for an item, or one beside it, died") from None
     finally:

@@ -12,8 +12,8 @@ from sitl.option_error import did_you_mean
 from ..errors import AgentError
 
 EPISODES = 100
-MOST_JITTER = 1.0
-"""Starts that are moved farther are in walls; ``start`` of the environment gives others."""
+MAX_JITTER = 1.0
+"""Limit of ``jitter``: start poses moved farther are in walls (the option ``start`` gives others)."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class EvaluationPlan:
             if not isinstance(value, int) or isinstance(value, bool) or value < 1:
                 raise AgentError(f"evaluation: {name} = {value!r}; it must be a whole number from 1 on")
         number = isinstance(self.jitter, int | float) and not isinstance(self.jitter, bool)
-        if not number or not 0.0 <= self.jitter <= MOST_JITTER:
-            raise AgentError(f"evaluation: jitter = {self.jitter!r}; it must be a number 0 .. {MOST_JITTER:g} [m, rad]")
+        if not number or not 0.0 <= self.jitter <= MAX_JITTER:
+            raise AgentError(f"evaluation: jitter = {self.jitter!r}; it must be a number 0 .. {MAX_JITTER:g} [m, rad]")
         if not isinstance(self.options, Mapping):
             raise AgentError(f"evaluation: options = {self.options!r}; it must be a table of names and values")
 

@@ -77,7 +77,7 @@ def group(tmp_path_factory):
 
 def test_trials_are_paired_and_repeat(group):
     counts = []
-    one, two = (rehearse([group], CHANGES, seed=3, told=lambda index, n: counts.append(n))[0] for _ in range(2))
+    one, two = (rehearse([group], CHANGES, seed=3, on_progress=lambda index, n: counts.append(n))[0] for _ in range(2))
     assert one.home.rewards.shape == (2, 5) and len(counts) == 2 * 2 * (5 + 5 + 2)
     assert np.array_equal(one.home.rewards, two.home.rewards)
     assert np.array_equal(one.tried[0].rewards, two.tried[0].rewards)

@@ -53,7 +53,7 @@ def test_a_run_is_a_folder_that_says_all(tmp_path):
 
 @pytest.mark.parametrize("algorithm", ["qlearn", "sarsa"])
 def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, algorithm, monkeypatch):
-    monkeypatch.setattr("agents.runs.keeper._TOLD_S", -1.0)  # tells of each episode
+    monkeypatch.setattr("agents.runs.keeper._REPORT_S", -1.0)  # tells of each episode
     whole, parts = new(tmp_path / "whole", algorithm), new(tmp_path / "parts", algorithm)
     train(whole)
     for episodes in (11, 12, 25, None):
@@ -63,7 +63,7 @@ def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, al
 
 
 def test_a_killed_run_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch):
-    monkeypatch.setattr("agents.runs.keeper._TOLD_S", -1.0)
+    monkeypatch.setattr("agents.runs.keeper._REPORT_S", -1.0)
     whole, killed = new(tmp_path / "whole"), new(tmp_path / "killed")
     train(whole)
     train(killed, 7)
