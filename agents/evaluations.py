@@ -17,7 +17,7 @@ from .runs.plan import EvaluationPlan
 
 @dataclass(frozen=True)
 class Part:
-    """Some of the episodes of an evaluation; can be pickled."""
+    """A range of the episodes of an evaluation; picklable."""
 
     run: Path
     plan: EvaluationPlan
@@ -29,7 +29,7 @@ class Part:
 def evaluate_runs(
     runs: Sequence[RunFolder], plans: Sequence[EvaluationPlan], seed: int = 0, workers: Workers | None = None
 ) -> list[Evaluation]:
-    """Play what runs have learnt.
+    """Play the learnt policies of runs.
 
     Args:
         runs: that have a model.
@@ -59,7 +59,7 @@ def evaluate_runs(
 
 
 def play_part(part: Part, send_progress: SendProgress, stopped: Stopped) -> Evaluation | None:
-    """Play a part; tells 1 after each episode. None when it was stopped."""
+    """Play a part; sends 1 after each episode. None when it was stopped."""
     with stage(RunFolder(part.run), part.plan, part.seed) as (env, policy, poses):
         try:
             return evaluate(
@@ -70,7 +70,7 @@ def play_part(part: Part, send_progress: SendProgress, stopped: Stopped) -> Eval
 
 
 def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
-    """(first, how many) of at most so many parts."""
+    """Split episodes into at most ``count`` parts: (first episode, number of episodes)."""
     bounds = [episodes * k // min(count, episodes) for k in range(min(count, episodes) + 1)]
     return [(first, last - first) for first, last in pairwise(bounds)]
 
@@ -78,7 +78,8 @@ def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
 def evaluate_groups(
     groups: Sequence[Sequence[RunFolder]], plans: Sequence[EvaluationPlan], workers: Workers | None = None
 ) -> list[list[Evaluation]]:
-    """The same of groups of runs, all at once, with a plan for each group; an evaluation for each run of each."""
+    """As ``evaluate_runs``, for groups of runs with a plan for each group; returns an evaluation for each run of each
+    group."""
     runs = [run for group in groups for run in group]
     each = [plan for group, plan in zip(groups, plans) for _ in group]
     found = iter(evaluate_runs(runs, each, workers=workers))

@@ -12,11 +12,11 @@ from sitl.core.extras import MissingExtra
 CLASSES = {"dqn": "DQN", "ppo": "PPO", "sac": "SAC"}
 """Algorithm -> its class in stable-baselines3."""
 LIBRARIES = ("torch", "stable-baselines3")
-"""Whose versions results depend on."""
+"""Libraries whose versions results depend on."""
 
 
 def require() -> None:
-    """See that the libraries are there, without the seconds that loading them takes.
+    """Check that the libraries are installed, without importing them, which takes seconds.
 
     Raises:
         MissingExtra: one is not installed.

@@ -88,7 +88,7 @@ class Robots(VecEnv):
         return {"robots": snapshots, "frames": self._frames.rows, "tally": self._tally.memory()}
 
     def recall(self, memory: dict[str, Any]) -> None:
-        """Go on from there."""
+        """Restore the state that ``memory`` returned."""
         self._env.unwrapped.restore(memory["robots"])  # type: ignore[attr-defined]
         self._frames.rows[...] = memory["frames"]
         self._tally.recall(memory["tally"])

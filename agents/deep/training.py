@@ -92,7 +92,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     unwritten: list[Any] = []
 
     def between() -> bool:
-        """Between two rounds; returns whether the run ends here."""
+        """Called between two rounds of learning; returns whether the run ends here."""
         tally.epsilon = float(getattr(model, "exploration_rate", "nan"))
         rows = tally.take()
         if rows:

@@ -14,7 +14,7 @@ from ..errors import AgentError
 from .worlds import altered
 
 GROUPS = ("world", "physics", "vehicle", "sensors", "latency", "step", "together")
-"""What changes can be of; reports go by them."""
+"""Groups of changes; reports are divided by them."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ class Change:
     stretch: float = 1.0
     """Factor of the lengths of the world of home."""
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Of the environment, which replace those of home."""
+    """Options of the environment, in place of the original ones."""
     episodes: int | None = None
-    """At most so many are played: for slow physics."""
+    """Largest number of episodes played; for slow physics."""
     by_default: bool = True
     """Whether it is tried when the user does not name it."""
 
@@ -79,7 +79,7 @@ class Change:
 
     @classmethod
     def of(cls, values: Any) -> Change:
-        """From names and values, as a file has them.
+        """From the keys and values of a file.
 
         Raises:
             AgentError: no such key, a missing one, or a value that cannot be.
@@ -154,7 +154,7 @@ def usual(robot: Any, figure: str) -> float:
 
 
 def scaled(robot: Any, figure: str, factor: float) -> float:
-    """So many times the usual value, without the last bits that nobody meant."""
+    """``factor`` times the default value, rounded."""
     return float(f"{factor * usual(robot, figure):.12g}")
 
 

@@ -38,7 +38,7 @@ class Tried:
 
     @classmethod
     def of(cls, results: Sequence[Result]) -> Tried:
-        """Of one result for each seed."""
+        """From the results of each seed."""
         refused = next((result.refused for result in results if result.refused), "")
         if refused:
             nothing = np.zeros((0, 0))
@@ -58,7 +58,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Rehearsed:
-    """What a group of runs, which differ in their seeds only, gave."""
+    """Results of a group of runs that differ in their seeds only."""
 
     name: str
     runs: Sequence[RunFolder]
@@ -68,7 +68,7 @@ class Rehearsed:
     """Under each change."""
 
     def shares(self) -> list[Share | None]:
-        """Of the reward at home, under each change; None where it was not played."""
+        """Reward under each change relative to that without it; None where it was not played."""
         return [None if tried.refused else share(self.home.rewards, tried.rewards) for tried in self.tried]
 
     def advantages(self, first: Rehearsed) -> list[Share | None]:
@@ -86,7 +86,7 @@ def trials_of(
     seed: int = 0,
     jitter: float | None = None,
 ) -> list[Trial]:
-    """At home first, then under each change; for each, one trial a run.
+    """Trials without a change first, then under each change; one trial a run.
 
     Args:
         runs: of a group.

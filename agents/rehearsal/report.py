@@ -138,7 +138,7 @@ def _groups(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]
 
 
 def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
-    """What must be known before the figures are believed."""
+    """Cautions for the reader, before the results."""
     out = []
     weak = [one.name for one in rehearsed if one.home.crashed.mean() > WEAK]
     if weak:
@@ -167,7 +167,7 @@ def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
 
 
 def crashes(tried: Tried) -> str:
-    """How many there were, and how many of them were a reading only."""
+    """Number of crashes, and how many of them were by a reading only."""
     text, false_alarms = f"{int(tried.crashed.sum())} of {tried.crashed.size}", int(tried.false_alarms.sum())
     return f"{text} ({false_alarms} false)" if false_alarms else text
 

@@ -28,29 +28,29 @@ _REFUSALS = (OptionError, VehicleError, MissingExtra)
 
 @dataclass(frozen=True)
 class Trial:
-    """What is to be played; can be pickled."""
+    """A run under one change; picklable."""
 
     run: Path
     change: Change | None
-    """None: at home."""
+    """None: without a change."""
     episodes: int
     seed: int = 0
-    """Of the resets: equal for all trials, which are thereby paired episode by episode."""
+    """Seed of the resets; equal for all trials, so that their episodes are paired."""
     jitter: float | None = None
     """Start poses are moved by up to so much [m, rad]; None: as the run is evaluated, see ``jitter_of``."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """Of a trial."""
+    """Result of a trial."""
 
     rewards: tuple[float, ...] = ()
-    """Of each episode."""
+    """Reward of each episode."""
     crashed: tuple[bool, ...] = ()
     false_alarms: tuple[bool, ...] = ()
     """Crashes that were a reading only, see ``truth``."""
     simulated_s: float = 0.0
-    """Of all episodes together [s]."""
+    """Simulated time of all episodes together [s]."""
     seen: bool = False
     """Whether the training's randomisation covers the change."""
     refused: str = ""
@@ -67,8 +67,9 @@ def home_options(config: RunConfig) -> dict[str, Any]:
 
 
 def jitter_of(config: RunConfig, robot: Any) -> float:
-    """By how much starts are moved when nobody says: as the run is evaluated, but a robot without noise that always
-    starts at one place would play one episode over and over."""
+    """Default distance by which starts are moved [m, rad]: as in the run's evaluation; but a robot without noise that
+    always
+    starts at one place would repeat the same episode."""
     starts = "start" in {**config.env_options, **config.evaluation.options}
     if config.evaluation.jitter == 0.0 and not starts and isinstance(robot, Turtlebot):
         return JITTER
@@ -76,7 +77,7 @@ def jitter_of(config: RunConfig, robot: Any) -> float:
 
 
 def robot_name(config: RunConfig) -> str:
-    """Of the robot of a run.
+    """Name of the robot of a run.
 
     Raises:
         AgentError: its environment is none of this package's.

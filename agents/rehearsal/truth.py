@@ -15,7 +15,7 @@ from sitl.worlds.frames import to_ned
 MARGIN = 0.05
 """A crash farther from every solid than the crash range and this is a false alarm [m]."""
 _HALF_SLICE = 0.01
-"""Of what is looked at, above and below the lidar [m]."""
+"""Half height of the slice around the lidar that is looked at [m]."""
 
 
 def is_false_alarm(env: Any) -> bool:

@@ -23,12 +23,12 @@ class Table:
     rows: Sequence[Sequence[str]]
 
     def markdown(self) -> str:
-        """As Markdown."""
+        """The document as Markdown."""
         lines = [self.head, ["---", *["---:"] * (len(self.head) - 1)], *self.rows]
         return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
     def html(self) -> str:
-        """As HTML."""
+        """The document as HTML."""
         head = "".join(f"<th>{_inline(cell)}</th>" for cell in self.head)
         rows = ("<tr>" + "".join(f"<td>{_inline(cell)}</td>" for cell in row) + "</tr>" for row in self.rows)
         return f"<table>\n<tr>{head}</tr>\n" + "\n".join(rows) + "\n</table>"
@@ -43,7 +43,7 @@ class Document:
     _html: list[str] = field(default_factory=list)
 
     def heading(self, text: str) -> None:
-        """Of a section."""
+        """Add the heading of a section."""
         self._add(f"## {text}", f"<h2>{_inline(text)}</h2>")
 
     def paragraph(self, text: str) -> None:

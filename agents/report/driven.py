@@ -27,13 +27,13 @@ DRAWN = 20
 
 @dataclass(frozen=True)
 class Facts:
-    """Of the environment that a run was evaluated in."""
+    """Facts about the environment that a run was evaluated in."""
 
     world: World
     robot: str
-    """Its name."""
+    """Name of the robot."""
     observation: str
-    """In words."""
+    """Description of the observation."""
     action: str
     step_s: float
     """Simulated time of a step [s]."""
@@ -41,13 +41,12 @@ class Facts:
 
 @dataclass(frozen=True)
 class Whereabouts:
-    """Of an episode: without them one that shuttles in a corner, or has left for open ground, looks like any other
-    that does not crash."""
+    """Extent of an episode's path: it shows a robot that shuttles in a corner or has left for open ground."""
 
     farthest_m: float
     """Greatest distance from its start [m]."""
     left: bool
-    """It ended outside of the rectangle that the walls of the world lie in."""
+    """The episode ended outside of the rectangle around the walls of the world."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ class Driven:
     trails: tuple[Floats, ...]
     """x, y of the first episodes after each step [m], each of shape (steps + 1, 2)."""
     whereabouts: tuple[Whereabouts, ...]
-    """Of all episodes."""
+    """Extents of all episodes."""
     facts: Facts
 
     @property
@@ -104,7 +103,7 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
 
 
 def whereabouts(trail: Floats, world: World) -> Whereabouts:
-    """Of an episode.
+    """Extent of an episode's path.
 
     Args:
         trail: x, y [m], shape (n, 2).

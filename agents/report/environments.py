@@ -28,11 +28,11 @@ Item = tuple[Path, Recipe]
 
 @dataclass(frozen=True)
 class Dish:
-    """What came of a recipe."""
+    """Results of a recipe."""
 
     recipe: Recipe
     group: Group
-    """Its runs, by seed."""
+    """Runs of the recipe, by seed."""
     driven: Sequence[Driven]
     """An evaluation of each."""
 
@@ -47,7 +47,7 @@ class Dish:
         return not math.isnan(self.driven[0].evaluation.mean_laps)
 
     def seeds(self) -> list[int]:
-        """Of the runs."""
+        """Seeds of the runs."""
         return [run.config.seed for run in self.group.runs]
 
 
@@ -225,7 +225,7 @@ def with_range(values: Sequence[float], form: str) -> str:
 
 
 def _duration(seconds: float) -> str:
-    """For people."""
+    """A duration [s] as text."""
     if seconds < 120.0:
         return f"{seconds:.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:,.0f} h"

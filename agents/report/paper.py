@@ -23,7 +23,8 @@ from .paper_tables import beside_paper, changes, shortfalls, times
 from .sections import aggregates, blocks_csv, curves_text, draw_curves, greedy_play, interval_text
 
 JITTER = 0.1
-"""By which greedy play moves the starts [m, rad]: from one start every episode would be the same."""
+"""Distance by which greedy play moves the starts, in x and y [m] and yaw [rad]: from one start all episodes are the
+same."""
 
 
 @dataclass(frozen=True)

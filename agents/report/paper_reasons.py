@@ -17,7 +17,7 @@ from .statistics import difference, mean_interval
 _LONGEST = 5
 """Blocks of the begin and of the end that are looked at, at most: in the first five epsilon is above 0.2."""
 _OTHERS = ("first visit", "terminal bootstrap", "redraw")
-"""What else the code does otherwise, alone."""
+"""Further differences between the code and the paper, each alone."""
 
 
 def reasons(groups: Mapping[str, Group]) -> list[str]:
@@ -63,11 +63,11 @@ class _Span:
         return float(np.mean(MEAN_REWARDS[algorithm][self._first : self._last]))
 
     def change(self, to: str, of: str) -> str:
-        """By how much one thing changed the mean, and whether that may be chance."""
+        """Effect of one change on the mean, and whether it may be chance."""
         return verdict(self.scores(to), self.scores(of))
 
     def nearest(self, names: Sequence[str], algorithm: str) -> str:
-        """Which mean is the nearest to the paper's."""
+        """The mean nearest to the paper's."""
         return min(names, key=lambda name: abs(float(self.scores(name).mean()) - self.paper(algorithm)))
 
 

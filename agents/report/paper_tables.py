@@ -54,13 +54,13 @@ def beside_paper(document: Document, groups: Groups, folder: Path) -> None:
 
 
 def _ends(k: int, episodes: int) -> str:
-    """Where the paper's block ends when ours is shorter."""
+    """End of the paper's block when ours is shorter."""
     end = (k + 1) * BLOCK
     return "" if end <= episodes else f" (to {end})"
 
 
 def shortfalls(groups: Groups) -> list[str]:
-    """Where ours stays below the paper's, and whether by more than the seeds' spread; whole blocks only."""
+    """Blocks in which our mean is below the paper's, and whether by more than the seeds' spread; whole blocks only."""
     points = []
     for (algorithm, variant), group in groups.items():
         count = min(group.rewards.shape[1] // BLOCK, len(MEAN_REWARDS[algorithm]))

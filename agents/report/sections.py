@@ -26,7 +26,7 @@ from .group import Group
 from .statistics import improvement_interval, iqm_interval, mean_interval, profile_interval
 
 _FEW = 5
-"""Seeds below which a bootstrap has too little to draw from."""
+"""Number of seeds below which bootstrap intervals are too narrow."""
 
 
 def write_csv(path: Path, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
@@ -50,7 +50,7 @@ def with_range(value: float, low: float, high: float, digits: int = 0) -> str:
 
 
 def interval_text(groups: Sequence[Group]) -> str:
-    """What the figures of tables of blocks are."""
+    """Explanation of the tables of blocks."""
     text = "Mean over seeds ± half of its 95 % interval (Student's)"
     return f"{text}; a single seed has no interval." if any(len(g.runs) == 1 for g in groups) else f"{text}."
 
@@ -110,7 +110,7 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
 
 
 def curves_text(block: int) -> str:
-    """What ``draw_curves`` draws."""
+    """Explanation of the picture of ``draw_curves``."""
     return (
         "One picture for each group: the episodes of its first seed (thin), and their means (thick). The last has the "
         f"means over all seeds of the {block} episodes before each, with their 95 % intervals where there are several "

@@ -17,11 +17,11 @@ _PAPER, _WALL, _OTHER = "#fafaf7", "#3e444c", "#d5d9dd"
 _TRAIL, _START, _CRASH = "#1f77b4", "#2ca02c", "#d62728"
 _BORDER_M = 0.4
 _OUTSIDE = 0.15
-"""Of the world's size, that is shown beyond it where trails lead out of it."""
+"""Margin that is shown where trails leave the world, as a fraction of its size."""
 _ROOM_M = 2.0
 """Around trails that take up a small part of a large world."""
 _HEIGHT, _WIDEST = 7.5, 13.0
-"""Of the picture [inch]."""
+"""Height and greatest width of the picture [inch]."""
 
 
 def draw_trails(path: Path, world: World, trails: Sequence[Floats], crashed: Sequence[bool], title: str) -> Path:

@@ -16,7 +16,7 @@ from .episodes import Episode
 from .folder import RunFolder
 
 _RECENT = 100
-"""Episodes that the shown reward is a mean of."""
+"""Number of episodes in the mean reward that is shown."""
 
 
 class Bar:
@@ -38,7 +38,7 @@ class Bar:
         self._start = time.perf_counter()
 
     def __call__(self, index: int, rows: Sequence[Episode]) -> None:
-        """Episodes of a run are done."""
+        """Count finished episodes of a run."""
         for row in rows:
             self._recent.append(row.reward)
             self.steps += row.steps
@@ -54,7 +54,7 @@ class Bar:
         return ", ".join([*parts, self.speed()])
 
     def speed(self) -> str:
-        """Of all runs together."""
+        """Speed of all runs together, as text."""
         wall = max(time.perf_counter() - self._start, 1e-9)
         out = f"{self.steps / wall:,.0f} steps/s"
         return out if math.isnan(self.simulated_s) else f"{out}, {self.simulated_s / wall:,.0f} x real time"

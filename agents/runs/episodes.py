@@ -19,7 +19,7 @@ class Episode(NamedTuple):
     """A row. All but the last column repeat exactly when the run is repeated."""
 
     episode: int
-    """From 0 on."""
+    """Number of the episode, from 0."""
     steps: int
     reward: float
     """Sum."""

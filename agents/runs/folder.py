@@ -79,7 +79,7 @@ class RunFolder:
 
     @property
     def name(self) -> str:
-        """Of the folder."""
+        """Name of the folder."""
         return self.path.name
 
 
@@ -113,7 +113,7 @@ def seed_folder(path: Path, seed: int) -> Path:
 
 
 def common(runs: Iterable[RunFolder]) -> RunConfig:
-    """What the runs of a group are, with the first one's seed.
+    """Configuration that the runs of a group share, with the first one's seed.
 
     Raises:
         AgentError: they differ in more than the seed.

@@ -26,7 +26,7 @@ _POLL_S, _GRACE_S = 0.1, 2.0
 """Wall time between two looks for messages and interrupts; for how long processes may end by themselves."""
 _messages: Any
 _stop: Any
-"""In a process of the pool: the queue of (number of an item, message), and the event that asks to stop."""
+"""Set in each process of the pool: the queue of (index of an item, message), and the event that requests a stop."""
 
 
 def each(
@@ -89,14 +89,14 @@ def _in_processes(
 
 
 def _initialise(messages: Any, stop: Any) -> None:
-    """In each process: ignore a terminal's Ctrl-C, which reaches all processes; the first one says what happens."""
+    """Initialise a process: it ignores a terminal's Ctrl-C, which the main process handles for all."""
     global _messages, _stop
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _messages, _stop = messages, stop
 
 
 def _run(work: Work, index: int, item: Any) -> Any:
-    """In a process: the result for an item; None when the interrupt came first."""
+    """Result for an item, in a process of the pool; None when a stop was requested before."""
     if _stop.is_set():
         return None
     try:

@@ -25,13 +25,13 @@ class EvaluationPlan:
     """
 
     episodes: int = EPISODES
-    """That are played."""
+    """Number of episodes."""
     jitter: float = 0.0
     """Start poses are moved by up to so much, in x and y [m] and in yaw [rad]."""
     max_steps: int | None = None
-    """Of an episode; None: as many as in training."""
+    """Longest episode [steps]; None: as in training."""
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Of the environment, which replace the run's."""
+    """Options of the environment, in place of the run's."""
 
     def __post_init__(self) -> None:
         for name in ("episodes", "max_steps"):
@@ -48,7 +48,7 @@ class EvaluationPlan:
 
     @classmethod
     def of(cls, values: Any) -> EvaluationPlan:
-        """From names and values, as a file has them.
+        """From the keys and values of a file.
 
         Raises:
             AgentError: no such name, or a value that cannot be.
@@ -69,8 +69,9 @@ class EvaluationPlan:
         max_steps: int | None = None,
         options: Mapping[str, Any] | None = None,
     ) -> EvaluationPlan:
-        """The same with what is given. Starts that ``options`` say anew are moved only when ``jitter`` says so, too:
-        moved starts are all near one place."""
+        """A copy with what is given. When ``options`` set the start, starts are moved only if ``jitter`` says so:
+        moved starts
+        are all near one position."""
         if jitter is None:
             jitter = 0.0 if "start" in (options or {}) else self.jitter
         return EvaluationPlan(

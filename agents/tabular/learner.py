@@ -58,7 +58,7 @@ class Learner:
 
     @property
     def states(self) -> int:
-        """How many states the table holds."""
+        """Number of states in the table."""
         return int(self._view.states)
 
     def seed(self, seed: int) -> None:

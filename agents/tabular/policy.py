@@ -24,7 +24,7 @@ class TablePolicy:
     def __init__(self, table: Table, epsilon: float = 0.0, first_state_apart: bool = False) -> None:
         self.table, self.epsilon = table, epsilon
         self.unknown = 0
-        """How many times a state was asked for that the table does not know."""
+        """Number of look-ups of a state that is not in the table."""
         self._rng = np.random.default_rng(0)
         self._apart = table.size if first_state_apart else 0
         self._offset = 0
