@@ -42,15 +42,15 @@ def evaluate_runs(
         KeyboardInterrupt: it was interrupted.
     """
     workers = workers or Workers()
-    shares = [_shares(plan.episodes, -(-workers.jobs // len(runs))) for plan in plans]
+    ranges = [_ranges(plan.episodes, -(-workers.jobs // len(runs))) for plan in plans]
     parts = [
         Part(run.path, plan, seed, first, count)
-        for run, plan, some in zip(runs, plans, shares)
+        for run, plan, some in zip(runs, plans, ranges)
         for first, count in some
     ]
     found = iter(workers.each(play_part, parts, workers.jobs))
     out = []
-    for some in shares:
+    for some in ranges:
         evaluations = [next(found) for _ in some]
         if None in evaluations:
             raise KeyboardInterrupt
@@ -69,7 +69,7 @@ def play_part(part: Part, send_progress: SendProgress, stopped: Stopped) -> Eval
             return None
 
 
-def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
+def _ranges(episodes: int, count: int) -> list[tuple[int, int]]:
     """Split episodes into at most ``count`` parts: (first episode, number of episodes)."""
     bounds = [episodes * k // min(count, episodes) for k in range(min(count, episodes) + 1)]
     return [(first, last - first) for first, last in pairwise(bounds)]

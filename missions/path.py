@@ -91,6 +91,6 @@ def _distance(p: Point, a: Point, b: Point) -> float:
     """From a point to a line from a to b [m]."""
     along = tuple(y - x for x, y in zip(a, b))
     square = sum(x * x for x in along)
-    share = 0.0 if square == 0.0 else sum(x * (q - r) for x, q, r in zip(along, p, a)) / square
-    share = min(max(share, 0.0), 1.0)
-    return math.dist(p, tuple(x + share * y for x, y in zip(a, along)))
+    fraction = 0.0 if square == 0.0 else sum(x * (q - r) for x, q, r in zip(along, p, a)) / square
+    fraction = min(max(fraction, 0.0), 1.0)
+    return math.dist(p, tuple(x + fraction * y for x, y in zip(a, along)))

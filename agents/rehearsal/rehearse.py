@@ -14,7 +14,7 @@ from ..runs import folder as folders
 from ..runs.folder import RunFolder
 from ..runs.local import OnProgress, each
 from .change import Change
-from .share import Floats, Share, advantage, share
+from .transfer_ratio import Floats, Ratio, advantage, transfer_ratio
 from .trial import Result, Trial, attempt
 
 EPISODES = 50
@@ -67,11 +67,11 @@ class Rehearsed:
     tried: Sequence[Tried]
     """Under each change."""
 
-    def shares(self) -> list[Share | None]:
+    def transfer_ratios(self) -> list[Ratio | None]:
         """Reward under each change relative to that without it; None where it was not played."""
-        return [None if tried.refused else share(self.home.rewards, tried.rewards) for tried in self.tried]
+        return [None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards) for tried in self.tried]
 
-    def advantages(self, first: Rehearsed) -> list[Share | None]:
+    def advantages(self, first: Rehearsed) -> list[Ratio | None]:
         """Over other runs under each change, see ``advantage``; None where one of the two was not played."""
         return [
             None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards)

@@ -201,13 +201,13 @@ def _refined(f: Array, o: Array, tf: Array, to: Array, nearest: Array) -> Matche
         end = np.clip(nearest + step, 0, len(o) - 1)
         along = o[end] - o[nearest]
         square = (along * along).sum(axis=1)
-        share = np.where(square > 1e-9, ((f - o[nearest]) * along).sum(axis=1) / np.maximum(square, 1e-9), 0.0)
-        share = np.clip(share, 0.0, 1.0)
-        gap = f - o[nearest] - share[:, None] * along
+        fraction = np.where(square > 1e-9, ((f - o[nearest]) * along).sum(axis=1) / np.maximum(square, 1e-9), 0.0)
+        fraction = np.clip(fraction, 0.0, 1.0)
+        gap = f - o[nearest] - fraction[:, None] * along
         away = (gap * gap).sum(axis=1)
         better = away < best - 1e-12
         best = np.where(better, away, best)
-        index = np.where(better, nearest + step * share * (end != nearest), index)
+        index = np.where(better, nearest + step * fraction * (end != nearest), index)
     rows = np.arange(len(o))
     place = np.stack([np.interp(index, rows, o[:, k]) for k in range(2)], axis=1)
     cross = np.hypot(*(f[:, :2] - place).T)

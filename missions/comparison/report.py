@@ -119,8 +119,10 @@ def _row(figure: Figure) -> str:
     state, mark = ("", "&#10003;") if figure.ok else ("bad", "&#10007;")
     if not figure.is_judged:
         state, mark = "idle", "&middot;"
-    share = min(figure.value / figure.limit, 1.0) if figure.limit > 0.0 else float(not figure.ok)
-    bar = f'<span class="bar"><i style="width:{100.0 * share:.0f}%"></i></span>' if math.isfinite(figure.limit) else ""
+    fraction = min(figure.value / figure.limit, 1.0) if figure.limit > 0.0 else float(not figure.ok)
+    bar = ""
+    if math.isfinite(figure.limit):
+        bar = f'<span class="bar"><i style="width:{100.0 * fraction:.0f}%"></i></span>'
     value, limit = words.number(figure.value, figure.unit), words.number(figure.limit, figure.unit)
     return (
         f'<tr class="{state}"><td class="mark">{mark}</td><td>{escape(figure.title)}</td>'
