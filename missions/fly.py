@@ -26,7 +26,7 @@ FARTHEST = 20_000.0
 STANDS, STANDING_S = 0.1, 1.0
 """A rover has arrived when it is slower than this [m/s] for this long [s]."""
 STOPPING_S = 30.0
-"""It has this long for it after its mission."""
+"""Time that a rover may take to stop after its mission [simulated s]."""
 
 
 class MissionRefused(OptionError):
@@ -35,16 +35,16 @@ class MissionRefused(OptionError):
 
 @dataclass
 class Outcome:
-    """How a mission went. Times are simulated seconds since the start of the simulation."""
+    """Result of a mission. Times are simulated seconds since the start of the simulation."""
 
     completed: bool = False
     reason: str = ""
     """Why it was not; or what there is to say about its end."""
     ready: float = math.nan
     started: float = math.nan
-    """When AUTO began."""
+    """Time at which AUTO started [s]."""
     ended: float = math.nan
-    """When the vehicle was disarmed, or the flight was given up."""
+    """Time of disarming, or of giving up [s]."""
     items: list[tuple[float, int]] = field(default_factory=list)
     """(time, item) as they were reached."""
     distance: float = 0.0
@@ -54,22 +54,22 @@ class Outcome:
     top_speed: float = 0.0
     """Along the ground [m/s]."""
     top_height: float = 0.0
-    """Above home [m]."""
+    """Greatest height above home [m]."""
     deviation: Deviation = field(default_factory=Deviation)
-    """From the straight lines of the mission."""
+    """Deviation from the straight lines of the mission."""
     hits: int = 0
-    """How often the vehicle hit a solid of its world."""
+    """Number of contacts with solids of the world."""
     texts: list[tuple[float, int, str]] = field(default_factory=list)
     """(time, severity, text)"""
 
     @property
     def duration(self) -> float:
-        """From the begin of AUTO to the end [s]."""
+        """Time from the start of AUTO to the end [s]."""
         return self.ended - self.started
 
 
 Tell = Callable[[float, str], None]
-"""Told of each step of the flight: (time [s], text)."""
+"""Called with each step of the flight: (time [s], text)."""
 
 
 def checked(mission: Mission, simulation: Simulation) -> Mission:
@@ -236,7 +236,7 @@ class _Flight:
         self._seen = len(station.reached)
 
     def result(self) -> Outcome:
-        """What came of it."""
+        """The result so far."""
         outcome, station, watch = self.outcome, self.station, self.watch
         outcome.ended, outcome.texts, outcome.items = station.now, station.texts, station.reached
         if watch is not None:

@@ -17,7 +17,7 @@ _PATIENCE_S = 30.0
 
 
 class ForeignVehicle:
-    """What ``Pilot`` needs of a ``Simulation``.
+    """The part of the ``Simulation`` interface that ``Pilot`` uses.
 
     Args:
         choice: the autopilot.
@@ -36,7 +36,7 @@ class ForeignVehicle:
         self.kind = KINDS[airframe.kind]
         self.firmware = self.kind.firmware
         self.v = plant.craft.v
-        """Of it, the physics is true; there is no autopilot of ours."""
+        """Only the physics in it is valid: the autopilot is the foreign one."""
         self.connection: Foreign = launch(choice, plant, {}, 0, _PATIENCE_S)
         self.connection.tap = self._tell
         self._links: list[InProcessLink] = []
@@ -48,7 +48,7 @@ class ForeignVehicle:
         return self
 
     def add_link(self, link: InProcessLink) -> None:
-        """Another client in this process."""
+        """Add a client in this process."""
         self._links.append(link)
 
     @property

@@ -25,7 +25,7 @@ class Deviation:
     seq: int = 0
     """Item under way."""
     time: float = 0.0
-    """Since the start of the simulation [s]."""
+    """Time since the start of the simulation [s]."""
 
 
 class PathWatch:
@@ -40,7 +40,7 @@ class PathWatch:
         self.distance = self.top_speed = 0.0
         """[m], [m/s] along the ground."""
         self.top_height = 0.0
-        """Above home [m]."""
+        """Greatest height above home [m]."""
         self.deviation = Deviation()
         self._last: Point | None = None
         self._seq = 0
@@ -67,7 +67,7 @@ class PathWatch:
                 self.deviation = Deviation(away, seq, self._simulation.time_us * 1e-6)
 
     def _begin(self, seq: int, here: Point) -> None:
-        """Another navigation command is under way: which lines are flown now."""
+        """A new navigation command starts: find the lines that are flown now."""
         ap = self._simulation.v.autopilot
         item = self._simulation.mission.get(seq)
         self._seq = seq
@@ -88,7 +88,7 @@ class PathWatch:
 
 
 def _distance(p: Point, a: Point, b: Point) -> float:
-    """From a point to a line from a to b [m]."""
+    """Distance of a point from the line segment from a to b [m]."""
     along = tuple(y - x for x, y in zip(a, b))
     square = sum(x * x for x in along)
     fraction = 0.0 if square == 0.0 else sum(x * (q - r) for x, q, r in zip(along, p, a)) / square

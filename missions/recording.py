@@ -83,7 +83,7 @@ PHASES = {
         "RTL": 173.091,
     },
 }
-"""When each command was sent [s since boot]."""
+"""Time of each command since boot [s]."""
 REACHED = {
     "copter_auto": [(57.299, 1), (65.98, 2), (72.02, 3), (78.059, 4), (86.139, 5)],
     "rover": [(131.512, 1), (136.691, 2), (141.851, 3), (151.072, 4)],

@@ -14,7 +14,7 @@ from .recording import Recording
 SQUARE = [(-353630824, 1491652371), (-353630824, 1491654574), (-353632621, 1491654574), (-353632621, 1491652371)]
 """Corners of the recorded AUTO mission [degE7]."""
 TARGET = (26.555, 19.267)
-"""Of the recorded position step: 20 m east of where the rover stood [m]."""
+"""Target of the recorded position step: 20 m east of the rover's position [m]."""
 NORTH = (2.0, 0.0, 0.0)
 """The recorded velocity [m/s]."""
 FROM_FIRST = "AUTO from item 1 on"

@@ -131,7 +131,7 @@ def paced(simulation: Simulation, speedup: float | None) -> Callable[[int], obje
 
 
 def summary(outcome: Outcome) -> str:
-    """What is to be said of a flight, in a few lines."""
+    """Summary of a flight, in a few lines."""
     said = ("completed" if outcome.completed else "NOT COMPLETED") + (f": {outcome.reason}" if outcome.reason else "")
     if math.isnan(outcome.started):
         return f"mission {said}"

@@ -145,7 +145,7 @@ class ReplayLog:
 
     @property
     def path(self) -> Path:
-        """Of the present one."""
+        """Path of the current recording."""
         return self.paths[-1]
 
     def close(self) -> None:

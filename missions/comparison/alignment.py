@@ -15,7 +15,7 @@ from sitl.option_error import OptionError
 Array = np.ndarray[Any, Any]
 
 STEP = 0.1
-"""Between two samples [s]."""
+"""Time between two samples [s]."""
 ELSEWHERE = 500.0
 """Flights whose homes are farther apart are compared each from its own home [m]."""
 BAND = 20.0
@@ -23,11 +23,12 @@ BAND = 20.0
 LONGER = 120.0
 """... but not by more than this [s]."""
 HEARTBEAT = 2.0
-"""What a ground station's log tells of modes may be this late [s]."""
+"""Largest delay of mode changes in a ground station's log [s]."""
 LAZY = 0.05
-"""Where many samples are at the same place (a hover), the one at the same time is meant: weight of time [m/s]."""
+"""Weight of time where many samples are at one position (a hover), so that the sample at the same time is matched
+[m/s]."""
 MOVING = 0.5
-"""Where one of the two goes slower than this in golden's direction, a place says nothing about time [m/s]."""
+"""Speed along golden's direction below which a position gives no time [m/s]."""
 START_NAMES = {"AUTO": "AUTO began", "armed": "arming", "start": "power-on"}
 
 
@@ -77,13 +78,13 @@ def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -
         first, second = begin(golden, name), begin(new, name)
         if first is not None and second is not None:
             found = Pair(_from(golden, first), _from(new, second), name, (first, second), tuple(notes))
-            return _brought_together(found, golden, new) if coarse else found
+            return _with_aligned_clocks(found, golden, new) if coarse else found
     which = "golden" if begin(golden, align) is None else "the new flight"
     raise AlignmentError(f"align = {align!r}: {which} has no such moment ({START_NAMES.get(align, align)})")
 
 
-def _brought_together(found: Pair, golden: Track, new: Track) -> Pair:
-    """The same with the clocks shifted by what the new flight is late along the way, if that is a heartbeat's."""
+def _with_aligned_clocks(found: Pair, golden: Track, new: Track) -> Pair:
+    """The pair with clocks shifted by the new flight's median delay along the way, when that is at most a heartbeat's."""
     matched = match(found.new, found.golden)
     moving = matched.of(np.linalg.norm(found.golden.data[:, 4:7], axis=1)) > MOVING
     late = float(np.median(matched.delay[moving])) if moving.any() else 0.0
@@ -101,7 +102,7 @@ def _brought_together(found: Pair, golden: Track, new: Track) -> Pair:
 
 
 def begin(track: Track, align: str) -> float | None:
-    """When it is, by the flight's own clock [s]."""
+    """Start of the comparison by the flight's own clock [s]; None: there is none."""
     armed = next((t for t, state in track.armed if state), None)
     if align == "armed":
         return armed
@@ -112,21 +113,21 @@ def begin(track: Track, align: str) -> float | None:
     return 0.0
 
 
-def _from(track: Track, start: float, told: float | None = None) -> Track:
-    """From a time to the disarming that follows, or to the end; on a clock that begins there.
+def _from(track: Track, start: float, logged: float | None = None) -> Track:
+    """The part of a track from a time [s] to the next disarming or the end, with its clock starting there.
 
     Args:
         track: the whole flight.
         start: where the clock begins [s].
-        told: when the log tells of that moment [s]: what happened counts from then on. None: at ``start``.
+        logged: time at which the log records that moment [s]; events count from there. None: at ``start``.
     """
     stop = next((t for t, state in track.armed if not state and t > start), float(track.t[-1]))
     t = track.t
     times = start + np.arange(int((min(stop, t[-1]) - start) / STEP + 1e-6) + 1) * STEP
     times = times[times >= t[0] - 1e-6]
     series = {name: (t, track[name]) for name in NAMES[1:]}
-    cut = track.between(start if told is None else told, stop + 1.0)
-    if told is not None and cut.modes:
+    cut = track.between(start if logged is None else logged, stop + 1.0)
+    if logged is not None and cut.modes:
         cut.modes[0] = (start, cut.modes[0][1])
 
     def shifted(events: list[Any]) -> list[Any]:
@@ -147,7 +148,7 @@ class Matched:
     """For each sample of a flight, the place of another's way that is meant."""
 
     index: Array
-    """As a broken index into the other's samples."""
+    """As a fractional index into the other's samples."""
     cross: Array
     """Distance from that place in the plane [m]."""
     delay: Array

@@ -29,14 +29,14 @@ class Figure:
     """One number that is judged."""
 
     name: str
-    """As tolerances have it, "cross_track.max"."""
+    """Name as in tolerance files: "cross_track.max"."""
     title: str
     value: float
     unit: str
     limit: float
     """Infinite: not judged."""
     at: float | None = None
-    """When the largest was, since the common start [s]."""
+    """Time of the largest value since the common start [s]."""
     words: str = ""
     """Where and how, or what."""
 
@@ -53,10 +53,10 @@ class Figure:
 
 @dataclass(frozen=True)
 class Divergence:
-    """Where the new flight leaves golden."""
+    """The first point where the new flight leaves golden."""
 
     t: float
-    """Since the common start [s]."""
+    """Time since the common start [s]."""
     words: str
 
 
@@ -236,7 +236,7 @@ def _trace(both: Pair, differences: Differences, events: list[Event]) -> Diverge
 
 
 def _notes(golden: Flight, new: Flight) -> list[str]:
-    """What is known of why they differ."""
+    """Known reasons for differences."""
     notes = [f"golden: {note}" for note in golden.notes] + [f"new: {note}" for note in new.notes]
     if golden.header is not None and new.header is not None:
         notes += [f"differs: {text}" for text in identity.differences(golden.header, new.header)]

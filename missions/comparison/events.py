@@ -23,16 +23,16 @@ class Event:
     kind: str
     """"items", "modes" or "texts"."""
     what: str
-    """In words: "item 3", "mode RTL", "'Arming motors'"."""
+    """Description: "item 3", "mode RTL", "'Arming motors'"."""
     golden: float | None
     new: float | None
     """Time since the common start [s]; None: the flight does not have it."""
     seq: int = -1
-    """Of an item."""
+    """Number of the mission item; -1 for other kinds."""
 
     @property
     def shift(self) -> float:
-        """How much later it is in the new flight [s]; 0 when one has it alone."""
+        """Delay in the new flight [s]; 0 when only one flight has it."""
         return 0.0 if self.golden is None or self.new is None else self.new - self.golden
 
     @property
@@ -41,7 +41,7 @@ class Event:
         return self.new if self.new is not None else self.golden or 0.0
 
     def difference(self, limit: float) -> str:
-        """What is wrong with it: "", MISSING, ADDED or SHIFTED."""
+        """MISSING, ADDED, SHIFTED (by more than ``limit`` [s]), or ""."""
         if self.new is None:
             return MISSING
         if self.golden is None:

@@ -20,11 +20,11 @@ class Case:
     seconds: float = 0.0
     """Wall time it took."""
     failure: str = ""
-    """What went otherwise than it should; "": it passed."""
+    """Description of the failure; "": it passed."""
     error: str = ""
     """Why it could not be carried out."""
     output: str = ""
-    """What else there is to say."""
+    """Further output."""
 
 
 def cases_of(comparison: Comparison) -> list[Case]:

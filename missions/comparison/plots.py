@@ -26,7 +26,7 @@ def _png(figure: Any) -> bytes:
 
 
 def _colours() -> Any:
-    """From the new flight's blue to the red of limits."""
+    """Colour map from the new flight's blue to the red of limits."""
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("distance", (NEW, "#7d4fa3", LIMIT))

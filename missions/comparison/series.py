@@ -18,13 +18,13 @@ class Series:
     """One difference, over the time of the new flight (NaN: there is nothing to compare)."""
 
     name: str
-    """As tolerances have it."""
+    """Name as in tolerance files."""
     title: str
     unit: str
     quantum: float
     """Differences up to this come from rounding."""
     t: Array
-    """Since the common start [s]."""
+    """Times since the common start, shape (n,) [s]."""
     values: Array
     """New less golden; a distance where that has no sign."""
     gap: Array | None = None
@@ -32,7 +32,7 @@ class Series:
 
     @property
     def size(self) -> Array:
-        """How large, NaN as 0."""
+        """Magnitudes, shape (n,); NaN as 0."""
         return np.nan_to_num(np.abs(self.values))
 
     @property

@@ -26,7 +26,7 @@ class Entry:
     name: str
     """"copter/square"."""
     file: str
-    """Beside the index."""
+    """File name, relative to the index."""
     description: str
     frame: str
     """Airframe that it is made for."""
@@ -44,13 +44,13 @@ class Entry:
 
     @property
     def path(self) -> Path:
-        """Of the file."""
+        """Path of the mission file."""
         return FOLDER / self.file
 
 
 @cache
 def entries() -> dict[str, Entry]:
-    """Every mission by its name."""
+    """All missions by name."""
     with (FOLDER / "index.toml").open("rb") as file:
         index: dict[str, dict[str, Any]] = tomllib.load(file)
     return {

@@ -32,7 +32,7 @@ class Draft:
     def __init__(self, kind: str, description: str, *, text: bool = False, **index: Any) -> None:
         self.kind, self.description, self.index = kind, description, index
         self.suffix = ".waypoints" if text else ".plan"
-        """Its format."""
+        """Suffix of the file, which gives its format."""
         self.speed: float | None = None
         """[m/s]; None: the airframe's own."""
         self._items = [c.home_item(round(LAT * 1e7), round(LON * 1e7), ALT)]

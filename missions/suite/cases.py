@@ -67,7 +67,7 @@ class Case:
     """One flight of a suite."""
 
     name: str
-    """Of its golden, report and line."""
+    """Name of its golden, its report and its line in the table."""
     mission: Path
     golden: Path
     frame: str
@@ -159,7 +159,7 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     "name": lambda value: bool(re.fullmatch(r"[\w.+=,-]+", value)),
     "missions": lambda value: all(isinstance(pattern, str) for pattern in value),
 }
-"""What a value of the right type must also be."""
+"""Further condition on a value of the right type."""
 
 
 def _tolerance(folder: Path, value: Any) -> str | Mapping[str, Any]:
@@ -179,7 +179,7 @@ def _files(folder: Path) -> list[dict[str, Any]]:
 
 
 def _is_mission(path: Path) -> bool:
-    """By its name; a text may be anything and must begin as missions do."""
+    """Whether a file is a mission, by its suffix; a .txt must begin as a QGC WPL file."""
     suffix = path.suffix.lower()
     if suffix != ".txt" or not path.is_file():
         return suffix in ENDINGS

@@ -133,7 +133,7 @@ def _golden(case: Case) -> Flight:
 
 
 def _keep(path: Path, golden: Path) -> None:
-    """Put a recording in golden's place; one of the two is there at every moment.
+    """Replace golden by a recording, atomically.
 
     Raises:
         SuiteError: it cannot be written there.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 OK, DIFFERS, NO_GOLDEN, FAILED = "ok", "DIFFERS", "NO GOLDEN", "ERROR"
 KEPT, WRITTEN, REPLACED = "kept", "written", "replaced"
-"""What became of golden, when it may be updated."""
+"""What was done with golden, when it may be updated."""
 SHOWN = ("position.max", "cross_track.max", "altitude.max", "delay.max", "energy.max")
 """Figures of the table."""
 
@@ -19,7 +19,7 @@ class Result:
     name: str
     status: str
     words: str = ""
-    """What differs, or why there is nothing to compare."""
+    """Differences, or why nothing could be compared."""
     simulated: float = 0.0
     """[s]"""
     wall: float = 0.0

@@ -74,7 +74,7 @@ def _on_ray(cases: Sequence[Case], jobs: int | None, update: bool, reports: str 
 
 
 def _from_anywhere(case: Case) -> Case:
-    """The same with whole paths: processes of Ray may be in another folder."""
+    """The case with absolute paths: Ray's processes may have another working directory."""
 
     def whole(name: str | None) -> str | None:
         return str(Path(name).resolve()) if name is not None and Path(name).is_file() else name

@@ -32,7 +32,7 @@ class Script:
 
     log: Log
     home: Home | None
-    """Where the vehicle stood before it was armed; None: the log has no position."""
+    """Position of the vehicle before it was armed; None: the log has none."""
     steps: list[Step]
     parameters: dict[str, float]
     """Parameters of the vehicle that affect how it flies."""

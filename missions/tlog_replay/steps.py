@@ -41,7 +41,7 @@ class Send(Step):
 
     @property
     def title(self) -> str:
-        """In words."""
+        """Description of the step."""
         if self.name in ("COMMAND_LONG", "COMMAND_INT"):
             return f"command {self.command}"
         if self.name == "PARAM_SET":

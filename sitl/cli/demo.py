@@ -77,7 +77,7 @@ def demo(options: argparse.Namespace) -> int:
 
 
 def check_installed(script: Path) -> None:
-    """What the demo needs besides the simulator.
+    """Check that what the demo needs is installed.
 
     Raises:
         OptionError: the example is not there.

@@ -30,7 +30,7 @@ from .progress import CompileProgress
 
 
 def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
-    """Which autopilot flies."""
+    """Add the options that choose the autopilot."""
     parser.add_argument(
         "--autopilot", default=NATIVE, metavar="NAME[:PROGRAM|:CONNECTION]", help=f"who flies it: {FORMS}"
     )
@@ -110,7 +110,7 @@ def build_plant(options: argparse.Namespace) -> LocalPlant:
 
 
 def open_links(options: argparse.Namespace) -> list[Link]:
-    """Where clients reach the autopilot: as for our own."""
+    """Open the links on which clients reach the autopilot, as for our own."""
     step = 10 * options.instance
     outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS] if options.out is None else options.out
     links: list[Link] = [open_link(text) for text in outputs if text != "none"]

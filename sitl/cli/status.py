@@ -63,5 +63,5 @@ def describe(simulation: Simulation, factor: float) -> str:
 
 
 def clients(simulation: Simulation) -> int:
-    """How many clients have been heard."""
+    """Number of clients that have sent messages."""
     return sum(channel.statistics.received > 0 for channel in simulation.bridge.channels)

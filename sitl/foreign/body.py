@@ -43,7 +43,7 @@ class BodyLines:
         self._extras = ""
 
     def line(self) -> bytes:
-        """How the body moves now; the state at the end of a tick."""
+        """The motion now as a JSON line: the state at the end of a tick."""
         slow = self._slow()
         if slow != self._seen:
             self._seen, self._extras = slow, self._others(slow)
@@ -58,7 +58,7 @@ class BodyLines:
         return motion.extra(reading, (voltage, current), self._vane(wind) if any(wind) else None)
 
     def _vane(self, wind: list[float]) -> tuple[float, float]:
-        """Where the air that meets the vehicle comes from, clockwise from its nose [rad], and how fast [m/s]."""
+        """Apparent wind: direction that it comes from, clockwise from the nose [rad], and speed [m/s]."""
         body = self._v.physics.body
         w, x, y, z = body.q.tolist()
         yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -27,13 +27,13 @@ class Choice:
     kind: str
     """ARDUPILOT or PX4."""
     program: Path | None = None
-    """To be started; None: it runs already."""
+    """Program to start; None: it is running already."""
     connection: str | None = None
-    """Where the MAVLink of one that runs already is."""
+    """Address of the MAVLink of an autopilot that is running already."""
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Name for messages."""
         return f"{self.kind}:{self.program or self.connection}"
 
 

@@ -36,7 +36,7 @@ class HilHost:
         self, plant: LocalPlant, address: tuple[str, int], clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.boots = 0
-        """How many autopilots have connected."""
+        """Number of autopilots that have connected."""
         self._wall, self._connection, self._heard = clock, None, b""
         self._due = float("-inf")
         self.seat(plant)
@@ -54,7 +54,7 @@ class HilHost:
     _connection: socket.socket | None
 
     def seat(self, plant: LocalPlant) -> None:
-        """Serve this plant from now on."""
+        """Serve another plant from now on."""
         self.plant, self.end = plant, PhysicsEnd(SimulatedPlant(plant))
 
     @property
@@ -69,7 +69,7 @@ class HilHost:
         return self.end.time_us
 
     def listen(self) -> bool:
-        """Wait a moment for an answer of the autopilot; whether there is one, or a step is due without."""
+        """Wait up to 0.2 s for an answer of the autopilot; True: there is one, or a step is due without."""
         if self._heard:
             return True
         if self._connection is None:
@@ -101,7 +101,7 @@ class HilHost:
         self.boots += 1
 
     def step(self, until_us: int | None = None) -> None:
-        """Take the answer and step, or step without one while the autopilot boots."""
+        """Process the answer and step; while the autopilot boots, step without an answer."""
         if self._connection is None:
             return
         heard, self._heard = self._heard, b""
@@ -125,6 +125,6 @@ class HilHost:
         self._connection = None
 
     def close(self) -> None:
-        """Serve no more; the plant is the caller's."""
+        """Close the sockets; the plant stays open."""
         self._drop()
         self._socket.close()

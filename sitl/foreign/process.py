@@ -70,7 +70,7 @@ class AutopilotProcess:
         return subprocess.Popen(script, stdin=subprocess.PIPE, stdout=silent, stderr=silent, start_new_session=True)
 
     def _watch_no_more(self) -> None:
-        """Before the number of its group can be another's."""
+        """Stop watching before the number of its process group can be reused."""
         self._watch.kill()
         self._watch.wait()
         if self._watch.stdin is not None:

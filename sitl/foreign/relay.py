@@ -25,7 +25,7 @@ _UNSENT = 1 << 20
 
 
 class Relay:
-    """Between one autopilot and all clients.
+    """Relays frames between one autopilot and all clients.
 
     Args:
         address: host and port of the autopilot's MAVLink.
@@ -48,7 +48,7 @@ class Relay:
         self._retry_at = 0.0
         self._stopping = False
         self.frames = 0
-        """From the autopilot so far."""
+        """Number of frames from the autopilot so far."""
         for link in self._links:
             link.attach(self._selector, self._peers.append)
         self._thread = threading.Thread(target=self._run, name="mavlink relay", daemon=True)

@@ -27,11 +27,11 @@ Tap = Callable[[bytes], None]
 
 
 class Session(Protocol):
-    """What flies a plant."""
+    """A session of an autopilot that flies a plant."""
 
     plant: LocalPlant
     clients: str | None
-    """Where its MAVLink is, when it is not on our links."""
+    """Address of its MAVLink, when that is not on our links."""
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
         """Let physics and autopilot go on until ``running()`` is false; ``on_turn`` is called now and then.

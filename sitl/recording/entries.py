@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 
 class Kind(IntEnum):
-    """What an entry tells; ``number`` is a channel's, or a link's place in the order in which links were added."""
+    """Kind of an entry; ``number`` is that of a channel, or the index of a link in the order of their addition."""
 
     LINK = 1
     """A way for clients was opened; data: JSON [kind, name]."""
     UNLINK = 2
-    """It was closed."""
+    """A link was closed."""
     CAME = 3
     """A client came; data: number of its link."""
     HEARD = 4
@@ -22,7 +22,7 @@ class Kind(IntEnum):
     ACTED = 5
     """All bytes read were acted on (``Bridge.receive``)."""
     ATTENDED = 6
-    """What they asked for was followed up while time did not move (``Simulation.advance_to`` the present)."""
+    """Requests were answered while time stood still (``Simulation.advance_to`` the present)."""
     LEFT = 7
     """A client left; data: why."""
     CONGESTED = 8
@@ -38,7 +38,7 @@ class Kind(IntEnum):
     CHECK = 13
     """Digests of the vehicle's record and of all telemetry (4 + 4 bytes), to find where a replay goes astray."""
     BROKEN = 14
-    """What no replay can do: the vehicle was put back to a snapshot; data: in words."""
+    """An action that no replay can repeat: the vehicle was restored to a snapshot; data: description."""
     LOGS = 15
     """On-board logs are kept from now on, and clients can download them."""
 

@@ -27,7 +27,7 @@ from .identity import describe
 CHECK_US = 10_000_000
 """Simulated time between two digests that say where a replay goes astray [us]."""
 BLOCK_BYTES = 1 << 18
-"""As much is kept at most before it is written; ``flush`` writes at once."""
+"""Largest number of bytes kept before they are written; ``flush`` writes at once."""
 REPACKED_BYTES = 1 << 26
 """A recording up to this size is packed anew when the run ends: smaller, and equal runs give equal files."""
 LOG, TCP, UDP, IN_PROCESS, OTHER = "log", "tcp", "udp", "inprocess", "other"
@@ -41,7 +41,7 @@ _KINDS: tuple[tuple[type[Link], str], ...] = (
 
 
 def kind_of(link: Link) -> str:
-    """What kind of link it is; a replayed one is what it was."""
+    """Kind of a link; a replayed link has its original kind."""
     given = getattr(link, "kind", None)
     return given if isinstance(given, str) else next((name for type_, name in _KINDS if isinstance(link, type_)), OTHER)
 
@@ -67,7 +67,7 @@ class Recorder:
         self.simulation = simulation
         self.path = Path(path) if path is not None else None
         self.stopped = "ended"
-        """What stopped the run, in a word or two."""
+        """Reason for the end of the run, in a word or two."""
         self.channels: dict[int, digests.Sent] = {}
         """Channel -> what it was sent."""
         self.checks: dict[int, bytes] | None = None
@@ -221,7 +221,7 @@ class Recorder:
     # ------------------------------------------------------------------ the end
 
     def result(self) -> dict[str, Any]:
-        """How it ends: when, why, digests of the vehicle's record and of each channel."""
+        """End of the run: time, reason, digests of the vehicle's record and of each channel."""
         return {
             "time_us": self.simulation.time_us,
             "stopped": self.stopped,

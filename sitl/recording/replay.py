@@ -76,11 +76,11 @@ class Replay:
             self.differences = identity.differences(recording.header, identity.describe(self.simulation))
         except (KeyError, TypeError, AttributeError) as error:
             raise RecordingError(f"{_title(recording)}: what it was made of cannot be understood: {error!r}") from None
-        """What is not as it was when the recording was made, in words."""
+        """Differences from the conditions of the recording, in words."""
         self.recorder = Recorder(self.simulation, record)
         self.recorder.checks = {}
         self.astray: list[str] = []
-        """What the vehicle did or sent otherwise than the recorded one, in words, first things first."""
+        """Differences from the recorded behaviour, in words, in order of time."""
         self._log, self._bin_file = log, bin_file
         self._scratch: tempfile.TemporaryDirectory[str] | None = None
         self._at = 0
@@ -88,7 +88,7 @@ class Replay:
         self._peers: dict[int, ReplayedPeer] = {}
         self._flips: dict[int, list[Flip]] = defaultdict(list)
         self._good_us: dict[str, int] = {}
-        """What was compared -> when it was last the same."""
+        """Compared item -> last time at which it was equal [us]."""
         self._astray: set[str] = set()
         for entry in recording.entries:
             if entry.kind is Kind.CONGESTED:
@@ -98,7 +98,7 @@ class Replay:
     # ------------------------------------------------------------------ going on
 
     def next_us(self) -> int:
-        """When the next entry is due [us]; at its end, that of the recording."""
+        """Time of the next entry [us]; after the last one, of the end."""
         entries = self.recording.entries
         return entries[self._at].time_us if self._at < len(entries) else self.recording.end_us
 
@@ -210,7 +210,7 @@ class Replay:
                 self.astray.append(f"{name} differs from some time between {good:.0f} and {bad:.0f} s on")
 
     def verify(self) -> list[str]:
-        """At the end: compare the digests of the vehicle's state and of every channel."""
+        """Compare the digests of the vehicle's state and of all channels, at the end."""
         end = self.recording.end
         if end is None or not self.is_over:
             return self.astray

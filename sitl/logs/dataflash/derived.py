@@ -68,7 +68,7 @@ def _quaternion(s: Any, path: str) -> tuple[Array, Array, Array, Array]:
 
 
 def roll(path: str) -> Column:
-    """Of a quaternion, body to NED [deg]."""
+    """Roll of a quaternion, body to NED [deg]."""
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
@@ -78,7 +78,7 @@ def roll(path: str) -> Column:
 
 
 def pitch(path: str) -> Column:
-    """Of a quaternion, body to NED [deg]."""
+    """Pitch of a quaternion, body to NED [deg]."""
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
@@ -88,7 +88,7 @@ def pitch(path: str) -> Column:
 
 
 def yaw(path: str) -> Column:
-    """Of a quaternion, body to NED [deg], 0 .. 360."""
+    """Yaw of a quaternion, body to NED, 0 .. 360 [deg]."""
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
@@ -103,17 +103,17 @@ def gps_seconds(s: Any) -> Array:
 
 
 def course(s: Any) -> Array:
-    """Of the GPS receiver over ground [deg], 0 .. 360."""
+    """Course over ground of the GPS receiver, 0 .. 360 [deg]."""
     return np.mod(np.arctan2(s(S + "gps_vel[1]"), s(S + "gps_vel[0]")) * DEG, 360.0)
 
 
 def pressure_altitude(s: Any) -> Array:
-    """In the standard atmosphere [m]."""
+    """Pressure altitude in the standard atmosphere [m]."""
     return 44330.77 * (1.0 - np.power(np.maximum(s(S + "abs_pressure"), 0.0) / 1013.25, 0.1902632))
 
 
 def baro_altitude(s: Any) -> Array:
-    """Above the ground where the barometer was calibrated [m]."""
+    """Barometric altitude above the ground where it was calibrated [m]."""
     return pressure_altitude(s) - s(A + "ekf.baro_ground")
 
 

@@ -25,9 +25,9 @@ MESSAGES: Mapping[str, Callable[[int, int, bool], tuple[Message, ...]]] = {
     "copter": copter.messages,
     "rover": rover.messages,
 }
-"""By the firmware's name."""
+"""Messages by the firmware's name."""
 TITLES = {"copter": ("ArduCopter", 2), "rover": ("ArduRover", 1)}
-"""What readers know a firmware by: the name in MSG, the build type in VER."""
+"""Firmware -> the name that readers expect in MSG, the build type in VER."""
 VERSION = (4, 7, 0)
 """The ArduPilot whose messages these are."""
 _RING, _NAV = "autopilot.events.", "autopilot.modes.nav."
@@ -38,7 +38,7 @@ _PLACES = (
 
 
 class Vehicle(Protocol):
-    """What a log needs of a simulation."""
+    """The part of the simulation's interface that a log uses."""
 
     fleet: np.ndarray[Any, Any]
     index: int

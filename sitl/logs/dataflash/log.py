@@ -27,7 +27,7 @@ class Entry(NamedTuple):
     """A log in the list that LOG_REQUEST_LIST gives."""
 
     number: int
-    """From 1 on."""
+    """Number of the log, from 1."""
     time_utc: int
     """Start of the log [s, Unix]."""
     size: int
