@@ -53,10 +53,10 @@ class Mp4:
         """See ``Film``."""
         if self._process is None:
             return
-        _, said = self._process.communicate()
+        _, errors = self._process.communicate()
         code, self._process = self._process.returncode, None
         if code != 0:
-            last = said.decode(errors="replace").strip().splitlines()
+            last = errors.decode(errors="replace").strip().splitlines()
             raise AgentError(f"{self._path} cannot be written: ffmpeg: {last[-1] if last else f'exit code {code}'}")
 
 

@@ -34,7 +34,7 @@ COLUMNS = ("t", "north", "east", "down", "vn", "ve", "vd", "roll", "pitch", "yaw
 
 
 class Witness(Pilot):
-    """A pilot that also writes down the truth."""
+    """A pilot that records the simulator's truth."""
 
     def __init__(self, simulation: Simulation) -> None:
         super().__init__(simulation)
@@ -147,9 +147,9 @@ class Difference:
     """Differences between the flights of two engines over all phases, at equal times since the start of each phase."""
 
     path_rms: float
-    """[m]"""
+    """RMS distance between the paths [m]."""
     path_max: float
-    """[m]"""
+    """Greatest distance between the paths [m]."""
     lean_rms: float
     """RMS difference of roll and pitch together [deg]."""
     heading_rms: float

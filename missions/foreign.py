@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A foreign autopilot on our physics where a script expects a simulation: its time is held, its MAVLink is its own."""
+"""A foreign autopilot on our physics with the interface of a simulation, so that scripts can fly it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class ForeignVehicle:
         return self.connection.time_us
 
     def advance_to(self, time_us: int) -> None:
-        """Let the autopilot hear its clients and go on until a time."""
+        """Pass the clients' messages to the autopilot, and advance to a time [us]."""
         for link in self._links:
             for peer in link.peers:
                 data = peer.take()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How a mission was flown: distance, speed, height, and how far the vehicle was from the lines of its mission."""
+"""Distance, speed, height of a flight, and its deviation from the lines of its mission."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sitl.simulation import Simulation
 
 Point = tuple[float, float, float]
 LEGS = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME, commands.NAV_LOITER_UNLIM)
-"""Commands whose way is a straight line from where the one before ended."""
+"""Commands flown on a straight line from the end of the command before."""
 _NOWHERE: Point = (math.nan, math.nan, math.nan)
 
 
@@ -21,15 +21,15 @@ class Deviation:
     """The greatest distance from the lines of the mission."""
 
     distance: float = 0.0
-    """[m]"""
+    """Distance [m]."""
     seq: int = 0
-    """Item under way."""
+    """Number of the current item."""
     time: float = 0.0
     """Time since the start of the simulation [s]."""
 
 
 class PathWatch:
-    """Follows one vehicle by its own estimate; ``look`` at equal steps while it is armed.
+    """Measures one vehicle's flight by its own estimate; call ``look`` at equal time steps while it is armed.
 
     Rovers are judged in the plane. Where two lines meet, the nearer counts: corners are cut as the firmware cuts them.
     """
@@ -38,7 +38,7 @@ class PathWatch:
         self._simulation = simulation
         self._flat = simulation.kind.name == "rover"
         self.distance = self.top_speed = 0.0
-        """[m], [m/s] along the ground."""
+        """Distance along the path [m]; greatest ground speed [m/s]."""
         self.top_height = 0.0
         """Greatest height above home [m]."""
         self.deviation = Deviation()
@@ -48,7 +48,7 @@ class PathWatch:
         self._legs: list[tuple[Point, Point]] = []
 
     def look(self) -> None:
-        """Take in where the vehicle is now."""
+        """Process the vehicle's current state."""
         ap = self._simulation.v.autopilot
         here: Point = tuple(float(x) for x in ap.estimate.pos)  # type: ignore[assignment]
         if self._flat:

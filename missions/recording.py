@@ -36,10 +36,10 @@ class Recording:
     """(time [s since boot], text) of status texts."""
     disarmed: float = float("nan")
 
-    def said(self, phase: str, text: str) -> float:
+    def text_time(self, phase: str, text: str) -> float:
         """Time from the phase's start until a text with these words; NaN when there is none."""
         start = self.phases[phase]
-        return next((t - start for t, said in self.texts if t >= start and text in said), float("nan"))
+        return next((t - start for t, found in self.texts if t >= start and text in found), float("nan"))
 
     def arrival(self, phase: str, seq: int) -> float:
         """Time from the phase's start until mission item ``seq`` was reached; NaN when it was not."""

@@ -15,7 +15,7 @@ from ..errors import AgentError
 
 Rows = npt.NDArray[np.float32]
 _NEAR = 10.0
-"""Distance and coordinates that count as 1 [m]."""
+"""Distances and coordinates that give a feature of 1 [m]."""
 
 
 class Features:
@@ -45,7 +45,7 @@ class Features:
         sample: Any = space.sample()
         one = {k: v[None] for k, v in sample.items()} if isinstance(sample, dict) else sample[None]
         self.width = int(self(one).shape[1])
-        """Numbers in a row."""
+        """Number of features of a robot."""
 
     def _part(self, name: str, space: gym.Space[Any]) -> Callable[[Any], Rows]:
         if name == "goal":
@@ -68,7 +68,7 @@ class Features:
 
 
 def nearest(scans: Rows, sectors: int) -> Rows:
-    """Nearest reading of each of so many sectors of equal width; scans have shape (count, readings)."""
+    """Nearest reading [m] of each of ``sectors`` sectors of equal width; scans have shape (count, readings)."""
     readings = scans.shape[1]
     if sectors == 0 or sectors >= readings:
         return scans
@@ -89,7 +89,7 @@ def _pose(poses: Any) -> Rows:
 
 
 class Frames:
-    """The last few features of each robot, side by side, the newest first.
+    """The last ``frames`` features of each robot in a row, the newest first.
 
     Args:
         count: of robots.
@@ -103,7 +103,7 @@ class Frames:
         """Shape (count, frames * width)."""
 
     def begin(self, features: Rows, robots: Any = slice(None)) -> Rows:
-        """Episodes of these robots begin: what they see now was always so. Returns all rows."""
+        """Start episodes of these robots: all frames hold the first observation. Returns all rows."""
         times = self.rows.shape[1] // self._width
         self.rows[robots] = np.tile(features[robots], (1, times))
         return self.rows

@@ -41,7 +41,7 @@ def stable_baselines3() -> Any:
 
 
 def torch(threads: int | None = None) -> Any:
-    """The module; with ``threads``, set to so many in this process.
+    """The module torch; ``threads``: number of threads to set for this process.
 
     Raises:
         MissingExtra: it is not installed.

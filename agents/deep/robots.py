@@ -32,7 +32,7 @@ class Robots(VecEnv):
         frames: how many are seen together.
         actions: of its actions.
         reward_scale: factor of rewards.
-        tally: told of every step.
+        tally: receives every step.
         seeds: of the first episodes, one a robot.
     """
 
@@ -69,10 +69,10 @@ class Robots(VecEnv):
         rows = self._frames.push(self._features(observations))
         ended = terminated | truncated
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        told = self._tally.count(rewards, terminated, ended)
-        if told:
+        finished = self._tally.count(rewards, terminated, ended)
+        if finished:
             robots = np.flatnonzero(ended)
-            for index, (reward, steps) in zip(robots.tolist(), told, strict=True):
+            for index, (reward, steps) in zip(robots.tolist(), finished, strict=True):
                 infos[index] = {
                     "terminal_observation": rows[index].copy(),
                     "TimeLimit.truncated": bool(truncated[index] and not terminated[index]),

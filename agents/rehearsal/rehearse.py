@@ -24,14 +24,14 @@ Each = Callable[..., list[Any]]
 
 @dataclass(frozen=True)
 class Tried:
-    """Runs of a group under one change, or at home."""
+    """Results of a group of runs under one change, or without one."""
 
     rewards: Floats
-    """Shape (seeds, episodes); (0, 0) when it was refused."""
+    """Rewards, shape (seeds, episodes); (0, 0) when the change was refused."""
     crashed: Floats
-    """1 for a crash; the same shape."""
+    """1 for an episode with a crash, else 0; the same shape."""
     false_alarms: Floats
-    """1 for a crash that was a reading only; the same shape."""
+    """1 for a crash that was a lidar reading only, else 0; the same shape."""
     refused: str = ""
     seen: bool = False
     """Whether the randomisation that they were trained with covers the change."""
@@ -52,7 +52,7 @@ class Tried:
 
     @property
     def mean(self) -> float:
-        """Reward of an episode."""
+        """Mean reward of an episode."""
         return float(self.rewards.mean())
 
 
@@ -65,14 +65,14 @@ class Rehearsed:
     home: Tried
     changes: Sequence[Change]
     tried: Sequence[Tried]
-    """Under each change."""
+    """Results under each change."""
 
     def transfer_ratios(self) -> list[Ratio | None]:
         """Reward under each change relative to that without it; None where it was not played."""
         return [None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards) for tried in self.tried]
 
     def advantages(self, first: Rehearsed) -> list[Ratio | None]:
-        """Over other runs under each change, see ``advantage``; None where one of the two was not played."""
+        """Advantage over other runs under each change, see ``advantage``; None where one of the two was not played."""
         return [
             None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards)
             for a, b in zip(first.tried, self.tried)

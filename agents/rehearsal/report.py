@@ -114,7 +114,8 @@ def _table(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
 
 
 def _groups(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
-    """Head and rows: means over the changes of each group, of all, and of those that nobody was trained with."""
+    """Head and rows of the table of means over the changes: of each group, of all, and of those that no training
+    covered."""
     changes = rehearsed[0].changes
     played = [k for k in range(len(changes)) if not any(one.tried[k].refused for one in rehearsed)]
     unseen = [k for k in played if not any(one.tried[k].seen for one in rehearsed)]

@@ -22,7 +22,7 @@ from .change import Change, is_covered
 from .truth import is_false_alarm
 
 JITTER = 0.1
-"""[m, rad]"""
+"""Default distance by which start poses are moved, in x and y [m] and yaw [rad]."""
 _REFUSALS = (OptionError, VehicleError, MissingExtra)
 
 
@@ -54,12 +54,12 @@ class Result:
     seen: bool = False
     """Whether the training's randomisation covers the change."""
     refused: str = ""
-    """Why it was not played; "" when it was."""
+    """Reason why it was not played; "" when it was."""
 
 
 def home_options(config: RunConfig) -> dict[str, Any]:
-    """Options of the environment at home: as the run is evaluated, but nothing is drawn at random of what it was
-    trained with, so that plain and randomised runs have the same home."""
+    """Options of the environment without a change: those of the run's evaluation, without the randomisation of its
+    training, so that plain and randomised runs are compared in the same environment."""
     out = {**config.evaluation.options}
     if "randomise" in {**config.env_options, **out}:
         out["randomise"] = None
@@ -90,7 +90,7 @@ def robot_name(config: RunConfig) -> str:
 
 
 def attempt(trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result | None:
-    """Play a trial; tells 1 after each episode. None when it was stopped.
+    """Play a trial; sends 1 after each episode. None when it was stopped.
 
     Raises:
         AgentError: it cannot be played at home.

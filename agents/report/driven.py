@@ -22,7 +22,7 @@ from ..runs.plan import EvaluationPlan
 
 Floats = npt.NDArray[np.float64]
 DRAWN = 20
-"""Episodes whose trails are kept."""
+"""Number of episodes whose trails are kept."""
 
 
 @dataclass(frozen=True)
@@ -121,11 +121,11 @@ def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
     robot: Any = env.unwrapped.robot  # type: ignore[attr-defined]
     if not hasattr(robot, "simulation"):
 
-        def told() -> tuple[float, float]:
+        def measured() -> tuple[float, float]:
             x, y = robot.pose[0, :2].tolist()
             return x, y
 
-        return told
+        return measured
 
     def true() -> tuple[float, float]:
         return from_ned(*robot.simulation(0).v.physics.body.pos.tolist())[:2]

@@ -11,6 +11,6 @@ MEAN_REWARDS = {
 }
 """Mean reward of each block of 200 episodes."""
 BEST_EPISODE = {"qlearn": 2500, "sarsa": 3500}
-"""Read off the curves, about."""
+"""Best episode, read off the paper's curves (approximate)."""
 REAL_TIME_FACTOR = 60
-"""About, without a window, on an i7-6700."""
+"""Real-time factor without a window on an i7-6700 (approximate)."""

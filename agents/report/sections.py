@@ -30,7 +30,7 @@ _FEW = 5
 
 
 def write_csv(path: Path, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
-    """A table as a file."""
+    """Write a table as CSV."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(head)
@@ -72,7 +72,7 @@ def blocks_table(groups: Sequence[Group], block: int) -> tuple[list[str], list[l
 
 
 def blocks_csv(path: Path, groups: Sequence[Group], block: int) -> None:
-    """Mean reward of each block, of every seed."""
+    """Write the mean reward of each block and seed as CSV."""
     rows = (
         (group.name, run.config.seed, k * block, float(value))
         for group in groups
@@ -119,7 +119,7 @@ def curves_text(block: int) -> str:
 
 
 def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> Path:
-    """Performance profiles: the share of runs whose last block is above each level, with its 95 % interval."""
+    """Draw performance profiles: the fraction of runs whose last block is above each level, with its 95 % interval."""
     scores = [group.last(block) for group in groups]
     lowest, highest = min(s.min() for s in scores), max(s.max() for s in scores)
     around = 0.05 * (highest - lowest) or 0.05 * abs(highest) or 1.0
@@ -137,7 +137,7 @@ def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> 
 
 
 def aggregates(document: Document, folder: Path, groups: Sequence[Group], block: int) -> None:
-    """Interquartile means, probabilities of improvement, performance profiles, of groups of one length."""
+    """Add interquartile means, probabilities of improvement and performance profiles of groups of the same length."""
     count = groups[0].rewards.shape[1]
     over = f"episodes {max(count - block, 0)} to {count}"
     seeds = [len(group.runs) for group in groups]

@@ -20,7 +20,8 @@ _RECENT = 100
 
 
 class Bar:
-    """Episodes (or steps) of all runs together, with reward, epsilon, steps a second and times real time.
+    """Progress bar over the episodes (or steps) of all runs, with reward, epsilon, steps per second and real-time
+    factor.
 
     Args:
         runs: that are trained, with what they have done already.

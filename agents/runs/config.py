@@ -19,7 +19,7 @@ from .plan import EvaluationPlan
 
 EPISODES = 3000
 MAX_STEPS = 1500
-"""The paper's."""
+"""Default lengths, the paper's: episodes of a run, steps of an episode."""
 _NO_DIFFERENCE = ("versions", "episodes", "steps", "evaluation")
 _LIBRARIES = ("numpy", "numba", "gymnasium")
 
@@ -32,7 +32,7 @@ def versions(*libraries: str) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class RunConfig:
-    """A run.
+    """The configuration of a run.
 
     Raises:
         AgentError: a length or a seed that cannot be.
@@ -42,7 +42,7 @@ class RunConfig:
     """Id of the environment."""
     algorithm: str
     env_options: Mapping[str, Any] = field(default_factory=dict)
-    """Given to ``gymnasium.make``; what JSON can hold."""
+    """Keyword arguments of ``gymnasium.make``, of JSON types."""
     settings: Mapping[str, Any] = field(default_factory=dict)
     """Settings of the algorithm."""
     seed: int = 0
@@ -88,7 +88,7 @@ class RunConfig:
 
     @classmethod
     def load(cls, path: Path) -> RunConfig:
-        """Read what ``save`` wrote.
+        """Read a configuration that ``save`` wrote.
 
         Raises:
             AgentError: it is something else.

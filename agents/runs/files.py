@@ -29,7 +29,7 @@ def make_folder(path: Path) -> None:
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Replace a file by this content.
+    """Write a file atomically.
 
     Raises:
         AgentError: it cannot be written.

@@ -19,7 +19,7 @@ CONFIG = "config.json"
 
 
 class RunFolder:
-    """One run.
+    """The folder of a run.
 
     Args:
         path: of the folder, which has a config.json.
@@ -52,7 +52,7 @@ class RunFolder:
         return cls(folder)
 
     def extend(self, episodes: int | None, steps: int | None) -> None:
-        """Set how long it is, for a resumed run that shall go on; None: as it was."""
+        """Set the length of a run that is resumed; None: unchanged."""
         config = self.config
         self.config = config.with_(
             episodes=config.episodes if episodes is None else episodes, steps=config.steps if steps is None else steps
@@ -62,7 +62,7 @@ class RunFolder:
 
     @classmethod
     def ensure(cls, path: str | Path, config: RunConfig) -> RunFolder:
-        """The run in a folder, made where there is none yet, and at least as long as ``config`` says.
+        """The run in a folder; it is made if there is none, and extended to the length of ``config``.
 
         Raises:
             AgentError: another run is there, or ``create`` says.

@@ -23,7 +23,7 @@ Work = Callable[[Any, SendProgress, Stopped], Any]
 OnProgress = Callable[[int, Any], None]
 """Called with the index of an item and a message that its work sent."""
 _POLL_S, _GRACE_S = 0.1, 2.0
-"""Wall time between two looks for messages and interrupts; for how long processes may end by themselves."""
+"""Wall time between two checks for messages and interrupts; time that processes have to end by themselves [s]."""
 _messages: Any
 _stop: Any
 """Set in each process of the pool: the queue of (index of an item, message), and the event that requests a stop."""
@@ -106,7 +106,7 @@ def _run(work: Work, index: int, item: Any) -> Any:
 
 
 def sendable(error: Exception) -> Exception:
-    """The error, or its text where it cannot be pickled."""
+    """The error; a RuntimeError with its traceback as text where it cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
         return error

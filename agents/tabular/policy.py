@@ -31,8 +31,8 @@ class TablePolicy:
 
     def check(self, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
         """See ``Policy``."""
-        asked = Table.for_spaces(observations, actions)
-        mine, theirs = (self.table.radix.tolist(), self.table.actions), (asked.radix.tolist(), asked.actions)
+        wanted = Table.for_spaces(observations, actions)
+        mine, theirs = (self.table.radix.tolist(), self.table.actions), (wanted.radix.tolist(), wanted.actions)
         if mine != theirs:
             raise AgentError(
                 f"the table is for digits {mine[0]} and {mine[1]} actions; here are {theirs[0]} and {theirs[1]}"

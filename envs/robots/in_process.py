@@ -141,4 +141,4 @@ class InProcessVehicles(Vehicles):
         except (OptionError, EngineError) as error:
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
         link.client.link.receive()
-        link.heard.recall(state.heard)
+        link.heard.recall(state.telemetry)

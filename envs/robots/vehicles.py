@@ -32,7 +32,7 @@ class EpisodeState:
 
     simulation: Any
     """Snapshot of the simulation; None while it runs."""
-    heard: Any
+    telemetry: Any
     """Snapshot of the telemetry received; None while it runs."""
     origin: tuple[float, float, float]
     """Origin of the vehicle's local position in the world: north, east, down [m]."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Brings two flights together: in time, from where their missions begin; and along the way, whatever the time."""
+"""Aligns two flights: in time, from the start of their missions; and along the way, independent of time."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ Array = np.ndarray[Any, Any]
 STEP = 0.1
 """Time between two samples [s]."""
 ELSEWHERE = 500.0
-"""Flights whose homes are farther apart are compared each from its own home [m]."""
+"""Distance between homes above which each flight is compared relative to its own home [m]."""
 BAND = 20.0
-"""A place of the way is looked for this far around the same time, beyond what the flights differ in length [s]."""
+"""Half width of the band of the alignment around equal times, beyond the difference in duration [s]."""
 LONGER = 120.0
-"""... but not by more than this [s]."""
+"""Largest difference in duration that widens the band [s]."""
 HEARTBEAT = 2.0
 """Largest delay of mode changes in a ground station's log [s]."""
 LAZY = 0.05
@@ -38,7 +38,7 @@ class AlignmentError(OptionError):
 
 @dataclass(frozen=True)
 class Pair:
-    """Two flights on one clock, which begins where both begin, and from one home."""
+    """Two flights with a common clock, which starts at the start of both, and a common home."""
 
     golden: Track
     new: Track
@@ -46,12 +46,12 @@ class Pair:
     align: str
     """"AUTO", "armed" or "start"."""
     starts: tuple[float, float]
-    """Each flight's own time of that [s]."""
+    """Start by each flight's own clock [s]."""
     notes: tuple[str, ...]
 
 
 def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -> Pair:
-    """Align two flights.
+    """Align two flights in time.
 
     Args:
         golden, new: the two.
@@ -84,7 +84,8 @@ def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -
 
 
 def _with_aligned_clocks(found: Pair, golden: Track, new: Track) -> Pair:
-    """The pair with clocks shifted by the new flight's median delay along the way, when that is at most a heartbeat's."""
+    """The pair with clocks shifted by the new flight's median delay along the way, when that is at most a
+    heartbeat's."""
     matched = match(found.new, found.golden)
     moving = matched.of(np.linalg.norm(found.golden.data[:, 4:7], axis=1)) > MOVING
     late = float(np.median(matched.delay[moving])) if moving.any() else 0.0
@@ -145,22 +146,22 @@ def _from(track: Track, start: float, logged: float | None = None) -> Track:
 
 @dataclass(frozen=True)
 class Matched:
-    """For each sample of a flight, the place of another's way that is meant."""
+    """For each sample of a flight, its matching position on another flight's way."""
 
     index: Array
     """As a fractional index into the other's samples."""
     cross: Array
-    """Distance from that place in the plane [m]."""
+    """Horizontal distance from that position, shape (n,) [m]."""
     delay: Array
-    """Time at which the flight is there, less the other's [s]."""
+    """Delay relative to the other flight at that position, shape (n,) [s]."""
 
     def of(self, column: Array) -> Array:
-        """The other's values at these places."""
+        """The other flight's values at the matching positions."""
         return np.interp(self.index, np.arange(len(column)), column)
 
 
 def match(flight: Track, other: Track) -> Matched:
-    """Find each sample of ``flight`` on the way of ``other``: never going back on it, and as near as can be."""
+    """Match each sample of ``flight`` with the nearest position on the way of ``other``, in increasing order."""
     f, o = flight.data[:, 1:4], other.data[:, 1:4]
     if flight.data.shape == other.data.shape and (flight.data[:, :4] == other.data[:, :4]).all():
         return Matched(np.arange(len(f), dtype=float), np.zeros(len(f)), np.zeros(len(f)))

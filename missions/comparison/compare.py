@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a flight is as golden: figures with their limits, and the first divergence in words."""
+"""Compares a flight with its golden: figures with limits, and the first divergence in words."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _EVENT_TITLES = {"items": "mission items", "modes": "modes", "texts": "texts"}
 
 @dataclass(frozen=True)
 class Figure:
-    """One number that is judged."""
+    """One figure with its limit."""
 
     name: str
     """Name as in tolerance files: "cross_track.max"."""
@@ -72,9 +72,9 @@ class Comparison:
     events: list[Event]
     figures: list[Figure]
     first: Divergence | None
-    """The first thing beyond its limit."""
+    """The first difference beyond its limit."""
     first_trace: Divergence | None
-    """The first thing beyond rounding."""
+    """The first difference beyond rounding."""
     notes: list[str]
 
     @property
@@ -184,7 +184,7 @@ def _of_events(both: Pair, kind: str, events: list[Event], limits: Tolerance) ->
 def _first(
     both: Pair, differences: Differences, events: list[Event], limits: Tolerance, figures: list[Figure]
 ) -> Divergence | None:
-    """The first thing that is beyond its limit, and how far it goes."""
+    """The first difference beyond its limit."""
     found: list[Divergence] = []
     for series in differences.series:
         limit = limits.limit(f"{series.name}.max")
@@ -220,7 +220,7 @@ def _first(
 
 
 def _trace(both: Pair, differences: Differences, events: list[Event]) -> Divergence | None:
-    """The first thing that is not the same."""
+    """The first difference beyond rounding."""
     found = []
     for series in differences.series:
         k = series.first_over(series.quantum)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flight to compare: its track, and what is known of how it came about."""
+"""A flight to compare: its track, and where it comes from."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Flight:
     header: dict[str, Any] | None = None
     """Description of the run (``sitl.recording.identity``); None: unknown."""
     digests: dict[str, Any] | None = None
-    """Digests of the vehicle's state at the end and of its telemetry, if they are known."""
+    """Digests of the vehicle's final state and of its telemetry; None: unknown."""
     coarse: bool = False
-    """Modes and arming are known to a heartbeat only."""
+    """Times of modes and arming are known to a heartbeat (1 s) only."""
     notes: tuple[str, ...] = field(default=())
     """Remarks on the source of the track."""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A comparison as one HTML file that needs nothing else, and as lines for a terminal."""
+"""A comparison as one self-contained HTML file, and as lines for a terminal."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def write(comparison: Comparison, folder: str | Path, title: str = "") -> Path:
 
 
 def html(comparison: Comparison, title: str = "") -> str:
-    """The report."""
+    """The report as HTML."""
     new, golden = comparison.new, comparison.golden
     title = title or Path(new.name).name
     verdict = "Flies like golden" if comparison.ok else "Does not fly like golden"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How much two flights may differ: a TOML file, over one of the presets in ``presets/``."""
+"""Limits of the differences between two flights: a TOML file on top of a preset of ``presets/``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
 
 
 class ToleranceError(OptionError):
-    """A tolerance file that says what no tolerance says; names file, key and what is allowed."""
+    """An invalid tolerance file; names the file, the key and what is allowed."""
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says when and how a flight differs: "12.4 s after item 3: 0.8 m east of golden"."""
+"""Times and differences in words: "12.4 s after item 3: 0.8 m east of golden"."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NED = (("north", "south"), ("east", "west"), ("below", "above"))
 
 
 def when(pair: Pair, t: float) -> str:
-    """A time by what the new flight had done last."""
+    """A time [s] relative to the new flight's last event."""
     before = [(at, f"item {seq}") for at, seq in pair.new.items if at <= t]
     before += [(at, f"mode {mode}") for at, mode in pair.new.modes if 0.0 < at <= t]
     since, what = max(before, default=(0.0, START_NAMES[pair.align]), key=lambda event: event[0])
@@ -59,7 +59,7 @@ def event_text(event: Event, difference: str) -> str:
 
 
 def number(value: float, unit: str) -> str:
-    """A figure with its unit."""
+    """A value with its unit."""
     if not math.isfinite(value):
         return "-"
     digits = 1 if unit == "deg" else 3 if 0.0 < value < 0.1 else 2

@@ -29,13 +29,13 @@ class Entry:
     """File name, relative to the index."""
     description: str
     frame: str
-    """Airframe that it is made for."""
+    """Name of the airframe that it is made for."""
     world: str | None = None
-    """World that it needs."""
+    """Name of the world that it needs; None: none."""
     start: str | None = None
     """Start pose in the world; None: the world's own."""
     params: Mapping[str, float] = field(default_factory=dict)
-    """Parameters that it needs."""
+    """Parameters that it needs: name -> value."""
 
     @property
     def kind(self) -> str:

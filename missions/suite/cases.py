@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which flights a suite has: mission files of a folder, in variants, as its ``suite.toml`` says."""
+"""The flights of a suite: mission files of a folder, in variants, as its ``suite.toml`` says."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Case:
     params: Mapping[str, float] = field(default_factory=dict)
     physics: str = NATIVE
     tolerance: str | Mapping[str, Any] | None = None
-    """As ``comparison.tolerance.load`` takes it; None: by what the two flights are."""
+    """Tolerance for ``comparison.tolerance.load``; None: chosen by what the two flights are."""
     time_limit: float = LIMIT_S
 
 
@@ -163,7 +163,7 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
 
 
 def _tolerance(folder: Path, value: Any) -> str | Mapping[str, Any]:
-    """As ``comparison.tolerance.load`` takes it, a file beside the suite by its path.
+    """The argument for ``comparison.tolerance.load``; a file beside the suite gets its path.
 
     Raises:
         ToleranceError: it does not.
@@ -188,7 +188,7 @@ def _is_mission(path: Path) -> bool:
 
 
 def _expanded(folder: Path, row: dict[str, Any]) -> list[dict[str, Any]]:
-    """A row for each mission that a row means."""
+    """A row for each mission that a row's pattern matches."""
     if ("file" in row) == ("library" in row):
         raise SuiteError(f"{folder / TOML}: [[missions]] has either file or library")
     if "file" in row:
@@ -253,5 +253,5 @@ def _vehicle(path: Path, row: dict[str, Any], entry: library.Entry | None) -> tu
 
 
 def _local(folder: Path, name: str | None) -> str | None:
-    """A file beside the suite, or a name."""
+    """The path of a file beside the suite, or the name unchanged."""
     return str(folder / name) if name is not None and (folder / name).is_file() else name

@@ -51,7 +51,7 @@ def fly_case(case: Case, update: bool = False, reports: str | None = None) -> Re
 
 @cache
 def _core(kind: str) -> Core:
-    """Loaded once a process."""
+    """The compiled core, loaded once per process."""
     return load_core(KINDS[kind])
 
 

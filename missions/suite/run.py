@@ -33,7 +33,7 @@ def run(
     reports: str | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Result]:
-    """Fly the cases; gives each result as it comes.
+    """Fly the cases; yields each result as it is ready.
 
     Args:
         jobs: flights at a time; None: one a core.

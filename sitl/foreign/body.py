@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A plant's motion as a line of JSON: truth, since ArduPilot's simulator has sensor models of its own."""
+"""The simulated motion as JSON lines for ArduPilot, which has its own sensor models and needs the true state."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..bridge.ardupilot_json import motion
 from ..plants.plant import Craft
 
 CLOCK_LEAD = 1e-9
-"""The clock of the lines is fast by this part.
+"""Relative lead of the lines' clock.
 
 ArduPilot adds each difference of two timestamps to a clock of whole microseconds and cuts off the rest: with
 differences a rounding error below 2500 us it would lose a microsecond now and then. The lead, a microsecond in 1000 s,
@@ -21,7 +21,7 @@ _S = 1e-6 * (1.0 + CLOCK_LEAD)
 
 
 class BodyLines:
-    """Writes lines for one vehicle.
+    """Encodes JSON lines for one vehicle.
 
     Args:
         craft: the vehicle.
@@ -50,7 +50,7 @@ class BodyLines:
         return motion.encode((self._clock() * _S, *self._motion()), self._extras)
 
     def _others(self, slow: tuple[Any, ...]) -> str:
-        """Range-finder, battery, and in wind what a vane shows; they change less often than the motion."""
+        """Range-finder, battery, and apparent wind when there is wind; they change less often than the motion."""
         readings, voltage, current, *wind = slow
         reading = None
         if readings > 0 and self._range_max > 0.0:  # out of range is farther than the sensor sees

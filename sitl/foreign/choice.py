@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which autopilot: ours, or a foreign one by its program or by where it runs already."""
+"""The choice of an autopilot: ours, a foreign program, or the address of a running one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..option_error import OptionError
 
 NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
 PROGRAMS = {ARDUPILOT: {"copter": "arducopter", "rover": "ardurover"}, PX4: {"copter": "px4", "rover": "px4"}}
-"""Autopilot -> kind of vehicle -> its program's usual name."""
+"""Autopilot -> kind of vehicle -> default name of its program."""
 _REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 FORMS = (
     '"native", "ardupilot" or "px4" (the program is looked for in PATH), "ardupilot:PROGRAM", "px4:PROGRAM", or, for '
@@ -22,7 +22,7 @@ FORMS = (
 
 @dataclass(frozen=True)
 class Choice:
-    """An autopilot that is not ours."""
+    """A foreign autopilot."""
 
     kind: str
     """ARDUPILOT or PX4."""
@@ -38,7 +38,7 @@ class Choice:
 
 
 def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | None:
-    """The autopilot that ``text`` means; None for our own.
+    """Parse the choice of an autopilot; None: our own.
 
     Args:
         text: one of the forms.

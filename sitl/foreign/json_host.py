@@ -16,7 +16,7 @@ from ..plants.local import LocalPlant
 from ..vehicle import TICK_US
 from .body import BodyLines
 
-_MOST = 65535
+_MAX_DATAGRAM = 65535
 _GATHERED = 10_000
 """Largest number of waiting datagrams that are read before answering, so that nobody can prevent an answer."""
 _IDLE_S = 0.01
@@ -24,12 +24,12 @@ _IDLE_S = 0.01
 
 
 class JsonHost:
-    """One plant at a UDP port.
+    """Serves one plant at a UDP port.
 
     Args:
         plant: at power-on, as ``sitl.plants.alone.stand_alone`` gives it.
         address: host and port to listen on; port 0: a free one.
-        say: takes what people should be told.
+        say: prints a message for the user.
         clock: wall time [s].
 
     Raises:
@@ -87,19 +87,19 @@ class JsonHost:
         if self._pending is not None:
             return True
         try:
-            datagram, peer = self._socket.recvfrom(_MOST)
+            datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
         except OSError:  # none came, or our last answer met a closed port
             return False
         now = self._wall()
         waiting = {peer: datagram}
         if now - self._answered > _IDLE_S:
-            self._newest(waiting)
+            self._drain(waiting)
         for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
-            if self._hear(waiting[peer], peer, now):
+            if self._process(waiting[peer], peer, now):
                 return True
         return False
 
-    def _hear(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
+    def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
         """Process one datagram; returns whether it requests a step."""
         heard = self.end.hear(datagram, peer, now)
         if heard.note:
@@ -114,12 +114,12 @@ class JsonHost:
         self._pending = heard
         return True
 
-    def _newest(self, waiting: dict[tuple[str, int], bytes]) -> None:
+    def _drain(self, waiting: dict[tuple[str, int], bytes]) -> None:
         """Read the waiting datagrams; of each sender the last frame counts, or its last datagram if there is no
         frame."""
         for _ in range(_GATHERED):
             try:
-                datagram, peer = self._socket.recvfrom(_MOST, socket.MSG_DONTWAIT)
+                datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM, socket.MSG_DONTWAIT)
             except OSError:
                 return
             if peer not in waiting or is_frame(datagram) or not is_frame(waiting[peer]):

@@ -25,7 +25,7 @@ MODEL = "none_iris"
 PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550
 """UDP: where it sends to programs, from where, and where to ground stations; the first two are + N."""
 INSTANCES = 10
-"""Later ones (from 10 on) all send to port 14549, where programs cannot tell them apart."""
+"""Number of instances: from 10 on all send to port 14549, where programs cannot distinguish them."""
 
 
 def parameters(airframe: Airframe) -> dict[str, float]:

@@ -54,12 +54,12 @@ class Relay:
         self._thread = threading.Thread(target=self._run, name="mavlink relay", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the relay's thread."""
         self._thread.start()
 
     @property
     def is_connected(self) -> bool:
-        """Whether the autopilot is there."""
+        """Whether the autopilot is connected."""
         return self._autopilot is not None
 
     def _run(self) -> None:
@@ -67,7 +67,7 @@ class Relay:
             self.turn(_WAIT_S)
 
     def turn(self, seconds: float) -> None:
-        """Carry what is there; wait for something so long at most."""
+        """Relay pending frames; waits up to ``seconds`` [s] wall time for one."""
         if self._autopilot is None:
             self._connect()
         for key, _ in self._selector.select(seconds):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers of a log that are not in the record as they are: functions of the samples, a column at a time."""
+"""Logged values that are calculated from the record: functions of the samples, a column at a time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Column = Callable[[Any], Array]
 
 
 def wrapped(path: str) -> Column:
-    """Angle [rad] of the record as degrees 0 .. 360."""
+    """An angle of the record [rad] in degrees, 0 .. 360."""
     return lambda s: np.mod(s(path) * DEG, 360.0)
 
 
@@ -34,7 +34,7 @@ def total(a: str, b: str) -> Column:
 
 
 def length(*paths: str) -> Column:
-    """Length of a vector."""
+    """Euclidean length of a vector."""
     return lambda s: np.sqrt(sum(s(path) ** 2 for path in paths))
 
 
@@ -49,12 +49,12 @@ def _longitude(lat0: Array, lon0: Array, lat: Array, east: Array) -> Array:
 
 
 def latitude(origin: str, position: str) -> Column:
-    """[degE7] of a position NED [m] from ``origin`` (paths that end in ``lat`` and ``lon``)."""
+    """Latitude [degE7] of a position NED [m] relative to ``origin`` (paths that end in ``lat`` and ``lon``)."""
     return lambda s: _latitude(s(origin + "lat"), s(position + "[0]"))
 
 
 def longitude(origin: str, position: str) -> Column:
-    """[degE7]"""
+    """Longitude [degE7]; arguments as in ``latitude``."""
 
     def column(s: Any) -> Array:
         lat0, lon0 = s(origin + "lat"), s(origin + "lon")
@@ -98,7 +98,7 @@ def yaw(path: str) -> Column:
 
 
 def gps_seconds(s: Any) -> Array:
-    """GPS time of the fix [s] less that of boot."""
+    """GPS time of the fix relative to boot [s]."""
     return s(S + "gps_time_us") * 1e-6
 
 
@@ -118,7 +118,7 @@ def baro_altitude(s: Any) -> Array:
 
 
 def resting_voltage(s: Any) -> Array:
-    """Voltage without the drop over the battery's resistance, as estimated [V]."""
+    """Estimated battery voltage without the drop over its resistance [V]."""
     return s(A + "battery.voltage") + s(A + "battery.current") * s(A + "control.motors.resistance")
 
 
@@ -128,7 +128,7 @@ def is_seen(path: str) -> Column:
 
 
 def estimates(s: Any) -> Array:
-    """Whether the filter runs, and knows its attitude."""
+    """Whether the filter runs and has an attitude."""
     return (s.raw(A + "ekf.use_external") == 0) & (s.raw(A + "ekf.tilt_aligned") != 0)
 
 
