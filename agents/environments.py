@@ -23,8 +23,8 @@ def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
     """Make the environment of a run.
 
     Args:
-        config: of the run.
-        options: that replace the run's.
+        config: configuration of the run.
+        options: options that replace the run's.
 
     Raises:
         AgentError: no such environment, or an option that it does not take.

@@ -102,9 +102,9 @@ def evaluate(
 
     Args:
         env: it must truncate its episodes.
-        policy: that plays.
-        episodes: how many.
-        seed: of the resets and of the policy's own choices.
+        policy: policy that plays.
+        episodes: number of episodes.
+        seed: seed of the resets and of the policy's own choices.
         poses: where the episodes start, in turn; None: where the environment says.
         watch: called after each episode.
         first: number of the first one; each follows from its number and the seed alone.
@@ -187,9 +187,9 @@ def evaluate_run(run: RunFolder, plan: EvaluationPlan | None = None, seed: int =
     """Play the learnt policy of a run.
 
     Args:
-        run: that has a model.
+        run: run that has a model.
         plan: how; None: as the run says.
-        seed: of the evaluation.
+        seed: seed of the evaluation.
 
     Raises:
         AgentError: no model, or not of this environment.

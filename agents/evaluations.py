@@ -32,10 +32,11 @@ def evaluate_runs(
     """Play the learnt policies of runs.
 
     Args:
-        runs: that have a model.
-        plans: of each, how it is played.
-        seed: of the evaluations.
-        workers: that play; where there are more of them than runs, the episodes of a run are divided among them.
+        runs: runs that have a model.
+        plans: a plan for each run.
+        seed: seed of the evaluations.
+        workers: workers that play; where there are more of them than runs, the episodes of a run are divided among
+            them.
 
     Raises:
         AgentError: no model, or not of this environment.

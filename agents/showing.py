@@ -51,13 +51,13 @@ def film(run: RunFolder, path: Path, episodes: int, seed: int, speed: float, end
     """Record episodes in a file; returns its number of frames.
 
     Args:
-        run: that has a model.
+        run: run that has a model.
         path: .gif or .mp4.
-        episodes: how many.
-        seed: of the episodes.
-        speed: how many times real time the film passes.
+        episodes: number of episodes.
+        seed: seed of the episodes.
+        speed: speed of the animation relative to real time.
         ended: see ``Ended``.
-        options: of the environment, which replace the run's.
+        options: options of the environment, which replace the run's.
 
     Raises:
         AgentError: no model, or no such film.
@@ -116,7 +116,7 @@ class Pace:
     """Limits the rate of calls: each call waits until ``seconds`` after the last one.
 
     Args:
-        seconds: of wall time.
+        seconds: least time between two calls [s], wall time.
         clock, sleep: of the wall, unless a test has others.
     """
 

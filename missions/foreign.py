@@ -23,7 +23,7 @@ class ForeignVehicle:
         choice: the autopilot.
         frame: airframe.
         home: where it stands.
-        seed: of wind and turbulence.
+        seed: seed of wind and turbulence.
         physics: name of the engine.
 
     Raises:

@@ -38,7 +38,7 @@ def runs_of_sweep(options: argparse.Namespace, path: Path, configure: Configure,
 
     Args:
         options: with ``sweep``.
-        path: of the sweep's folder.
+        path: path of the sweep's folder.
         configure: makes a run of options.
         open_: makes its folder, or opens it.
 

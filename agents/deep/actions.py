@@ -18,7 +18,7 @@ class Actions:
     """Converts the actions of a network to those of an environment.
 
     Args:
-        space: of the environment's actions.
+        space: space of the environment's actions.
         algorithm: "dqn", "ppo" or "sac".
 
     Raises:

@@ -32,11 +32,11 @@ class Checks:
     """Evaluates the network of one run at intervals and keeps the best one.
 
     Args:
-        config: of the run. Episodes are played as those of its evaluation, which may have other starts and be longer
-            than those that are learnt from; where they all start at one place, starts are moved by up to 0.1 m and
-            0.1 rad.
+        config: configuration of the run. Episodes are played as those of its evaluation, which may have other starts
+            and be longer than those that are learnt from; where they all start at one place, starts are moved by up
+            to 0.1 m and 0.1 rad.
         figures: its settings; they say how often.
-        path: of the best model; what another run left there is removed.
+        path: path of the best model; what another run left there is removed.
         begun: steps after which the run goes on; 0: it is new.
     """
 

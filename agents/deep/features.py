@@ -27,8 +27,8 @@ class Features:
     - the way to a goal: distance, cosine and sine of the bearing; a pose: x, y, z, cosine and sine of the yaw.
 
     Args:
-        space: of one robot's observations.
-        sectors: of a scan; 0: every reading for itself.
+        space: space of one robot's observations.
+        sectors: number of sectors of a scan; 0: each reading is a feature.
 
     Raises:
         AgentError: a kind of observation that is none of these.
@@ -92,9 +92,9 @@ class Frames:
     """The last ``frames`` features of each robot in a row, the newest first.
 
     Args:
-        count: of robots.
-        frames: how many.
-        width: of features.
+        count: number of robots.
+        frames: number of observations in a row.
+        width: number of features of a robot.
     """
 
     def __init__(self, count: int, frames: int, width: int) -> None:

@@ -28,12 +28,12 @@ class Robots(VecEnv):
 
     Args:
         env: ``gymnasium.make_vec`` of one of this package's environments.
-        features: of its observations.
-        frames: how many are seen together.
-        actions: of its actions.
+        features: conversion of its observations.
+        frames: number of observations that the network sees together.
+        actions: conversion of its actions.
         reward_scale: factor of rewards.
         tally: receives every step.
-        seeds: of the first episodes, one a robot.
+        seeds: seeds of the first episodes, one a robot.
     """
 
     def __init__(

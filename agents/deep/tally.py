@@ -16,7 +16,7 @@ class Tally:
     """Counts rewards and steps of the episodes of several robots.
 
     Args:
-        count: of robots.
+        count: number of robots.
         step_time: simulated time of a step [s].
     """
 

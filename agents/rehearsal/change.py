@@ -101,7 +101,7 @@ class Change:
         """Options of the environment with this change.
 
         Args:
-            robot: of the environment at home (``envs.robots.robot.Robot``).
+            robot: robot of the environment at home (``envs.robots.robot.Robot``).
             home: options of the environment at home.
 
         Raises:
@@ -124,7 +124,7 @@ def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mappi
     around it.
 
     Args:
-        options: of the environment under the change.
+        options: options of the environment under the change.
         home: at home.
         drawn: the option ``randomise`` of the training.
     """

@@ -89,10 +89,10 @@ def trials_of(
     """Trials without a change first, then under each change; one trial a run.
 
     Args:
-        runs: of a group.
-        changes: that are tried.
-        episodes: of a trial; None: as many as the run's evaluation has, ``EPISODES`` at most.
-        seed: of the episodes.
+        runs: runs of a group.
+        changes: changes that are tried.
+        episodes: episodes of a trial; None: as many as the run's evaluation has, ``EPISODES`` at most.
+        seed: seed of the episodes.
         jitter: see ``Trial``.
     """
     out = []
@@ -119,7 +119,7 @@ def rehearse(
     Args:
         groups: names and runs.
         changes, episodes, seed, jitter: see ``trials_of``.
-        jobs: how many processes.
+        jobs: number of processes.
         on_progress: called with the number of a trial and 1 for each of its episodes.
         do: does the work for all trials, as ``agents.runs.local.each``.
 

@@ -33,7 +33,7 @@ def write_report(sections: Mapping[str, Sequence[Rehearsed]], folder: Path, seed
     Args:
         sections: title -> runs side by side, all under the same changes.
         folder: for the files.
-        seed: that the episodes were played with.
+        seed: seed that the episodes were played with.
 
     Returns:
         path of the Markdown.

@@ -39,9 +39,9 @@ def write_episodes(path: Path, sections: Mapping[str, Sequence[Rehearsed]], seed
     """A row for each episode.
 
     Args:
-        path: of the file.
+        path: path of the file.
         sections: title -> runs.
-        seed: that the episodes were played with.
+        seed: seed that the episodes were played with.
 
     Raises:
         AgentError: it cannot be written.

@@ -31,8 +31,8 @@ def resampled(home: Floats, changed: Floats, seed: int = 0, resamples: int = RES
 
     Args:
         home, changed: rewards, shape (seeds, episodes); of ``home`` the first episodes, where ``changed`` has fewer.
-        seed: of the drawing.
-        resamples: how many.
+        seed: seed of the resampling.
+        resamples: number of resamples.
     """
     rng = np.random.default_rng(seed)
     seeds, episodes = changed.shape

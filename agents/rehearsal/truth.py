@@ -22,7 +22,7 @@ def is_false_alarm(env: Any) -> bool:
     """Whether the crash that ended the episode was a lidar reading only: nothing was touched, and nothing was near.
 
     Args:
-        env: of this package; of robots whose true place is not known no crash is called false.
+        env: environment of this package; no crash is a false alarm where the robot's true position is unknown.
     """
     inner = env.unwrapped
     robot, limit = inner.robot, getattr(inner.task, "limit", math.inf)

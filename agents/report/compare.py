@@ -33,11 +33,11 @@ def compare(
     """Write report.md, report.html, pictures and CSV files.
 
     Args:
-        groups: that are compared, of one environment.
+        groups: groups that are compared, of one environment.
         folder: for the files.
         block: episodes of an average; None: 200, or fewer where runs are short.
         play: greedy episodes of each run; 0: none.
-        workers: that play them.
+        workers: workers that play them.
 
     Returns:
         path of the Markdown.

@@ -76,7 +76,7 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
     """Notes where the robot is after each reset and step; changes nothing.
 
     Args:
-        env: of one robot.
+        env: environment with one robot.
     """
 
     def __init__(self, env: gym.Env[Any, Any]) -> None:
@@ -107,7 +107,7 @@ def whereabouts(trail: Floats, world: World) -> Whereabouts:
 
     Args:
         trail: x, y [m], shape (n, 2).
-        world: that it was in.
+        world: world that the robot was in.
     """
     x0, y0, x1, y1 = world.bounds
     x, y = trail[-1].tolist()
@@ -137,7 +137,7 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
     """Play what the run in a folder has learnt.
 
     Args:
-        path: of the folder.
+        path: path of the folder.
         plan: how.
         watch: called after each episode.
 

@@ -64,7 +64,7 @@ def write_report(dishes: Sequence[Dish], folder: Path) -> Path:
     """The report.
 
     Args:
-        dishes: of the recipes.
+        dishes: results of the recipes.
         folder: for the files.
 
     Returns:

@@ -62,12 +62,12 @@ def runs_of(
     """The runs of a variant, made where they are not there yet, and at least so long.
 
     Args:
-        folder: of all.
+        folder: folder of the benchmark.
         algorithm: "qlearn" or "sarsa".
         variant: see ``Variant``.
         seeds: one run each.
-        episodes: of each.
-        options: of the environment, which the paper's does not have.
+        episodes: episodes of each run.
+        options: options of the environment, which the paper's does not have.
 
     Raises:
         AgentError: there are other runs in its place.
@@ -101,7 +101,7 @@ def write_report(
         extra: runs with one thing changed.
         folder: for the files.
         play: greedy episodes of each run.
-        workers: that play them.
+        workers: workers that play them.
 
     Returns:
         path of the Markdown.

@@ -86,8 +86,8 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
     """Raw curves of the first seeds, on one scale, and the means of all groups.
 
     Args:
-        path: of the picture.
-        groups: whose curves are drawn.
+        path: path of the picture.
+        groups: groups whose curves are drawn.
         block: episodes of an average.
         paper: name -> means of its blocks, to be drawn beside ours.
     """
@@ -184,11 +184,11 @@ def greedy_play(
     """Greedy evaluations and their table.
 
     Args:
-        document: that it goes into.
+        document: document that the table is added to.
         folder: for greedy.csv.
-        groups: whose runs play.
-        plans: of each group.
-        workers: that play.
+        groups: groups whose runs play.
+        plans: plans of each group.
+        workers: workers that play.
 
     Returns:
         an evaluation for each run of each group.

@@ -28,8 +28,8 @@ def draw_trails(path: Path, world: World, trails: Sequence[Floats], crashed: Seq
     """Draw trails in a world; returns the path of the picture.
 
     Args:
-        path: of the picture, a PNG.
-        world: whose solids are drawn: dark those at the height of its plan, light those above or below it.
+        path: path of the picture, a PNG.
+        world: world whose solids are drawn: dark those at the height of its plan, light those above or below it.
         trails: x, y [m], each of shape (n, 2).
         crashed: whether each ended in a crash.
         title: over the picture.

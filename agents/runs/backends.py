@@ -32,7 +32,7 @@ def each(
         jobs: number of items at a time.
         on_progress: see ``local.OnProgress``.
         backend: "local": processes of this machine; "ray": workers of a Ray cluster.
-        address: of the cluster; None: ``$RAY_ADDRESS``, else an instance on this machine.
+        address: address of the cluster; None: ``$RAY_ADDRESS``, else an instance on this machine.
 
     Raises:
         AgentError: no such backend, or an address for one that has none.

@@ -24,7 +24,7 @@ class Bar:
     factor.
 
     Args:
-        runs: that are trained, with what they have done already.
+        runs: runs that are trained, with what they have done already.
     """
 
     def __init__(self, runs: Sequence[RunFolder]) -> None:

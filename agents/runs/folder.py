@@ -22,7 +22,7 @@ class RunFolder:
     """The folder of a run.
 
     Args:
-        path: of the folder, which has a config.json.
+        path: path of the folder, which has a config.json.
 
     Raises:
         AgentError: it has none.

@@ -22,7 +22,7 @@ class Keeper:
     """Collects episodes as they are done.
 
     Args:
-        folder: of the run.
+        folder: folder of the run.
         watch: receives them.
         checkpoint: saves the model; called when it has learnt from all episodes collected so far.
     """

@@ -81,7 +81,7 @@ class Sweep:
     """A folder of groups.
 
     Args:
-        path: of the folder.
+        path: path of the folder.
         combinations: name of a folder in it -> values.
     """
 

@@ -40,9 +40,9 @@ class Checks:
     """Evaluates the table of one run at intervals and keeps the best one.
 
     Args:
-        env: that it learns in; it is reset for each check.
-        learner: whose table plays; its settings say how often.
-        path: of the best table.
+        env: environment that it learns in; it is reset for each check.
+        learner: learner whose table plays; its settings say how often.
+        path: path of the best table.
     """
 
     def __init__(self, env: gym.Env[Any, Any], learner: Learner, path: Path) -> None:

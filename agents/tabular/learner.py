@@ -28,7 +28,7 @@ class Learner:
         algorithm: "qlearn" or "sarsa".
         settings: hyper-parameters.
         table: what it has learnt already; it goes on with it.
-        seed: of its random numbers.
+        seed: seed of its random numbers.
         frozen: it plays greedily and does not learn.
 
     Raises:

@@ -16,7 +16,7 @@ class TablePolicy:
     """Takes the best action of each state; one of the best at random when there are more.
 
     Args:
-        table: whose values count.
+        table: table of values.
         epsilon: probability of a random action.
         first_state_apart: see ``Settings``.
     """

@@ -23,8 +23,8 @@ class Table:
     """Values of actions in states that are made of digits.
 
     Args:
-        radix: how many values each digit can have.
-        actions: how many there are.
+        radix: number of values of each digit.
+        actions: number of actions.
 
     Raises:
         AgentError: no digits or actions, or more states than can be numbered.

@@ -101,7 +101,7 @@ class Vehicles(ABC):
         """Bring one vehicle to the start of an episode, with an open connection.
 
         Args:
-            index: of the vehicle.
+            index: index of the vehicle.
             pose: x, y, z [m], yaw [rad] in the world.
             seed: seed of the sensors' noise.
 

@@ -35,8 +35,8 @@ class Log:
     """A log with its vehicle.
 
     Args:
-        path: of the .tlog.
-        system: of the vehicle, when the log has several.
+        path: path of the .tlog.
+        system: system of the vehicle, when the log has several.
 
     Raises:
         LogError: the file cannot be read, or it has no vehicle that we have (or several).

@@ -55,7 +55,7 @@ def command(
         base: TCP port of its MAVLink.
         instance: adds to MAV_SYSID in ArduPilot's own way; its ports are given by the others.
         speedup: times the wall clock.
-        files: of parameters.
+        files: files of parameters.
     """
     where = ",".join(f"{number:.9g}" for number in home)
     return [

@@ -43,7 +43,7 @@ def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | 
     Args:
         text: one of the forms.
         vehicle: "copter" or "rover".
-        path: of the program, when the text does not say.
+        path: path of the program, when the text does not say.
 
     Raises:
         OptionError: none of the forms, or no such program.

@@ -107,7 +107,7 @@ def start(
         program: ``build/px4_sitl_default/bin/px4``, whose start-up files are in ``build/px4_sitl_default/etc``.
         airframe: a copter.
         home: where it stands.
-        instance: of all its ports, and of its MAV_SYS_ID less one.
+        instance: number that gives its ports, and its MAV_SYS_ID less one.
         speedup: times the wall clock, by which it lengthens its time-outs.
         params: under PX4's names, over those of ``parameters``.
         folder: see ``AutopilotProcess``.

@@ -51,7 +51,7 @@ class Recorder:
 
     Args:
         simulation: at power-on: no time has passed, and no client has been heard.
-        path: of the file; None: nothing is kept but the digests.
+        path: path of the file; None: nothing is kept but the digests.
         flush_us: simulated time after which what is collected is written [us]: a run that is killed loses no more.
 
     Raises:

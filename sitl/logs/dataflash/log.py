@@ -63,7 +63,7 @@ class DataFlash:
 
     Args:
         vehicle: the simulation.
-        path: of the first log (.bin); later ones get ``.2``, ``.3``, ... before the ending.
+        path: path of the first log (.bin); later ones get ``.2``, ``.3``, ... before the ending.
         epoch_us: Unix time of the start of the simulation [us].
         version: text that says which program this is.
     """
