@@ -17,7 +17,7 @@ pytest.importorskip("pybullet")
 from bullet_copters import by_dice, copter, put, record_of, run
 
 from envs.options import EnvOptionError
-from envs.robots.autopilot import AutopilotRobot, Ready
+from envs.robots.autopilot import AutopilotRobot, EpisodeState
 from sitl import worlds
 from sitl.physics.engine import EngineError
 from sitl.physics.pybullet.engine import BulletEngine
@@ -155,7 +155,7 @@ def test_a_simulation_takes_all_of_a_snapshot_or_nothing() -> None:
 
 def test_a_robot_refuses_it_by_name() -> None:
     robot = AutopilotRobot("office_erlecopter", frame="erle_copter", physics="pybullet")
-    taken = Ready(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
+    taken = EpisodeState(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
     broken = dataclasses.replace(taken, simulation=dataclasses.replace(taken.simulation, plant=b""))
     with pytest.raises(EnvOptionError, match="cannot be restored"):
         robot.restore(0, broken)
