@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One DataFlash log being written: rows of samples and what happened between them."""
+"""Encodes one DataFlash log: rows of samples, and the events between them."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from ...autopilot.events import EVENT_RING
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
 from . import bits, copter, formats, rover
-from .common import HAPPENINGS
+from .common import EVENT_MESSAGES
+from .events import EDGES, HOME, ORIGIN, EventEncoder
 from .formats import Message
-from .happenings import EDGES, HOME, ORIGIN, Writer
 from .plan import Plan
 from .samples import Samples
 
 ROWS = 1024
-"""Samples that are collected before they are written."""
+"""Number of samples that are collected before they are encoded."""
 EVERY_BIT = 0x7FFFFFFF
 MESSAGES: Mapping[str, Callable[[int, int, bool], tuple[Message, ...]]] = {
     "copter": copter.messages,
     "rover": rover.messages,
 }
-"""By the firmware's name."""
+"""Messages by the firmware's name."""
 TITLES = {"copter": ("ArduCopter", 2), "rover": ("ArduRover", 1)}
-"""What readers know a firmware by: the name in MSG, the build type in VER."""
+"""Firmware -> the name that readers expect in MSG, the build type in VER."""
 VERSION = (4, 7, 0)
 """The ArduPilot whose messages these are."""
 _RING, _NAV = "autopilot.events.", "autopilot.modes.nav."
@@ -38,7 +38,7 @@ _PLACES = (
 
 
 class Vehicle(Protocol):
-    """What a log needs of a simulation."""
+    """The part of the simulation's interface that a log uses."""
 
     fleet: np.ndarray[Any, Any]
     index: int
@@ -55,14 +55,14 @@ class Vehicle(Protocol):
         ...
 
 
-class Book:
-    """Turns one boot of a vehicle into the bytes of a log; ``begin`` first.
+class LogEncoder:
+    """Encodes one boot of a vehicle as the bytes of a log. Call ``begin`` first.
 
     Args:
         vehicle: the simulation.
-        boot_unix_us: Unix time of boot.
-        bitmask: LOG_BITMASK
-        version: text that says which program this is.
+        boot_unix_us: Unix time of boot [us].
+        bitmask: LOG_BITMASK.
+        version: name and version of this program, for MSG and VER.
     """
 
     def __init__(self, vehicle: Vehicle, boot_unix_us: int, bitmask: int, version: str) -> None:
@@ -70,10 +70,10 @@ class Book:
         self._boot_unix_us = boot_unix_us
         name = vehicle.firmware.name
         self._simulated = ":" not in vehicle.physics  # elsewhere the record holds no truth
-        every = (*HAPPENINGS, *MESSAGES[name](EVERY_BIT, boot_unix_us, self._simulated))
+        every = (*EVENT_MESSAGES, *MESSAGES[name](EVERY_BIT, boot_unix_us, self._simulated))
         self._described = every
         self._numbers = formats.number_all(every)
-        self.happened = Writer(self._numbers)
+        self.events = EventEncoder(self._numbers)
         self._bits = bitmask
         self._k = 0
         self._notes: list[tuple[int, int, bytes]] = []
@@ -107,28 +107,28 @@ class Book:
             self.write_rows()
 
     def note(self, time_us: int, pack: Callable[..., bytes], *arguments: Any) -> None:
-        """Write ``pack(time, *arguments)`` between the samples; times never go back."""
+        """Add the message ``pack(time_us, *arguments)`` between the samples; times [us since boot] never go back."""
         self._last_us = time_us = max(time_us, self._last_us)
         data = pack(time_us, *arguments)
         if data:
             self._notes.append((self._k + 1, time_us, data))
 
-    def said(self, time_us: int, text: str) -> None:
-        """A text for the pilot."""
-        self.note(time_us, self.happened.text, text)
+    def text(self, time_us: int, text: str) -> None:
+        """Add a status text (MSG); time since boot [us]."""
+        self.note(time_us, self.events.text, text)
 
     def read_events(self) -> None:
-        """Note what the core emitted since the last call."""
+        """Add the events that the autopilot emitted since the last call."""
         ring = self._vehicle.v.autopilot.events
         count = int(ring.count)
         for k in range(max(self._seen, count - EVENT_RING), count):
             at = k % EVENT_RING
             event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
-            self.note(int(ring.time_us[at]), self.happened.event, *event)
+            self.note(int(ring.time_us[at]), self.events.event, *event)
         self._seen = count
 
     def skip_events_before(self, time_us: int) -> None:
-        """Forget earlier events; those from ``time_us`` on are still to be read."""
+        """Skip events before ``time_us`` [us since boot]; later ones are still read."""
         ring = self._vehicle.v.autopilot.events
         count = int(ring.count)
         self._seen = count
@@ -136,23 +136,23 @@ class Book:
             self._seen -= 1
 
     def mission_changed(self, time_us: int) -> None:
-        """Note all items of the mission."""
+        """Add all items of the mission; time since boot [us]."""
         self._missions.append((self._k, self._mission))
         self._mission = self._vehicle.mission
         if self._bits & bits.COMMANDS:
-            self.note(time_us, self.happened.mission, self._mission.items)
+            self.note(time_us, self.events.mission, self._mission.items)
 
     @property
     def mission(self) -> Mission:
-        """The mission that the log knows of."""
+        """The mission that was logged last."""
         return self._mission
 
     def parameter(self, time_us: int, name: str) -> None:
-        """Note a parameter that was set."""
-        self.note(time_us, self.happened.parameters, [self._parameter(name)])
+        """Add a parameter that was set; time since boot [us]."""
+        self.note(time_us, self.events.parameters, [self._parameter(name)])
 
-    def choose(self, bitmask: int) -> None:
-        """Another LOG_BITMASK from now on."""
+    def set_bitmask(self, bitmask: int) -> None:
+        """Log by another LOG_BITMASK from now on."""
         if bitmask != self._bits:
             self.write_rows()
             self._bits = bitmask
@@ -161,7 +161,7 @@ class Book:
     # ------------------------------------------------------------------ bytes
 
     def take_bytes(self) -> bytes:
-        """Everything up to now that has not been taken yet."""
+        """The bytes encoded since the last call."""
         self.write_rows()
         data = b"".join(self._out)
         self._out.clear()
@@ -169,12 +169,12 @@ class Book:
 
     @property
     def pending(self) -> int:
-        """Pieces that wait to be taken."""
+        """Number of encoded chunks that ``take_bytes`` has not returned yet."""
         return len(self._out)
 
     def begin(self, time_us: int) -> None:
-        """The head of the log: what messages there are, parameters, who this is, mode, mission, places."""
-        v, pack = self._vehicle, self.happened
+        """Encode the head of the log: formats, parameters, version, mode, mission, places; time since boot [us]."""
+        v, pack = self._vehicle, self.events
         self._last_us = time_us
         title, build = TITLES[v.firmware.name]
         described = f"{title} V{'.'.join(map(str, VERSION))}-dev ({self._version})"
@@ -194,7 +194,7 @@ class Book:
                 self._out.append(self._place(0, kind, place, time_us))
 
     def write_rows(self) -> None:
-        """Turn the samples and notes so far into bytes."""
+        """Encode the samples and messages so far."""
         n = self._k
         if not n and not self._notes:
             return
@@ -206,8 +206,8 @@ class Book:
         self._k = 0
 
     def _edges(self, n: int) -> None:
-        """Notes of what can be seen in the samples alone."""
-        column, pack = self._samples.column, self.happened.pack
+        """Messages that follow from changes in the samples: EV, ORGN, MISE."""
+        column, pack = self._samples.column, self.events.pack
         times = column("time_us")
         for edge in EDGES:
             x = column(edge.path)[: n + 1]
@@ -226,19 +226,19 @@ class Book:
                 self._notes.append((k + 1, time_us, self._place(k + 1, kind, place, time_us)))
         count, seq = column(_NAV + "command_count")[: n + 1], column(_NAV + "command_seq")
         for k in np.flatnonzero(count[1:] != count[:-1]).tolist():
-            self._begun(k + 1, int(seq[k + 1]), int(times[k + 1]))
+            self._command_started(k + 1, int(seq[k + 1]), int(times[k + 1]))
 
-    def _begun(self, row: int, seq: int, time_us: int) -> None:
-        """MISE: a navigation command begins."""
+    def _command_started(self, row: int, seq: int, time_us: int) -> None:
+        """MISE: a navigation command starts."""
         mission = next((mission for until, mission in self._missions if row <= until), self._mission)
         item = mission.get(seq)
         if item is not None and seq > 0 and self._bits & bits.COMMANDS:
-            data = self.happened.command("MISE", time_us, len(mission), seq, item)
+            data = self.events.command("MISE", time_us, len(mission), seq, item)
             self._notes.append((row, time_us, data))
 
     def _place(self, row: int, kind: int, place: str, time_us: int) -> bytes:
         numbers = (float(self._samples.column(place + name)[row]) for name in ("lat", "lon", "alt"))
-        return self.happened.origin(time_us, kind, *numbers)
+        return self.events.origin(time_us, kind, *numbers)
 
     def _parameter(self, name: str) -> tuple[str, float, float]:
         return name, float(self._vehicle.v.autopilot.params[name]), self._vehicle.firmware.table[name].default

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What happens to a vehicle, as messages of a log: modes, arming, errors, texts, parameters, the mission.
+"""Event messages of a log: modes, arming, errors, texts, parameters, the mission.
 
 Numbers of EV and ERR: https://ardupilot.org/copter/docs/logmessages.html#ev
 """
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from ...autopilot import events as core
 from ...autopilot import failsafe_checks as failsafes
 from ...autopilot.mission.item import MissionItem
-from .common import HAPPENINGS
+from .common import EVENT_MESSAGES
 from .formats import HEAD, TYPES
 
 EV_ARMED, EV_DISARMED, EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED, EV_LOST_GPS = 10, 11, 15, 17, 18, 19
@@ -32,11 +32,11 @@ ORIGIN, HOME = 0, 1
 
 
 class Edge(NamedTuple):
-    """A number of the record whose change is an EV."""
+    """A field of the vehicle's record; a change of its value is logged as an EV message."""
 
     path: str
     up: int
-    """EV when it grows, 0: none."""
+    """EV number when the value grows; 0: none."""
     down: int = 0
 
 
@@ -50,16 +50,16 @@ EDGES = (
 )
 
 
-class Writer:
-    """Packs messages of HAPPENINGS.
+class EventEncoder:
+    """Encodes the messages of EVENT_MESSAGES.
 
     Args:
-        numbers: of the messages in this log.
+        numbers: message name -> message number in this log.
     """
 
     def __init__(self, numbers: dict[str, int]) -> None:
         self._packers: dict[str, tuple[Callable[..., bytes], int]] = {}
-        for m in HAPPENINGS:
+        for m in EVENT_MESSAGES:
             layout: Struct = m.packer
             self._packers[m.name] = (layout.pack, numbers[m.name])
 
@@ -69,7 +69,14 @@ class Writer:
         return pack(*HEAD, number, time_us, *fields)
 
     def event(self, time_us: int, code: int, a: float, b: float, checks: int) -> bytes:
-        """What an event of the core is in the log; nothing for most. ``checks``: bits of the arming checks."""
+        """Messages for an event of the autopilot; empty for events that are not logged.
+
+        Args:
+            time_us: simulated time since boot [us].
+            code: number of the event.
+            a, b: its arguments.
+            checks: bits of ARMING_CHECK.
+        """
         if code == core.MODE_CHANGED:
             return self.pack("MODE", time_us, int(a) & 255, int(a) & 255, int(b) & 255)
         if code == core.ARMED:

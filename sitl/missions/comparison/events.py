@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares what happened: mission items, modes, texts; what is missing, what is new, what came earlier or later."""
+"""Compares the events of two flights: mission items, modes, status texts; missing, added, earlier, later."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
 @dataclass(frozen=True)
-class Happening:
-    """One thing that happened in golden, in the new flight, or in both."""
+class Event:
+    """A mission item, a change of mode or a status text, in the golden flight, the new one, or both."""
 
     kind: str
     """"items", "modes" or "texts"."""
     what: str
-    """In words: "item 3", "mode RTL", "'Arming motors'"."""
+    """Description: "item 3", "mode RTL", "'Arming motors'"."""
     golden: float | None
     new: float | None
-    """When, since the common start [s]."""
+    """Time since the common start [s]; None: the flight does not have it."""
     seq: int = -1
-    """Of an item."""
+    """Number of the mission item; -1 for other kinds."""
 
     @property
     def shift(self) -> float:
-        """How much later it is in the new flight [s]; 0 when one has it alone."""
+        """Delay in the new flight [s]; 0 when only one flight has it."""
         return 0.0 if self.golden is None or self.new is None else self.new - self.golden
 
     @property
     def time(self) -> float:
-        """When it is told: as the new flight has it, or golden."""
+        """Time for sorting: of the new flight, or of golden where only that has it [s]."""
         return self.new if self.new is not None else self.golden or 0.0
 
     def difference(self, limit: float) -> str:
-        """What is wrong with it: "", MISSING, ADDED or SHIFTED."""
+        """MISSING, ADDED, SHIFTED (by more than ``limit`` [s]), or ""."""
         if self.new is None:
             return MISSING
         if self.golden is None:
@@ -49,8 +49,8 @@ class Happening:
         return SHIFTED if abs(self.shift) > limit + 1e-6 else ""
 
 
-def compare(pair: Pair, tolerance: Tolerance) -> list[Happening]:
-    """All that happened in either, in the order in which it did."""
+def compare_events(pair: Pair, tolerance: Tolerance) -> list[Event]:
+    """The events of both flights, in the order of time."""
     golden, new = pair.golden, pair.new
 
     def counts(event: tuple[float, int, str]) -> bool:
@@ -64,7 +64,7 @@ def compare(pair: Pair, tolerance: Tolerance) -> list[Happening]:
     found = _matched("items", golden.items, new.items, lambda e: e[1], lambda e: f"item {e[1]}")
     found += _matched("modes", golden.modes, new.modes, lambda e: e[1], lambda e: f"mode {e[1]}")
     found += _matched("texts", texts[0], texts[1], text, lambda e: f"{e[2]!r}")
-    return sorted(found, key=lambda happening: happening.time)
+    return sorted(found, key=lambda event: event.time)
 
 
 def _matched(
@@ -73,15 +73,15 @@ def _matched(
     new: Sequence[Any],
     key: Callable[[Any], Any],
     words: Callable[[Any], str],
-) -> list[Happening]:
-    """The longest common order of both; what is not in it is missing or added."""
+) -> list[Event]:
+    """Events in the longest common subsequence are matched; the others are missing or added."""
     found = []
 
     def note(first: Any, second: Any) -> None:
         event = first if first is not None else second
         seq = event[1] if kind == "items" else -1
         times = [None if one is None else float(one[0]) for one in (first, second)]
-        found.append(Happening(kind, words(event), times[0], times[1], seq))
+        found.append(Event(kind, words(event), times[0], times[1], seq))
 
     matcher = SequenceMatcher(None, [key(event) for event in golden], [key(event) for event in new], autojunk=False)
     for tag, a, b, c, d in matcher.get_opcodes():

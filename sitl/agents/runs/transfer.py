@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Folders that travel between machines which share none: what is in them, what has changed since."""
+"""Contents and changes of folders, for workers on machines that share no file system."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from .files import write_bytes
 Content = dict[str, bytes]
 """Path below the folder -> content."""
 Changes = dict[str, bytes | None]
-"""The same of files that are new or changed; None: it is gone."""
+"""The same for new and changed files; None: the file was deleted."""
 
 
 def read(path: Path) -> Content | bytes:
-    """All files of a folder and of those in it, but for hidden ones; none of a folder that is not there. Of a file its
+    """Contents of a folder, recursively and without hidden files; empty when there is no such folder. Of a file: its
     bytes."""
     return path.read_bytes() if path.is_file() else {name: found.read_bytes() for name, found in _files(path)}
 
 
 def unpack(path: Path, content: Content | bytes) -> None:
-    """Put there what was read elsewhere."""
+    """Write to ``path`` what ``read`` returned elsewhere."""
     if isinstance(content, bytes):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
@@ -34,7 +34,7 @@ def unpack(path: Path, content: Content | bytes) -> None:
 
 
 def write(folder: Path, changes: Mapping[str, bytes | None]) -> None:
-    """Put files in their place, in this order, each whole or not at all.
+    """Write or delete files in this order, each one atomically.
 
     Raises:
         AgentError: one cannot be written.
@@ -49,15 +49,15 @@ def write(folder: Path, changes: Mapping[str, bytes | None]) -> None:
 
 
 class Mirrored:
-    """A folder whose changes are asked for now and then, while nobody writes in it."""
+    """Detects changes in a folder. Call ``changes`` only while nobody writes into it."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._stamps = self._now()
 
     def changes(self) -> Changes:
-        """Since the last call, in the order in which they were written; logs first, which may know more than the
-        model beside them, but not less."""
+        """Changes since the last call, in the order of writing; logs first, because a log may be ahead of its model but
+        never behind."""
         now = self._now()
         gone: Changes = {name: None for name in self._stamps if name not in now}
         changed = [name for name, stamp in now.items() if self._stamps.get(name) != stamp]
@@ -66,7 +66,7 @@ class Mirrored:
         return {**gone, **{name: (self._folder / name).read_bytes() for name in changed}}
 
     def _now(self) -> dict[str, tuple[int, int, int]]:
-        """Of each file: when it was written, which it is, and how long. A replaced file is another one."""
+        """Modification time [ns], inode and size [bytes] of each file; a replaced file has another inode."""
         found = ((name, path.stat()) for name, path in _files(self._folder))
         return {name: (stat.st_mtime_ns, stat.st_ino, stat.st_size) for name, stat in found}
 
@@ -75,19 +75,19 @@ def _files(folder: Path) -> Iterator[tuple[str, Path]]:
     for place, inner, names in os.walk(folder):
         inner[:] = [name for name in inner if not name.startswith(".")]
         for name in names:
-            if not name.startswith("."):  # half written
+            if not name.startswith("."):  # a hidden file is not written completely yet
                 path = Path(place, name)
                 yield path.relative_to(folder).as_posix(), path
 
 
 def paths_of(item: Any) -> list[Path]:
-    """The folders and files that an item of work names: each ``Path`` that it is or has in tuples, lists, mappings and
-    dataclasses, once."""
+    """Folders and files that an item names: each distinct ``Path`` in it, also within tuples, lists, dicts and
+    dataclasses."""
     return list(dict.fromkeys(_paths(item)))
 
 
 def moved(item: Any, places: Mapping[Path, Path]) -> Any:
-    """The same item with other paths in their place."""
+    """A copy of an item in which paths are replaced as ``places`` says."""
     if next(_paths(item), None) is None:
         return item
     if isinstance(item, Path):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sitl.agents.runs import parcels
+from sitl.agents.runs import transfer
 from sitl.agents.runs.files import write_bytes
 
 
@@ -25,34 +25,34 @@ class Trial:
 def test_paths_of_an_item_and_their_places():
     a, b, c = Path("a"), Path("b"), Path("c")
     item = {"pair": Pair(a, 1), "trials": [Trial(b), Trial(a, (c, "c"))]}
-    assert parcels.paths_of(item) == [a, b, c]
+    assert transfer.paths_of(item) == [a, b, c]
     there = {a: Path("/x"), c: Path("/y")}
-    assert parcels.moved(item, there) == {
+    assert transfer.moved(item, there) == {
         "pair": Pair(there[a], 1),
         "trials": [Trial(b), Trial(there[a], (there[c], "c"))],
     }
     text = ("a", 1)
-    assert parcels.paths_of(text) == [] and parcels.moved(text, there) is text
+    assert transfer.paths_of(text) == [] and transfer.moved(text, there) is text
 
 
 def test_what_is_read_can_be_put_elsewhere(tmp_path):
     (tmp_path / "one" / "in").mkdir(parents=True)
     (tmp_path / "one" / "in" / "file").write_bytes(b"\0\1")
     (tmp_path / "one" / ".episodes.csv.123").write_bytes(b"half")
-    content = parcels.read(tmp_path / "one")
+    content = transfer.read(tmp_path / "one")
     assert content == {"in/file": b"\0\1"}
-    parcels.unpack(tmp_path / "two", content)
-    assert parcels.read(tmp_path / "two") == content
-    parcels.unpack(tmp_path / "three", parcels.read(tmp_path / "one" / "in" / "file"))
+    transfer.unpack(tmp_path / "two", content)
+    assert transfer.read(tmp_path / "two") == content
+    transfer.unpack(tmp_path / "three", transfer.read(tmp_path / "one" / "in" / "file"))
     assert (tmp_path / "three").read_bytes() == b"\0\1"
-    parcels.unpack(tmp_path / "four", parcels.read(tmp_path / "nothing"))
+    transfer.unpack(tmp_path / "four", transfer.read(tmp_path / "nothing"))
     assert list((tmp_path / "four").iterdir()) == []
 
 
 def test_changes_are_told_once_and_logs_come_first(tmp_path):
     for name in ("gone", "same", "model.npz", "episodes.csv"):
         (tmp_path / name).write_bytes(b"a")
-    mirrored = parcels.Mirrored(tmp_path)
+    mirrored = transfer.Mirrored(tmp_path)
     assert mirrored.changes() == {}
     (tmp_path / "gone").unlink()
     write_bytes(tmp_path / "model.npz", b"b")  # of the same length, perhaps at the same time: another file
@@ -61,5 +61,5 @@ def test_changes_are_told_once_and_logs_come_first(tmp_path):
     changes = mirrored.changes()
     assert list(changes.items()) == [("gone", None), ("episodes.csv", b"ab"), ("model.npz", b"b")]
     assert mirrored.changes() == {}
-    parcels.write(tmp_path, {"gone": b"back", "same": None})
+    transfer.write(tmp_path, {"gone": b"back", "same": None})
     assert mirrored.changes() == {"same": None, "gone": b"back"}
