@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sitl.kinds import COPTER, ROVER
 
 from benchmarks.digests import __main__ as command
 from benchmarks.digests import logs, tree
 from benchmarks.digests.compare import compare
 from benchmarks.digests.leaves import leaves
 from benchmarks.digests.pilot import KINDS, MODES
-from sitl.kinds import COPTER, ROVER
 from sitl.simulation import Core
 
 FLIGHT = "native/power_on/copter"

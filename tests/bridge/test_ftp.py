@@ -10,7 +10,7 @@ from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pymavlink.mavftp import MAVFTP
 
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 
 HEADER = struct.Struct("<HBBBBBBI")
 OPEN, READ, BURST, LIST, ACK, NAK = 4, 5, 15, 3, 128, 129

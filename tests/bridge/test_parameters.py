@@ -8,7 +8,7 @@ import pytest
 from fakes import Bench, Client
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 
 
 def read(bench: Bench, name: str = "", index: int = -1) -> list[object]:
