@@ -67,7 +67,7 @@ CONTROL = Message(
         Field("ThI", "f", source=A + "modes.pilot.throttle"),
         Field("ABst", "f", source=_boost),
         Field("ThO", "f", source=_MOTORS + "throttle_out"),
-        Field("ThH", "f", source=A + "params.MOT_THST_HOVER"),
+        Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
         Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
         Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
         Field("BAlt", "e", "m", "B", derived.baro_altitude),
@@ -108,7 +108,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
     """Messages that LOG_BITMASK enables; ``simulated``: the record holds the true state."""
     fast = bool(bitmask & bits.ATTITUDE_FAST)
     pids = tuple(
-        common.pid(name, f"{C}rate.{axis}", f"ATC_RAT_{short}_", f"{E}rates[{k}]", bits.COPTER_PID)
+        common.pid(name, f"{C}rate.{axis}", f"ATC.RAT_{short}.", f"{E}rates[{k}]", bits.COPTER_PID)
         for k, (name, axis, short) in enumerate(
             (("PIDR", "roll", "RLL"), ("PIDP", "pitch", "PIT"), ("PIDY", "yaw", "YAW"))
         )

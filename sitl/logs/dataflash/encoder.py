@@ -244,4 +244,4 @@ class LogEncoder:
         return name, float(self._vehicle.v.autopilot.params[name]), self._vehicle.firmware.table[name].default
 
     def _checks(self) -> int:
-        return int(self._vehicle.v.autopilot.params.ARMING_CHECK) & 0xFFFFFFFF
+        return int(self._vehicle.v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF

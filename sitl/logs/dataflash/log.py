@@ -94,10 +94,10 @@ class DataFlash:
 
     def _settings(self) -> None:
         params = self._vehicle.v.autopilot.params
-        self._on = int(params.LOG_BACKEND_TYPE) & 1 != 0 and not self._closed
-        self._disarmed = int(params.LOG_DISARMED)
+        self._on = int(params.LOG.BACKEND_TYPE) & 1 != 0 and not self._closed
+        self._disarmed = int(params.LOG.DISARMED)
         if self._encoder is not None:
-            self._encoder.set_bitmask(int(params.LOG_BITMASK))
+            self._encoder.set_bitmask(int(params.LOG.BITMASK))
 
     @property
     def _now_us(self) -> int:
@@ -157,7 +157,7 @@ class DataFlash:
         since = max(armed_us, self._since_us)
         if self._encoder is None:
             unix_us = self.epoch_us + self._boot_us
-            bitmask = int(self._vehicle.v.autopilot.params.LOG_BITMASK)
+            bitmask = int(self._vehicle.v.autopilot.params.LOG.BITMASK)
             self._file = self._new_file(unix_us + now)
             self._encoder = LogEncoder(self._vehicle, unix_us, bitmask, self._version)
             self._encoder.begin(min(since, now))

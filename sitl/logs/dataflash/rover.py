@@ -188,8 +188,8 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
             bits.CONTROL,
             when=S + "wheel_count",
         ),
-        common.pid("PIDS", _STEERING + "rate", "ATC_STR_RAT_", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
-        common.pid("PIDA", _SPEED + "loop", "ATC_SPEED_", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        common.pid("PIDS", _STEERING + "rate", "ATC.STR_RAT.", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        common.pid("PIDA", _SPEED + "loop", "ATC.SPEED.", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
         *common.FILTER,
         *((common.TRUTH,) if simulated else ()),
     )
