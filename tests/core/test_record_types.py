@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.core.numba_records import numba_type
 from sitl.core.records import Float32, Ints, Record, array, as_dict
 from sitl.vehicle.record import Copter
 
@@ -87,3 +88,8 @@ def test_small_types() -> None:
     assert fleet["a"].tolist() == [0.0, 2.5, 0.0] and fleet["c"].tolist() == [-4, 9, -4]
     with pytest.raises(ValueError, match="one block"):
         Small.of(fleet[::2], 0)
+
+
+def test_records_of_one_name_and_different_fields_are_different_types() -> None:
+    first, second = (type("Twin", (Record,), {"__annotations__": {name: float}}) for name in ("a", "b"))
+    assert numba_type(first) != numba_type(second)
