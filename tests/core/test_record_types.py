@@ -10,6 +10,7 @@ import pytest
 
 from sitl.core.numba_records import numba_type
 from sitl.core.records import Float32, Ints, Record, array, as_dict
+from sitl.core.vectors import Value
 from sitl.vehicle.record import Copter
 
 
@@ -33,9 +34,11 @@ def compare(ours: Any, theirs: Any) -> int:
         a, b = getattr(ours, name), theirs[name]
         if isinstance(a, Record):
             count += compare(a, b)
+        elif isinstance(a, tuple) and not isinstance(a, Value):
+            count += sum(compare(one, other) for one, other in zip(a, b, strict=True))
         else:
             assert np.array_equal(a, b), name
-            assert isinstance(a, float | int | np.ndarray), name
+            assert isinstance(a, float | int | np.ndarray | Value), name
             count += 1
     return count
 
@@ -59,7 +62,7 @@ def test_writes_go_to_the_fleet() -> None:
     assert theirs["estimate"]["pos"][1] == 5.5
     assert theirs["estimate"]["vel"].tolist() == ours.autopilot.estimate.vel.tolist() == [1.0, 2.0, 3.0]
     assert (theirs["modes"]["number"], fleet[1]["sensors"]["gps_lat"]) == (1, 17)
-    assert ours.autopilot.params["MAV_SYSID"] == theirs["params"]["MAV_SYSID"] == 3.0
+    assert ours.autopilot.params["MAV_SYSID"] == theirs["params"]["MAV"]["SYSID"] == 3.0
     assert fleet[0] == other
 
 
