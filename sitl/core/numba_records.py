@@ -46,6 +46,11 @@ class RecordType(types.Record):
         """NumPy's type."""
         return self._numpy
 
+    @property
+    def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
+        """Its part of a symbol: the name, since Numba's own, a running number, is of another type in another process."""
+        return self.name, ()
+
     def __repr__(self) -> str:
         return self.name
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.core.numba_records import numba_type
 from sitl.core.records import Float32, Ints, Record, array, as_dict
-from sitl.vehicle.record import Copter
+from sitl.vehicle.record import Copter, Rover
 
 
 class Small(Record):
@@ -32,6 +33,8 @@ def compare(ours: Any, theirs: Any) -> int:
         a, b = getattr(ours, name), theirs[name]
         if isinstance(a, Record):
             count += compare(a, b)
+        elif isinstance(a, tuple) and a and isinstance(a[0], Record):
+            count += sum(compare(one, other) for one, other in zip(a, b, strict=True))
         else:
             assert np.array_equal(a, b), name
             assert isinstance(a, float | int | np.ndarray), name
@@ -87,3 +90,9 @@ def test_small_types() -> None:
     assert fleet["a"].tolist() == [0.0, 2.5, 0.0] and fleet["c"].tolist() == [-4, 9, -4]
     with pytest.raises(ValueError, match="one block"):
         Small.of(fleet[::2], 0)
+
+
+def test_symbols_of_compiled_laws_name_their_records():
+    """The copter's and the rover's cores are compiled in separate processes and loaded into one."""
+    for cls in (Copter, Rover, Small):
+        assert numba_type(cls).mangling_args == (f"{cls.__module__}.{cls.__qualname__}", ())
