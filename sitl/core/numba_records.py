@@ -48,7 +48,7 @@ class RecordType(types.Record):
 
     @property
     def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
-        """Its part of a symbol: the name, since Numba's own, a running number, is of another type in another process."""
+        """Its part of a symbol: its name; Numba's own part, a running number, means another type in another process."""
         return self.name, ()
 
     def __repr__(self) -> str:

@@ -61,7 +61,7 @@ def test_writes_go_to_the_fleet() -> None:
     assert theirs["estimate"]["pos"][1] == 5.5
     assert theirs["estimate"]["vel"].tolist() == ours.autopilot.estimate.vel.tolist() == [1.0, 2.0, 3.0]
     assert (theirs["modes"]["number"], fleet[1]["sensors"]["gps_lat"]) == (1, 17)
-    assert ours.autopilot.params["MAV_SYSID"] == theirs["params"]["MAV_SYSID"] == 3.0
+    assert ours.autopilot.params["MAV_SYSID"] == theirs["params"]["MAV"]["SYSID"] == 3.0
     assert fleet[0] == other
 
 
