@@ -48,6 +48,11 @@ class RecordType(types.Record):
         """NumPy's type."""
         return self._numpy
 
+    @property
+    def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
+        """Its part of a symbol: its name; Numba's own part, a running number, means another type in another process."""
+        return self.name, ()
+
     def __repr__(self) -> str:
         return self.name
 

@@ -11,7 +11,7 @@ import pytest
 from sitl.core.numba_records import numba_type
 from sitl.core.records import Float32, Ints, Record, array, as_dict
 from sitl.core.vectors import Value
-from sitl.vehicle.record import Copter
+from sitl.vehicle.record import Copter, Rover
 
 
 class Small(Record):
@@ -96,3 +96,9 @@ def test_small_types() -> None:
 def test_records_of_one_name_and_different_fields_are_different_types() -> None:
     first, second = (type("Twin", (Record,), {"__annotations__": {name: float}}) for name in ("a", "b"))
     assert numba_type(first) != numba_type(second)
+
+
+def test_symbols_of_compiled_laws_name_their_records():
+    """The copter's and the rover's cores are compiled in separate processes and loaded into one."""
+    for cls in (Copter, Rover, Small):
+        assert numba_type(cls).mangling_args == (numba_type(cls).name, ())
