@@ -1,0 +1,338 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Ways to have a vehicle at the other end of MAVLink's bytes, and to let its time go by."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..bridge.links.inprocess import InProcessLink
+from ..bridge.services.grants import GRANT, RESEED
+from .byte_socket import ByteSocket
+from .commands import arguments, command_number
+from .endpoint import Endpoint
+from .errors import LinkLostError
+from .inbox import Inbox
+
+if TYPE_CHECKING:
+    from ..simulation import Simulation
+
+ACCEPTED = 0
+"""MAV_RESULT"""
+TRIES = 4
+"""A command that is not answered is sent so many times."""
+_REPEAT_S = 0.5
+"""Wall time after which a datagram that is not answered is taken for lost."""
+
+
+class Connection:
+    """Bytes to and from one vehicle, and its clock. Time goes by only in ``run`` and ``pause``.
+
+    Args:
+        endpoint: encodes what is sent.
+        inbox: gets what comes back.
+    """
+
+    is_exact = True
+    """Whether its clock goes exactly as far as it is told to."""
+    simulation: Simulation | None = None
+    """The vehicle itself, when it is in this process."""
+
+    def __init__(self, endpoint: Endpoint, inbox: Inbox | None = None) -> None:
+        self.endpoint = endpoint
+        self.inbox: Any = inbox if inbox is not None else Inbox()
+
+    @property
+    def name(self) -> str:
+        """Of the connection, for messages."""
+        raise NotImplementedError
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since the start of the vehicle; reboots do not set it back [us]."""
+        return 1000 * int(self.inbox.time_ms)
+
+    @property
+    def boots(self) -> int:
+        """Differs before and after a reboot."""
+        return int(self.inbox.boots)
+
+    def run(self, us: int) -> None:
+        """The vehicle receives what was sent and goes on by a simulated time [us]; all that it sends is received."""
+        raise NotImplementedError
+
+    def pause(self, us: int) -> None:
+        """The same for a vehicle whose clock may not be known yet."""
+        self.run(us)
+
+    def request(
+        self,
+        number: int,
+        params: Sequence[float] = (),
+        wait: Callable[[Callable[[], bool]], bool] | None = None,
+        tries: int = TRIES,
+    ) -> int | None:
+        """Send a COMMAND_LONG until it is answered.
+
+        Args:
+            number: MAV_CMD.
+            params: up to seven.
+            wait: lets time go by until what it is given holds; returns whether it does. None: ``wait_answer``.
+            tries: so many times it is sent.
+
+        Returns:
+            The MAV_RESULT; None when there is no answer.
+        """
+        acks, wait = self.inbox.acks, wait or self.wait_answer
+        acks.pop(number, None)
+        for attempt in range(tries):
+            self.endpoint.command(number, *params, target=self.inbox.system or 1, confirmation=attempt)
+            if wait(lambda: number in acks):
+                return int(acks[number].result)
+        return None
+
+    def command(self, name: str, *params: Any, **named: Any) -> int:
+        """Send a command of this name (``commands``) until it is answered; returns the MAV_RESULT.
+
+        Raises:
+            LinkLostError: no answer.
+            UnknownNameError: no such command, or no such parameter of it.
+        """
+        number = command_number(name)
+        result = self.request(number, arguments(number, params, named))
+        if result is None:
+            raise LinkLostError(f"connection {self.name}: the vehicle does not answer {name}")
+        return result
+
+    def wait_answer(self, done: Callable[[], bool]) -> bool:
+        """Let as little time go by as an answer takes; whether it is there."""
+        self.run(0)
+        return done()
+
+    def close(self) -> None:
+        """Let go of what is open."""
+
+
+class InProcess(Connection):
+    """A simulation in this process; bytes pass without a socket.
+
+    Args:
+        simulation: the vehicle.
+        inbox: gets what comes back.
+        link: another than a new one, for example one that loses frames.
+        advance: lets simulated time pass until a time [us]; None: ``simulation.advance_to``.
+        system, component: MAVLink ids of the client.
+    """
+
+    name = "inprocess"
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        inbox: Inbox | None = None,
+        *,
+        link: InProcessLink | None = None,
+        advance: Callable[[int], object] | None = None,
+        system: int = 255,
+        component: int = 190,
+    ) -> None:
+        super().__init__(Endpoint(link, system, component), inbox)
+        self.simulation: Simulation = simulation
+        self._advance_to = advance or simulation.advance_to
+        simulation.bridge.add_link(self.endpoint.link)
+        self.inbox.system = simulation.bridge.system
+
+    @property
+    def time_us(self) -> int:
+        return self.simulation.time_us
+
+    @property
+    def boots(self) -> int:
+        return self.simulation.before_boot_us
+
+    def run(self, us: int) -> None:
+        simulation = self.simulation
+        goal = simulation.time_us + us
+        self._advance_to(goal)
+        while simulation.time_us < goal:  # one that waits for the wall clock may be interrupted
+            self._advance_to(goal)
+        self.receive()
+
+    def receive(self) -> None:
+        """Take in what the vehicle has sent, without time passing."""
+        data = self.endpoint.link.receive()
+        if data:
+            self.inbox.feed(data)
+
+    def close(self) -> None:
+        self.simulation.close()
+
+
+class Remote(Connection):
+    """A vehicle at the other end of a socket.
+
+    Args:
+        stream: the socket.
+        inbox: gets what comes back.
+        patience: wall time [s] without a message after which it is lost.
+    """
+
+    def __init__(
+        self, stream: ByteSocket, inbox: Inbox | None, patience: float, system: int = 255, component: int = 190
+    ) -> None:
+        super().__init__(Endpoint(stream, system, component), inbox)
+        self.stream = stream
+        self.patience = patience
+
+    @property
+    def name(self) -> str:
+        return self.stream.name
+
+    def exchange(self, done: Callable[[], bool], repeat: bool = True, within: float | None = None) -> None:
+        """Send what is kept and listen until ``done()``.
+
+        Args:
+            done: looked at after all that the vehicle sends.
+            repeat: send it again after half a second.
+            within: wall time for it all [s], whatever else the vehicle sends; None: as long as its time goes on.
+
+        Raises:
+            LinkLostError: not done in time.
+        """
+        data = self.stream.flush()
+        began = sent = last = time.monotonic()
+        while True:
+            received = self.stream.receive()
+            now = time.monotonic()
+            if received:
+                count = self.inbox.count
+                self.inbox.feed(received)
+                if self.inbox.count != count:
+                    last = now
+            if done():
+                return
+            since = last if within is None else began
+            if now - since >= (self.patience if within is None else within):
+                texts = self.inbox.last_texts[-4:]
+                said = f"; its last texts: {'; '.join(texts)}" if texts else ""
+                raise LinkLostError(f"connection {self.name} is lost: no answer for {now - since:.1f} s{said}")
+            if repeat and now - max(sent, since) >= _REPEAT_S:
+                self.stream.write(data)
+                sent = now
+            self.stream.wait(_REPEAT_S)
+
+    def close(self) -> None:
+        self.stream.close()
+
+
+class Lockstep(Remote):
+    """One that waits for grants (``sitl run --lockstep``): the same bytes at the same simulated times as in process.
+
+    Args:
+        time_ms: its simulated time since the start [ms].
+    """
+
+    def __init__(
+        self, stream: ByteSocket, inbox: Inbox | None, patience: float, time_ms: int, system: int = 255,
+        component: int = 190,
+    ) -> None:  # fmt: skip
+        super().__init__(stream, inbox, patience, system, component)
+        self.time_ms = time_ms
+
+    @property
+    def time_us(self) -> int:
+        return 1000 * self.time_ms
+
+    def run(self, us: int) -> None:
+        goal = self.time_ms + us // 1000
+        self._send(GRANT, goal)
+        self.exchange(lambda: self._reached(goal))
+
+    def _reached(self, goal: int) -> bool:
+        ack = self.inbox.acks.get(GRANT)
+        if ack is None or ack.result != ACCEPTED or ack.result_param2 < goal:
+            return False
+        self.time_ms = ack.result_param2
+        return True
+
+    def reseed(self, seed: int) -> None:
+        """Another seed for the noise of the vehicle's sensors."""
+        self._send(RESEED, seed - (1 << 32) if seed >= 1 << 31 else seed)
+        self.run(0)
+
+    def _send(self, number: int, x: int) -> None:
+        self.endpoint.send("COMMAND_INT", target_system=self.inbox.system, target_component=1, command=number, x=x)
+
+
+class RealTime(Remote):
+    """One that goes by its own clock; ``run`` ends with the first message that is late enough."""
+
+    is_exact = False
+
+    def run(self, us: int) -> None:
+        if us == 0:
+            self.pause(0)
+            return
+        goal = self.inbox.time_ms + us // 1000 - 1
+        self.exchange(lambda: self.inbox.time_ms >= goal, repeat=False, within=self.patience + 1e-6 * us)
+
+    def pause(self, us: int) -> None:
+        self.stream.flush()
+        end = time.monotonic() + 1e-6 * us
+        while True:
+            left = end - time.monotonic()
+            if self.stream.wait(max(left, 0.0)):
+                self.inbox.feed(self.stream.receive())
+            elif left <= 0.0:
+                return
+
+    def wait_answer(self, done: Callable[[], bool]) -> bool:
+        self.exchange(done, within=self.patience)
+        return True
+
+
+def connect(
+    text: str,
+    inbox: Inbox | None = None,
+    patience: float = 10.0,
+    *,
+    system: int = 255,
+    component: int = 190,
+    warn: Callable[[str], object] = warnings.warn,
+) -> Lockstep | RealTime:
+    """Find the vehicle, and whether its time can be held; one whose cannot is used in real time, with a warning.
+
+    Args:
+        text: a form of ``ByteSocket``.
+        inbox: gets what comes back.
+        patience: wall time [s] without a message after which the vehicle is lost.
+        system, component: MAVLink ids of the client.
+        warn: gets the warning.
+
+    Raises:
+        OptionError: no such form of connection.
+        LinkLostError: nobody there.
+    """
+    stream = ByteSocket(text)
+    probe = Remote(stream, Inbox(), patience, system, component)
+    acks = probe.inbox.acks
+    try:
+        if text.startswith(("udp:", "udpin:")):
+            probe.exchange(lambda: probe.inbox.system != 0, within=patience)
+        probe.endpoint.send("COMMAND_INT", target_component=1, command=GRANT, x=0)
+        probe.exchange(lambda: GRANT in acks, within=patience)
+        if probe.inbox.system == 0 and acks[GRANT].result != ACCEPTED:
+            probe.exchange(lambda: probe.inbox.system != 0, within=patience)
+    except LinkLostError:
+        stream.close()
+        raise LinkLostError(f"connection {text}: no vehicle answers within {patience:g} s") from None
+    found: Lockstep | RealTime
+    if acks[GRANT].result == ACCEPTED:
+        found = Lockstep(stream, inbox, patience, acks[GRANT].result_param2, system, component)
+    else:
+        warn(f"connection {text}: the vehicle's clock cannot be held (no sitl run --lockstep); real time")
+        found = RealTime(stream, inbox, patience, system, component)
+    found.inbox.system = probe.inbox.system or 1
+    return found
