@@ -15,11 +15,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from missions.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
-from sitl.kinds import KINDS
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, load_core
+from sitl.vehicle.kinds import KINDS
 
 from .scenes import SPEED, begin, go_on
 
@@ -113,7 +113,7 @@ def snapshots(pilot: Pilot, repeats: int) -> None:
 
 def compile_times(kind: str) -> None:
     """The whole core from nothing, and a warm start, in a cache folder of their own."""
-    code = f"from sitl import kinds, simulation; simulation.load_core(kinds.KINDS[{kind!r}])"
+    code = f"from sitl.vehicle import core_entry, kinds; core_entry.load_core(kinds.KINDS[{kind!r}])"
     with tempfile.TemporaryDirectory() as folder:
         env = {**os.environ, "SITL_CACHE_DIR": folder}
         for name in ("compile the whole core", "warm start to a loaded core"):

@@ -17,7 +17,7 @@ from functools import partial
 import gymnasium as gym
 import numpy as np
 
-import envs
+from sitl import envs
 
 CARTPOLE = "CartPole-v1"
 VECTORS = (16, 256, 1024)

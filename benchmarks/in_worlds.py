@@ -12,9 +12,9 @@ import statistics
 import time
 from collections.abc import Callable
 
-from missions.pilot import TAKEOFF, Pilot
-from sitl.kinds import KINDS
+from sitl.missions.pilot import TAKEOFF, Pilot
 from sitl.simulation import Core, Simulation, load_core
+from sitl.vehicle.kinds import KINDS
 
 VEHICLES = {"copter": ("erle_copter", "office_erlecopter"), "rover": ("erle_rover", "maze_erlerover")}
 SECONDS = 40.0

@@ -18,9 +18,9 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 
-from missions.engines import FLIGHTS
-from missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.core.extras import MissingExtra
+from sitl.missions.engines import FLIGHTS
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import BACKENDS
 from sitl.simulation import Simulation

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation
 
 Array = np.ndarray[Any, Any]

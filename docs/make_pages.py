@@ -5,26 +5,26 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from missions import compare, engines
-from missions.figures import table
 from sitl.autopilot.params import docs
 from sitl.bridge import docs as mavlink
-from sitl.kinds import KINDS
+from sitl.missions import compare, engines
+from sitl.missions.figures import table
 from sitl.physics.engines import BACKENDS
 from sitl.simulation import ESTIMATORS
+from sitl.vehicle.kinds import KINDS
 
 HERE = Path(__file__).parent
 
 COMPARISON = """# Beside a real ArduPilot
 
-Made by `python docs/make_pages.py` (the tables alone: `python -m missions.compare`).
+Made by `python docs/make_pages.py` (the tables alone: `python -m sitl.missions.compare`).
 
 A real ArduPilot SITL (4.7-dev of July 2025, unmodified, default frames and SITL parameters, no wind) was recorded with
 a copter flying two scripts, a GUIDED one (take-off 10 m, position 20 m north, velocity 3 m/s east for 10 s, zero
 velocity, three yaw commands, RTL) and an AUTO mission (take-off 10 m, 30 m square, land), and with a rover driving one
 (2 m/s north for 10 s in GUIDED, silence, positions 20 m east and back, a 20 m square in AUTO, 2 m/s again, HOLD, RTL).
-The columns are in `missions/reference/`. Here the same commands are sent at the same times, as MAVLink bytes, to this
-simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both sides are the autopilot's own estimate
+The columns are in `sitl/missions/reference/`. Here the same commands are sent at the same times, as MAVLink bytes, to
+this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both sides are the autopilot's own estimate
 (LOCAL_POSITION_NED, ATTITUDE), seed 0.
 
 ## Copter, with the Kalman filter

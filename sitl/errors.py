@@ -5,15 +5,15 @@ from __future__ import annotations
 
 from .autopilot.params.files import ParameterError
 from .bridge.links.address import LinkAddressError
-from .core.compile import BuildError
+from .core.code_cache import BuildError
 from .core.extras import MissingExtra
 from .foreign.process import AutopilotEndedError
 from .logs.tlog import LogError
 from .option_error import OptionError, VehicleError
-from .pacing import SpeedupError
 from .physics.engine import EngineError
 from .plants.plant import PhysicsLostError
 from .recording.error import RecordingError
+from .run.pacing import SpeedupError
 from .vehicles.airframe import AirframeError
 from .warp import CannotBuild
 from .worlds import WorldError

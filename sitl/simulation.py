@@ -12,18 +12,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from . import sim_parameters, vehicles
+from . import vehicles
 from .autopilot import boot
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
-from .bridge.record_reader import RecordReader
 from .bridge.services.statustext import StatusTextService
 from .core import records
 from .core.compile import Progress
-from .core_entry import Core, load_core
-from .kinds import KINDS
+from .core.record_reader import RecordReader
 from .option_error import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
@@ -31,8 +29,11 @@ from .physics.native.power_on import DEFAULT_HOME, Home
 from .plants.choose import is_remote, remote
 from .plants.local import LocalPlant
 from .plants.plant import Craft, PhysicsLostError, Plant
-from .surroundings import StartPose
-from .vehicle import TICK_US
+from .plants.surroundings import StartPose
+from .vehicle import sim_parameters
+from .vehicle.core_entry import Core, load_core
+from .vehicle.kinds import KINDS
+from .vehicle.record import TICK_US
 from .vehicles import Airframe, AirframeError
 from .worlds import World
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from sitl.kinds import KINDS
 from sitl.simulation import Core, load_core
+from sitl.vehicle.kinds import KINDS
 
 ROOT = Path(__file__).parents[1]
 

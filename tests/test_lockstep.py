@@ -7,7 +7,7 @@ import pytest
 
 from sitl.bridge.client import Client
 from sitl.bridge.services.grants import GRANT, RESEED
-from sitl.lockstep import SLICE_US, serve_lockstep
+from sitl.run.lockstep import SLICE_US, serve_lockstep
 from sitl.simulation import Core, Simulation
 
 ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3

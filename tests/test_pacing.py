@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.pacing import Pacing, SpeedupError, parse_speedup
+from sitl.run.pacing import Pacing, SpeedupError, parse_speedup
 
 
 class Clock:

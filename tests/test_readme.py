@@ -11,8 +11,8 @@ import pytest
 from sitl.autopilot.params import docs
 from sitl.cli import parser
 from sitl.core import compile as compiler
-from sitl.kinds import KINDS
 from sitl.simulation import Core
+from sitl.vehicle.kinds import KINDS
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
@@ -65,5 +65,5 @@ def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> N
         "autopilot.estimation.update.update",
         f"autopilot.{name}.modes.update.update",
         f"autopilot.{name}.control.update.update",
-        f"advance.advance_{name}",
+        f"vehicle.advance.advance_{name}",
     ]

@@ -10,7 +10,7 @@ import pytest
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.logs.tlog import LogError, TlogWriter, read_tlog
-from sitl.runner import ClientFrames, new_file, open_log
+from sitl.run.runner import ClientFrames, new_file, open_log
 from sitl.simulation import Core, Simulation
 
 

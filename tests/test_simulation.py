@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl import vehicles
-from sitl.advance import advance_copter
 from sitl.core import records
+from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
-from sitl.vehicle import TICK_US
+from sitl.vehicle.advance import advance_copter
+from sitl.vehicle.record import TICK_US
 from sitl.vehicles import AirframeError
 
 

@@ -50,7 +50,7 @@ SENSORS_DTYPE = record(
     # WHEEL_DISTANCE, of a vehicle with encoders
     ("wheel_count", "i8"),  # samples so far
     ("wheel_distance", "f8", 2),  # rolled by the left and right driven wheel since power-on, forward positive [m]
-    # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.lidar)
+    # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.plants.lidar)
     ("lidar_count", "i8"),  # scans so far
     ("lidar_time_us", "i8"),  # of the last one
     ("rangefinder_count", "i8"),  # readings so far

@@ -10,6 +10,7 @@ import struct
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot
 from .channel import COMPONENT, Channel, ChannelState
 from .dialect import MessageType, message
@@ -17,7 +18,6 @@ from .frame import Frame
 from .links.link import Link
 from .places import Places
 from .profile import load
-from .record_reader import RecordReader
 from .services import ALL_SERVICES
 from .services.events import EventService
 from .services.grants import Grants
@@ -75,7 +75,7 @@ class Bridge:
         self.logs: LogStore | None = None
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
-        """Set by who lets clients push the clock (``sitl.lockstep``)."""
+        """Set by who lets clients push the clock (``sitl.run.lockstep``)."""
         self.places = Places(self.reader)
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}

@@ -86,7 +86,7 @@ class _Nobody:
 
     def __init__(self, name: str) -> None:
         self.firmware = _firmware(name)
-        self.fleet = np.zeros(1, getattr(importlib.import_module("sitl.vehicle"), f"{name.upper()}_DTYPE"))
+        self.fleet = np.zeros(1, getattr(importlib.import_module("sitl.vehicle.record"), f"{name.upper()}_DTYPE"))
         self.v = view(self.fleet, 0)
 
 

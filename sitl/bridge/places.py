@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 
 from ..core.geodesy import offset_ne
+from ..core.record_reader import RecordReader
 from .autopilot_api import Vector
-from .record_reader import RecordReader
 from .services.command import FRAMES_AMSL
 
 _ORIGIN, _HOME = "autopilot.estimate.origin_", "autopilot.home."

@@ -15,7 +15,7 @@ class Vehicle(Protocol):
     """One simulated vehicle."""
 
     fleet: np.ndarray[Any, Any]
-    """Array of records (``sitl.vehicle``); its memory stays in place for the vehicle's life."""
+    """Array of records (``sitl.vehicle.record``); its memory stays in place for the vehicle's life."""
     index: int
     v: Any
     """Record view of ``fleet[index]`` with attribute access."""

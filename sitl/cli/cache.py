@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 
+from ..core import code_cache
 from ..core import compile as compiler
 
 
@@ -17,17 +18,17 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def cache(options: argparse.Namespace) -> int:
     """Show where the compiled core is, delete it, or build what is missing."""
-    from ..kinds import KINDS
+    from ..vehicle.kinds import KINDS
     from .progress import CompileProgress
 
     if options.action == "clear":
-        print(f"deleted {compiler.clear_cache()} compiled units from {compiler.cache_folder()}")
+        print(f"deleted {code_cache.clear_cache()} compiled units from {code_cache.cache_folder()}")
     elif options.action == "build":
         with CompileProgress() as progress:
             took = sum(compiler.build(kind.advance, kind.record_path, progress) for kind in KINDS.values())
         print(f"built in {took:.1f} s")
     else:
-        print(compiler.cache_folder())
+        print(code_cache.cache_folder())
         for kind in KINDS.values():
             absent = compiler.missing(kind.advance, kind.record_path)
             for unit in compiler.reached(kind.advance):

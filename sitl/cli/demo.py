@@ -12,10 +12,10 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from .. import runner
 from ..core.extras import MissingExtra
 from ..logs import flight as flights
 from ..logs import plot
+from ..run import runner
 from ..simulation import OptionError, Simulation
 from . import execute, recordings
 from .options import VEHICLES, add_vehicle_options, build_simulation, open_folder

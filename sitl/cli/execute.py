@@ -11,8 +11,8 @@ import signal
 import subprocess
 from collections.abc import Callable, Iterator
 
-from .. import runner
-from ..pacing import Pacing, parse_speedup
+from ..run import runner
+from ..run.pacing import Pacing, parse_speedup
 from ..simulation import OptionError, Simulation
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime

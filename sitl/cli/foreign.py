@@ -10,7 +10,7 @@ import sys
 import time
 from pathlib import Path
 
-from .. import runner, vehicles
+from .. import vehicles
 from ..autopilot.params import files
 from ..bridge.bridge import EPOCH_US
 from ..bridge.links.address import open_link
@@ -20,10 +20,11 @@ from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
 from ..foreign.session import ArduPilotSession, Px4Session, Session
 from ..logs.tlog import TlogWriter
 from ..option_error import OptionError
-from ..pacing import parse_speedup
 from ..physics.engines import BACKENDS
 from ..plants.alone import stand_alone
 from ..plants.local import LocalPlant
+from ..run import runner
+from ..run.pacing import parse_speedup
 from ..simulation import DEFAULT_HOME
 from .options import VEHICLES, check_kind, open_folder
 from .progress import CompileProgress

@@ -12,8 +12,8 @@ from .. import vehicles
 from ..autopilot.params import files
 from ..physics.engines import NATIVE
 from ..plants.choose import FORMS
+from ..plants.surroundings import StartPose
 from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation, checked_home
-from ..surroundings import StartPose
 from .progress import CompileProgress
 
 VEHICLES = {"copter": "erle_copter", "rover": "erle_rover"}

@@ -8,7 +8,7 @@ import argparse
 from .. import vehicles
 from ..autopilot.params import docs, files
 from ..core.records import record
-from ..kinds import KINDS
+from ..vehicle.kinds import KINDS
 from .options import check_kind
 
 

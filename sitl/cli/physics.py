@@ -20,7 +20,7 @@ from .progress import CompileProgress
 Serve = Callable[[LocalPlant, str, int, Callable[[str], None], Callable[[], bool]], None]
 """``serve(plant, address, instance, say, running)``: listens at the address until ``running()`` is false."""
 
-LISTENERS = {"tcp": "sitl.physics_server", "json": "sitl.foreign.json_server"}
+LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_server"}
 """Kind of ``--listen`` -> module that has ``serve``."""
 
 

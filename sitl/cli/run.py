@@ -8,12 +8,12 @@ import signal
 from functools import partial
 from pathlib import Path
 
-from .. import runner
 from ..bridge.links.address import open_link
 from ..bridge.links.link import Link
 from ..foreign.choice import choose
-from ..lockstep import serve_lockstep
-from ..pacing import Pacing, parse_speedup
+from ..run import runner
+from ..run.lockstep import serve_lockstep
+from ..run.pacing import Pacing, parse_speedup
 from ..simulation import Simulation
 from . import foreign, recordings
 from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Builds, caches and loads the compiled core.
+"""Builds and loads the units of the compiled core.
 
 Each unit is compiled by Numba into a folder named after its fingerprint (``fingerprint.py``), so a stale unit cannot be
 loaded: its folder would have another name. Missing units are built by worker processes side by side. A warm start finds
@@ -12,27 +12,24 @@ import contextlib
 import importlib
 import os
 import platform
-import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import FunctionType
 from typing import Any
 
 import numpy as np
-import platformdirs
 
+from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
 from .fingerprint import fingerprint, reached
 from .kernels import LAWS, UNITS, Unit, jit_disabled
-from .numba_tuning import law_options, quick
+from .numba_tuning import law_options
 
 Progress = Callable[[str, int, int], None]
 """Called as ``progress(unit name, units done, units to build)``."""
 
-ENTRY = "sitl_unit_entry"
-_KEEP_VERSIONS = 4
 _fingerprints: dict[tuple[str, str], str] = {}
 """(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
 _jitable: set[int] = set()
@@ -41,23 +38,6 @@ _records: dict[Any, str] = {}
 """Numba's record type -> its path."""
 _loaded: dict[tuple[str, str], Any] = {}
 """(Unit name, path of the record type) -> Numba's CFunc."""
-
-
-class BuildError(RuntimeError):
-    """A unit of the core could not be compiled."""
-
-
-def cache_folder() -> Path:
-    """Folder of the compiled units: ``$SITL_CACHE_DIR``, else the user's cache folder."""
-    return Path(os.environ.get("SITL_CACHE_DIR") or platformdirs.user_cache_dir("gym-sitl"))
-
-
-def clear_cache() -> int:
-    """Delete every compiled unit; returns how many were there."""
-    folders = [p for p in cache_folder().glob("*") if (p / "unit.py").exists()]
-    for folder in folders:
-        shutil.rmtree(folder, ignore_errors=True)
-    return len(folders)
 
 
 def toolchain() -> str:
@@ -99,7 +79,7 @@ def unit_folder(unit: Unit, path: str) -> Path:
 
 def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
     """Units of the core of ``entry`` that have no machine code for their present source."""
-    return [u for u in reached(entry) if not (unit_folder(u, path) / "built").exists()]
+    return [u for u in reached(entry) if not is_built(unit_folder(u, path))]
 
 
 def make_jitable() -> None:
@@ -174,26 +154,11 @@ def load_unit(unit: Unit, path: str) -> Any:
     if _records.setdefault(record, path) != path:
         raise BuildError(f"{path} and {_records[record]} are the same record type; one of them will do")
     folder, name = unit_folder(unit, path), symbol(unit, path)
-    folder.mkdir(parents=True, exist_ok=True)
-    source = folder / "unit.py"
-    if not source.exists():
-        temporary = folder / f"unit.{os.getpid()}"
-        temporary.write_text(_wrapper_source(unit))
-        os.utime(temporary, (0, 0))
-        os.replace(temporary, source)
-    module = ModuleType(name)  # in sys.modules, because Numba's cache looks the entry's module up by name
-    sys.modules[name] = module
-    vars(module).update(carray=numba.carray, DTYPE=dtype, body=_body(unit))
-    exec(compile(source.read_text(), str(source), "exec"), vars(module))
     signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
-    try:
-        with quick(ENTRY):
-            function = numba.cfunc(signature, cache=True, error_model="numpy")(vars(module)[ENTRY])
-    finally:
-        numba.config.CACHE_DIR = before
+    names = {"carray": numba.carray, "DTYPE": dtype, "body": _body(unit)}
+    compile_entry = numba.cfunc(signature, cache=True, error_model="numpy")
+    function = load_entry(folder, name, _wrapper_source(unit), names, compile_entry)
     llvmlite.binding.add_symbol(name, function.address)
-    (folder / "built").touch()
     _loaded[unit.name, path] = function
     return function
 
@@ -205,7 +170,7 @@ def build(entry: Callable[..., Any], path: str, progress: Progress | None = None
         BuildError: a unit failed to compile; the message holds Numba's own.
     """
     start = time.monotonic()
-    with _build_lock():
+    with build_lock():
         todo = sorted(missing(entry, path), key=lambda u: -_weight(u))
         jobs = jobs or min(len(todo), os.cpu_count() or 1)
         running: list[tuple[Unit, subprocess.Popen[str]]] = []
@@ -235,7 +200,7 @@ def build(entry: Callable[..., Any], path: str, progress: Progress | None = None
                 process.kill()
                 process.communicate()
         if total:
-            _drop_old_versions()
+            drop_old_versions()
     return time.monotonic() - start
 
 
@@ -254,37 +219,6 @@ def _start_worker(entry: Callable[..., Any], record: str, unit: Unit) -> subproc
     path = os.pathsep.join(p for p in (root, os.environ.get("PYTHONPATH", "")) if p)
     environment = {**os.environ, "PYTHONPATH": path}
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-
-
-@contextlib.contextmanager
-def _build_lock() -> Iterator[None]:
-    """One building process at a time; the others wait and then find the units built."""
-    folder = cache_folder()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        handle = open(folder / "lock", "w")  # noqa: SIM115 (closed by the "with" below)
-    except OSError as error:
-        raise BuildError(f"{folder}: {error.strerror}. Set SITL_CACHE_DIR to a folder that can be written") from None
-    with handle:
-        try:
-            import fcntl
-        except ImportError:  # Windows: two builders repeat work but do not harm each other
-            yield
-            return
-        fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-
-
-def _drop_old_versions() -> None:
-    """Keep the newest few builds of each unit (switching branches back and forth stays warm)."""
-    by_unit: dict[str, list[Path]] = {}
-    for folder in cache_folder().glob("*"):
-        if (folder / "built").exists():
-            by_unit.setdefault(folder.name.rsplit("-", 1)[0], []).append(folder)
-    for folders in by_unit.values():
-        folders.sort(key=lambda f: (f / "built").stat().st_mtime, reverse=True)
-        for folder in folders[_KEEP_VERSIONS:]:
-            shutil.rmtree(folder, ignore_errors=True)
 
 
 def load(entry: Callable[..., Any], path: str, progress: Progress | None = None) -> Any:

@@ -11,9 +11,9 @@ from collections.abc import Callable
 
 from ..bridge.hil.physics_end import PhysicsEnd
 from ..option_error import OptionError
-from ..physics_server import SimulatedPlant
 from ..plants.local import LocalPlant
-from ..vehicle import TICK_US
+from ..plants.physics_server import SimulatedPlant
+from ..vehicle.record import TICK_US
 
 WAIT_S = 0.2
 _READ = 1 << 16

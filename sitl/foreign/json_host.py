@@ -13,7 +13,7 @@ from ..option_error import OptionError
 from ..plants.alone import restart
 from ..plants.json_link import WAIT_S, wait_in_kernel
 from ..plants.local import LocalPlant
-from ..vehicle import TICK_US
+from ..vehicle.record import TICK_US
 from .body import BodyLines
 
 _MOST = 65535

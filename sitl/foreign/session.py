@@ -11,10 +11,10 @@ from typing import Protocol
 
 from ..bridge.hil.numbers import BASE_PORT
 from ..bridge.links.link import Link
-from ..pacing import Pacing
-from ..physics_server import PhysicsServer
 from ..plants.json_link import PORT
 from ..plants.local import LocalPlant
+from ..plants.physics_server import PhysicsServer
+from ..run.pacing import Pacing
 from . import ardupilot, px4
 from .choice import Choice
 from .json_host import JsonHost

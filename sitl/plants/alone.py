@@ -11,17 +11,17 @@ import numpy as np
 from .. import vehicles
 from ..autopilot import boot
 from ..autopilot.params import files
-from ..bridge.record_reader import RecordReader
 from ..core import records
 from ..core.compile import Progress
-from ..kinds import KINDS
+from ..core.record_reader import RecordReader
 from ..physics.engines import NATIVE
 from ..physics.native.power_on import Home
-from ..surroundings import StartPose
+from ..vehicle.kinds import KINDS
 from ..vehicles import Airframe
 from ..worlds import World
 from .local import LocalPlant
 from .plant import Craft
+from .surroundings import StartPose
 
 
 def stand_alone(

@@ -13,10 +13,10 @@ from collections.abc import Callable
 
 from ..bridge.hil.autopilot_end import TAKEN, WAITING, AutopilotEnd
 from ..bridge.hil.numbers import MAV_TYPES
-from ..core_entry import bind_unit
 from ..physics.carried import Carried
 from ..physics.engine import EngineError
-from ..sim_parameters import PREFIX
+from ..vehicle.core_entry import bind_unit
+from ..vehicle.sim_parameters import PREFIX
 from ..vehicles import apply
 from .hil_link import HilLink, parse_address
 from .plant import Craft, PhysicsLostError, Plant

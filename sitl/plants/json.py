@@ -16,16 +16,16 @@ from collections.abc import Callable
 
 from ..bridge.ardupilot_json.autopilot_end import LONGEST_S, AutopilotEnd
 from ..bridge.ardupilot_json.motion import Motion
-from ..bridge.record_reader import locate
 from ..core import rng
+from ..core.record_reader import locate
 from ..core.rotations import quat_multiply, quat_rotate
-from ..core_entry import bind_unit
 from ..physics.carried import Carried, carried
 from ..physics.engine import EngineError
 from ..physics.native.body import GRAVITY
 from ..physics.native.power_on import DEFAULT_HOME, Home
 from ..physics.native.tick import TICK_S
-from ..vehicle import TICK_US
+from ..vehicle.core_entry import bind_unit
+from ..vehicle.record import TICK_US
 from .json_link import WAIT_S, JsonLink, parse_address
 from .plant import Craft, PhysicsLostError, Plant
 

@@ -9,15 +9,15 @@ from pathlib import Path
 
 from ..core import rng
 from ..core.compile import Progress
-from ..core_entry import Core, bind_unit, load_core
-from ..lidar import Rangers
 from ..physics.carried import Carried, carried
 from ..physics.engine import Engine, Laws, Seat
 from ..physics.engines import NATIVE, make
 from ..physics.native.power_on import Home
-from ..surroundings import StartPose, Surroundings, checked_world
+from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..worlds import World
+from .lidar import Rangers
 from .plant import Craft, Plant
+from .surroundings import StartPose, Surroundings, checked_world
 
 
 class LocalPlant(Plant):

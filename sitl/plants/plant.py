@@ -10,9 +10,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..bridge.record_reader import RecordReader
-from ..kinds import Kind
+from ..core.record_reader import RecordReader
 from ..physics.carried import Carried
+from ..vehicle.kinds import Kind
 from ..vehicles import Airframe
 
 NEVER = 1 << 62

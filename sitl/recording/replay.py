@@ -13,10 +13,10 @@ from typing import Any
 from ..bridge.frame import Splitter
 from ..bridge.links.log import FrameWriter
 from ..core.compile import Progress
-from ..core_entry import Core
 from ..logs.dataflash.attach import attach
 from ..plants.choose import is_remote
 from ..simulation import Simulation
+from ..vehicle.core_entry import Core
 from ..vehicles import Airframe, AirframeError
 from ..worlds import World, WorldError
 from . import identity

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..core.array_kernels import kernel
 from ..core.kernels import law
-from .compiled import kernel
 from .geometry import (
     BOTTOM,
     COS,

@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
+from ..core.array_kernels import kernel
 from ..core.kernels import law
-from .compiled import kernel
 from .geometry import Floats
 from .rays import INF
 

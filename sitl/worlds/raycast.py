@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.array_kernels import kernel
 from ..core.kernels import law
 from ..core.rotations import quat_rotate
-from .compiled import kernel
 from .geometry import (
     BOTTOM,
     CELL,

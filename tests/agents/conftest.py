@@ -7,7 +7,7 @@ import argparse
 
 import pytest
 
-import agents.cli
+import sitl.agents.cli
 from sitl import errors
 
 
@@ -18,7 +18,7 @@ def sitl(monkeypatch, tmp_path, capsys):
 
     def run(*words):
         top = argparse.ArgumentParser(prog="sitl")
-        agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+        sitl.agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
         try:
             options = top.parse_args([str(word) for word in words])
             code = options.function(options)

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import envs  # noqa: F401 (registers the environments)
-from agents.deep import checkpoint, training
-from agents.runs.config import RunConfig
-from agents.runs.folder import RunFolder
-from agents.runs.watch import Watch
+import sitl.envs  # noqa: F401 (registers the environments)
+from sitl.agents.deep import checkpoint, training
+from sitl.agents.runs.config import RunConfig
+from sitl.agents.runs.folder import RunFolder
+from sitl.agents.runs.watch import Watch
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 NAVIGATE = "sitl/Navigate-v0"

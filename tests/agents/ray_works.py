@@ -6,8 +6,8 @@ from __future__ import annotations
 import os
 import signal
 
-from agents.runs import keeper
-from agents.runs.training import train_one
+from sitl.agents.runs import keeper
+from sitl.agents.runs.training import train_one
 
 
 def train_eagerly(path, tell, stopped):

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-import envs  # noqa: F401 (registers the environments)
-from agents.runs.config import RunConfig
-from agents.runs.files import read_arrays
-from agents.runs.folder import RunFolder
-from agents.tabular import training
-from agents.tabular.learner import Learner
-from agents.tabular.settings import Settings
-from agents.tabular.table import Table
+import sitl.envs  # noqa: F401 (registers the environments)
+from sitl.agents.runs.config import RunConfig
+from sitl.agents.runs.files import read_arrays
+from sitl.agents.runs.folder import RunFolder
+from sitl.agents.tabular import training
+from sitl.agents.tabular.learner import Learner
+from sitl.agents.tabular.settings import Settings
+from sitl.agents.tabular.table import Table
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 CHECKS = {"check_every": 8, "check_episodes": 3}

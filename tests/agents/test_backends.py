@@ -16,12 +16,12 @@ import pytest
 import ray_works
 from small_runs import CIRCUIT2, new, result
 
-from agents.errors import AgentError
-from agents.runs import local
-from agents.runs.backends import Workers, each
-from agents.runs.folder import RunFolder
-from agents.runs.training import train_all, train_one
-from sitl.core import on_ray as instances
+from sitl.agents.errors import AgentError
+from sitl.agents.runs import local
+from sitl.agents.runs.backends import Workers, each
+from sitl.agents.runs.folder import RunFolder
+from sitl.agents.runs.training import train_all, train_one
+from sitl.core import ray_cluster as instances
 from sitl.core.extras import MissingExtra
 from sitl.option_error import OptionError
 
@@ -150,7 +150,7 @@ def test_folders_go_and_come_back(ray, tmp_path):
 
 @pytest.mark.slow
 def test_workers_with_other_versions_are_refused(ray, monkeypatch):
-    from agents.runs import on_ray as module
+    from sitl.agents.runs import on_ray as module
 
     known = module.libraries()
     monkeypatch.setattr(module, "libraries", lambda: {**known, "gym-sitl": "0.0.0", "torch": "1.0"})

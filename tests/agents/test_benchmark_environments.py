@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 from small_runs import CIRCUIT2, make
 
-from agents import recipes
-from agents.cli import benchmark
-from agents.deep import library
-from agents.errors import AgentError
-from agents.recipes.recipe import Recipe
-from agents.recipes.wanted import check_all, runs_of
-from agents.report.driven import Trails, Whereabouts, place_of, whereabouts
-from agents.report.environments import drive_one, with_range
-from agents.runs.plan import EvaluationPlan
-from agents.runs.training import train_one
+from sitl.agents import recipes
+from sitl.agents.cli import benchmark
+from sitl.agents.deep import library
+from sitl.agents.errors import AgentError
+from sitl.agents.recipes.recipe import Recipe
+from sitl.agents.recipes.wanted import check_all, runs_of
+from sitl.agents.report.driven import Trails, Whereabouts, place_of, whereabouts
+from sitl.agents.report.environments import drive_one, with_range
+from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.training import train_one
 from sitl.core.extras import MissingExtra
 from sitl.worlds import load
 

@@ -11,14 +11,14 @@ pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 
 from deep_runs import CIRCUIT2, new, train, weights
 
-from agents import environments
-from agents.deep import checkpoint, training
-from agents.deep.checks import BEST, JITTER, SEED, Checks
-from agents.deep.settings import settings_of
-from agents.errors import AgentError
-from agents.evaluate import evaluate, moved_starts
-from agents.runs.folder import RunFolder
-from agents.runs.plan import EvaluationPlan
+from sitl.agents import environments
+from sitl.agents.deep import checkpoint, training
+from sitl.agents.deep.checks import BEST, JITTER, SEED, Checks
+from sitl.agents.deep.settings import settings_of
+from sitl.agents.errors import AgentError
+from sitl.agents.evaluate import evaluate, moved_starts
+from sitl.agents.runs.folder import RunFolder
+from sitl.agents.runs.plan import EvaluationPlan
 
 
 def checks_of(run, begun=0, path=None):

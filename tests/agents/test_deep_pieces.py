@@ -14,12 +14,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agents.deep import library, training
-from agents.deep.actions import Actions
-from agents.deep.features import Features, Frames, nearest
-from agents.deep.settings import Dqn, Ppo, Sac
-from agents.deep.tally import Tally
-from agents.errors import AgentError
+from sitl.agents.deep import library, training
+from sitl.agents.deep.actions import Actions
+from sitl.agents.deep.features import Features, Frames, nearest
+from sitl.agents.deep.settings import Dqn, Ppo, Sac
+from sitl.agents.deep.tally import Tally
+from sitl.agents.errors import AgentError
 from sitl.core.extras import MissingExtra
 
 

@@ -11,10 +11,10 @@ pytest.importorskip("stable_baselines3", reason="deep agents need the extra 'rl'
 
 from deep_runs import CIRCUIT2
 
-from agents.deep.actions import Actions
-from agents.deep.features import Features
-from agents.deep.robots import Robots
-from agents.deep.tally import Tally
+from sitl.agents.deep.actions import Actions
+from sitl.agents.deep.features import Features
+from sitl.agents.deep.robots import Robots
+from sitl.agents.deep.tally import Tally
 
 SEEDS = [11, 12, 13]
 

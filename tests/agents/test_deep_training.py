@@ -11,15 +11,15 @@ pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 
 from deep_runs import CIRCUIT2, NAVIGATE, new, train, weights
 
-from agents import algorithms, environments
-from agents.deep import checkpoint, training
-from agents.deep.checks import BEST
-from agents.deep.network import Network
-from agents.errors import AgentError
-from agents.evaluate import evaluate_run
-from agents.runs.folder import RunFolder
-from agents.runs.plan import EvaluationPlan
-from agents.runs.training import is_done
+from sitl.agents import algorithms, environments
+from sitl.agents.deep import checkpoint, training
+from sitl.agents.deep.checks import BEST
+from sitl.agents.deep.network import Network
+from sitl.agents.errors import AgentError
+from sitl.agents.evaluate import evaluate_run
+from sitl.agents.runs.folder import RunFolder
+from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.training import is_done
 
 ALGORITHMS = ("ppo", "dqn", "sac")
 

@@ -12,17 +12,17 @@ import pytest
 from pytest import approx
 from small_runs import make, new
 
-from agents import environments
-from agents.errors import AgentError
-from agents.evaluate import evaluate, evaluate_run, moved_starts
-from agents.laps import CENTRES, LapCounter
-from agents.runs.plan import EvaluationPlan
-from agents.runs.watch import Watch
-from agents.tabular import training
-from agents.tabular.policy import TablePolicy
-from agents.tabular.slots import slot_of
-from agents.tabular.table import Table
-from envs.observations import Digits
+from sitl.agents import environments
+from sitl.agents.errors import AgentError
+from sitl.agents.evaluate import evaluate, evaluate_run, moved_starts
+from sitl.agents.laps import CENTRES, LapCounter
+from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.watch import Watch
+from sitl.agents.tabular import training
+from sitl.agents.tabular.policy import TablePolicy
+from sitl.agents.tabular.slots import slot_of
+from sitl.agents.tabular.table import Table
+from sitl.envs.observations import Digits
 
 CIRCUIT2 = [(0.0, 0.0), (3.9, 0.0), (3.9, -3.8), (0.28, -3.8), (0.28, -7.65), (-3.7, -7.65), (-3.7, 0.0), (0.0, 0.0)]
 """Corners of the middle of its corridors, clockwise [m]."""

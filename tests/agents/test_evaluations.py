@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import pytest
 from small_runs import new
 
-from agents.evaluate import evaluate_run
-from agents.evaluations import Part, evaluate_groups, evaluate_runs, play_part
-from agents.runs import local
-from agents.runs.backends import Workers
-from agents.runs.plan import EvaluationPlan
-from agents.runs.training import train_one
+from sitl.agents.evaluate import evaluate_run
+from sitl.agents.evaluations import Part, evaluate_groups, evaluate_runs, play_part
+from sitl.agents.runs import local
+from sitl.agents.runs.backends import Workers
+from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.training import train_one
 
 ROVER = {"observation": "digits", "action": "discrete", "start": "random"}
 

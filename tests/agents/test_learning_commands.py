@@ -8,8 +8,8 @@ import csv
 import pytest
 from small_runs import CHECKS, CIRCUIT2, result
 
-from agents.report.paper_figures import MEAN_REWARDS
-from agents.runs import folder as folders
+from sitl.agents.report.paper_figures import MEAN_REWARDS
+from sitl.agents.runs import folder as folders
 
 pytest.importorskip("matplotlib")
 SHORT = ["--episodes", "20", "--max-steps", "60", *(w for k, v in CHECKS.items() for w in ("--set", f"{k}={v}"))]

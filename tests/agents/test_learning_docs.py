@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-import agents.cli
-from agents.tabular.settings import Settings
+import sitl.agents.cli
+from sitl.agents.tabular.settings import Settings
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "learning.md").read_text()
@@ -27,7 +27,7 @@ def test_example_runs(capsys):
 @pytest.mark.parametrize(("page", "least"), [("learning", 7), ("mental-rehearsal", 7), ("results", 3)])
 def test_commands_are_understood(page, least):
     top = argparse.ArgumentParser()
-    agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+    sitl.agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
     lines = re.findall(r"^sitl (.*)$|`sitl ([^`]*)`", (DOCS / f"{page}.md").read_text(), re.MULTILINE)
     whole = [line for pair in lines for line in pair if " --" in line]
     for line in whole:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from agents.runs import parcels
-from agents.runs.files import write_bytes
+from sitl.agents.runs import parcels
+from sitl.agents.runs.files import write_bytes
 
 
 class Pair(NamedTuple):

@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 from small_runs import CIRCUIT2, new
 
-from agents import recipes
-from agents.errors import AgentError
-from agents.rehearsal import training
-from agents.rehearsal.change import Change, is_covered
-from agents.rehearsal.plan import Plan
-from agents.rehearsal.rehearse import Rehearsed, Tried, rehearse, trials_of
-from agents.rehearsal.report import write_report
-from agents.rehearsal.share import advantage, share
-from agents.rehearsal.trial import Trial, attempt
-from agents.rehearsal.truth import is_false_alarm, lidar_distance
-from agents.report.group import Group
-from agents.runs import folder as folders
-from agents.runs.plan import EvaluationPlan
-from agents.runs.training import train_one
+from sitl.agents import recipes
+from sitl.agents.errors import AgentError
+from sitl.agents.rehearsal import training
+from sitl.agents.rehearsal.change import Change, is_covered
+from sitl.agents.rehearsal.plan import Plan
+from sitl.agents.rehearsal.rehearse import Rehearsed, Tried, rehearse, trials_of
+from sitl.agents.rehearsal.report import write_report
+from sitl.agents.rehearsal.share import advantage, share
+from sitl.agents.rehearsal.trial import Trial, attempt
+from sitl.agents.rehearsal.truth import is_false_alarm, lidar_distance
+from sitl.agents.report.group import Group
+from sitl.agents.runs import folder as folders
+from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.training import train_one
 
 CHANGES = [
     Change("slow", "vehicle", set={"wheel_speed_max": 0.05}),
@@ -171,7 +171,7 @@ def test_the_command_reports_runs_side_by_side(sitl, group, tmp_path):
 
 def test_where_the_report_goes_is_seen_to_before_anything_is_played(sitl, group, tmp_path, monkeypatch):
     (tmp_path / "plan.toml").write_text(PLAN)
-    monkeypatch.setattr("agents.cli.rehearse.with_bar", lambda *arguments: pytest.fail("it was played"))
+    monkeypatch.setattr("sitl.agents.cli.rehearse.with_bar", lambda *arguments: pytest.fail("it was played"))
     words = ("rehearse", group.runs[0].path, "--plan", "plan.toml", "--out", "plan.toml")
     assert sitl(*words) == (2, "", "plan.toml cannot be made: File exists")
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from small_runs import new
 
-from agents.rehearsal import plan as plans
-from agents.rehearsal.change import GROUPS, Change
-from agents.runs.training import train_one
+from sitl.agents.rehearsal import plan as plans
+from sitl.agents.rehearsal.change import GROUPS, Change
+from sitl.agents.runs.training import train_one
 
 PAGE = (Path(__file__).parents[2] / "docs/mental-rehearsal.md").read_text()
 

@@ -6,14 +6,14 @@ from __future__ import annotations
 import gymnasium as gym
 import pytest
 
-import envs  # noqa: F401 (registers the environments)
-from agents import environments
-from agents.errors import AgentError
-from agents.rehearsal import plan as plans
-from agents.rehearsal.change import Change
-from agents.rehearsal.worlds import altered
-from agents.runs.config import RunConfig
+import sitl.envs  # noqa: F401 (registers the environments)
 from sitl import worlds
+from sitl.agents import environments
+from sitl.agents.errors import AgentError
+from sitl.agents.rehearsal import plan as plans
+from sitl.agents.rehearsal.change import Change
+from sitl.agents.rehearsal.worlds import altered
+from sitl.agents.runs.config import RunConfig
 
 ENVIRONMENTS = {
     "turtlebot": "GazeboCircuit2TurtlebotLIDAR-v0",

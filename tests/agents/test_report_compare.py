@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from written_runs import group, write
 
-from agents.errors import AgentError
-from agents.report.compare import compare
-from agents.report.group import Group
+from sitl.agents.errors import AgentError
+from sitl.agents.report.compare import compare
+from sitl.agents.report.group import Group
 
 pytest.importorskip("matplotlib")
 
@@ -78,7 +78,7 @@ def test_rewards_that_are_no_numbers_are_refused(tmp_path, reward):
 def test_many_groups_have_curves_that_differ(tmp_path):
     from matplotlib.figure import Figure
 
-    from agents.report.curves import draw_means, draw_raw
+    from sitl.agents.report.curves import draw_means, draw_raw
 
     axes = Figure().subplots()
     draw_means(axes, {str(k): np.full((2, 30), float(k)) for k in range(20)}, 10)

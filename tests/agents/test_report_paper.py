@@ -8,12 +8,12 @@ import csv
 import pytest
 from written_runs import group
 
-from agents.report.blocks import BLOCK
-from agents.report.document import Document
-from agents.report.paper import SINGLE_CHANGES, STEP_TIMES, VARIANTS
-from agents.report.paper_figures import MEAN_REWARDS, TITLES
-from agents.report.paper_reasons import reasons
-from agents.report.paper_tables import beside_paper, shortfalls
+from sitl.agents.report.blocks import BLOCK
+from sitl.agents.report.document import Document
+from sitl.agents.report.paper import SINGLE_CHANGES, STEP_TIMES, VARIANTS
+from sitl.agents.report.paper_figures import MEAN_REWARDS, TITLES
+from sitl.agents.report.paper_reasons import reasons
+from sitl.agents.report.paper_tables import beside_paper, shortfalls
 
 
 def runs(path, levels=None, seeds=4, episodes=2 * BLOCK):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from agents.report.blocks import block_means, block_names, moving_mean
-from agents.report.statistics import (
+from sitl.agents.report.blocks import block_means, block_names, moving_mean
+from sitl.agents.report.statistics import (
     bootstrap,
     difference,
     improvement,

@@ -14,19 +14,19 @@ import numpy as np
 import pytest
 from small_runs import config, new, result
 
-from agents import environments
-from agents.errors import AgentError
-from agents.runs import folder as folders
-from agents.runs.episodes import Episode, EpisodeLog
-from agents.runs.files import read_arrays
-from agents.runs.folder import RunFolder
-from agents.runs.training import is_done, train_all, train_one
-from agents.runs.watch import Watch
-from agents.tabular import training
-from agents.tabular.checks import Checks
-from agents.tabular.learner import Learner
-from agents.tabular.settings import Settings
-from agents.tabular.table import Table
+from sitl.agents import environments
+from sitl.agents.errors import AgentError
+from sitl.agents.runs import folder as folders
+from sitl.agents.runs.episodes import Episode, EpisodeLog
+from sitl.agents.runs.files import read_arrays
+from sitl.agents.runs.folder import RunFolder
+from sitl.agents.runs.training import is_done, train_all, train_one
+from sitl.agents.runs.watch import Watch
+from sitl.agents.tabular import training
+from sitl.agents.tabular.checks import Checks
+from sitl.agents.tabular.learner import Learner
+from sitl.agents.tabular.settings import Settings
+from sitl.agents.tabular.table import Table
 
 
 def train(run, episodes=None):
@@ -51,7 +51,7 @@ def test_a_run_is_a_folder_that_says_all(tmp_path):
 
 @pytest.mark.parametrize("algorithm", ["qlearn", "sarsa"])
 def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, algorithm, monkeypatch):
-    monkeypatch.setattr("agents.runs.keeper._TOLD_S", -1.0)  # tells of each episode
+    monkeypatch.setattr("sitl.agents.runs.keeper._TOLD_S", -1.0)  # tells of each episode
     whole, parts = new(tmp_path / "whole", algorithm), new(tmp_path / "parts", algorithm)
     train(whole)
     for episodes in (11, 12, 25, None):
@@ -61,7 +61,7 @@ def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, al
 
 
 def test_a_killed_run_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch):
-    monkeypatch.setattr("agents.runs.keeper._TOLD_S", -1.0)
+    monkeypatch.setattr("sitl.agents.runs.keeper._TOLD_S", -1.0)
     whole, killed = new(tmp_path / "whole"), new(tmp_path / "killed")
     train(whole)
     train(killed, 7)
@@ -130,7 +130,7 @@ def test_an_error_in_a_process_is_raised_here(tmp_path):
         train_all([good.path, bad.path], 2)
 
 
-SLOW = "import sys; from pathlib import Path; from agents.runs.training import train_all; " + (
+SLOW = "import sys; from pathlib import Path; from sitl.agents.runs.training import train_all; " + (
     "print(train_all([Path(p) for p in sys.argv[2:]], int(sys.argv[1])))"
 )
 

@@ -6,11 +6,11 @@ from __future__ import annotations
 import pytest
 from small_runs import learner_for, make
 
-from agents.errors import AgentError
-from agents.runs.files import read_arrays
-from agents.tabular.checks import Checks
-from agents.tabular.outcome import Outcome
-from agents.tabular.settings import Settings
+from sitl.agents.errors import AgentError
+from sitl.agents.runs.files import read_arrays
+from sitl.agents.tabular.checks import Checks
+from sitl.agents.tabular.outcome import Outcome
+from sitl.agents.tabular.settings import Settings
 
 
 def checks_by(check_by, path):

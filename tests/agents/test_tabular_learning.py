@@ -9,13 +9,13 @@ import pytest
 from pytest import approx
 from small_runs import learner_for
 
-from agents.errors import AgentError
-from agents.tabular.exploration import epsilon_in
-from agents.tabular.learner import Learner
-from agents.tabular.loop import learn_episode
-from agents.tabular.settings import Settings
-from agents.tabular.slots import slot_of
-from agents.tabular.table import Table
+from sitl.agents.errors import AgentError
+from sitl.agents.tabular.exploration import epsilon_in
+from sitl.agents.tabular.learner import Learner
+from sitl.agents.tabular.loop import learn_episode
+from sitl.agents.tabular.settings import Settings
+from sitl.agents.tabular.slots import slot_of
+from sitl.agents.tabular.table import Table
 
 GREEDY = {"epsilon": 0.0, "epsilon_floor": 0.0}
 

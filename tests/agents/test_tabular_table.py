@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agents.errors import AgentError
-from agents.tabular.slots import EMPTY, slot_of
-from agents.tabular.table import Table
+from sitl.agents.errors import AgentError
+from sitl.agents.tabular.slots import EMPTY, slot_of
+from sitl.agents.tabular.table import Table
 
 
 def fill(table, keys):

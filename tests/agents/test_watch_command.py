@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from small_runs import new
 
-from agents import showing
-from agents.cli import watch
-from agents.errors import AgentError
-from agents.film import Reel
-from agents.runs.watch import Watch
-from agents.tabular import training
+from sitl.agents import showing
+from sitl.agents.cli import watch
+from sitl.agents.errors import AgentError
+from sitl.agents.film import Reel
+from sitl.agents.runs.watch import Watch
+from sitl.agents.tabular import training
 
 pytest.importorskip("pygame", reason="pictures need the extra 'viz'")
 Image = pytest.importorskip("PIL.Image", reason="pictures need the extra 'viz'")
@@ -153,7 +153,7 @@ def test_a_window_that_nobody_can_see_is_refused(run, monkeypatch):
 
     monkeypatch.setattr(pygame.display, "get_driver", lambda: "offscreen")
     monkeypatch.setattr(pygame.display, "get_init", lambda: True)
-    monkeypatch.setattr("envs.rendering.Renderer.show", lambda renderer: None)
+    monkeypatch.setattr("sitl.envs.rendering.Renderer.show", lambda renderer: None)
     with pytest.raises(AgentError, match=r"no screen for a window; --out FILE\.gif"):
         call(run.path)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from small_runs import config
 
-from agents.report.group import Group
-from agents.runs.episodes import Episode
-from agents.runs.folder import RunFolder
+from sitl.agents.report.group import Group
+from sitl.agents.runs.episodes import Episode
+from sitl.agents.runs.folder import RunFolder
 
 
 def write(path, rewards, seed=0, **fields):

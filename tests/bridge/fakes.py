@@ -20,7 +20,7 @@ from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
 from sitl.core import records, rng
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle import COPTER_DTYPE, ROVER_DTYPE
+from sitl.vehicle.record import COPTER_DTYPE, ROVER_DTYPE
 
 TICK_US = 2500
 HOME = (-353632620, 1491652370, 584.0)

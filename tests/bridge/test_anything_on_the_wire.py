@@ -11,13 +11,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from wire_messages import messages, numbers
 
-from missions.pilot import MISSION_START, SET_MODE, TAKEOFF, Pilot, upload
 from sitl.autopilot.copter.modes.numbers import is_known
 from sitl.autopilot.copter.table import TABLE as PARAMETERS
 from sitl.bridge import dialect
 from sitl.bridge.client import Client
 from sitl.bridge.copter.commands import COMMANDS
 from sitl.core.records import as_dict
+from sitl.missions.pilot import MISSION_START, SET_MODE, TAKEOFF, Pilot, upload
 from sitl.simulation import Core, Simulation, Snapshot
 
 MISSION = [

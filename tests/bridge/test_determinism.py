@@ -8,8 +8,8 @@ import random
 from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.pilot import TAKEOFF, Pilot
 from sitl.bridge.client import Client
+from sitl.missions.pilot import TAKEOFF, Pilot
 from sitl.simulation import Core, Simulation
 
 

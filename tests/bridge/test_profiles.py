@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.profile import NAMES, Profile, load
 from sitl.bridge.telemetry.builder import builders
-from sitl.kinds import KINDS
+from sitl.vehicle.kinds import KINDS
 
 PROFILES = [load(name) for name in NAMES]
 

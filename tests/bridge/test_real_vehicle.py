@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from missions.pilot import MISSION_START, SET_MODE, Pilot, upload
 from sitl.bridge.client import Client
+from sitl.missions.pilot import MISSION_START, SET_MODE, Pilot, upload
 from sitl.simulation import Core, Simulation
 
 MOTOR_TEST, SET_SERVO, SET_RELAY = 209, 183, 181

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fakes import FakeVehicle
 
-from sitl.bridge.record_reader import RecordReader, UnknownFieldError
+from sitl.core.record_reader import RecordReader, UnknownFieldError
 from sitl.core.records import record
 
 

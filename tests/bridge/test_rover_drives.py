@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from missions.pilot import SET_MODE, Pilot, upload
 from sitl.bridge.client import Client
+from sitl.missions.pilot import SET_MODE, Pilot, upload
 from sitl.simulation import Simulation
 
 HOLD, AUTO, RTL, GUIDED = 4, 10, 11, 15

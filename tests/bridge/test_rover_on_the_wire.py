@@ -11,13 +11,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from wire_messages import messages, numbers
 
-from missions.pilot import MISSION_START, SET_MODE, Pilot, upload
 from sitl.autopilot.rover.firmware import FIRMWARE
 from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, RTL, SMART_RTL, is_known
 from sitl.bridge import dialect
 from sitl.bridge.client import Client
 from sitl.bridge.rover.commands import COMMANDS
 from sitl.core.records import as_dict
+from sitl.missions.pilot import MISSION_START, SET_MODE, Pilot, upload
 from sitl.simulation import Simulation, Snapshot
 
 MISSION = [

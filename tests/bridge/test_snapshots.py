@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import pytest
 
-from missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.bridge.client import Client
+from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation
 
 TARGET = {"target_system": 1, "target_component": 1}

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from missions import library
-from missions.comparison.flight import Flight, read
-from missions.files import load
-from missions.fly import fly
-from sitl import runner
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.logs.track import Track
+from sitl.missions import library
+from sitl.missions.comparison.flight import Flight, read
+from sitl.missions.files import load
+from sitl.missions.fly import fly
 from sitl.recording.recorder import Recorder
+from sitl.run import runner
 from sitl.simulation import Simulation
 
 Change = Callable[[tuple[MissionItem, ...]], tuple[MissionItem, ...]]

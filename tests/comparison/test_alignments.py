@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from compared_flights import straight
 
-from missions.comparison.alignment import AlignmentError, match, pair
-from missions.comparison.series import measure
 from sitl.logs.track import Track
+from sitl.missions.comparison.alignment import AlignmentError, match, pair
+from sitl.missions.comparison.series import measure
 
 
 def moved(track: Track, columns: slice, by: tuple[float, ...], since: float = 0.0) -> Track:

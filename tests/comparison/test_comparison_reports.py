@@ -11,10 +11,10 @@ from xml.etree import ElementTree as xml
 import pytest
 from compared_flights import fly_square
 
-from missions.comparison import junit, report
-from missions.comparison.compare import Comparison, compare
-from missions.comparison.flight import read
 from sitl.cli import main
+from sitl.missions.comparison import junit, report
+from sitl.missions.comparison.compare import Comparison, compare
+from sitl.missions.comparison.flight import read
 
 
 @pytest.fixture(scope="module")

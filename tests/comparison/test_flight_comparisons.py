@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from compared_flights import fly_square
 
-from missions.comparison.compare import Comparison, compare, default_tolerance
-from missions.comparison.flight import Flight, of_recording, read
 from sitl.autopilot.mission.item import MissionItem
+from sitl.missions.comparison.compare import Comparison, compare, default_tolerance
+from sitl.missions.comparison.flight import Flight, of_recording, read
 from sitl.recording.entries import Kind
 from sitl.recording.recording import read as read_recording
 

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from missions import library
-from missions.comparison.tolerance import ToleranceError
-from missions.suite.cases import SuiteError, find
-from missions.suite.fly import fly_case
-from missions.suite.result import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN
-from missions.suite.run import run
 from sitl.cli import main
 from sitl.core.extras import MissingExtra
+from sitl.missions import library
+from sitl.missions.comparison.tolerance import ToleranceError
+from sitl.missions.suite.cases import SuiteError, find
+from sitl.missions.suite.fly import fly_case
+from sitl.missions.suite.result import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN
+from sitl.missions.suite.run import run
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from missions.comparison.tolerance import PRESETS, ToleranceError, load
+from sitl.missions.comparison.tolerance import PRESETS, ToleranceError, load
 
 
 @pytest.mark.parametrize("name", PRESETS)

@@ -11,10 +11,10 @@ from compared_flights import straight
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.comparison.flight import read
 from sitl.logs.tlog import LogError
 from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
 from sitl.logs.track_observer import TrackObserver
+from sitl.missions.comparison.flight import read
 from sitl.recording.digests import of_state
 from sitl.simulation import Core, Simulation
 

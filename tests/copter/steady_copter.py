@@ -13,7 +13,7 @@ from sitl.autopilot.copter.control.init import init as init_control
 from sitl.autopilot.copter.modes.init import init as init_modes
 from sitl.autopilot.copter.table import TABLE
 from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle.record import COPTER_DTYPE
 
 READY_US = 60_000_000
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sitl.core.records import RecordView, as_dict, record, view
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle.record import COPTER_DTYPE
 
 
 def filled() -> np.ndarray[Any, Any]:

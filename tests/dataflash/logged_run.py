@@ -9,8 +9,8 @@ from typing import Any
 
 from pymavlink import DFReader
 
-from sitl import runner
 from sitl.bridge.client import Client
+from sitl.run import runner
 from sitl.simulation import Simulation
 
 GUIDED = {"copter": 4, "rover": 15}

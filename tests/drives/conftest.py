@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.kinds import KINDS
 from sitl.simulation import Core, load_core
+from sitl.vehicle.kinds import KINDS
 
 
 @pytest.fixture(scope="session")

@@ -27,7 +27,7 @@ from witness import (
     Item,
 )
 
-from missions.pilot import ARM
+from sitl.missions.pilot import ARM
 
 MASKS = (0xDF8, 0xDC7, 0x9C7, 0x5C7, 0x9FF, 0x5FF, 0xDC0, 0xFFF, 0x1C7)
 """Place; velocity; with yaw, with yaw rate; yaw, yaw rate alone; place and velocity; nothing; both yaws."""

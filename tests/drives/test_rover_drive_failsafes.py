@@ -23,7 +23,7 @@ from rover_driver import (
 )
 from witness import LOITER_UNLIMITED, Item
 
-from missions.pilot import ARM
+from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)

@@ -12,8 +12,8 @@ import pytest
 from rover_driver import AIRFRAMES, CIRCLE, GUIDED, HOLD, LOITER, MANUAL, RTL, SMART_RTL, VELOCITY, Driver
 from witness import WAYPOINT, Item
 
-from sitl.kinds import KINDS
 from sitl.simulation import Core, load_core
+from sitl.vehicle.kinds import KINDS
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 

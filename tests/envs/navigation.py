@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-import envs  # noqa: F401 (registers the environments)
+import sitl.envs  # noqa: F401 (registers the environments)
 
 NAVIGATE = "sitl/Navigate-v0"
 

@@ -16,7 +16,7 @@ OFFICE = [(-9.0, 1.0), (-12.0, -2.0), (-9.0, 2.0), (1.5, 1.0), (1.5, -9.0)]
 
 
 def test_the_rover_gets_through_the_first_corridors_of_the_maze():
-    env = gym.make("envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",
+    env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",
                    setpoint="velocity", max_episode_steps=-1)  # fmt: skip
     env.reset(seed=1)
 
@@ -29,7 +29,7 @@ def test_the_rover_gets_through_the_first_corridors_of_the_maze():
 
 
 def test_the_copter_flies_through_the_office():
-    env = gym.make("envs:sitl/Navigate-v0", robot="erle_copter", world="office_erlecopter", action="continuous",
+    env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_copter", world="office_erlecopter", action="continuous",
                    setpoint="velocity", max_episode_steps=-1)  # fmt: skip
     env.reset(seed=1)
 
@@ -45,7 +45,7 @@ def test_the_copter_flies_through_the_office():
 
 
 def test_the_copter_goes_to_a_place_and_turns_there():
-    env = gym.make("envs:sitl/Navigate-v0", robot="erle_copter", world="office_erlecopter", action="continuous",
+    env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_copter", world="office_erlecopter", action="continuous",
                    setpoint="position")  # fmt: skip
     env.reset(seed=1)
     for _ in range(80):
@@ -54,7 +54,7 @@ def test_the_copter_goes_to_a_place_and_turns_there():
 
 
 def test_the_rover_goes_to_a_place():
-    env = gym.make("envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",
+    env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",
                    setpoint="position")  # fmt: skip
     env.reset(seed=1)
     for _ in range(100):
@@ -64,7 +64,7 @@ def test_the_rover_goes_to_a_place():
 
 
 def test_attitude_set_points_are_followed():
-    env = gym.make("envs:sitl/Navigate-v0", robot="erle_copter", world="office_erlecopter", action="continuous",
+    env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_copter", world="office_erlecopter", action="continuous",
                    setpoint="attitude")  # fmt: skip
     env.reset(seed=1)
     for _ in range(10):
@@ -72,7 +72,7 @@ def test_attitude_set_points_are_followed():
     assert env.unwrapped.robot.simulation(0).v.autopilot.estimate.euler[0] == approx(0.05, abs=0.02)
     assert env.unwrapped.robot.velocity[0, 1] < -0.2
     assert env.unwrapped.robot.velocity[0, 2] > 0.2
-    env = gym.make("envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",
+    env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",
                    setpoint="attitude")  # fmt: skip
     env.reset(seed=1)
     for _ in range(40):

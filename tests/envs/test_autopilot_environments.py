@@ -15,8 +15,8 @@ from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
 from pytest import approx
 
-from envs import EnvOptionError
-from envs.tasks import Task
+from sitl.envs import EnvOptionError
+from sitl.envs.tasks import Task
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 START = {ROVER: [6, 4, 10, 13, 4, 6], COPTER: [5, 4, 9, 7, 10]}

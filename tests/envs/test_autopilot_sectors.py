@@ -7,9 +7,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-import envs  # noqa: F401
-from envs.mavlink.telemetry import SECTORS, Telemetry
+import sitl.envs  # noqa: F401
 from sitl.bridge.telemetry import ranging
+from sitl.envs.mavlink.telemetry import SECTORS, Telemetry
 
 COPTER = "GazeboOfficeErleCopterLIDAR-v0"
 

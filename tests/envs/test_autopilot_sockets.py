@@ -11,11 +11,11 @@ import lockstep_vehicle
 import numpy as np
 import pytest
 
-from envs import EnvOptionError
-from envs.mavlink.connection import connect
-from envs.mavlink.ends import LinkLostError
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
+from sitl.envs import EnvOptionError
+from sitl.envs.mavlink.connection import connect
+from sitl.envs.mavlink.ends import LinkLostError
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 
@@ -78,7 +78,7 @@ class Lossy:
 
 
 def test_lost_datagrams_change_nothing(tmp_path, monkeypatch):
-    monkeypatch.setattr("envs.mavlink.connection._REPEAT_S", 0.05)
+    monkeypatch.setattr("sitl.envs.mavlink.connection._REPEAT_S", 0.05)
     port = lockstep_vehicle.free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):

@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-import envs
 from benchmarks import envs as benchmark
+from sitl import envs
 
 pytest.importorskip("pygame")
 

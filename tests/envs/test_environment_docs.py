@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-import envs
-from envs.observations import OBSERVATIONS
-from envs.tasks import TASKS
+from sitl import envs
+from sitl.envs.observations import OBSERVATIONS
+from sitl.envs.tasks import TASKS
 
 PAGE = (Path(__file__).parents[2] / "docs/environments.md").read_text()
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)

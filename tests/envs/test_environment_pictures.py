@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from envs.tasks import ReachGoal
+from sitl.envs.tasks import ReachGoal
 
 pytest.importorskip("pygame")
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-import envs  # noqa: F401
-from envs.options import EnvOptionError
-from envs.tasks import ReachGoal
+import sitl.envs  # noqa: F401
+from sitl.envs.options import EnvOptionError
+from sitl.envs.tasks import ReachGoal
 
 
 def make(**options):

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from lockstep_vehicle import vehicle
 
-import envs  # noqa: F401 (registers the environments)
-from agents.tabular.compiled_loop import CompiledLoop
-from envs import EnvOptionError
-from envs.latency import Latency
-from envs.robots.turtlebot import Turtlebot
+import sitl.envs  # noqa: F401 (registers the environments)
+from sitl.agents.tabular.compiled_loop import CompiledLoop
+from sitl.envs import EnvOptionError
+from sitl.envs.latency import Latency
+from sitl.envs.robots.turtlebot import Turtlebot
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 ROVER = "GazeboMazeErleRoverLIDAR-v0"

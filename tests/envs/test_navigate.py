@@ -12,13 +12,13 @@ from gymnasium.utils.env_checker import check_env
 from navigation import NAVIGATE, make
 from pytest import approx
 
-from envs import EnvOptionError
-from envs.actions import Discrete
-from envs.observations import Digits
-from envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
-from envs.setpoints import DRIVE
-from envs.tasks import ReachGoal, Task
 from sitl import worlds
+from sitl.envs import EnvOptionError
+from sitl.envs.actions import Discrete
+from sitl.envs.observations import Digits
+from sitl.envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
+from sitl.envs.setpoints import DRIVE
+from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
 
 

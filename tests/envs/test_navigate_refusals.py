@@ -12,15 +12,15 @@ import pytest
 from gymnasium.error import InvalidAction
 from navigation import NAVIGATE, make
 
-from envs import EnvOptionError
-from envs.actions import Continuous, Discrete
-from envs.navigate import Navigate
-from envs.observations import Digits
-from envs.options import COMMON
-from envs.rewards import Nearness
-from envs.setpoints import DRIVE, VELOCITY
-from envs.tasks import ReachGoal, Task
 from sitl import worlds
+from sitl.envs import EnvOptionError
+from sitl.envs.actions import Continuous, Discrete
+from sitl.envs.navigate import Navigate
+from sitl.envs.observations import Digits
+from sitl.envs.options import COMMON
+from sitl.envs.rewards import Nearness
+from sitl.envs.setpoints import DRIVE, VELOCITY
+from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
 
 

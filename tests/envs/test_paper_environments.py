@@ -15,7 +15,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from pytest import approx
 
-import envs
+from sitl import envs
 
 START = {
     "GazeboCircuitTurtlebotLIDAR-v0": [0, 4, 5, 1, 0],
@@ -85,7 +85,7 @@ def test_spelling_of_the_original_code_works():
 
 def test_id_can_name_the_package():
     out = subprocess.run(
-        [sys.executable, "-c", "import gymnasium as g; print(g.make('envs:sitl/Navigate-v0').reset(seed=1)[0].shape)"],
+        [sys.executable, "-c", "import gymnasium as g; print(g.make('sitl.envs:sitl/Navigate-v0').reset()[0].shape)"],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, capture_output=True, text=True,
     )  # fmt: skip
     assert out.stdout == "(20,)\n", out.stderr
@@ -94,10 +94,18 @@ def test_id_can_name_the_package():
 def test_importing_the_package_loads_no_compiler():
     """And nothing of the simulator but the errors that ours are kinds of."""
     heavy = "{'numba', 'pygame', 'pymavlink'} & set(sys.modules)"
-    code = f"import sys, envs; print(sorted({heavy}), sorted(m for m in sys.modules if m.startswith('sitl')))"
+    code = f"import sys, sitl.envs; print(sorted({heavy}), sorted(m for m in sys.modules if m.startswith('sitl')))"
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     out = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
-    assert out.stdout == "[] ['sitl', 'sitl.option_error']\n", out.stderr
+    ours = [
+        "sitl",
+        "sitl.envs",
+        "sitl.envs.mavlink",
+        "sitl.envs.mavlink.ends",
+        "sitl.envs.options",
+        "sitl.option_error",
+    ]
+    assert out.stdout == f"[] {ours}\n", out.stderr
 
 
 def test_episodes_are_truncated_after_1500_steps_and_without_limit_never():

@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-import envs
+from sitl import envs
 
 
 def test_turned_is_the_start_place_with_any_heading():

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from gymnasium.error import InvalidAction, ResetNeeded
 
-from envs import EnvOptionError
-from envs.tasks import ReachGoal
+from sitl.envs import EnvOptionError
+from sitl.envs.tasks import ReachGoal
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 CASES = [

@@ -18,7 +18,7 @@ from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
 from sitl.core.records import view
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle.record import COPTER_DTYPE
 
 DT = 0.0025
 TAKE_OFF = 50.0
@@ -36,7 +36,7 @@ def new() -> np.ndarray:
 
 def updater() -> Any:
     """``f(fleet)``: one tick of the estimator, compiled unless Numba is switched off."""
-    call = compiler.load(update.update, "sitl.vehicle.COPTER_DTYPE")
+    call = compiler.load(update.update, "sitl.vehicle.record.COPTER_DTYPE")
     if call is None:
         return lambda fleet: update.update(fleet.view(np.recarray), 0)
     return lambda fleet: call(fleet.ctypes.data, 1, 0)

@@ -27,7 +27,7 @@ from witness import (
     Witness,
 )
 
-from missions.pilot import TAKEOFF
+from sitl.missions.pilot import TAKEOFF
 from sitl.physics.native import truth
 from sitl.simulation import Core
 

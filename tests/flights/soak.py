@@ -10,7 +10,7 @@ import numpy as np
 from aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
 from by_dice import ByDice
 
-from missions.pilot import ARM, CONDITION_YAW, TAKEOFF
+from sitl.missions.pilot import ARM, CONDITION_YAW, TAKEOFF
 from sitl.simulation import Core
 
 MODES = (STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from aviator import Aviator
 
-from missions.pilot import POSITION_ONLY, VELOCITY_ONLY
+from sitl.missions.pilot import POSITION_ONLY, VELOCITY_ONLY
 from sitl.physics.native import truth
 from sitl.simulation import Core
 

@@ -21,7 +21,7 @@ from aviator import (
     Item,
 )  # fmt: skip
 
-from missions.pilot import ARM
+from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)

@@ -11,7 +11,7 @@ import pytest
 from aviator import AIRFRAMES, GUIDED, LAND, LOITER, Aviator
 from guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
 
-from missions.pilot import TAKEOFF
+from sitl.missions.pilot import TAKEOFF
 from sitl.simulation import Core
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)

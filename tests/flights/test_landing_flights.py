@@ -8,7 +8,7 @@ import pytest
 from aviator import AIRFRAMES, BRAKE, GUIDED, LAND, LOITER, RTL, Aviator, Item
 from aviator import WAYPOINT as WAYPOINT_ITEM
 
-from missions.pilot import ARM, VELOCITY_ONLY
+from sitl.missions.pilot import ARM, VELOCITY_ONLY
 from sitl.simulation import Core
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)

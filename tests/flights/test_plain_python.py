@@ -22,8 +22,8 @@ from aviator import (
     Item,
 )  # fmt: skip
 
-from missions.pilot import VELOCITY_ONLY
 from sitl.core import records
+from sitl.missions.pilot import VELOCITY_ONLY
 from sitl.simulation import Core
 
 TICKS = 60

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from aviator import AIRFRAMES, ALT_HOLD, GUIDED, LOITER, LOW, STABILIZE, Aviator
 
-from missions.pilot import ARM, FlightError
+from sitl.missions.pilot import ARM, FlightError
 from sitl.physics.native import truth
 from sitl.simulation import Core
 

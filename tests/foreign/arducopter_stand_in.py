@@ -18,8 +18,8 @@ from pathlib import Path
 from sitl import vehicles
 from sitl.autopilot.params import files
 from sitl.bridge.links.tcp import TcpServerLink
-from sitl.pacing import Pacing
 from sitl.plants.plant import PhysicsLostError
+from sitl.run.pacing import Pacing
 from sitl.simulation import Simulation
 
 FRAMES = {"arducopter": "erle_copter", "ardurover": "erle_rover"}

@@ -11,11 +11,11 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-import envs  # noqa: F401
-from envs import EnvOptionError
-from envs.mavlink.ends import LinkLostError
-from envs.mavlink.foreign import physics_port
-from envs.robots.autopilot import AutopilotRobot
+import sitl.envs  # noqa: F401
+from sitl.envs import EnvOptionError
+from sitl.envs.mavlink.ends import LinkLostError
+from sitl.envs.mavlink.foreign import physics_port
+from sitl.envs.robots.autopilot import AutopilotRobot
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 

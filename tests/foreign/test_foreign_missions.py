@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from missions import compare
+from sitl.missions import compare
 from sitl.option_error import OptionError
 
 

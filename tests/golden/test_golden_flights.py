@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from missions.suite.cases import Case, find
-from missions.suite.fly import fly_case
+from sitl.missions.suite.cases import Case, find
+from sitl.missions.suite.fly import fly_case
 
 CASES = find(Path(__file__).parent)
 QUICK = ("copter-square", "rover-square")

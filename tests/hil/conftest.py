@@ -10,8 +10,8 @@ import pytest
 from hil_peers import PhysicsProcess
 
 from sitl.physics.native.power_on import DEFAULT_HOME
-from sitl.physics_server import PhysicsServer
 from sitl.plants.alone import stand_alone
+from sitl.plants.physics_server import PhysicsServer
 
 Start = Callable[..., PhysicsProcess]
 Beside = Callable[..., PhysicsServer]

@@ -13,7 +13,7 @@ from sitl.bridge.hil.physics_end import PhysicsEnd
 from sitl.bridge.hil.sender import Sender
 from sitl.core import records
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle import COPTER_DTYPE, TICK_US
+from sitl.vehicle.record import COPTER_DTYPE, TICK_US
 from sitl.vehicles import apply, load
 
 

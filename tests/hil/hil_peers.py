@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from missions.pilot import Pilot
+from sitl.missions.pilot import Pilot
 from sitl.simulation import Simulation
 
 ROOT = Path(__file__).parents[2]

@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 from hil_peers import WatchedPilot
 
-from missions import copter, rover
-from missions.pilot import TAKEOFF
 from sitl.bridge.dialect import message
+from sitl.missions import copter, rover
+from sitl.missions.pilot import TAKEOFF
 from sitl.simulation import Simulation
 
 SIMSTATE, SCAN, DISTANCE = (message(n).id for n in ("SIMSTATE", "DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR"))

@@ -16,11 +16,11 @@ from sitl.bridge.hil import battery, controls, gps, hits, ranging, sensor, stick
 from sitl.bridge.hil.inbox import Inbox
 from sitl.bridge.hil.measurements import Measurements
 from sitl.bridge.hil.numbers import RefusedError
-from sitl.bridge.record_reader import RecordReader
 from sitl.core import records
+from sitl.core.record_reader import RecordReader
 from sitl.core.records import first_difference
-from sitl.kinds import KINDS
 from sitl.physics.carried import Carried
+from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import apply, load
 
 single = st.floats(-90.0, 90.0, width=32)

@@ -9,7 +9,7 @@ import pytest
 from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.autopilot.radio import RECEIVER_PULSES, receive
 from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle.record import COPTER_DTYPE
 
 TIMEOUT = 1.0
 

@@ -16,7 +16,6 @@ from hil_bench import Vehicle
 from hil_cuts import CutWire
 from hil_peers import ROOT, PhysicsProcess, WatchedPilot
 
-from missions.pilot import TAKEOFF, Pilot
 from sitl.bridge.client import Client
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
@@ -26,12 +25,13 @@ from sitl.bridge.hil.physics_end import HEARTBEAT
 from sitl.bridge.hil.sender import Sender
 from sitl.cli import main
 from sitl.core.records import first_difference
+from sitl.missions.pilot import TAKEOFF, Pilot
 from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
+from sitl.run.standstill import Patience
 from sitl.simulation import Simulation
-from sitl.standstill import Patience
 
 
 def go_on(simulation: Simulation, time_us: int, tries: int = 1000) -> int:

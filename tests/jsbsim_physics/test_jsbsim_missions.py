@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from missions import engines
+from sitl.missions import engines
 from sitl.simulation import Simulation
 
 pytest.importorskip("jsbsim")

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.core_entry import Core, load_core
-from sitl.kinds import KINDS
+from sitl.vehicle.core_entry import Core, load_core
+from sitl.vehicle.kinds import KINDS
 
 
 @pytest.fixture(scope="session")

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from missions.files import MissionFileError, plan
-from missions.files import plan_writer as writer
-from missions.files.plane import Plane, area, shifted
-from missions.files.transects import FROM_END, FROM_RIGHT, across_polygon, count_of, there_and_back
-from missions.library.draft import LAT, LON, degrees, survey, transects
+from sitl.missions.files import MissionFileError, plan
+from sitl.missions.files import plan_writer as writer
+from sitl.missions.files.plane import Plane, area, shifted
+from sitl.missions.files.transects import FROM_END, FROM_RIGHT, across_polygon, count_of, there_and_back
+from sitl.missions.library.draft import LAT, LON, degrees, survey, transects
 
 PLANE = Plane((LAT, LON))
 FIELD = [(0.0, 0.0), (30.0, 0.0), (30.0, 20.0), (0.0, 20.0)]

@@ -13,11 +13,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from missions.files import FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint, load, plan, save, wpl
-from missions.files import plan_writer as writer
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import COMMANDS, MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
+from sitl.missions.files import (
+    FenceCircle,
+    FencePolygon,
+    MissionFile,
+    MissionFileError,
+    RallyPoint,
+    load,
+    plan,
+    save,
+    wpl,
+)
+from sitl.missions.files import plan_writer as writer
 
 HOME = home_item(-353632621, 1491652371, 584.0)
 SQUARE = Mission.of(

@@ -7,10 +7,10 @@ import math
 
 import pytest
 
-from missions.files import MissionFileError, straightened
-from missions.files.plane import Plane
-from missions.library.draft import LAT, LON, Draft
 from sitl.autopilot.mission import item as c
+from sitl.missions.files import MissionFileError, straightened
+from sitl.missions.files.plane import Plane
+from sitl.missions.library.draft import LAT, LON, Draft
 
 PLANE = Plane((LAT, LON))
 

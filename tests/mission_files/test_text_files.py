@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.files import MissionFileError, load, save, wpl
 from sitl.autopilot.mission import item as c
+from sitl.missions.files import MissionFileError, load, save, wpl
 
 ROW0 = "0\t1\t0\t16\t0\t0\t0\t0\t-35.0\t149.0\t584.0\t1\n"
 

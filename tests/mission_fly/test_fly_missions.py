@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import pytest
 
-from missions import library
-from missions.files import load, straightened
-from missions.fly import MissionRefused, Outcome, fly
-from missions.library.draft import Draft
 from sitl.autopilot.mission import item as c
+from sitl.missions import library
+from sitl.missions.files import load, straightened
+from sitl.missions.fly import MissionRefused, Outcome, fly
+from sitl.missions.library.draft import Draft
 from sitl.simulation import Simulation
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-import missions.cli
-from missions.files import load, save
-from missions.library.draft import Draft
+import sitl.missions.cli as missions_cli
 from sitl import cli
+from sitl.missions.files import load, save
+from sitl.missions.library.draft import Draft
 
 
 class Entry:
@@ -31,7 +31,11 @@ class Entry:
 @pytest.fixture(autouse=True)
 def added(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """``mission`` is there whether or not the package is installed."""
-    found = [Entry("zebra", ImportError("no stripes")), Entry("mission", missions.cli), Entry("run", missions.cli)]
+    found = [
+        Entry("zebra", ImportError("no stripes")),
+        Entry("mission", missions_cli),
+        Entry("run", missions_cli),
+    ]
     ours = {"group": cli.GROUP}
     real = metadata.entry_points
     monkeypatch.setattr(metadata, "entry_points", lambda **wanted: found if wanted == ours else real(**wanted))

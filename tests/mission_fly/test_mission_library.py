@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from missions import library
-from missions.files import load
-from missions.library import make
 from sitl import vehicles, worlds
+from sitl.missions import library
+from sitl.missions.files import load
+from sitl.missions.library import make
 from sitl.option_error import OptionError
 
 
 def test_the_files_are_what_the_drafts_make(tmp_path: Path) -> None:
-    """Else: python -m missions.library.make."""
+    """Else: python -m sitl.missions.library.make."""
     make.write(tmp_path)
     made = {path.relative_to(tmp_path): path.read_text() for path in tmp_path.rglob("*") if path.is_file()}
     for path, text in made.items():

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from missions import compare
-from missions.figures import Figure, X, crossing, table
-from missions.recording import RecordingError, recorded
+from sitl.missions import compare
+from sitl.missions.figures import Figure, X, crossing, table
+from sitl.missions.recording import RecordingError, recorded
 
 LOOSER = {  # percent, where docs/comparison.md says why
     "take-off: 0.1 m": 10.0,

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from missions.pilot import ARM, SET_MODE, Pilot
 from sitl.core.geodesy import add_offset
+from sitl.missions.pilot import ARM, SET_MODE, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, Simulation
 

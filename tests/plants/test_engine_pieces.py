@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from sitl.core import records
-from sitl.kinds import COPTER, ROVER
 from sitl.physics.native.body import GRAVITY, fly
 from sitl.physics.native.copter import pieces as copter
 from sitl.physics.native.copter.step import step as step_copter
@@ -15,6 +14,7 @@ from sitl.physics.native.obstacles import settle
 from sitl.physics.native.rover import pieces as rover
 from sitl.physics.native.rover.motion import roll
 from sitl.physics.native.rover.step import step as step_rover
+from sitl.vehicle.kinds import COPTER, ROVER
 from sitl.vehicles import load
 
 HOME = (-35.0, 149.0, 100.0, 30.0)

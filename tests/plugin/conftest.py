@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from missions.testing.factory import VehicleFactory
-from missions.testing.golden import GoldenBook
-from missions.testing.setup import Defaults
+from sitl.missions.testing.factory import VehicleFactory
+from sitl.missions.testing.golden import GoldenBook
+from sitl.missions.testing.setup import Defaults
 
 
 @pytest.fixture
@@ -30,5 +30,5 @@ def project(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytes
     """A project of its own, where pytest has our plugin whether or not it is installed."""
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
-    monkeypatch.setenv("PYTEST_ADDOPTS", "-p missions.testing.plugin")
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-p sitl.missions.testing.plugin")
     return pytester

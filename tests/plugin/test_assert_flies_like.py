@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from missions.testing.factory import VehicleFactory
-from missions.testing.golden import FlightChanged, GoldenBook
-from missions.testing.vehicle import Copter
+from sitl.missions.testing.factory import VehicleFactory
+from sitl.missions.testing.golden import FlightChanged, GoldenBook
+from sitl.missions.testing.vehicle import Copter
 from sitl.recording.recording import read
 
 

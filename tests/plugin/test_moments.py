@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from missions.testing import boots
-from missions.testing.factory import VehicleFactory
-from missions.testing.logs import fly_again, keep
-from missions.testing.vehicle import Copter
+from sitl.missions.testing import boots
+from sitl.missions.testing.factory import VehicleFactory
+from sitl.missions.testing.logs import fly_again, keep
+from sitl.missions.testing.vehicle import Copter
 from sitl.recording.digests import of_state
 from sitl.recording.recording import read
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from missions.library import entries
-from missions.testing.factory import VehicleFactory
+from sitl.missions.library import entries
+from sitl.missions.testing.factory import VehicleFactory
 from sitl.option_error import OptionError
 
 

@@ -15,7 +15,7 @@ from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.copter import pieces
 from sitl.physics.native.copter.init import init
 from sitl.physics.pybullet.engine import BulletEngine
-from sitl.vehicle import COPTER_DTYPE
+from sitl.vehicle.record import COPTER_DTYPE
 from sitl.vehicles import Airframe
 from sitl.worlds import World
 

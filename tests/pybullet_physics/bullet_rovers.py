@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from sitl import vehicle, vehicles, worlds
+from sitl import vehicles, worlds
 from sitl.core import records
-from sitl.core_entry import bind_unit
-from sitl.kinds import ROVER
 from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.rover.init import init
 from sitl.physics.pybullet.rover import BulletRover
+from sitl.vehicle.core_entry import bind_unit
+from sitl.vehicle.kinds import ROVER
+from sitl.vehicle.record import ROVER_DTYPE
 from sitl.worlds import World
 
 HOME = (-35.36, 149.16, 584.0, 0.0)
@@ -25,7 +26,7 @@ class Rover:
 
     def __init__(self, frame: str, world: str | World | None = None, physics: str = "pybullet", **figures: Any) -> None:
         airframe = vehicles.load(frame).changed(noise_scale=0.0, **figures)
-        self.fleet = fleet = np.zeros(1, vehicle.ROVER_DTYPE)
+        self.fleet = fleet = np.zeros(1, ROVER_DTYPE)
         self.v = records.view(fleet, 0)
         init(self.v, airframe, HOME, 1)
         self.full = float(airframe.value("control_full"))

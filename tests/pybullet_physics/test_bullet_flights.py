@@ -10,7 +10,7 @@ pytest.importorskip("pybullet")
 
 from witness import LAND_ITEM, TAKEOFF_ITEM, WAYPOINT, Item, Witness
 
-from missions.pilot import MISSION_START, Pilot
+from sitl.missions.pilot import MISSION_START, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Simulation
 

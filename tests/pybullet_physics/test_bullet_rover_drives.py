@@ -10,9 +10,9 @@ pytest.importorskip("pybullet")
 
 from witness import KEEP, MIDDLE, WAYPOINT, Item, Witness
 
-from missions.pilot import Pilot
 from sitl import vehicles
 from sitl.core.records import first_difference
+from sitl.missions.pilot import Pilot
 from sitl.simulation import Simulation
 
 MANUAL, AUTO, RTL = 0, 10, 11

@@ -16,9 +16,9 @@ pytest.importorskip("pybullet")
 
 from bullet_copters import by_dice, copter, put, record_of, run
 
-from envs.options import EnvOptionError
-from envs.robots.autopilot import AutopilotRobot, Ready
 from sitl import worlds
+from sitl.envs.options import EnvOptionError
+from sitl.envs.robots.autopilot import AutopilotRobot, Ready
 from sitl.physics.engine import EngineError
 from sitl.physics.pybullet.engine import BulletEngine
 from sitl.simulation import Simulation

@@ -15,11 +15,11 @@ pytest.importorskip("pybullet")
 from gymnasium.utils.env_checker import check_env
 from pytest import approx
 
-import envs  # noqa: F401
-from envs.options import EnvOptionError
-from envs.robots.turtlebot import Turtlebot
-from sitl.bullet_turtlebots import BulletTurtlebots
-from sitl.turtlebot import Turtlebots
+import sitl.envs  # noqa: F401
+from sitl.envs.options import EnvOptionError
+from sitl.envs.robots.turtlebot import Turtlebot
+from sitl.turtlebots.bullet import BulletTurtlebots
+from sitl.turtlebots.native import Turtlebots
 from sitl.vehicles.turtlebot import AIRFRAME
 from sitl.worlds import Box, Start, World
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.bridge.client import Client
+from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
 from sitl.recording.recorder import Recorder
 from sitl.simulation import Core, Simulation
 

@@ -11,16 +11,16 @@ import pytest
 from recorded_flights import Recorded, hop
 
 import sitl.cli
-from missions.cli import replay
 from sitl.bridge.client import Client
 from sitl.cli import run
 from sitl.cli.recordings import resume
 from sitl.errors import USER_ERRORS
-from sitl.lockstep import serve_lockstep
+from sitl.missions.cli import replay
 from sitl.recording.error import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
+from sitl.run.lockstep import serve_lockstep
 from sitl.simulation import Core, Simulation
 
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from recorded_flights import Frames
 
-from sitl import runner
 from sitl.bridge.client import Client
 from sitl.bridge.links.link import Link, Peer
-from sitl.lockstep import serve_lockstep
 from sitl.recording.entries import Kind
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import Recording, read
 from sitl.recording.replay import Replay
+from sitl.run import runner
+from sitl.run.lockstep import serve_lockstep
 from sitl.simulation import Core, Simulation
 
 

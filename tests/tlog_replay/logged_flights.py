@@ -7,11 +7,11 @@ import struct
 from pathlib import Path
 from typing import Any
 
-from missions.pilot import ARM, MISSION_START, SET_MODE, Pilot, upload
-from sitl import runner
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.logs.tlog import read_tlog
+from sitl.missions.pilot import ARM, MISSION_START, SET_MODE, Pilot, upload
+from sitl.run import runner
 from sitl.simulation import Core, Simulation
 
 HOME = (47.3977, 8.5456, 488.0, 40.0)

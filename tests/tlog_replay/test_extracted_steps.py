@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from logged_flights import HOME, ITEMS, frame, rows, system_of, write
 
-from missions.tlog_replay.extract import extract
-from missions.tlog_replay.log import Log
-from missions.tlog_replay.steps import Send, Upload
 from sitl.logs.tlog import LogError
+from sitl.missions.tlog_replay.extract import extract
+from sitl.missions.tlog_replay.log import Log
+from sitl.missions.tlog_replay.steps import Send, Upload
 
 BEAT = {"type": 2, "autopilot": 3, "mavlink_version": 3}
 

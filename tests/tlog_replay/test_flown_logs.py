@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from logged_flights import fly_mission, frame, rows, system_of, write
 
-from missions.cli import replay
 from sitl.logs import flight
+from sitl.missions.cli import replay
 from sitl.recording.recording import read
 from sitl.simulation import Core
 

@@ -17,7 +17,7 @@ from sitl.core import records
 from sitl.core.records import first_difference
 from sitl.physics.native.turtlebot.state import TURTLEBOT_DTYPE
 from sitl.physics.native.turtlebot.step import wheel_speeds
-from sitl.turtlebot import Turtlebot, Turtlebots
+from sitl.turtlebots.native import Turtlebot, Turtlebots
 from sitl.vehicles import AirframeError
 from sitl.vehicles.turtlebot import AIRFRAME, Lidar
 from sitl.worlds import Box, Start, World
@@ -171,7 +171,7 @@ def test_fleet_is_the_same_as_single_robots():
 
 DRIVE = """
 import hashlib
-from sitl.turtlebot import Turtlebot
+from sitl.turtlebots.native import Turtlebot
 from sitl.vehicles.turtlebot import AIRFRAME
 robot = Turtlebot("round", AIRFRAME.changed(range_noise=0.01))
 robot.reset(seed=5)

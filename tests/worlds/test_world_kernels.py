@@ -17,7 +17,7 @@ def grow(x):
 KERNEL = """
 import numpy as np
 from sitl.core.kernels import law
-from sitl.worlds.compiled import kernel
+from sitl.core.array_kernels import kernel
 from toy_room import grow
 
 @law

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ...vehicle import TICK_US
+from ...core.record_reader import RecordReader
+from ...vehicle.record import TICK_US
 from ..dialect import message
 from ..frame import Frame, Splitter
-from ..record_reader import RecordReader
 from . import controls, truth
 from .inbox import Inbox
 from .numbers import ARDUPILOTMEGA, AUTOPILOT, REBOOT, REQUEST_MESSAGE, RESEED, RefusedError

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..record_reader import RecordReader
 from .numbers import RefusedError
 
 KIND = message("BATTERY_STATUS")

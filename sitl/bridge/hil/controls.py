@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.record_reader import RecordReader, locate
 from ..dialect import message
-from ..record_reader import RecordReader, locate
 from .numbers import ARMED, CUSTOM_MODE, LATEST_US, LOCKSTEP, RefusedError, culprit, within
 
 KIND = message("HIL_ACTUATOR_CONTROLS")

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..record_reader import RecordReader
 from ..telemetry.units import DEG, int16, uint16
 from .numbers import LATEST_US, RefusedError
 

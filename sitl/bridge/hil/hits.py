@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..record_reader import RecordReader
 from .numbers import LATEST_US, RefusedError, culprit, within
 
 KIND = message("DEBUG_VECT")

@@ -7,8 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ...core.record_reader import RecordReader
 from ..dialect import MessageType
-from ..record_reader import RecordReader
 from . import battery, gps, hits, sensor, wheels
 from .numbers import PHYSICS
 from .ranging import RangeWriter, ScanWriter

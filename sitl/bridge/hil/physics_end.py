@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...physics.carried import Carried
-from ...vehicle import TICK_US
+from ...vehicle.record import TICK_US
 from ..dialect import message
 from ..frame import Frame, Splitter
 from ..services.results import ACCEPTED, DENIED, UNSUPPORTED

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..record_reader import RecordReader
 from ..telemetry import ranging
 from ..telemetry.builder import Context
 from ..telemetry.ranging import PART, SCAN_NAME

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ...vehicle import TICK_US
+from ...core.record_reader import RecordReader, locate
+from ...vehicle.record import TICK_US
 from ..dialect import message
-from ..record_reader import RecordReader, locate
 from .numbers import (
     BARO_UPDATED,
     IMU_UPDATED,

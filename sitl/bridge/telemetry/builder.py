@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...core.record_reader import RecordReader
 from ..dialect import MessageType, message
-from ..record_reader import RecordReader
 
 if TYPE_CHECKING:
     from ..profile import Profile

@@ -15,7 +15,7 @@ from sitl.autopilot.copter.table import TABLE
 from sitl.autopilot.params import docs, files
 from sitl.autopilot.params.table import Table, stored
 from sitl.core.records import record
-from sitl.kinds import KINDS
+from sitl.vehicle.kinds import KINDS
 
 
 @pytest.fixture

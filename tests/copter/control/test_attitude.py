@@ -30,7 +30,7 @@ components = st.floats(-1.0, 1.0)
 
 
 def test_period_agrees_with_the_vehicles():
-    from sitl.vehicle import TICK_US
+    from sitl.vehicle.record import TICK_US
 
     assert DT * 1e6 == TICK_US
 

@@ -19,7 +19,7 @@ from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.navigation.command import check_condition, complete
 from sitl.autopilot.navigation.state import LAND, NONE, TAKEOFF
 from sitl.core import records
-from sitl.vehicle import COPTER_DTYPE, TICK_US
+from sitl.vehicle.record import COPTER_DTYPE, TICK_US
 
 ORIGIN = (-353632621, 1491652371, 584.0)
 DT = TICK_US * 1e-6

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ....core.array_kernels import kernel
 from ....core.kernels import law
-from ....worlds.compiled import kernel
 from .scan import scan
 from .state import TURTLEBOT_DTYPE
 from .step import step

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Algorithms by name: what trains a run, what plays its model, what its settings can be."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import gymnasium as gym
+
+from .errors import AgentError
+from .runs.config import RunConfig
+from .runs.folder import RunFolder
+from .runs.watch import Watch
+
+
+class Policy(Protocol):
+    """A model that plays, without learning."""
+
+    def check(self, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
+        """Raises AgentError when it cannot play in an environment of these spaces."""
+
+    def begin(self, seed: int) -> None:
+        """An episode begins; same seed, same choices."""
+
+    def act(self, observation: Any) -> Any:
+        """The action for an observation."""
+
+
+class Algorithm(Protocol):
+    """A module that can train; functions of it."""
+
+    LENGTH: Mapping[str, int]
+    """Of a run when the user does not say: {"episodes": ...} or {"steps": ...}."""
+
+    LIBRARIES: tuple[str, ...]
+    """Whose versions its results depend on, besides those of every run."""
+
+    def settings(self, algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
+        """All settings, the given ones and defaults, checked. Raises AgentError."""
+
+    def check(self, config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
+        """Raises AgentError when a run cannot learn in an environment of these spaces."""
+
+    def train(self, folder: RunFolder, watch: Watch) -> None:
+        """Train until the run is done or ``watch.stop``; from the model in the folder when there is one."""
+
+    def policy(self, folder: RunFolder) -> Policy:
+        """What the run has learnt. Raises AgentError."""
+
+
+ALGORITHMS = {
+    "qlearn": "sitl.agents.tabular.training",
+    "sarsa": "sitl.agents.tabular.training",
+    "dqn": "sitl.agents.deep.training",
+    "ppo": "sitl.agents.deep.training",
+    "sac": "sitl.agents.deep.training",
+}
+"""Name -> module."""
+TABULAR = ("qlearn", "sarsa")
+
+
+def load(algorithm: str) -> Algorithm:
+    """The module of an algorithm.
+
+    Raises:
+        AgentError: no such algorithm.
+    """
+    if algorithm not in ALGORITHMS:
+        raise AgentError(f"algorithm {algorithm!r} is not known; it is one of {', '.join(ALGORITHMS)}")
+    module: Any = importlib.import_module(ALGORITHMS[algorithm])
+    return module  # type: ignore[no-any-return]
+
+
+def policy_of(folder: RunFolder) -> Policy:
+    """What a run has learnt, ready to play.
+
+    Raises:
+        AgentError: it has no model yet.
+    """
+    return load(folder.config.algorithm).policy(folder)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The environment of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
+
+import gymnasium as gym
+import numpy as np
+
+from sitl import envs
+
+from . import algorithms
+from .errors import AgentError
+from .runs.config import RunConfig
+
+_Env = TypeVar("_Env")
+
+
+def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
+    """Make the environment of a run.
+
+    Args:
+        config: of the run.
+        options: that replace the run's.
+
+    Raises:
+        AgentError: no such environment, or an option that it does not take.
+    """
+    return _made(lambda given: gym.make(config.env, max_episode_steps=config.max_steps, **given), config, options)
+
+
+def try_all(configs: Iterable[RunConfig]) -> None:
+    """See that the environments of runs can be made and learnt in, for training and for their evaluation, before a
+    folder is.
+
+    Raises:
+        AgentError: see ``make``, or the algorithm does not learn from such observations or actions.
+    """
+    tried: list[tuple[str, Mapping[str, Any], tuple[gym.Space[Any], gym.Space[Any]]]] = []
+    for config in configs:
+        check = algorithms.load(config.algorithm).check
+        for options in (config.env_options, {**config.env_options, **config.evaluation.options}):
+            spaces = next((found for *asked, found in tried if asked == [config.env, options]), None)
+            if spaces is None:
+                env = make(config, **options)
+                spaces = (env.observation_space, env.action_space)
+                env.close()
+                tried.append((config.env, options, spaces))
+            check(config, *spaces)
+
+
+def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:
+    """As ``make``, of so many robots at once."""
+
+    def call(given: dict[str, Any]) -> gym.vector.VectorEnv[Any, Any, Any]:
+        return gym.make_vec(config.env, num_envs=count, max_episode_steps=config.max_steps, **given)
+
+    return _made(call, config, options)
+
+
+def _made(call: Callable[[dict[str, Any]], _Env], config: RunConfig, options: Mapping[str, Any]) -> _Env:
+    given = {**config.env_options, **options}
+    if "max_episode_steps" in given:
+        raise AgentError("max_episode_steps is no option of an environment; --max-steps limits an episode")
+    given = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
+    try:
+        return call(given)
+    except (gym.error.Error, envs.EnvOptionError) as error:
+        raise AgentError(f"{config.env}: {error}") from None
+    except TypeError as error:
+        if "unexpected keyword" in str(error):
+            raise AgentError(f"{config.env}: {error}") from None
+        raise
+
+
+def seed_of(seed: int, episode: int) -> int:
+    """Seed of an episode's reset: follows from the run's, so that a run can go on from anywhere."""
+    return int(np.random.SeedSequence([seed, episode]).generate_state(1)[0])
+
+
+def step_time(env: gym.Env[Any, Any] | gym.vector.VectorEnv[Any, Any, Any]) -> float:
+    """Simulated time of a step [s]; nan for environments that do not say."""
+    return float(getattr(env.unwrapped, "step_time", math.nan))

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One change of a simulation that a policy is tried under: figures, noise, latency, world, physics, any option."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+from sitl.option_error import did_you_mean
+
+from ..errors import AgentError
+from .worlds import altered
+
+GROUPS = ("world", "physics", "vehicle", "sensors", "latency", "step", "together")
+"""What changes can be of; reports go by them."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change, as plan files have it.
+
+    Raises:
+        AgentError: a key's value that cannot be.
+    """
+
+    name: str
+    group: str
+    """One of ``GROUPS``."""
+    scale: Mapping[str, float] = field(default_factory=dict)
+    """Figure of the robot -> factor of its usual value."""
+    set: Mapping[str, float] = field(default_factory=dict)
+    """Figure -> value."""
+    latency: float | None = None
+    """[s]; None: as at home."""
+    mirror: bool = False
+    """The world of home, left and right changed."""
+    stretch: float = 1.0
+    """Factor of the lengths of the world of home."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Of the environment, which replace those of home."""
+    episodes: int | None = None
+    """At most so many are played: for slow physics."""
+    by_default: bool = True
+    """Whether it is tried when the user does not name it."""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise AgentError(f"name = {self.name!r}; it must be text")
+        where = f"change {self.name!r}"
+        if self.group not in GROUPS:
+            raise AgentError(f"{where}: group = {self.group!r}; it is one of {', '.join(GROUPS)}")
+        for key in ("scale", "set"):
+            for figure, value in _table(where, key, getattr(self, key)).items():
+                if not _is_number(value):
+                    raise AgentError(f"{where}: {key}.{figure} = {value!r}; it must be a number")
+        for figure in {*self.scale} & {*self.set}:
+            raise AgentError(f"{where}: figure {figure!r} is both scaled and set; give one of them")
+        if self.latency is not None and not (_is_number(self.latency) and self.latency >= 0.0):
+            raise AgentError(f"{where}: latency = {self.latency!r}; it must be a number from 0 on [s]")
+        if not _is_number(self.stretch) or not 0.1 <= self.stretch <= 10.0:
+            raise AgentError(f"{where}: stretch = {self.stretch!r}; it must be a number from 0.1 to 10")
+        for key in ("mirror", "by_default"):
+            if not isinstance(getattr(self, key), bool):
+                raise AgentError(f"{where}: {key} = {getattr(self, key)!r}; it must be true or false")
+        count = self.episodes
+        if count is not None and (not isinstance(count, int) or isinstance(count, bool) or count < 1):
+            raise AgentError(f"{where}: episodes = {count!r}; it must be a whole number from 1 on")
+        taken = {"latency", "randomise", *(["world"] if self._alters_world else [])} & {
+            *_table(where, "options", self.options)
+        }
+        if taken:
+            raise AgentError(f"{where}: {taken.pop()} has keys of its own in a change, it is no option there")
+
+    @property
+    def _alters_world(self) -> bool:
+        return self.mirror or self.stretch != 1.0
+
+    @classmethod
+    def of(cls, values: Any) -> Change:
+        """From names and values, as a file has them.
+
+        Raises:
+            AgentError: no such key, a missing one, or a value that cannot be.
+        """
+        if not isinstance(values, Mapping):
+            raise AgentError(f"change = {values!r}; it must be a table")
+        known = [item.name for item in fields(cls)]
+        for key in values:
+            if key not in known:
+                hint = did_you_mean(key, known)
+                title = f"change {values.get('name', '')!r}"
+                raise AgentError(f"{title}: key {key!r} is not known; it is one of {', '.join(known)}{hint}")
+        for key in ("name", "group"):
+            if key not in values:
+                raise AgentError(f"change {dict(values)!r}: key {key!r} is missing")
+        return cls(**values)
+
+    def env_options(self, robot: Any, home: Mapping[str, Any]) -> dict[str, Any]:
+        """Options of the environment that make it.
+
+        Args:
+            robot: of the environment at home (``sitl.envs.robots.robot.Robot``).
+            home: options of the environment at home.
+
+        Raises:
+            AgentError: the robot has no such figure.
+        """
+        out = {**home, **self.options}
+        figures = {name: scaled(robot, name, factor) for name, factor in self.scale.items()}
+        figures.update({name: float(value) for name, value in self.set.items()})
+        if figures:
+            out["randomise"] = {name: (value, value) for name, value in figures.items()}
+        if self.latency is not None:
+            out["latency"] = float(self.latency)
+        if self._alters_world:
+            out["world"] = altered(robot.world, self.mirror, float(self.stretch))
+        return out
+
+
+def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mapping[str, Any] | None) -> bool:
+    """Whether a policy has seen a change in its training: all that differs from home was drawn from ranges around it.
+
+    Args:
+        options: of the environment under the change.
+        home: at home.
+        drawn: the option ``randomise`` of the training.
+    """
+    changed = {name: value for name, value in options.items() if name not in home or home[name] is not value}
+    values = {name: value for name, (value, _) in (changed.pop("randomise", None) or {}).items()}
+    if "latency" in changed:
+        values["latency"] = changed.pop("latency")
+    if changed or not drawn:
+        return False
+    ranges = {name: drawn[name] for name in values if isinstance(drawn.get(name), list | tuple)}
+    return len(ranges) == len(values) and all(low <= values[name] <= high for name, (low, high) in ranges.items())
+
+
+def usual(robot: Any, figure: str) -> float:
+    """The value of a figure of the robot's airframe.
+
+    Raises:
+        AgentError: it has none.
+    """
+    if figure not in robot.figures:
+        hint = did_you_mean(figure, robot.figures)
+        raise AgentError(f"robot {robot.name!r} has no figure {figure!r}{hint}")
+    airframe = getattr(robot, "airframe", None)
+    try:
+        return float(airframe.value(figure))  # type: ignore[union-attr]
+    except (AttributeError, KeyError):
+        raise AgentError(f"figure {figure!r} of robot {robot.name!r} has no usual value to scale: set it") from None
+
+
+def scaled(robot: Any, figure: str, factor: float) -> float:
+    """So many times the usual value, without the last bits that nobody meant."""
+    return float(f"{factor * usual(robot, figure):.12g}")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _table(where: str, key: str, value: Any) -> Mapping[str, Any]:
+    if not isinstance(value, Mapping):
+        raise AgentError(f"{where}: {key} = {value!r}; it must be a table of names and values")
+    return value

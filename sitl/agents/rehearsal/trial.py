@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One run under one change: episodes are played, or it is told why they cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sitl.core.extras import MissingExtra
+from sitl.envs.robots.turtlebot import Turtlebot
+from sitl.option_error import OptionError, VehicleError
+
+from .. import algorithms, environments
+from ..errors import AgentError
+from ..evaluate import Interrupted, Played, evaluate, moved_starts, until_stopped
+from ..runs.config import RunConfig
+from ..runs.folder import RunFolder
+from ..runs.local import Stopped, Tell
+from .change import Change, is_covered
+from .truth import is_false_alarm
+
+JITTER = 0.1
+"""[m, rad]"""
+_REFUSALS = (OptionError, VehicleError, MissingExtra)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is to be played; can be pickled."""
+
+    run: Path
+    change: Change | None
+    """None: at home."""
+    episodes: int
+    seed: int = 0
+    """Of the resets: equal for all trials, which are thereby paired episode by episode."""
+    jitter: float | None = None
+    """Start poses are moved by up to so much [m, rad]; None: as the run is evaluated, see ``jitter_of``."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """Of a trial."""
+
+    rewards: tuple[float, ...] = ()
+    """Of each episode."""
+    crashed: tuple[bool, ...] = ()
+    false_alarms: tuple[bool, ...] = ()
+    """Crashes that were a reading only, see ``truth``."""
+    simulated_s: float = 0.0
+    """Of all episodes together [s]."""
+    seen: bool = False
+    """Whether the training's randomisation covers the change."""
+    refused: str = ""
+    """Why it was not played; "" when it was."""
+
+
+def home_options(config: RunConfig) -> dict[str, Any]:
+    """Options of the environment at home: as the run is evaluated, but nothing is drawn at random of what it was
+    trained with, so that plain and randomised runs have the same home."""
+    out = {**config.evaluation.options}
+    if "randomise" in {**config.env_options, **out}:
+        out["randomise"] = None
+    return out
+
+
+def jitter_of(config: RunConfig, robot: Any) -> float:
+    """By how much starts are moved when nobody says: as the run is evaluated, but a robot without noise that always
+    starts at one place would play one episode over and over."""
+    starts = "start" in {**config.env_options, **config.evaluation.options}
+    if config.evaluation.jitter == 0.0 and not starts and isinstance(robot, Turtlebot):
+        return JITTER
+    return config.evaluation.jitter
+
+
+def robot_name(config: RunConfig) -> str:
+    """Of the robot of a run.
+
+    Raises:
+        AgentError: its environment is none of this package's.
+    """
+    env = environments.make(config, **home_options(config))
+    try:
+        return str(_robot(env).name)
+    finally:
+        env.close()
+
+
+def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
+    """Play a trial; tells 1 after each episode. None when it was stopped.
+
+    Raises:
+        AgentError: it cannot be played at home.
+    """
+    run = RunFolder(trial.run)
+    config = run.config.with_(max_steps=run.config.evaluation.max_steps or run.config.max_steps)
+    try:
+        return _play(run, config, trial, tell, stopped)
+    except Interrupted:
+        return None
+    except _REFUSALS as error:
+        if trial.change is None:
+            raise AgentError(f"{run.path} cannot be played at home: {error}") from None
+        return Result(refused=str(error))
+
+
+def _play(run: RunFolder, config: RunConfig, trial: Trial, tell: Tell, stopped: Stopped) -> Result:
+    policy = algorithms.policy_of(run)
+    options = _options(config, trial.change)
+    env = environments.make(config, **options)
+
+    false_alarms: list[bool] = []
+    go_on = until_stopped(tell, stopped)
+
+    def watch(played: Played) -> None:
+        false_alarms.append(played.crashed and is_false_alarm(env))
+        go_on(played)
+
+    try:
+        jitter = jitter_of(config, _robot(env)) if trial.jitter is None else trial.jitter
+        policy.check(env.observation_space, env.action_space)
+        poses = moved_starts(env, trial.episodes, trial.seed, jitter) if jitter > 0.0 else None
+        found = evaluate(env, policy, trial.episodes, trial.seed, poses, watch).episodes
+    finally:
+        env.close()
+    return Result(
+        tuple(played.reward for played in found),
+        tuple(played.crashed for played in found),
+        tuple(false_alarms),
+        sum(played.simulated_s for played in found),
+        trial.change is not None and is_covered(options, home_options(config), config.env_options.get("randomise")),
+    )
+
+
+def _options(config: RunConfig, change: Change | None) -> Mapping[str, Any]:
+    home = home_options(config)
+    if change is None:
+        return home
+    env = environments.make(config, **home)
+    try:
+        return change.env_options(_robot(env), home)
+    finally:
+        env.close()
+
+
+def _robot(env: Any) -> Any:
+    robot = getattr(env.unwrapped, "robot", None)
+    if robot is None:
+        raise AgentError(f"{env}: only environments of this package can be changed for a rehearsal")
+    return robot

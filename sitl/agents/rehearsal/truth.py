@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether a crash was one: noise alone can push a reading below the range that counts as a crash."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from sitl.core.rotations import quat_to_euler
+from sitl.envs.robots.autopilot import AutopilotRobot
+from sitl.envs.robots.turtlebot import Turtlebot
+from sitl.worlds.contact import clearance
+from sitl.worlds.frames import to_ned
+
+MARGIN = 0.05
+"""A crash farther from every solid than the crash range and this is a false alarm [m]."""
+_HALF_SLICE = 0.01
+"""Of what is looked at, above and below the lidar [m]."""
+
+
+def is_false_alarm(env: Any) -> bool:
+    """Whether the crash that has just ended an episode was a reading only: nothing was touched, and nothing was near.
+
+    Args:
+        env: of this package; of robots whose true place is not known no crash is called false.
+    """
+    inner = env.unwrapped
+    robot, limit = inner.robot, getattr(inner.task, "limit", math.inf)
+    if robot.collided[0]:
+        return False
+    return lidar_distance(robot) > limit + MARGIN
+
+
+def lidar_distance(robot: Any) -> float:
+    """True distance from the lidar to the nearest solid at its height, to all sides [m]; 0 where it is not known."""
+    if isinstance(robot, Turtlebot):
+        x, y, z, yaw = robot.pose[0].tolist()
+        figures = robot.robots.views[0].figures
+        ahead = float(figures.lidar_ahead)
+        place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + float(figures.lidar_height))
+        north, east, down = to_ned(*place)
+    elif isinstance(robot, AutopilotRobot) and robot.figures:
+        v = robot.simulation(0).v
+        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at.tolist()
+        heading = quat_to_euler(*body.q.tolist())[2]
+        c, s = math.cos(heading), math.sin(heading)
+        north, east, down = body.pos.tolist()
+        north, east = north + forward * c - right * s, east + forward * s + right * c
+        down += below - robot.world.floor_z
+    else:
+        return 0.0
+    return clearance(robot.world.geometry, north, east, down - _HALF_SLICE, down + _HALF_SLICE, 0.0).distance

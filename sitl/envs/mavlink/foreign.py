@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An autopilot that is not ours, on our physics: commands and telemetry by its MAVLink, time held by the physics.
+
+The physics goes exactly as far as a step says. At its end the autopilot waits for an answer that does not come before
+the next step: it has done all that it does at that time. Scans and touches come from the physics, which has the lidar.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from sitl.bridge.client import Client
+from sitl.bridge.hil.numbers import BASE_PORT
+from sitl.foreign import ardupilot, px4
+from sitl.foreign.choice import PX4, Choice
+from sitl.foreign.hil_host import HilHost
+from sitl.foreign.json_host import JsonHost
+from sitl.foreign.ports import HOST, free_tcp_run
+from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
+from sitl.option_error import OptionError
+from sitl.plants.json_link import PORT
+from sitl.plants.local import LocalPlant
+from sitl.run.runner import BASE_TCP_PORT
+
+from .connection import ACCEPTED, Connection
+from .ends import LinkLostError, NotReadyError, SocketEnd
+from .preparation import ARM_DISARM, FORCE, REBOOT
+
+_SLICE_US = 20_000
+_ANSWER_US = 3_000_000
+"""Simulated time within which a command is answered [us]."""
+_START_S = 60.0
+"""Wall time that a program which was started has until its MAVLink is there [s]."""
+_HEARTBEAT_US = 30_000_000
+_TURNS = 16
+"""Answers of the physics between two looks at MAVLink: the autopilot stands still when nobody reads."""
+
+
+class Host(Protocol):
+    """Serves a plant to an autopilot."""
+
+    boots: int
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since power-on [us]."""
+
+    def listen(self) -> bool:
+        """Wait a moment until the autopilot asks for a step; whether it does."""
+
+    def step(self, until_us: int | None = None) -> None:
+        """Give it the step, no further than ``until_us``."""
+
+    def seat(self, plant: LocalPlant) -> None:
+        """Serve this plant from now on."""
+
+    def close(self) -> None:
+        """Serve no more."""
+
+
+class Foreign(Connection):
+    """See the module.
+
+    Args:
+        host: serves the plant.
+        plant: physics and world.
+        connection: form of ``SocketEnd``: where the autopilot's MAVLink is.
+        process: the autopilot, when it was started for this.
+        readings: of a scan.
+        patience: wall time without a sign of life after which it is lost [s].
+    """
+
+    is_exact = False
+    sees = True
+    longest_interval_us = 20_000
+
+    def __init__(
+        self,
+        host: Host,
+        plant: LocalPlant,
+        connection: str,
+        process: AutopilotProcess | None,
+        readings: int,
+        patience: float,
+    ) -> None:
+        super().__init__(readings)
+        self.host, self.plant, self.process = host, plant, process
+        self.patience, self._connection = patience, connection
+        self._sensors, self._obstacles = plant.craft.v.sensors, plant.craft.v.physics.obstacles
+        self._scans = self._hits = 0
+        self.tap: Callable[[bytes], None] = lambda data: None
+        """Gets all that the autopilot says."""
+        self.end: SocketEnd | None = None
+        try:
+            self._connect()
+            self.find()
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def name(self) -> str:
+        return self._connection
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since the autopilot was started [us]."""
+        return self.host.time_us
+
+    # ------------------------------------------------------------------ beginning
+
+    def _connect(self) -> None:
+        """Open its MAVLink, which may not be there yet."""
+        if self.end is not None:
+            self.end.close()
+        until = time.monotonic() + (self.patience if self.process is None else max(self.patience, _START_S))
+        while True:
+            try:
+                self.end = SocketEnd(self._connection)
+            except LinkLostError:
+                self._check()
+                if time.monotonic() >= until:
+                    raise
+                time.sleep(0.05)  # wall time; the vehicle has none yet
+            else:
+                self.client = Client(self.end)
+                return
+
+    def find(self) -> None:
+        """Go on until it is heard.
+
+        Raises:
+            LinkLostError: it is not.
+        """
+        self.heard.system = 0
+        for _ in range(_HEARTBEAT_US // _SLICE_US):
+            self.run(_SLICE_US)
+            if self.heard.system != 0:
+                return
+        raise LinkLostError(f"connection {self.name}: no HEARTBEAT in {_HEARTBEAT_US // 1_000_000} simulated seconds")
+
+    def restart(self, plant: LocalPlant) -> None:
+        """Reboot an autopilot that runs elsewhere, on another plant.
+
+        Raises:
+            LinkLostError, NotReadyError: it does not boot.
+        """
+        self.command(ARM_DISARM, 0.0, FORCE)
+        boots = self.host.boots
+        try:
+            result = self.command(REBOOT, 1.0)
+        except LinkLostError:  # its last word may be the answer
+            heard = self._result(REBOOT)
+            if heard is None:
+                raise
+            result = heard
+        if result != ACCEPTED:
+            raise NotReadyError(f"{self.name}: the autopilot refuses to reboot (MAV_RESULT {result})")
+        self.plant.close()
+        self.plant = plant
+        self._sensors, self._obstacles = plant.craft.v.sensors, plant.craft.v.physics.obstacles
+        self._scans = self._hits = 0
+        self.host.seat(plant)
+        until = time.monotonic() + self.patience
+        self.heard.forget()
+        while True:  # it closes its port, and opens it again when it boots
+            try:
+                if self.host.boots != boots:
+                    self.find()
+                    return
+                if self.host.listen():
+                    self.host.step()
+                self._hear()
+            except LinkLostError:
+                if time.monotonic() >= until:
+                    raise
+                self._connect()
+            if time.monotonic() >= until:
+                raise LinkLostError(f"connection {self.name}: the autopilot does not boot within {self.patience:g} s")
+
+    # ------------------------------------------------------------------ going on
+
+    def run(self, us: int) -> None:
+        host, goal, boots = self.host, self.host.time_us + us, self.host.boots
+        if self.end is not None:
+            self.end.flush()
+        turns = 0
+        while host.time_us < goal and host.boots == boots:
+            self._await()
+            host.step(goal)
+            turns += 1
+            if turns % _TURNS == 0:
+                self._hear()
+        if us > 0:
+            self._await()
+        self._hear()
+        self._look()
+
+    def _await(self) -> None:
+        """Until the autopilot asks for a step."""
+        if self.host.listen():
+            return
+        until = time.monotonic() + self.patience
+        while not self.host.listen():
+            self._check()
+            self._hear()
+            if time.monotonic() >= until:
+                raise LinkLostError(
+                    f"connection {self.name} is lost: the autopilot has not asked the physics for {self.patience:g} s"
+                )
+
+    def _check(self) -> None:
+        if self.process is not None:
+            try:
+                self.process.check()
+            except AutopilotEndedError as error:
+                raise LinkLostError(str(error)) from None
+
+    def _hear(self) -> None:
+        if self.end is None:
+            return
+        data = self.end.receive()
+        if data:
+            self.heard.feed(data)
+            self.tap(data)
+
+    def _look(self) -> None:
+        """Take over the scan and the touches that are new."""
+        scans, hits = int(self._sensors.lidar_count), int(self._obstacles.hit_count)
+        if scans != self._scans:
+            self.heard.scan[: len(self.heard.angles)] = self._sensors.lidar_ranges[: len(self.heard.angles)]
+            self.heard.scans += 1
+        self.heard.hits += max(hits - self._hits, 0)
+        self._scans, self._hits = scans, hits
+
+    def _answer(self, number: int) -> int | None:
+        for _ in range(_ANSWER_US // _SLICE_US):
+            self.run(_SLICE_US)
+            result = self._result(number)
+            if result is not None:
+                return result
+        return None
+
+    def close(self) -> None:
+        if self.end is not None:
+            self.end.close()
+        if self.process is not None:
+            self.process.stop()
+        self.host.close()
+        self.plant.close()
+
+
+def physics_port(connection: str) -> int:
+    """UDP port at which an ArduPilot that runs already looks for its physics: 9002, and 10 more for each instance, as
+    the TCP port of its MAVLink is 5760 and 10 more."""
+    kind, _, rest = connection.partition(":")
+    port = rest.rpartition(":")[2]
+    if kind != "tcp" or not port.isdigit() or int(port) < BASE_TCP_PORT:
+        return PORT
+    instance, other = divmod(int(port) - BASE_TCP_PORT, 10)
+    return PORT if other else PORT + 10 * instance
+
+
+def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], readings: int, patience: float) -> Foreign:
+    """A foreign autopilot on a plant, which is its from now on: started, or found where it runs.
+
+    Raises:
+        OptionError, LinkLostError: it cannot be started; it does not answer.
+    """
+    with contextlib.ExitStack() as undo:
+        undo.callback(plant.close)
+        if choice.kind == PX4:
+            instance = px4.free_instance()
+            host: Host = HilHost(plant, (HOST, BASE_PORT + instance))
+            where = f"udp:{HOST}:{px4.programs_port(instance)}"
+        elif choice.program is None:
+            where = choice.connection or ""
+            host = JsonHost(plant, (HOST, physics_port(where)))
+        else:
+            json_host, base = JsonHost(plant, (HOST, 0)), free_tcp_run(ardupilot.SERIAL_PORTS)
+            host, where = json_host, f"tcp:{HOST}:{base}"
+        undo.callback(host.close)
+        airframe, process = plant.craft.airframe, None
+        if choice.kind == PX4:
+            if choice.program is None:
+                raise OptionError(f"autopilot {choice.name}: a PX4 that runs already cannot be reset; name its program")
+            process = px4.start(choice.program, airframe, plant.home, instance, params=params)
+        elif choice.program is not None:
+            process = ardupilot.start(
+                choice.program, airframe, plant.home, json_host.address[1], base,
+                overrides="".join(f"{name} {value:g}\n" for name, value in params.items()),
+            )  # fmt: skip
+        undo.pop_all()
+    return Foreign(host, plant, where, process, readings, patience)

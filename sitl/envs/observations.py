@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Observations: what an agent is told of a robot. Each makes the arrays of one robot or of many: a row a robot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import gymnasium as gym
+import numpy as np
+
+from sitl.core.array_kernels import kernel
+from sitl.core.kernels import law
+
+from .options import EnvOptionError
+from .robots.robot import Robot
+
+FAR = 10_000.0
+"""Bound of coordinates in observation spaces [m]: that of world files."""
+
+
+class Observation(Protocol):
+    """A kind of observation."""
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """Of one robot."""
+
+    def observe(self, robot: Robot) -> Any:
+        """New arrays, a row a robot; a dictionary of arrays for a ``Dict`` space."""
+
+
+@law
+def digits_of(scans, every, when_inf, highest, out):
+    """The paper's rule: each ``every``-th reading, rounded down; inf and nan have digits of their own.
+
+    A reading beyond the digit ``highest``, of a lidar that a function of the user's has given a longer range, is that.
+    """
+    for i in range(out.shape[0]):
+        for k in range(out.shape[1]):
+            reading = float(scans[i, k * every])
+            if math.isinf(reading):
+                out[i, k] = when_inf
+            elif math.isnan(reading):
+                out[i, k] = 0
+            else:
+                out[i, k] = min(int(reading), highest)
+
+
+_digits = kernel("void(f4[:,::1], i8, i8, i8, i8[:,::1])")(digits_of)
+
+
+class Digits:
+    """The paper's observation: whole metres of five readings (six where the division leaves a rest), as MultiDiscrete.
+
+    Of n readings those are taken whose number divides by n // parts; each is rounded down, nan counts as 0.
+
+    Args:
+        when_inf: digit for a reading of inf; None: the robot's (6 for Turtlebot, int(range) for the others).
+        parts: into how many the scan is divided.
+    """
+
+    def __init__(self, when_inf: int | None = None, parts: int = 5) -> None:
+        if parts < 1 or (when_inf is not None and when_inf < 0):
+            raise EnvOptionError(f"Digits(when_inf={when_inf}, parts={parts}): parts from 1 on, when_inf from 0 on")
+        self.when_inf = when_inf
+        self.parts = parts
+        self._plan = (0, 0, 0, 0)
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        readings = robot.scan.shape[1]
+        every = max(readings // self.parts, 1)
+        when_inf = robot.digit_when_inf if self.when_inf is None else self.when_inf
+        taken = len(range(0, readings, every))
+        highest = max(int(robot.range_max), when_inf)
+        self._plan = (every, when_inf, highest, taken)
+        return gym.spaces.MultiDiscrete(np.full(taken, highest + 1))
+
+    @property
+    def plan(self) -> tuple[int, int, int, int]:
+        """Each so-many-th reading, digit of inf, greatest digit, how many digits: known once the space is made."""
+        return self._plan
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        every, when_inf, highest, taken = self._plan
+        out = np.empty((robot.count, taken), np.int64)
+        _digits(robot.scan, every, when_inf, highest, out)
+        return out
+
+
+class Scan:
+    """All readings [m], float32, from right to left; the range of the lidar where it sees nothing."""
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        return gym.spaces.Box(0.0, robot.range_max, (robot.scan.shape[1],), np.float32)
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        return np.minimum(robot.scan, np.float32(robot.range_max))
+
+
+class WithPose:
+    """Another observation, and the pose: a dictionary of "scan" and "pose" (x, y, z [m], yaw [rad], float32)."""
+
+    def __init__(self, scan: Observation) -> None:
+        self.scan = scan
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        bound = np.array([FAR, FAR, FAR, math.pi], np.float32)
+        pose = gym.spaces.Box(-bound, bound, dtype=np.float32)
+        return gym.spaces.Dict({"scan": self.scan.space(robot), "pose": pose})
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        return {"scan": self.scan.observe(robot), "pose": robot.pose.astype(np.float32)}
+
+
+class WithGoal:
+    """Another observation, and the way to the goal of a task that has one.
+
+    A dictionary of "goal" (distance [m], bearing [rad], left of the nose positive, float32) and what the other one has.
+    """
+
+    def __init__(self, other: Observation) -> None:
+        self.other = other
+        self._task: Any = None
+
+    def watch(self, task: Any) -> None:
+        """Take the goals of a task (``goals``: x, y of each robot's)."""
+        if not hasattr(task, "goals"):
+            raise EnvOptionError(f'observation with a goal: task {task!r} has none, as "goal" has')
+        self._task = task
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        low, high = np.array([0.0, -math.pi], np.float32), np.array([3.0 * FAR, math.pi], np.float32)
+        goal = gym.spaces.Box(low, high, dtype=np.float32)
+        other = self.other.space(robot)
+        return gym.spaces.Dict({**(other if isinstance(other, gym.spaces.Dict) else {"scan": other}), "goal": goal})
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        pose, other = robot.pose, self.other.observe(robot)
+        way = self._task.goals - pose[:, :2]
+        bearing = np.arctan2(way[:, 1], way[:, 0]) - pose[:, 3]
+        bearing = np.arctan2(np.sin(bearing), np.cos(bearing))
+        goal = np.stack([np.hypot(way[:, 0], way[:, 1]), bearing], axis=1).astype(np.float32)
+        return {**(other if isinstance(other, dict) else {"scan": other}), "goal": goal}
+
+
+OBSERVATIONS: dict[str, Callable[[], Observation]] = {
+    "digits": Digits,
+    "scan": Scan,
+    "digits+pose": lambda: WithPose(Digits()),
+    "scan+pose": lambda: WithPose(Scan()),
+    "digits+goal": lambda: WithGoal(Digits()),
+    "scan+goal": lambda: WithGoal(Scan()),
+    "scan+pose+goal": lambda: WithGoal(WithPose(Scan())),
+}
+"""By name."""

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robots by name. To add one, write a class that is a ``Robot`` and name it in ``ROBOTS``, or pass the class itself."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from sitl.worlds import World
+
+from ..options import COMMON, EnvOptionError, unknown
+from .robot import Robot
+
+ROBOTS = {
+    "turtlebot": "sitl.envs.robots.turtlebot:Turtlebot",
+    "erle_copter": "sitl.envs.robots.autopilot:ErleCopter",
+    "erle_rover": "sitl.envs.robots.autopilot:ErleRover",
+    "autopilot": "sitl.envs.robots.autopilot:AutopilotRobot",
+}
+"""Name -> class."""
+
+
+def load(robot: str | Callable[..., Robot], world: World, count: int, options: Mapping[str, Any]) -> Robot:
+    """Make a robot, or many.
+
+    Args:
+        robot: a name, or a class (any callable) that takes ``world``, ``count`` and its options.
+        world: where.
+        count: how many.
+        options: of this robot.
+
+    Raises:
+        EnvOptionError: no robot of that name, or it does not take such an option.
+    """
+    made: Callable[..., Robot]
+    if isinstance(robot, str):
+        name = robot.strip().lower().replace("-", "_")
+        if name not in ROBOTS:
+            raise unknown("robot", robot, ROBOTS)
+        module, attribute = ROBOTS[name].split(":")
+        made = getattr(importlib.import_module(module), attribute)
+    elif callable(robot):
+        made = robot
+    else:
+        raise EnvOptionError(f"robot {robot!r} is neither a name ({', '.join(ROBOTS)}) nor a class")
+    parameters = inspect.signature(made).parameters
+    if not any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
+        for option in options:
+            if option not in parameters:
+                own = [p for p in parameters if p not in ("world", "count")]
+                raise unknown("option", option, [*own, *COMMON])
+    return made(world=world, count=count, **options)

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where an episode starts: the world's pose, one of one's own, or anywhere that the robot could drive to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.core.array_kernels import kernel
+from sitl.core.kernels import law
+from sitl.turtlebots.native import full_pose
+from sitl.worlds import WorldError
+from sitl.worlds.contact import clearance, nearest_of
+from sitl.worlds.frames import to_ned
+
+from .options import EnvOptionError
+from .robots.robot import Pose, Robot
+
+CELL = 0.1
+"""Side of the cells that reachable places are found in [m]."""
+_MOST_CELLS = 250_000
+"""Above which cells are made larger, as long as no wall fits between two of them."""
+_FAR_TOO_MANY_CELLS = 4_000_000
+_MOST_POSES = 100_000
+_MARGIN = 0.1
+"""A random place keeps this far from what would be a crash [m]."""
+
+StartOption = str | Sequence[float] | Callable[[np.random.Generator], Sequence[float]]
+"""Name of one of the world's start poses, "turned", "random", "random:N", a pose, or a function that draws one.
+
+"turned" is the world's start place for the robot, with a random heading. "random:N" is one of N random poses, always
+the same ones: a vehicle with an autopilot is made ready once for each pose, which then costs nothing."""
+
+
+@law
+def mark_free(solids, first_n, first_e, cell, top, bottom, radius, margin, out):
+    """Which cells of a grid a robot can stand in, its axis in their middle, with a margin to solids, into ``out``.
+
+    Args:
+        solids: rows of a ``Geometry``.
+        first_n, first_e: middle of cell (0, 0); north grows with the first number, east falls with the second [m].
+        cell: side [m].
+        top, bottom, radius: of the robot [m]; top and bottom are down coordinates.
+        margin: [m].
+        out: shape (rows, columns), 1 for free.
+    """
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            n, e = first_n + cell * i, first_e - cell * j
+            nearest = nearest_of(solids, solids.shape[0], n, e, top, bottom, radius)
+            out[i, j] = 1 if nearest[0] > margin else 0
+
+
+_mark_free = kernel("void(f8[:,::1], f8, f8, f8, f8, f8, f8, f8, i8[:,::1])")(mark_free)
+
+
+class ReachableCells:
+    """Places that a robot can get to from its start pose without a crash, as cells of a grid.
+
+    Args:
+        robot: one that starts where its world says.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self._world, self._volume = robot.world, robot.volume
+        self.margin = _MARGIN + max(robot.crash_range - robot.volume.radius, 0.0)
+        """Room that a place has around the robot [m]."""
+        start = robot.world.start(robot.name)
+        self.z = start.position[2]
+        x0, y0, x1, y1 = robot.world.bounds
+        reach = robot.volume.radius + self.margin
+        self._low = np.array([x0 - reach, y0 - reach])
+        extent = np.array([x1 + reach, y1 + reach]) - self._low
+        largest = 1.9 * reach  # even the thinnest wall makes a band of twice the reach that no middle of a cell is in
+        self.cell = max(CELL, min(math.sqrt(float(extent[0] * extent[1]) / _MOST_CELLS), largest))
+        rows, columns = (math.ceil(length / self.cell) for length in extent.tolist())
+        if rows * columns > _FAR_TOO_MANY_CELLS:
+            size = f"{extent[0]:.0f} x {extent[1]:.0f} m"
+            raise EnvOptionError(f"random places in world {self._world.name!r}: {size} is too large; say where instead")
+        first = ((np.array(start.position[:2]) - self._low) / self.cell).astype(int).tolist()
+        free = self._free(rows, columns)
+        self.cells = np.array(self._flood(first, free))
+        """Their numbers along x and y, shape (n, 2)."""
+        if len(self.cells) == 1 and not free[first[0], first[1]]:
+            where = f"random places in world {self._world.name!r}"
+            raise EnvOptionError(f"{where}: {robot.name} has no room at start {start.name!r} to set out")
+
+    def _free(self, rows: int, columns: int) -> npt.NDArray[np.int64]:
+        out = np.empty((rows, columns), np.int64)
+        x, y = (self._low + 0.5 * self.cell).tolist()
+        north, east, down = to_ned(x, y, self.z)
+        v = self._volume
+        geometry = self._world.geometry
+        _mark_free(geometry.solids, north, east, self.cell, down - v.top, down - v.bottom, v.radius, self.margin, out)
+        return out
+
+    @staticmethod
+    def _flood(first: list[int], free: npt.NDArray[np.int64]) -> list[tuple[int, int]]:
+        """Free cells connected with the first, which counts whether it is free or not."""
+        columns = free.shape[1]
+        left = {divmod(int(place), columns) for place in np.flatnonzero(free)}
+        todo, found = [(first[0], first[1])], [(first[0], first[1])]
+        left.discard(found[0])
+        while todo:
+            i, j = todo.pop()
+            for near in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+                if near in left:
+                    left.remove(near)
+                    todo.append(near)
+                    found.append(near)
+        return sorted(found)
+
+    def is_free(self, x: float, y: float) -> bool:
+        """Whether the robot stands free there, with the margin."""
+        north, east, down = to_ned(x, y, self.z)
+        v = self._volume
+        found = clearance(self._world.geometry, north, east, down - v.top, down - v.bottom, v.radius)
+        return found.distance > self.margin
+
+    def draw(self, rng: np.random.Generator) -> tuple[float, float]:
+        """A random free place: x, y [m]."""
+        while True:
+            cell = self.cells[rng.integers(len(self.cells))]
+            x, y = (self._low + self.cell * (cell + rng.random(2))).tolist()
+            if self.is_free(x, y):
+                return x, y
+
+
+class Turned:
+    """A place with a random heading.
+
+    Args:
+        position: x, y, z [m].
+    """
+
+    def __init__(self, position: Sequence[float]) -> None:
+        self.position = position
+
+    def __call__(self, rng: np.random.Generator) -> Pose:
+        """The start pose of an episode."""
+        x, y, z = self.position
+        return (x, y, z, float(rng.uniform(-math.pi, math.pi)))
+
+
+class OneOf:
+    """One of some poses, each as likely."""
+
+    def __init__(self, poses: Sequence[Pose]) -> None:
+        self.poses = poses
+
+    def __call__(self, rng: np.random.Generator) -> Pose:
+        """The start pose of an episode."""
+        return self.poses[int(rng.integers(len(self.poses)))]
+
+
+class Starts:
+    """Draws start poses.
+
+    Args:
+        option: see ``StartOption``.
+        robot: for which.
+
+    Raises:
+        EnvOptionError: no such start, or a pose that is none.
+    """
+
+    def __init__(self, option: StartOption | None, robot: Robot) -> None:
+        self._robot = robot
+        self._draw: Callable[[np.random.Generator], Any] | None = None
+        self._cells: ReachableCells | None = None
+        self._z = robot.world.start(robot.name).position[2]
+        self._pose: Pose | None = None
+        if isinstance(option, str) and option == "random":
+            self._cells = ReachableCells(robot)
+        elif isinstance(option, str) and option.startswith("random:"):
+            self._draw = self._few(option, ReachableCells(robot))
+        elif isinstance(option, str) and option == "turned":
+            start = robot.world.start(robot.name)
+            self._draw = Turned(start.position)
+        elif option is None or isinstance(option, str):
+            try:
+                start = robot.world.start(robot.name, option)
+            except WorldError as error:
+                raise EnvOptionError(f'start {option!r}: {error}, "turned" and "random"') from None
+            self._pose = self.pose((*start.position, start.yaw))
+        elif callable(option):
+            self._draw = option
+        else:
+            self._pose = self.pose(option)
+
+    def _few(self, option: str, cells: ReachableCells) -> Callable[[np.random.Generator], Any]:
+        """Draws from so many random poses as ``option`` says."""
+        try:
+            count = int(option.removeprefix("random:"))
+        except ValueError:
+            count = 0
+        if not 1 <= count <= _MOST_POSES:
+            raise EnvOptionError(f'start {option!r}; it must be "random:N" with N from 1 to {_MOST_POSES}')
+        rng = np.random.default_rng(0)
+        return OneOf([(*cells.draw(rng), self._z, float(rng.uniform(-math.pi, math.pi))) for _ in range(count)])
+
+    def pose(self, pose: Any) -> Pose:
+        """x, y, z, yaw of a pose that may lack z.
+
+        Raises:
+            EnvOptionError: it is none.
+        """
+        try:
+            found = full_pose(pose, self._z)
+        except ValueError as error:
+            raise EnvOptionError(f"start: {error}") from None
+        self._check_room(found)
+        return found
+
+    def _check_room(self, pose: Pose) -> None:
+        """Inside of a solid every reading is 0, which is no crash: the robot would drive out as if nothing were."""
+        north, east, down = to_ned(*pose[:3])
+        volume, world = self._robot.volume, self._robot.world
+        near = clearance(world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0)
+        if near.distance < 0.0:
+            solid = world.solids[near.solid]
+            what = f"{type(solid).__name__.lower()} {solid.name!r}"
+            x, y, z, _ = pose
+            raise EnvOptionError(f"start: ({x:g}, {y:g}, {z:g}) in world {world.name!r} is inside of {what}")
+
+    def draw(self, rng: np.random.Generator) -> Pose:
+        """The start pose of an episode."""
+        if self._pose is not None:
+            return self._pose
+        if self._cells is not None:
+            x, y = self._cells.draw(rng)
+            return (x, y, self._z, float(rng.uniform(-math.pi, math.pi)))
+        assert self._draw is not None
+        return self.pose(self._draw(rng))

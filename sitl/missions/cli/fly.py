@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl mission fly``: fly a mission file from power-on to its end."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from sitl.bridge.links.address import open_link
+from sitl.cli import recordings
+from sitl.cli.options import VEHICLES, add_vehicle_options, build_simulation, open_folder, seconds
+from sitl.option_error import OptionError
+from sitl.run import runner
+from sitl.run.pacing import Pacing, parse_speedup
+from sitl.simulation import Simulation
+from sitl.vehicles import load as load_airframe
+
+from .. import library
+from ..files import MissionFile, load, straightened
+from ..files.document import KIND_OF_TYPE
+from ..fly import LIMIT_S, Outcome, checked, fly
+
+GENERIC = 0
+"""MAV_TYPE_GENERIC"""
+
+
+def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = actions.add_parser("fly", help="fly a mission file from power-on to its end")
+    parser.add_argument("mission", metavar="FILE|NAME", help=".plan, .waypoints, or a mission of the library")
+    parser.add_argument("--vehicle", choices=sorted(VEHICLES), help="default: what the file is made for, or a copter")
+    parser.add_argument("--speedup", default="max", metavar="K|max", help="simulated seconds a second (default max)")
+    parser.add_argument(
+        "--time-limit", type=seconds, default=LIMIT_S, metavar="SIM_SECONDS", help=f"since arming (default {LIMIT_S:g})"
+    )
+    recordings.add_recording_option(parser)
+    parser.add_argument("--out", action="append", default=[], metavar="udp:HOST:PORT", help="also send telemetry there")
+    parser.add_argument("--quiet", action="store_true", help="the summary only")
+    add_vehicle_options(parser)
+    parser.set_defaults(function=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Fly it; 0 when the mission was completed, 1 when it was not."""
+    speedup = parse_speedup(options.speedup)
+    name = options.mission
+    entry = library.find(name) if name in library.entries() else None
+    if entry is None and not Path(name).exists() and not Path(name).suffix:
+        library.find(name)  # says what there is
+    file = load(entry.path if entry else name)
+    curved, file = len(file.mission), straightened(file)
+    params = prepare(options, file, entry)
+    folder = open_folder(options.log_dir)
+    links = [open_link(text) for text in options.out]
+    simulation = build_simulation(options, params)
+    try:
+        checked(file.mission, simulation)
+        recordings.record(simulation, options)
+        for link in links:
+            simulation.bridge.add_link(link)
+        stem = entry.name.replace("/", "-") if entry else Path(name).stem
+        log = runner.open_log(simulation, folder, stem)
+        if not options.quiet:
+            print(f"{file.name}: {len(file.mission) - 1} items, {simulation.airframe.name}")
+            if len(file.mission) != curved:
+                print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
+            if file.has_fence_or_rally:
+                print("  geofence and rally points are not uploaded: the firmware has none")
+        outcome = fly(
+            simulation,
+            file.mission,
+            limit_s=options.time_limit,
+            advance=paced(simulation, speedup),
+            tell=quiet if options.quiet else told,
+        )
+        recordings.say_why(simulation, "mission completed" if outcome.completed else outcome.reason)
+    finally:
+        simulation.close()
+    print(summary(outcome))
+    print(f"log: {log}" + (f"\nrecording: {options.rec}" if options.rec else ""))
+    return 0 if outcome.completed else 1
+
+
+def told(time: float, text: str) -> None:
+    """Progress, at once also where the output is a pipe."""
+    print(f"{time:8.1f} s  {text}", flush=True)
+
+
+def quiet(time: float, text: str) -> None:
+    """No progress."""
+
+
+def prepare(options: argparse.Namespace, file: MissionFile, entry: library.Entry | None) -> dict[str, float]:
+    """Fill in options that were not given by what the file and the library say; gives parameters that it needs.
+
+    Raises:
+        OptionError: the file is for another kind of vehicle.
+    """
+    kind = entry.kind if entry else file.kind
+    if options.vehicle is None and file.vehicle_type not in (None, GENERIC, *KIND_OF_TYPE):
+        raise OptionError(
+            f"{file.name}: vehicleType {file.vehicle_type} (MAV_TYPE) is neither a copter nor a rover; "
+            "--vehicle says what flies it"
+        )
+    if options.vehicle is None:
+        options.vehicle = load_airframe(options.frame).kind if options.frame else kind or "copter"
+    if file.vehicle_type is not None and file.kind is not None and file.kind != options.vehicle:
+        raise OptionError(f"{file.name}: vehicleType {file.vehicle_type} is a {file.kind}, not a {options.vehicle}")
+    if entry is not None:
+        if options.frame is None:
+            options.frame = entry.frame
+        if options.world is None and entry.world is not None:
+            options.world, options.start = entry.world, options.start or entry.start
+    if options.home is None and file.home is not None and ":" not in options.physics:
+        options.home = (*file.home, 0.0)
+    return dict(entry.params) if entry else {}
+
+
+def paced(simulation: Simulation, speedup: float | None) -> Callable[[int], object]:
+    """Lets simulated time pass at a speed-up; physics elsewhere may go and come back."""
+
+    def advance(until_us: int) -> None:
+        runner.serve(simulation, pace, until_us=until_us)
+
+    pace = Pacing(speedup)
+    if speedup is None:
+        pace.slice_us = 100_000  # nobody else is to be served
+    return advance
+
+
+def summary(outcome: Outcome) -> str:
+    """What is to be said of a flight, in a few lines."""
+    said = ("completed" if outcome.completed else "NOT COMPLETED") + (f": {outcome.reason}" if outcome.reason else "")
+    if math.isnan(outcome.started):
+        return f"mission {said}"
+    at = outcome.deviation
+    lines = [
+        f"mission {said}",
+        f"  time {outcome.duration:.1f} s, distance {outcome.distance:.1f} m, energy {outcome.energy:.2f} Wh, "
+        f"items reached {len(outcome.items)}",
+        f"  top speed {outcome.top_speed:.2f} m/s, top height {outcome.top_height:.2f} m",
+        f"  farthest from the lines of the mission {at.distance:.2f} m (item {at.seq}, at {at.time:.1f} s)",
+    ]
+    if outcome.hits:
+        lines.append(f"  hit solids {outcome.hits} times")
+    return "\n".join(lines)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``python -m sitl.missions.compare``: our flights beside the recorded ones, as Markdown tables."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+from sitl.foreign.choice import ARDUPILOT, FORMS, Choice, choose
+from sitl.option_error import OptionError
+from sitl.simulation import ESTIMATORS, Simulation, load_core
+from sitl.vehicle.kinds import KINDS
+
+from . import copter, rover
+from .figures import Figure, table
+from .pilot import Pilot
+from .recording import Recording, recorded
+
+HOME = (-35.363262, 149.165237, 584.0, 0.0)
+Script = Callable[[Simulation], Pilot]
+Judge = Callable[[Recording, Recording], list[Figure]]
+
+FLIGHTS: dict[str, tuple[str, list[tuple[str, Script, Judge]]]] = {
+    "copter": (
+        "ardupilot_quad",
+        [
+            ("copter_guided", copter.guided, copter.guided_figures),
+            ("copter_auto", copter.auto, copter.auto_figures),
+        ],
+    ),
+    "rover": ("ardupilot_rover", [("rover", rover.drive, rover.drive_figures)]),
+}
+"""Airframe, and recording, script and figures of each flight, by kind of vehicle."""
+
+
+def figures(kind: str, estimator: str = "ekf", seed: int = 0, autopilot: str = "native") -> list[Figure]:
+    """Fly the recorded scripts of a kind of vehicle on ArduPilot's airframe and compare.
+
+    With an ``autopilot`` other than ours (``sitl.foreign.choice``) that one flies our physics.
+    """
+    frame, flights = FLIGHTS[kind]
+    choice = choose(autopilot, kind)
+    if choice is not None:
+        return foreign_figures(choice, kind, seed)
+    core = load_core(KINDS[kind])
+    found: list[Figure] = []
+    for name, script, judge in flights:
+        simulation = Simulation(frame, home=HOME, seed=seed, estimator=estimator, core=core)
+        found += judge(script(simulation).recording(), recorded(name))
+    return found
+
+
+def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
+    """The same, flown by a foreign autopilot, which is started for each flight.
+
+    Raises:
+        OptionError: one that does not speak ArduPilot's commands.
+    """
+    from .foreign import ForeignVehicle  # the environments' connections, which nothing else here needs
+
+    if choice.kind != ARDUPILOT:
+        raise OptionError(f"autopilot {choice.name}: the recorded scripts are for ArduPilot")
+    frame, flights = FLIGHTS[kind]
+    found: list[Figure] = []
+    for name, script, judge in flights:
+        vehicle: Any = ForeignVehicle(choice, frame, HOME, seed)
+        try:
+            found += judge(script(vehicle).recording(), recorded(name))
+        finally:
+            vehicle.close()
+    return found
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(prog="python -m sitl.missions.compare", description=__doc__)
+    parser.add_argument("kind", nargs="?", choices=sorted(FLIGHTS), help="of vehicle (default: all)")
+    parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf")
+    parser.add_argument("--seed", type=int, default=0, help="of all sensor noise (default 0)")
+    parser.add_argument("--autopilot", default="native", help=f"who flies: {FORMS}")
+    options = parser.parse_args()
+    for kind in [options.kind] if options.kind else sorted(FLIGHTS):
+        print(table(figures(kind, options.estimator, options.seed, options.autopilot)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The missions that come with the simulator: files, and an index that says what each is and where it is flown.
+
+``python -m sitl.missions.library.make`` writes the files.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from sitl.option_error import OptionError
+
+FOLDER = Path(str(resources.files(__name__)))
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One mission of the library."""
+
+    name: str
+    """"copter/square"."""
+    file: str
+    """Beside the index."""
+    description: str
+    frame: str
+    """Airframe that it is made for."""
+    world: str | None = None
+    """World that it needs."""
+    start: str | None = None
+    """Start pose in the world; None: the world's own."""
+    params: Mapping[str, float] = field(default_factory=dict)
+    """Parameters that it needs."""
+
+    @property
+    def kind(self) -> str:
+        """ "copter" or "rover"."""
+        return self.name.partition("/")[0]
+
+    @property
+    def path(self) -> Path:
+        """Of the file."""
+        return FOLDER / self.file
+
+
+@cache
+def entries() -> dict[str, Entry]:
+    """Every mission by its name."""
+    with (FOLDER / "index.toml").open("rb") as file:
+        index: dict[str, dict[str, Any]] = tomllib.load(file)
+    return {
+        f"{kind}/{name}": Entry(f"{kind}/{name}", **row) for kind, rows in index.items() for name, row in rows.items()
+    }
+
+
+def find(name: str) -> Entry:
+    """The mission of a name.
+
+    Raises:
+        OptionError: there is none; names those there are.
+    """
+    if name not in entries():
+        raise OptionError(f"there is no mission {name!r}; there are {', '.join(entries())}")
+    return entries()[name]

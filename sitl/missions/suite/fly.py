@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Flies one case of a suite and compares it with its golden."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import time
+from functools import cache
+from pathlib import Path
+
+from sitl import vehicles
+from sitl.errors import USER_ERRORS
+from sitl.logs.tlog import LogError
+from sitl.physics.engines import NATIVE
+from sitl.recording.error import RecordingError
+from sitl.recording.recorder import Recorder
+from sitl.recording.recording import read
+from sitl.simulation import Simulation
+from sitl.vehicle.core_entry import Core, load_core
+from sitl.vehicle.kinds import KINDS
+
+from ..comparison import report
+from ..comparison.alignment import AlignmentError
+from ..comparison.compare import Comparison, compare
+from ..comparison.flight import Flight, of_recording
+from ..files import load, straightened
+from ..fly import Outcome, fly
+from .cases import Case, SuiteError
+from .result import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, SHOWN, WRITTEN, Result
+
+
+def fly_case(case: Case, update: bool = False, reports: str | None = None) -> Result:
+    """Fly a case, compare, and keep what is needed of it.
+
+    Args:
+        case: what to fly.
+        update: write golden where there is none, or where the flight is another one.
+        reports: folder for recordings and reports of flights that differ; None: nothing is kept.
+    """
+    began = time.perf_counter()
+    with tempfile.TemporaryDirectory(prefix="sitl-suite-") as folder:
+        path = Path(folder) / f"{case.name}.rec"
+        try:
+            outcome, simulated = record(case, path)
+            return _judged(case, path, outcome, simulated, began, update, reports)
+        except USER_ERRORS as error:
+            return Result(case.name, FAILED, str(error), wall=time.perf_counter() - began)
+
+
+@cache
+def _core(kind: str) -> Core:
+    """Loaded once a process."""
+    return load_core(KINDS[kind])
+
+
+def record(case: Case, path: Path) -> tuple[Outcome, float]:
+    """Fly a case into a recording; also gives the simulated time [s]."""
+    file = straightened(load(case.mission))
+    home = case.home or ((*file.home, 0.0) if file.home is not None else None)
+    simulation = Simulation(
+        _frame(case.frame),
+        home=home,
+        seed=case.seed,
+        params=case.params,
+        core=_core(case.kind) if case.physics == NATIVE else None,
+        world=case.world,
+        start=case.start,
+        physics=case.physics,
+    )
+    try:
+        if simulation.unknown_parameters:
+            names = ", ".join(simulation.unknown_parameters)
+            raise SuiteError(
+                f"{case.name}: a {case.kind} has no parameters {names}; vehicle = ... chooses who gets them"
+            )
+        recorder = Recorder(simulation, path)
+        outcome = fly(simulation, file.mission, limit_s=case.time_limit)
+        recorder.stopped = "mission completed" if outcome.completed else outcome.reason
+    finally:
+        simulation.close()
+    return outcome, simulation.time_us * 1e-6
+
+
+def _frame(name: str) -> str:
+    vehicles.load(name)  # an airframe that is none says so before anything flies
+    return name
+
+
+def _judged(
+    case: Case, path: Path, outcome: Outcome, simulated: float, began: float, update: bool, reports: str | None
+) -> Result:
+    new = of_recording(read(path))
+    note = "" if outcome.completed else f"mission not completed: {outcome.reason}"
+
+    def result(status: str, words: str = "", comparison: Comparison | None = None) -> Result:
+        figures = {figure.name: figure.value for figure in comparison.figures} if comparison else {}
+        shown = {name: figures[name] for name in SHOWN if name in figures}
+        kept = written = ""
+        if reports is not None and status in (DIFFERS, NO_GOLDEN):
+            folder = Path(reports) / case.name
+            folder.mkdir(parents=True, exist_ok=True)
+            kept = shutil.copyfile(path, folder / path.name).as_posix()
+            if comparison is not None:
+                written = str(report.write(comparison, folder, case.name))
+        wall = time.perf_counter() - began
+        return Result(case.name, status, words, simulated, wall, shown, kept, written, note)
+
+    if not case.golden.exists():
+        if not update:
+            return result(NO_GOLDEN, f"there is no {case.golden}: --update-golden makes it")
+        _keep(path, case.golden)
+        return result(WRITTEN, note)
+    flight = Flight(case.name, new.track, new.header, new.digests)
+    try:
+        comparison = compare(_golden(case), flight, case.tolerance)
+    except (RecordingError, LogError, AlignmentError) as error:  # nothing that this flight can be held against
+        if not update:
+            raise
+        _keep(path, case.golden)
+        return result(REPLACED, f"golden was of no use: {error}")
+    if update:
+        if comparison.first_trace is None and comparison.ok:
+            return result(KEPT, "", comparison)
+        _keep(path, case.golden)
+        return result(REPLACED, comparison.headline, comparison)
+    return result(OK if comparison.ok else DIFFERS, "" if comparison.ok else comparison.headline, comparison)
+
+
+def _golden(case: Case) -> Flight:
+    return of_recording(read(case.golden))
+
+
+def _keep(path: Path, golden: Path) -> None:
+    """Put a recording in golden's place; one of the two is there at every moment.
+
+    Raises:
+        SuiteError: it cannot be written there.
+    """
+    beside = golden.with_name(golden.name + ".new")
+    try:
+        golden.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            shutil.copyfile(path, beside)
+            os.replace(beside, golden)
+        finally:
+            beside.unlink(missing_ok=True)
+    except OSError as error:
+        raise SuiteError(f"golden {golden} cannot be written: {error.strerror or error}") from None

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Golden flights: this flight must be as one that was kept."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sitl.logs.tlog import LogError
+from sitl.option_error import OptionError
+from sitl.plants.choose import is_remote
+from sitl.recording.error import RecordingError
+
+from ..comparison.alignment import AlignmentError
+from .logs import NOT_AGAIN, fly_again
+from .moments import Forking
+
+Limits = str | Path | Mapping[str, Any] | None
+"""See ``sitl.missions.comparison.tolerance.load``."""
+
+
+class FlightChanged(UserWarning):
+    """A flight is like golden within the limits of "same", and yet not the same."""
+
+
+@dataclass
+class GoldenBook:
+    """What is known of goldens while a test runs."""
+
+    folder: Path = Path()
+    """Relative paths are counted from here: the test's own folder."""
+    update: bool = False
+    """Goldens are to be written."""
+    how: str = "run pytest with --sitl-update-golden"
+    """How they are made."""
+    reports: Path | None = None
+    """Where reports of differences go."""
+    checked: list[Path] = field(default_factory=list)
+    """Goldens of this test that were written, or would have been if they were not like that already."""
+    written: list[Path] = field(default_factory=list)
+    taken: dict[Path, str] = field(default_factory=dict)
+    """Golden -> the test that wrote it in this session."""
+    test: str = ""
+
+
+class Golden(Forking):
+    """A vehicle whose flight can be compared with golden."""
+
+    golden: GoldenBook = GoldenBook()
+
+    def save_recording(self, path: str | Path) -> Path:
+        """Keep a recording (.rec) of the flight from power-on until now: ``sitl mission replay`` flies it again."""
+        path = Path(path)
+        self._record(path.parent, path.stem)
+        if path.suffix != ".rec":
+            os.replace(path.with_suffix(".rec"), path)
+        return path
+
+    def assert_flies_like(self, golden: str | Path, tolerance: Limits = None) -> None:
+        """The flight from power-on until now is like a golden one.
+
+        Args:
+            golden: a recording (.rec), or a .tlog or .bin, relative to the test's folder.
+            tolerance: "same", "alike", a .toml file relative to the test's folder, or a mapping of the same shape;
+                None: "same" if golden is of the same vehicle, world and seed, else "alike".
+
+        Raises:
+            AssertionError: it is not, and where it left golden first; or there is no such golden. Only
+                ``--sitl-update-golden`` writes goldens.
+        """
+        __tracebackhide__ = True
+        path = self.golden.folder / golden
+        self.hear()
+        with tempfile.TemporaryDirectory(prefix="sitl-") as folder:
+            if self.golden.update:
+                self._update(path, self._record(Path(folder), "new"))
+                return
+            if not path.exists():
+                raise AssertionError(f"there is no golden flight {path}; to make it of this flight: {self.golden.how}")
+            try:
+                problem = self._compare(path, self._record(Path(folder), "new"), tolerance)
+            except (RecordingError, LogError, AlignmentError) as error:
+                lines = [f"golden {path} is of no use: {error}", f"  to make it anew: {self.golden.how}"]
+                raise AssertionError("\n".join(lines)) from None
+        if problem:
+            raise AssertionError("\n".join([*problem, f"  if that is meant to be: {self.golden.how}"]))
+
+    def _record(self, folder: Path, stem: str) -> Path:
+        """A recording of the flight so far."""
+        __tracebackhide__ = True
+        if is_remote(self.simulation.physics):
+            raise OptionError(f"physics {self.simulation.physics} cannot be started again: no recording, no golden")
+        flown = fly_again(self, folder, stem, log=False)
+        if not flown.same:
+            raise AssertionError(NOT_AGAIN)
+        return folder / f"{stem}.rec"
+
+    def _update(self, path: Path, new: Path) -> None:
+        """Write a golden, unless it is this flight already."""
+        __tracebackhide__ = True
+        book = self.golden
+        if path.suffix != ".rec":
+            raise AssertionError(f"golden {path} is not written: only recordings (.rec) are")
+        before = book.taken.setdefault(path.resolve(), book.test)
+        if before != book.test or path in book.checked:
+            raise AssertionError(f"golden {path} is of another flight of {before} already; each needs one of its own")
+        book.checked.append(path)
+        if path.exists() and _track(path) == _track(new):
+            return
+        beside = path.with_name(f".{path.name}.{os.getpid()}")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            try:
+                beside.write_bytes(new.read_bytes())
+                os.replace(beside, path)
+            finally:
+                beside.unlink(missing_ok=True)
+        except OSError as error:
+            raise AssertionError(f"golden {path} cannot be written: {error.strerror or error}") from None
+        book.written.append(path)
+
+    def _compare(self, path: Path, new: Path, tolerance: Limits) -> list[str]:
+        """What is wrong, in lines; nothing when it flies like golden."""
+        from ..comparison import flight, report
+        from ..comparison.compare import compare
+        from ..comparison.tolerance import PRESETS
+
+        if isinstance(tolerance, Path) or (isinstance(tolerance, str) and tolerance not in PRESETS):
+            tolerance = self.golden.folder / tolerance
+        found = compare(flight.read(path), flight.read(new), tolerance)
+        if found.ok:
+            if found.first_trace is not None and found.tolerance.name == "same":
+                told = f"{path.name}: like golden, but not the same any more: {found.first_trace.words}"
+                warnings.warn(FlightChanged(told), stacklevel=3)
+            return []
+        lines = [f"golden {path}", *report.lines(found)]
+        if self.golden.reports is not None:
+            lines.append(f"  report: {report.write(found, self.golden.reports / path.stem)}")
+        return lines
+
+
+def _track(path: Path) -> bytes | None:
+    """The track in a recording; None: there is none that can be read."""
+    from sitl.recording.recording import read
+
+    try:
+        return read(path).sections.get("track")
+    except RecordingError:
+        return None

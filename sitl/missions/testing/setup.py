@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How a vehicle of a test is made."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from sitl import vehicles
+from sitl.autopilot.params import files
+from sitl.core.compile import Progress
+from sitl.option_error import OptionError
+from sitl.physics.engines import NATIVE
+from sitl.plants.surroundings import StartPose
+from sitl.simulation import Simulation
+from sitl.vehicle.core_entry import Core, load_core
+from sitl.vehicle.kinds import KINDS
+from sitl.vehicles import Airframe
+from sitl.worlds import World
+
+from .. import library
+from ..files import load
+from .missions import find
+
+WIND = ("SIM_WIND_SPD", "SIM_WIND_DIR", "SIM_WIND_TURB")
+_cores: dict[str, Core] = {}
+compiling: Progress | None = None
+"""Is told when the core of a kind of vehicle must be compiled first."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """All that a simulation is made of."""
+
+    frame: str | Airframe
+    home: tuple[float, float, float, float] | None = None
+    seed: int | None = None
+    estimator: str = "ekf"
+    params: tuple[tuple[str, float], ...] = ()
+    world: str | Path | World | None = None
+    start: StartPose | None = None
+    physics: str = NATIVE
+
+    @property
+    def kind(self) -> str:
+        """ "copter" or "rover"."""
+        return vehicles.load(self.frame).kind
+
+    def build(self) -> Simulation:
+        """The simulation at power-on."""
+        __tracebackhide__ = True
+        simulation = Simulation(
+            self.frame, home=self.home, seed=self.seed, estimator=self.estimator, params=dict(self.params),
+            world=self.world, start=self.start, physics=self.physics,
+            core=_core(self.kind) if self.physics == NATIVE else None,
+        )  # fmt: skip
+        if simulation.unknown_parameters:
+            simulation.close()
+            raise OptionError(f"the {self.kind} has no parameters {', '.join(simulation.unknown_parameters)}")
+        return simulation
+
+
+def _core(kind: str) -> Core:
+    """Loaded once a process."""
+    if kind not in _cores:
+        _cores[kind] = load_core(KINDS[kind], compiling)
+    return _cores[kind]
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """What holds for all tests of a run. Parameters that a kind of vehicle does not have are left out there."""
+
+    seed: int | None = None
+    physics: str = NATIVE
+    params: Mapping[str, float] = field(default_factory=dict)
+    folders: tuple[Path, ...] = (Path(),)
+    """Where files are looked for."""
+
+
+def setup(
+    defaults: Defaults,
+    kind: str | None = None,
+    *,
+    frame: str | Path | Airframe | None = None,
+    home: Sequence[float] | None = None,
+    seed: int | None = None,
+    estimator: str = "ekf",
+    params: Mapping[str, float] | str | Path | None = None,
+    world: str | Path | World | None = None,
+    start: StartPose | None = None,
+    physics: str | None = None,
+    wind: float | Sequence[float] | None = None,
+    mission: str | Path | None = None,
+) -> Setup:
+    """A set-up from what a test says and what holds for all.
+
+    Args:
+        kind: "copter" or "rover"; None: what the frame or the mission says, or a copter.
+        frame: airframe name, a .py file, or an airframe; None: the kind's first.
+        home: latitude, longitude [deg], altitude [m], heading [deg].
+        params: values, or a .parm file.
+        world, start: as ``Simulation`` takes them.
+        wind: speed [m/s], or (speed, where it comes from [deg], turbulence [m/s]).
+        mission: a file, or a name of the library, whose home, and in the library whose frame, world and parameters,
+            the vehicle gets.
+
+    Raises:
+        OptionError, AirframeError, ParameterError: what cannot be taken.
+    """
+    __tracebackhide__ = True
+    values: dict[str, float] = {}
+    if mission is not None:
+        file = load(find(mission, defaults.folders))
+        entry = library.entries().get(str(mission))
+        kind = kind or (entry.kind if entry else file.kind)
+        if entry is not None:
+            frame, values = frame or entry.frame, dict(entry.params)
+            world, start = (world, start) if world is not None else (entry.world, start or entry.start)
+        if home is None and file.home is not None:
+            home = (*file.home, 0.0)
+    if isinstance(params, str | Path):
+        params = files.load(_beside(params, defaults.folders))
+    values.update(params or {})
+    if wind is not None:
+        figures = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
+        if not 1 <= len(figures) <= 3 or not all(map(math.isfinite, figures)):
+            raise OptionError(f"wind {wind!r} is neither a speed nor (speed, direction, turbulence)")
+        values.update(zip(WIND, figures))
+    if frame is None:
+        kinds = ("copter", "rover")
+        if kind is not None and kind not in kinds:
+            raise OptionError(f"vehicle {kind!r} is none of {', '.join(kinds)}")
+        frame = vehicles.names(kind or "copter")[0]
+    elif not isinstance(frame, Airframe):
+        frame = str(_beside(frame, defaults.folders)) if str(frame).endswith(".py") else str(frame)
+    if kind is not None and vehicles.load(frame).kind != kind:
+        raise OptionError(f"frame {frame} is a {vehicles.load(frame).kind}, not a {kind}")
+    if isinstance(world, str | Path) and str(world).endswith(".toml"):
+        world = _beside(world, defaults.folders)
+    known = KINDS[vehicles.load(frame).kind].firmware.table
+    values = {**{name: value for name, value in defaults.params.items() if name in known}, **values}
+    place = tuple(float(x) for x in home) if home is not None else None
+    if place is not None and len(place) != 4:
+        raise OptionError(f"home {home!r} is not (latitude, longitude, altitude, heading)")
+    return Setup(
+        frame, place, defaults.seed if seed is None else seed, estimator, tuple(sorted(values.items())), world,
+        tuple(start) if isinstance(start, list) else start, physics or defaults.physics,
+    )  # type: ignore[arg-type]  # fmt: skip
+
+
+def _beside(name: str | Path, folders: Sequence[Path]) -> Path:
+    """A file in one of the folders, or as it is named."""
+    return next((folder / name for folder in folders if (folder / name).is_file()), Path(name))

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The world around one vehicle: where it starts, the solids that its record lists, the floor that it stands on.
+
+Body positions are NED from the world's origin on the floor; the world's own heights count from its z = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import worlds
+from ..core.record_reader import RecordReader
+from ..option_error import OptionError
+from ..physics.native.obstacles import OBSTACLES_MAX
+from ..vehicles import Airframe
+from ..worlds import World, contact
+from ..worlds.frames import to_heading, to_ned
+from ..worlds.geometry import BOTTOM, TOP
+
+StartPose = str | Sequence[float]
+"""Name of a start pose of the world, or x, y, z [m], yaw [deg] in the world's frame."""
+
+REACH = 30.0
+"""Solids farther away than this are not listed [m]."""
+OFF_FLOOR = 0.5
+"""Greatest height of a start pose over the floor [m]: a vehicle stands at power-on."""
+INSIDE = 1e-6
+"""A vehicle that overlaps a solid by this at its start stands in it [m]."""
+
+
+class Surroundings:
+    """One vehicle's world.
+
+    Args:
+        world: of the vehicle.
+        start: where it stands at power-on; None: the world's start pose for this airframe.
+        airframe: of the vehicle.
+
+    Raises:
+        OptionError, WorldError: a start pose that is not known, off the floor or in a solid.
+    """
+
+    def __init__(self, world: World, start: StartPose | None, airframe: Airframe) -> None:
+        self.world = world
+        self.floor = float(world.floor_z)
+        """Height of the floor in the world's frame [m]."""
+        x, y, z, yaw = start_pose(world, start, airframe.name)
+        self.start = (x, y, z, yaw)
+        """x, y, z [m], yaw [rad] of the vehicle's base, in the world's frame."""
+        self.heading = math.remainder(to_heading(yaw), 2.0 * math.pi)
+        """At power-on [rad]."""
+        along = float(airframe.value("base_along"))
+        north, east, _ = to_ned(x, y, z)
+        self.position = (north - along * math.cos(self.heading), east - along * math.sin(self.heading), 0.0)
+        """Of the body's origin at power-on, NED from the world's origin on the floor [m]."""
+        self._rows = contact.rows(OBSTACLES_MAX)
+        self._check_free(airframe)
+
+    def attach(self, v: Any, reader: RecordReader, lists_solids: bool = True) -> None:
+        """Put a vehicle that has just been powered on, at home, at its start.
+
+        Args:
+            v: view of its record.
+            reader: of the same.
+            lists_solids: native physics finds the solids near the vehicle in its record; other engines have their own.
+        """
+        self._obstacles, self._position = v.physics.obstacles, v.physics.body.pos
+        self.is_wanted: Callable[[], int] = reader.field("physics.obstacles.wanted")
+        """Whether the vehicle needs a new list of the solids near it."""
+        self._position[:] = self.position
+        self._obstacles.present = int(lists_solids and len(self.world.geometry) > 0)
+        if lists_solids:
+            self.gather()
+
+    def gather(self) -> None:
+        """List the solids near the vehicle in its record."""
+        o, north, east = self._obstacles, float(self._position[0]), float(self._position[1])
+        count, complete = contact.near(self.world.geometry, north, east, REACH, self._rows)
+        rows = o.rows
+        rows[:] = 0.0
+        rows[:count] = self._rows[:count]
+        rows[:count, TOP] += self.floor
+        rows[:count, BOTTOM] += self.floor
+        o.count, o.north, o.east, o.complete = count, north, east, complete
+        o.clear = 0.0
+        o.wanted = 0
+
+    def _check_free(self, airframe: Airframe) -> None:
+        top, bottom = float(airframe.value("contact_top")), float(airframe.value("contact_bottom"))
+        radius = float(airframe.value("contact_radius"))
+        for along in np.asarray(airframe.value("contact_along"), float)[: int(airframe.value("contact_discs") or 1)]:
+            north = self.position[0] + along * math.cos(self.heading)
+            east = self.position[1] + along * math.sin(self.heading)
+            at = contact.clearance(self.world.geometry, north, east, -self.floor - top, bottom - self.floor, radius)
+            if at.distance < -INSIDE:
+                name = self.world.solids[at.solid].name or f"number {at.solid}"
+                x, y, _, yaw = self.start
+                raise OptionError(
+                    f"start at x {x:g}, y {y:g} m, yaw {math.degrees(yaw):g} deg: {airframe.name} would stand in solid "
+                    f"{name} of world {self.world.name!r} ({-at.distance:.3f} m deep)"
+                )
+
+
+def checked_world(world: str | Path | World | None, start: StartPose | None) -> World | None:
+    """The world to load, if any.
+
+    Raises:
+        OptionError: a start pose without a world.
+        WorldError: no such world.
+    """
+    if world is None:
+        if start is not None:
+            raise OptionError(f"start {start!r} needs a world; without one a vehicle starts at its home")
+        return None
+    return worlds.load(world)
+
+
+def start_pose(world: World, start: StartPose | None, robot: str) -> tuple[float, float, float, float]:
+    """x, y, z [m], yaw [rad] of a start pose.
+
+    Raises:
+        OptionError: not a name or four numbers, or not on the floor.
+        WorldError: the world has no start pose of this name.
+    """
+    if start is None or isinstance(start, str):
+        found = world.start(robot, start)
+        x, y, z, yaw = *found.position, found.yaw
+    else:
+        try:
+            x, y, z, degrees = (float(number) for number in start)
+        except (TypeError, ValueError):
+            x, y, z, degrees = (math.nan,) * 4
+        if not all(map(math.isfinite, (x, y, z, degrees))):
+            raise OptionError(
+                f"start {start!r} is neither the name of a start pose nor (x, y, z, yaw) in metres and degrees"
+            )
+        yaw = math.radians(degrees)
+    if not abs(z - world.floor_z) <= OFF_FLOOR:
+        raise OptionError(
+            f"start at z = {z:g} m: a vehicle stands on the floor at power-on; within {OFF_FLOOR:g} m of z = "
+            f"{world.floor_z:g} m is allowed"
+        )
+    return x, y, z, yaw

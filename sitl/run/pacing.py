@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How fast simulated time may go against the wall clock: the only place of a run that reads one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..simulation import Simulation
+
+MAX = "max"
+_SLICE_WALL_S = 0.002
+_SHORTEST_US, _LONGEST_US = 2500, 20000
+_CATCH_UP_S = 0.05
+
+
+class SpeedupError(ValueError):
+    """A speed-up that is neither a positive number nor "max"."""
+
+
+def parse_speedup(text: str) -> float | None:
+    """The number of simulated seconds a wall second, or None for "max".
+
+    Raises:
+        SpeedupError: anything else.
+    """
+    if text == MAX:
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 < value <= 100000.0:
+        raise SpeedupError(f"speed-up {text!r} is not a number above 0 (up to 100000) or 'max'")
+    return value
+
+
+class Pacing:
+    """Holds simulated time at ``speedup`` times the wall clock, or lets it go (None).
+
+    Time lost to a busy machine is caught up over the next slices, up to 50 ms of wall time; what is more is given up,
+    so that a suspended laptop does not resume in a rush.
+    """
+
+    def __init__(self, speedup: float | None, clock: Callable[[], float] = time.monotonic) -> None:
+        self.speedup = speedup
+        self._clock = clock
+        self._due = clock()
+        slice_us = _LONGEST_US if speedup is None else int(speedup * _SLICE_WALL_S * 1e6)
+        self.slice_us = min(max(slice_us, _SHORTEST_US), _LONGEST_US)
+        """Simulated time to advance between two looks at the wall clock [us]."""
+
+    def after_slice(self, simulation: Simulation) -> None:
+        """Wait until the next slice is due, and answer clients meanwhile: none of them can hurry the clock."""
+        wait = self.wait_s()
+        while wait > 0.0:
+            if simulation.bridge.wait(wait):
+                simulation.bridge.receive()
+            wait = self._due - self._clock()
+
+    def wait_s(self) -> float:
+        """Account for one slice; returns the wall time [s] to wait before the next, 0 for none."""
+        if self.speedup is None:
+            return 0.0
+        now = self._clock()
+        self._due = max(self._due + self.slice_us * 1e-6 / self.speedup, now - _CATCH_UP_S)
+        return max(0.0, self._due - now)

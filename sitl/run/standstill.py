@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""While simulated time stands: clients are heard, and find the vehicle by a HEARTBEAT about once a wall second."""
+
+from __future__ import annotations
+
+from ..bridge.services.statustext import StatusTextService
+from ..plants.plant import PhysicsLostError
+from ..simulation import Simulation
+
+_WAIT_S = 0.2
+_WAITS_A_HEARTBEAT = 5
+_CRITICAL, _INFO = 2, 6
+"""MAV_SEVERITY"""
+
+
+class Standstill:
+    """Waits with a vehicle whose time may not go on."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._waits = 0
+
+    def wait(self) -> None:
+        """Wait a moment, or until a client says something."""
+        bridge = self._simulation.bridge
+        if self._waits % _WAITS_A_HEARTBEAT == 0:
+            bridge.beat()
+        self._waits = 1 if bridge.wait(_WAIT_S) else self._waits + 1
+
+
+class Patience:
+    """Goes on with a simulation whose physics may go and come back; says so once each time."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._standstill = Standstill(simulation)
+        self._is_lost = False
+
+    def advance_to(self, time_us: int) -> bool:
+        """As ``Simulation.advance_to``; False when time stands because the physics has gone: call it again."""
+        before = self._simulation.time_us
+        try:
+            self._simulation.advance_to(time_us)
+        except PhysicsLostError as error:
+            if not self._is_lost:
+                self._say(_CRITICAL, str(error))
+            self._is_lost = True
+            self._standstill.wait()
+            return False
+        if self._is_lost and self._simulation.time_us > before:  # a call that only hears clients tells nothing
+            self._say(_INFO, "Physics is back")
+            self._is_lost = False
+        return True
+
+    def _say(self, severity: int, text: str) -> None:
+        bridge = self._simulation.bridge
+        bridge.get(StatusTextService).say(severity, text)
+        bridge.dropped.append(text)  # for people, beside the clients that were lost
+        bridge.flush()

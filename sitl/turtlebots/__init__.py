@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Turtlebots in a world: no autopilot, no MAVLink."""

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compiled entries bound to one vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from ctypes import c_int64, c_void_p
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..core import compile as compiler
+from ..core import records
+from ..core.compile import Progress
+from .kinds import COPTER, Kind
+
+Array = np.ndarray[Any, Any]
+
+
+class Core:
+    """``advance(fleet, index, ticks)`` of a kind of vehicle, compiled or (``NUMBA_DISABLE_JIT=1``) plain Python."""
+
+    def __init__(self, kind: Kind, function: Callable[..., None] | None) -> None:
+        self.kind = kind
+        self._function = function
+
+    def __call__(self, fleet: Array, index: int, ticks: int) -> None:
+        """Advance vehicle ``index`` by up to ``ticks`` ticks."""
+        self.bind(fleet, index)(ticks)
+
+    def bind(self, fleet: Array, index: int) -> Callable[[int], None]:
+        """The same for one vehicle, whose memory stays in place: cheaper to call."""
+        return _bound(self.kind.advance, self._function, fleet, index)
+
+
+def load_core(kind: Kind = COPTER, progress: Progress | None = None) -> Core:
+    """The core of a kind of vehicle; compiles what changed since it was last built."""
+    return Core(kind, compiler.load(kind.advance, kind.record_path, progress))
+
+
+def bind_unit(
+    unit: Callable[..., None], kind: Kind, fleet: Array, index: int, progress: Progress | None = None
+) -> Callable[[], None]:
+    """A unit of a kind of vehicle as a function of no arguments, for one vehicle whose memory stays in place."""
+    return _bound(unit, compiler.load(unit, kind.record_path, progress), fleet, index)
+
+
+def _bound(plain: Callable[..., None], compiled: Any, fleet: Array, index: int) -> Callable[..., None]:
+    if compiled is None:
+        views: Any = {index: records.view(fleet, index)}
+        return partial(plain, views, index)
+    return partial(compiled, c_void_p(fleet.ctypes.data), c_int64(len(fleet)), c_int64(index))  # converted once

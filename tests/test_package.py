@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One installed package: what a wheel holds, and that a user's own folders of the same names do no harm."""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROOMS = ("envs", "missions", "agents")
+OURS = ("sitl", "tests", "benchmarks", "docs", "examples")
+
+USER = """
+import sys
+import agents, envs, missions  # the user's own
+assert [m.OWNER for m in (agents, envs, missions)] == ["user"] * 3
+import gymnasium
+import sitl
+assert sitl.__file__.startswith(sys.argv[1]), sitl.__file__
+shape = gymnasium.make("sitl.envs:GazeboCircuit2TurtlebotLIDAR-v0").reset(seed=1)[0].shape
+again = gymnasium.make("sitl/Navigate-v0").reset(seed=1)[0].shape
+from importlib.metadata import distribution, entry_points
+here = distribution("gym-sitl").entry_points
+for entry in here:
+    if entry.group in ("sitl.commands", "pytest11"):
+        entry.load()
+from sitl.agents import recipes
+from sitl.missions import library
+print(shape, again, len(library.entries()), len(recipes.names()) > 3)
+"""
+
+
+def imported(file: Path) -> set[str]:
+    """Top-level packages that a file imports."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            found.add(str(node.module).split(".")[0])
+    return found
+
+
+def test_readers_find_the_rooms_at_the_top_and_code_does_not() -> None:
+    for room in ROOMS:
+        assert (ROOT / room).is_symlink() and (ROOT / room).resolve() == (ROOT / "sitl" / room).resolve()
+    for folder in OURS:
+        for file in (ROOT / folder).rglob("*.py"):
+            assert not imported(file) & set(ROOMS), file
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A wheel of this tree, built in a copy of it."""
+    source = tmp_path_factory.mktemp("source") / "tree"
+    without = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "dist", "tests", "docs")
+    shutil.copytree(ROOT, source, symlinks=True, ignore=without)
+    command = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", "out", "."]
+    done = subprocess.run(command, cwd=source, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    (found,) = (source / "out").glob("*.whl")
+    return found
+
+
+@pytest.mark.slow
+def test_a_wheel_holds_one_package_with_all_its_files(wheel: Path) -> None:
+    names = zipfile.ZipFile(wheel).namelist()
+    top = {name.split("/")[0] for name in names}
+    assert len(top) == 2 and "sitl" in top and all(name == "sitl" or name.endswith(".dist-info") for name in top)
+    there = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "sitl").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    assert {name for name in names if name.startswith("sitl/")} == there
+
+
+@pytest.mark.slow
+def test_a_users_own_folders_do_no_harm(wheel: Path, tmp_path: Path) -> None:
+    site, project = tmp_path / "site", tmp_path / "project"
+    install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(site), str(wheel)]
+    assert subprocess.run(install, capture_output=True).returncode == 0
+    for room in ROOMS:
+        (project / room).mkdir(parents=True)
+        (project / room / "__init__.py").write_text("OWNER = 'user'\n")
+    (project / "user.py").write_text(USER)
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+    command = [sys.executable, "user.py", str(site)]
+    done = subprocess.run(command, cwd=project, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "(5,) (20,) 39 True\n"
