@@ -37,6 +37,8 @@ class Connection:
 
     is_exact = True
     """Whether its clock goes exactly as far as it is told to."""
+    is_held = True
+    """Whether its clock stands between two calls."""
     simulation: Simulation | None = None
     """The vehicle itself, when it is in this process."""
 
@@ -247,6 +249,7 @@ class Lockstep(Remote):
 
     def run(self, us: int) -> None:
         goal = self.time_ms + us // 1000
+        self.inbox.acks.pop(GRANT, None)
         self._send(GRANT, goal)
         self.exchange(lambda: self._reached(goal))
 
@@ -270,6 +273,7 @@ class RealTime(Remote):
     """One that goes by its own clock; ``run`` ends with the first message that is late enough."""
 
     is_exact = False
+    is_held = False
 
     def run(self, us: int) -> None:
         if us == 0:

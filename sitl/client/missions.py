@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from ..autopilot.mission.item import RELATIVE, MissionItem, home_item
@@ -58,7 +59,7 @@ class MissionPilot(Pilot):
             items = (home_item(*self.home()), *items[1:])
         self.telemetry.reached.clear()
         self.telemetry.items.clear()
-        self._transfer(items)
+        self.transfer(items)
         return mission
 
     def start_mission(self) -> None:
@@ -70,17 +71,21 @@ class MissionPilot(Pilot):
         if self.kind != "rover":
             self.command("MISSION_START", subject="the start of the mission")
 
-    def _transfer(self, items: Sequence[MissionItem]) -> None:
-        """Send items, home first, by the mission protocol."""
+    def transfer(self, items: Sequence[MissionItem]) -> None:
+        """Send items, home first, as they are, by the mission protocol.
+
+        Raises:
+            MissionRefusedError, WaitTimeoutError: as for ``upload``.
+        """
         begin, limit_s = self.now, 10.0 + 0.2 * len(items)
         self._upload, self._last_item, self._result = items, -1, None
         self.send("MISSION_COUNT", count=len(items))
         while self._result is None:
             before = self._asked
-            if self.passes(lambda asked=before: self._result is not None or self._asked != asked, SILENCE_S):
+            if self.passes(partial(self._goes_on, before), SILENCE_S):
                 continue
             if self.now - begin >= limit_s:
-                self.fail(WaitTimeoutError("MISSION_ACK", limit_s, "", begin))
+                self.raise_error(WaitTimeoutError("MISSION_ACK", limit_s, "", begin))
             if self._last_item < 0:
                 self.send("MISSION_COUNT", count=len(items))
             else:
@@ -88,7 +93,11 @@ class MissionPilot(Pilot):
         self._upload = ()
         if self._result:
             name = RESULT_NAMES.get(self._result) or entry_name("MAV_MISSION_RESULT", self._result)
-            self.fail(MissionRefusedError(self._result, name, begin))
+            self.raise_error(MissionRefusedError(self._result, name, begin))
+
+    def _goes_on(self, asked: int) -> bool:
+        """Whether the vehicle has answered, or asked for an item, since it had asked so often."""
+        return self._result is not None or self._asked != asked
 
     def _take(self, name: str, fields: Any) -> None:
         super()._take(name, fields)

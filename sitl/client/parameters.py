@@ -51,7 +51,7 @@ class Parameters:
             name, f"{name} to be set to {value:g}", "PARAM_SET", param_value=value, param_type=REAL_32
         )
         if not math.isclose(kept, value, rel_tol=1e-6, abs_tol=1e-9):
-            self._session.fail(ParameterRefusedError(name, value, kept))
+            self._session.raise_error(ParameterRefusedError(name, value, kept))
 
     def update(self, values: Mapping[str, float] | None = None, **more: float) -> None:
         """Set several; all names are checked first."""
@@ -109,4 +109,4 @@ class Parameters:
             session.send(message, param_id=name.encode(), **fields)
             if session.passes(arrived, REPEAT_US / 1e6):
                 return values[name]
-        session.fail(WaitTimeoutError(what, ANSWER_S, "", begin))
+        session.raise_error(WaitTimeoutError(what, ANSWER_S, "", begin))

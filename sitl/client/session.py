@@ -58,8 +58,8 @@ class Collector:
 class Session:
     """Time, messages and commands of one vehicle.
 
-    Time passes only in calls that wait: they go on in steps to whole tenths of a simulated second. Between two calls the
-    vehicle stands still, unless it goes by a clock of its own.
+    Time passes only in calls that wait: they go on in steps to whole tenths of a simulated second. Between two calls
+    the vehicle stands still, unless it goes by a clock of its own.
 
     Args:
         vehicle: a simulation in this process, a form of connection ("udp:127.0.0.1:14550", "tcp:127.0.0.1:5760"), or a
@@ -163,6 +163,21 @@ class Session:
         return self.telemetry.heading
 
     @property
+    def altitude(self) -> float:
+        """Above home [m]."""
+        return self.telemetry.altitude
+
+    @property
+    def groundspeed(self) -> float:
+        """[m/s]"""
+        return self.telemetry.groundspeed
+
+    @property
+    def climb_rate(self) -> float:
+        """Upward [m/s]."""
+        return self.telemetry.climb_rate
+
+    @property
     def texts(self) -> list[Text]:
         """All status texts: (time [s], severity, text)."""
         return self.telemetry.texts
@@ -209,7 +224,7 @@ class Session:
         for watch in self._watches:
             if not watch.holds():
                 self._watches.remove(watch)
-                self.fail(InvariantError("at all times:", f"{watch.what}; it is not so now", self.now))
+                self.raise_error(InvariantError("at all times:", f"{watch.what}; it is not so now", self.now))
 
     def _take(self, name: str, fields: Any) -> None:
         """A message of the vehicle."""
@@ -254,7 +269,7 @@ class Session:
                 since = -1
             if now >= stop:
                 kept = f", for {hold:g} s" if hold else ""
-                self.fail(WaitTimeoutError(f"{what}{kept}", timeout, last(), begin / 1e6))
+                self.raise_error(WaitTimeoutError(f"{what}{kept}", timeout, last(), begin / 1e6))
             self.step()
 
     def passes(self, condition: Callable[[], Any], seconds: float) -> bool:
@@ -330,6 +345,10 @@ class Session:
         finally:
             self._collectors = [other for other in self._collectors if other is not collector]
 
+    def heartbeats(self, on: bool) -> None:
+        """Whether the vehicle gets this ground station's heartbeats."""
+        self._is_silent = not on
+
     def ask_for_telemetry(self, names: set[str] | None = None) -> None:
         """Ask for the messages that the client lives on, or for some of them; a reboot makes the vehicle forget it."""
         self._awaited = set(self._rates if names is None else names)
@@ -377,7 +396,7 @@ class Session:
         subject, since = subject or command_name(number), self.now
         result = self._request(number, subject, arguments(number, params, named))
         if result:
-            self.fail(CommandRefusedError(subject, result, entry_name("MAV_RESULT", result), since))
+            self.raise_error(CommandRefusedError(subject, result, entry_name("MAV_RESULT", result), since))
 
     def request(self, name: str | int, *params: Any, **named: Any) -> int:
         """The same, but its MAV_RESULT is given, whatever it is."""
@@ -393,7 +412,7 @@ class Session:
         begin, tries = self.now, round(ANSWER_S * 1e6 / REPEAT_US)
         result = self.connection.request(number, params, lambda done: self.passes(done, REPEAT_US / 1e6), tries)
         if result is None:
-            self.fail(WaitTimeoutError(f"an answer to {subject}", ANSWER_S, "", begin))
+            self.raise_error(WaitTimeoutError(f"an answer to {subject}", ANSWER_S, "", begin))
         return result
 
     def _mode_number(self, name: str) -> int:
@@ -411,7 +430,7 @@ class Session:
 
     # ------------------------------------------------------------------ failures
 
-    def fail(self, error: ClientError) -> NoReturn:
+    def raise_error(self, error: ClientError) -> NoReturn:
         """Raise an error, with what the vehicle does at the moment."""
         error.texts = tuple(text.text for text in self.texts if text.time >= error.since)
         lines = [f"  {self.name} at {self.now:.1f} s simulated: {self.describe()}"]

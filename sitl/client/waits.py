@@ -13,6 +13,8 @@ __tracebackhide__ = True
 
 BOOT_S = 120.0
 """A vehicle that is not ready by then has a fault."""
+READY = "a vehicle that is ready to arm"
+"""What ``wait_ready`` waits for, in its error."""
 
 
 def turn(degrees: float) -> float:
@@ -37,7 +39,7 @@ class Waits(Session):
             place = "position known" if seen.has_position else "no position"
             return f"{place}, pre-arm checks {'good' if seen.checked else 'not good'}"
 
-        self.wait(lambda t: t.has_position and t.checked, timeout, "a vehicle that is ready to arm", last)
+        self.wait(lambda t: t.has_position and t.checked, timeout, READY, last)
 
     def wait_mode(self, name: str, timeout: float = 30.0) -> None:
         """Until it is in a mode."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-from .mavlink.ends import LinkLostError, NotReadyError
+from .mavlink.errors import LinkLostError, NotReadyError
 from .options import EnvOptionError
 
 __all__ = ["MAX_EPISODE_STEPS", "PAPER", "EnvOptionError", "LinkLostError", "NotReadyError", "register"]

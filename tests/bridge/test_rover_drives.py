@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import SET_MODE, Pilot, upload
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import SET_MODE, Pilot, items
 from sitl.simulation import Simulation
 
 HOLD, AUTO, RTL, GUIDED = 4, 10, 11, 15
@@ -26,7 +26,7 @@ class Driver:
 
     def __init__(self, frame: str) -> None:
         self.simulation = Simulation(frame, home=(HOME[0] * 1e-7, HOME[1] * 1e-7, 584.0, 0.0))
-        self.client = Client()
+        self.client = Endpoint()
         self.simulation.bridge.add_link(self.client.link)
         self.heard: list[Any] = []
 
@@ -116,14 +116,14 @@ def test_a_place_is_reached_and_told(driver: Driver) -> None:
 def test_a_mission_from_upload_to_its_end() -> None:
     pilot = Pilot(Simulation("ardupilot_rover", home=(HOME[0] * 1e-7, HOME[1] * 1e-7, 584.0, 0.0)))
     pilot.fly(45.0)
-    upload(pilot, MISSION)
-    pilot.client.command(SET_MODE, 1, GUIDED)
-    pilot.client.command(400, 1)
+    pilot.transfer(items(MISSION))
+    pilot.send_command("DO_SET_MODE", 1, GUIDED)
+    pilot.send_command("COMPONENT_ARM_DISARM", 1)
     pilot.fly(1.0)
-    pilot.client.command(300)
+    pilot.send_command("MISSION_START")
     pilot.fly(30.0)
-    assert [seq for _, seq in pilot.reached] == [1, 2]
-    said = [text for _, text in pilot.texts]
+    assert pilot.reached == [1, 2]
+    said = [text for _, _, text in pilot.texts]
     assert said[-1] == "Mission Complete" and "Reached waypoint #1" in said and "Flight plan received" in said
     place = pilot.simulation.v.autopilot.estimate.pos
     assert math.dist(place[:2], (10.0, 10.0)) < float(pilot.simulation.v.autopilot.params.WP_RADIUS)

@@ -137,7 +137,7 @@ class RoverSoak(ByDice, Driver):
         d = self.dice
         half = 0.5 * d.uniform(-3.0, 3.0)
         self.client.send(
-            "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=d.choice((7, 3, 0x83)),
+            "SET_ATTITUDE_TARGET", type_mask=d.choice((7, 3, 0x83)),
             q=[math.cos(half), 0.0, 0.0, math.sin(half)], thrust=d.uniform(-1, 1), body_yaw_rate=d.uniform(-1, 1),
         )  # fmt: skip
 

@@ -20,7 +20,7 @@ def test_sectors_are_spread_over_the_readings(monkeypatch):
     monkeypatch.delitem(ranging.BUILDERS, "DEBUG_FLOAT_ARRAY")
     sectors = gym.make(COPTER, observation="scan")
     rough, _ = sectors.reset(seed=2)
-    assert sectors.unwrapped.robot.link(0).heard.scan_kind is SECTORS
+    assert sectors.unwrapped.robot.link(0).inbox.scan_kind is SECTORS
     assert rough == pytest.approx(seen, abs=0.0051)
     assert not np.array_equal(rough, seen)
     for action in (0, 1, 2, 0):

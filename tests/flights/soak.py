@@ -129,7 +129,7 @@ class Soak(ByDice, Aviator):
         axis = d.uniform(-3.0, 3.0)
         q = [math.cos(half), math.sin(half) * math.cos(axis), math.sin(half) * math.sin(axis), 0.0]
         self.client.send(
-            "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=7, q=q, thrust=d.uniform(0.3, 0.7)
+            "SET_ATTITUDE_TARGET", type_mask=7, q=q, thrust=d.uniform(0.3, 0.7)
         )
 
     def stick(self) -> None:

@@ -16,7 +16,6 @@ from hil_bench import Vehicle
 from hil_cuts import CutWire
 from hil_peers import ROOT, PhysicsProcess, WatchedPilot
 
-from sitl.bridge.client import Client
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
 from sitl.bridge.hil.autopilot_end import TAKEN, AutopilotEnd
@@ -24,8 +23,9 @@ from sitl.bridge.hil.numbers import PX4
 from sitl.bridge.hil.physics_end import HEARTBEAT
 from sitl.bridge.hil.sender import Sender
 from sitl.cli import main
+from sitl.client.endpoint import Endpoint
 from sitl.core.records import first_difference
-from sitl.missions.pilot import TAKEOFF, Pilot
+from sitl.missions.pilot import Pilot
 from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
@@ -82,7 +82,7 @@ def hop(simulation: Simulation) -> PatientPilot:
     pilot = PatientPilot(simulation)
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 3.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=3.0)
     pilot.fly(5.0)
     return pilot
 
@@ -379,7 +379,7 @@ class Absent:
 
 def test_it_is_said_once_that_the_physics_has_gone_and_once_that_it_is_back(core) -> None:
     simulation = Simulation(core=core)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     physics, patience = Absent(simulation), Patience(simulation)
     patience._standstill.wait = lambda: None  # type: ignore[method-assign]

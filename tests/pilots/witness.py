@@ -132,7 +132,7 @@ class Witness(Pilot):
     def set_parameter(self, name: str, value: float) -> None:
         """PARAM_SET."""
         self.client.send(
-            "PARAM_SET", target_system=1, target_component=1, param_id=name.encode(), param_value=value,
+            "PARAM_SET", param_id=name.encode(), param_value=value,
             param_type=9,
         )  # fmt: skip
         self.fly(0.05)
@@ -141,7 +141,7 @@ class Witness(Pilot):
     def target(self, mask: int, frame: int = 1, **fields: float) -> None:
         """SET_POSITION_TARGET_LOCAL_NED."""
         self.client.send(
-            "SET_POSITION_TARGET_LOCAL_NED", target_system=1, target_component=1, coordinate_frame=frame,
+            "SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=frame,
             type_mask=mask, **fields,
         )  # fmt: skip
 
@@ -160,7 +160,7 @@ class Witness(Pilot):
     def override(self, *pulses: int) -> None:
         """One RC_CHANNELS_OVERRIDE; channels not given are left alone."""
         channels = {f"chan{k + 1}_raw": p for k, p in enumerate((*pulses, *[KEEP] * (8 - len(pulses))))}
-        self.client.send("RC_CHANNELS_OVERRIDE", target_system=1, target_component=1, **channels)
+        self.client.send("RC_CHANNELS_OVERRIDE", **channels)
 
     def let_go(self) -> None:
         """Send no sticks any more."""
@@ -178,7 +178,7 @@ class Witness(Pilot):
         """Upload items (home is put in front) by the mission protocol; the MAV_MISSION_RESULT."""
         self.items = (Item(WAYPOINT, (0.0, 0.0), 584.0, frame=ABSOLUTE), *items)
         self.answers.clear()
-        self.client.send("MISSION_COUNT", target_system=1, target_component=1, count=len(self.items))
+        self.client.send("MISSION_COUNT", count=len(self.items))
         assert self.fly(10.0, lambda: bool(self.answers)), "no MISSION_ACK"
         return self.answers[0]
 
@@ -193,7 +193,7 @@ class Witness(Pilot):
             x, y = self.lat_lon(*item.place) if item.place else (0, 0)
             p = {f"param{k + 1}": value for k, value in enumerate(item.p)}
             self.client.send(
-                "MISSION_ITEM_INT", target_system=1, target_component=1, seq=fields.seq, frame=item.frame,
+                "MISSION_ITEM_INT", seq=fields.seq, frame=item.frame,
                 command=item.command, autocontinue=1, x=x, y=y, z=item.z, **p,
             )  # fmt: skip
         elif name == "MISSION_ACK":

@@ -50,7 +50,7 @@ def square(physics: str, frame: str, world: str | None, side: float, height: flo
 @pytest.mark.parametrize(("frame", "world", "side", "height"), MISSIONS.values(), ids=MISSIONS)
 def test_a_mission_as_on_native_physics(frame: str, world: str | None, side: float, height: float) -> None:
     bullet, native = (square(physics, frame, world, side, height) for physics in ("pybullet", "native"))
-    assert [seq for _, seq in bullet.reached] == [1, 2, 3, 4, 5]
+    assert bullet.reached == [1, 2, 3, 4, 5]
     assert [time for time, _ in bullet.reached] == pytest.approx([time for time, _ in native.reached], abs=0.5)
     assert bullet.now == pytest.approx(native.now, abs=1.0)
     ours, theirs = np.array(bullet.track), np.array(native.track)

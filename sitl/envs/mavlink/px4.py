@@ -14,10 +14,10 @@ from sitl.bridge.services.setpoints import (
     YAW_IGNORED,
     YAW_RATE_IGNORED,
 )
+from sitl.client.connection import ACCEPTED, Connection
 
-from .connection import ACCEPTED, Connection
-from .ends import NotReadyError
-from .preparation import ARM_DISARM, INTERVAL_US, ORIGIN, REQUEST, SET_MODE, set_intervals
+from .errors import NotReadyError
+from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals
 from .setpoints import LOCAL, Encode, Message, position
 from .telemetry import Telemetry
 
@@ -59,7 +59,7 @@ def prepare(link: Connection, take_off: float) -> None:
     Raises:
         NotReadyError: it does not get there; the message says what the vehicle told.
     """
-    heard = link.heard
+    heard = link.inbox
     set_intervals(link, INTERVAL_US)
     _until(link, lambda: not math.isnan(heard.position[1]), lambda: None, _READY_S, "has no position")
     north, east, down = heard.position[1:4]
@@ -75,14 +75,17 @@ def prepare(link: Connection, take_off: float) -> None:
             type_mask=_PLACE_AND_YAW,
             **place,
         )
-        link.client.send_payload(LOCAL, target)
+        link.endpoint.send_payload(LOCAL, target)
 
     for _ in range(_BEFORE):
         hold()
         link.run(_TENTH)
 
+    def offboard() -> bool:
+        return link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, OFFBOARD) == ACCEPTED
+
     def arms() -> bool:
-        return link.command(SET_MODE, 1.0, OFFBOARD) == ACCEPTED and link.command(ARM_DISARM, 1.0) == ACCEPTED
+        return offboard() and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
 
     _until(link, arms, hold, _READY_S, "does not arm in OFFBOARD")
     _until(
@@ -92,7 +95,7 @@ def prepare(link: Connection, take_off: float) -> None:
     for _ in range(3):
         if heard.origin is None:
             hold()
-            link.command(REQUEST, ORIGIN.id)
+            link.command("REQUEST_MESSAGE", ORIGIN.id)
     if heard.origin is None:
         raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
     scans = heard.scans
@@ -109,5 +112,5 @@ def _until(link: Connection, done: Callable[[], bool], hold: Callable[[], None],
             return
         hold()
         link.pause(_TENTH)
-    told = "; ".join(link.heard.texts[-4:]) or "nothing"
+    told = "; ".join(link.inbox.last_texts[-4:]) or "nothing"
     raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; it told: {told}")

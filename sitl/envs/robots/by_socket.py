@@ -5,8 +5,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..mavlink.connection import Lockstep, connect
+from gymnasium import logger
+
+from sitl.client.connection import Lockstep, connect
+from sitl.option_error import OptionError
+
 from ..mavlink.preparation import reboot
+from ..mavlink.telemetry import Telemetry
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import Ready, Seat, Vehicles
@@ -37,8 +42,12 @@ class SocketVehicles(Vehicles):
         self._pose = pose
         link = self.links[0]
         if link is None:
-            link = connect(self._connection, len(self.seat.angles), self.options["patience"])
-            link.heard.angles = self.seat.angles
+            inbox = Telemetry(len(self.seat.angles))
+            try:
+                link = connect(self._connection, inbox, self.options["patience"], warn=logger.warn)
+            except OptionError as error:
+                raise EnvOptionError(str(error)) from None
+            link.inbox.angles = self.seat.angles
             self.links[0] = link
         reboot(link)
         origin = self.prepare(link, pose)
@@ -49,4 +58,4 @@ class SocketVehicles(Vehicles):
     def time_us(self, index: int) -> int:
         link = self.links[index]
         assert link is not None
-        return 1000 * (link.time_ms if isinstance(link, Lockstep) else int(link.heard.position[0]))
+        return link.time_us

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
 from sitl.bridge.links.address import LinkAddressError, open_link
+from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import NATIVE
 from sitl.plants.local import LocalPlant
@@ -17,8 +18,8 @@ from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 
-from ..mavlink.connection import InProcess
 from ..mavlink.preparation import INTERVAL_US
+from ..mavlink.telemetry import Telemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import Ready, Seat, Vehicles
@@ -71,10 +72,10 @@ class InProcessVehicles(Vehicles):
         ready = self._ready.get(key)
         if ready is None:
             simulation = self._simulation(pose, figures)
-            link = InProcess(simulation, len(self.seat.angles))
-            link.heard.angles = self.seat.angles
+            link = InProcess(simulation, Telemetry(len(self.seat.angles)))
+            link.inbox.angles = self.seat.angles
             origin = self.prepare(link, pose)
-            ready = Ready(simulation.snapshot(), link.heard.memory(), origin, simulation.time_us, "", INTERVAL_US)
+            ready = Ready(simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US)
             link.close()
             if len(self._ready) >= _MOST_READY:
                 del self._ready[next(iter(self._ready))]
@@ -104,8 +105,8 @@ class InProcessVehicles(Vehicles):
         link = self.links[index]
         if link is None:
             simulation = self._simulation()
-            link = self.links[index] = InProcess(simulation, len(self.seat.angles))
-            link.heard.angles = self.seat.angles
+            link = self.links[index] = InProcess(simulation, Telemetry(len(self.seat.angles)))
+            link.inbox.angles = self.seat.angles
             if index == 0 and self._gcs is not None:
                 simulation.bridge.add_link(self._gcs)
         assert isinstance(link, InProcess)
@@ -126,7 +127,7 @@ class InProcessVehicles(Vehicles):
         if not isinstance(link, InProcess):
             raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
         return Ready(
-            link.simulation.snapshot(), link.heard.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
+            link.simulation.snapshot(), link.inbox.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
         )
 
     def restore(self, index: int, ready: Ready) -> None:
@@ -135,5 +136,5 @@ class InProcessVehicles(Vehicles):
             link.simulation.restore(ready.simulation)
         except (OptionError, EngineError) as error:
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
-        link.client.link.receive()
-        link.heard.recall(ready.heard)
+        link.endpoint.link.receive()
+        link.inbox.recall(ready.heard)
