@@ -140,9 +140,7 @@ def test_time_is_exact(core: Core) -> None:
 def test_reboot_keeps_parameters_and_time_goes_on(core: Core) -> None:
     pilot = Pilot(Simulation(core=core))
     pilot.fly(3.0)
-    pilot.send(
-        "PARAM_SET", param_id=b"WPNAV_SPEED", param_value=300.0, param_type=9
-    )
+    pilot.send("PARAM_SET", param_id=b"WPNAV_SPEED", param_value=300.0, param_type=9)
     pilot.fly(1.0)
     pilot.send_command("PREFLIGHT_REBOOT_SHUTDOWN", 1)
     pilot.fly(1.0)

@@ -6,8 +6,10 @@ from __future__ import annotations
 import pytest
 
 from sitl.client.endpoint import Endpoint
-from sitl.missions.pilot import SET_MODE, Pilot, items
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Core, Simulation
+
+DO_SET_MODE = 176
 
 MOTOR_TEST, SET_SERVO, SET_RELAY = 209, 183, 181
 ACCEPTED, DENIED, FAILED = 0, 2, 4
@@ -117,7 +119,7 @@ def test_an_origin_is_taken_once(core: Core) -> None:
 
 
 def test_prearm_failures_are_said_every_30_s(bench: Bench) -> None:
-    assert bench.command(SET_MODE, 1, 4) == ACCEPTED
+    assert bench.command(DO_SET_MODE, 1, 4) == ACCEPTED
     bench.wait(24.8)
     assert not [t for t in bench.texts if t.startswith("PreArm: ")]
     bench.wait(1.0)
@@ -128,9 +130,7 @@ def test_prearm_failures_are_said_every_30_s(bench: Bench) -> None:
 
 
 def test_parameters_that_the_firmware_owns_are_not_set(bench: Bench) -> None:
-    bench.client.send(
-        "PARAM_SET", param_id=b"MIS_TOTAL", param_value=5, param_type=4
-    )
+    bench.client.send("PARAM_SET", param_id=b"MIS_TOTAL", param_value=5, param_type=4)
     bench.simulation.advance(0.05)
     values = [m.fields for m in bench.client.receive() if m.name == "PARAM_VALUE"]
     assert [(m.param_id, m.param_value) for m in values] == [(b"MIS_TOTAL", 0.0)]

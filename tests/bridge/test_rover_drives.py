@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 
 from sitl.client.endpoint import Endpoint
-from sitl.missions.pilot import SET_MODE, Pilot, items
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation
+
+DO_SET_MODE = 176
 
 HOLD, AUTO, RTL, GUIDED = 4, 10, 11, 15
 POSITION, VELOCITY, VELOCITY_AND_RATE, VELOCITY_AND_YAW = 0xDF8, 0xDC7, 0x5C7, 0x9C7
@@ -56,7 +58,7 @@ class Driver:
     def ready(self) -> None:
         """With a position, in GUIDED, armed."""
         self.wait(45.0)
-        assert self.command(SET_MODE, 1, GUIDED) == 0
+        assert self.command(DO_SET_MODE, 1, GUIDED) == 0
         assert self.command(400, 1) == 0, self.texts()
 
     def local(self, mask: int, frame: int = 1, seconds: float = 0.0, **fields: float) -> None:
@@ -90,7 +92,7 @@ def test_backwards_and_in_circles(driver: Driver) -> None:
     assert float(driver.ap.estimate.vel[0]) == pytest.approx(-1.0, abs=0.2)
     driver.local(VELOCITY_AND_RATE, frame=8, seconds=6.0, vx=1.0, yaw_rate=0.5)
     assert float(driver.ap.estimate.rates[2]) == pytest.approx(0.5, abs=0.1) and driver.speed > 0.8
-    assert driver.command(SET_MODE, 1, HOLD) == 0
+    assert driver.command(DO_SET_MODE, 1, HOLD) == 0
     driver.wait(5.0)
     assert driver.speed < 0.1
 
@@ -159,7 +161,7 @@ def test_motor_test_turns_the_wheels_for_a_while(driver: Driver) -> None:
 
 
 def test_sticks_drive_in_manual(driver: Driver) -> None:
-    assert driver.command(SET_MODE, 1, 0) == 0
+    assert driver.command(DO_SET_MODE, 1, 0) == 0
     for _ in range(6):
         driver.client.send("MANUAL_CONTROL", target=1, x=32767, y=500, z=300, r=32767)
         driver.wait(0.5)
@@ -184,7 +186,7 @@ def test_the_same_bytes_after_a_restore(driver: Driver) -> None:
     driver.wait(0.1)
     snapshot = driver.simulation.snapshot()
     first = record()
-    assert driver.command(SET_MODE, 1, RTL) == 0
+    assert driver.command(DO_SET_MODE, 1, RTL) == 0
     driver.wait(1.0)
     driver.simulation.restore(snapshot)
     assert record() == first and len(first) > 20_000

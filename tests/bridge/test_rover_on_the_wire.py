@@ -17,8 +17,10 @@ from sitl.bridge import dialect
 from sitl.bridge.rover.commands import COMMANDS
 from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
-from sitl.missions.pilot import SET_MODE, Pilot, items
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation, Snapshot
+
+DO_SET_MODE = 176
 
 MISSION = [
     (0, 16, -353632621, 1491652371, 584.0), (3, 16, -353630824, 1491652371, 0.0), (3, 16, -353630824, 1491654574, 0.0),
@@ -102,7 +104,7 @@ def hold(simulation: Simulation, client: Endpoint) -> None:
     """HOLD is accepted and stops it; it can be disarmed."""
     simulation.advance(4.0)  # overrides and set-points of before expire
     system = int(simulation.v.autopilot.params.MAV_SYSID)
-    for command, wait in (((SET_MODE, 1, HOLD), 20.0), ((400, 0), 0.1)):
+    for command, wait in (((DO_SET_MODE, 1, HOLD), 20.0), ((400, 0), 0.1)):
         client.receive()
         client.command(*command, target=system)
         simulation.advance(wait)

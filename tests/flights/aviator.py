@@ -27,7 +27,6 @@ from witness import (
     Witness,
 )
 
-from sitl.missions.pilot import TAKEOFF
 from sitl.physics.native import truth
 from sitl.simulation import Core
 
@@ -72,7 +71,7 @@ class Aviator(Witness):
 
     def take_off(self, height: float) -> None:
         """Take off, armed in GUIDED."""
-        assert self.ask(TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
+        assert self.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.fly(30.0 + height, lambda: self.height > height - 0.5), f"at {self.height} m, {self.texts}"
         self.fly(4.0)
 

@@ -98,10 +98,10 @@ def test_upload_in_flight_goes_on_with_the_new_items(core: Core, frame: str) -> 
 
 def test_a_running_mission_is_not_cleared(core: Core) -> None:
     p = under_way(core, "erle_copter", 13.0)
-    p.answers.clear()
-    p.send("MISSION_CLEAR_ALL", target_system=1, target_component=1)
-    p.fly(0.3)
-    assert p.answers == [1]
+    with p.messages("MISSION_ACK") as answers:
+        p.send("MISSION_CLEAR_ALL")
+        p.fly(0.3)
+    assert [answer.type for answer in answers] == [1]
     p.wait_disarmed(80.0)
     assert p.reached == [1, 2, 3, 4]
 

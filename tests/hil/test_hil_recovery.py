@@ -50,16 +50,10 @@ class PatientPilot(WatchedPilot):
 
     lost = 0
 
-    def fly(self, seconds, until=lambda: False):  # type: ignore[no-untyped-def]
-        simulation = self.simulation
-        stop = simulation.time_us + int(seconds * 1e6)
-        while simulation.time_us < stop:
-            self.lost += go_on(simulation, min(stop, simulation.time_us + 40_000))
-            for name, fields in self.client.receive():
-                self._take(name, fields)
-            if until():
-                return True
-        return False
+    def step(self, stop_us: int | None = None) -> None:
+        later = self.simulation.time_us + 40_000
+        self.lost += go_on(self.simulation, later if stop_us is None else min(later, stop_us))
+        self.connection.receive()
 
 
 def start_run(physics: str, folder: Path) -> subprocess.Popen[str]:

@@ -45,9 +45,7 @@ def driving(core: Core, world: World | str, seconds: float, throttle: int = 1900
 
 def drive(pilot: Pilot, seconds: float, throttle: int, steering: int = 1500) -> None:
     for _ in range(round(10 * seconds)):
-        pilot.send(
-            "RC_CHANNELS_OVERRIDE", chan1_raw=steering, chan3_raw=throttle
-        )
+        pilot.send("RC_CHANNELS_OVERRIDE", chan1_raw=steering, chan3_raw=throttle)
         pilot.fly(0.1)
 
 
@@ -67,7 +65,7 @@ def test_a_copter_flown_into_a_wall_stops_there(cores: dict[str, Core]) -> None:
     t, o = truth.read(pilot.simulation.v), pilot.simulation.v.physics.obstacles
     assert t.pos[0] == pytest.approx(4.58, abs=1e-6) and abs(t.pos[1]) < 0.1 and -t.pos[2] > 1.0
     assert o.touching == 1 and o.hit_count == 1 and o.hit_speed == pytest.approx(2.0, abs=0.1)
-    assert [text for _, text in pilot.texts if "obstacle" in text] == [f"SIM Hit obstacle at {o.hit_speed:f} m/s"]
+    assert [text for _, _, text in pilot.texts if "obstacle" in text] == [f"SIM Hit obstacle at {o.hit_speed:f} m/s"]
     for _ in range(70):  # its position target has run ahead
         pilot.setpoint(VELOCITY_ONLY, velocity=(-1.0, 0.0, 0.0))
         pilot.fly(0.1)
@@ -107,7 +105,7 @@ def test_a_rover_driven_into_a_wall_stops_there(cores: dict[str, Core], yaw: flo
     pilot = driving(cores["rover"], behind_a_wall(7.0, yaw), 9.0)
     v = pilot.simulation.v
     assert v.physics.obstacles.hit_speed == pytest.approx(1.59 * math.cos(yaw), abs=0.03)
-    assert sum("Hit obstacle" in text for _, text in pilot.texts) == 1
+    assert sum("Hit obstacle" in text for _, _, text in pilot.texts) == 1
     assert abs(v.physics.wheels.forward) < 0.05
     if yaw == 0.0:
         assert v.physics.body.pos[0] == pytest.approx(6.9 - 0.9 - 0.506, abs=1e-6)
