@@ -248,10 +248,15 @@ class Lockstep(Remote):
         return 1000 * self.time_ms
 
     def run(self, us: int) -> None:
-        goal = self.time_ms + us // 1000
+        before = self.time_ms
+        self.time_ms = goal = before + us // 1000  # what comes in is of this time, as it is in process
         self.inbox.acks.pop(GRANT, None)
         self._send(GRANT, goal)
-        self.exchange(lambda: self._reached(goal))
+        try:
+            self.exchange(lambda: self._reached(goal))
+        except LinkLostError:
+            self.time_ms = before
+            raise
 
     def _reached(self, goal: int) -> bool:
         ack = self.inbox.acks.get(GRANT)
