@@ -1,37 +1,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors that are a user's mistake: the command line prints their text without a traceback."""
+"""The errors' common base, those that other packages derive theirs from, and what they say.
+
+The command line prints the text of any ``SitlError``, without a traceback.
+"""
 
 from __future__ import annotations
 
-from .autopilot.params.files import ParameterError
-from .bridge.links.address import LinkAddressError
-from .core.code_cache import BuildError
-from .core.extras import MissingExtra
-from .foreign.process import AutopilotEndedError
-from .logs.tlog import LogError
-from .option_error import OptionError, VehicleError
-from .physics.engine import EngineError
-from .plants.plant import PhysicsLostError
-from .recording.error import RecordingError
-from .run.pacing import SpeedupError
-from .vehicles.airframe import AirframeError
-from .warp import CannotBuild
-from .worlds import WorldError
+from collections.abc import Iterable
+from difflib import get_close_matches
 
-USER_ERRORS: tuple[type[Exception], ...] = (
-    AirframeError,
-    AutopilotEndedError,
-    BuildError,
-    CannotBuild,
-    EngineError,
-    LinkAddressError,
-    LogError,
-    MissingExtra,
-    OptionError,
-    ParameterError,
-    PhysicsLostError,
-    RecordingError,
-    SpeedupError,
-    VehicleError,
-    WorldError,
-)
+
+class SitlError(Exception):
+    """The base of every error of this package; the message says what is wrong, and what is allowed."""
+
+    __str__ = Exception.__str__  # those that are KeyErrors, too, would show their text in quotes
+
+
+class OptionError(SitlError, ValueError):
+    """An option of the simulation that cannot be taken."""
+
+
+class VehicleError(SitlError):
+    """A vehicle that cannot be reached, or does not do what it must; the message says which, and what it told."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """The end of a message about a name that is not known: "; did you mean ...?" with the nearest, or nothing."""
+    near = get_close_matches(name, list(known), 1)
+    return f"; did you mean {near[0]!r}?" if near else ""

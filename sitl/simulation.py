@@ -19,10 +19,9 @@ from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.services.statustext import StatusTextService
-from .core import records
 from .core.compile import Progress
 from .core.record_reader import RecordReader
-from .option_error import OptionError
+from .errors import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
 from .physics.native.power_on import DEFAULT_HOME, Home
@@ -120,9 +119,9 @@ class Simulation:
         """What it was made of, as it was told."""
         self.kind = KINDS[self.airframe.kind]
         self.firmware = self.kind.firmware
-        self.fleet: Array = np.zeros(1, self.kind.dtype)
+        self.fleet: Array = self.kind.record.fleet(1)
         self.index = 0
-        self.v = records.view(self.fleet, self.index)
+        self.v = self.kind.record.of(self.fleet, self.index)
         size = self.fleet.dtype.itemsize
         self._record = memoryview(self.fleet.view("u1"))[self.index * size : (self.index + 1) * size]  # type: ignore[arg-type]
         reader = RecordReader(self.fleet, self.index)

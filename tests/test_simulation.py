@@ -19,7 +19,7 @@ from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicle.advance import advance_copter
-from sitl.vehicle.record import TICK_US
+from sitl.vehicle.record import TICK_US, Copter
 from sitl.vehicles import AirframeError
 
 
@@ -85,7 +85,7 @@ def test_plain_python_gives_the_same_bits(core: Core) -> None:
     pilot.fly(0.1)
     compiled, plain = pilot.simulation.fleet.copy(), pilot.simulation.fleet.copy()
     core(compiled, 0, 80)
-    advance_copter({0: records.view(plain, 0)}, 0, 80)
+    advance_copter({0: Copter.of(plain, 0)}, 0, 80)
     assert int(compiled["tick"][0]) == int(plain["tick"][0])
     assert records.first_difference(compiled[0], plain[0]) is None
 
@@ -93,7 +93,7 @@ def test_plain_python_gives_the_same_bits(core: Core) -> None:
 def test_plain_python_gives_the_same_bits_from_power_on(core: Core) -> None:
     compiled, plain = (Simulation(core=core, seed=3).fleet for _ in range(2))
     core(compiled, 0, 120)
-    advance_copter({0: records.view(plain, 0)}, 0, 120)
+    advance_copter({0: Copter.of(plain, 0)}, 0, 120)
     assert records.first_difference(compiled[0], plain[0]) is None
 
 

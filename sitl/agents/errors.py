@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 
 class AgentError(OptionError):

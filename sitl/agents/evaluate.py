@@ -12,6 +12,8 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from sitl.errors import SitlError
+
 from . import algorithms, environments
 from .algorithms import Policy
 from .errors import AgentError
@@ -122,7 +124,7 @@ def evaluate(
     return Evaluation(tuple(played))
 
 
-class Interrupted(Exception):
+class Interrupted(SitlError):
     """Ends an evaluation between two episodes."""
 
 

@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
-from ..core.records import record
+from ..core.records import Record
 
-ARMING_DTYPE = record(
-    ("armed", "i8"),
-    ("armed_us", "i8"),  # when last armed
-    ("auto_armed", "i8"),  # throttle raised or take-off commanded since arming
-    ("landed", "i8"),
-    ("landed_maybe", "i8"),
-    ("landed_ticks", "i8"),
-    ("idle_us", "i8"),  # armed on the ground with throttle down, for DISARM_DELAY
-    ("crash_ticks", "i8"),
-    ("prearm_ok", "i8"),  # SYS_STATUS health bit MAV_SYS_STATUS_PREARM_CHECK
-)
+
+class Arming(Record):
+    """Whether the motors are armed, and what the landing and crash detectors know."""
+
+    armed: int
+    armed_us: int  # when last armed
+    auto_armed: int  # throttle raised or take-off commanded since arming
+    landed: int
+    landed_maybe: int
+    landed_ticks: int
+    idle_us: int  # armed on the ground with throttle down, for DISARM_DELAY
+    crash_ticks: int
+    prearm_ok: int  # SYS_STATUS health bit MAV_SYS_STATUS_PREARM_CHECK

@@ -5,15 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 
 def clear(v: Any) -> None:
     """Zero the whole vehicle record except the parameters (they live in the autopilot's storage)."""
-    for name in v.dtype.names:
-        if name != "autopilot":
-            v[name] = np.zeros((), v.dtype[name])
-    autopilot = v.dtype["autopilot"]
-    for name in autopilot.names:
-        if name != "params":
-            v.autopilot[name] = np.zeros((), autopilot[name])
+    v.zero(*(name for name in v.fields if name != "autopilot"))
+    v.autopilot.zero(*(name for name in v.autopilot.fields if name != "params"))

@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-from ..core.records import record
+from ..core.records import Record
 
-FAILSAFE_DTYPE = record(
-    ("gcs_us", "i8"),  # last heartbeat of the ground station; 0 none so far (written by the bridge)
-    ("gcs", "i8"),  # failsafe is on
-    ("radio", "i8"),
-    ("radio_count", "i8"),  # consecutive frames with a throttle below FS_THR_VALUE
-    ("battery", "i8"),  # 0 none, 1 low, 2 critical
-    ("battery_low_us", "i8"),  # since when below the low limit; 0 not
-    ("battery_critical_us", "i8"),
-    ("ekf", "i8"),  # 1 the estimate is bad, 2 and the mode was ended for it
-    ("ekf_count", "i8"),  # tenths of a second of bad variance
-    ("ekf_vel", "f8"),  # filtered variances
-    ("ekf_pos", "f8"),
-    ("ekf_mag", "f8"),
-)
+
+class Failsafe(Record):
+    """What the failsafes watch and which of them are on."""
+
+    gcs_us: int  # last heartbeat of the ground station; 0 none so far (written by the bridge)
+    gcs: int  # failsafe is on
+    radio: int
+    radio_count: int  # consecutive frames with a throttle below FS_THR_VALUE
+    battery: int  # 0 none, 1 low, 2 critical
+    battery_low_us: int  # since when below the low limit; 0 not
+    battery_critical_us: int
+    ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
+    ekf_count: int  # tenths of a second of bad variance
+    ekf_vel: float  # filtered variances
+    ekf_pos: float
+    ekf_mag: float

@@ -7,8 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from .mission.commands import Commands
 from .params.table import Table
 
@@ -21,8 +19,6 @@ class Firmware:
     """"copter" or "rover"."""
     table: Table
     """Its parameters."""
-    dtype: np.dtype[Any]
-    """Its record: the field ``autopilot`` of a vehicle."""
     mode_names: Mapping[int, str]
     """ArduPilot's custom mode number -> name."""
     power_on: Callable[[Any], None]

@@ -7,19 +7,21 @@ A log wants them more often than anything else. The core keeps them, so that the
 from __future__ import annotations
 
 from ..core.kernels import law
-from ..core.records import record
+from ..core.records import Floats, Ints, Record, array
 
 INERTIAL_RING = 4
 PERIOD_US = 40_000
 
-INERTIAL_RING_DTYPE = record(
-    ("count", "i8"),  # samples since boot; the last is at (count - 1) % INERTIAL_RING
-    ("due_us", "i8"),  # when the next is taken
-    ("time_us", "i8", INERTIAL_RING),
-    ("acc", "f8", (INERTIAL_RING, 3)),  # as measured [m/s^2]
-    ("gyro", "f8", (INERTIAL_RING, 3)),  # as measured [rad/s]
-    ("euler", "f8", (INERTIAL_RING, 3)),  # as estimated [rad]
-)
+
+class InertialRing(Record):
+    """The last inertial samples, for on-board logs."""
+
+    count: int  # samples since boot; the last is at (count - 1) % INERTIAL_RING
+    due_us: int  # when the next is taken
+    time_us: Ints = array(INERTIAL_RING, stored="i8")
+    acc: Floats = array(INERTIAL_RING, 3)  # as measured [m/s^2]
+    gyro: Floats = array(INERTIAL_RING, 3)  # as measured [rad/s]
+    euler: Floats = array(INERTIAL_RING, 3)  # as estimated [rad]
 
 
 @law

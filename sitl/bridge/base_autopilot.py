@@ -13,7 +13,6 @@ from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
-from ..core.records import view
 from .autopilot_api import Note
 from .vehicle import Vehicle
 
@@ -39,7 +38,7 @@ class BaseAutopilot:
 
     def __init__(self, vehicle: Any) -> None:
         self._vehicle: Vehicle = vehicle
-        self._v = view(vehicle.fleet, vehicle.index)
+        self._v = vehicle.v
         self._sequencer = lambda: vehicle.sequencer
         self._notes: list[Note] = []
 

@@ -19,6 +19,7 @@ from typing import Any, cast
 from fastcrc import crc16
 from pymavlink.dialects.v20 import ardupilotmega
 
+from ..errors import SitlError
 from .newer_messages import NEWER
 
 crc_mcrf4xx = cast("Callable[..., int]", crc16.mcrf4xx)
@@ -34,7 +35,7 @@ _INTEGER_BITS = {"b": 8, "h": 16, "i": 32, "q": 64}
 """By struct code in lower case."""
 
 
-class FieldError(ValueError):
+class FieldError(SitlError, ValueError):
     """A value that a field of a message cannot carry."""
 
     def __init__(self, message: str, field: str, value: Any, allowed: str) -> None:
@@ -42,7 +43,7 @@ class FieldError(ValueError):
         self.message, self.field, self.value, self.allowed = message, field, value, allowed
 
 
-class UnknownMessageError(KeyError):
+class UnknownMessageError(SitlError, KeyError):
     """A message name or number that is not in the dialect."""
 
 

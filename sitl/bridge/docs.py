@@ -9,12 +9,10 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
-import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega
 
 from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import COMMANDS as MISSION_COMMANDS
-from ..core.records import view
 from .bridge import Bridge
 from .dialect import message
 from .profile import NAMES, Profile, load
@@ -86,8 +84,9 @@ class _Nobody:
 
     def __init__(self, name: str) -> None:
         self.firmware = _firmware(name)
-        self.fleet = np.zeros(1, getattr(importlib.import_module("sitl.vehicle.record"), f"{name.upper()}_DTYPE"))
-        self.v = view(self.fleet, 0)
+        record = getattr(importlib.import_module("sitl.vehicle.record"), name.capitalize())
+        self.fleet = record.fleet(1)
+        self.v = record.of(self.fleet, 0)
 
 
 def handled(name: str = "copter") -> dict[str, type]:

@@ -12,7 +12,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from importlib import metadata
 
-from .. import __version__, errors
+from .. import __version__
+from ..errors import SitlError
 from . import cache, demo, execute, params, physics, run, world
 
 COMMANDS = (run, execute, demo, physics, params, world, cache)
@@ -49,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(words)
     try:
         return int(options.function(options))
-    except errors.USER_ERRORS as error:
+    except SitlError as error:
         print(f"sitl {options.command}: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

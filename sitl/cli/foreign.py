@@ -15,11 +15,11 @@ from ..autopilot.params import files
 from ..bridge.bridge import EPOCH_US
 from ..bridge.links.address import open_link
 from ..bridge.links.link import Link
+from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
 from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
 from ..foreign.session import ArduPilotSession, Px4Session, Session
 from ..logs.tlog import TlogWriter
-from ..option_error import OptionError
 from ..physics.engines import BACKENDS
 from ..plants.alone import stand_alone
 from ..plants.local import LocalPlant

@@ -7,7 +7,6 @@ import argparse
 
 from .. import vehicles
 from ..autopilot.params import docs, files
-from ..core.records import record
 from ..vehicle.kinds import KINDS
 from .options import check_kind
 
@@ -35,9 +34,8 @@ def params(options: argparse.Namespace) -> int:
     if options.markdown:
         print(docs.page(kind.name, table), end="")
         return 0
-    import numpy as np
 
-    holder = np.zeros(1, record(("params", table.dtype))).view(np.recarray)[0].params
+    holder = table.record()
     table.set_defaults(holder)
     if airframe:
         files.apply(table, holder, airframe.parameters, f"airframe {airframe.name}")

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from importlib import import_module
 
 from .. import vehicles
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..physics.engines import BACKENDS, NATIVE
 from ..physics.native.power_on import DEFAULT_HOME
 from ..plants.alone import stand_alone

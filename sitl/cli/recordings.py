@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..physics.engines import NATIVE
 from ..recording.error import RecordingError
 from ..recording.recorder import Recorder

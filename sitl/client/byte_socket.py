@@ -7,7 +7,7 @@ import contextlib
 import select
 import socket
 
-from ..option_error import OptionError
+from ..errors import OptionError
 from .errors import LinkLostError
 
 FORMS = (

@@ -9,7 +9,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega
 
-from ..option_error import did_you_mean
+from ..errors import did_you_mean
 from .errors import UnknownNameError
 
 PREFIX = "MAV_CMD_"

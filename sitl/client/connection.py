@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 import warnings
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..bridge.dialect import message
 from ..bridge.links.inprocess import InProcessLink
 from ..bridge.services.grants import GRANT, RESEED
 from .byte_socket import ByteSocket
@@ -19,10 +21,18 @@ from .inbox import Inbox
 if TYPE_CHECKING:
     from ..simulation import Simulation
 
+REQUEST_MESSAGE, AUTOPILOT_VERSION = command_number("REQUEST_MESSAGE"), message("AUTOPILOT_VERSION").id
 ACCEPTED = 0
 """MAV_RESULT"""
 TRIES = 4
 """A command that is not answered is sent so many times."""
+PROOF = "SIM_WIND_SPD"
+"""A parameter that only simulators have."""
+_ANSWER_US = 1_000_000
+"""Time within which a parameter is answered by a vehicle that goes by its own clock [us]."""
+_LOOK_US = 20_000
+_PROOF_S = 3.0
+"""Wall time that a vehicle which answers other questions has for the parameter that proves a simulator [s]."""
 _REPEAT_S = 0.5
 """Wall time after which a datagram that is not answered is taken for lost."""
 
@@ -39,6 +49,8 @@ class Connection:
     """Whether its clock goes exactly as far as it is told to."""
     is_held = True
     """Whether its clock stands between two calls."""
+    is_simulator = False
+    """Whether it has proved to be one; a vehicle in this process need not."""
     simulation: Simulation | None = None
     """The vehicle itself, when it is in this process."""
 
@@ -107,6 +119,22 @@ class Connection:
         if result is None:
             raise LinkLostError(f"connection {self.name}: the vehicle does not answer {name}")
         return result
+
+    def parameter(self, name: str) -> float | None:
+        """A parameter as it is now; None when the vehicle does not give it."""
+        values = self.inbox.parameters
+        values.pop(name, None)
+        for _ in range(TRIES):
+            self._ask_parameter(name)
+            for _ in range(1 if self.is_exact else _ANSWER_US // _LOOK_US):
+                self.pause(0 if self.is_exact else _LOOK_US)
+                if name in values:
+                    return float(values[name])
+        return None
+
+    def _ask_parameter(self, name: str) -> None:
+        target = {"target_system": self.inbox.system, "target_component": 1}
+        self.endpoint.send("PARAM_REQUEST_READ", param_id=name.encode(), param_index=-1, **target)
 
     def wait_answer(self, done: Callable[[], bool]) -> bool:
         """Let as little time go by as an answer takes; whether it is there."""
@@ -225,6 +253,22 @@ class Remote(Connection):
                 sent = now
             self.stream.wait(_REPEAT_S)
 
+    def ask_who_it_is(self) -> None:
+        """Find out whether it is a simulator, by questions that change no vehicle.
+
+        Raises:
+            LinkLostError: it answers none of them.
+        """
+        parameters, acks = self.inbox.parameters, self.inbox.acks
+        self._ask_parameter(PROOF)
+        self.endpoint.command(REQUEST_MESSAGE, AUTOPILOT_VERSION, target=self.inbox.system)
+        self.exchange(lambda: PROOF in parameters or REQUEST_MESSAGE in acks, within=self.patience)
+        if PROOF not in parameters:
+            self._ask_parameter(PROOF)
+            with contextlib.suppress(LinkLostError):
+                self.exchange(lambda: PROOF in parameters, within=min(self.patience, _PROOF_S))
+        self.is_simulator = PROOF in parameters
+
     def close(self) -> None:
         self.stream.close()
 
@@ -311,7 +355,9 @@ def connect(
     component: int = 190,
     warn: Callable[[str], object] = warnings.warn,
 ) -> Lockstep | RealTime:
-    """Find the vehicle, and whether its time can be held; one whose cannot is used in real time, with a warning.
+    """Find the vehicle, whether it proves to be a simulator, and whether its time can be held.
+
+    It is only asked questions. One whose time cannot be held is used in real time, with a warning.
 
     Args:
         text: a form of ``ByteSocket``.
@@ -325,23 +371,30 @@ def connect(
         LinkLostError: nobody there.
     """
     stream = ByteSocket(text)
-    probe = Remote(stream, Inbox(), patience, system, component)
-    acks = probe.inbox.acks
+    probe = Remote(stream, inbox, patience, system, component)
+    inbox, acks = probe.inbox, probe.inbox.acks
+
+    def can_be_held() -> bool:
+        return GRANT in acks and acks[GRANT].result == ACCEPTED
+
     try:
         if text.startswith(("udp:", "udpin:")):
-            probe.exchange(lambda: probe.inbox.system != 0, within=patience)
-        probe.endpoint.send("COMMAND_INT", target_component=1, command=GRANT, x=0)
-        probe.exchange(lambda: GRANT in acks, within=patience)
-        if probe.inbox.system == 0 and acks[GRANT].result != ACCEPTED:
-            probe.exchange(lambda: probe.inbox.system != 0, within=patience)
+            probe.exchange(lambda: inbox.system != 0, within=patience)
+        probe.ask_who_it_is()
+        if probe.is_simulator:  # to others it is somebody else's command
+            probe.endpoint.send("COMMAND_INT", target_component=1, command=GRANT, x=0)
+            probe.exchange(lambda: GRANT in acks, within=patience)
+        if inbox.system == 0 and not can_be_held():
+            probe.exchange(lambda: inbox.system != 0, within=patience)
     except LinkLostError:
         stream.close()
         raise LinkLostError(f"connection {text}: no vehicle answers within {patience:g} s") from None
     found: Lockstep | RealTime
-    if acks[GRANT].result == ACCEPTED:
+    if can_be_held():
         found = Lockstep(stream, inbox, patience, acks[GRANT].result_param2, system, component)
     else:
         warn(f"connection {text}: the vehicle's clock cannot be held (no sitl run --lockstep); real time")
         found = RealTime(stream, inbox, patience, system, component)
-    found.inbox.system = probe.inbox.system or 1
+    found.endpoint, found.is_simulator = probe.endpoint, probe.is_simulator
+    inbox.system = inbox.system or 1
     return found

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..option_error import OptionError, VehicleError
+from ..errors import OptionError, VehicleError
 
 
 class UnknownNameError(OptionError):

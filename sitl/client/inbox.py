@@ -9,7 +9,7 @@ from typing import Any
 from ..bridge.dialect import MessageType, message
 from ..bridge.frame import Splitter
 
-HEARTBEAT, ACK, TEXT = (message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT"))
+HEARTBEAT, ACK, TEXT, PARAMETER = (message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "PARAM_VALUE"))
 AUTOPILOT = 1
 """MAV_COMP_ID_AUTOPILOT1: messages of other components do not count."""
 IN_PROGRESS = 5
@@ -30,6 +30,8 @@ class Inbox:
         """MAVLink id of the vehicle; 0 before it was heard."""
         self.acks: dict[int, Any] = {}
         """The last COMMAND_ACK of each command."""
+        self.parameters: dict[str, float] = {}
+        """Values as they were sent last."""
         self.last_texts: list[str] = []
         """The last status texts, newest last."""
         self.count = 0
@@ -63,6 +65,8 @@ class Inbox:
                 self.system = system
                 if fields.result != IN_PROGRESS:
                     self.acks[int(fields.command)] = fields
+            elif kind is PARAMETER:
+                self.parameters[fields.param_id.decode("ascii", "replace")] = float(fields.param_value)
             elif hasattr(fields, "time_boot_ms"):
                 self._tick(int(fields.time_boot_ms))
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ..bridge.dialect import message
-from ..option_error import did_you_mean
+from ..errors import did_you_mean
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .connection import Connection, InProcess, connect
 from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError

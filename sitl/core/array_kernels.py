@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from .code_cache import ENTRY, cache_folder, load_entry
 from .compile import make_jitable, toolchain
 from .fingerprint import fingerprint
@@ -53,7 +51,7 @@ def _load(wanted: Kernel) -> Callable[..., Any]:
 
     unit = Unit(wanted.name, wanted.law, 0)
     signature = wanted.signature if isinstance(wanted.signature, str) else wanted.signature()
-    key = fingerprint(unit, np.dtype("f8"), f"{toolchain()} {signature}")
+    key = fingerprint(unit, "", f"{toolchain()} {signature}")
     folder = cache_folder() / f"{wanted.name}-{key}"
     make_jitable()
     names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))

@@ -18,6 +18,7 @@ from typing import Any
 
 import platformdirs
 
+from ..errors import SitlError
 from .numba_tuning import quick
 
 ENTRY = "sitl_unit_entry"
@@ -27,7 +28,7 @@ _BUILT = "built"
 _KEEP_VERSIONS = 4
 
 
-class BuildError(RuntimeError):
+class BuildError(SitlError, RuntimeError):
     """A function of the core could not be compiled, or its machine code not be kept."""
 
 

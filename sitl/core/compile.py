@@ -26,6 +26,7 @@ from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_ve
 from .fingerprint import fingerprint, reached
 from .kernels import LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import law_options
+from .records import Record
 
 Progress = Callable[[str, int, int], None]
 """Called as ``progress(unit name, units done, units to build)``."""
@@ -57,10 +58,10 @@ def toolchain() -> str:
     return " ".join((*versions, platform.machine(), processor, features, repr(law_options())))
 
 
-def record_type(path: str) -> np.dtype[Any]:
-    """The record type at ``package.module.NAME``."""
+def record_class(path: str) -> type[Record]:
+    """The record class at ``package.module.NAME``."""
     module, name = path.rsplit(".", 1)
-    found: np.dtype[Any] = getattr(importlib.import_module(module), name)
+    found: type[Record] = getattr(importlib.import_module(module), name)
     return found
 
 
@@ -73,7 +74,7 @@ def unit_folder(unit: Unit, path: str) -> Path:
     """Where the unit's current machine code for the record type at ``path`` is or will be."""
     key = (unit.name, path)
     if key not in _fingerprints:
-        _fingerprints[key] = fingerprint(unit, record_type(path), f"{toolchain()} {path}")
+        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), f"{toolchain()} {path}")
     return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
 
 
@@ -133,7 +134,7 @@ def _wrapper_source(unit: Unit) -> str:
     return (
         f"# The C entry of unit {unit.name}.\n"
         f"def {ENTRY}(vehicles, count, index{integers}):\n"
-        f"    body(carray(vehicles, count, DTYPE), index{integers})\n"
+        f"    body(carray(vehicles, count), index{integers})\n"
     )
 
 
@@ -149,13 +150,14 @@ def load_unit(unit: Unit, path: str) -> Any:
     from numba import types
 
     make_jitable()
-    dtype = record_type(path)
-    record = numba.from_dtype(dtype)
+    from .numba_records import numba_type
+
+    record = numba_type(record_class(path))
     if _records.setdefault(record, path) != path:
         raise BuildError(f"{path} and {_records[record]} are the same record type; one of them will do")
     folder, name = unit_folder(unit, path), symbol(unit, path)
     signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
-    names = {"carray": numba.carray, "DTYPE": dtype, "body": _body(unit)}
+    names = {"carray": numba.carray, "body": _body(unit)}
     compile_entry = numba.cfunc(signature, cache=True, error_model="numpy")
     function = load_entry(folder, name, _wrapper_source(unit), names, compile_entry)
     llvmlite.binding.add_symbol(name, function.address)

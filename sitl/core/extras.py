@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from ..errors import SitlError
 
-class MissingExtra(RuntimeError):
+
+class MissingExtra(SitlError, RuntimeError):
     """An optional dependency is not installed; the message says which extra brings it."""

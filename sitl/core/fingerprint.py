@@ -58,19 +58,9 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
             lines.append(f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}")
 
 
-def layout(dtype: np.dtype[Any]) -> str:
-    """The whole record layout as text: names, types and offsets."""
-    if dtype.subdtype is not None:
-        base, shape = dtype.subdtype
-        return f"{layout(base)}{shape}"
-    if dtype.names is None or dtype.fields is None:
-        return dtype.str
-    return "{" + ",".join(f"{n}:{dtype.fields[n][1]}:{layout(dtype.fields[n][0])}" for n in dtype.names) + "}"
-
-
-def fingerprint(unit: Unit, dtype: np.dtype[Any], toolchain: str) -> str:
-    """Hash (20 hex digits) of all that ``unit``'s machine code depends on."""
-    lines: list[str] = [toolchain, layout(dtype)]
+def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:
+    """Hash (20 hex digits) of all that ``unit``'s machine code for records of this ``layout`` depends on."""
+    lines: list[str] = [toolchain, layout]
     _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
 

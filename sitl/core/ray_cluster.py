@@ -14,7 +14,7 @@ from contextlib import contextmanager, nullcontext, suppress
 from typing import Any
 from urllib.parse import urlsplit
 
-from ..option_error import OptionError
+from ..errors import OptionError
 from .extras import MissingExtra
 
 _LOCAL = "local"

@@ -16,10 +16,12 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import SitlError
+
 _CODES = {"<f8": "d", "<i8": "q", "<f4": "f", "<i4": "i"}
 
 
-class UnknownFieldError(KeyError):
+class UnknownFieldError(SitlError, KeyError):
     """A path that is not in the record."""
 
 

@@ -1,44 +1,377 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Helpers to declare records (nested ``numpy.dtype``) and to look at them from Python."""
+"""Records: classes whose fields lie in one block of memory, side by side.
+
+A record is declared once. From its annotations come NumPy's dtype (fleets are arrays of it), Numba's type (the core
+reads and writes it as plain loads and stores) and, in plain Python, attribute access on the same memory; editors and
+mypy know the fields::
+
+    class RateLoop(Record):
+        target: Vec3  # body rates [rad/s]
+        gain: float  # [1/s]
+        samples: int
+        saturated: bool
+        history: Floats = array(8, 3)
+        narrow: Float32  # at the precision of the wire
+        filter: LowPass  # a record in the record
+        channels: Records[Channel] = repeat(Channel, 16)
+
+    loop = RateLoop()  # zeros, in memory of its own
+    v = Copter.of(fleet, 0)  # a vehicle in a fleet's memory
+
+Numbers, booleans, vectors, quaternions and Euler angles read and write as values; arrays and nested records are
+references to the record's memory. A subclass goes on with the fields of its base, whose places it keeps.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import inspect
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Protocol, Self, TypeVar, get_args, get_origin, get_type_hints, overload
 
 import numpy as np
 
-from .record_view import RecordView, view
+from .vectors import Value
 
-__all__ = ["RecordView", "as_dict", "first_difference", "record", "view"]
+R_co = TypeVar("R_co", covariant=True)
+Index = int | tuple[int, ...]
 
 
-def record(*fields: tuple[Any, ...]) -> np.dtype[Any]:
-    """An aligned record type from ``(name, type)`` or ``(name, type, shape)`` fields.
+class Floats(Protocol):
+    """An array of floats in a record: by index in laws; in plain Python a ``numpy`` view."""
 
-    Fields are 8-byte numbers ("f8", "i8") unless a protocol fixes another width: mixed widths cost
-    conversions in the core and surprises in plain Python (float32 arithmetic, integer overflow).
+    @overload
+    def __getitem__(self, index: Index, /) -> float: ...
+    @overload
+    def __getitem__(self, index: slice, /) -> np.ndarray[Any, Any]: ...
+    def __setitem__(self, index: Index | slice, value: Any, /) -> None: ...
+    def __iter__(self) -> Iterator[float]: ...
+    def __len__(self) -> int: ...
+    def tolist(self) -> list[Any]: ...
 
-    Raises:
-        ValueError: a name that numpy's records have as an attribute of their own ("flags", "size", "data"):
-            reading it in plain Python would give numpy's, not the field.
-    """
-    taken = [f[0] for f in fields if hasattr(np.void, f[0])]
-    if taken:
-        raise ValueError(f"record fields {taken} are attributes of numpy's own records; choose other names")
-    return np.dtype([tuple(f) for f in fields], align=True)
+
+class Ints(Protocol):
+    """An array of integers in a record."""
+
+    @overload
+    def __getitem__(self, index: Index, /) -> int: ...
+    @overload
+    def __getitem__(self, index: slice, /) -> np.ndarray[Any, Any]: ...
+    def __setitem__(self, index: Index | slice, value: Any, /) -> None: ...
+    def __iter__(self) -> Iterator[int]: ...
+    def __len__(self) -> int: ...
+    def tolist(self) -> list[Any]: ...
+
+
+class Records(Protocol[R_co]):
+    """A row of records in a record."""
+
+    def __getitem__(self, index: int, /) -> R_co: ...
+    def __len__(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class Stored:
+    """How a field lies in memory, where its type does not say so."""
+
+    code: str
+    """NumPy's code of one number: "f8", "i8", "f4", "i4"."""
+    shape: tuple[int, ...] = ()
+
+
+Float32 = Annotated[float, Stored("f4")]
+"""A number at float32 precision, as some protocols carry it."""
+Int32 = Annotated[int, Stored("i4")]
+"""An integer of four bytes, as some protocols carry it."""
+
+
+def array(*shape: int, stored: str = "f8") -> Any:
+    """Declares an array: ``covariance: Floats = array(18, 18)``, ``channels: Ints = array(18, stored="i8")``."""
+    return Stored(stored, shape)
+
+
+@dataclass(frozen=True)
+class _Repeat:
+    record: type[Record]
+    count: int
+
+
+def repeat(record: type[Record], count: int) -> Any:
+    """Declares a row of records: ``channels: Records[Channel] = repeat(Channel, 16)``."""
+    return _Repeat(record, count)
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a record."""
+
+    name: str
+    offset: int
+    """From the beginning of the record [bytes]."""
+    code: str = ""
+    """NumPy's code of one number, "" for records."""
+    shape: tuple[int, ...] = ()
+    """Of an array in memory; a vector's is its length."""
+    value: type | None = None
+    """What it reads as: float, int, bool or a class of ``vectors``; None: as a reference."""
+    record: type[Record] | None = None
+    """The nested record, or what is repeated ``shape`` times."""
+
+    @property
+    def numpy(self) -> Any:
+        """NumPy's type of the field."""
+        base = np.dtype(self.code) if self.record is None else self.record.dtype
+        return (base, self.shape) if self.shape else base
+
+    def layout(self) -> str:
+        """What machine code depends on, as text."""
+        inner = self.code if self.record is None else self.record.layout()
+        return f"{self.name}:{self.offset}:{inner}{self.shape}{self.value.__name__ if self.value else ''}"
+
+
+_CODES = {float: "f8", int: "i8", bool: "i8"}
+
+
+def _declared(name: str, hint: Any, default: Any) -> Field:
+    """The field that an annotation, with its default, declares (its place is worked out later)."""
+    stored = default if isinstance(default, Stored | _Repeat) else None
+    if get_origin(hint) is Annotated:
+        hint, *notes = get_args(hint)
+        stored = stored or next((n for n in notes if isinstance(n, Stored)), None)
+    if isinstance(stored, _Repeat):
+        return Field(name, 0, shape=(stored.count,), record=stored.record)
+    if isinstance(hint, type) and issubclass(hint, Record):
+        return Field(name, 0, record=hint)
+    if isinstance(hint, type) and issubclass(hint, Value):
+        return Field(name, 0, stored.code if stored else "f8", (len(hint.NAMES),), hint)
+    if stored is not None and stored.shape:
+        return Field(name, 0, stored.code, stored.shape)
+    if hint in _CODES:
+        return Field(name, 0, stored.code if stored else _CODES[hint], (), hint)
+    raise TypeError(
+        f"field {name!r} is a {hint!r}; a record holds float, int, bool, {', '.join(c.__name__ for c in _values())}, "
+        "Float32, Int32, records, and arrays declared with array(...) or repeat(...)"
+    )
+
+
+def _values() -> tuple[type[Value], ...]:
+    from .vectors import VALUES
+
+    return VALUES
+
+
+class _RecordMeta(type):
+    """Gives record classes no dictionary, so that a misspelt field is an error."""
+
+    def __new__(mcs, name: str, bases: tuple[type, ...], space: dict[str, Any], **options: Any) -> Any:
+        return super().__new__(mcs, name, bases, {"__slots__": (), **space}, **options)
+
+
+class Record(metaclass=_RecordMeta):
+    """Base of all records (see the module)."""
+
+    __slots__ = ("_bytes", "_f4", "_f8", "_i4", "_i8", "_references")
+    dtype: ClassVar[np.dtype[Any]]
+    """NumPy's type of the record, aligned as C does it."""
+    fields: ClassVar[dict[str, Field]] = {}
+    """Name -> field, in the order of memory."""
+    _bytes: Any
+    _f8: Any
+    _i8: Any
+    _f4: Any
+    _i4: Any
+    _references: dict[str, Any]
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        own = inspect.get_annotations(cls)
+        hints = {
+            name: hint
+            for name, hint in get_type_hints(cls, include_extras=True).items()
+            if not name.startswith("_") and get_origin(hint) is not ClassVar and name not in ("dtype", "fields")
+        }
+        declared = []
+        for name, hint in hints.items():
+            inherited = cls.fields.get(name)
+            if inherited is not None and name not in own:
+                declared.append(inherited)
+            else:
+                declared.append(_declared(name, hint, cls.__dict__.get(name)))
+        taken = [f.name for f in declared if hasattr(np.void, f.name) or hasattr(Record, f.name)]
+        if taken:
+            raise TypeError(f"{cls.__name__}: fields {taken} are attributes of records themselves; choose other names")
+        cls.dtype = np.dtype([(f.name, f.numpy) for f in declared], align=True)
+        offsets: Any = cls.dtype.fields or {}
+        cls.fields = {f.name: Field(f.name, offsets[f.name][1], f.code, f.shape, f.value, f.record) for f in declared}
+        for field in cls.fields.values():
+            setattr(cls, field.name, _access(field))
+
+    def __init__(self, memory: Any = None) -> None:
+        """A record on ``memory`` (a memoryview of its size), or of zeros in memory of its own."""
+        if memory is None:
+            memory = memoryview(bytearray(self.dtype.itemsize))
+        self._bytes = memory
+        codes = {f.code for f in self.fields.values() if f.value is not None}
+        for code, store, letter in (("f8", "_f8", "d"), ("i8", "_i8", "q"), ("f4", "_f4", "f"), ("i4", "_i4", "i")):
+            if code in codes:
+                setattr(self, store, memory.cast(letter))
+        self._references = {f.name: _reference(f, memory[f.offset :]) for f in self.fields.values() if f.value is None}
+
+    @classmethod
+    def of(cls, fleet: np.ndarray[Any, Any], index: int) -> Self:
+        """Record ``index`` of an array of them; writes go to the array, whose memory must stay where it is.
+
+        Raises:
+            ValueError: the array is not one block of memory.
+            TypeError: it is of another record.
+        """
+        if not fleet.flags.c_contiguous:
+            raise ValueError("the fleet must be one block of memory")
+        if fleet.dtype != cls.dtype:
+            raise TypeError(f"an array of {fleet.dtype.names} holds no {cls.__name__}")
+        at = range(len(fleet))[index] * cls.dtype.itemsize
+        return cls(np.frombuffer(fleet.data, "u1").data[at : at + cls.dtype.itemsize])
+
+    @classmethod
+    def fleet(cls, count: int) -> np.ndarray[Any, Any]:
+        """An array of ``count`` records of zeros."""
+        return np.zeros(count, cls.dtype)
+
+    @classmethod
+    def layout(cls) -> str:
+        """Names, types and places of all fields as text: machine code depends on it."""
+        return "{" + ",".join(field.layout() for field in cls.fields.values()) + "}"
+
+    def zero(self, *names: str) -> None:
+        """Set the fields named, or all, to zero."""
+        for field in (self.fields[name] for name in names) if names else self.fields.values():
+            size = np.dtype(field.numpy).itemsize
+            self._bytes[field.offset : field.offset + size] = bytes(size)
+
+    def assign(self, value: Any) -> None:
+        """Copy a whole record of the same type (a Record, or ``numpy``'s) into this one's memory.
+
+        Raises:
+            TypeError: it is of another type.
+        """
+        self._bytes[:] = as_bytes(value, self.dtype)
+
+    def __getitem__(self, name: str) -> Any:
+        return getattr(self, name)
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        setattr(self, name, value)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={getattr(self, name)!r}' for name in self.fields)})"
+
+
+def as_bytes(value: Any, dtype: np.dtype[Any]) -> Any:
+    """The bytes of a record; TypeError when it is of another type."""
+    if getattr(value, "dtype", None) != dtype:
+        raise TypeError(f"a record of {dtype.names} cannot become one of {getattr(value, 'dtype', type(value))}")
+    return value._bytes if isinstance(value, Record) else np.asarray(value, dtype).tobytes()
+
+
+def _reference(field: Field, memory: Any) -> Any:
+    """The array, the nested record or the row of records at the beginning of ``memory``."""
+    if field.record is None:
+        return np.ndarray(field.shape, field.code, memory)
+    size = field.record.dtype.itemsize
+    if not field.shape:
+        return field.record(memory[:size])
+    return tuple(field.record(memory[k * size : (k + 1) * size]) for k in range(field.shape[0]))
+
+
+_STORES = {"f8": ("_f8", 8), "i8": ("_i8", 8), "f4": ("_f4", 4), "i4": ("_i4", 4)}
+
+
+def _access(field: Field) -> property:
+    if field.value is None:
+        return _reference_access(field)
+    store, size = _STORES[field.code]
+    k = field.offset // size
+    if issubclass(field.value, Value):
+        return _value_access(field.value, store, k)
+    return _number_access(field, store, k)
+
+
+def _number_access(field: Field, store: str, k: int) -> property:
+    # Four readers and writers instead of one with getattr: they are called ten thousands of times a simulated second.
+    if field.value is bool:
+        return property(lambda self: self._i8[k] != 0, lambda self, value: self._i8.__setitem__(k, int(bool(value))))
+
+    def write_f8(self: Any, value: Any) -> None:
+        self._f8[k] = value
+
+    def write_i8(self: Any, value: Any) -> None:
+        try:
+            self._i8[k] = value
+        except TypeError:  # its fraction is cut off, as in the core
+            self._i8[k] = int(value)
+
+    def write_narrow(self: Any, value: Any) -> None:
+        getattr(self, store)[k] = int(value) if store == "_i4" else value
+
+    reads: dict[str, Any] = {
+        "_f8": lambda self: self._f8[k],
+        "_i8": lambda self: self._i8[k],
+        "_f4": lambda self: self._f4[k],
+        "_i4": lambda self: self._i4[k],
+    }
+    writes = {"_f8": write_f8, "_i8": write_i8}
+    return property(reads[store], writes.get(store, write_narrow))
+
+
+def _value_access(cls: type[Value], store: str, k: int) -> property:
+    count = len(cls.NAMES)
+    new = tuple.__new__
+
+    def read(self: Any) -> Any:
+        return new(cls, getattr(self, store)[k : k + count].tolist())
+
+    def write(self: Any, value: Any) -> None:
+        numbers = getattr(self, store)
+        for j, number in enumerate(np.asarray(value, float).tolist() if not isinstance(value, tuple) else value):
+            if j >= count:
+                raise TypeError(f"{value!r} does not have the {count} components of a {cls.__name__}")
+            numbers[k + j] = number
+
+    return property(read, write)
+
+
+def _reference_access(field: Field) -> property:
+    name = field.name
+
+    def read(self: Any) -> Any:
+        return self._references[name]
+
+    def write(self: Any, value: Any) -> None:
+        held = self._references[name]
+        if isinstance(held, Record):
+            held.assign(value)
+        elif isinstance(held, tuple):
+            for record, new in zip(held, value, strict=True):
+                record.assign(new)
+        else:
+            held[...] = value
+
+    return property(read, write)
 
 
 def as_dict(value: Any) -> Any:
     """A record as nested dictionaries and lists, for printing and comparing."""
-    if isinstance(value, np.void | RecordView) and value.dtype.names:
+    if isinstance(value, Record):
+        return {name: as_dict(value[name]) for name in value.fields}
+    if isinstance(value, np.void) and value.dtype.names:
         return {name: as_dict(value[name]) for name in value.dtype.names}
-    if isinstance(value, np.ndarray):
+    if isinstance(value, np.ndarray | tuple):
         return [as_dict(v) for v in value]
     return value.item() if isinstance(value, np.generic) else value
 
 
 def first_difference(a: Any, b: Any, path: str = "") -> str | None:
-    """Name of the first field in which two records differ bit for bit, or None when they are equal."""
+    """Name of the first field in which two records (``numpy``'s) differ bit for bit, or None when they are equal."""
     if isinstance(a, np.void) and a.dtype.names:
         for name in a.dtype.names:
             found = first_difference(a[name], b[name], f"{path}.{name}" if path else name)
@@ -53,3 +386,9 @@ def first_difference(a: Any, b: Any, path: str = "") -> str | None:
         return None
     same = np.asarray(a).tobytes() == np.asarray(b).tobytes()
     return None if same else f"{path}: {a!r} != {b!r}"
+
+
+__all__ = [
+    "Field", "Float32", "Floats", "Int32", "Ints", "Record", "Records", "Stored", "array", "as_bytes", "as_dict",
+    "first_difference", "repeat",
+]  # fmt: skip

@@ -11,10 +11,16 @@ import math
 from typing import Any
 
 from .kernels import law
-from .records import record
+from .records import Ints, Record, array
 
-RNG_DTYPE = record(("s", "i8", 4), ("spare", "f8"), ("has_spare", "i8"))
-"""s: four 32-bit words, not all zero; spare: a normal deviate kept for the next call."""
+
+class Rng(Record):
+    """The state of a generator."""
+
+    s: Ints = array(4, stored="i8")  # 32-bit words, not all zero
+    spare: float  # a normal deviate kept for the next call
+    has_spare: int
+
 
 _MASK = 0xFFFFFFFF
 

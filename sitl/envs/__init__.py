@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-from .mavlink.errors import LinkLostError, NotReadyError
+from .mavlink.errors import LinkLostError, NotASimulatorError, NotReadyError
 from .options import EnvOptionError
 
-__all__ = ["MAX_EPISODE_STEPS", "PAPER", "EnvOptionError", "LinkLostError", "NotReadyError", "register"]
+__all__ = [
+    "MAX_EPISODE_STEPS", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError", "NotReadyError", "register",
+]  # fmt: skip
 
 MAX_EPISODE_STEPS = 1500
 """After which an episode is truncated: the paper's experiments stopped there. ``gym.make(..., max_episode_steps=-1)``

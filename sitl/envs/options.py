@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from sitl.option_error import OptionError, did_you_mean
+from sitl.errors import OptionError, did_you_mean
 
 COMMON = (
     "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",

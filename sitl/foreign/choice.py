@@ -8,7 +8,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..option_error import OptionError
+from ..errors import OptionError
 
 NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
 PROGRAMS = {ARDUPILOT: {"copter": "arducopter", "rover": "ardurover"}, PX4: {"copter": "px4", "rover": "px4"}}

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 
 from ..bridge.hil.physics_end import PhysicsEnd
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..plants.local import LocalPlant
 from ..plants.physics_server import SimulatedPlant
 from ..vehicle.record import TICK_US

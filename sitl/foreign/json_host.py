@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from ..bridge.ardupilot_json.physics_end import Asked, Heard, PhysicsEnd, ticks
 from ..bridge.ardupilot_json.servos import controls, is_frame
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..plants.alone import restart
 from ..plants.json_link import WAIT_S, wait_in_kernel
 from ..plants.local import LocalPlant

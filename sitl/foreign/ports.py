@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import socket
 
-from ..option_error import OptionError
+from ..errors import OptionError
 
 HOST = "127.0.0.1"
 

@@ -13,14 +13,14 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ..option_error import OptionError
+from ..errors import OptionError, SitlError
 
 OUTPUT = "output.txt"
 _GRACE_S = 3.0
 _LAST_LINES = 6
 
 
-class AutopilotEndedError(RuntimeError):
+class AutopilotEndedError(SitlError, RuntimeError):
     """The autopilot's program has ended by itself; the message says how, and what it said last."""
 
 

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..bridge.hil.numbers import BASE_PORT
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..physics.native.power_on import Home
 from ..vehicles import Airframe, CopterAirframe
 from .ports import HOST

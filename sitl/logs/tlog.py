@@ -16,12 +16,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO
 
+from ..errors import SitlError
+
 _TIME = struct.Struct(">Q")
 _FLUSH_BYTES = 1 << 13
 """A run that is killed loses no more: a second or two."""
 
 
-class LogError(ValueError):
+class LogError(SitlError, ValueError):
     """A log that cannot be written, a file that is none, or a log without the messages that were asked for."""
 
 

@@ -7,8 +7,8 @@ import argparse
 from collections.abc import Callable
 from typing import Any
 
+from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, FORMS, Choice, choose
-from sitl.option_error import OptionError
 from sitl.simulation import ESTIMATORS, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 

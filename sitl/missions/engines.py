@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from sitl.core.rotations import quat_to_euler
-from sitl.errors import USER_ERRORS
+from sitl.errors import SitlError
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
@@ -46,7 +46,7 @@ class Witness(Pilot):
         v = self.simulation.v
         body, battery, controls = v.physics.body, v.physics.battery, v.actuators.controls
         if self.simulation.kind.name == "copter":
-            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))
+            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))  # type: ignore[attr-defined]
         else:
             output = float(controls[2])
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0
@@ -274,7 +274,7 @@ def main() -> None:
     for frame in [options.frame] if options.frame else sorted(FLIGHTS):
         try:
             flown = fly_all(frame, [NATIVE, *(options.engine or BACKENDS[1:])])
-        except USER_ERRORS as error:
+        except SitlError as error:
             parser.error(str(error))
         print(f"{frame}\n\n{table(flown)}\n")
         if options.plots:

@@ -13,7 +13,7 @@ from sitl.autopilot.navigation.state import COMPLETE
 from sitl.client import Text
 from sitl.client.session import STEP_US
 from sitl.core.geodesy import offset_ne
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.simulation import Simulation
 
 from .path import Deviation, PathWatch

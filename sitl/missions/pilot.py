@@ -12,6 +12,7 @@ from sitl.autopilot.mission.item import MissionItem
 from sitl.client import Client
 from sitl.client.commands import command_number
 from sitl.client.pilot import CUSTOM_MODE_ENABLED, POSITION_ONLY, VELOCITY_ONLY
+from sitl.errors import SitlError
 from sitl.simulation import Simulation
 
 from .recording import COLUMNS, Recording
@@ -25,7 +26,7 @@ SAMPLE_US = 40_000
 RATES_HZ = {"LOCAL_POSITION_NED": 25.0, "ATTITUDE": 25.0, "EKF_STATUS_REPORT": 5.0, "SYS_STATUS": 5.0}
 
 
-class FlightError(RuntimeError):
+class FlightError(SitlError, RuntimeError):
     """A flight that did not go as its script needs it to (not ready, not disarmed in time)."""
 
 

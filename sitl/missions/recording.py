@@ -15,11 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from sitl.errors import SitlError
+
 COLUMNS = ("t", "x", "y", "z", "vx", "vy", "vz", "roll", "pitch", "yaw")
 """Simulated seconds since boot, NED metres from the origin, m/s, radians; all the autopilot's own estimate."""
 
 
-class RecordingError(ValueError):
+class RecordingError(SitlError, ValueError):
     """A recording that does not exist."""
 
 

@@ -8,6 +8,7 @@ from typing import NoReturn
 
 from sitl.client import Client, ClientError, CommandRefusedError, InProcess, MissionRefusedError, WaitTimeoutError
 from sitl.client.waits import READY
+from sitl.errors import SitlError
 from sitl.simulation import Simulation
 
 _SEVERE = 4
@@ -15,7 +16,7 @@ _SEVERE = 4
 _READY_MESSAGES = ("EKF_STATUS_REPORT", "SYS_STATUS")
 
 
-class StationError(RuntimeError):
+class StationError(SitlError, RuntimeError):
     """The vehicle did not do what it was asked to; says what and why, in a line."""
 
 

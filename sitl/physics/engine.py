@@ -15,13 +15,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..errors import SitlError
 from ..vehicles import Airframe
 from ..worlds import World
 
 Array = np.ndarray[Any, Any]
 
 
-class EngineError(ValueError):
+class EngineError(SitlError, ValueError):
     """An engine cannot simulate what was asked for; the message says what and which engine can."""
 
 
@@ -44,7 +45,7 @@ class Seat:
     """Where an engine finds its vehicle."""
 
     v: Any
-    """View of the record (``sitl.core.records.view``)."""
+    """The record."""
     fleet: Array
     index: int
     """The record is ``fleet[index]``; its memory stays in place."""

@@ -6,12 +6,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-
 from .. import vehicles
 from ..autopilot import boot
 from ..autopilot.params import files
-from ..core import records
 from ..core.compile import Progress
 from ..core.record_reader import RecordReader
 from ..physics.engines import NATIVE
@@ -49,8 +46,8 @@ def stand_alone(
     """
     airframe = vehicles.load(frame)
     kind = KINDS[airframe.kind]
-    fleet = np.zeros(1, kind.dtype)
-    v, table = records.view(fleet, 0), kind.firmware.table
+    fleet = kind.record.fleet(1)
+    v, table = kind.record.of(fleet, 0), kind.firmware.table
     table.set_defaults(v.autopilot.params)
     files.apply(table, v.autopilot.params, airframe.parameters, f"airframe {airframe.name}")
     files.apply(table, v.autopilot.params, params or {}, "parameters")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..physics.engines import BACKENDS
 from .plant import Craft, Plant
 

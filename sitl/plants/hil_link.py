@@ -8,7 +8,7 @@ import socket
 import time
 
 from ..bridge.links.echo import refuse_echo
-from ..option_error import OptionError
+from ..errors import OptionError
 from .plant import PhysicsLostError
 
 READ_BYTES = 1 << 16

@@ -9,7 +9,7 @@ import socket
 import struct
 import sys
 
-from ..option_error import OptionError
+from ..errors import OptionError
 
 PORT = 9002
 """Of instance 0; 10 more for each."""

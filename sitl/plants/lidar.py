@@ -18,7 +18,7 @@ import numpy as np
 from ..core.array_kernels import kernel
 from ..core.kernels import jit_disabled, law
 from ..core.record_reader import RecordReader
-from ..core.rng import RNG_DTYPE, normal
+from ..core.rng import Rng, normal
 from ..core.rotations import quat_rotate
 from ..worlds import Geometry, planar
 from ..worlds.planar import publish_readings
@@ -77,10 +77,11 @@ def measure_ranges(rng, position, attitude, figures, solids, grid, cells, rays, 
 
 
 def _signature() -> Any:
-    import numba
     from numba import types
 
-    rng = types.Array(numba.from_dtype(RNG_DTYPE), 1, "C")
+    from ..core.numba_records import numba_type
+
+    rng = types.Array(numba_type(Rng), 1, "C")
     line, table, whole = types.float64[::1], types.float64[:, ::1], types.int64[::1]
     return types.void(rng, line, line, line, table, line, whole, table, line, table, line, types.float32[::1])
 
@@ -93,10 +94,11 @@ def _aim_signature() -> Any:
 
 
 def _publish_signature() -> Any:
-    import numba
     from numba import types
 
-    rng = types.Array(numba.from_dtype(RNG_DTYPE), 1, "C")
+    from ..core.numba_records import numba_type
+
+    rng = types.Array(numba_type(Rng), 1, "C")
     return types.void(rng, types.float64[::1], types.float64[::1], types.float32[::1])
 
 

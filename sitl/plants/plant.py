@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..core.record_reader import RecordReader
+from ..errors import SitlError
 from ..physics.carried import Carried
 from ..vehicle.kinds import Kind
 from ..vehicles import Airframe
@@ -18,7 +19,7 @@ from ..vehicles import Airframe
 NEVER = 1 << 62
 
 
-class PhysicsLostError(ConnectionError):
+class PhysicsLostError(SitlError, ConnectionError):
     """The physics behind a link does not answer: time stands. Advancing again tries again."""
 
 

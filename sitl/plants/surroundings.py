@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import worlds
 from ..core.record_reader import RecordReader
-from ..option_error import OptionError
+from ..errors import OptionError
 from ..physics.native.obstacles import OBSTACLES_MAX
 from ..vehicles import Airframe
 from ..worlds import World, contact

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from ..errors import SitlError
 
-class RecordingError(ValueError):
+
+class RecordingError(SitlError, ValueError):
     """A recording that cannot be written, read or flown; the message names the file, the place and the reason."""

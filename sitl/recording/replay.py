@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from .. import vehicles
 from ..bridge.frame import Splitter
 from ..bridge.links.log import FrameWriter
 from ..core.compile import Progress
@@ -258,6 +259,17 @@ def _title(recording: Recording) -> str:
     return f"recording {str(recording.path)!r}"
 
 
+def _airframe(header: dict[str, Any]) -> str | Airframe:
+    """The recorded airframe: ours by its name, any other from the figures in the recording.
+
+    A file that a recording names is never loaded: an airframe's file is Python, and would be run.
+    """
+    frame = header["frame"]
+    if isinstance(frame, str) and not frame.endswith(".py"):
+        return frame
+    return vehicles.of_data(header["vehicle"], header["airframe"])
+
+
 def _build(
     recording: Recording,
     frame: str | Airframe | None,
@@ -275,11 +287,6 @@ def _build(
             f"{title}: its physics was at the other end of a link ({physics}), and what came from there is not in it; "
             "give --physics NAME to fly it on an engine of this machine"
         )
-    frame = frame or header["frame"]
-    if frame is None:
-        raise RecordingError(
-            f"{title}: its airframe {header['airframe']['name']!r} was made by a program; give it: --frame FILE"
-        )
     if world is None and header["world"] is not None:
         world = header["world"]["file"]
         if world is None:
@@ -289,7 +296,7 @@ def _build(
     start = header["start"]
     try:
         return Simulation(
-            frame,
+            frame or _airframe(header),
             home=tuple(header["home"]),
             seed=header["seed"],
             estimator=header["estimator"],

@@ -7,6 +7,8 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ..errors import SitlError
+
 if TYPE_CHECKING:
     from ..simulation import Simulation
 
@@ -16,7 +18,7 @@ _SHORTEST_US, _LONGEST_US = 2500, 20000
 _CATCH_UP_S = 0.05
 
 
-class SpeedupError(ValueError):
+class SpeedupError(SitlError, ValueError):
     """A speed-up that is neither a positive number nor "max"."""
 
 

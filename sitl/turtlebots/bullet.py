@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core import records
 from ..physics.engine import EngineError
-from ..physics.native.turtlebot.state import TURTLEBOT_DTYPE
+from ..physics.native.turtlebot.state import Turtlebot
 from ..physics.pybullet.turtlebot import BulletTurtlebot
 from ..worlds.frames import to_heading, to_ned
 from .native import Pose, Turtlebots, full_pose, ticks_in
@@ -25,7 +24,7 @@ class BulletTurtlebots(Turtlebots):
     """
 
     def _ready(self) -> None:
-        self.views = [records.view(self.fleet, index) for index in range(self.count)]
+        self.views = [Turtlebot.of(self.fleet, index) for index in range(self.count)]
         self.robots = [BulletTurtlebot(v, self.world, self.lidar) for v in self.views]
 
     def reset(self, index: int = 0, pose: Pose | None = None, seed: int = 0) -> None:
@@ -66,7 +65,7 @@ class BulletTurtlebots(Turtlebots):
         try:
             self.robots[index].restore(snapshot[2])
         except EngineError:
-            self.fleet[index] = np.frombuffer(kept, TURTLEBOT_DTYPE)[0]
+            self.fleet[index] = np.frombuffer(kept, Turtlebot.dtype)[0]
             self.scan[index], self.commands[index] = scan, command
             raise
 

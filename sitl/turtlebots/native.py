@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..core import records
 from ..core.kernels import jit_disabled
 from ..physics.native.turtlebot.fleet import advance
 from ..physics.native.turtlebot.init import place
-from ..physics.native.turtlebot.state import TICK_US, TURTLEBOT_DTYPE
+from ..physics.native.turtlebot.state import TICK_US
+from ..physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from ..vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
 from ..worlds import World, load, planar
 from ..worlds.frames import from_heading, from_ned, to_heading, to_ned
@@ -56,7 +56,7 @@ class Turtlebots:
         self.airframe = airframe
         self.lidar = lidar
         self.count = count
-        self.fleet = np.zeros(count, TURTLEBOT_DTYPE)
+        self.fleet = TurtlebotRecord.fleet(count)
         self.fleet["figures"] = airframe.record()
         self.scan: npt.NDArray[np.float32] = np.zeros((count, lidar.readings), np.float32)
         """Readings of the lidars [m], from right to left, inf for nothing in range; each call writes into it."""
@@ -69,7 +69,7 @@ class Turtlebots:
 
     def _ready(self) -> None:
         """What follows from the rest, and is not pickled."""
-        self.views = [records.view(self.fleet, index) for index in range(self.count)]
+        self.views = [TurtlebotRecord.of(self.fleet, index) for index in range(self.count)]
         rays = planar.rays(self.lidar.rays, self.lidar.field_of_view)
         g = self.world.geometry
         fleet: Any = self.views if jit_disabled() else self.fleet
@@ -125,9 +125,9 @@ class Turtlebots:
             ValueError: the snapshot is of other records or another number of readings.
         """
         record, scan = snapshot
-        if len(record) != TURTLEBOT_DTYPE.itemsize or len(scan) != self.scan[index].nbytes:
+        if len(record) != TurtlebotRecord.dtype.itemsize or len(scan) != self.scan[index].nbytes:
             raise ValueError("this snapshot is not of a Turtlebot with a lidar of this many readings")
-        self.fleet[index] = np.frombuffer(record, TURTLEBOT_DTYPE)[0]
+        self.fleet[index] = np.frombuffer(record, TurtlebotRecord.dtype)[0]
         self.scan[index] = np.frombuffer(scan, np.float32)
         self.commands[index] = math.nan
 

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ..core import compile as compiler
-from ..core import records
 from ..core.compile import Progress
 from .kinds import COPTER, Kind
 
@@ -31,7 +30,7 @@ class Core:
 
     def bind(self, fleet: Array, index: int) -> Callable[[int], None]:
         """The same for one vehicle, whose memory stays in place: cheaper to call."""
-        return _bound(self.kind.advance, self._function, fleet, index)
+        return _bound(self.kind, self.kind.advance, self._function, fleet, index)
 
 
 def load_core(kind: Kind = COPTER, progress: Progress | None = None) -> Core:
@@ -43,11 +42,11 @@ def bind_unit(
     unit: Callable[..., None], kind: Kind, fleet: Array, index: int, progress: Progress | None = None
 ) -> Callable[[], None]:
     """A unit of a kind of vehicle as a function of no arguments, for one vehicle whose memory stays in place."""
-    return _bound(unit, compiler.load(unit, kind.record_path, progress), fleet, index)
+    return _bound(kind, unit, compiler.load(unit, kind.record_path, progress), fleet, index)
 
 
-def _bound(plain: Callable[..., None], compiled: Any, fleet: Array, index: int) -> Callable[..., None]:
+def _bound(kind: Kind, plain: Callable[..., None], compiled: Any, fleet: Array, index: int) -> Callable[..., None]:
     if compiled is None:
-        views: Any = {index: records.view(fleet, index)}
+        views: Any = {index: kind.record.of(fleet, index)}
         return partial(plain, views, index)
     return partial(compiled, c_void_p(fleet.ctypes.data), c_int64(len(fleet)), c_int64(index))  # converted once

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from ..autopilot.copter.firmware import FIRMWARE as COPTER_FIRMWARE
 from ..autopilot.firmware import Firmware
 from ..autopilot.rover.firmware import FIRMWARE as ROVER_FIRMWARE
@@ -18,7 +16,8 @@ from ..physics.native.copter.step import step as step_copter
 from ..physics.native.rover import pieces as rover_pieces
 from ..physics.native.rover.init import init as init_rover
 from ..physics.native.rover.step import step as step_rover
-from . import advance, record, sim_parameters
+from . import advance, sim_parameters
+from .record import Copter, Rover, Vehicle
 
 
 @dataclass(frozen=True)
@@ -26,8 +25,8 @@ class Kind:
     """One kind of vehicle."""
 
     firmware: Firmware
-    record: str
-    """Name of its record in ``sitl.vehicle.record``."""
+    record: type[Vehicle]
+    """Its record."""
     advance: Callable[[Any, int, int], None]
     """Entry of its core (``sitl.vehicle.advance``): native physics and autopilot."""
     fly: Callable[[Any, int], None]
@@ -49,18 +48,12 @@ class Kind:
     @property
     def record_path(self) -> str:
         """Where its record is: the core is compiled for it."""
-        return f"{record.__name__}.{self.record}"
-
-    @property
-    def dtype(self) -> np.dtype[Any]:
-        """Its record."""
-        found: np.dtype[Any] = getattr(record, self.record)
-        return found
+        return f"{self.record.__module__}.{self.record.__qualname__}"
 
 
 COPTER = Kind(
     COPTER_FIRMWARE,
-    "COPTER_DTYPE",
+    Copter,
     advance.advance_copter,
     advance.fly_copter,
     step_copter,
@@ -70,7 +63,7 @@ COPTER = Kind(
 )
 ROVER = Kind(
     ROVER_FIRMWARE,
-    "ROVER_DTYPE",
+    Rover,
     advance.advance_rover,
     advance.fly_rover,
     step_rover,

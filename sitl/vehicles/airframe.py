@@ -10,13 +10,14 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
+from ..errors import SitlError
 from .figures.figure import Figure
 
 Figures = Mapping[str, float | Sequence[float]]
 A = TypeVar("A", bound="Airframe")
 
 
-class AirframeError(ValueError):
+class AirframeError(SitlError, ValueError):
     """An airframe, or a figure of one, that cannot be used; the message names it, its value, the limits."""
 
 
@@ -65,6 +66,29 @@ class Airframe:
                 f"airframe {self.name!r}: lidar_samples = {self.value('lidar_samples')!r}; at most lidar_rays, "
                 f"which is {self.value('lidar_rays')!r}"
             )
+
+    @classmethod
+    def of_record(cls: type[A], name: str, record: Mapping[str, Any], parameters: Mapping[str, float]) -> A:
+        """The airframe that a record was written from (``record``), given as plain numbers by name.
+
+        Raises:
+            AirframeError: a figure is missing, not a number or out of range.
+        """
+        model = record.get(cls.model)
+        figures = {}
+        for figure in cls.known:
+            if figure.name not in record:
+                raise AirframeError(f"airframe {name!r}: figure missing: {figure.name}")
+            value = record[figure.name]
+            needed = figure.default is None and (not figure.models or model in figure.models)
+            if needed or np.any(np.asarray(value) != (0.0 if figure.default is None else figure.default)):
+                figures[figure.name] = value
+        return cls(name=name, description="", figures=figures, parameters=dict(parameters), **cls._rest(record))
+
+    @classmethod
+    def _rest(cls, record: Mapping[str, Any]) -> dict[str, Any]:
+        """What a kind has besides figures, as its arguments."""
+        return {}
 
     def value(self, name: str) -> Any:
         """A figure by its name: a number, or a sequence for a vector."""

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from .airframe import Airframe, AirframeError
-from .figures.copter import FIGURES, FIGURES_DTYPE, HUBS, MODEL, ROTORS_MAX
+from .figures.copter import FIGURES, FIGURES_RECORD, HUBS, MODEL, ROTORS_MAX
 
 CCW, CW = 1.0, -1.0
 """Sense of rotation seen from above."""
@@ -35,7 +36,7 @@ class CopterAirframe(Airframe):
 
     kind: ClassVar[str] = "copter"
     known = tuple(figure for figure in FIGURES if figure not in HUBS)
-    dtype = FIGURES_DTYPE
+    dtype = FIGURES_RECORD.dtype
     model = MODEL
 
     rotors: tuple[Rotor, ...]
@@ -54,6 +55,12 @@ class CopterAirframe(Airframe):
         super().__post_init__()
         if self.value("control_min") >= self.value("control_max"):
             raise AirframeError(f"airframe {self.name!r}: control_min must be below control_max")
+
+    @classmethod
+    def _rest(cls, record: Mapping[str, Any]) -> dict[str, Any]:
+        """The rotors, from the hubs."""
+        hubs = [record[f"rotor_{axis}"] for axis in ("x", "y", "z", "direction")]
+        return {"rotors": tuple(Rotor(*hub) for hub in zip(*hubs, strict=True))[: int(record["rotor_count"])]}
 
     def record(self) -> np.ndarray[Any, Any]:
         """All figures and the rotors as one record."""

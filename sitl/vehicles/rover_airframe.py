@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from .airframe import Airframe
-from .figures.rover import FIGURES, FIGURES_DTYPE, MODEL
+from .figures.rover import FIGURES, FIGURES_RECORD, MODEL
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,5 +16,5 @@ class RoverAirframe(Airframe):
 
     kind: ClassVar[str] = "rover"
     known = FIGURES
-    dtype = FIGURES_DTYPE
+    dtype = FIGURES_RECORD.dtype
     model = MODEL

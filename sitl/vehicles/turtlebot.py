@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from .airframe import Airframe
-from .figures.figure import Figure, figures_dtype
+from .figures.figure import Figure, figures_record
 
 FIGURES = (
     Figure("wheel_radius", "m", "that the drive turns speeds into wheel rates with", 1e-3, 1.0),
@@ -29,7 +29,7 @@ FIGURES = (
     Figure("range_max", "m", "greatest reading of the lidar; what is farther is inf", 1e-3, 1e4),
     Figure("range_noise", "m", "standard deviation of a reading", 0.0, 10.0, 0.0),
 )
-FIGURES_DTYPE = figures_dtype(FIGURES)
+FIGURES_RECORD = figures_record(FIGURES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +38,7 @@ class TurtlebotAirframe(Airframe):
 
     kind: ClassVar[str] = "turtlebot"
     known = FIGURES
-    dtype = FIGURES_DTYPE
+    dtype = FIGURES_RECORD.dtype
 
 
 @dataclass(frozen=True)

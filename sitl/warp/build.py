@@ -22,10 +22,12 @@ import sys
 import tempfile
 from pathlib import Path
 
+from ..errors import SitlError
+
 HERE = Path(__file__).parent
 
 
-class CannotBuild(RuntimeError):
+class CannotBuild(SitlError, RuntimeError):
     """The library or the runtime cannot be made here; the message says what to install or change."""
 
 

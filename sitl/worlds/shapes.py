@@ -12,12 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import SitlError
+
 Array = npt.NDArray[np.float64]
 CIRCLE_CORNERS = 32
 """Corners of the polygon that stands for a circle in plans."""
 
 
-class WorldError(ValueError):
+class WorldError(SitlError, ValueError):
     """A world that is not known, or a world file that cannot be used; the message says where and what is allowed."""
 
 

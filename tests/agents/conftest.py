@@ -7,8 +7,8 @@ import argparse
 
 import pytest
 
-import sitl.agents.cli
-from sitl import errors
+from sitl.agents import cli as agents_cli
+from sitl.errors import SitlError
 
 
 @pytest.fixture
@@ -18,11 +18,11 @@ def sitl(monkeypatch, tmp_path, capsys):
 
     def run(*words):
         top = argparse.ArgumentParser(prog="sitl")
-        sitl.agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+        agents_cli.add_parser(top.add_subparsers(dest="command", required=True))
         try:
             options = top.parse_args([str(word) for word in words])
             code = options.function(options)
-        except errors.USER_ERRORS as error:
+        except SitlError as error:
             return 2, "", str(error)
         except SystemExit:
             return 2, "", capsys.readouterr().err

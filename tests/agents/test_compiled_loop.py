@@ -9,11 +9,11 @@ import sys
 
 import gymnasium as gym
 import pytest
-from small_runs import CIRCUIT2, learner_for, make
 
 from sitl.agents.tabular.compiled_loop import CompiledLoop
 from sitl.agents.tabular.loop import learn_episode
 from sitl.agents.tabular.settings import Settings
+from tests.agents.small_runs import CIRCUIT2, learner_for, make
 
 RULES = [
     ("qlearn", Settings()), ("qlearn", Settings.as_coded("qlearn")),

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-import sitl.agents.cli
+from sitl.agents import cli as agents_cli
 from sitl.agents.tabular.settings import Settings
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -27,7 +27,7 @@ def test_example_runs(capsys):
 @pytest.mark.parametrize(("page", "least"), [("learning", 7), ("mental-rehearsal", 7), ("results", 3)])
 def test_commands_are_understood(page, least):
     top = argparse.ArgumentParser()
-    sitl.agents.cli.add_parser(top.add_subparsers(dest="command", required=True))
+    agents_cli.add_parser(top.add_subparsers(dest="command", required=True))
     lines = re.findall(r"^sitl (.*)$|`sitl ([^`]*)`", (DOCS / f"{page}.md").read_text(), re.MULTILINE)
     whole = [line for pair in lines for line in pair if " --" in line]
     for line in whole:

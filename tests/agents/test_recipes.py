@@ -10,16 +10,15 @@ from pathlib import Path
 
 import gymnasium as gym
 import pytest
-from small_runs import CIRCUIT2
 
-import sitl.agents.cli
-import sitl.envs
 from sitl.agents import algorithms, recipes
+from sitl.agents import cli as agents_cli
 from sitl.agents.errors import AgentError
 from sitl.agents.recipes.recipe_file import KEYS
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.config import RunConfig
 from sitl.agents.runs.plan import EvaluationPlan
+from tests.agents.small_runs import CIRCUIT2
 
 SMALL = f"""
 summary = "Short"
@@ -58,7 +57,7 @@ def test_the_shipped_ones_can_be_used():
 
 
 def test_they_are_in_the_package():
-    root = Path(sitl.agents.cli.__file__).parents[1]
+    root = Path(agents_cli.__file__).parents[1]
     patterns = tomllib.loads((root.parents[1] / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
     packed = {path for pattern in patterns["sitl.agents"] for path in root.glob(pattern)}
     assert {path.stem for path in packed if path.parent.name == "recipes"} >= set(recipes.names())

@@ -9,7 +9,6 @@ import math
 import gymnasium as gym
 import numpy as np
 import pytest
-from small_runs import CIRCUIT2, new
 
 from sitl.agents import recipes
 from sitl.agents.errors import AgentError
@@ -25,6 +24,7 @@ from sitl.agents.report.group import Group
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
+from tests.agents.small_runs import CIRCUIT2, new
 
 CHANGES = [
     Change("slow", "vehicle", set={"wheel_speed_max": 0.05}),

@@ -12,7 +12,6 @@ import time
 
 import numpy as np
 import pytest
-from small_runs import config, new, result
 
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
@@ -27,6 +26,7 @@ from sitl.agents.tabular.checks import Checks
 from sitl.agents.tabular.learner import Learner
 from sitl.agents.tabular.settings import Settings
 from sitl.agents.tabular.table import Table
+from tests.agents.small_runs import config, new, result
 
 
 def train(run, episodes=None):

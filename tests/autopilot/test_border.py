@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.state import ACTUATORS_DTYPE, SENSORS_DTYPE
+from sitl.autopilot.state import Actuators, Sensors
 
 FLOATS = ("acc", "gyro", "mag", "abs_pressure", "temperature", "battery_voltage", "battery_current")
 INTEGERS = ("gps_lat", "gps_lon", "gps_alt", "gps_eph", "gps_epv", "gps_vel", "gps_satellites")
@@ -14,13 +14,13 @@ INTEGERS = ("gps_lat", "gps_lon", "gps_alt", "gps_eph", "gps_epv", "gps_vel", "g
 
 @pytest.mark.parametrize("name", FLOATS)
 def test_sensors_are_single_precision(name: str) -> None:
-    assert SENSORS_DTYPE[name].base == np.float32
+    assert Sensors.dtype[name].base == np.float32
 
 
 @pytest.mark.parametrize("name", INTEGERS)
 def test_a_fix_is_whole_numbers(name: str) -> None:
-    assert SENSORS_DTYPE[name].base == np.int32
+    assert Sensors.dtype[name].base == np.int32
 
 
 def test_controls_are_single_precision() -> None:
-    assert ACTUATORS_DTYPE["controls"].base == np.float32
+    assert Actuators.dtype["controls"].base == np.float32

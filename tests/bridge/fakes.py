@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.copter.firmware import FIRMWARE as COPTER
@@ -18,9 +17,9 @@ from sitl.autopilot.mission.validate import check_all
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
-from sitl.core import records, rng
+from sitl.core import rng
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle.record import COPTER_DTYPE, ROVER_DTYPE
+from sitl.vehicle.record import Copter, Rover
 
 TICK_US = 2500
 HOME = (-353632620, 1491652370, 584.0)
@@ -30,12 +29,12 @@ class FakeVehicle:
     """A record whose clock the test advances."""
 
     firmware: Firmware = COPTER
-    dtype: Any = COPTER_DTYPE
+    record: Any = Copter
 
     def __init__(self) -> None:
-        self.fleet = np.zeros(2, self.dtype)
+        self.fleet = self.record.fleet(2)
         self.index = 1
-        self.v = records.view(self.fleet, 1)
+        self.v = self.record.of(self.fleet, 1)
         self.reboots = 0
         self.before_boot_us = 0
         self.firmware.table.set_defaults(self.v.autopilot.params)
@@ -67,7 +66,7 @@ class FakeRover(FakeVehicle):
     """The same with the rover's record."""
 
     firmware: Firmware = ROVER
-    dtype: Any = ROVER_DTYPE
+    record: Any = Rover
 
 
 class FakeAutopilot:

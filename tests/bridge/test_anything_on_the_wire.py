@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from wire_messages import messages, numbers
 
 from sitl.autopilot.copter.modes.numbers import is_known
 from sitl.autopilot.copter.table import TABLE as PARAMETERS
@@ -19,6 +18,7 @@ from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
 from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Core, Simulation, Snapshot
+from tests.bridge.wire_messages import messages, numbers
 
 MISSION = [
     (0, 16, -353632621, 1491652371, 584.0), (3, 22, 0, 0, 8.0), (3, 16, -353630000, 1491652371, 8.0),

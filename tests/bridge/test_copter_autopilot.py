@@ -7,7 +7,6 @@ import math
 from typing import Any
 
 import pytest
-from fakes import HOME, Bench, FakeVehicle
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
@@ -15,6 +14,7 @@ from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.copter.autopilot import CopterAutopilot
+from tests.bridge.fakes import HOME, Bench, FakeVehicle
 
 SQUARE = (
     MissionItem(16, 0, x=HOME[0], y=HOME[1], z=584.0), MissionItem(22, 3, z=10.0),

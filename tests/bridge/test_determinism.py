@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import random
 
-from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.client.endpoint import Endpoint
 from sitl.missions.pilot import Pilot
 from sitl.simulation import Core, Simulation
+from tests.bridge.fakes import Bench
 
 
 def session(seed: int) -> bytes:

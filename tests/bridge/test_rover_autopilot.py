@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 
 import pytest
-from fakes import HOME, Bench, FakeRover
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot import events
@@ -15,6 +14,7 @@ from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.rover.modes import guided_state
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.rover.autopilot import RoverAutopilot
+from tests.bridge.fakes import HOME, Bench, FakeRover
 
 ACCEPTED, DENIED, FAILED = 0, 2, 4
 MANUAL, HOLD, AUTO, RTL, GUIDED = 0, 4, 10, 11, 15

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from wire_messages import messages, numbers
 
 from sitl.autopilot.rover.firmware import FIRMWARE
 from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, RTL, SMART_RTL, is_known
@@ -19,6 +18,7 @@ from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
 from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation, Snapshot
+from tests.bridge.wire_messages import messages, numbers
 
 DO_SET_MODE = 176
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fakes import HOME, Bench
 
 from sitl.autopilot.rover.modes import auto_state, guided_state
+from tests.bridge.fakes import HOME, Bench
 
 MANUAL, HOLD, AUTO, RTL, GUIDED, INITIALISING = 0, 4, 10, 11, 15, 16
 CUSTOM, AUTONOMOUS, STICKS, ARMED = 1, 8, 64, 128

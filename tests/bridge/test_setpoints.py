@@ -5,8 +5,9 @@ import math
 from typing import Any
 
 import pytest
-from fakes import HOME, Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from tests.bridge.fakes import HOME, Bench
 
 POSITION, VELOCITY, ACCELERATION, POS_VEL = 0xDF8, 0xDC7, 0xC3F, 0xDC0
 

@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from fakes import HOME, Bench
+
+from tests.bridge.fakes import HOME, Bench
 
 
 def get(bench: Bench, name: str) -> object:

@@ -14,7 +14,7 @@ import pytest
 
 from sitl import Simulation
 from sitl.client import Client, LinkLostError
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.simulation import Core
 
 

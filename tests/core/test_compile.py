@@ -30,11 +30,13 @@ def outer(x):
 """
 
 ENTRY = """
-import numpy as np
 from sitl.core.kernels import unit
+from sitl.core.records import Record
 from toy_laws import inner, outer
 
-DTYPE = np.dtype([("x", "f8"), ("y", "f8")])
+class Pair(Record):
+    x: float
+    y: float
 
 @unit
 def first(fleet, i):
@@ -55,12 +57,12 @@ import numpy as np
 import toy
 from sitl.core import compile, fingerprint, kernels
 units = {u.function.__name__: u for u in kernels.UNITS.values()}
-prints = {n: fingerprint.fingerprint(u, toy.DTYPE, "toolchain") for n, u in units.items()}
-fleet = np.zeros(2, toy.DTYPE)
+prints = {n: fingerprint.fingerprint(u, toy.Pair.layout(), "toolchain") for n, u in units.items()}
+fleet = toy.Pair.fleet(2)
 fleet["x"] = 1.0
 built = []
 if len(sys.argv) > 1:
-    call = compile.load(toy.entry, "toy.DTYPE", lambda name, done, total: built.append(name))
+    call = compile.load(toy.entry, "toy.Pair", lambda name, done, total: built.append(name))
     call(fleet.ctypes.data, 2, 1, 5)
 else:
     toy.entry(fleet.view(np.recarray), 1, 5)

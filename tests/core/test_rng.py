@@ -10,7 +10,7 @@ from sitl.core import rng
 
 
 def generator(seed: int):
-    holder = np.zeros(1, rng.RNG_DTYPE).view(np.recarray)
+    holder = [rng.Rng()]
     rng.seed(holder[0], seed)
     return holder[0]
 

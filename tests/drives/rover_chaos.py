@@ -6,10 +6,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from rover_driver import HOLD
-from rover_soak import RoverSoak
 
 from sitl.simulation import Core
+from tests.drives.rover_driver import HOLD
+from tests.drives.rover_soak import RoverSoak
 
 TUNABLE = {
     "WP_RADIUS": (0, 5), "WP_ACCEL": (0, 3), "WP_JERK": (0, 3), "TURN_RADIUS": (0, 3), "ATC_TURN_MAX_G": (1, 2),

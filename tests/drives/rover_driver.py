@@ -8,10 +8,10 @@ import math
 from typing import Any
 
 import numpy as np
-from witness import KEEP, MIDDLE, Item, Witness
 
 from sitl.client import Moment
 from sitl.simulation import Core
+from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
 
 MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED = 0, 1, 3, 4, 5, 7, 9, 10, 11, 12, 15
 MODES = (MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED)

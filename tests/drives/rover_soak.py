@@ -6,9 +6,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from by_dice import ByDice
-from rover_driver import AUTO, GUIDED, HOLD, MODES, VELOCITY, Driver
-from witness import (
+
+from sitl.missions.pilot import ARM
+from tests.drives.rover_driver import AUTO, GUIDED, HOLD, MODES, VELOCITY, Driver
+from tests.pilots.by_dice import ByDice
+from tests.pilots.witness import (
     CHANGE_SPEED,
     CONDITION_DELAY,
     CONDITION_DISTANCE,
@@ -26,8 +28,6 @@ from witness import (
     YAW_SPEED,
     Item,
 )
-
-from sitl.missions.pilot import ARM
 
 MASKS = (0xDF8, 0xDC7, 0x9C7, 0x5C7, 0x9FF, 0x5FF, 0xDC0, 0xFFF, 0x1C7)
 """Place; velocity; with yaw, with yaw rate; yaw, yaw rate alone; place and velocity; nothing; both yaws."""

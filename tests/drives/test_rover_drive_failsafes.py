@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rover_driver import (
+
+from sitl.missions.pilot import ARM
+from sitl.simulation import Core
+from tests.drives.rover_driver import (
     ACRO,
     AIRFRAMES,
     AUTO,
@@ -21,10 +24,7 @@ from rover_driver import (
     VELOCITY,
     Driver,
 )
-from witness import LOITER_UNLIMITED, Item
-
-from sitl.missions.pilot import ARM
-from sitl.simulation import Core
+from tests.pilots.witness import LOITER_UNLIMITED, Item
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 BOTH = pytest.mark.parametrize("frame", ["erle_rover", "skid_rover"])

@@ -7,7 +7,9 @@ import math
 
 import numpy as np
 import pytest
-from rover_driver import (
+
+from sitl.simulation import Core
+from tests.drives.rover_driver import (
     AIRFRAMES,
     AUTO,
     BODY,
@@ -21,8 +23,6 @@ from rover_driver import (
     Driver,
     path_error,
 )  # fmt: skip
-
-from sitl.simulation import Core
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 CARS = pytest.mark.parametrize("frame", AIRFRAMES[:3])

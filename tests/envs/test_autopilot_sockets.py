@@ -7,7 +7,6 @@ import socket
 import threading
 
 import gymnasium as gym
-import lockstep_vehicle
 import numpy as np
 import pytest
 
@@ -16,6 +15,7 @@ from sitl.bridge.frame import encode_v2
 from sitl.client import connect
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink.errors import LinkLostError
+from tests.envs import lockstep_vehicle
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 

@@ -8,13 +8,13 @@ import pickle
 import gymnasium as gym
 import numpy as np
 import pytest
-from lockstep_vehicle import vehicle
 
 import sitl.envs  # noqa: F401 (registers the environments)
 from sitl.agents.tabular.compiled_loop import CompiledLoop
 from sitl.envs import EnvOptionError
 from sitl.envs.latency import Latency
 from sitl.envs.robots.turtlebot import Turtlebot
+from tests.envs.lockstep_vehicle import vehicle
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 ROVER = "GazeboMazeErleRoverLIDAR-v0"

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from witness import (
+from sitl.physics.native import truth
+from sitl.simulation import Core
+from tests.pilots.witness import (
     ABSOLUTE,
     CHANGE_SPEED,
     CONDITION_DELAY,
@@ -26,9 +28,6 @@ from witness import (
     Item,
     Witness,
 )
-
-from sitl.physics.native import truth
-from sitl.simulation import Core
 
 __all__ = [
     "ABSOLUTE", "CHANGE_SPEED", "CONDITION_DELAY", "CONDITION_DISTANCE", "CONDITION_YAW", "DELAY", "JUMP", "LAND_ITEM",

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import aviator
 import numpy as np
-from aviator import GUIDED
-from soak import Soak
+
+from tests.flights import aviator
+from tests.flights.aviator import GUIDED
+from tests.flights.soak import Soak
 
 TUNABLE = {
     "WPNAV_SPEED": (50, 1500), "WPNAV_ACCEL": (100, 400), "WPNAV_RADIUS": (20, 800), "WPNAV_SPEED_UP": (50, 500),

@@ -5,15 +5,15 @@ from __future__ import annotations
 
 import math
 
-import aviator
 import numpy as np
-from aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
-from by_dice import ByDice
-from witness import CONDITION_YAW
-from witness import TAKEOFF_ITEM as TAKEOFF
 
 from sitl.missions.pilot import ARM
 from sitl.simulation import Core
+from tests.flights import aviator
+from tests.flights.aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
+from tests.pilots.by_dice import ByDice
+from tests.pilots.witness import CONDITION_YAW
+from tests.pilots.witness import TAKEOFF_ITEM as TAKEOFF
 
 MODES = (STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 CHANGE_SPEED, PAUSE, MISSION_CURRENT, REBOOT = 178, 193, 224, 246

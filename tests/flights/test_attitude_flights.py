@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, ALT_HOLD, Aviator
 
 from sitl.core.rotations import quat_from_euler
 from sitl.physics.native import truth
 from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES, ALT_HOLD, Aviator
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 

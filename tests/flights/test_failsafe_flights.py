@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from aviator import (
+
+from sitl.missions.pilot import ARM
+from sitl.simulation import Core
+from tests.flights.aviator import (
     AIRFRAMES,
     ALT_HOLD,
     AUTO,
@@ -20,9 +23,6 @@ from aviator import (
     Aviator,
     Item,
 )  # fmt: skip
-
-from sitl.missions.pilot import ARM
-from sitl.simulation import Core
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, GUIDED, LAND, LOITER, TAKEOFF_ITEM, Aviator
-from guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
 
 from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES, GUIDED, LAND, LOITER, TAKEOFF_ITEM, Aviator
+from tests.flights.guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 DENIED = 2

@@ -7,8 +7,10 @@ import math
 
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, Aviator
-from guided_targets import (
+
+from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES, Aviator
+from tests.flights.guided_targets import (
     ACCELERATION,
     POS_VEL,
     POS_VEL_ACCEL,
@@ -21,8 +23,6 @@ from guided_targets import (
     stream,
     target,
 )  # fmt: skip
-
-from sitl.simulation import Core
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, BRAKE, GUIDED, LAND, LOITER, RTL, Aviator, Item
-from aviator import WAYPOINT as WAYPOINT_ITEM
 
 from sitl.missions.pilot import ARM, VELOCITY_ONLY
 from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES, BRAKE, GUIDED, LAND, LOITER, RTL, Aviator, Item
+from tests.flights.aviator import WAYPOINT as WAYPOINT_ITEM
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 FAILED = 4

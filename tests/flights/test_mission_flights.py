@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import math
 
-import aviator
 import numpy as np
 import pytest
-from aviator import (
+
+from sitl.simulation import Core
+from tests.flights import aviator
+from tests.flights.aviator import (
     ABSOLUTE,
     AIRFRAMES,
     AUTO,
@@ -30,8 +32,6 @@ from aviator import (
     Aviator,
     Item,
 )  # fmt: skip
-
-from sitl.simulation import Core
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 UP = Item(aviator.TAKEOFF_ITEM, None, 10.0)

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 
-import aviator
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, AUTO, GUIDED, LAND_ITEM, RETURN, WAYPOINT, Aviator, Item
 
 from sitl.simulation import Core
+from tests.flights import aviator
+from tests.flights.aviator import AIRFRAMES, AUTO, GUIDED, LAND_ITEM, RETURN, WAYPOINT, Aviator, Item
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 UP = Item(aviator.TAKEOFF_ITEM, None, 10.0)

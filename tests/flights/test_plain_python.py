@@ -6,7 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from aviator import (
+
+from sitl.core import records
+from sitl.missions.pilot import VELOCITY_ONLY
+from sitl.simulation import Core
+from tests.flights.aviator import (
     ALT_HOLD,
     AUTO,
     BRAKE,
@@ -21,10 +25,6 @@ from aviator import (
     Aviator,
     Item,
 )  # fmt: skip
-
-from sitl.core import records
-from sitl.missions.pilot import VELOCITY_ONLY
-from sitl.simulation import Core
 
 TICKS = 60
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from aviator import AIRFRAMES, ALT_HOLD, GUIDED, LOITER, LOW, STABILIZE, Aviator
 
 from sitl.missions.pilot import ARM, FlightError
 from sitl.physics.native import truth
 from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES, ALT_HOLD, GUIDED, LOITER, LOW, STABILIZE, Aviator
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from sitl.errors import OptionError
 from sitl.foreign.choice import Choice, choose
-from sitl.option_error import OptionError
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from sitl.errors import OptionError
 from sitl.missions import compare
-from sitl.option_error import OptionError
 
 
 @pytest.mark.slow

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from sitl import vehicles
+from sitl.errors import OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.ports import HOST, free_tcp_run
 from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
-from sitl.option_error import OptionError
 
 
 def test_ardupilots_command_line():

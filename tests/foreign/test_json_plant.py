@@ -16,8 +16,8 @@ import pytest
 from sitl.bridge.ardupilot_json import motion
 from sitl.bridge.ardupilot_json.servos import decode
 from sitl.client.endpoint import Endpoint
+from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
-from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants import json as json_plant
 from sitl.plants.alone import stand_alone

@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.core import records
 from sitl.physics.native.body import GRAVITY, fly
 from sitl.physics.native.copter import pieces as copter
 from sitl.physics.native.copter.step import step as step_copter
@@ -22,8 +21,8 @@ HOME = (-35.0, 149.0, 100.0, 30.0)
 
 def silent(name: str, kind):
     """Two equal vehicles without sensor errors, as (fleet of views)."""
-    fleet = np.zeros(2, kind.dtype)
-    views = [records.view(fleet, i) for i in range(2)]
+    fleet = kind.record.fleet(2)
+    views = [kind.record.of(fleet, i) for i in range(2)]
     for v in views:
         kind.init_physics(v, load(name).changed(noise_scale=0.0), HOME, 1)
     return views

@@ -8,13 +8,12 @@ import shlex
 from pathlib import Path
 
 import pytest
-from recorded_flights import Recorded, hop
 
 import sitl.cli
 from sitl.cli import run
 from sitl.cli.recordings import resume
 from sitl.client.endpoint import Endpoint
-from sitl.errors import USER_ERRORS
+from sitl.errors import SitlError
 from sitl.missions.cli import replay
 from sitl.recording.error import RecordingError
 from sitl.recording.recorder import Recorder
@@ -22,6 +21,7 @@ from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.run.lockstep import serve_lockstep
 from sitl.simulation import Core, Simulation
+from tests.recording.recorded_flights import Recorded, hop
 
 
 def typed(text: str) -> int:
@@ -110,13 +110,13 @@ def test_who_goes_on_from_lockstep_without_it_has_no_grants(core: Core, tmp_path
 
 
 def test_what_from_does_not_take(hopped: Recorded, tmp_path: Path) -> None:
-    with pytest.raises(USER_ERRORS, match="--seed: with --from the recording decides"):
+    with pytest.raises(SitlError, match="--seed: with --from the recording decides"):
         typed(f"run copter --from {hopped.path} --seed 3 --tcp 0 --out none --log-dir {tmp_path}")
-    with pytest.raises(USER_ERRORS, match="is of a copter, not of a rover"):
+    with pytest.raises(SitlError, match="is of a copter, not of a rover"):
         typed(f"run rover --from {hopped.path} --tcp 0 --out none --log-dir {tmp_path}")
-    with pytest.raises(USER_ERRORS, match="is there already"):
+    with pytest.raises(SitlError, match="is there already"):
         typed(f"run copter --rec {hopped.path} --tcp 0 --out none --log-dir {tmp_path}")
-    with pytest.raises(USER_ERRORS, match="--home: the recording decides that"):
+    with pytest.raises(SitlError, match="--home: the recording decides that"):
         typed(f"replay {hopped.path} --home 1,2,3,4")
 
 
@@ -133,7 +133,7 @@ def test_a_snapshot_that_leads_elsewhere_is_refused(core: Core, tmp_path: Path) 
 def test_a_cut_recording(hopped: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     cut = tmp_path / "cut.rec"
     cut.write_bytes(hopped.path.read_bytes()[:-20])
-    assert issubclass(RecordingError, USER_ERRORS)
+    assert issubclass(RecordingError, SitlError)
     with pytest.raises(RecordingError, match="sitl mission replay --unfinished"):
         typed(f"replay {cut}")
     assert typed(f"replay {cut} --unfinished") == 0

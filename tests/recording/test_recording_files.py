@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from recorded_flights import Recorded
 
 from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
 from sitl.recording.entries import Entry, Kind, decode, encode, read_varint, varint
@@ -18,6 +17,7 @@ from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.simulation import Core, Simulation
+from tests.recording.recorded_flights import Recorded
 
 ENTRIES_OF_ANY_KIND = st.lists(
     st.tuples(st.integers(0, 2**40), st.sampled_from(Kind), st.integers(0, 2**30), st.binary(max_size=300))
@@ -123,8 +123,9 @@ def test_a_killed_run_can_be_flown_as_far_as_it_was_written(core: Core, tmp_path
 @pytest.mark.parametrize(
     "change, message",
     [
-        ({"frame": "gone.py"}, "airframe file 'gone.py' cannot be read: No such file.*--frame FILE gives another"),
-        ({"frame": None}, "airframe 'erle_copter' was made by a program; give it: --frame FILE"),
+        ({"frame": "gone"}, "airframe 'gone' is not known.*--frame FILE gives another"),
+        ({"frame": None, "airframe": {"name": "odd"}}, "data of an airframe.*KeyError.*--frame FILE gives another"),
+        ({"frame": "x.py", "vehicle": "boat"}, "airframe of the kind 'boat': it is one of copter, rover"),
         ({"world": {"file": "gone.toml", "name": "w", "digest": ""}}, "world file 'gone.toml' cannot be read.*--world"),
         ({"physics": "hil:tcp:127.0.0.1:1"}, "its physics was at the other end of a link"),
     ],

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from recorded_flights import Frames
-
 from sitl.bridge.links.link import Link, Peer
 from sitl.client.endpoint import Endpoint
 from sitl.recording.entries import Kind
@@ -16,6 +14,7 @@ from sitl.recording.replay import Replay
 from sitl.run import runner
 from sitl.run.lockstep import serve_lockstep
 from sitl.simulation import Core, Simulation
+from tests.recording.recorded_flights import Frames
 
 
 class SlowPeer(Peer):

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from recorded_flights import SECONDS, Frames, Recorded, hop
 
 from sitl.recording import identity
 from sitl.recording.entries import Kind
@@ -17,6 +16,7 @@ from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.simulation import Core, Simulation
+from tests.recording.recorded_flights import SECONDS, Frames, Recorded, hop
 
 
 def test_every_frame_again_at_its_time(hopped: Recorded, core: Core) -> None:

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import math
 
-import numpy as np
 import pytest
 from pytest import approx
 
 from sitl import vehicles
 from sitl.autopilot.copter.table import TABLE
+from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError, ardupilot_quad
-from sitl.vehicles.figures.copter import FIGURES_DTYPE
+from sitl.vehicles.figures.copter import FIGURES_RECORD
 
 
 @pytest.mark.parametrize("name", vehicles.names("copter"))
@@ -16,7 +16,7 @@ def test_airframes_are_complete_and_their_parameters_accepted(name):
     airframe = vehicles.load(name)
     assert airframe.name == name
     record = airframe.record()
-    assert record.dtype == FIGURES_DTYPE
+    assert record.dtype == FIGURES_RECORD.dtype
     assert record["mass"] == airframe.figures["mass"]
     assert record["rotor_count"] == 4
     assert sum(record["rotor_direction"]) == 0.0
@@ -101,8 +101,8 @@ def test_ardupilot_quad_derivation():
 
 
 def test_apply_writes_one_vehicle_of_a_fleet():
-    fleet = np.zeros(2, [("physics", [("airframe", FIGURES_DTYPE)])])
-    vehicles.apply(vehicles.load("erle_copter"), fleet.view(np.recarray)[1])
+    fleet = Copter.fleet(2)
+    vehicles.apply(vehicles.load("erle_copter"), Copter.of(fleet, 1))
     assert fleet["physics"]["airframe"]["mass"].tolist() == [0.0, 1.14]
 
 

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-import numpy as np
 import pytest
 
 from sitl import vehicles
 from sitl.autopilot.rover.table import TABLE
-from sitl.core import records
+from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError
-from sitl.vehicles.figures.rover import FIGURES_DTYPE
+from sitl.vehicles.figures.rover import FIGURES_RECORD
 
 
 @pytest.mark.parametrize("name", vehicles.names("rover"))
@@ -14,7 +13,7 @@ def test_rovers_are_complete_and_their_parameters_accepted(name):
     airframe = vehicles.load(name)
     assert (airframe.name, airframe.kind) == (name, "rover")
     record = airframe.record()
-    assert record.dtype == FIGURES_DTYPE
+    assert record.dtype == FIGURES_RECORD.dtype
     assert record["speed_max"] == airframe.figures["speed_max"]
     for parameter, value in airframe.parameters.items():
         assert parameter in TABLE
@@ -49,7 +48,5 @@ def test_an_airframe_has_a_kind():
 
 
 def test_a_rover_does_not_fit_a_copters_record():
-    copter = vehicles.load("erle_copter")
-    fleet = np.zeros(1, [("physics", [("airframe", copter.dtype)])])
     with pytest.raises(TypeError, match="cannot become one of"):
-        vehicles.apply(vehicles.load("erle_rover"), records.view(fleet, 0))
+        vehicles.apply(vehicles.load("erle_rover"), Copter())

@@ -10,6 +10,8 @@ from typing import Any
 
 import gymnasium as gym
 
+from sitl.errors import SitlError
+
 from .. import environments
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
@@ -72,10 +74,9 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
         env, Features(spaces[0], figures.sectors), figures.frames, Actions(spaces[1], config.algorithm),
         figures.reward_scale, tally, seeds,
     )  # fmt: skip
+    model = models.make(config.algorithm, figures, robots, config.seed)
     if path.exists():
-        model = checkpoint.resume(path, config.algorithm, robots)
-    else:
-        model = models.make(config.algorithm, figures, robots, config.seed)
+        checkpoint.resume(path, model, robots)
     folder.episodes.keep(tally.done)
     checks = Checks(config, figures, folder.path / BEST, model.num_timesteps)
     last, spent = time.monotonic(), 0.0
@@ -115,7 +116,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     save()
 
 
-class _Enough(Exception):
+class _Enough(SitlError):
     """Ends learning between two rounds."""
 
 

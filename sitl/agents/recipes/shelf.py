@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sitl.option_error import did_you_mean
+from sitl.errors import did_you_mean
 
 from ..errors import AgentError
 from .recipe import Recipe

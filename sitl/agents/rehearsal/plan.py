@@ -9,9 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sitl.option_error import did_you_mean
+from sitl.core import code_in_files
+from sitl.errors import did_you_mean
 
 from ..errors import AgentError
+from ..runs.config import code_of
 from .change import Change, scaled
 
 _FOLDER = Path(__file__).parent / "plans"
@@ -143,9 +145,13 @@ def _read(path: Path) -> Plan:
         robots = values.get("robots", [])
         if not isinstance(robots, list) or not all(isinstance(robot, str) for robot in robots):
             raise AgentError(f"robots = {robots!r}; it must be a list of names")
+        made = tuple(Change.of(change) for change in changes)
+        refused = code_in_files.refusal("it", [name for one in made for name in code_of("", one.options)])
+        if refused is not None:
+            raise AgentError(refused)
         return Plan(
             path.stem,
-            tuple(Change.of(change) for change in changes),
+            made,
             tuple(robots),
             str(values.get("summary", "")),
             _mapping("training", values.get("training", {})),

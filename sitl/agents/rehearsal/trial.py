@@ -10,7 +10,7 @@ from typing import Any
 
 from sitl.core.extras import MissingExtra
 from sitl.envs.robots.turtlebot import Turtlebot
-from sitl.option_error import OptionError, VehicleError
+from sitl.errors import OptionError, VehicleError
 
 from .. import algorithms, environments
 from ..errors import AgentError

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import sitl
+from sitl.core import code_in_files
 
 from ..errors import AgentError
 from .files import write_json
@@ -28,6 +29,13 @@ def versions(*libraries: str) -> dict[str, str]:
     """Of this program, of Python, and of the libraries that results depend on."""
     found = {"gym-sitl": sitl.__version__, "python": platform.python_version()}
     return {**found, **{name: metadata.version(name) for name in (*_LIBRARIES, *libraries)}}
+
+
+def code_of(env: Any, *options: Any) -> list[str]:
+    """What of an environment's id and options runs code of others, or acts on a vehicle."""
+    named = [f"env = {env!r}"] if isinstance(env, str) and ":" in env else []  # Gymnasium imports what stands before
+    tables = [table for table in options if isinstance(table, Mapping)]
+    return named + [name for table in tables for name in code_in_files.code_of_options(table)]
 
 
 @dataclass(frozen=True)
@@ -73,6 +81,11 @@ class RunConfig:
         """Of its folder, when the user does not say."""
         return f"{self.env.replace(':', '-').replace('/', '-')}-{self.algorithm}"
 
+    @property
+    def code(self) -> list[str]:
+        """What runs code of others, or acts on a vehicle (``sitl.core.code_in_files``)."""
+        return code_of(self.env, self.env_options, self.evaluation.options)
+
     def with_(self, **changes: Any) -> RunConfig:
         """The same with some figures replaced."""
         return replace(self, **changes)
@@ -91,7 +104,7 @@ class RunConfig:
         """Read what ``save`` wrote.
 
         Raises:
-            AgentError: it is something else.
+            AgentError: it is something else, or it names code that the user has not allowed.
         """
         try:
             values = json.loads(path.read_text())
@@ -103,6 +116,10 @@ class RunConfig:
         if not isinstance(values, dict) or not {"env", "algorithm"} <= values.keys() or not values.keys() <= known:
             raise AgentError(f"{path} does not describe a run")
         try:
-            return cls(**{**values, "evaluation": EvaluationPlan.of(values.get("evaluation", {}))})
+            found = cls(**{**values, "evaluation": EvaluationPlan.of(values.get("evaluation", {}))})
         except AgentError as error:
             raise AgentError(f"{path}: {error}") from None
+        refused = code_in_files.refusal(path, found.code)
+        if refused is not None:
+            raise AgentError(refused)
+        return found

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from sitl.core import code_in_files
+
 from ..errors import AgentError
 from .config import RunConfig
 from .episodes import EpisodeLog
@@ -49,6 +51,7 @@ class RunFolder:
             raise AgentError(f"{folder} is a folder of runs; choose another one for this run")
         make_folder(folder)
         config.save(folder / CONFIG)
+        code_in_files.allow(config.code)  # the folder is this user's own
         return cls(folder)
 
     def extend(self, episodes: int | None, steps: int | None) -> None:

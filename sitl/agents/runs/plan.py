@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from sitl.option_error import did_you_mean
+from sitl.errors import did_you_mean
 
 from ..errors import AgentError
 

@@ -22,7 +22,7 @@ from sitl.envs.rewards import ByAction
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.envs.tasks import Task, count_crashes
 from sitl.physics.native.turtlebot.fleet import advance_fleet
-from sitl.physics.native.turtlebot.state import TURTLEBOT_DTYPE
+from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from sitl.turtlebots.native import Turtlebots, ticks_in
 
 from .learn import choose_first, learn_first, learners_type
@@ -75,12 +75,13 @@ def run_episode(
 
 
 def _signature() -> Any:
-    import numba
     from numba import types
+
+    from sitl.core.numba_records import numba_type
 
     whole, number = types.int64, types.float64
     line, table, wholes = number[::1], number[:, ::1], whole[::1]
-    fleet = types.Array(numba.from_dtype(TURTLEBOT_DTYPE), 1, "C")
+    fleet = types.Array(numba_type(TurtlebotRecord), 1, "C")
     learner = (learners_type(), wholes, table, whole[:, ::1])
     task = (table, line, number, whole, number, whole, whole, whole)
     room = (types.boolean[::1], whole[:], whole[:, ::1])

@@ -15,7 +15,7 @@ from .exploration import choose
 from .qlearn import best_value
 from .sarsa import value_taken
 from .slots import EMPTY, slot_of
-from .state import LEARNER_DTYPE, SARSA
+from .state import SARSA, LearnerState
 
 
 @law
@@ -74,10 +74,11 @@ def choose_first(learners, keys, values, key):
 
 def learners_type() -> Any:
     """Numba's type of an array of learners."""
-    import numba
     from numba import types
 
-    return types.Array(numba.from_dtype(LEARNER_DTYPE), 1, "C")
+    from sitl.core.numba_records import numba_type
+
+    return types.Array(numba_type(LearnerState), 1, "C")
 
 
 def _learn_signature() -> Any:

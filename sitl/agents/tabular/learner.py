@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core import records
 from sitl.core.kernels import jit_disabled
 from sitl.core.rng import seed as seed_rng
 
@@ -17,7 +16,7 @@ from ..errors import AgentError
 from .exploration import epsilon_in
 from .learn import choose_action, learn_step
 from .settings import EXPLORATIONS, RULES, Settings
-from .state import LEARNER_DTYPE
+from .state import LearnerState
 from .table import Table
 
 
@@ -39,8 +38,8 @@ class Learner:
         if algorithm not in RULES:
             raise AgentError(f"algorithm {algorithm!r}; a table is learnt by one of {', '.join(RULES)}")
         self.algorithm, self.settings, self.table = algorithm, settings, table
-        self.record = np.zeros(1, LEARNER_DTYPE)
-        self._view = view = records.view(self.record, 0)
+        self.record = LearnerState.fleet(1)
+        self._view = view = LearnerState.of(self.record, 0)
         view.rule = RULES.index(algorithm)
         view.exploration = EXPLORATIONS.index(settings.exploration)
         view.first_visit = int(settings.first_visit)

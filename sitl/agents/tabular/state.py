@@ -3,22 +3,24 @@
 
 from __future__ import annotations
 
-from sitl.core.records import record
-from sitl.core.rng import RNG_DTYPE
+from sitl.core.records import Record
+from sitl.core.rng import Rng
 
 QLEARN, SARSA = 0, 1
 UNIFORM, NOISE = 0, 1
 
-LEARNER_DTYPE = record(
-    ("rule", "i8"),  # QLEARN or SARSA
-    ("exploration", "i8"),  # UNIFORM or NOISE
-    ("first_visit", "i8"),  # 1: the first update of a pair stores its reward
-    ("terminal_bootstrap", "i8"),  # 1: the value of a state counts though the episode has ended there
-    ("redraw", "i8"),  # 1: Sarsa draws the action that it takes anew after learning from another
-    ("frozen", "i8"),  # 1: it plays and does not learn
-    ("alpha", "f8"),  # step size
-    ("gamma", "f8"),  # discount
-    ("epsilon", "f8"),  # probability of exploring, in this episode
-    ("states", "i8"),  # how many the table holds
-    ("rng", RNG_DTYPE),
-)
+
+class LearnerState(Record):
+    """A learner."""
+
+    rule: int  # QLEARN or SARSA
+    exploration: int  # UNIFORM or NOISE
+    first_visit: int  # 1: the first update of a pair stores its reward
+    terminal_bootstrap: int  # 1: the value of a state counts though the episode has ended there
+    redraw: int  # 1: Sarsa draws the action that it takes anew after learning from another
+    frozen: int  # 1: it plays and does not learn
+    alpha: float  # step size
+    gamma: float  # discount
+    epsilon: float  # probability of exploring, in this episode
+    states: int  # how many the table holds
+    rng: Rng

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """PID controller with filters on target, error and derivative, feed-forward and a limited integrator.
 
-State is a ``PID_DTYPE`` record. Cut-off frequencies are in Hz, 0 meaning no filter (ArduPilot's *_FLTT,
+State is a ``Pid`` record. Cut-off frequencies are in Hz, 0 meaning no filter (ArduPilot's *_FLTT,
 *_FLTE, *_FLTD). An input that is not a number leaves the state as it is and gives zero output.
 """
 
 from __future__ import annotations
 
 from ...core.kernels import law
-from ...core.rotations import TWO_PI, constrain
-from .shaping import finite
+from ...core.scalars import TWO_PI, constrain, finite
 
 
 @law

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from ...core.records import record
+from ...core.records import Record
 
-PID_DTYPE = record(
-    ("started", "i8"),  # 0: the filters take the next input as it is
-    ("target", "f8"),  # filtered; the unit of the controlled quantity
-    ("error", "f8"),  # filtered
-    ("derivative", "f8"),  # of the error, filtered [1/s]
-    ("target_derivative", "f8"),  # [1/s]
-    ("integrator", "f8"),  # in the unit of the output
-)
+
+class Pid(Record):
+    """What a PID loop keeps between periods."""
+
+    started: int  # 0: the filters take the next input as it is
+    target: float  # filtered; the unit of the controlled quantity
+    error: float  # filtered
+    derivative: float  # of the error, filtered [1/s]
+    target_derivative: float  # [1/s]
+    integrator: float  # in the unit of the output

@@ -14,7 +14,6 @@ from .mission import COMMANDS
 from .modes.init import init as init_modes
 from .modes.numbers import NAMES
 from .modes.update import update as decide
-from .state import AUTOPILOT_DTYPE
 from .table import TABLE
 
 
@@ -32,4 +31,4 @@ def power_on(v: Any) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("copter", TABLE, AUTOPILOT_DTYPE, NAMES, power_on, COMMANDS)
+FIRMWARE = Firmware("copter", TABLE, NAMES, power_on, COMMANDS)

@@ -3,9 +3,15 @@
 
 from __future__ import annotations
 
-from ..state import autopilot_dtype
-from .control.state import CONTROL_DTYPE
-from .modes.state import MODES_DTYPE
+from .. import state as shared
+from .control.state import Control
+from .modes.state import Modes
 from .table import TABLE
 
-AUTOPILOT_DTYPE = autopilot_dtype(TABLE.dtype, MODES_DTYPE, CONTROL_DTYPE)
+
+class Autopilot(shared.Autopilot):
+    """The copter firmware."""
+
+    params: TABLE.record  # type: ignore[name-defined]
+    modes: Modes
+    control: Control

@@ -9,95 +9,97 @@ frame).
 
 from __future__ import annotations
 
-from ...core.records import record
+from ...core.records import Floats, Ints, Record, array
 
 N = 18
 THETA, VEL, POS, BG, BA, BM = 0, 3, 6, 9, 12, 15
 RING = 32
 """Past states kept for delayed measurements; one each filter step (12.5 ms), 0.4 s in all."""
 
-EKF_DTYPE = record(
-    ("use_external", "i8"),  # not 0: somebody else writes the estimate; the filter stands still
-    ("phase", "i8"),  # alignment.py: CALIBRATE, TILT, YAW, RUN
-    ("resets", "i8"),  # times the filter lost its health and began anew
+
+class Ekf(Record):
+    """The extended Kalman filter."""
+
+    use_external: int  # not 0: somebody else writes the estimate; the filter stands still
+    phase: int  # alignment.py: CALIBRATE, TILT, YAW, RUN
+    resets: int  # times the filter lost its health and began anew
     # nominal state
-    ("q", "f8", 4),  # body to NED
-    ("vel", "f8", 3),  # [m/s]
-    ("pos", "f8", 3),  # [m]
-    ("gyro_bias", "f8", 3),  # [rad/s]
-    ("acc_bias", "f8", 3),  # [m/s^2]
-    ("mag_bias", "f8", 3),  # [gauss]
-    ("P", "f8", (N, N)),  # covariance of the error state
-    ("dx", "f8", N),  # error found by the fusions of this step, not yet put into the nominal state
-    ("h", "f8", N),  # measurement row, scratch of one fusion
-    ("ph", "f8", N),  # P times the transposed measurement row, scratch of one fusion
+    q: Floats = array(4)  # body to NED
+    vel: Floats = array(3)  # [m/s]
+    pos: Floats = array(3)  # [m]
+    gyro_bias: Floats = array(3)  # [rad/s]
+    acc_bias: Floats = array(3)  # [m/s^2]
+    mag_bias: Floats = array(3)  # [gauss]
+    P: Floats = array(N, N)  # covariance of the error state
+    dx: Floats = array(N)  # error found by the fusions of this step, not yet put into the nominal state
+    h: Floats = array(N)  # measurement row, scratch of one fusion
+    ph: Floats = array(N)  # P times the transposed measurement row, scratch of one fusion
     # output: corrections reach the estimate with a time constant, so that controllers see no steps
-    ("lag_vel", "f8", 3),  # [m/s]
-    ("lag_pos", "f8", 3),  # [m]
+    lag_vel: Floats = array(3)  # [m/s]
+    lag_pos: Floats = array(3)  # [m]
     # inertial sensors
-    ("good_gyro", "f8", 3),  # last sample that made sense [rad/s]
-    ("good_acc", "f8", 3),  # [m/s^2]
-    ("bad_imu", "i8"),  # bad samples in a row
-    ("last_gyro", "f8", 3),  # bias-free rates of the tick before [rad/s], for coning
-    ("last_acc_ned", "f8", 3),  # acceleration of the tick before [m/s^2]
-    ("step_ticks", "i8"),  # ticks since the last filter step
-    ("step_dt", "f8"),  # time since the last filter step [s]
-    ("step_dv", "f8", 3),  # specific force summed since the last filter step, NED [m/s]
+    good_gyro: Floats = array(3)  # last sample that made sense [rad/s]
+    good_acc: Floats = array(3)  # [m/s^2]
+    bad_imu: int  # bad samples in a row
+    last_gyro: Floats = array(3)  # bias-free rates of the tick before [rad/s], for coning
+    last_acc_ned: Floats = array(3)  # acceleration of the tick before [m/s^2]
+    step_ticks: int  # ticks since the last filter step
+    step_dt: float  # time since the last filter step [s]
+    step_dv: Floats = array(3)  # specific force summed since the last filter step, NED [m/s]
     # alignment
-    ("now_us", "i8"),  # time of the present tick
-    ("started", "i8"),
-    ("start_us", "i8"),  # when calibration began
-    ("init_us", "i8"),  # when the filter was initialised
-    ("still_ticks", "i8"),  # samples in the sums below
-    ("gyro_sum", "f8", 3),
-    ("gyro_smooth", "f8", 3),  # low-passed [rad/s]
-    ("gyro_low", "f8", 3),  # its extremes in the window
-    ("gyro_high", "f8", 3),
-    ("acc_sum", "f8", 3),
-    ("tilt_aligned", "i8"),
-    ("yaw_aligned", "i8"),
-    ("yaw_in_flight", "i8"),  # yaw checked again after take-off
-    ("bias_unknown_us", "i8"),  # last time that the variance of the yaw gyro's bias was large
-    ("bias_learned", "i8"),  # gyro bias known well enough to trust yaw over minutes
-    ("ground_d", "f8"),  # pos[2] when last on the ground, disarmed [m]
+    now_us: int  # time of the present tick
+    started: int
+    start_us: int  # when calibration began
+    init_us: int  # when the filter was initialised
+    still_ticks: int  # samples in the sums below
+    gyro_sum: Floats = array(3)
+    gyro_smooth: Floats = array(3)  # low-passed [rad/s]
+    gyro_low: Floats = array(3)  # its extremes in the window
+    gyro_high: Floats = array(3)
+    acc_sum: Floats = array(3)
+    tilt_aligned: int
+    yaw_aligned: int
+    yaw_in_flight: int  # yaw checked again after take-off
+    bias_unknown_us: int  # last time that the variance of the yaw gyro's bias was large
+    bias_learned: int  # gyro bias known well enough to trust yaw over minutes
+    ground_d: float  # pos[2] when last on the ground, disarmed [m]
     # history for delayed measurements
-    ("ring_count", "i8"),
-    ("ring_us", "i8", RING),
-    ("ring_pos", "f8", (RING, 3)),
-    ("ring_vel", "f8", (RING, 3)),
+    ring_count: int
+    ring_us: Ints = array(RING, stored="i8")
+    ring_pos: Floats = array(RING, 3)
+    ring_vel: Floats = array(RING, 3)
     # barometer
-    ("baro_seen", "i8"),  # last baro_count
-    ("baro_n", "i8"),  # samples in the sum
-    ("baro_us_sum", "i8"),  # of their times
-    ("baro_sum", "f8"),  # altitude in the standard atmosphere [m]
-    ("baro_ground", "f8"),  # altitude in the standard atmosphere of pos[2] = 0 [m]
-    ("baro_us", "i8"),  # last good sample
-    ("baro_fused_us", "i8"),
+    baro_seen: int  # last baro_count
+    baro_n: int  # samples in the sum
+    baro_us_sum: int  # of their times
+    baro_sum: float  # altitude in the standard atmosphere [m]
+    baro_ground: float  # altitude in the standard atmosphere of pos[2] = 0 [m]
+    baro_us: int  # last good sample
+    baro_fused_us: int
     # magnetometer
-    ("mag_seen", "i8"),
-    ("mag_n", "i8"),
-    ("mag_sum", "f8", 3),  # field turned to NED [gauss]
-    ("mag_us", "i8"),
-    ("mag_fused_us", "i8"),
-    ("earth_field", "f8", 3),  # NED [gauss]
-    ("declination", "f8"),  # [rad], east positive
-    ("field_known", "i8"),  # from the model of the earth's field, at the first GPS fix
+    mag_seen: int
+    mag_n: int
+    mag_sum: Floats = array(3)  # field turned to NED [gauss]
+    mag_us: int
+    mag_fused_us: int
+    earth_field: Floats = array(3)  # NED [gauss]
+    declination: float  # [rad], east positive
+    field_known: int  # from the model of the earth's field, at the first GPS fix
     # GPS
-    ("gps_seen", "i8"),
-    ("gps_new", "i8"),  # a message waits for the next filter step
-    ("gps_arrival_us", "i8"),
-    ("gps_us", "i8"),  # last sane 3D fix arrived
-    ("gps_good_us", "i8"),  # since when the quality checks hold, 0: they do not
-    ("gps_fixes", "i8"),  # sane fixes in a row
-    ("gps_alt_filter", "f8"),  # mean altitude while on the ground [m]
-    ("gps_in_use", "i8"),
-    ("gps_used_before", "i8"),
-    ("gps_glitch", "i8"),  # last fix was beyond the gates
-    ("gps_pos_fused_us", "i8"),
-    ("gps_vel_fused_us", "i8"),
-    ("hold_us", "i8"),  # last zero-velocity or held-position fusion
-    ("hold_pos", "f8", 2),  # NE position held [m]
+    gps_seen: int
+    gps_new: int  # a message waits for the next filter step
+    gps_arrival_us: int
+    gps_us: int  # last sane 3D fix arrived
+    gps_good_us: int  # since when the quality checks hold, 0: they do not
+    gps_fixes: int  # sane fixes in a row
+    gps_alt_filter: float  # mean altitude while on the ground [m]
+    gps_in_use: int
+    gps_used_before: int
+    gps_glitch: int  # last fix was beyond the gates
+    gps_pos_fused_us: int
+    gps_vel_fused_us: int
+    hold_us: int  # last zero-velocity or held-position fusion
+    hold_pos: Floats = array(2)  # NE position held [m]
     # consistency: normalised innovation squared, sums and counts since the filter started
-    ("nis_sum", "f8", 4),  # GPS position, GPS velocity, barometer, magnetometer
-    ("nis_count", "i8", 4),
-)
+    nis_sum: Floats = array(4)  # GPS position, GPS velocity, barometer, magnetometer
+    nis_count: Ints = array(4, stored="i8")

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
+from ...errors import SitlError
 from .item import COMMANDS, MissionItem, home_item
 from .validate import ACCEPTED, check_all
 
@@ -27,7 +28,7 @@ RESULT_NAMES = {
 }
 
 
-class MissionError(ValueError):
+class MissionError(SitlError, ValueError):
     """A mission that the firmware does not take; ``result`` is the MAV_MISSION_RESULT, ``seq`` the item."""
 
     def __init__(self, text: str, result: int, seq: int) -> None:

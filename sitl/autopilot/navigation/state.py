@@ -8,11 +8,7 @@ seconds as said.
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
-from ...core.records import record
+from ...core.records import Floats, Ints, Record, array
 
 # Kinds of navigation command (``command_kind``)
 NONE = 0
@@ -48,73 +44,73 @@ COMPLETE = 2
 SEGMENTS = 16
 JUMPS = 100
 
-LEG_DTYPE = record(
-    ("segments", "i8"),  # 0: no leg; the last one is the state at and after the end
-    ("started", "i8"),
-    ("k", "i8"),  # segment at ``elapsed``
-    ("elapsed", "f8"),  # path time since its start [s]
-    ("duration", "f8"),  # [s]
-    ("turn_in", "f8"),  # when the acceleration from its start is over [s]
-    ("turn_out", "f8"),  # when the deceleration to its end begins [s]
-    ("length", "f8"),  # [m]
-    ("origin", "f8", 3),  # NED [m]
-    ("unit", "f8", 3),  # direction, unit vector NED; zero for a leg of no length
-    ("top_speed", "f8"),  # limit along this direction [m/s]
-    ("fast", "i8"),  # goes through its end into the next leg without a stop
+
+class Leg(Record):
+    """A planned leg: a straight line that is flown with limited speed, acceleration and jerk."""
+
+    segments: int  # 0: no leg; the last one is the state at and after the end
+    started: int
+    k: int  # segment at ``elapsed``
+    elapsed: float  # path time since its start [s]
+    duration: float  # [s]
+    turn_in: float  # when the acceleration from its start is over [s]
+    turn_out: float  # when the deceleration to its end begins [s]
+    length: float  # [m]
+    origin: Floats = array(3)  # NED [m]
+    unit: Floats = array(3)  # direction, unit vector NED; zero for a leg of no length
+    top_speed: float  # limit along this direction [m/s]
+    fast: int  # goes through its end into the next leg without a stop
     # distance along the leg as polynomials of the time since the segment's start:
     # p + v t + a t^2/2 + j t^3/6 + s t^4/24
-    ("t", "f8", SEGMENTS),  # start of the segment [s]
-    ("p", "f8", SEGMENTS),  # [m]
-    ("v", "f8", SEGMENTS),  # [m/s]
-    ("a", "f8", SEGMENTS),  # [m/s^2]
-    ("j", "f8", SEGMENTS),  # [m/s^3]
-    ("s", "f8", SEGMENTS),  # [m/s^4]
-)
+    t: Floats = array(SEGMENTS)  # start of the segment [s]
+    p: Floats = array(SEGMENTS)  # [m]
+    v: Floats = array(SEGMENTS)  # [m/s]
+    a: Floats = array(SEGMENTS)  # [m/s^2]
+    j: Floats = array(SEGMENTS)  # [m/s^3]
+    s: Floats = array(SEGMENTS)  # [m/s^4]
 
 
-def nav_dtype(*own: tuple[Any, ...]) -> np.dtype[Any]:
-    """The record of a firmware: what navigation and missions of all share, and its ``own`` fields."""
-    return record(
-        # the navigation command under way
-        ("command_kind", "i8"),
-        ("command_count", "i8"),  # one more for each command given: a change tells the mode to begin it
-        ("command_seq", "i8"),  # its number in the mission; 0 none
-        ("target", "f8", 3),  # NED [m]
-        ("has_place", "i8"),  # LAND, LOITER: target was given
-        ("delay", "f8"),  # [s]
-        ("turns", "f8"),
-        ("circle_radius", "f8"),  # LOITER_TURNS: < 0 counter-clockwise [m]
-        ("completed", "i8"),  # COMMAND_COMPLETE was sent for this command
-        ("since_us", "i8"),  # when it arrived (start of the delay); 0 not yet
-        # waypoint follower
-        ("previous", LEG_DTYPE),  # still decelerating beyond the corner
-        ("current", LEG_DTYPE),
-        ("next", LEG_DTYPE),
-        ("active_us", "i8"),  # last time flown along legs
-        ("fresh", "i8"),  # the current leg starts from a standstill: controllers start anew
-        ("joined", "i8"),  # the current leg goes on from the one before without a stop
-        ("reached", "i8"),  # the end of the current leg
-        ("time_scale", "f8"),  # 0 .. 1: path time slows down for a vehicle that lags
-        ("pos", "f8", 3),  # point on the path, NED [m]
-        ("vel", "f8", 3),  # [m/s]
-        ("acc", "f8", 3),  # [m/s^2]
-        ("request", "f8", 3),  # the core asks for a leg to here, NED [m]
-        ("request_next", "f8", 3),  # and then to here, without a stop, when request_pending is 2 [m]
-        ("request_pending", "i8"),  # legs asked for: 0, 1 or 2
-        ("speed_ne", "f8"),  # horizontal speed limit that a command set [m/s]; 0 none: the parameter's
-        # do-commands
-        ("condition_kind", "i8"),
-        ("condition_until_us", "i8"),
-        ("condition_distance", "f8"),  # [m]
-        # the mission: run state of the sequencer, numbers of items (0 is home: none)
-        ("mission_state", "i8"),
-        ("mission_current", "i8"),  # MISSION_CURRENT: navigation command under way, or first to fly
-        ("mission_reached", "i8"),  # last navigation command completed
-        ("mission_do", "i8"),  # do-command waiting or last run
-        ("mission_do_next", "i8"),  # where to look for the following do-command; 0 all done
-        ("mission_resume", "i8"),  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
-        ("mission_events", "i8"),  # events that the sequencer has seen
-        ("jump_item", "i8", JUMPS),  # DO_JUMP items run so far ...
-        ("jump_runs", "i8", JUMPS),  # ... and how often
-        *own,
-    )
+class Nav(Record):
+    """Navigation and missions: what those of all firmwares share."""
+
+    # the navigation command under way
+    command_kind: int
+    command_count: int  # one more for each command given: a change tells the mode to begin it
+    command_seq: int  # its number in the mission; 0 none
+    target: Floats = array(3)  # NED [m]
+    has_place: int  # LAND, LOITER: target was given
+    delay: float  # [s]
+    turns: float
+    circle_radius: float  # LOITER_TURNS: < 0 counter-clockwise [m]
+    completed: int  # COMMAND_COMPLETE was sent for this command
+    since_us: int  # when it arrived (start of the delay); 0 not yet
+    # waypoint follower
+    previous: Leg  # still decelerating beyond the corner
+    current: Leg
+    next: Leg
+    active_us: int  # last time flown along legs
+    fresh: int  # the current leg starts from a standstill: controllers start anew
+    joined: int  # the current leg goes on from the one before without a stop
+    reached: int  # the end of the current leg
+    time_scale: float  # 0 .. 1: path time slows down for a vehicle that lags
+    pos: Floats = array(3)  # point on the path, NED [m]
+    vel: Floats = array(3)  # [m/s]
+    acc: Floats = array(3)  # [m/s^2]
+    request: Floats = array(3)  # the core asks for a leg to here, NED [m]
+    request_next: Floats = array(3)  # and then to here, without a stop, when request_pending is 2 [m]
+    request_pending: int  # legs asked for: 0, 1 or 2
+    speed_ne: float  # horizontal speed limit that a command set [m/s]; 0 none: the parameter's
+    # do-commands
+    condition_kind: int
+    condition_until_us: int
+    condition_distance: float  # [m]
+    # the mission: run state of the sequencer, numbers of items (0 is home: none)
+    mission_state: int
+    mission_current: int  # MISSION_CURRENT: navigation command under way, or first to fly
+    mission_reached: int  # last navigation command completed
+    mission_do: int  # do-command waiting or last run
+    mission_do_next: int  # where to look for the following do-command; 0 all done
+    mission_resume: int  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
+    mission_events: int  # events that the sequencer has seen
+    jump_item: Ints = array(JUMPS, stored="i8")  # DO_JUMP items run so far ...
+    jump_runs: Ints = array(JUMPS, stored="i8")  # ... and how often

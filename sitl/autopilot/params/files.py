@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...errors import SitlError
 from .parameter import FLOAT, Parameter
 from .table import Table, stored
 
 
-class ParameterError(ValueError):
+class ParameterError(SitlError, ValueError):
     """A parameter's name or value that cannot be taken."""
 
 

@@ -15,9 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from ...core.records import record
+from ...core.records import Record
 from . import groups
 from .parameter import FLOAT, Parameter
+
+
+class Parameters(Record):
+    """The parameters of a firmware, each in its own unit (centidegrees stay centidegrees)."""
 
 
 class Table:
@@ -36,8 +40,8 @@ class Table:
         if len(self._by_name) != len(parameters):
             names = [p.name for p in parameters]
             raise ValueError(f"parameters defined twice: {sorted({n for n in names if names.count(n) > 1})}")
-        self.dtype = record(*((p.name, "f8") for p in parameters))
-        """One f8 field a parameter, in the parameter's own unit (centidegrees stay centidegrees)."""
+        self.record = type("Parameters", (Parameters,), {"__annotations__": {p.name: float for p in parameters}})
+        """A float field a parameter, in the parameter's own unit (centidegrees stay centidegrees)."""
 
     def __iter__(self) -> Iterator[Parameter]:
         return iter(self.parameters)

@@ -14,7 +14,6 @@ from .mission import COMMANDS
 from .modes.init import init as init_modes
 from .modes.numbers import NAMES
 from .modes.update import update as decide
-from .state import AUTOPILOT_DTYPE
 from .table import TABLE
 
 PERIOD_TICKS = 8
@@ -36,4 +35,4 @@ def power_on(v: Any) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("rover", TABLE, AUTOPILOT_DTYPE, NAMES, power_on, COMMANDS)
+FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS)

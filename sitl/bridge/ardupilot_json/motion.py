@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.rotations import quat_from_euler
+from ...errors import SitlError
 
 _LIMITS = {"gyro": 1e3, "accel_body": 1e5, "position": 1e7, "velocity": 1e4}
 """Beyond these a number is no motion of a vehicle [rad/s, m/s^2, m, m/s]."""
@@ -27,7 +28,7 @@ _LINE = (
 )
 
 
-class MotionError(ValueError):
+class MotionError(SitlError, ValueError):
     """A line that tells of no motion; the message says what is wrong with it."""
 
 

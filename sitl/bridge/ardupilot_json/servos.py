@@ -10,6 +10,8 @@ import struct
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from ...errors import SitlError
+
 MAGIC = {16: 18458, 32: 29569}
 """Pulses in a frame -> its first number."""
 _LAYOUT = {count: struct.Struct(f"<HHI{count}H") for count in MAGIC}
@@ -17,7 +19,7 @@ _BY_SIZE = {layout.size: (MAGIC[count], layout) for count, layout in _LAYOUT.ite
 COUNT_MASK = 0xFFFFFFFF
 
 
-class ServoError(ValueError):
+class ServoError(SitlError, ValueError):
     """Bytes that are no frame of servos; the message says why."""
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from operator import lt
 
+from ...errors import SitlError
+
 BASE_PORT = 4560
 """Where physics listens; instance N at 4560 + N, as PX4 expects."""
 
@@ -33,7 +35,7 @@ LATEST_US = 1 << 62
 """No clock goes this far [us]."""
 
 
-class RefusedError(ValueError):
+class RefusedError(SitlError, ValueError):
     """A message with a number that cannot be right."""
 
 

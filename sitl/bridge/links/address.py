@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...errors import SitlError
 from .link import Link
 from .tcp import TcpServerLink
 from .udp import UdpInLink, UdpOutLink
@@ -14,7 +15,7 @@ ALLOWED = (
 LOCAL = "127.0.0.1"
 
 
-class LinkAddressError(ValueError):
+class LinkAddressError(SitlError, ValueError):
     """A link text that cannot be understood, or an address that cannot be opened."""
 
 

@@ -4,10 +4,14 @@
 from __future__ import annotations
 
 from sitl.client.errors import LinkLostError
-from sitl.option_error import VehicleError
+from sitl.errors import VehicleError
 
-__all__ = ["LinkLostError", "NotReadyError"]
+__all__ = ["LinkLostError", "NotASimulatorError", "NotReadyError"]
 
 
 class NotReadyError(VehicleError, RuntimeError):
     """A vehicle that does not become ready for an episode; the message says which texts it sent."""
+
+
+class NotASimulatorError(NotReadyError):
+    """A vehicle that is not reset, because nothing proves that it is a simulator; nothing was sent that changes it."""

@@ -17,13 +17,13 @@ from sitl.client.byte_socket import ByteSocket
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Connection
 from sitl.client.endpoint import Endpoint
+from sitl.errors import OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
 from sitl.foreign.ports import HOST, free_tcp_run
 from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
-from sitl.option_error import OptionError
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT

@@ -16,7 +16,7 @@ from sitl.client.inbox import AUTOPILOT, HEARTBEAT, TEXT, Inbox
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
-ORIGIN, PARAMETER = message("GPS_GLOBAL_ORIGIN"), message("PARAM_VALUE")
+ORIGIN = message("GPS_GLOBAL_ORIGIN")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
@@ -58,8 +58,6 @@ class Telemetry(Inbox):
         self.mode, self.armed = -1, False
         self.origin: tuple[int, int, int] | None = None
         """Latitude, longitude [degE7], altitude [mm] of local positions."""
-        self.parameters: dict[str, float] = {}
-        """Those that were asked for."""
         self.scans_by_mavlink = True
         """Whether scans and touches come by MAVLink; else the connection reads them off the physics."""
         self.longest_interval_us = 1 << 62
@@ -123,8 +121,6 @@ class Telemetry(Inbox):
             self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & ARMED)
         elif kind is SECTORS:
             self._sectors(fields)
-        elif kind is PARAMETER:
-            self.parameters[fields.param_id.decode("ascii", "replace")] = fields.param_value
         elif kind is ORIGIN:
             self.origin = (fields.latitude, fields.longitude, fields.altitude)
         elif kind is TEXT and fields.text.startswith(HIT):

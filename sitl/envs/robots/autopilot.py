@@ -30,7 +30,8 @@ from sitl.worlds.frames import from_heading, from_ned
 from ..actions import Action
 from ..mavlink.errors import LinkLostError
 from ..mavlink.preparation import ALIGN_US, hear_again, set_intervals, set_mode
-from ..options import EnvOptionError
+from ..mavlink.simulator import RESETS, SIMULATOR
+from ..options import EnvOptionError, unknown
 from ..setpoints import Setpoint
 from .autopilot_kinds import KINDS, PX4_KIND, volume
 from .by_socket import SocketVehicles
@@ -69,6 +70,8 @@ class AutopilotRobot:
             "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started, or rebooted, for
             each episode, and has no snapshots.
         autopilot_path: the program, when ``autopilot`` does not say.
+        reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
+            proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
     """
 
     def __init__(
@@ -85,12 +88,15 @@ class AutopilotRobot:
         physics: str = NATIVE,
         autopilot: str = OURS,
         autopilot_path: str | Path | None = None,
+        reset: str = SIMULATOR,
     ) -> None:
         self._options: dict[str, Any] = {
             "world": world, "count": count, "frame": frame, "connection": connection, "take_off": take_off,
             "home": home, "params": params, "gcs": gcs, "patience": patience, "physics": physics,
-            "autopilot": autopilot, "autopilot_path": autopilot_path,
+            "autopilot": autopilot, "autopilot_path": autopilot_path, "reset": reset,
         }  # fmt: skip
+        if reset not in RESETS:
+            raise unknown("reset", reset, RESETS)
         try:
             self.airframe = airframe = vehicles.load(frame)
         except AirframeError as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle that is reached by a socket, as it is: it reboots for every episode."""
+"""A vehicle that is reached by a socket, as it is: a simulator reboots for every episode."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import ClassVar
 from gymnasium import logger
 
 from sitl.client.connection import Lockstep, connect
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 from ..mavlink.preparation import reboot
+from ..mavlink.simulator import REBOOT, is_simulator, refusal
 from ..mavlink.telemetry import Telemetry
 from ..options import EnvOptionError
 from .robot import Pose
@@ -49,6 +50,11 @@ class SocketVehicles(Vehicles):
                 raise EnvOptionError(str(error)) from None
             link.inbox.angles = self.seat.angles
             self.links[0] = link
+        else:
+            link.is_simulator = is_simulator(link)
+        if not link.is_simulator and self.options["reset"] != REBOOT:
+            self.close()
+            raise refusal(link)
         reboot(link)
         origin = self.prepare(link, pose)
         if isinstance(link, Lockstep):

@@ -7,13 +7,14 @@ from __future__ import annotations
 import math
 
 from sitl.client.connection import Connection
+from sitl.errors import OptionError
 from sitl.foreign.choice import PX4, Choice
-from sitl.option_error import OptionError
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
 from ..mavlink.foreign import Foreign, launch
+from ..mavlink.simulator import REBOOT, is_simulator, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, Ready, Seat, Vehicles
@@ -71,8 +72,15 @@ class ForeignVehicles(Vehicles):
                 start=(*pose[:3], math.degrees(pose[3])),
             )  # fmt: skip
             if rebooted is None:
-                return launch(choice, plant, options["params"] or {}, len(self.seat.angles), options["patience"])
+                found = launch(choice, plant, options["params"] or {}, len(self.seat.angles), options["patience"])
+                try:
+                    self._check(found)
+                except BaseException:
+                    found.close()
+                    raise
+                return found
             try:
+                self._check(rebooted)
                 rebooted.restart(plant)
             except BaseException:
                 rebooted.close()
@@ -80,6 +88,11 @@ class ForeignVehicles(Vehicles):
             return rebooted
         except (OptionError, AirframeError, EngineError) as error:
             raise EnvOptionError(str(error)) from None
+
+    def _check(self, link: Foreign) -> None:
+        """Refuse one that was found where it runs and may be no simulator: before it is disarmed or armed."""
+        if self._choice.program is None and self.options["reset"] != REBOOT and not is_simulator(link):
+            raise refusal(link)
 
     def time_us(self, index: int) -> int:
         link = self.links[index]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from sitl.cli.options import open_folder
 from sitl.cli.progress import CompileProgress
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.recording.error import RecordingError
 
 

@@ -8,7 +8,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 from ..files import load, save, straightened
 from ..files.document import TYPE_OF_KIND

@@ -11,7 +11,7 @@ from pathlib import Path
 from sitl.bridge.links.address import open_link
 from sitl.cli import recordings
 from sitl.cli.options import VEHICLES, add_vehicle_options, build_simulation, open_folder, seconds
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.run import runner
 from sitl.run.pacing import Pacing, parse_speedup
 from sitl.simulation import Simulation

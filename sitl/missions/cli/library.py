@@ -7,7 +7,7 @@ import argparse
 import shutil
 from pathlib import Path
 
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 from .. import library
 

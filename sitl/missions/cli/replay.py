@@ -12,8 +12,8 @@ from sitl.cli.options import add_vehicle_options, open_folder, seconds
 from sitl.cli.progress import CompileProgress
 from sitl.cli.recordings import new_file
 from sitl.cli.status import StatusLine
+from sitl.errors import OptionError
 from sitl.logs.tlog import TlogWriter
-from sitl.option_error import OptionError
 from sitl.physics.engines import NATIVE
 from sitl.recording.blocks import is_recording
 from sitl.recording.entries import Kind

@@ -9,7 +9,7 @@ import time
 from sitl.cli import recordings
 from sitl.cli.options import build_simulation, open_folder
 from sitl.cli.status import StatusLine
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.recording.recorder import Recorder
 from sitl.run import runner
 from sitl.run.pacing import Pacing, parse_speedup

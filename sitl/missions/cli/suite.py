@@ -11,7 +11,7 @@ from pathlib import Path
 
 from sitl.cli.options import open_folder
 from sitl.cli.progress import CompileProgress
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from sitl.core.geodesy import offset_ne
+from sitl.errors import OptionError
 from sitl.logs.track import NAMES, Track, is_angle, sampled
-from sitl.option_error import OptionError
 
 Array = np.ndarray[Any, Any]
 

@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 SERIES = ("position", "cross_track", "altitude", "delay", "speed", "climb", "tilt", "heading")
 TOTALS = ("duration", "energy")

@@ -14,7 +14,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 FOLDER = Path(str(resources.files(__name__)))
 

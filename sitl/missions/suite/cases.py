@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from sitl import vehicles
-from sitl.option_error import OptionError
+from sitl.core import code_in_files
+from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import KINDS
 
@@ -102,6 +103,10 @@ def find(folder: str | Path) -> list[Case]:
     defaults = _checked(folder, "[defaults]", table.get("defaults", {}), _SETTINGS)
     missions = [_checked(folder, "[[missions]]", row, _MISSION) for row in table.get("missions", [])]
     variants = [_checked(folder, "[[variants]]", row, _VARIANT) for row in table.get("variants", [])] or [{}]
+    named = [name for row in (defaults, *missions, *variants) for name in code_in_files.code_of_options(row)]
+    refused = code_in_files.refusal(folder / TOML, named)
+    if refused is not None:
+        raise SuiteError(refused)
     rows = [row for one in missions for row in _expanded(folder, one)] or _files(folder)
     found: dict[str, Case] = {}
     for row in rows:

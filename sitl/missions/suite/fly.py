@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from sitl import vehicles
-from sitl.errors import USER_ERRORS
+from sitl.errors import SitlError
 from sitl.logs.tlog import LogError
 from sitl.physics.engines import NATIVE
 from sitl.recording.error import RecordingError
@@ -45,7 +45,7 @@ def fly_case(case: Case, update: bool = False, reports: str | None = None) -> Re
         try:
             outcome, simulated = record(case, path)
             return _judged(case, path, outcome, simulated, began, update, reports)
-        except USER_ERRORS as error:
+        except SitlError as error:
             return Result(case.name, FAILED, str(error), wall=time.perf_counter() - began)
 
 

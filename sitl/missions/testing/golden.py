@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from sitl.errors import OptionError
 from sitl.logs.tlog import LogError
-from sitl.option_error import OptionError
 from sitl.plants.choose import is_remote
 from sitl.recording.error import RecordingError
 

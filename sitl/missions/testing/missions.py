@@ -10,7 +10,7 @@ from pathlib import Path
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.client import Client, ClientError
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 
 from .. import library
 from ..files import load, straightened

@@ -11,7 +11,7 @@ from pathlib import Path
 from sitl import vehicles
 from sitl.autopilot.params import files
 from sitl.core.compile import Progress
-from sitl.option_error import OptionError
+from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
 from sitl.plants.surroundings import StartPose
 from sitl.simulation import Simulation

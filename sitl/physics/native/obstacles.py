@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
-from ...core.records import record
+from ...core.records import Float32, Floats, Record, array
 from ...core.rotations import quat_rotate_inverse
 from ...worlds.contact import nearest_of
 from ...worlds.geometry import SOLID_FIGURES
@@ -40,23 +40,25 @@ _RELEASE = 1.0 - math.exp(-TICK_S / 0.02)
 """Share of an impact that shows in a tick: body and bumper give way for some 0.02 s, as a copter's legs do. All of it
 in one tick would be beyond what an accelerometer can show."""
 
-OBSTACLES_DTYPE = record(
-    ("present", "i8"),  # there is a world with solids
-    ("count", "i8"),  # rows of the list
-    ("north", "f8"),  # where it was gathered, NED as body.pos [m]
-    ("east", "f8"),
-    ("complete", "f8"),  # every solid nearer to there is in the list [m]
-    ("rows", "f8", (OBSTACLES_MAX, SOLID_FIGURES)),
-    ("wanted", "i8"),  # the list no longer does
-    ("looked", "f8", 3),  # where the vehicle was when distances were last worked out [m]
-    ("clear", "f8"),  # the nearest solid was at least this far away then [m]
-    ("turned", "f8"),  # angle that the body has turned by since [rad]
-    ("touching", "i8"),
-    ("hit_count", "i8"),  # contacts so far that were faster than HIT_SPEED
-    ("hit_speed", "f4"),  # of the last one, into the solid [m/s]
-    ("hit_time_us", "i8"),
-    ("impulse", "f8", 3),  # velocity taken away that the accelerometer still has to show, NED [m/s]
-)
+
+class Obstacles(Record):
+    """The solids near the vehicle, and contact with them."""
+
+    present: int  # there is a world with solids
+    count: int  # rows of the list
+    north: float  # where it was gathered, NED as body.pos [m]
+    east: float
+    complete: float  # every solid nearer to there is in the list [m]
+    rows: Floats = array(OBSTACLES_MAX, SOLID_FIGURES)
+    wanted: int  # the list no longer does
+    looked: Floats = array(3)  # where the vehicle was when distances were last worked out [m]
+    clear: float  # the nearest solid was at least this far away then [m]
+    turned: float  # angle that the body has turned by since [rad]
+    touching: int
+    hit_count: int  # contacts so far that were faster than HIT_SPEED
+    hit_speed: Float32  # of the last one, into the solid [m/s]
+    hit_time_us: int
+    impulse: Floats = array(3)  # velocity taken away that the accelerometer still has to show, NED [m/s]
 
 
 @law

@@ -6,8 +6,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from ...core import rng as random
 from ...core.earth_field import field_ned
 from ...vehicles import Airframe, apply
@@ -27,10 +25,7 @@ DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 def clear(v: Any, airframe: Airframe, seed: int) -> None:
     """Empty physics, sensors, actuators and clock, but for the wind's settings; figures and random numbers start."""
     setting = {name: float(v.physics.wind[name]) for name in _WIND_SETTING}
-    for name in ("physics", "sensors", "actuators"):
-        v[name] = np.zeros((), v[name].dtype)
-    v.time_us = 0
-    v.tick = 0
+    v.zero("physics", "sensors", "actuators", "time_us", "tick")
     random.seed(v.rng, seed)
     apply(airframe, v)
     for name, value in setting.items():

@@ -31,7 +31,7 @@ class BulletTurtlebot:
     """One robot in a world of Bullet of its own.
 
     Args:
-        v: view of its record (``native.turtlebot.state.TURTLEBOT_DTYPE``), which always tells where it is.
+        v: view of its record (``native.turtlebot.state.Turtlebot``), which always tells where it is.
         world: that it drives in.
         lidar: its rays and readings.
 

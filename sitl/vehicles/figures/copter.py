@@ -7,7 +7,7 @@ import math
 
 from .battery import BATTERY
 from .body import BODY, OUTLINE
-from .figure import Figure, figures_dtype
+from .figure import Figure, figures_record
 from .ranging import RANGING
 from .sensors import SENSORS
 
@@ -71,4 +71,4 @@ LEGS = (
 )
 
 FIGURES = (*BODY, *AIR, *HUBS, *ROTORS, *BATTERY, *LEGS, *SENSORS, *OUTLINE, *RANGING)
-FIGURES_DTYPE = figures_dtype(FIGURES)
+FIGURES_RECORD = figures_record(FIGURES)

@@ -7,9 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from ...core.records import record
+from ...core.records import Record, array
 
 
 class Figure(NamedTuple):
@@ -31,10 +29,10 @@ class Figure(NamedTuple):
     """Values of the kind's model figure that need it; empty: all do."""
 
 
-def figures_dtype(figures: Sequence[Figure]) -> np.dtype[Any]:
+def figures_record(figures: Sequence[Figure]) -> type[Record]:
     """A record with one field for each figure, under its name."""
-    fields: list[tuple[Any, ...]] = []
+    members: dict[str, Any] = {"__annotations__": {f.name: int if f.whole else float for f in figures}}
     for figure in figures:
-        form = "i8" if figure.whole else "f8"
-        fields.append((figure.name, form) if figure.length == 1 else (figure.name, form, figure.length))
-    return record(*fields)
+        if figure.length > 1:
+            members[figure.name] = array(figure.length, stored="i8" if figure.whole else "f8")
+    return type("Figures", (Record,), members)

@@ -7,7 +7,7 @@ import math
 
 from .battery import BATTERY
 from .body import BODY, OUTLINE
-from .figure import Figure, figures_dtype
+from .figure import Figure, figures_record
 from .ranging import RANGING
 from .sensors import SENSORS
 
@@ -64,4 +64,4 @@ ENCODERS = (
 )
 
 FIGURES = (*BODY, *DRIVE, *TYRES, *STEERING, *CHASSIS, *BATTERY, *SENSORS, *ENCODERS, *OUTLINE, *RANGING)
-FIGURES_DTYPE = figures_dtype(FIGURES)
+FIGURES_RECORD = figures_record(FIGURES)

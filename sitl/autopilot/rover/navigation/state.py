@@ -3,27 +3,31 @@
 
 from __future__ import annotations
 
-from ....core.records import record
-from ...navigation.state import nav_dtype
+from ....core.records import Floats, Record, array
+from ...navigation.state import Nav
 
-DRIVE_DTYPE = record(
+
+class DriveState(Record):
+    """What a driving mode hands to the controllers, and how it turns on the spot."""
+
     # what the mode hands to the controllers
-    ("desired_speed", "f8"),  # along the nose, backward negative [m/s]
-    ("desired_turn_rate", "f8"),  # right positive [rad/s]
-    ("desired_lat_accel", "f8"),  # to the right [m/s^2]
-    ("crosstrack", "f8"),  # from the line between the waypoints, negative to its right [m]
-    ("origin", "f8", 2),  # where that line begins, NE [m]
-    ("reversed", "i8"),  # drives backwards (DO_SET_REVERSE)
-    ("shaped", "i8"),  # the target is shaped towards the destination, without planned legs
-    ("nudge_speed", "f8"),  # speed limit that the pilot's stick asks for [m/s]; below the other it says nothing
-    ("speed_us", "i8"),  # when the speed limit last changed
-    ("pivoting", "i8"),  # turns on the spot towards the destination
-    ("pivot_us", "i8"),  # when it looked there (start of WP_PIVOT_DELAY); 0 not yet
-    ("pivot_next", "i8"),  # it will at the end of the current leg
-)
+    desired_speed: float  # along the nose, backward negative [m/s]
+    desired_turn_rate: float  # right positive [rad/s]
+    desired_lat_accel: float  # to the right [m/s^2]
+    crosstrack: float  # from the line between the waypoints, negative to its right [m]
+    origin: Floats = array(2)  # where that line begins, NE [m]
+    reversed: int  # drives backwards (DO_SET_REVERSE)
+    shaped: int  # the target is shaped towards the destination, without planned legs
+    nudge_speed: float  # speed limit that the pilot's stick asks for [m/s]; below the other it says nothing
+    speed_us: int  # when the speed limit last changed
+    pivoting: int  # turns on the spot towards the destination
+    pivot_us: int  # when it looked there (start of WP_PIVOT_DELAY); 0 not yet
+    pivot_next: int  # it will at the end of the current leg
 
-NAV_DTYPE = nav_dtype(
-    ("drive", DRIVE_DTYPE),
-    ("heading", "f8"),  # YAW_SPEED [rad]
-    ("heading_speed", "f8"),  # [m/s]
-)
+
+class RoverNav(Nav):
+    """Navigation of the rover."""
+
+    drive: DriveState
+    heading: float  # YAW_SPEED [rad]
+    heading_speed: float  # [m/s]

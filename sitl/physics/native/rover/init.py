@@ -14,7 +14,7 @@ def init(v: Any, airframe: RoverAirframe, home: Home, seed: int) -> None:
     """Set physics, sensors, clock and random numbers of a vehicle to power-on; the wind's settings stay.
 
     Args:
-        v: a view of one vehicle (``sitl.core.records.view``).
+        v: a view of one vehicle (``Record.of``).
         airframe: what it is.
         home: where it stands; altitude is that of the ground.
         seed: of all sensor errors; any integer.

@@ -9,7 +9,7 @@ from typing import Any
 from ....core.array_kernels import kernel
 from ....core.kernels import law
 from .scan import scan
-from .state import TURTLEBOT_DTYPE
+from .state import Turtlebot
 from .step import step
 
 
@@ -42,10 +42,11 @@ def advance_fleet(fleet, commands, ticks, solids, grid, cells, rays, directions,
 
 
 def _signature() -> Any:
-    import numba
     from numba import types
 
-    fleet = types.Array(numba.from_dtype(TURTLEBOT_DTYPE), 1, "C")
+    from ....core.numba_records import numba_type
+
+    fleet = types.Array(numba_type(Turtlebot), 1, "C")
     line, table, whole = types.float64[::1], types.float64[:, ::1], types.int64[::1]
     return types.void(fleet, table, whole, table, line, whole, table, table, line, types.float32[:, ::1])
 

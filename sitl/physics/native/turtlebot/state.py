@@ -3,35 +3,41 @@
 
 from __future__ import annotations
 
-from ....core.records import record
-from ....core.rng import RNG_DTYPE
-from ....vehicles.turtlebot import FIGURES_DTYPE
+from ....core.records import Record
+from ....core.rng import Rng
+from ....vehicles.turtlebot import FIGURES_RECORD
 
 TICK_US = 10_000
 """Physics step [us], as the original's."""
 TICK_S = 1e-6 * TICK_US
 
-COMMAND_DTYPE = record(
-    ("forward", "f8"),  # speed [m/s]
-    ("turn", "f8"),  # rate [rad/s], counter-clockwise seen from above
-    ("time_us", "i8"),  # when it was given
-)
 
-BODY_DTYPE = record(
-    ("north", "f8"),  # middle of the axle [m]
-    ("east", "f8"),  # [m]
-    ("down", "f8"),  # of the floor that it stands on [m]
-    ("heading", "f8"),  # [rad], clockwise from north, -pi .. pi
-    ("speed", "f8"),  # forward, of the last tick [m/s]
-    ("yaw_rate", "f8"),  # clockwise, of the last tick [rad/s]
-    ("clearance", "f8"),  # it can go so far in any direction before it may touch something [m]
-    ("collided", "i8"),  # 1: a solid has stopped it since it was last advanced
-)
+class Command(Record):
+    """What the robot was told to do."""
 
-TURTLEBOT_DTYPE = record(
-    ("time_us", "i8"),  # since it was placed
-    ("figures", FIGURES_DTYPE),
-    ("command", COMMAND_DTYPE),
-    ("body", BODY_DTYPE),
-    ("rng", RNG_DTYPE),
-)
+    forward: float  # speed [m/s]
+    turn: float  # rate [rad/s], counter-clockwise seen from above
+    time_us: int  # when it was given
+
+
+class Body(Record):
+    """Where the robot is and how it moves."""
+
+    north: float  # middle of the axle [m]
+    east: float  # [m]
+    down: float  # of the floor that it stands on [m]
+    heading: float  # [rad], clockwise from north, -pi .. pi
+    speed: float  # forward, of the last tick [m/s]
+    yaw_rate: float  # clockwise, of the last tick [rad/s]
+    clearance: float  # it can go so far in any direction before it may touch something [m]
+    collided: int  # 1: a solid has stopped it since it was last advanced
+
+
+class Turtlebot(Record):
+    """A whole Turtlebot."""
+
+    time_us: int  # since it was placed
+    figures: FIGURES_RECORD  # type: ignore[valid-type]
+    command: Command
+    body: Body
+    rng: Rng

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``python -m benchmarks.digests``: what a tree flies as digests, and whether two trees fly the same."""
+
+from __future__ import annotations
+
+import argparse
+import fnmatch
+import hashlib
+import json
+import multiprocessing
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from . import copter, logs, missions, robots, rover, tree
+from .compare import Comparison, compare
+from .pilot import Pilot
+from .tape import leaves_of
+
+QUICK = (
+    "native/power_on/*", "native/log/*", "native/mission/copter/spline_figure", "native/mission/rover/figure_eight",
+    "native/recorded/*-ekf", "native/copter/LOITER-erle_copter", "native/copter/STABILIZE-ardupilot_quad",
+    "native/copter/failsafe-gps", "native/copter/failsafe-rc", "native/copter/on_ground", "native/copter/office",
+    "native/copter/guided-*", "native/copter/by_dice-*-11", "native/rover/guided-erle_rover",
+    "native/rover/guided-skid_rover", "native/rover/by_dice-*-11", "native/rover/ACRO-erle_rover", "native/rover/maze",
+    "native/rover/standing-erle_rover", "native/rover/failsafe-rc-smart_rtl", "jsbsim/copter/guided",
+    "pybullet/rover/guided", "turtlebot/maze", "env/Gazebo*", "env/navigate-turtlebot-goal",
+)  # fmt: skip
+"""Patterns of the flights that are enough after each edit."""
+
+
+def flights() -> dict[str, Callable[[], Any]]:
+    """Every flight by its name."""
+    modules = (logs, missions, copter, rover, robots)
+    return {name: script for module in modules for name, script in module.flights().items()}  # type: ignore[attr-defined]
+
+
+def chosen(patterns: str | None, quick: bool) -> list[str]:
+    """Names of the flights that are asked for.
+
+    Args:
+        patterns: shell patterns or beginnings of names, separated by commas; None: all.
+        quick: only those that are enough after each edit.
+    """
+    names = [name for name in flights() if not quick or any(fnmatch.fnmatch(name, each) for each in QUICK)]
+    if patterns is None:
+        return names
+    wanted = patterns.split(",")
+    return [name for name in names if any(fnmatch.fnmatch(name, each) or name.startswith(each) for each in wanted)]
+
+
+def fly(name: str) -> dict[str, Any]:
+    """Digests of one flight; with "error" when it cannot be flown."""
+    start = time.perf_counter()
+    try:
+        digests: dict[str, Any] = flights()[name]().result()
+    except Exception as error:
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        digests = {"error": f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"}
+    return {**digests, "seconds": round(time.perf_counter() - start, 2)}
+
+
+def write(path: Path, names: list[str], jobs: int) -> int:
+    """Fly, and write the digests; returns how many could not be flown."""
+    leaves: dict[str, list[str]] = {}
+    flown: dict[str, Any] = {}
+    with ProcessPoolExecutor(jobs, multiprocessing.get_context("fork")) as pool:
+        for name, digests in zip(names, pool.map(fly, names)):
+            seconds = digests.pop("seconds")
+            print(f"{seconds:6.2f} s  {name}  {digests.get('error', '')}", flush=True)
+            if "record" in digests:
+                paths = digests["record"]["paths"]
+                key = hashlib.sha256("\n".join(paths).encode()).hexdigest()[:8]
+                leaves[key] = paths
+                digests["record"]["paths"] = key
+            flown[name] = digests
+    lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(digests)}" for name, digests in flown.items())
+    path.write_text(f'{{"leaves": {json.dumps(leaves)},\n"flights": {{\n{lines}\n}}}}\n')
+    return sum("error" in digests for digests in flown.values())
+
+
+def read_names(path: Path | None) -> dict[str, str]:
+    """Renamed leaves: a file of lines ``old=new``; # begins a comment."""
+    names: dict[str, str] = {}
+    for line in path.read_text().splitlines() if path is not None else ():
+        text = line.partition("#")[0].strip()
+        if text:
+            old, equals, new = text.partition("=")
+            if not equals:
+                raise SystemExit(f"{path}: {line!r} is not of the form old=new")
+            names[old.strip()] = new.strip()
+    return names
+
+
+def tell(found: Comparison, every: bool) -> None:
+    """Print a comparison."""
+    for name, differences in found.differing.items():
+        print(f"DIFFERS  {name}")
+        for difference in differences:
+            print(f"         {difference}")
+    lists: Mapping[str, list[str]] = {
+        "flights only in the first": found.only_first,
+        "flights only in the second": found.only_second,
+        "leaves only in the first": sorted(found.leaves_only_first),
+        "leaves only in the second": sorted(found.leaves_only_second),
+    }
+    for title, names in lists.items():
+        if names:
+            shown = names if every else names[:12]
+            print(f"{title} ({len(names)}): {', '.join(shown)}{' ...' if len(shown) < len(names) else ''}")
+    if found.differing:
+        print(f"{len(found.differing)} of {len(found.same) + len(found.differing)} flights differ")
+    else:
+        print(f"same: {len(found.same)} flights")
+
+
+class Reached(Exception):
+    """The flight has come to the time that is looked at."""
+
+
+def show(name: str, until_s: float) -> None:
+    """Fly until a simulated time, and print every leaf there: for a diff between two trees."""
+
+    def look(pilot: Pilot, now_us: int) -> None:
+        if now_us >= until_s * 1e6:
+            dtype, record = tree.record(pilot.simulation)
+            for leaf in leaves_of(dtype):
+                print(leaf.path, *(repr(number) for number in leaf.value(record).tolist()))
+            raise Reached
+
+    Pilot.on_step = look
+    try:
+        flights()[name]()
+    except Reached:
+        return
+    raise SystemExit(f"{name} is no flight with a record, or ends before {until_s} s")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The command line; 1 when flights differ or could not be flown, 2 when there is nothing to do."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.digests", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    writing = commands.add_parser("write", help="fly, and write digests to a file")
+    writing.add_argument("file", type=Path)
+    writing.add_argument("--jobs", type=int, default=1, metavar="N", help="processes")
+    comparing = commands.add_parser("compare", help="compare two files; exit code 1 when flights differ")
+    comparing.add_argument("first", type=Path)
+    comparing.add_argument("second", type=Path)
+    comparing.add_argument("--renamed", type=Path, metavar="FILE", help="lines old=new: leaves or their parents")
+    comparing.add_argument("--all", action="store_true", help="name every leaf that only one has")
+    listing = commands.add_parser("list", help="names of the flights")
+    for each in (writing, listing):
+        each.add_argument("--only", metavar="NAMES", help="beginnings of names or patterns, separated by commas")
+        each.add_argument("--quick", action="store_true", help="those that are enough after each edit")
+    showing = commands.add_parser("show", help="print every leaf of the record at a time of a flight")
+    showing.add_argument("name")
+    showing.add_argument("seconds", type=float, help="simulated")
+    options = parser.parse_args(arguments)
+    if options.command == "compare":
+        first, second = (json.loads(path.read_text()) for path in (options.first, options.second))
+        found = compare(first, second, read_names(options.renamed))
+        tell(found, options.all)
+        return 1 if found.differing else 0 if found.same else 2
+    if options.command == "show":
+        if options.name not in flights():
+            parser.error(f"no flight {options.name!r}: see list")
+        show(options.name, options.seconds)
+        return 0
+    names = chosen(options.only, options.quick)
+    if not names:
+        parser.error(f"no flight has a name like {options.only!r}: see list")
+    if options.command == "list":
+        print(*names, sep="\n")
+        return 0
+    print(f"tree {tree.root()}: {len(names)} flights", file=sys.stderr)
+    return 1 if write(options.file, names, options.jobs) else 0
+
+
+if __name__ == "__main__":
+    os.environ["MAVLINK20"] = "1"
+    sys.exit(main())

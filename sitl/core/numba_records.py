@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How Numba sees the records of ``records``.
+
+Numba's own record type, with two differences: fields that are values (numbers of any width, booleans, vectors) read as
+float64, int64, boolean or a value of ``vectors`` and are narrowed when they are written; and a type is named by its
+class, because Numba prints the name of each type into every symbol.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba.core import cgutils, types
+from numba.core.datamodel import register_default
+from numba.core.datamodel.models import RecordModel
+from numba.core.imputils import lower_getattr_generic, lower_setattr_generic
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.extending import typeof_impl
+from numba.np.arrayobj import record_getattr, record_setattr
+from numba.np.numpy_support import map_layout
+
+from .numba_vectors import TYPES, components, make_value
+from .records import Field, Record
+from .vectors import Value
+
+_NUMBERS = {"f8": types.float64, "i8": types.int64, "f4": types.float32, "i4": types.int32}
+_SCALARS: dict[type, Any] = {float: types.float64, int: types.int64, bool: types.boolean}
+
+
+class RecordType(types.Record):
+    """The type of a record class."""
+
+    def __init__(self, cls: type[Record]) -> None:
+        self._numpy = cls.dtype
+        listed: Any = [(f.name, {"type": _memory_type(f), "offset": f.offset}) for f in cls.fields.values()]
+        super().__init__(listed, cls.dtype.itemsize, True)
+        self.values: dict[str, Any] = {f.name: _value_type(f) for f in cls.fields.values() if f.value is not None}
+        """Field that reads as a value -> what it reads as."""
+        self.name = f"{cls.__module__}.{cls.__qualname__}"
+
+    @property
+    def dtype(self) -> Any:
+        """NumPy's type."""
+        return self._numpy
+
+    def __repr__(self) -> str:
+        return self.name
+
+
+def _memory_type(field: Field) -> Any:
+    base = numba_type(field.record) if field.record is not None else _NUMBERS[field.code]
+    return types.NestedArray(base, field.shape) if field.shape else base
+
+
+def _value_type(field: Field) -> Any:
+    assert field.value is not None
+    return TYPES[field.value] if issubclass(field.value, Value) else _SCALARS[field.value]
+
+
+@cache
+def numba_type(cls: type[Record]) -> RecordType:
+    """Numba's type of a record class."""
+    kind = RecordType(cls)
+    _BY_DTYPE.setdefault(cls.dtype, kind)
+    return kind
+
+
+_BY_DTYPE: dict[Any, RecordType] = {}
+_typeof_ndarray = typeof_impl.dispatch(np.ndarray)
+
+
+@typeof_impl.register(np.ndarray)
+def _typeof(array: Any, context: Any) -> Any:
+    """Arrays of a record that kernels are compiled for are arrays of its ``RecordType``."""
+    kind = _BY_DTYPE.get(array.dtype) if array.dtype.names is not None else None
+    if kind is None:
+        return _typeof_ndarray(array, context)
+    return types.Array(kind, array.ndim, map_layout(array), readonly=not array.flags.writeable)
+
+
+register_default(RecordType)(RecordModel)
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):
+    key = RecordType
+
+    def generic_resolve(self, record: RecordType, name: str) -> Any:
+        if name not in record.fields:
+            return None
+        return record.values.get(name) or record.typeof(name)
+
+
+def _place(builder: Any, context: Any, kind: RecordType, memory: Any, name: str) -> tuple[Any, Any, int]:
+    """(Pointer to the first number, type of a number, how many) of a field."""
+    stored = kind.typeof(name)
+    number = stored.dtype if isinstance(stored, types.NestedArray) else stored
+    count = math.prod(stored.shape) if isinstance(stored, types.NestedArray) else 1
+    return cgutils.get_record_member(builder, memory, kind.offset(name), context.get_data_type(number)), number, count
+
+
+@lower_getattr_generic(RecordType)
+def _read(context: Any, builder: Any, kind: RecordType, memory: Any, name: str) -> Any:
+    value = kind.values.get(name)
+    if value is None:
+        return record_getattr(context, builder, kind, memory, name)
+    place, number, count = _place(builder, context, kind, memory, name)
+    if value in (types.float64, types.int64):
+        return context.cast(builder, builder.load(place), number, value)
+    if value is types.boolean:
+        return builder.icmp_signed("!=", builder.load(place), context.get_constant(types.int64, 0))
+    numbers = [builder.load(cgutils.gep_inbounds(builder, place, k)) for k in range(count)]
+    return make_value(context, builder, value, [context.cast(builder, n, number, types.float64) for n in numbers])
+
+
+@lower_setattr_generic(RecordType)
+def _write(context: Any, builder: Any, sig: Any, args: Any, name: str) -> None:
+    kind, given = sig.args
+    memory, what = args
+    value = kind.values.get(name)
+    if value is None:
+        record_setattr(context, builder, sig, args, name)
+        return
+    place, number, _ = _place(builder, context, kind, memory, name)
+    if value in TYPES.values():
+        for k, part in enumerate(components(builder, value, what)):
+            builder.store(context.cast(builder, part, types.float64, number), cgutils.gep_inbounds(builder, place, k))
+        return
+    if value is types.boolean:
+        what, given = context.cast(builder, what, given, types.boolean), types.boolean
+    builder.store(context.cast(builder, what, given, number), place)

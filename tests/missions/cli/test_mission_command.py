@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl mission fly``, ``convert`` and ``library`` as a user types them; subcommands that other packages add."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from sitl import cli
+from sitl.missions import cli as missions_cli
+from sitl.missions.files import load, save
+from sitl.missions.library.draft import Draft
+
+
+class Entry:
+    """An entry point."""
+
+    def __init__(self, name: str, found: object) -> None:
+        self.name, self.value, self._found = name, f"{name}.module", found
+
+    def load(self) -> object:
+        if isinstance(self._found, Exception):
+            raise self._found
+        return self._found
+
+
+@pytest.fixture(autouse=True)
+def added(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """``mission`` is there whether or not the package is installed."""
+    found = [
+        Entry("zebra", ImportError("no stripes")),
+        Entry("mission", missions_cli),
+        Entry("run", missions_cli),
+    ]
+    ours = {"group": cli.GROUP}
+    real = metadata.entry_points
+    monkeypatch.setattr(metadata, "entry_points", lambda **wanted: found if wanted == ours else real(**wanted))
+    monkeypatch.chdir(tmp_path)
+
+
+def test_a_package_that_cannot_be_loaded_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    """And the others work; one that has the name of ours is passed over."""
+    with pytest.raises(SystemExit):
+        cli.main(["--help"])
+    out, err = capsys.readouterr()
+    assert "zebra (zebra.module) cannot be loaded: ImportError('no stripes')" in err
+    assert "mission" in out
+    assert isinstance(cli.parser(), argparse.ArgumentParser)
+
+
+def test_fly_a_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    save(Draft("copter", "").take_off(4).to((6, 0), z=4.0).land().file(), "hop.plan")
+    assert cli.main(["mission", "fly", "hop.plan"]) == 0
+    out = capsys.readouterr().out
+    assert "item 2 of 3 WP done" in out
+    assert "mission completed\n  time " in out
+    assert (tmp_path / "logs" / "hop.tlog").stat().st_size > 1000
+
+
+def test_a_mission_that_is_not_completed_is_code_1(capsys: pytest.CaptureFixture[str]) -> None:
+    save(Draft("copter", "").to((6, 0), z=4.0).file(), "flat.waypoints")
+    assert cli.main(["mission", "fly", "flat.waypoints", "--quiet"]) == 1
+    assert "mission NOT COMPLETED: mode AUTO was refused" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["nothing.plan"], "sitl mission: nothing.plan: No such file"),
+        (["copter/nothing"], "there is no mission 'copter/nothing'; there are copter/square"),
+        (["rover/square", "--vehicle", "copter"], "vehicleType 10 is a rover, not a copter"),
+        (["wing.plan"], "wing.plan: vehicleType 1 (MAV_TYPE) is neither a copter nor a rover; --vehicle says"),
+        (["lawn.plan"], "mission item 1: a rover does not fly command 22 Takeoff; it flies"),
+        (["rover/square", "--speedup", "fast"], "speed-up 'fast' is not a number"),
+    ],
+)
+def test_bad_input_is_code_2(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    lawn = Draft("rover", "").take_off(4).to((6, 0)).file()
+    save(lawn, "lawn.plan")
+    save(replace(lawn, vehicle_type=1), "wing.plan")
+    assert cli.main(["mission", "fly", *words]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_convert(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["mission", "library", "copter/survey", "copter/fence_and_rally", "--copy", "."]) == 0
+    assert cli.main(["mission", "convert", "copter/survey.plan", "survey.waypoints"]) == 0
+    plan, text = load("copter/survey.plan"), load("survey.waypoints")
+    assert [i[:2] for i in text.mission.items] == [i[:2] for i in plan.mission.items]
+    assert cli.main(["mission", "convert", "survey.waypoints", "survey.plan", "--vehicle", "copter"]) == 0
+    assert load("survey.plan").kind == "copter"
+    assert cli.main(["mission", "convert", "copter/fence_and_rally.plan", "square.txt"]) == 0
+    assert "geofence and rally points are left out" in capsys.readouterr().err
+    assert cli.main(["mission", "convert", "copter/survey.plan", "survey.plan"]) == 2
+    assert "is there already; --force replaces it" in capsys.readouterr().err
+    assert cli.main(["mission", "convert", "copter/survey.plan", "survey.plan", "--expand", "--force"]) == 0
+    assert not load("survey.plan").complexes
+
+
+def test_the_library_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["mission", "library"]) == 0
+    out = capsys.readouterr().out
+    assert "rover/maze_route" in out
+    assert "world maze_erlerover" in out
