@@ -7,8 +7,7 @@ import contextlib
 import select
 import socket
 
-from ..errors import OptionError
-from .errors import LinkLostError
+from ..errors import LinkLostError, OptionError
 
 FORMS = (
     '"udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there) '

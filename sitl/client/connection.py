@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from ..bridge.dialect import message
 from ..bridge.links.inprocess import InProcessLink
 from ..bridge.services.grants import GRANT, RESEED
+from ..errors import LinkLostError
 from .byte_socket import ByteSocket
 from .commands import arguments, command_number
 from .endpoint import Endpoint
-from .errors import LinkLostError
 from .inbox import Inbox
 
 if TYPE_CHECKING:

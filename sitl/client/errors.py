@@ -10,10 +10,6 @@ class UnknownNameError(OptionError):
     """A command, parameter, mode or channel that there is not; the message says which there are."""
 
 
-class LinkLostError(VehicleError, ConnectionError):
-    """No vehicle there, or no longer; the message names the connection."""
-
-
 class ClientError(VehicleError):
     """The vehicle did not do what it was asked to.
 

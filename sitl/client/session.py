@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ..bridge.dialect import message
@@ -37,22 +36,6 @@ TEXTS_SHOWN = 8
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
 Repeated = tuple[str, dict[str, Any]]
 """A message that is sent again and again: its name, its fields."""
-
-
-@dataclass
-class Watch:
-    """Something that must hold all the time."""
-
-    holds: Callable[[], Any]
-    what: str
-
-
-@dataclass
-class Collector:
-    """Collects messages of one name."""
-
-    name: str
-    fields: list[Any] = field(default_factory=list)
 
 
 class Session:
@@ -94,8 +77,8 @@ class Session:
         self._next_us = {_HEARTBEAT: 0} if heartbeat else {}
         self._texts_read = 0
         self._is_silent = False
-        self._watches: list[Watch] = []
-        self._collectors: list[Collector] = []
+        self._invariants: list[tuple[Callable[[], Any], str]] = []
+        self._collected: list[tuple[str, list[Any]]] = []
         self._boots = self.connection.boots
         self.connection.inbox.on_message = self._take
         if self.connection.simulation is not None:
@@ -221,10 +204,11 @@ class Session:
             self.ask_for_telemetry()
         elif self._unanswered and connection.time_us - self._asked_us >= ASK_AGAIN_US:
             self.ask_for_telemetry(self._awaited)
-        for watch in self._watches:
-            if not watch.holds():
-                self._watches.remove(watch)
-                self.raise_error(InvariantError("at all times:", f"{watch.what}; it is not so now", self.now))
+        for invariant in self._invariants:
+            holds, what = invariant
+            if not holds():
+                self._invariants.remove(invariant)
+                self.raise_error(InvariantError("at all times:", f"{what}; it is not so now", self.now))
 
     def _take(self, name: str, fields: Any) -> None:
         """A message of the vehicle."""
@@ -234,9 +218,9 @@ class Session:
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
             self.telemetry.mode_names = mode_names(fields.type)
         self._awaited.discard(name)
-        for collector in self._collectors:
-            if collector.name == name:
-                collector.fields.append(fields)
+        for wanted, seen in self._collected:
+            if wanted == name:
+                seen.append(fields)
 
     def wait(
         self,
@@ -288,13 +272,12 @@ class Session:
         Raises:
             InvariantError: it did not.
         """
-        watch = Watch(condition, what)
-        self._watches.append(watch)
+        invariant = (condition, what)
+        self._invariants.append(invariant)
         try:
             yield
         finally:
-            if watch in self._watches:
-                self._watches.remove(watch)
+            self._invariants = [other for other in self._invariants if other is not invariant]
 
     # ------------------------------------------------------------------ messages
 
@@ -319,31 +302,24 @@ class Session:
 
     def message(self, name: str, timeout: float = 2.0) -> Any:
         """Ask for one message and wait for it; gives its fields as a named tuple."""
-        with self._collecting(name) as collector:
+        with self.messages(name) as seen:
             self.command("REQUEST_MESSAGE", message(name).id, subject=f"the request for {name}")
-            self.wait(lambda _: collector.fields, timeout, name)
-        return collector.fields[-1]
+            self.wait(lambda _: seen, timeout, name)
+        return seen[-1]
 
     @contextmanager
     def messages(self, name: str, rate_hz: float | None = None) -> Iterator[list[Any]]:
         """All messages of a name that come while the block flies, as a list that grows; ``rate_hz``: ask for them."""
+        number, collected = message(name).id, (name, list[Any]())
         if rate_hz is not None:
-            subject = f"{name} at {rate_hz:g} Hz"
-            self.command("SET_MESSAGE_INTERVAL", message(name).id, 1e6 / rate_hz, subject=subject)
-        with self._collecting(name) as collector:
-            yield collector.fields
+            self.command("SET_MESSAGE_INTERVAL", number, 1e6 / rate_hz, subject=f"{name} at {rate_hz:g} Hz")
+        self._collected.append(collected)
+        try:
+            yield collected[1]
+        finally:
+            self._collected = [other for other in self._collected if other is not collected]
         if rate_hz is not None:
             self.set_rate(name, float(self._rates.get(name, 0)))
-
-    @contextmanager
-    def _collecting(self, name: str) -> Iterator[Collector]:
-        message(name)  # raises when there is none
-        collector = Collector(name)
-        self._collectors.append(collector)
-        try:
-            yield collector
-        finally:
-            self._collectors = [other for other in self._collectors if other is not collector]
 
     def heartbeats(self, on: bool) -> None:
         """Whether the vehicle gets this ground station's heartbeats."""

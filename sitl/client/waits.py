@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 
 from .session import Session
-from .telemetry import ON_GROUND, Text
+from .telemetry import ON_GROUND, Telemetry, Text
 
 __tracebackhide__ = True
 
@@ -61,18 +62,22 @@ class Waits(Session):
 
     def wait_altitude(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until its altitude above home is within ``low`` .. ``high`` [m]."""
-        what = f"an altitude of {_range(low, high, 'm')}"
-        self.wait(lambda t: low <= t.altitude <= high, timeout, what, lambda: f"{self.telemetry.altitude:.2f} m", hold)
+        self._wait_range("an altitude", "m", lambda t: t.altitude, low, high, timeout, hold)
 
     def wait_groundspeed(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until its speed along the ground is within ``low`` .. ``high`` [m/s]."""
-        what, last = f"a speed of {_range(low, high, 'm/s')}", lambda: f"{self.telemetry.groundspeed:.2f} m/s"
-        self.wait(lambda t: low <= t.groundspeed <= high, timeout, what, last, hold)
+        self._wait_range("a speed", "m/s", lambda t: t.groundspeed, low, high, timeout, hold)
 
     def wait_climb_rate(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until it climbs with ``low`` .. ``high`` [m/s]; negative: it sinks."""
-        what, last = f"a climb rate of {_range(low, high, 'm/s')}", lambda: f"{self.telemetry.climb_rate:.2f} m/s"
-        self.wait(lambda t: low <= t.climb_rate <= high, timeout, what, last, hold)
+        self._wait_range("a climb rate", "m/s", lambda t: t.climb_rate, low, high, timeout, hold)
+
+    def _wait_range(
+        self, what: str, unit: str, value: Callable[[Telemetry], float], low: float, high: float, timeout: float,
+        hold: float,
+    ) -> None:  # fmt: skip
+        self.wait(lambda t: low <= value(t) <= high, timeout, f"{what} of {_range(low, high, unit)}",
+                  lambda: f"{value(self.telemetry):.2f} {unit}", hold)  # fmt: skip
 
     def wait_heading(self, degrees: float, accuracy: float = 5.0, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until its nose points to ``degrees``, within ``accuracy`` [deg]."""

@@ -99,8 +99,6 @@ def test_importing_the_package_loads_no_compiler():
     out = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
     ours = [
         "sitl",
-        "sitl.client",
-        "sitl.client.errors",
         "sitl.envs",
         "sitl.envs.mavlink",
         "sitl.envs.mavlink.errors",

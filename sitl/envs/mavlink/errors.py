@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from sitl.client.errors import LinkLostError
-from sitl.errors import VehicleError
+from sitl.errors import LinkLostError, VehicleError
 
 __all__ = ["LinkLostError", "NotASimulatorError", "NotReadyError"]
 

@@ -110,12 +110,12 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
             return False
         return link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
 
-    _until(link, arms, _SECOND, "does not arm")
+    until(link, arms, _SECOND, "does not arm")
     if take_off > 0.0:
         floor = heard.position[3]  # home is where it is armed, which is not the origin of local positions
         if link.command("NAV_TAKEOFF", altitude=take_off) != ACCEPTED:
             raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_told(link)}")
-        _until(link, lambda: abs(heard.position[3] - floor + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
+        until(link, lambda: abs(heard.position[3] - floor + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
                f"does not climb to {take_off:g} m")  # fmt: skip
     for _ in range(3):  # it may be lost on the way
         if heard.origin is None:
@@ -132,13 +132,26 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
 
 
-def _until(link: Connection, done: Callable[[], bool], every_us: int, complaint: str) -> None:
-    for _ in range(_PATIENCE_S * _SECOND // every_us):
+def until(
+    link: Connection,
+    done: Callable[[], bool],
+    every_us: int,
+    complaint: str,
+    seconds: int = _PATIENCE_S,
+    between: Callable[[], None] = lambda: None,
+) -> None:
+    """Let time go by until ``done()``; ``between``: called before each step.
+
+    Raises:
+        NotReadyError: not within so many seconds.
+    """
+    for _ in range(seconds * _SECOND // every_us):
         if done():
             return
+        between()
         link.pause(every_us)
-    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {_PATIENCE_S} s; {_told(link)}")
+    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; {_told(link)}")
 
 
 def _told(link: Connection) -> str:
-    return "it told: " + "; ".join(link.inbox.last_texts[-4:]) if link.inbox.last_texts else "it told nothing"
+    return "it said: " + "; ".join(link.inbox.last_texts[-4:]) if link.inbox.last_texts else "it said nothing"

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from sitl.bridge.services.setpoints import (
     ACCELERATION_IGNORED,
@@ -17,7 +17,7 @@ from sitl.bridge.services.setpoints import (
 from sitl.client.connection import ACCEPTED, Connection
 
 from .errors import NotReadyError
-from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals
+from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
 from .telemetry import Telemetry
 
@@ -61,7 +61,7 @@ def prepare(link: Connection, take_off: float) -> None:
     """
     heard = link.inbox
     set_intervals(link, INTERVAL_US)
-    _until(link, lambda: not math.isnan(heard.position[1]), lambda: None, _READY_S, "has no position")
+    until(link, lambda: not math.isnan(heard.position[1]), _TENTH, "has no position", _READY_S)
     north, east, down = heard.position[1:4]
     heading = heard.attitude[3]
 
@@ -87,10 +87,10 @@ def prepare(link: Connection, take_off: float) -> None:
     def arms() -> bool:
         return offboard() and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
 
-    _until(link, arms, hold, _READY_S, "does not arm in OFFBOARD")
-    _until(
-        link, lambda: abs(heard.position[3] - down + take_off) < 0.15 and abs(heard.position[6]) < 0.15, hold,
-        _CLIMB_S, f"does not climb to {take_off:g} m",
+    until(link, arms, _TENTH, "does not arm in OFFBOARD", _READY_S, hold)
+    until(
+        link, lambda: abs(heard.position[3] - down + take_off) < 0.15 and abs(heard.position[6]) < 0.15, _TENTH,
+        f"does not climb to {take_off:g} m", _CLIMB_S, hold,
     )  # fmt: skip
     for _ in range(3):
         if heard.origin is None:
@@ -104,13 +104,3 @@ def prepare(link: Connection, take_off: float) -> None:
         link.run(_TENTH)
     if heard.scans == scans:
         raise NotReadyError(f"{link.name}: the physics sends no scan")
-
-
-def _until(link: Connection, done: Callable[[], bool], hold: Callable[[], None], seconds: int, complaint: str) -> None:
-    for _ in range(10 * seconds):
-        if done():
-            return
-        hold()
-        link.pause(_TENTH)
-    told = "; ".join(link.inbox.last_texts[-4:]) or "nothing"
-    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; it told: {told}")
