@@ -328,7 +328,7 @@ class RealTime(Remote):
         if us == 0:
             self.pause(0)
             return
-        goal = self.inbox.time_ms + us // 1000 - 1
+        goal = self.inbox.time_ms + max(us // 1000 - 1, 1)
         self.exchange(lambda: self.inbox.time_ms >= goal, repeat=False, within=self.patience + 1e-6 * us)
 
     def pause(self, us: int) -> None:

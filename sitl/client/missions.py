@@ -10,8 +10,8 @@ from typing import Any
 from ..autopilot.mission.item import RELATIVE, MissionItem, home_item
 from ..autopilot.mission.mission import RESULT_NAMES, Mission
 from .commands import arguments, command_number, entry_name
+from .controls import Controls
 from .errors import MissionRefusedError, WaitTimeoutError
-from .pilot import Pilot
 
 __tracebackhide__ = True
 
@@ -19,7 +19,7 @@ SILENCE_S = 1.0
 """When nothing was asked for so long, what was sent last is sent again."""
 
 
-class MissionPilot(Pilot):
+class Missions(Controls):
     """A vehicle that flies missions."""
 
     _upload: Sequence[MissionItem] = ()

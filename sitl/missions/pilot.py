@@ -11,7 +11,7 @@ import numpy as np
 from sitl.autopilot.mission.item import MissionItem
 from sitl.client import Client
 from sitl.client.commands import command_number
-from sitl.client.pilot import CUSTOM_MODE_ENABLED, POSITION_ONLY, VELOCITY_ONLY
+from sitl.client.controls import CUSTOM_MODE_ENABLED, POSITION_ONLY, VELOCITY_ONLY
 from sitl.errors import SitlError
 from sitl.simulation import Simulation
 

@@ -30,7 +30,7 @@ from sitl.run.runner import BASE_TCP_PORT
 
 from .errors import LinkLostError, NotReadyError
 from .preparation import FORCE
-from .telemetry import Telemetry
+from .telemetry import StepTelemetry
 
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 _SLICE_US = 20_000
@@ -78,7 +78,7 @@ class Foreign(Connection):
     """
 
     is_exact = False
-    inbox: Telemetry
+    inbox: StepTelemetry
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class Foreign(Connection):
         readings: int,
         patience: float,
     ) -> None:
-        super().__init__(Endpoint(), Telemetry(readings))
+        super().__init__(Endpoint(), StepTelemetry(readings))
         self.inbox.scans_by_mavlink, self.inbox.longest_interval_us = False, 20_000
         self.host, self.plant, self.process = host, plant, process
         self.patience, self._connection = patience, connection

@@ -19,7 +19,7 @@ from sitl.client.connection import ACCEPTED, Connection
 from .errors import NotReadyError
 from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
-from .telemetry import Telemetry
+from .telemetry import StepTelemetry
 
 OFFBOARD = 6
 """Main mode of PX4's, in param2 of DO_SET_MODE with MAV_MODE_FLAG_CUSTOM_MODE_ENABLED in param1."""
@@ -31,7 +31,7 @@ _BEFORE = 10
 _READY_S, _CLIMB_S = 90, 30
 
 
-def velocity(row: Sequence[float], heard: Telemetry, origin: Sequence[float]) -> Message:
+def velocity(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_POSITION_TARGET_LOCAL_NED: velocities [m/s] turned from the heading to north and east, turn rate [rad/s].
 
     PX4 takes them in the local frame on all its versions, in the body's on some.

@@ -28,7 +28,7 @@ _part = struct.Struct("<QH10s").unpack_from
 _seven = struct.Struct("<I6f").unpack_from
 
 
-class Telemetry(Inbox):
+class StepTelemetry(Inbox):
     """The latest of each message.
 
     Args:

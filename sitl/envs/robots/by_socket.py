@@ -12,7 +12,7 @@ from sitl.errors import OptionError
 
 from ..mavlink.preparation import reboot
 from ..mavlink.simulator import REBOOT, is_simulator, refusal
-from ..mavlink.telemetry import Telemetry
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import Ready, Seat, Vehicles
@@ -43,7 +43,7 @@ class SocketVehicles(Vehicles):
         self._pose = pose
         link = self.links[0]
         if link is None:
-            inbox = Telemetry(len(self.seat.angles))
+            inbox = StepTelemetry(len(self.seat.angles))
             try:
                 link = connect(self._connection, inbox, self.options["patience"], warn=logger.warn)
             except OptionError as error:

@@ -19,7 +19,7 @@ from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 
 from ..mavlink.preparation import INTERVAL_US
-from ..mavlink.telemetry import Telemetry
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import Ready, Seat, Vehicles
@@ -72,7 +72,7 @@ class InProcessVehicles(Vehicles):
         ready = self._ready.get(key)
         if ready is None:
             simulation = self._simulation(pose, figures)
-            link = InProcess(simulation, Telemetry(len(self.seat.angles)))
+            link = InProcess(simulation, StepTelemetry(len(self.seat.angles)))
             link.inbox.angles = self.seat.angles
             origin = self.prepare(link, pose)
             ready = Ready(simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US)
@@ -105,7 +105,7 @@ class InProcessVehicles(Vehicles):
         link = self.links[index]
         if link is None:
             simulation = self._simulation()
-            link = self.links[index] = InProcess(simulation, Telemetry(len(self.seat.angles)))
+            link = self.links[index] = InProcess(simulation, StepTelemetry(len(self.seat.angles)))
             link.inbox.angles = self.seat.angles
             if index == 0 and self._gcs is not None:
                 simulation.bridge.add_link(self._gcs)

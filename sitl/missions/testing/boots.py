@@ -9,7 +9,7 @@ from typing import Any
 
 from sitl.physics.engines import NATIVE
 
-from .moments import Moment
+from .moments import RecordedMoment
 from .setup import Setup
 from .vehicle import Copter, Rover, Vehicle
 
@@ -22,7 +22,7 @@ EXACT = (NATIVE, "pybullet")
 Prepare = Callable[[Any], object]
 """What a vehicle does before its test begins."""
 Beginning = tuple[Setup, Prepare | None]
-_kept: OrderedDict[Beginning, Moment] = OrderedDict()
+_kept: OrderedDict[Beginning, RecordedMoment] = OrderedDict()
 
 
 def new(setup: Setup, name: str) -> Vehicle:

@@ -19,7 +19,7 @@ __tracebackhide__ = True  # failures show the line of the test
 
 
 @dataclass(frozen=True)
-class Moment:
+class RecordedMoment:
     """A vehicle at one moment, with all that its client knows and has sent."""
 
     vehicle: client.Moment
@@ -60,7 +60,7 @@ class Forking(client.Client):
 
     def snapshot(self) -> Any:
         """This moment, for ``restore``."""
-        return Moment(super().snapshot(), tuple(self.script.said))
+        return RecordedMoment(super().snapshot(), tuple(self.script.said))
 
     def restore(self, moment: Any) -> None:
         """Put the vehicle and all that is known of it back to a moment; what follows is as if nothing had been."""

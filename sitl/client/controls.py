@@ -39,7 +39,7 @@ STICKS |= {"steering": "RCMAP_ROLL"}
 _VELOCITY, _STICKS = "velocity", "sticks"
 
 
-class Pilot(Waits):
+class Controls(Waits):
     """A vehicle with a pilot."""
 
     @property
