@@ -17,7 +17,7 @@ def sample(p, sensors, rng):
     )
     scale = float(a.noise_scale)
     noise = scale * float(a.mag_noise)
-    sensors.mag[0] = x + scale * float(a.mag_offset[0]) + noise * normal(rng)
-    sensors.mag[1] = y + scale * float(a.mag_offset[1]) + noise * normal(rng)
-    sensors.mag[2] = z + scale * float(a.mag_offset[2]) + noise * normal(rng)
+    sensors.mag[0] = x + scale * a.mag_offset.x + noise * normal(rng)
+    sensors.mag[1] = y + scale * a.mag_offset.y + noise * normal(rng)
+    sensors.mag[2] = z + scale * a.mag_offset.z + noise * normal(rng)
     sensors.mag_count += 1
