@@ -58,7 +58,8 @@ this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both s
   with its tail to the first waypoint. Path time runs only as fast as the vehicle moves along the leg, and at the first
   moment that is decided by the estimate's noise: the recorded estimate goes 0.03 m/s towards the waypoint while the
   recorded vehicle stands still, so its target gets away; ours stands. With that velocity put into our estimate the
-  first waypoint is reached as recorded (`tests/rover/modes/test_rover_square.py`). From there on times and path agree.
+  first waypoint is reached as recorded (`tests/autopilot/rover/modes/test_rover_square.py`). From there on times and
+  path agree.
   The recorded error is no chance: at every stop of the recording, whatever the heading, the estimate says about
   0.017 m/s backward and 0.022 m/s to the right. An error of the inertial sensors,
   fixed in the body, would look like that.

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sitl.kinds import COPTER, ROVER
 
 from benchmarks.digests import __main__ as command
 from benchmarks.digests import logs, tree
@@ -18,6 +17,7 @@ from benchmarks.digests.compare import compare
 from benchmarks.digests.leaves import leaves
 from benchmarks.digests.pilot import KINDS, MODES
 from sitl.simulation import Core
+from sitl.vehicle.kinds import COPTER, ROVER
 
 FLIGHT = "native/power_on/copter"
 
@@ -105,7 +105,7 @@ def test_every_mode_and_only_real_flights_are_in_the_set() -> None:
 
 
 def test_what_the_tree_has_is_found_wherever_it_is() -> None:
-    from sitl.turtlebot import Turtlebots
+    from sitl.turtlebots.native import Turtlebots
 
     assert tree.locate("Turtlebots", "sitl.robots.nowhere") is Turtlebots
     with pytest.raises(tree.TreeError, match="defines NoSuchThing"):

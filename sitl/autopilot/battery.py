@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..core.kernels import law
-from ..core.rotations import constrain
+from ..core.scalars import constrain
 
 PERIOD_S = 0.1
 """Called ten times a second."""

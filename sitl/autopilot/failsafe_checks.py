@@ -7,7 +7,7 @@ FAILSAFE (which, 1 on or 0 off) tells the shell.
 from __future__ import annotations
 
 from ..core.kernels import law
-from ..core.rotations import TWO_PI
+from ..core.scalars import TWO_PI
 from .events import FAILSAFE, emit
 
 RADIO = 1

@@ -8,7 +8,7 @@ Sources: ArduPilot's parameters RCn_*, RCMAP_*, RC_OVERRIDE_TIME; RC_CHANNELS_OV
 from __future__ import annotations
 
 from ..core.kernels import law
-from ..core.rotations import constrain
+from ..core.scalars import constrain
 from .state import RC_INPUTS
 
 RC_TICKS = 8

@@ -10,21 +10,6 @@ import math
 
 from .kernels import law
 
-PI = math.pi
-TWO_PI = 2.0 * math.pi
-
-
-@law
-def wrap_pi(angle):
-    """Angle [rad] wrapped to [-pi, pi), the ends to rounding."""
-    return angle - TWO_PI * math.floor((angle + PI) / TWO_PI)
-
-
-@law
-def wrap_2pi(angle):
-    """Angle [rad] wrapped to [0, 2 pi), the ends to rounding."""
-    return angle - TWO_PI * math.floor(angle / TWO_PI)
-
 
 @law
 def quat_multiply(aw, ax, ay, az, bw, bx, by, bz):
@@ -102,15 +87,3 @@ def quat_to_euler(w, x, y, z):
         math.asin(s),
         math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
     )
-
-
-@law
-def constrain(value, low, high):
-    """Value limited to [low, high]; NaN gives the middle, as ArduPilot's constrain does."""
-    if value != value:
-        return 0.5 * (low + high)
-    if value < low:
-        return low
-    if value > high:
-        return high
-    return value

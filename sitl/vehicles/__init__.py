@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import importlib
 import runpy
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from .airframe import Airframe, AirframeError, apply
 from .copter_airframe import CopterAirframe, Rotor
 from .rover_airframe import RoverAirframe
 
-__all__ = ["Airframe", "AirframeError", "CopterAirframe", "Rotor", "RoverAirframe", "apply", "load", "names"]
+__all__ = ["Airframe", "AirframeError", "CopterAirframe", "Rotor", "RoverAirframe", "apply", "load", "names", "of_data"]
 
 _MODULES = {
     "copter": ("erle_copter", "ardupilot_quad"),
@@ -43,6 +45,25 @@ def load(name: str | Airframe) -> Airframe:
         raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(names())}, or a .py file")
     found: Airframe = importlib.import_module(f"{__name__}.{module}").AIRFRAME
     return found
+
+
+def of_data(kind: str, data: Mapping[str, Any]) -> Airframe:
+    """An airframe from a data file: "name", "figures", "parameters", as ``recording.identity.of_airframe`` has them.
+
+    Nothing that the data names is loaded or run.
+
+    Raises:
+        AirframeError: there is no such kind; the data make no airframe.
+    """
+    known: dict[str, type[Airframe]] = {"copter": CopterAirframe, "rover": RoverAirframe}
+    if kind not in known:
+        raise AirframeError(f"airframe of the kind {kind!r}: it is one of {', '.join(known)}")
+    try:
+        return known[kind].of_record(str(data["name"]), data["figures"], data["parameters"])
+    except AirframeError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise AirframeError(f"data of an airframe that cannot be understood: {error!r}") from None
 
 
 def _load_file(path: Path) -> Airframe:

@@ -67,6 +67,29 @@ class Airframe:
                 f"which is {self.value('lidar_rays')!r}"
             )
 
+    @classmethod
+    def of_record(cls: type[A], name: str, record: Mapping[str, Any], parameters: Mapping[str, float]) -> A:
+        """The airframe that a record was written from (``record``), given as plain numbers by name.
+
+        Raises:
+            AirframeError: a figure is missing, not a number or out of range.
+        """
+        model = record.get(cls.model)
+        figures = {}
+        for figure in cls.known:
+            if figure.name not in record:
+                raise AirframeError(f"airframe {name!r}: figure missing: {figure.name}")
+            value = record[figure.name]
+            needed = figure.default is None and (not figure.models or model in figure.models)
+            if needed or np.any(np.asarray(value) != (0.0 if figure.default is None else figure.default)):
+                figures[figure.name] = value
+        return cls(name=name, description="", figures=figures, parameters=dict(parameters), **cls._rest(record))
+
+    @classmethod
+    def _rest(cls, record: Mapping[str, Any]) -> dict[str, Any]:
+        """What a kind has besides figures, as its arguments."""
+        return {}
+
     def value(self, name: str) -> Any:
         """A figure by its name: a number, or a sequence for a vector."""
         if name in self.figures:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -55,6 +56,12 @@ class CopterAirframe(Airframe):
         super().__post_init__()
         if self.value("control_min") >= self.value("control_max"):
             raise AirframeError(f"airframe {self.name!r}: control_min must be below control_max")
+
+    @classmethod
+    def _rest(cls, record: Mapping[str, Any]) -> dict[str, Any]:
+        """The rotors, from the hubs."""
+        hubs = [record[f"rotor_{axis}"] for axis in ("x", "y", "z", "direction")]
+        return {"rotors": tuple(Rotor(*hub) for hub in zip(*hubs, strict=True))[: int(record["rotor_count"])]}
 
     def record(self) -> np.ndarray[Any, Any]:
         """All figures and the rotors as one record."""

@@ -13,8 +13,6 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-import ray_works
-from small_runs import CIRCUIT2, new, result
 
 from sitl.agents.errors import AgentError
 from sitl.agents.runs import local
@@ -24,6 +22,8 @@ from sitl.agents.runs.training import train_all, train_one
 from sitl.core import ray_cluster as instances
 from sitl.core.extras import MissingExtra
 from sitl.errors import OptionError
+from tests.agents import ray_works
+from tests.agents.small_runs import CIRCUIT2, new, result
 
 REASON = "Ray is not installed: pip install 'gym-sitl[ray]'"
 on_ray = partial(each, backend="ray")
@@ -59,8 +59,8 @@ def test_runs_are_those_of_local_processes(ray, tmp_path):
 @pytest.mark.slow
 def test_deep_runs_are_those_of_local_processes(ray, tmp_path):
     pytest.importorskip("stable_baselines3", reason="deep agents are not installed: pip install 'gym-sitl[rl]'")
-    from deep_runs import new as new_deep
-    from deep_runs import weights
+    from tests.agents.deep_runs import new as new_deep
+    from tests.agents.deep_runs import weights
 
     here, there = new_deep(tmp_path / "here", steps=100), new_deep(tmp_path / "there", steps=100)
     assert train_all([here.path]) and train_all([there.path], do=on_ray)
@@ -156,9 +156,9 @@ def test_workers_with_other_versions_are_refused(ray, monkeypatch):
     monkeypatch.setattr(module, "libraries", lambda: {**known, "gym-sitl": "0.0.0", "torch": "1.0"})
     with pytest.raises(AgentError, match=f"has gym-sitl {known['gym-sitl']}, not 0.0.0.*install the same there"):
         on_ray(train_one, ["never"])
-    crew = module._Crew(ray, train_one, [], lambda *words: None, {})
+    pool = module._Pool(ray, train_one, [], lambda *words: None, {})
     with pytest.raises(AgentError, match=r"worker at far cannot load gym-sitl: No module"):
-        crew._check({"place": "far", "error": "No module named 'agents'"})
+        pool._check({"place": "far", "error": "No module named 'agents'"})
 
 
 @pytest.mark.slow

@@ -9,7 +9,6 @@ import math
 
 import numpy as np
 import pytest
-from small_runs import CIRCUIT2, make
 
 from sitl.agents import recipes
 from sitl.agents.cli import benchmark
@@ -23,6 +22,7 @@ from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
 from sitl.core.extras import MissingExtra
 from sitl.worlds import load
+from tests.agents.small_runs import CIRCUIT2, make
 
 pytest.importorskip("matplotlib")
 SMALL = f"""

@@ -9,11 +9,11 @@ import sys
 
 import gymnasium as gym
 import pytest
-from small_runs import CIRCUIT2, learner_for, make
 
 from sitl.agents.tabular.compiled_loop import CompiledLoop
 from sitl.agents.tabular.loop import learn_episode
 from sitl.agents.tabular.settings import Settings
+from tests.agents.small_runs import CIRCUIT2, learner_for, make
 
 RULES = [
     ("qlearn", Settings()), ("qlearn", Settings.as_coded("qlearn")),
@@ -65,7 +65,7 @@ def test_it_refuses_what_it_cannot_run():
 
 
 PLAIN = """
-from small_runs import learner_for, make
+from tests.agents.small_runs import learner_for, make
 from sitl.agents.tabular.compiled_loop import CompiledLoop
 env = make(steps=12)
 learner = learner_for(env, "sarsa")

@@ -9,8 +9,6 @@ import pytest
 pytest.importorskip("stable_baselines3", reason="deep agents need the extra 'rl'")
 pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 
-from deep_runs import CIRCUIT2, new, train, weights
-
 from sitl.agents import environments
 from sitl.agents.deep import checkpoint, training
 from sitl.agents.deep.checks import BEST, JITTER, SEED, Checks
@@ -19,6 +17,7 @@ from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import evaluate, moved_starts
 from sitl.agents.runs.folder import RunFolder
 from sitl.agents.runs.plan import EvaluationPlan
+from tests.agents.deep_runs import CIRCUIT2, new, train, weights
 
 
 def checks_of(run, begun=0, path=None):

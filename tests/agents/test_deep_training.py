@@ -9,8 +9,6 @@ import pytest
 pytest.importorskip("stable_baselines3", reason="deep agents need the extra 'rl'")
 pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 
-from deep_runs import CIRCUIT2, NAVIGATE, new, train, weights
-
 from sitl.agents import algorithms, environments
 from sitl.agents.deep import checkpoint, training
 from sitl.agents.deep.checks import BEST
@@ -20,6 +18,7 @@ from sitl.agents.evaluate import evaluate_run
 from sitl.agents.runs.folder import RunFolder
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import is_done
+from tests.agents.deep_runs import CIRCUIT2, NAVIGATE, new, train, weights
 
 ALGORITHMS = ("ppo", "dqn", "sac")
 

@@ -10,7 +10,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from pytest import approx
-from small_runs import make, new
 
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
@@ -23,6 +22,7 @@ from sitl.agents.tabular.policy import TablePolicy
 from sitl.agents.tabular.slots import slot_of
 from sitl.agents.tabular.table import Table
 from sitl.envs.observations import Digits
+from tests.agents.small_runs import make, new
 
 CIRCUIT2 = [(0.0, 0.0), (3.9, 0.0), (3.9, -3.8), (0.28, -3.8), (0.28, -7.65), (-3.7, -7.65), (-3.7, 0.0), (0.0, 0.0)]
 """Corners of the middle of its corridors, clockwise [m]."""

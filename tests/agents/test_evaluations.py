@@ -6,7 +6,6 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from small_runs import new
 
 from sitl.agents.evaluate import evaluate_run
 from sitl.agents.evaluations import Part, evaluate_groups, evaluate_runs, play_part
@@ -14,6 +13,7 @@ from sitl.agents.runs import local
 from sitl.agents.runs.backends import Workers
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
+from tests.agents.small_runs import new
 
 ROVER = {"observation": "digits", "action": "discrete", "start": "random"}
 

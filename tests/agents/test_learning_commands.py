@@ -6,10 +6,10 @@ from __future__ import annotations
 import csv
 
 import pytest
-from small_runs import CHECKS, CIRCUIT2, result
 
 from sitl.agents.report.paper_figures import MEAN_REWARDS
 from sitl.agents.runs import folder as folders
+from tests.agents.small_runs import CHECKS, CIRCUIT2, result
 
 pytest.importorskip("matplotlib")
 SHORT = ["--episodes", "20", "--max-steps", "60", *(w for k, v in CHECKS.items() for w in ("--set", f"{k}={v}"))]

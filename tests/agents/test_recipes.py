@@ -10,7 +10,6 @@ from pathlib import Path
 
 import gymnasium as gym
 import pytest
-from small_runs import CIRCUIT2
 
 from sitl.agents import algorithms, recipes
 from sitl.agents import cli as agents_cli
@@ -19,6 +18,7 @@ from sitl.agents.recipes.recipe_file import KEYS
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.config import RunConfig
 from sitl.agents.runs.plan import EvaluationPlan
+from tests.agents.small_runs import CIRCUIT2
 
 SMALL = f"""
 summary = "Short"

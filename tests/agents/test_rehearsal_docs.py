@@ -7,11 +7,10 @@ import re
 from dataclasses import fields
 from pathlib import Path
 
-from small_runs import new
-
 from sitl.agents.rehearsal import plan as plans
 from sitl.agents.rehearsal.change import GROUPS, Change
 from sitl.agents.runs.training import train_one
+from tests.agents.small_runs import new
 
 PAGE = (Path(__file__).parents[2] / "docs/mental-rehearsal.md").read_text()
 

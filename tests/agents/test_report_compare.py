@@ -7,11 +7,11 @@ import csv
 
 import numpy as np
 import pytest
-from written_runs import group, write
 
 from sitl.agents.errors import AgentError
 from sitl.agents.report.compare import compare
 from sitl.agents.report.group import Group
+from tests.agents.written_runs import group, write
 
 pytest.importorskip("matplotlib")
 

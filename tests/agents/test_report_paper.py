@@ -6,7 +6,6 @@ from __future__ import annotations
 import csv
 
 import pytest
-from written_runs import group
 
 from sitl.agents.report.blocks import BLOCK
 from sitl.agents.report.document import Document
@@ -14,6 +13,7 @@ from sitl.agents.report.paper import SINGLE_CHANGES, STEP_TIMES, VARIANTS
 from sitl.agents.report.paper_figures import MEAN_REWARDS, TITLES
 from sitl.agents.report.paper_reasons import reasons
 from sitl.agents.report.paper_tables import beside_paper, shortfalls
+from tests.agents.written_runs import group
 
 
 def runs(path, levels=None, seeds=4, episodes=2 * BLOCK):

@@ -7,12 +7,12 @@ import csv
 from functools import partial
 
 import pytest
-from small_runs import CHECKS, CIRCUIT2, result
 
 from sitl.agents.errors import AgentError
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs import sweep as sweeps
 from sitl.agents.runs.sweep import Sweep
+from tests.agents.small_runs import CHECKS, CIRCUIT2, result
 
 SHORT = ["--episodes", "20", "--max-steps", "60", *(w for k, v in CHECKS.items() for w in ("--set", f"{k}={v}"))]
 

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import pytest
-from small_runs import learner_for, make
 
 from sitl.agents.errors import AgentError
 from sitl.agents.runs.files import read_arrays
 from sitl.agents.tabular.checks import Checks
 from sitl.agents.tabular.outcome import Outcome
 from sitl.agents.tabular.settings import Settings
+from tests.agents.small_runs import learner_for, make
 
 
 def checks_by(check_by, path):

@@ -7,7 +7,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from pytest import approx
-from small_runs import learner_for
 
 from sitl.agents.errors import AgentError
 from sitl.agents.tabular.exploration import epsilon_in
@@ -16,6 +15,7 @@ from sitl.agents.tabular.loop import learn_episode
 from sitl.agents.tabular.settings import Settings
 from sitl.agents.tabular.slots import slot_of
 from sitl.agents.tabular.table import Table
+from tests.agents.small_runs import learner_for
 
 GREEDY = {"epsilon": 0.0, "epsilon_floor": 0.0}
 

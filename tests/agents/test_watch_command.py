@@ -7,7 +7,6 @@ import argparse
 
 import numpy as np
 import pytest
-from small_runs import new
 
 from sitl.agents import showing
 from sitl.agents.cli import watch
@@ -15,6 +14,7 @@ from sitl.agents.errors import AgentError
 from sitl.agents.film import Reel
 from sitl.agents.runs.watch import Watch
 from sitl.agents.tabular import training
+from tests.agents.small_runs import new
 
 pytest.importorskip("pygame", reason="pictures need the extra 'viz'")
 Image = pytest.importorskip("PIL.Image", reason="pictures need the extra 'viz'")

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from small_runs import config
-
 from sitl.agents.report.group import Group
 from sitl.agents.runs.episodes import Episode
 from sitl.agents.runs.folder import RunFolder
+from tests.agents.small_runs import config
 
 
 def write(path, rewards, seed=0, **fields):

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import pytest
-from fakes import Bench, FakeRover
+
+from tests.bridge.fakes import Bench, FakeRover
 
 
 @pytest.fixture

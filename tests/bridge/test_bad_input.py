@@ -8,7 +8,6 @@ import random
 import struct
 from typing import Any
 
-from fakes import Bench, FakeRover, FakeVehicle
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -18,6 +17,7 @@ from sitl.bridge.copter.commands import COMMANDS as OF_COPTERS
 from sitl.bridge.dialect import MessageType, message, message_by_id
 from sitl.bridge.frame import encode_v1, encode_v2
 from sitl.bridge.rover.commands import COMMANDS as OF_ROVERS
+from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
 
 HANDLED = sorted(Bench().bridge._handlers)
 FLOATS = st.sampled_from([0.0, 1.0, -1.0, math.nan, math.inf, -math.inf, 3e38, -3e38, 1e-40, 90.0, 400.0, 65536.0])

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from fakes import Bench
-
 from sitl.autopilot import events
 from sitl.autopilot.mission.notes import CurrentChanged, ItemReached, Text
 from sitl.bridge.services.statustext import StatusTextService
+from tests.bridge.fakes import Bench
 
 
 def emit(bench: Bench, code: int, a: float = 0.0, b: float = 0.0) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from fakes import HOME, Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from tests.bridge.fakes import HOME, Bench
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
 

@@ -6,10 +6,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from fakes import Bench
-
 from sitl.bridge import docs
 from sitl.bridge.dialect import message_by_id
+from tests.bridge.fakes import Bench
 
 DOCS = Path(__file__).parents[2] / "docs"
 

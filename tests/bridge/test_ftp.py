@@ -6,11 +6,11 @@ from __future__ import annotations
 import struct
 
 import pytest
-from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pymavlink.mavftp import MAVFTP
 
 from sitl.autopilot.copter.parameters import TABLE
+from tests.bridge.fakes import Bench
 
 HEADER = struct.Struct("<HBBBBBBI")
 OPEN, READ, BURST, LIST, ACK, NAK = 4, 5, 15, 3, 128, 129

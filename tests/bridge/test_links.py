@@ -7,7 +7,6 @@ import errno
 import socket
 
 import pytest
-from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.frame import Splitter
@@ -15,6 +14,7 @@ from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOut
 from sitl.bridge.links.address import parse
 from sitl.bridge.links.tcp import CONGESTED_BYTES
 from sitl.bridge.services.statustext import StatusTextService
+from tests.bridge.fakes import Bench
 
 LOCAL = "127.0.0.1"
 TRIES = 200

@@ -8,10 +8,10 @@ import random
 from typing import Any
 
 import pytest
-from fakes import HOME, Bench, Client
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
+from tests.bridge.fakes import HOME, Bench, Client
 
 ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE = range(5)
 INVALID_PARAM1, INVALID_X, INVALID_SEQUENCE, DENIED, CANCELLED = 6, 10, 13, 14, 15

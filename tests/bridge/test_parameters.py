@@ -5,10 +5,10 @@ import math
 import random
 
 import pytest
-from fakes import Bench, Client
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.copter.parameters import TABLE
+from tests.bridge.fakes import Bench, Client
 
 
 def read(bench: Bench, name: str = "", index: int = -1) -> list[object]:

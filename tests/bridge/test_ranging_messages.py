@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fakes import Bench
 
 from sitl.bridge.telemetry import ranging
 from sitl.vehicles import load
+from tests.bridge.fakes import Bench
 
 SCAN, DOWN, SECTORS = "DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR", "OBSTACLE_DISTANCE"
 

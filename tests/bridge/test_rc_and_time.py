@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from fakes import HOME, Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from tests.bridge.fakes import HOME, Bench
 
 IGNORE = 65535
 

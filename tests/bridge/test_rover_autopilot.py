@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 
 import pytest
-from fakes import HOME, Bench, FakeRover
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot import events
@@ -15,6 +14,7 @@ from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.rover.modes import guided_state
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.rover.autopilot import RoverAutopilot
+from tests.bridge.fakes import HOME, Bench, FakeRover
 
 ACCEPTED, DENIED, FAILED = 0, 2, 4
 MANUAL, HOLD, AUTO, RTL, GUIDED = 0, 4, 10, 11, 15
@@ -40,7 +40,7 @@ class RoverBench(Bench):
         """With a position, in GUIDED, armed."""
         self.vehicle.locate()
         ap = self.vehicle.v.autopilot
-        ap.estimate.attitude_ok = ap.estimate.q[0] = 1
+        ap.estimate.attitude_ok, ap.estimate.q = True, (1.0, 0.0, 0.0, 0.0)
         ap.modes.number = GUIDED
         ap.arming.armed = 1
         self.vehicle.v.time_us = 60_000_000
@@ -71,7 +71,7 @@ def test_arming_too_early_is_refused_with_reasons(rover: RoverBench) -> None:
 
 def test_a_forced_arming_needs_nothing_and_a_moving_rover_is_disarmed(rover: RoverBench) -> None:
     assert rover.command(400, 1, 2989) == ACCEPTED
-    rover.vehicle.v.autopilot.estimate.vel[:] = (2.0, 0.0, 0.0)
+    rover.vehicle.v.autopilot.estimate.vel = (2.0, 0.0, 0.0)
     assert rover.command(400, 0) == ACCEPTED and not rover.autopilot.armed()
     rover.bridge.on_events()
 

@@ -7,8 +7,9 @@ import math
 from typing import Any
 
 import pytest
-from fakes import HOME, Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from tests.bridge.fakes import HOME, Bench
 
 POSITION, VELOCITY, YAW, YAW_RATE = 0xDF8, 0xDC7, 0x9FF, 0x5FF
 VELOCITY_AND_YAW, VELOCITY_AND_RATE, ALL_BUT_POSITION = 0x9C7, 0x5C7, 0x1C7
@@ -23,7 +24,7 @@ def guided(rover_bench: Bench) -> Bench:
     rover_bench.vehicle.v.autopilot.modes.number = GUIDED
     rover_bench.vehicle.v.autopilot.params.WP_SPEED = WP_SPEED
     estimate = rover_bench.vehicle.v.autopilot.estimate
-    estimate.euler[2], estimate.pos[:] = math.pi / 2, (100.0, 200.0, 0.0)
+    estimate.euler, estimate.pos = (0.0, 0.0, math.pi / 2), (100.0, 200.0, 0.0)
     return rover_bench
 
 

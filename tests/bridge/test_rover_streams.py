@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections import Counter
 
-from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.rover.modes.numbers import NAMES
 from sitl.bridge.frame import Splitter
+from tests.bridge.fakes import Bench
 
 RECORDED = {
     "AHRS", "AHRS2", "ATTITUDE", "BATTERY_STATUS", "EKF_STATUS_REPORT", "GLOBAL_POSITION_INT", "GPS_RAW_INT",

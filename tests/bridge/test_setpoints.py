@@ -5,8 +5,9 @@ import math
 from typing import Any
 
 import pytest
-from fakes import HOME, Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from tests.bridge.fakes import HOME, Bench
 
 POSITION, VELOCITY, ACCELERATION, POS_VEL = 0xDF8, 0xDC7, 0xC3F, 0xDC0
 
@@ -16,7 +17,7 @@ def guided(bench: Bench) -> Bench:
     bench.vehicle.locate()
     bench.vehicle.v.autopilot.modes.number = 4
     estimate = bench.vehicle.v.autopilot.estimate
-    estimate.euler[2], estimate.pos[:] = math.pi / 2, (100.0, 200.0, -10.0)
+    estimate.euler, estimate.pos = (0.0, 0.0, math.pi / 2), (100.0, 200.0, -10.0)
     return bench
 
 

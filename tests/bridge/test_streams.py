@@ -5,11 +5,11 @@ from collections import Counter
 from itertools import pairwise
 
 import pytest
-from fakes import Bench
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.copter.modes.numbers import NAMES
 from sitl.bridge.frame import Splitter
+from tests.bridge.fakes import Bench
 
 SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512
 ALL_GROUPS = {

@@ -7,9 +7,9 @@ import socket
 from pathlib import Path
 
 import pytest
-from command import sitl
 
 from sitl.cli import main, parser
+from tests.cli.command import sitl
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from rover_driver import HOLD
-from rover_soak import RoverSoak
 
 from sitl.simulation import Core
+from tests.drives.rover_driver import HOLD
+from tests.drives.rover_soak import RoverSoak
 
 TUNABLE = {
     "WP_RADIUS": (0, 5), "WP_ACCEL": (0, 3), "WP_JERK": (0, 3), "TURN_RADIUS": (0, 3), "ATC_TURN_MAX_G": (1, 2),
@@ -50,7 +50,7 @@ class RoverChaos(RoverSoak):
         self.set_parameter("SIM_RC_FAIL", self.dice.choice((0, 1)))
 
     def ground_station(self) -> None:
-        self.client.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
+        self.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
         self.set_parameter("FS_GCS_ENABLE", self.dice.choice((0, 1, 2)))
 
     def tune(self) -> None:

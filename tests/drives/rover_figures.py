@@ -6,10 +6,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from rover_driver import HOLD, LOITER, VELOCITY, Driver, path_error
-from witness import WAYPOINT, Item
 
 from sitl.simulation import Core
+from tests.drives.rover_driver import HOLD, LOITER, VELOCITY, Driver, path_error
+from tests.pilots.witness import WAYPOINT, Item
 
 SIDE = {"erle_rover": 20.0, "erle_rover_small": 4.0, "ardupilot_rover": 60.0, "skid_rover": 20.0}
 """A square that suits the vehicle [m]."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rover_driver import (
+
+from sitl.missions.pilot import ARM
+from sitl.simulation import Core
+from tests.drives.rover_driver import (
     ACRO,
     AIRFRAMES,
     AUTO,
@@ -21,10 +24,7 @@ from rover_driver import (
     VELOCITY,
     Driver,
 )
-from witness import LOITER_UNLIMITED, Item
-
-from sitl.missions.pilot import ARM
-from sitl.simulation import Core
+from tests.pilots.witness import LOITER_UNLIMITED, Item
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 BOTH = pytest.mark.parametrize("frame", ["erle_rover", "skid_rover"])
@@ -33,7 +33,7 @@ REFUSED = 4
 
 def beat(d: Driver) -> None:
     """A ground station's heartbeat."""
-    d.client.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
+    d.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
 
 
 @ALL

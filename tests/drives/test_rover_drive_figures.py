@@ -6,10 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rover_driver import AIRFRAMES
-from rover_figures import figures
 
 from sitl.simulation import Core
+from tests.drives.rover_driver import AIRFRAMES
+from tests.drives.rover_figures import figures
 
 PAGE = Path(__file__).parents[2] / "docs" / "vehicles.md"
 ABSOLUTE, RELATIVE = 0.03, 0.1

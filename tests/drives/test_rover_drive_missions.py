@@ -7,9 +7,11 @@ import math
 
 import numpy as np
 import pytest
-from rover_driver import ACRO, AIRFRAMES, AUTO, GUIDED, HOLD, MANUAL, VELOCITY, Driver, path_error
-from rover_figures import SIDE, outside, square
-from witness import (
+
+from sitl.simulation import Core
+from tests.drives.rover_driver import ACRO, AIRFRAMES, AUTO, GUIDED, HOLD, MANUAL, VELOCITY, Driver, path_error
+from tests.drives.rover_figures import SIDE, outside, square
+from tests.pilots.witness import (
     CHANGE_SPEED,
     CONDITION_DELAY,
     CONDITION_DISTANCE,
@@ -29,8 +31,6 @@ from witness import (
     YAW_SPEED,
     Item,
 )
-
-from sitl.simulation import Core
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 CARS = pytest.mark.parametrize("frame", AIRFRAMES[:3])

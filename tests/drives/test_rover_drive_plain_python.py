@@ -6,7 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from rover_driver import (
+
+from sitl.core import records
+from sitl.simulation import Core
+from tests.drives.rover_driver import (
     ACRO,
     AIRFRAMES,
     AUTO,
@@ -25,10 +28,7 @@ from rover_driver import (
     VELOCITY_YAW_RATE,
     Driver,
 )
-from witness import DELAY, LOITER_TURNS, REVERSE, WAYPOINT, YAW_SPEED, Item
-
-from sitl.core import records
-from sitl.simulation import Core
+from tests.pilots.witness import DELAY, LOITER_TURNS, REVERSE, WAYPOINT, YAW_SPEED, Item
 
 TICKS = 88
 """Eleven periods of modes and control."""

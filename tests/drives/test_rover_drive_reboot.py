@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-from rover_driver import AUTO, LOITER, Driver
-from witness import Item
-
 from sitl.simulation import Core
+from tests.drives.rover_driver import AUTO, LOITER, Driver
+from tests.pilots.witness import Item
 
 WAYPOINT = 16
 INITIALISING = 16

@@ -9,11 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from rover_driver import AIRFRAMES, CIRCLE, GUIDED, HOLD, LOITER, MANUAL, RTL, SMART_RTL, VELOCITY, Driver
-from witness import WAYPOINT, Item
 
 from sitl.simulation import Core, load_core
 from sitl.vehicle.kinds import KINDS
+from tests.drives.rover_driver import AIRFRAMES, CIRCLE, GUIDED, HOLD, LOITER, MANUAL, RTL, SMART_RTL, VELOCITY, Driver
+from tests.pilots.witness import WAYPOINT, Item
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 
@@ -45,10 +45,9 @@ def test_again(core: Core, frame: str) -> None:
 
 
 def test_in_another_process() -> None:
-    here = Path(__file__).parent
-    paths = [str(here), str(here.parent / "pilots"), str(here.parents[1])]
-    script = f"import sys; sys.path[:0] = {paths}\nimport test_rover_drive_repeats as t; print(t.digest('erle_rover'))"
-    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    root = Path(__file__).parents[2]
+    script = "from tests.drives.test_rover_drive_repeats import digest; print(digest('erle_rover'))"
+    run = subprocess.run([sys.executable, "-c", script], cwd=root, capture_output=True, text=True, check=True)
     assert run.stdout.strip() == digest("erle_rover")
 
 
@@ -65,7 +64,7 @@ def test_from_a_snapshot(core: Core, frame: str) -> None:
         sent = b""
         for _ in range(100):
             d.simulation.advance(0.1)
-            sent += d.client.link.receive()
+            sent += d.connection.endpoint.link.receive()
         return sent + d.simulation.fleet.tobytes()
 
     first = go_on()
@@ -74,7 +73,7 @@ def test_from_a_snapshot(core: Core, frame: str) -> None:
     d.let_go()
     d.simulation.restore(snapshot)
     assert d.simulation.fleet.tobytes() == record and d.simulation.mission is mission
-    d.client.receive()
+    d.connection.endpoint.receive()
     assert go_on() == first
 
 

@@ -7,7 +7,9 @@ import math
 
 import numpy as np
 import pytest
-from rover_driver import (
+
+from sitl.simulation import Core
+from tests.drives.rover_driver import (
     AIRFRAMES,
     CIRCLE,
     GUIDED,
@@ -20,8 +22,6 @@ from rover_driver import (
     Driver,
     path_error,
 )  # fmt: skip
-
-from sitl.simulation import Core
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 ROLL_OUT = {"erle_rover": 0.80, "erle_rover_small": 0.14, "ardupilot_rover": 10.65, "skid_rover": 0.43}
@@ -68,7 +68,7 @@ def test_rtl(core: Core, frame: str, estimator: str) -> None:
     back_home(d)
     assert d.mode == RTL and d.armed
     d.fly(10.0)
-    assert sum("Reached destination" in said for _, said in d.texts) == 1
+    assert sum("Reached destination" in said for _, _, said in d.texts) == 1
 
 
 @ALL

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import pytest
-from rover_chaos import RoverChaos
-from rover_driver import AIRFRAMES
-from rover_soak import RoverSoak
 
 from sitl.simulation import Core
+from tests.drives.rover_chaos import RoverChaos
+from tests.drives.rover_driver import AIRFRAMES
+from tests.drives.rover_soak import RoverSoak
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 

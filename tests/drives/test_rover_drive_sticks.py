@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 import pytest
-from rover_driver import ACRO, AIRFRAMES, HOLD, MANUAL, SIMPLE, STEERING, Driver
 
 from sitl.simulation import Core
+from tests.drives.rover_driver import ACRO, AIRFRAMES, HOLD, MANUAL, SIMPLE, STEERING, Driver
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 TOP = {"erle_rover": 1.5875, "erle_rover_small": 0.3175, "ardupilot_rover": 20.0, "skid_rover": 2.0}

@@ -6,8 +6,9 @@ from __future__ import annotations
 import math
 
 import gymnasium as gym
-import pilot_by_velocity
 from pytest import approx
+
+from tests.envs import pilot_by_velocity
 
 MAZE = [(7.5, 0.0), (7.5, 9.7), (-11.0, 9.7), (-11.0, -9.5), (-2.5, -10.0)]
 """Through the first corridors of the rover's maze [m]."""

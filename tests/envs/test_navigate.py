@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from navigation import NAVIGATE, make
 from pytest import approx
 
 from sitl import worlds
@@ -20,6 +19,7 @@ from sitl.envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
 from sitl.envs.setpoints import DRIVE
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
+from tests.envs.navigation import NAVIGATE, make
 
 
 @pytest.mark.parametrize("world", worlds.names())

@@ -10,7 +10,6 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.error import InvalidAction
-from navigation import NAVIGATE, make
 
 from sitl import worlds
 from sitl.envs import EnvOptionError
@@ -22,6 +21,7 @@ from sitl.envs.rewards import Nearness
 from sitl.envs.setpoints import DRIVE, VELOCITY
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
+from tests.envs.navigation import NAVIGATE, make
 
 
 @pytest.mark.parametrize("action", [3, -1, 1.5, None, "0", [0, 1], np.array([0.0])])

@@ -8,7 +8,6 @@ import pickle
 import subprocess
 import sys
 
-import course
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -16,6 +15,7 @@ from gymnasium.utils.env_checker import check_env
 from pytest import approx
 
 from sitl import envs
+from tests.envs import course
 
 START = {
     "GazeboCircuitTurtlebotLIDAR-v0": [0, 4, 5, 1, 0],
@@ -101,7 +101,7 @@ def test_importing_the_package_loads_no_compiler():
         "sitl",
         "sitl.envs",
         "sitl.envs.mavlink",
-        "sitl.envs.mavlink.ends",
+        "sitl.envs.mavlink.errors",
         "sitl.envs.options",
         "sitl.errors",
     ]

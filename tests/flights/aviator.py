@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from witness import (
+from sitl.physics.native import truth
+from sitl.simulation import Core
+from tests.pilots.witness import (
     ABSOLUTE,
     CHANGE_SPEED,
     CONDITION_DELAY,
@@ -26,10 +28,6 @@ from witness import (
     Item,
     Witness,
 )
-
-from sitl.missions.pilot import TAKEOFF
-from sitl.physics.native import truth
-from sitl.simulation import Core
 
 __all__ = [
     "ABSOLUTE", "CHANGE_SPEED", "CONDITION_DELAY", "CONDITION_DISTANCE", "CONDITION_YAW", "DELAY", "JUMP", "LAND_ITEM",
@@ -72,7 +70,7 @@ class Aviator(Witness):
 
     def take_off(self, height: float) -> None:
         """Take off, armed in GUIDED."""
-        assert self.ask(TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
+        assert self.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.fly(30.0 + height, lambda: self.height > height - 0.5), f"at {self.height} m, {self.texts}"
         self.fly(4.0)
 

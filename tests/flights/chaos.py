@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import aviator
 import numpy as np
-from aviator import GUIDED
-from soak import Soak
+
+from tests.flights import aviator
+from tests.flights.aviator import GUIDED
+from tests.flights.soak import Soak
 
 TUNABLE = {
     "WPNAV_SPEED": (50, 1500), "WPNAV_ACCEL": (100, 400), "WPNAV_RADIUS": (20, 800), "WPNAV_SPEED_UP": (50, 500),
@@ -48,7 +49,7 @@ class Chaos(Soak):
             self.let_go()
 
     def ground_station(self) -> None:
-        self.client.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
+        self.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
         self.set_parameter("FS_GCS_ENABLE", self.dice.choice((0, 1, 5, 7)))
 
     def tune(self) -> None:

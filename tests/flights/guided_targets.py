@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from aviator import Aviator
+
+from tests.flights.aviator import Aviator
 
 POSITION, VELOCITY, ACCELERATION, POS_VEL, POS_VEL_ACCEL = 0xDF8, 0xDC7, 0xC3F, 0xDC0, 0xC00
 POSITION_YAW, POSITION_YAW_RATE, VELOCITY_YAW_RATE = 0x9F8, 0x5F8, 0x5C7

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from aviator import Aviator
 
 from sitl.missions.pilot import POSITION_ONLY, VELOCITY_ONLY
 from sitl.physics.native import truth
 from sitl.simulation import Core
+from tests.flights.aviator import Aviator
 
 SEEDS = range(6)
 GPS_POSITION, GPS_VELOCITY, BAROMETER, MAGNETOMETER = range(4)

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from aviator import (
+
+from sitl.missions.pilot import ARM
+from sitl.simulation import Core
+from tests.flights.aviator import (
     AIRFRAMES,
     ALT_HOLD,
     AUTO,
@@ -21,15 +24,12 @@ from aviator import (
     Item,
 )  # fmt: skip
 
-from sitl.missions.pilot import ARM
-from sitl.simulation import Core
-
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 
 
 def beat(p: Aviator) -> None:
     """A ground station's heartbeat."""
-    p.client.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
+    p.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
 
 
 @pytest.mark.parametrize(("choice", "mode"), [(0, GUIDED), (1, RTL), (2, RTL), (3, RTL), (5, LAND), (7, BRAKE)])

@@ -6,7 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from aviator import (
+
+from sitl.core import records
+from sitl.missions.pilot import VELOCITY_ONLY
+from sitl.simulation import Core
+from tests.flights.aviator import (
     ALT_HOLD,
     AUTO,
     BRAKE,
@@ -21,10 +25,6 @@ from aviator import (
     Aviator,
     Item,
 )  # fmt: skip
-
-from sitl.core import records
-from sitl.missions.pilot import VELOCITY_ONLY
-from sitl.simulation import Core
 
 TICKS = 60
 
@@ -60,9 +60,7 @@ def mission(*items: Item, seconds: float) -> Callable[[Aviator], None]:
 
 
 def attitude(p: Aviator) -> None:
-    p.client.send(
-        "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=7, q=(0.98, 0.1, -0.15, 0.05), thrust=0.55
-    )
+    p.send("SET_ATTITUDE_TARGET", type_mask=7, q=(0.98, 0.1, -0.15, 0.05), thrust=0.55)
     p.fly(0.3)
 
 

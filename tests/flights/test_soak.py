@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import pytest
-from aviator import AIRFRAMES
-from chaos import Chaos
-from soak import Soak
 
 from sitl.simulation import Core
+from tests.flights.aviator import AIRFRAMES
+from tests.flights.chaos import Chaos
+from tests.flights.soak import Soak
 
 
 @pytest.mark.parametrize("frame", AIRFRAMES)

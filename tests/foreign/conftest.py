@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import arducopter_stand_in
-import px4_stand_in
 import pytest
 
 from sitl.plants.alone import stand_alone
 from sitl.plants.json_link import LOCAL
 from sitl.simulation import DEFAULT_HOME, Simulation
+from tests.foreign import arducopter_stand_in, px4_stand_in
 
 
 @pytest.fixture

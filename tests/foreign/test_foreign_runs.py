@@ -10,11 +10,11 @@ import subprocess
 import sys
 
 import pytest
-from arducopter_stand_in import install
 
 from sitl.bridge.dialect import message
 from sitl.logs.tlog import read_tlog
 from sitl.simulation import Simulation
+from tests.foreign.arducopter_stand_in import install
 
 _TEXT, _POSITION = message("STATUSTEXT"), message("HEARTBEAT")
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import contextlib
 
-import json_peer
 import pytest
 
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.plants.alone import stand_alone
 from sitl.simulation import DEFAULT_HOME
+from tests.foreign import json_peer
 
 ANY = ("127.0.0.1", 0)
 

@@ -6,9 +6,8 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Sequence
 
-from witness import Witness
-
 from sitl.simulation import Core
+from tests.pilots.witness import Witness
 
 
 class ByDice(Witness):

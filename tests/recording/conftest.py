@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import pytest
-from recorded_flights import Recorded, hop
 
 from sitl.simulation import Core
+from tests.recording.recorded_flights import Recorded, hop
 
 
 @pytest.fixture(scope="session")

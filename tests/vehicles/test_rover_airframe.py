@@ -3,7 +3,7 @@ import pytest
 
 from sitl import vehicles
 from sitl.autopilot.rover.parameters import TABLE
-from sitl.vehicle import Copter
+from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.rover import Figures
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from world_cases import lengths, random_solids, solids, worlds
 
 from sitl.worlds import contact
 from sitl.worlds.geometry import Floats, Geometry, compile_geometry
 from sitl.worlds.shapes import Box, Cylinder, Solid
+from tests.worlds.world_cases import lengths, random_solids, solids, worlds
 
 radii = st.sampled_from((0.0, 0.178, 1.0))
 heights = st.sampled_from((0.1, 0.42, 2.0))

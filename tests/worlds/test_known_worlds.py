@@ -8,12 +8,12 @@ import pickle
 
 import numpy as np
 import pytest
-from world_cases import KNOWN, LIDARS
 
 from sitl import worlds
 from sitl.core.rotations import quat_from_euler
 from sitl.worlds import contact, planar, raycast
 from sitl.worlds.outline import outline
+from tests.worlds.world_cases import KNOWN, LIDARS
 
 SCANNED = [name for name, known in KNOWN.items() if "scan" in known]
 OUTLINES = [(name, height) for name, known in KNOWN.items() for height in known.get("outlines", {})]

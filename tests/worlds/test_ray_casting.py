@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given
-from world_cases import LIDARS, fans, points, random_solids, worlds
 
 from sitl.core.rotations import quat_from_euler, quat_rotate
 from sitl.worlds import contact, planar, raycast
 from sitl.worlds.geometry import Floats, Geometry, compile_geometry
+from tests.worlds.world_cases import LIDARS, fans, points, random_solids, worlds
 
 
 def walked(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> Floats:

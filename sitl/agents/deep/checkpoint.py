@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A run's model as one file: what stable-baselines3 saves, and beside it what else is needed to go on bit for bit."""
+"""A run's model as one file: weights, and beside them what else is needed to go on bit for bit.
+
+It is data only: weights and optimisers as torch keeps tensors, the rest as JSON and arrays. Nothing in it is unpickled
+(what stable-baselines3 saves by itself is), so that somebody else's run can be opened.
+"""
 
 from __future__ import annotations
 
 import io
 import json
-import pickle
 import random
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +20,24 @@ import numpy as np
 
 from ..errors import AgentError
 from ..runs.files import write_bytes
-from .library import algorithm_class, torch
+from . import models, plain
+from .library import torch
 
 MODEL = "model.zip"
-_SPACES, _STATE, _MEMORY, _SCORE = "spaces.pkl", "state.pkl", "memory.npz", "score.json"
+_ABOUT, _STATE, _ARRAYS, _MEMORY = "about.json", "state.json", "state.npz", "memory.npz"
+_TENSORS, _SUFFIX = "tensors.pth", ".weights.pth"
+Spaces = tuple[gym.Space[Any], gym.Space[Any]]
 Score = tuple[float, ...]
 """How good a model is, the most important figure first; greater is better."""
 _REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+_COUNTED = (
+    "num_timesteps", "_total_timesteps", "_num_timesteps_at_start", "_episode_num", "_n_updates", "_n_calls",
+    "_current_progress_remaining", "exploration_rate", "_last_obs", "_last_episode_starts", "_last_original_obs",
+)  # fmt: skip
+"""What a model knows of its learning besides tensors; not every algorithm has all."""
 
 
-def save(path: Path, model: Any, robots: Any, spaces: tuple[gym.Space[Any], gym.Space[Any]]) -> None:
+def save(path: Path, model: Any, robots: Any, spaces: Spaces) -> None:
     """Write the file, whole or not at all.
 
     Args:
@@ -37,19 +49,20 @@ def save(path: Path, model: Any, robots: Any, spaces: tuple[gym.Space[Any], gym.
     Raises:
         AgentError: it cannot be written.
     """
-    content = io.BytesIO()
-    model.save(content)
-    state = {"robots": robots.memory(), "random": _generators(model)}
-    with zipfile.ZipFile(content, "a") as archive:
-        archive.writestr(_SPACES, pickle.dumps(spaces))
-        archive.writestr(_STATE, pickle.dumps(state))
+    content, arrays = io.BytesIO(), plain.Arrays()
+    counted = {name: getattr(model, name) for name in _COUNTED if hasattr(model, name)}
+    state = plain.encode({"model": counted, "robots": robots.memory(), "random": _generators(model)}, arrays)
+    with zipfile.ZipFile(content, "w") as archive:
+        _write_weights(archive, model, spaces, {})
+        archive.writestr(_STATE, json.dumps(state))
+        archive.writestr(_ARRAYS, _arrays(arrays))
         memory = getattr(model, "replay_buffer", None)
         if memory is not None:
             archive.writestr(_MEMORY, _remembered(memory))
     write_bytes(path, content.getvalue())
 
 
-def save_best(path: Path, model: Any, spaces: tuple[gym.Space[Any], gym.Space[Any]], score: Score) -> None:
+def save_best(path: Path, model: Any, spaces: Spaces, score: Score) -> None:
     """Write a model that can be played, not gone on with.
 
     Args:
@@ -62,10 +75,8 @@ def save_best(path: Path, model: Any, spaces: tuple[gym.Space[Any], gym.Space[An
         AgentError: it cannot be written.
     """
     content = io.BytesIO()
-    model.save(content)
-    with zipfile.ZipFile(content, "a") as archive:
-        archive.writestr(_SPACES, pickle.dumps(spaces))
-        archive.writestr(_SCORE, json.dumps({"score": score, "steps": model.num_timesteps}))
+    with zipfile.ZipFile(content, "w") as archive:
+        _write_weights(archive, model, spaces, {"score": score, "steps": model.num_timesteps})
     write_bytes(path, content.getvalue())
 
 
@@ -76,49 +87,61 @@ def score_of(path: Path) -> Score:
         AgentError: it is no such file.
     """
     try:
-        with zipfile.ZipFile(io.BytesIO(_read(path))) as archive:
-            return tuple(float(figure) for figure in json.loads(archive.read(_SCORE))["score"])
-    except (ValueError, KeyError, TypeError) as error:
+        with _opened(path) as archive:
+            return tuple(float(figure) for figure in json.loads(archive.read(_ABOUT))["score"])
+    except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
         raise AgentError(f"{path} is no best model: {error}") from None
 
 
-def resume(path: Path, algorithm: str, robots: Any) -> Any:
-    """The model of a file, and ``robots`` where they were.
+def resume(path: Path, model: Any, robots: Any) -> None:
+    """Put a new model, and ``robots``, where those of a file were.
+
+    Args:
+        path: of the file.
+        model: made with the settings of the run (``models.make``).
+        robots: that it was made with.
 
     Raises:
-        AgentError: it is no such file, or of another environment.
+        AgentError: it is no such file, or of another environment or other settings.
     """
-    content = _read(path)
     try:
-        model = algorithm_class(algorithm).load(io.BytesIO(content), env=robots, device="cpu", force_reset=False)
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            state = pickle.loads(archive.read(_STATE))
+        with _opened(path) as archive:
+            _read_weights(archive, model)
+            with np.load(io.BytesIO(archive.read(_ARRAYS)), allow_pickle=False) as arrays:
+                state = plain.decode(json.loads(archive.read(_STATE)), dict(arrays))
+            for name in _COUNTED:
+                if name in state["model"]:
+                    setattr(model, name, state["model"][name])
             robots.recall(state["robots"])
             if _MEMORY in archive.namelist():
                 _remember(model.replay_buffer, archive.read(_MEMORY))
         _recall_generators(model, state["random"])
-    except (ValueError, KeyError) as error:
+    except (*_BROKEN, AttributeError) as error:
         raise AgentError(f"{path} cannot be gone on with: {error}") from None
-    return model
 
 
-def load(path: Path, algorithm: str) -> tuple[Any, tuple[gym.Space[Any], gym.Space[Any]]]:
+def load(path: Path, algorithm: str) -> tuple[Any, Spaces]:
     """The model alone, to play; and the spaces of the environment's observations and actions.
 
     Raises:
         AgentError: it is no such file.
     """
-    content = _read(path)
-    small = {} if algorithm == "ppo" else {"buffer_size": 1}
     try:
-        model = algorithm_class(algorithm).load(io.BytesIO(content), device="cpu", **small)
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            return model, pickle.loads(archive.read(_SPACES))
-    except (ValueError, KeyError) as error:
+        with _opened(path) as archive:
+            about = json.loads(archive.read(_ABOUT))
+            seen, actions = _space(about["features"]), _space(about["moves"])
+            model = models.empty(algorithm, about["net_arch"], seen, actions)
+            _read_weights(archive, model)
+            return model, (_space(about["observations"]), _space(about["actions"]))
+    except _BROKEN as error:
         raise AgentError(f"{path} is no model of {algorithm}: {error}") from None
 
 
-def _read(path: Path) -> bytes:
+_BROKEN = (ValueError, KeyError, TypeError, RuntimeError, EOFError, zipfile.BadZipFile, AssertionError)
+"""What json, zip, numpy and torch raise when a file is damaged or of something else."""
+
+
+def _opened(path: Path) -> zipfile.ZipFile:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -127,7 +150,90 @@ def _read(path: Path) -> bytes:
         raise AgentError(f"{path} cannot be read: {error.strerror}") from None
     if not zipfile.is_zipfile(io.BytesIO(content)):
         raise AgentError(f"{path} is no model")
-    return content
+    archive = zipfile.ZipFile(io.BytesIO(content))
+    if _ABOUT not in archive.namelist():
+        archive.close()
+        raise AgentError(
+            f"{path} is no model of this version: it has no {_ABOUT}. Models of earlier versions, and those that "
+            "stable-baselines3 saves by itself, hold pickles, which can run code when they are opened; train it anew"
+        )
+    return archive
+
+
+# ---------------------------------------------------------------------- weights
+
+
+def _write_weights(archive: zipfile.ZipFile, model: Any, spaces: Spaces, more: Mapping[str, Any]) -> None:
+    about = {
+        "net_arch": model.policy_kwargs["net_arch"], "features": _described(model.observation_space),
+        "moves": _described(model.action_space), "observations": _described(spaces[0]),
+        "actions": _described(spaces[1]), **more,
+    }  # fmt: skip
+    archive.writestr(_ABOUT, json.dumps(about))
+    for name, values in model.get_parameters().items():
+        archive.writestr(name + _SUFFIX, _tensors(values))
+    archive.writestr(_TENSORS, _tensors({name: getattr(model, name) for name in model._get_torch_save_params()[1]}))
+
+
+def _read_weights(archive: zipfile.ZipFile, model: Any) -> None:
+    """Raises ValueError or RuntimeError when they are of another network."""
+    stored = [name for name in archive.namelist() if name.endswith(_SUFFIX)]
+    model.set_parameters({name.removesuffix(_SUFFIX): _loaded(archive, name) for name in stored}, exact_match=True)
+    for name, value in _loaded(archive, _TENSORS).items():
+        if name not in model._get_torch_save_params()[1]:
+            raise ValueError(f"{name} is no tensor of this algorithm")
+        getattr(model, name).data = value.data
+
+
+def _tensors(values: Any) -> bytes:
+    content = io.BytesIO()
+    torch().save(values, content)
+    return content.getvalue()
+
+
+def _loaded(archive: zipfile.ZipFile, name: str) -> Any:
+    """Tensors alone: ``weights_only`` refuses everything that would run code."""
+    from pickle import UnpicklingError  # torch's word for what it refuses
+
+    try:
+        return torch().load(io.BytesIO(archive.read(name)), map_location="cpu", weights_only=True)
+    except UnpicklingError as error:
+        raise ValueError(f"{name} holds more than weights: {str(error).splitlines()[0]}") from None
+
+
+# ---------------------------------------------------------------------- spaces
+
+
+def _described(space: gym.Space[Any]) -> dict[str, Any]:
+    """A space as JSON has it."""
+    if isinstance(space, gym.spaces.Box):
+        limits = {"low": space.low.tolist(), "high": space.high.tolist()}
+        return {"kind": "box", **limits, "shape": list(space.shape), "dtype": str(space.dtype)}
+    if isinstance(space, gym.spaces.Discrete):
+        return {"kind": "discrete", "n": int(space.n), "start": int(space.start)}
+    if isinstance(space, gym.spaces.MultiDiscrete):
+        return {"kind": "multi", "n": space.nvec.tolist()}
+    if isinstance(space, gym.spaces.Dict):
+        return {"kind": "dict", "spaces": [[name, _described(part)] for name, part in space.items()]}
+    raise AgentError(f"a model that sees {space} cannot be kept")
+
+
+def _space(data: Mapping[str, Any]) -> gym.Space[Any]:
+    kind = data["kind"]
+    if kind == "box":
+        dtype: Any = np.dtype(data["dtype"])
+        low, high = (np.array(data[name], dtype).reshape(data["shape"]) for name in ("low", "high"))
+        return gym.spaces.Box(low, high, dtype=dtype)
+    if kind == "discrete":
+        return gym.spaces.Discrete(data["n"], start=data["start"])
+    if kind == "multi":
+        return gym.spaces.MultiDiscrete(data["n"])
+    if kind == "dict":
+        return gym.spaces.Dict([(name, _space(part)) for name, part in data["spaces"]])
+    raise ValueError(f"a space of the kind {kind!r}")
+
+
+# ---------------------------------------------------------------------- all the rest
 
 
 def _generators(model: Any) -> dict[str, Any]:
@@ -147,15 +253,17 @@ def _recall_generators(model: Any, states: dict[str, Any]) -> None:
     model.action_space.np_random.bit_generator.state = states["actions"]
 
 
+def _arrays(arrays: plain.Arrays) -> bytes:
+    content = io.BytesIO()
+    np.savez(content, **arrays)  # type: ignore[arg-type]
+    return content.getvalue()
+
+
 def _remembered(memory: Any) -> bytes:
     """The filled part of a replay buffer."""
     filled = memory.buffer_size if memory.full else memory.pos
-    content = io.BytesIO()
-    np.savez(
-        content, place=np.array([memory.pos, memory.full]),
-        **{name: getattr(memory, name)[:filled] for name in _REMEMBERED},
-    )  # fmt: skip
-    return content.getvalue()
+    rows = {name: getattr(memory, name)[:filled] for name in _REMEMBERED}
+    return _arrays({"place": np.array([memory.pos, memory.full]), **rows})
 
 
 def _remember(memory: Any, content: bytes) -> None:

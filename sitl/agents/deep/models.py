@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import gymnasium as gym
+
 from .library import algorithm_class
 from .settings import Dqn, OffPolicy, Ppo, Sac, Settings
 
@@ -15,9 +17,9 @@ def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
 
     Args:
         algorithm: "dqn", "ppo" or "sac".
-        settings: of that algorithm.
-        robots: that it will learn with.
-        seed: of its weights and choices.
+        settings: settings of that algorithm.
+        robots: robots that it will learn with.
+        seed: seed of its weights and choices.
     """
     hidden = [settings.width] * settings.layers
     common: dict[str, Any] = {
@@ -48,6 +50,25 @@ def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
     if isinstance(settings, Sac):
         own |= {"tau": settings.tau}
     return algorithm_class(algorithm)("MlpPolicy", robots, policy_kwargs={"net_arch": arch}, **common, **own)
+
+
+def empty(algorithm: str, net_arch: Any, observations: gym.Space[Any], actions: gym.Space[Any]) -> Any:
+    """A model that knows nothing and does not learn: for weights that are to be played.
+
+    Args:
+        algorithm: "dqn", "ppo" or "sac".
+        net_arch: hidden layers, as stable-baselines3 has them.
+        observations, actions: that its networks are made for.
+    """
+    small: dict[str, Any] = {"n_steps": 2, "batch_size": 2} if algorithm == "ppo" else {"buffer_size": 1}
+    if algorithm == "sac":
+        small["target_entropy"] = 0.0  # by itself it would ask the robots, and there are none
+    made = algorithm_class(algorithm)(
+        "MlpPolicy", None, policy_kwargs={"net_arch": net_arch}, device="cpu", _init_setup_model=False, **small
+    )
+    made.observation_space, made.action_space, made.n_envs = observations, actions, 1
+    made._setup_model()
+    return made
 
 
 def _falling(first: float, last: float) -> float | Callable[[float], float]:

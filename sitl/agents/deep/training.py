@@ -74,10 +74,9 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
         env, Features(spaces[0], figures.sectors), figures.frames, Actions(spaces[1], config.algorithm),
         figures.reward_scale, tally, seeds,
     )  # fmt: skip
+    model = models.make(config.algorithm, figures, robots, config.seed)
     if path.exists():
-        model = checkpoint.resume(path, config.algorithm, robots)
-    else:
-        model = models.make(config.algorithm, figures, robots, config.seed)
+        checkpoint.resume(path, model, robots)
     folder.episodes.keep(tally.done)
     checks = Checks(config, figures, folder.path / BEST, model.num_timesteps)
     last, spent = time.monotonic(), 0.0
@@ -94,11 +93,11 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     unwritten: list[Any] = []
 
     def between() -> bool:
-        """Between two rounds; returns whether the run ends here."""
+        """Called between two rounds of learning; returns whether the run ends here."""
         tally.epsilon = float(getattr(model, "exploration_rate", "nan"))
         rows = tally.take()
         if rows:
-            watch.told(rows)
+            watch.on_progress(rows)
             unwritten.extend(rows)
         done = config.episodes is not None and tally.done >= config.episodes
         done = done or (config.steps is not None and tally.done_steps >= config.steps)

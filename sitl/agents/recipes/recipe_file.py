@@ -8,9 +8,11 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from sitl.core import code_in_files
 from sitl.errors import did_you_mean
 
 from ..errors import AgentError
+from ..runs.config import code_of
 from ..runs.plan import EvaluationPlan
 from .recipe import Recipe
 
@@ -66,4 +68,7 @@ def _recipe(name: str, values: dict[str, Any]) -> Recipe:
         if key not in values:
             raise AgentError(f"key {key!r} is missing")
     plan = EvaluationPlan.of(values.pop("evaluation", {}))
+    refused = code_in_files.refusal("it", code_of(values["env"], values.get("options", {}), plan.options))
+    if refused is not None:
+        raise AgentError(refused)
     return Recipe(name=name, evaluation=plan, **values)

@@ -9,9 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from sitl.core import code_in_files
 from sitl.errors import did_you_mean
 
 from ..errors import AgentError
+from ..runs.config import code_of
 from .change import Change, scaled
 
 _FOLDER = Path(__file__).parent / "plans"
@@ -36,7 +38,7 @@ class Plan:
     training: Mapping[str, Any] = field(default_factory=dict)
     """recipe: that ``sitl benchmark rehearsal`` trains by; steps or episodes: other than the recipe's."""
     randomise: Mapping[str, Any] = field(default_factory=dict)
-    """Of the randomised one: scale and set (figure -> low, high), latency (low, high), draws."""
+    """Randomisation of the second policy: scale and set (figure -> low, high), latency (low, high) [s], draws."""
 
     def __post_init__(self) -> None:
         names = [change.name for change in self.changes]
@@ -91,7 +93,7 @@ class Plan:
 
 
 def names() -> tuple[str, ...]:
-    """Of the plans that come with the program."""
+    """Names of the plans that come with the program."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 
 
@@ -109,7 +111,7 @@ def load(name: str | Path) -> Plan:
 
 
 def check_names(plans: Sequence[Plan]) -> None:
-    """See that no two plans have the same name.
+    """Check that no two plans have the same name.
 
     Raises:
         AgentError: two have.
@@ -143,9 +145,13 @@ def _read(path: Path) -> Plan:
         robots = values.get("robots", [])
         if not isinstance(robots, list) or not all(isinstance(robot, str) for robot in robots):
             raise AgentError(f"robots = {robots!r}; it must be a list of names")
+        made = tuple(Change.of(change) for change in changes)
+        refused = code_in_files.refusal("it", [name for one in made for name in code_of("", one.options)])
+        if refused is not None:
+            raise AgentError(refused)
         return Plan(
             path.stem,
-            tuple(Change.of(change) for change in changes),
+            made,
             tuple(robots),
             str(values.get("summary", "")),
             _mapping("training", values.get("training", {})),

@@ -8,8 +8,7 @@ State is a ``Pid`` record. Cut-off frequencies are in Hz, 0 meaning no filter (A
 from __future__ import annotations
 
 from ...core.kernels import law
-from ...core.rotations import TWO_PI, constrain
-from .shaping import finite
+from ...core.scalars import TWO_PI, constrain, finite
 
 
 @law

@@ -12,23 +12,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
-from ...core.rotations import constrain
-
-
-@law
-def finite(value):
-    """Whether a float is neither NaN nor infinite (infinity minus itself is NaN)."""
-    return value - value == 0.0
-
-
-@law
-def sign(value):
-    """-1.0, 0.0 or 1.0."""
-    if value > 0.0:
-        return 1.0
-    if value < 0.0:
-        return -1.0
-    return 0.0
+from ...core.scalars import constrain, sign
 
 
 @law

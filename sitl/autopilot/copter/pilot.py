@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
-from ...core.rotations import constrain
+from ...core.scalars import constrain
 from ..radio import FRAME_S, RECEIVER_PULSES, calibration, centred_channel, expo, ranged, receive, stick_channel
 
 THROTTLE_ZERO_US = 400_000

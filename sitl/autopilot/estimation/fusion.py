@@ -9,7 +9,8 @@ measurements: a correction (dp, dv) made now means dp - dv * age for a position 
 from __future__ import annotations
 
 from ...core.kernels import law
-from ...core.rotations import constrain, quat_from_rotation_vector, quat_multiply
+from ...core.rotations import quat_from_rotation_vector, quat_multiply
+from ...core.scalars import constrain
 from .state import BA, BG, BM, POS, RING, THETA, VEL, N
 from .strapdown import set_attitude
 

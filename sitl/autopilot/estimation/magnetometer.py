@@ -12,7 +12,8 @@ import math
 
 from ...core.earth_field import field_ned
 from ...core.kernels import law
-from ...core.rotations import quat_from_rotation_vector, quat_multiply, quat_rotate, wrap_pi
+from ...core.rotations import quat_from_rotation_vector, quat_multiply, quat_rotate
+from ...core.scalars import wrap_pi
 from .. import events
 from . import noise
 from .covariance import clear, turn_frame

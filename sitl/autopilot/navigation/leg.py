@@ -20,6 +20,10 @@ from .state import SEGMENTS
 
 SHORTEST = 1e-4
 """A leg shorter than this [m] has no length."""
+MIN_LIMIT = 0.01
+"""Floor of the speed [m/s], acceleration [m/s^2] and jerk [m/s^3] that parameters can limit a leg to."""
+MAX_RISE = 100.0
+"""Ceiling of the time in which jerk rises [s], whatever parameters say."""
 
 
 _HALVINGS = 12
@@ -40,6 +44,16 @@ class Limits(NamedTuple):
     jerk: float
     rise: float = 0.0
     """Time in which jerk rises from zero to its limit: snap = jerk / rise."""
+
+
+def bounded(limits: Limits) -> Limits:
+    """Limits that every leg can be planned within: each at least ``MIN_LIMIT``, ``rise`` at most ``MAX_RISE``.
+
+    A client may set a parameter to any value of its range, also to 1e-30. ArduPilot gives no leg at all for such a
+    value (an internal error, and the vehicle stands); here it is the floor that counts.
+    """
+    speed, acceleration, jerk = (max(limit, MIN_LIMIT) for limit in limits[:3])
+    return Limits(speed, acceleration, jerk, min(limits.rise, MAX_RISE))
 
 
 class Segment(NamedTuple):

@@ -9,7 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import Any
 
-from .leg import SHORTEST, LegError, Limits, plan, write
+from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .profile import clear, evaluate
 
 Point = tuple[float, float, float]
@@ -44,9 +44,16 @@ class Planner(ABC):
         return True
 
     def plan_leg(self, ap: Any, leg: Any, origin: Point, target: Point) -> None:
-        """Plan a leg from rest to rest into a leg record."""
+        """Plan a leg from rest to rest into a leg record.
+
+        An origin that is not finite (parameters can spoil the estimate that it comes from) has no line to the target:
+        the leg is the target alone.
+
+        Raises:
+            LegError: the target is not finite.
+        """
         length = math.dist(origin, target)
-        if length < SHORTEST:
+        if length < SHORTEST or (not all(map(math.isfinite, origin)) and all(map(math.isfinite, target))):
             write(leg, plan(0.0, Limits(1.0, 1.0, 1.0)), target, (0.0, 0.0, 0.0), 0.0)
             return
         direction = (
@@ -54,7 +61,7 @@ class Planner(ABC):
             (target[1] - origin[1]) / length,
             (target[2] - origin[2]) / length,
         )
-        wanted = self.limits(ap, direction)
+        wanted = bounded(self.limits(ap, direction))
         write(leg, plan(length, wanted), origin, direction, length)
         leg.top_speed = wanted.speed
 
@@ -131,7 +138,7 @@ class Planner(ABC):
         elif left > SHORTEST and leg.elapsed < leg.turn_out:
             direction: Point = tuple(float(x) for x in leg.unit)  # type: ignore[assignment]
             here: Point = tuple(float(leg.origin[k] + direction[k] * p) for k in range(3))  # type: ignore[assignment]
-            wanted = self.limits(ap, direction)
+            wanted = bounded(self.limits(ap, direction))
             try:
                 profile = plan(left, wanted, v, a)
             except LegError:

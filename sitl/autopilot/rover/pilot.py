@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
-from ...core.rotations import constrain, wrap_2pi
+from ...core.scalars import constrain, wrap_2pi
 from ..radio import calibration, centred, centred_channel, receive, stick_channel
 from .control import motors, speed
 

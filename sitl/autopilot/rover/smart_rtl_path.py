@@ -11,8 +11,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
-from ...core.rotations import constrain
-from ..control.shaping import finite
+from ...core.scalars import constrain, finite
 from ..events import PATH_LOST, emit
 from .modes.state import PATH_POINTS
 

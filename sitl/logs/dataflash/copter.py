@@ -14,7 +14,7 @@ A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C = "autopilot.control."
 _MOTORS, _ATTITUDE, _NE, _D = C + "motors.", C + "attitude.", C + "pos_ne.", C + "pos_d."
 _SHAPED_TICKS = 8
-"""A position controller that last ran longer ago is not at work."""
+"""Number of ticks without a run after which a position controller counts as inactive."""
 
 
 def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
@@ -57,7 +57,7 @@ def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
 
 
 def _boost(s: Any) -> Array:
-    """Throttle that the lean adds."""
+    """Additional throttle for the lean angle."""
     return s(_MOTORS + "throttle_in") - s(_ATTITUDE + "throttle_in")
 
 
@@ -105,7 +105,7 @@ def _position(axis: str, k: int) -> Message:
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
-    """All that this LOG_BITMASK asks for; ``simulated``: the record holds the truth."""
+    """Messages that LOG_BITMASK enables; ``simulated``: the record holds the true state."""
     fast = bool(bitmask & bits.ATTITUDE_FAST)
     pids = tuple(
         common.pid(name, f"{C}rate.{axis}", f"ATC.RAT_{short}.", f"{E}rates[{k}]", bits.COPTER_PID)

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sitl.kinds import KINDS
 
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.params import docs, files
 from sitl.autopilot.params.table import Table, stored
 from sitl.core.records import as_dict
+from sitl.vehicle.kinds import KINDS
 
 
 @pytest.fixture

@@ -10,17 +10,9 @@ is 0.1 of throttle for 1 m/s^2. A mode calls one ``input_*`` (or ``set_pos_vel_a
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain, finite, sign
 from ...control.pid import update_directional, update_saturating
-from ...control.shaping import (
-    advance,
-    finite,
-    inverse_sqrt_controller,
-    shape_pos_vel_accel,
-    shape_vel_accel,
-    sign,
-    sqrt_controller,
-)
+from ...control.shaping import advance, inverse_sqrt_controller, shape_pos_vel_accel, shape_vel_accel, sqrt_controller
 from .altitude_start import (
     ACCZ_UNIT,
     init_d,

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import TWO_PI, constrain
+from ....core.scalars import TWO_PI, constrain, finite
 from ...control.pid import relax_integrator, reset_filter
-from ...control.shaping import finite, inverse_sqrt_controller
+from ...control.shaping import inverse_sqrt_controller
 from .motors import hover_throttle
 from .state import DT, GRAVITY
 

@@ -13,8 +13,9 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, quat_from_euler, quat_from_rotation_vector, quat_multiply, wrap_pi
-from ...control.shaping import finite, shape_angle, shape_rate
+from ....core.rotations import quat_from_euler, quat_from_rotation_vector, quat_multiply
+from ....core.scalars import constrain, finite, wrap_pi
+from ...control.shaping import shape_angle, shape_rate
 from . import rate
 from .attitude_error import body_rates, euler_accel_limits, euler_rates, split_error, thrust_quaternion
 from .attitude_target import (

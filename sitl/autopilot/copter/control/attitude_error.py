@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, quat_multiply
+from ....core.rotations import quat_multiply
+from ....core.scalars import constrain
 
 
 @law

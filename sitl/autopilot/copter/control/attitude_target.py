@@ -12,8 +12,9 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, quat_multiply, quat_rotate, quat_to_euler
-from ...control.shaping import finite, inverse_sqrt_controller, sqrt_controller
+from ....core.rotations import quat_multiply, quat_rotate, quat_to_euler
+from ....core.scalars import constrain, finite
+from ...control.shaping import inverse_sqrt_controller, sqrt_controller
 from .attitude_error import split_error
 from .state import DT
 

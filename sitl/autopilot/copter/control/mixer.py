@@ -11,7 +11,7 @@ ArduPilot's: plus (FRAME_TYPE 0): 1 right, 2 left (both counter-clockwise), 3 fr
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 
 PLUS, X = 0, 1
 # (roll, pitch) factors of motors 1 to 4; yaw is +1/2 for 1 and 2, -1/2 for 3 and 4.

@@ -9,9 +9,8 @@ with the throttle limited to ``thrust_max``, which ramps over MOT_SPOOL_TIME.
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain, finite
 from ...control.pid import lowpass_gain
-from ...control.shaping import finite
 from .mixer import mix
 from .state import DT
 from .thrust_curve import SLOW_DT, command_from_thrust, update_slow

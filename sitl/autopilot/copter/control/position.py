@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.scalars import finite
 from ...control.pid import lowpass_gain
 from ...control.shaping import (
     advance_2d,
-    finite,
     inverse_sqrt_controller,
     limit_accel,
     limit_length,

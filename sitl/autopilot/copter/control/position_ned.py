@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ...control.shaping import finite, kinematic_limit
+from ....core.scalars import finite
+from ...control.shaping import kinematic_limit
 from .altitude import advance_d, input_vel_accel_d, shape_pos_d
 from .position import advance_ne, input_vel_accel_ne, shape_pos_ne
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from ...control.shaping import inverse_sqrt_controller, limit_length
 from .state import DT, GRAVITY
 from .throttle_mix import LEAN_TICKS, lean_limit

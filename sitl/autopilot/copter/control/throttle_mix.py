@@ -6,8 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
-from ...control.shaping import finite
+from ....core.scalars import constrain, finite
 from .motors import hover_throttle
 from .state import DT
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from ...control.pid import lowpass_gain
 
 SLOW_DT = 0.1

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from .. import pilot
 from ..control import altitude, attitude
 from ..control.throttle_mix import lean_limit

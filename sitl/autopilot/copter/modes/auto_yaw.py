@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import TWO_PI, wrap_pi
+from ....core.scalars import TWO_PI, wrap_pi
 from ..control import attitude
 
 HOLD = 0  # heading as it is

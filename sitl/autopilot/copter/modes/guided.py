@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from ..control import altitude, position
 from . import auto_yaw, guided_flight
 from .guided_state import (

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, quat_from_euler, quat_to_euler
+from ....core.rotations import quat_from_euler, quat_to_euler
+from ....core.scalars import constrain
 from ...events import GUIDED_TIMEOUT, emit
 from ..control import altitude, attitude, position, position_ned, throttle_mix
 from . import auto_yaw, ground, takeoff

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
 from .. import arming, pilot

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, wrap_pi
+from ....core.scalars import constrain, wrap_pi
 from ...control.shaping import shape_angle, sqrt_controller
 from .. import pilot
 from ..control import attitude, position

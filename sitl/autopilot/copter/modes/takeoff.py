@@ -8,7 +8,7 @@ controller takes over.
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from ...events import TAKEOFF_COMPLETE, emit
 from ..control import altitude, attitude, position, throttle_mix
 from . import auto_yaw, ground, guided_state

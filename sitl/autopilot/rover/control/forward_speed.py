@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.scalars import finite
 from ...control.pid import lowpass_gain
-from ...control.shaping import finite
 from ...estimation.status import VELOCITY_HORIZ
 
 FIX_3D = 3

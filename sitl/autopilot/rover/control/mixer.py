@@ -11,8 +11,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
-from ...control.shaping import sign
+from ....core.scalars import constrain, sign
 
 
 @law

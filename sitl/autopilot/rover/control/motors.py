@@ -9,8 +9,7 @@ of ``steering`` and ``speed`` read them in the next period.
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
-from ...control.shaping import finite
+from ....core.scalars import constrain, finite
 from . import mixer, servos
 from .recent import now_tick
 from .state import DT

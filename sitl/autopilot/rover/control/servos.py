@@ -7,8 +7,7 @@ Outputs 1 .. 4 have parameters, the others are free for DO_SET_SERVO, as is an o
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
-from ...control.shaping import finite
+from ....core.scalars import constrain, finite
 
 OUTPUTS = 4
 CHANNELS = 16

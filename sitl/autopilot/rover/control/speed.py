@@ -9,15 +9,16 @@ corrects the rest. Backward speeds are negative.
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain, finite
 from ...control.pid import reset_filter, update_saturating
-from ...control.shaping import finite
 from . import motors
 from .forward_speed import forward_speed
 from .recent import now_tick, recent
 from .state import DT
 
 _TIMEOUT = 10  # periods: 0.2 s, ArduPilot's
+MIN_DECEL = 0.01
+"""Floor of the deceleration that a stop is planned with [m/s^2], whatever parameters say."""
 _STANDS = 14  # periods: what stood less than 0.3 s ago still stands
 
 
@@ -58,7 +59,7 @@ def stopping_distance(ap, speed):
     decel = decel_max(ap)
     if decel <= 0.0:
         return 0.0
-    return 0.5 * speed * speed / decel
+    return 0.5 * speed * speed / max(decel, MIN_DECEL)
 
 
 @law

@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, wrap_pi
+from ....core.scalars import constrain, finite, wrap_pi
 from ...control.pid import reset_filter, update_saturating
-from ...control.shaping import finite
 from .forward_speed import yaw_rate
 from .recent import now_tick, recent
 from .state import DT, GRAVITY

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, wrap_pi
+from ....core.scalars import constrain, wrap_pi
 from ...navigation import command
 from ...navigation import state as kinds
 from ..control import speed

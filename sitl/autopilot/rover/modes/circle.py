@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, wrap_pi
+from ....core.scalars import constrain, wrap_pi
 from ...events import CIRCLE_ADAPTED, emit
 from ..control import position, speed
 from ..control.state import DT

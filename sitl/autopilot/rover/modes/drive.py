@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from .. import pilot
 from ..control import motors, speed, steering
 from ..navigation import waypoint

@@ -8,7 +8,7 @@ headings [rad] from north, turn rates [rad/s] right positive, speeds [m/s] backw
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import constrain, wrap_pi
+from ....core.scalars import constrain, wrap_pi
 from ..navigation import waypoint
 from .auto_state import is_guided
 from .guided_state import (

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain, wrap_pi
+from ....core.scalars import constrain, wrap_pi
 from ..control import speed
 from ..navigation import waypoint
 from . import drive

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ....core.rotations import wrap_2pi
+from ....core.scalars import wrap_2pi
 from .. import pilot
 from ..control import speed
 from . import drive

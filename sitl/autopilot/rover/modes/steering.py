@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import constrain
+from ....core.scalars import constrain
 from .. import pilot
 from ..control import motors, speed
 from ..control.steering import lat_accel_max

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import wrap_pi
+from ....core.scalars import wrap_pi
 from ..control.motors import is_skid
 from ..control.steering import turn_rate_from_heading
 

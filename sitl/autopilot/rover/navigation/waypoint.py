@@ -27,7 +27,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....core.rotations import wrap_pi
+from ....core.scalars import wrap_pi
 from ...events import LEG_ENDING, emit_and_return
 from ...navigation import path
 from ...navigation.state import SPEED_REQUEST

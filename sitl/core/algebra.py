@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws on vectors, quaternions and Euler angles.
+
+Hamilton quaternions (w, x, y, z) turn body (FRD) into NED; Euler angles are roll, pitch, yaw (Z-Y-X), in radians. Sums
+are taken in the order of the components.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .kernels import law
+from .vectors import Euler, Quat, Vec2, Vec3
+
+IDENTITY = Quat(1.0, 0.0, 0.0, 0.0)
+ZERO2 = Vec2(0.0, 0.0)
+ZERO = Vec3(0.0, 0.0, 0.0)
+
+
+@law
+def dot(a: Vec3, b: Vec3) -> float:
+    """Scalar product."""
+    return a.x * b.x + a.y * b.y + a.z * b.z
+
+
+@law
+def cross(a: Vec3, b: Vec3) -> Vec3:
+    """Vector product."""
+    return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+
+
+@law
+def norm(v: Vec3) -> float:
+    """Length."""
+    return math.sqrt(v.x * v.x + v.y * v.y + v.z * v.z)
+
+
+@law
+def by_component(a: Vec3, b: Vec3) -> Vec3:
+    """Product of each component with the other's."""
+    return Vec3(a.x * b.x, a.y * b.y, a.z * b.z)
+
+
+@law
+def finite_vector(v: Vec3) -> bool:
+    """Whether all components are finite."""
+    return v.x - v.x == 0.0 and v.y - v.y == 0.0 and v.z - v.z == 0.0
+
+
+@law
+def horizontal(v: Vec3) -> Vec2:
+    """North and east of an NED vector."""
+    return Vec2(v.x, v.y)
+
+
+@law
+def with_down(v: Vec2, down: float) -> Vec3:
+    """An NED vector from north and east, and down."""
+    return Vec3(v.x, v.y, down)
+
+
+@law
+def dot2(a: Vec2, b: Vec2) -> float:
+    """Scalar product in the plane."""
+    return a.x * b.x + a.y * b.y
+
+
+@law
+def cross2(a: Vec2, b: Vec2) -> float:
+    """Vector product in the plane: positive when ``b`` lies clockwise of ``a``, seen from above (NED)."""
+    return a.x * b.y - a.y * b.x
+
+
+@law
+def norm2(v: Vec2) -> float:
+    """Length in the plane."""
+    return math.sqrt(v.x * v.x + v.y * v.y)
+
+
+@law
+def turned(v: Vec2, angle: float) -> Vec2:
+    """``v`` turned by ``angle`` [rad] from north towards east."""
+    c, s = math.cos(angle), math.sin(angle)
+    return Vec2(v.x * c - v.y * s, v.x * s + v.y * c)
+
+
+@law
+def limit_length(v: Vec2, length_max: float) -> Vec2:
+    """``v`` shortened to at most ``length_max``."""
+    n2 = v.x * v.x + v.y * v.y
+    if n2 <= length_max * length_max:
+        return v
+    return v * (length_max / math.sqrt(n2))
+
+
+@law
+def multiply(a: Quat, b: Quat) -> Quat:
+    """Hamilton product a b: first the rotation b, then a."""
+    return Quat(
+        a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+        a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+        a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+        a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+    )
+
+
+@law
+def conjugate(q: Quat) -> Quat:
+    """The opposite rotation of a unit quaternion."""
+    return Quat(q.w, -q.x, -q.y, -q.z)
+
+
+@law
+def quat_norm_squared(q: Quat) -> float:
+    """Square of the length; 1 for a rotation."""
+    return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z
+
+
+@law
+def normalise(q: Quat) -> Quat:
+    """Unit quaternion; the identity for a zero one."""
+    n = math.sqrt(quat_norm_squared(q))
+    if n < 1e-12:
+        return Quat(1.0, 0.0, 0.0, 0.0)
+    return q / n
+
+
+@law
+def rotate(q: Quat, v: Vec3) -> Vec3:
+    """``v`` turned by ``q``: from body to NED."""
+    tx = 2.0 * (q.y * v.z - q.z * v.y)
+    ty = 2.0 * (q.z * v.x - q.x * v.z)
+    tz = 2.0 * (q.x * v.y - q.y * v.x)
+    return Vec3(
+        v.x + q.w * tx + q.y * tz - q.z * ty,
+        v.y + q.w * ty + q.z * tx - q.x * tz,
+        v.z + q.w * tz + q.x * ty - q.y * tx,
+    )
+
+
+@law
+def rotate_inverse(q: Quat, v: Vec3) -> Vec3:
+    """``v`` turned back by ``q``: from NED to body."""
+    return rotate(conjugate(q), v)
+
+
+@law
+def quat_from_rotation_vector(r: Vec3) -> Quat:
+    """Rotation by |r| radians about r."""
+    angle = norm(r)
+    if angle < 1e-9:
+        return normalise(Quat(1.0, 0.5 * r.x, 0.5 * r.y, 0.5 * r.z))
+    s = math.sin(0.5 * angle) / angle
+    return Quat(math.cos(0.5 * angle), s * r.x, s * r.y, s * r.z)
+
+
+@law
+def quat_from_euler(e: Euler) -> Quat:
+    """Rotation of Euler angles [rad]."""
+    cr, sr = math.cos(0.5 * e.roll), math.sin(0.5 * e.roll)
+    cp, sp = math.cos(0.5 * e.pitch), math.sin(0.5 * e.pitch)
+    cy, sy = math.cos(0.5 * e.yaw), math.sin(0.5 * e.yaw)
+    return Quat(
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )
+
+
+@law
+def euler_of(q: Quat) -> Euler:
+    """Euler angles [rad] of a rotation, pitch in [-pi/2, pi/2]."""
+    s = 2.0 * (q.w * q.y - q.z * q.x)
+    if s > 1.0:
+        s = 1.0
+    elif s < -1.0:
+        s = -1.0
+    return Euler(
+        math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y)),
+        math.asin(s),
+        math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)),
+    )

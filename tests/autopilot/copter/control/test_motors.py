@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motors: spool states, thrust curve, pulses, hover throttle, throttle priorities."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sitl.autopilot.copter.control import attitude, motors, throttle_mix, thrust_curve
+from sitl.autopilot.copter.control.state import DT
+from tests.autopilot.copter.control.level_autopilot import arm, output
+
+
+def run_until(ap, actuators, state, most=2000):
+    """Ticks until the spool is in ``state``."""
+    for k in range(most):
+        if ap.control.motors.spool_state == state:
+            return k
+        output(ap, actuators)
+    raise AssertionError(f"spool state {state} not reached, it is {ap.control.motors.spool_state}")
+
+
+def test_disarmed_motors_get_the_shortest_pulse(ap, actuators):
+    ap.control.motors.desired_spool = 2
+    attitude.set_throttle_out(ap, 0.5, 1, 0.0)
+    output(ap, actuators)
+    assert list(actuators.pwm[:4]) == [1000] * 4
+    assert not any(actuators.controls)
+    assert actuators.armed == 0
+
+
+def test_spool_up_takes_spool_time_to_idle_and_follows_the_throttle(ap, actuators):
+    ap.arming.armed = 1
+    ap.arming.armed_us = -3_000_000
+    ap.control.motors.desired_spool = motors.DESIRED_THROTTLE_UNLIMITED
+    ticks = run_until(ap, actuators, motors.SPOOLING_UP)
+    assert ticks * DT == pytest.approx(0.5, abs=0.01)
+    assert actuators.pwm[0] == pytest.approx(1150, abs=1)
+    attitude.set_throttle_out(ap, 0.4, 1, 0.0)
+    ticks = run_until(ap, actuators, motors.THROTTLE_UNLIMITED)
+    assert ticks * DT == pytest.approx(0.4 * 0.5, abs=0.01)
+    ap.control.motors.desired_spool = motors.DESIRED_SHUT_DOWN
+    assert run_until(ap, actuators, motors.GROUND_IDLE) * DT == pytest.approx(0.5, abs=0.01)
+    assert run_until(ap, actuators, motors.SHUT_DOWN) * DT == pytest.approx(0.5, abs=0.01)
+
+
+def test_armed_motors_idle_at_spin_arm_after_the_arming_delay(ap, actuators):
+    ap.arming.armed = 1
+    for time_us in range(0, 4_000_000, 2500):
+        ap.control.motors.desired_spool = motors.DESIRED_GROUND_IDLE
+        motors.update(ap, time_us)
+        motors.write_actuators(ap, actuators)
+        if time_us == 1_990_000:
+            assert actuators.pwm[0] == 1000
+    assert actuators.pwm[0] == pytest.approx(1100, abs=1)
+
+
+def test_disarming_stops_at_once(ap, actuators):
+    arm(ap)
+    output(ap, actuators)
+    assert actuators.pwm[0] > 1300
+    ap.arming.armed = 0
+    output(ap, actuators)
+    assert list(actuators.pwm[:4]) == [1000] * 4
+
+
+@given(st.floats(0.0, 1.0), st.floats(-1.0, 1.0))
+def test_thrust_curve_inverts_the_motor(thrust, expo):
+    command = thrust_curve.command_from_thrust(thrust, expo, 1.0, 1.0)
+    assert 0.0 <= command <= 1.0
+    if expo > -0.99:
+        assert (1 - expo) * command + expo * command * command == pytest.approx(thrust, abs=1e-6)
+
+
+def test_thrust_stays_as_the_battery_empties(ap):
+    ap.params.MOT_BAT_VOLT_MAX, ap.params.MOT_BAT_VOLT_MIN = 12.8, 9.6
+    ap.battery.voltage = 11.0
+    for _ in range(100):
+        thrust_curve.update_slow(ap)
+    m = ap.control.motors
+    demand = 0.3
+    command = thrust_curve.command_from_thrust(
+        demand * float(m.compensation_gain), 0.65, float(m.lift_max), float(m.voltage_ratio)
+    )
+    effective = command * 11.0 / 12.8
+    assert 0.35 * effective + 0.65 * effective**2 == pytest.approx(demand, rel=1e-3)
+
+
+def test_compensation_is_off_by_default(ap):
+    ap.battery.voltage = 11.0
+    thrust_curve.update_slow(ap)
+    assert ap.control.motors.compensation_gain == 1.0
+
+
+def test_resistance_is_learnt_from_steps_of_current(ap):
+    m = ap.control.motors
+    voltage = 0.0
+    for k in range(400):
+        current = 10.0 + 10.0 * (k // 20 % 2)
+        voltage = thrust_curve.resting_voltage(m, 12.6 - 0.02 * current, current)
+    assert m.resistance == pytest.approx(0.02, rel=0.1)
+    assert voltage == pytest.approx(12.6, abs=0.05)
+
+
+def test_air_is_thinner_up_high():
+    assert thrust_curve.air_density_ratio(0.0) == 1.0
+    assert thrust_curve.air_density_ratio(5000.0) == pytest.approx(0.601, abs=0.002)
+
+
+def test_hover_throttle_is_learnt(ap):
+    ap.control.motors.throttle = 0.5
+    for _ in range(5000):
+        motors.learn_hover_throttle(ap, 0.01)
+    assert motors.hover_throttle(ap) == pytest.approx(0.5, abs=2e-3)
+    ap.params.MOT_HOVER_LEARN = 0.0
+    ap.control.motors.throttle = 0.2
+    motors.learn_hover_throttle(ap, 0.01)
+    assert motors.hover_throttle(ap) == pytest.approx(0.5, abs=2e-3)
+
+
+def test_angle_boost_keeps_the_lift(ap):
+    ap.control.attitude.cos_lean = math.cos(0.5)
+    throttle_mix.set_throttle_out(ap, 0.3, 1, 0.0)
+    assert ap.control.motors.throttle_in * math.cos(0.5) == pytest.approx(0.3)
+    throttle_mix.set_throttle_out(ap, 0.3, 0, 0.0)
+    assert ap.control.motors.throttle_in == 0.3
+
+
+def test_upside_down_throttle_is_cut(ap):
+    ap.control.attitude.cos_lean = -0.5
+    throttle_mix.set_throttle_out(ap, 0.6, 1, 0.0)
+    assert ap.control.motors.throttle_in == 0.0
+
+
+def test_priority_rises_quickly_and_falls_slowly(ap):
+    throttle_mix.set_mix_max(ap, 1.0)
+    ticks = 0
+    while ap.control.attitude.mix < 0.5:
+        throttle_mix.update_mix(ap)
+        ticks += 1
+    assert ticks * DT == pytest.approx(0.2, abs=0.01)
+    throttle_mix.set_mix_min(ap)
+    ap.control.motors.throttle_out = ap.control.motors.throttle = 0.35
+    throttle_mix.update_mix(ap)
+    assert ap.control.attitude.mix == pytest.approx(0.5 - 0.5 * DT)
+
+
+def test_slew_limit():
+    assert motors.slew(0.2, 1.0, 0.5, 0.0) == pytest.approx(0.2 + DT / 0.5)
+    assert motors.slew(0.8, 0.0, 0.0, 0.25) == pytest.approx(0.8 - DT / 0.25)
+    assert motors.slew(0.8, 0.0, 0.0, 0.0) == 0.0

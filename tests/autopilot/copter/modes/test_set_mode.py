@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who may enter which mode, when."""
+
+from __future__ import annotations
+
+import pytest
+
+from sitl.autopilot.copter.modes import numbers, set_mode
+from sitl.autopilot.copter.modes.numbers import (
+    ACCEPTED,
+    ALT_HOLD,
+    AUTO,
+    BRAKE,
+    GUIDED,
+    INIT_FAILED,
+    LAND,
+    LOITER,
+    MISSING_TAKEOFF,
+    NAMES,
+    NEEDS_ALTITUDE,
+    NO_SUCH_MODE,
+    REASON_GCS,
+    REQUIRES_POSITION,
+    RTL,
+    STABILIZE,
+    THROTTLE_TOO_HIGH,
+)
+from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
+from tests.autopilot.copter.steady_copter import codes, fly, snapshot
+
+ALL = tuple(NAMES)
+
+
+@pytest.mark.parametrize("number", ALL)
+def test_disarmed_any_mode_may_be_selected_even_without_position_or_mission(vehicle, number):
+    vehicle.autopilot.estimate.position_ok = vehicle.autopilot.home.is_set = 0
+    assert set_mode.request(vehicle, number, REASON_GCS) == ACCEPTED
+    assert vehicle.autopilot.modes.number == number
+
+
+@pytest.mark.parametrize("number", (-1, 1, 7, 8, 16, 18, 99, 2**40))
+def test_unknown_modes_are_refused_and_change_nothing_but_the_event(vehicle, number):
+    assert set_mode.request(vehicle, number, REASON_GCS) == NO_SUCH_MODE
+    assert vehicle.autopilot.modes.number == STABILIZE
+    assert codes(vehicle) == [MODE_REFUSED]
+
+
+@pytest.mark.parametrize("number", ALL)
+def test_in_flight_without_position_only_modes_that_do_without(flying, number):
+    fly(flying, STABILIZE)
+    ap = flying.autopilot
+    ap.modes.mission_count, ap.estimate.position_ok = 5, 0
+    needs = number in (AUTO, GUIDED, LOITER, RTL, BRAKE)
+    assert set_mode.request(flying, number, REASON_GCS) == (REQUIRES_POSITION if needs else ACCEPTED)
+
+
+@pytest.mark.parametrize("number", ALL)
+def test_in_flight_with_position_and_mission_everything_goes(flying, number):
+    flying.autopilot.modes.mission_count = 5
+    assert set_mode.request(flying, number, REASON_GCS) == ACCEPTED
+    assert flying.autopilot.modes.number == number
+
+
+def test_auto_needs_a_mission_in_flight(flying):
+    before = snapshot(flying.autopilot.modes)
+    assert set_mode.request(flying, AUTO, REASON_GCS) == INIT_FAILED
+    assert snapshot(flying.autopilot.modes) == before
+
+
+def test_auto_armed_on_the_ground_needs_a_take_off_first(flying):
+    ap = flying.autopilot
+    ap.arming.landed, ap.modes.mission_count = 1, 5
+    assert set_mode.request(flying, AUTO, REASON_GCS) == MISSING_TAKEOFF
+    ap.modes.mission_takes_off = 1
+    assert set_mode.request(flying, AUTO, REASON_GCS) == ACCEPTED
+
+
+def test_rtl_needs_a_home_in_flight(flying):
+    flying.autopilot.home.is_set = 0
+    assert set_mode.request(flying, RTL, REASON_GCS) == INIT_FAILED
+
+
+def test_stabilize_on_the_ground_with_raised_throttle_is_refused(flying):
+    ap = flying.autopilot
+    ap.arming.landed, ap.modes.pilot.throttle_filtered = 1, 0.6
+    assert set_mode.request(flying, STABILIZE, REASON_GCS) == THROTTLE_TOO_HIGH
+    ap.arming.landed = 0
+    assert set_mode.request(flying, STABILIZE, REASON_GCS) == ACCEPTED
+
+
+def test_leaving_stabilize_needs_a_height(flying):
+    fly(flying, STABILIZE)
+    flying.autopilot.estimate.attitude_ok = 0
+    assert set_mode.request(flying, ALT_HOLD, REASON_GCS) == NEEDS_ALTITUDE
+
+
+def test_same_mode_again_is_no_change(flying):
+    assert set_mode.request(flying, GUIDED, REASON_GCS) == ACCEPTED
+    assert codes(flying) == []
+
+
+def test_a_change_is_told(flying):
+    set_mode.request(flying, LAND, REASON_GCS)
+    assert codes(flying) == [MODE_CHANGED]
+    ring = flying.autopilot.events
+    assert (ring.a[0], ring.b[0]) == (LAND, REASON_GCS)
+    assert flying.autopilot.modes.previous == GUIDED
+
+
+def test_texts_are_those_that_users_know():
+    assert numbers.refusal_texts(99, NO_SUCH_MODE) == ["No such mode 99"]
+    assert numbers.refusal_texts(AUTO, INIT_FAILED) == ["Mode change to AUTO failed: init failed"]
+    assert numbers.refusal_texts(LOITER, REQUIRES_POSITION) == ["Mode change to LOITER failed: requires position"]
+    assert numbers.refusal_texts(GUIDED, ACCEPTED) == []

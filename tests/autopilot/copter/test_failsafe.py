@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Failsafes: what starts them, what they do."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from sitl.autopilot import failsafe_checks
+from sitl.autopilot.arming_checks import BY_RADIO_FAILSAFE
+from sitl.autopilot.copter import failsafe, pilot
+from sitl.autopilot.events import FAILSAFE
+from tests.autopilot.copter.steady_copter import codes, fly, wait
+
+STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+
+
+def lose_gcs(v):
+    v.autopilot.modes.failsafe.gcs_us = v.time_us
+    wait(v, 5.1)
+    failsafe.update_gcs(v)
+
+
+@pytest.mark.parametrize(("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE)))
+def test_ground_station_lost(flying, choice, mode):
+    flying.autopilot.params.FS_GCS_ENABLE = float(choice)
+    lose_gcs(flying)
+    assert flying.autopilot.modes.number == mode
+    assert flying.autopilot.modes.failsafe.gcs == int(choice > 0)
+
+
+def test_a_ground_station_that_never_was_is_not_lost(flying):
+    flying.autopilot.params.FS_GCS_ENABLE = 1.0
+    wait(flying, 100.0)
+    failsafe.update_gcs(flying)
+    assert flying.autopilot.modes.number == GUIDED
+
+
+def test_the_ground_station_comes_back(flying):
+    flying.autopilot.params.FS_GCS_ENABLE = 1.0
+    lose_gcs(flying)
+    flying.autopilot.modes.failsafe.gcs_us = flying.time_us
+    failsafe.update_gcs(flying)
+    assert flying.autopilot.modes.failsafe.gcs == 0
+    assert flying.autopilot.modes.number == RTL
+    assert codes(flying).count(FAILSAFE) == 2
+
+
+@pytest.mark.parametrize(
+    ("mode", "options", "stays"),
+    ((AUTO, 2, True), (AUTO, 0, False), (LOITER, 16, True), (LOITER, 0, False), (GUIDED, 18, False)),
+)
+def test_options_let_a_mode_go_on_without_ground_station(flying, mode, options, stays):
+    fly(flying, mode)
+    flying.autopilot.params.FS_GCS_ENABLE = 1.0
+    flying.autopilot.params.FS_OPTIONS = float(options)
+    lose_gcs(flying)
+    assert (flying.autopilot.modes.number == mode) == stays
+
+
+def test_on_the_ground_a_failsafe_disarms(flying):
+    flying.autopilot.arming.landed = 1
+    flying.autopilot.params.FS_GCS_ENABLE = 1.0
+    lose_gcs(flying)
+    assert flying.autopilot.arming.armed == 0
+
+
+@pytest.mark.parametrize(("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, RTL), (5, LAND), (7, BRAKE)))
+def test_radio_lost_after_three_frames(flying, choice, mode):
+    fly(flying, LOITER)
+    ap = flying.autopilot
+    ap.params.FS_THR_ENABLE = float(choice)
+    ap.rc.channels[2] = 950
+    failsafe.update_radio(flying)
+    failsafe.update_radio(flying)
+    assert ap.modes.number == LOITER
+    failsafe.update_radio(flying)
+    assert ap.modes.number == mode
+
+
+def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
+    fly(flying, LOITER)
+    ap = flying.autopilot
+    ap.rc.has_receiver = 0
+    wait(flying, 1.1)
+    for _ in range(3):
+        pilot.read(flying)
+        failsafe.update_radio(flying)
+    assert ap.modes.failsafe.radio == 1
+    assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap)) == (RTL, 0.0, 0.0)
+    ap.rc.has_receiver = 1
+    for _ in range(4):
+        pilot.read(flying)
+        failsafe.update_radio(flying)
+    assert ap.modes.failsafe.radio == 0
+
+
+def test_rtl_without_position_becomes_a_landing_that_waits(flying):
+    fly(flying, ALT_HOLD)
+    flying.autopilot.estimate.position_ok = 0
+    failsafe.act(flying, failsafe.DO_RTL, 3, BY_RADIO_FAILSAFE)
+    assert flying.autopilot.modes.number == LAND
+    assert flying.autopilot.modes.land.pause == 1
+
+
+@pytest.mark.parametrize(
+    ("action", "mode", "armed"), ((0, GUIDED, 1), (1, LAND, 1), (2, RTL, 1), (5, GUIDED, 0), (7, BRAKE, 1))
+)
+def test_battery_low_for_its_timer(flying, action, mode, armed):
+    ap = flying.autopilot
+    ap.params.BATT_MONITOR, ap.params.BATT_FS_LOW_ACT = 4.0, float(action)
+    ap.battery.voltage = 10.4
+    failsafe.update_battery(flying)
+    wait(flying, 9.9)
+    failsafe.update_battery(flying)
+    assert ap.modes.failsafe.battery == 0
+    wait(flying, 0.2)
+    failsafe.update_battery(flying)
+    assert (ap.modes.failsafe.battery, ap.modes.number, ap.arming.armed) == (1, mode, armed)
+
+
+def test_a_dip_of_the_voltage_is_forgiven(flying):
+    ap = flying.autopilot
+    ap.params.BATT_MONITOR = 4.0
+    for voltage in (10.4, 11.0, 10.4):
+        ap.battery.voltage = voltage
+        failsafe.update_battery(flying)
+        wait(flying, 6.0)
+    assert ap.modes.failsafe.battery == 0
+
+
+def test_charge_critical_at_once(flying):
+    ap = flying.autopilot
+    ap.params.BATT_MONITOR, ap.params.BATT_CRT_MAH, ap.params.BATT_FS_CRT_ACT = 4.0, 300.0, 1.0
+    ap.battery.voltage, ap.battery.consumed_mah = 12.0, 3100.0
+    failsafe.update_battery(flying)
+    assert (ap.modes.failsafe.battery, ap.modes.number) == (2, LAND)
+
+
+@pytest.mark.parametrize(
+    ("mode", "action", "after"),
+    (
+        (GUIDED, 1, LAND),
+        (GUIDED, 2, ALT_HOLD),
+        (GUIDED, 0, GUIDED),
+        (ALT_HOLD, 1, ALT_HOLD),
+        (ALT_HOLD, 3, LAND),
+    ),
+)
+def test_estimator_lost_for_a_second(flying, mode, action, after):
+    fly(flying, mode)
+    ap = flying.autopilot
+    ap.params.FS_EKF_ACTION, ap.estimate.position_ok = float(action), 0
+    for _ in range(9):
+        failsafe.update_ekf(flying)
+    assert ap.modes.number == mode
+    failsafe.update_ekf(flying)
+    assert (ap.modes.number, ap.modes.failsafe.ekf) == (after, 1 if after == mode else failsafe.EKF_ACTED)
+    if after == LAND:
+        assert ap.modes.land.with_position == 0
+
+
+@pytest.mark.parametrize(
+    ("vel", "pos", "mag", "bad"),
+    (
+        (0.0, 5.0, 0.0, False),
+        (0.9, 0.0, 0.0, False),
+        (0.9, 0.9, 0.0, True),
+        (0.9, 0.0, 0.9, True),
+        (1.7, 0.0, 0.0, True),
+        (0.0, 0.0, 0.9, False),
+    ),
+)
+def test_two_test_ratios_count(flying, vel, pos, mag, bad):
+    est = flying.autopilot.estimate
+    est.variance_vel, est.variance_pos, est.variance_mag = vel, pos, mag
+    for _ in range(20):
+        found = failsafe_checks.is_estimate_bad(flying, flying.autopilot.params.FS_EKF_FILT)
+    assert found == bad
+
+
+def test_texts():
+    assert failsafe_checks.text(failsafe_checks.RADIO, True) == "Radio Failsafe"
+    assert failsafe_checks.text(failsafe_checks.GCS, False) == "GCS Failsafe Cleared"
+    assert failsafe_checks.text(failsafe_checks.BATTERY_LOW, False) is None
+
+
+def test_a_variance_that_is_no_number_does_not_blind_the_failsafe(flying):
+    ap = flying.autopilot
+    ap.estimate.variance_vel = math.nan
+    failsafe.update_ekf(flying)
+    ap.estimate.variance_vel = ap.estimate.variance_mag = 5.0
+    for _ in range(40):
+        failsafe.update_ekf(flying)
+    assert ap.modes.failsafe.ekf != 0

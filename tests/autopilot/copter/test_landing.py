@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Landing detector, throttle priority, crash check."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from sitl.autopilot.copter import crash, landing
+from sitl.autopilot.events import CRASH_DISARM, LANDED
+from tests.autopilot.copter.steady_copter import codes, fly
+
+STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+
+
+def touch(v):
+    """All signs of the ground."""
+    ap = v.autopilot
+    ap.control.motors.limit_throttle_lower = 1
+    ap.control.attitude.mix = ap.params.ATC_THR_MIX_MIN
+    return v
+
+
+def ticks(v, n, law=landing.update):
+    for _ in range(n):
+        law(v)
+
+
+def test_landed_after_a_second_on_the_ground(flying):
+    touch(fly(flying, LAND))
+    arming = flying.autopilot.arming
+    ticks(flying, 79)
+    assert (arming.landed, arming.landed_maybe) == (0, 0)
+    ticks(flying, 1)
+    assert (arming.landed, arming.landed_maybe) == (0, 1)
+    ticks(flying, 319)
+    assert arming.landed == 0
+    ticks(flying, 1)
+    assert arming.landed == 1
+    assert codes(flying) == [LANDED]
+
+
+@pytest.mark.parametrize(
+    "lift",
+    (
+        lambda ap: setattr(ap.control.motors, "limit_throttle_lower", 0),
+        lambda ap: setattr(ap.control.attitude, "mix", 0.5),
+        lambda ap: setattr(ap.estimate, "vel", ap.estimate.vel.replace(z=1.1)),
+        lambda ap: setattr(ap.estimate, "acc_ned", ap.estimate.acc_ned.replace(z=9.8)),
+    ),
+)
+def test_any_sign_of_flight_starts_the_second_again(flying, lift):
+    touch(fly(flying, LAND))
+    ticks(flying, 300)
+    lift(flying.autopilot)
+    ticks(flying, 300)
+    assert flying.autopilot.arming.landed == 0
+    assert flying.autopilot.arming.landed_ticks < 300
+
+
+LEANS = (
+    lambda ap: ap.control.attitude.target_euler.__setitem__(0, math.radians(16.0)),
+    lambda ap: setattr(ap.control.attitude, "thrust_error_angle", math.radians(31.0)),
+)
+
+
+@pytest.mark.parametrize("lean", LEANS)
+@pytest.mark.parametrize(
+    ("mode", "throttle_zero", "landed"),
+    [(LAND, 0, 1), (GUIDED, 1, 0), (LOITER, 1, 1), (LOITER, 0, 0), (ALT_HOLD, 1, 1)],
+)
+def test_leaning_counts_as_flight_unless_it_is_meant_to_land(flying, lean, mode, throttle_zero, landed):
+    """On the ground the position controller leans against the wind."""
+    touch(fly(flying, mode))
+    flying.autopilot.modes.pilot.throttle_zero = throttle_zero
+    lean(flying.autopilot)
+    ticks(flying, 400)
+    assert flying.autopilot.arming.landed == landed
+
+
+def test_a_disarmed_vehicle_is_landed(flying):
+    flying.autopilot.arming.armed = 0
+    landing.update(flying)
+    assert flying.autopilot.arming.landed == 1
+
+
+def test_throttle_above_half_of_hover_takes_off_but_not_while_a_take_off_ramps(flying):
+    ap = flying.autopilot
+    ap.arming.landed = 1
+    ap.control.motors.throttle = 0.3
+    ap.modes.guided.submode = 0  # TAKEOFF
+    landing.update(flying)
+    assert ap.arming.landed == 1
+    ap.modes.number = ALT_HOLD
+    landing.update(flying)
+    assert ap.arming.landed == 0
+
+
+@pytest.mark.parametrize(
+    ("mode", "throttle", "descent", "mix"),
+    (
+        (STABILIZE, 0.0, 0.0, "ATC_THR_MIX_MIN"),
+        (STABILIZE, 0.4, 0.0, "ATC_THR_MIX_MAN"),
+        (GUIDED, 0.0, 0.0, "ATC_THR_MIX_MAX"),
+        (GUIDED, 0.0, 0.5, "ATC_THR_MIX_MIN"),
+        (LAND, 0.0, 0.0, "ATC_THR_MIX_MIN"),
+    ),
+)
+def test_throttle_priority(flying, mode, throttle, descent, mix):
+    fly(flying, mode)
+    ap = flying.autopilot
+    ap.modes.pilot.throttle, ap.control.pos_d.vel_desired, ap.control.pos_d.control_ratio = (
+        throttle,
+        descent,
+        1.0,
+    )
+    landing.update(flying)
+    landing.update_mix(flying)
+    assert ap.control.attitude.mix_desired == pytest.approx(float(ap.params[mix]))
+
+
+def tumble(v):
+    attitude = v.autopilot.control.attitude
+    attitude.thrust_error_angle, attitude.cos_lean = math.radians(40.0), 0.5
+    return v
+
+
+def test_two_seconds_on_its_side_disarm(flying):
+    tumble(flying)
+    ticks(flying, 799, crash.update)
+    assert flying.autopilot.arming.armed == 1
+    ticks(flying, 1, crash.update)
+    assert flying.autopilot.arming.armed == 0
+    assert codes(flying)[0] == CRASH_DISARM
+    assert crash.text(40.2, 0.04) == "Crash: Disarming: AngErr=40>30, Accel=0.0<3.0"
+
+
+@pytest.mark.parametrize(
+    "well",
+    (
+        lambda ap: setattr(ap.control.attitude, "thrust_error_angle", 0.5),
+        lambda ap: setattr(ap.control.attitude, "cos_lean", 0.97),
+        lambda ap: ap.modes.landing.acc.__setitem__(2, 3.1),
+        lambda ap: setattr(ap.estimate, "vel", ap.estimate.vel.replace(x=11.0)),
+        lambda ap: setattr(ap.params, "FS_CRASH_CHECK", 0.0),
+        lambda ap: setattr(ap.arming, "landed", 1),
+    ),
+)
+def test_no_crash(flying, well):
+    tumble(flying)
+    well(flying.autopilot)
+    ticks(flying, 900, crash.update)
+    assert flying.autopilot.arming.armed == 1

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sticks: pulses, overrides, dead zones, what the modes read."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sitl.autopilot import mode_switch, radio
+from sitl.autopilot.copter import pilot
+from sitl.autopilot.copter.modes import switch
+from tests.autopilot.copter.steady_copter import make, wait
+
+PULSES = st.integers(0, 3000)
+
+
+@pytest.mark.parametrize(
+    ("pulse", "value"),
+    ((1500, 0.0), (1520, 0.0), (1480, 0.0), (1900, 1.0), (1100, -1.0), (1710, 0.5), (2100, 1.0)),
+)
+def test_centred_stick(pulse, value):
+    assert radio.centred(pulse, 1100.0, 1500.0, 1900.0, 0.0, 20.0) == pytest.approx(value)
+    assert radio.centred(pulse, 1100.0, 1500.0, 1900.0, 1.0, 20.0) == pytest.approx(-value)
+
+
+@given(
+    PULSES,
+    st.floats(800, 2200),
+    st.floats(800, 2200),
+    st.floats(800, 2200),
+    st.sampled_from((0.0, 1.0)),
+    st.floats(0, 200),
+)
+def test_sticks_stay_in_range_whatever_the_calibration(pulse, low, trim, high, reverse, dead):
+    assert -1.0 <= radio.centred(pulse, low, trim, high, reverse, dead) <= 1.0
+    assert 0.0 <= radio.ranged(pulse, low, max(high, low), reverse, dead) <= 1.0
+
+
+def send(v, *pulses):
+    for k, pulse in enumerate(pulses):
+        v.autopilot.rc.override[k] = pulse
+        v.autopilot.rc.override_us[k] = v.time_us
+
+
+def test_overrides_last_three_seconds(vehicle):
+    rc = vehicle.autopilot.rc
+    send(vehicle, 1700, 1500, 1600)
+    pilot.read(vehicle)
+    assert list(rc.channels[:3]) == [1700, 1500, 1600]
+    wait(vehicle, 2.9)
+    pilot.read(vehicle)
+    assert rc.channels[0] == 1700
+    wait(vehicle, 0.2)
+    pilot.read(vehicle)
+    assert list(rc.channels[:3]) == [1500, 1500, 1000]
+
+
+@pytest.mark.parametrize(("time", "kept"), ((-1.0, True), (0.0, False)))
+def test_overrides_for_ever_or_never(vehicle, time, kept):
+    vehicle.autopilot.params.RC_OVERRIDE_TIME = time
+    send(vehicle, 1700)
+    wait(vehicle, 1000.0 if kept else 0.0)
+    pilot.read(vehicle)
+    assert (vehicle.autopilot.rc.channels[0] == 1700) == kept
+
+
+def test_sticks_can_be_mapped_to_other_channels(vehicle):
+    vehicle.autopilot.params.RCMAP_ROLL, vehicle.autopilot.params.RCMAP_YAW = 4.0, 1.0
+    send(vehicle, 1900, 1500, 1000, 1100)
+    pilot.read(vehicle)
+    sticks = vehicle.autopilot.modes.pilot
+    assert (sticks.roll, sticks.yaw) == (-1.0, 1.0)
+
+
+def test_throttle_counts_as_zero_only_after_a_while(vehicle):
+    sticks = vehicle.autopilot.modes.pilot
+    send(vehicle, 1500, 1500, 1500)
+    pilot.read(vehicle)
+    assert sticks.throttle_zero == 0
+    send(vehicle, 1500, 1500, 1000)
+    for seconds, zero in ((0.3, 0), (0.2, 1)):
+        wait(vehicle, seconds)
+        pilot.read(vehicle)
+        assert sticks.throttle_zero == zero
+
+
+@pytest.mark.parametrize(
+    ("throttle", "climb"),
+    ((0.5, 0.0), (0.6, 0.0), (0.4, 0.0), (1.0, 2.5), (0.8, 1.25), (0.0, -2.5), (0.2, -1.25)),
+)
+def test_climb_rate(vehicle, throttle, climb):
+    vehicle.autopilot.modes.pilot.throttle = throttle
+    assert pilot.climb_rate(vehicle.autopilot) == pytest.approx(climb)
+
+
+@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.1, 1.3), st.floats(0.1, 1.3))
+def test_the_lean_never_exceeds_the_limit(roll, pitch, most, limit):
+    v = make()
+    v.autopilot.modes.pilot.roll, v.autopilot.modes.pilot.pitch = roll, pitch
+    r, p = pilot.lean_angles(v.autopilot, most, limit)
+    assert math.cos(r) * math.cos(p) >= math.cos(min(most, limit)) - 1e-9
+    assert r * roll >= 0.0 and p * pitch >= 0.0
+
+
+@given(st.floats(0, 1), st.floats(0.125, 0.6875))
+def test_throttle_curve_ends_at_both_ends_and_rises(x, hover):
+    assert pilot.throttle_out(0.0, hover) == 0.0
+    assert pilot.throttle_out(1.0, hover) == pytest.approx(1.0)
+    assert pilot.throttle_out(x, hover) <= pilot.throttle_out(min(x + 0.01, 1.0), hover) + 1e-9
+
+
+def test_mode_switch_changes_the_mode_when_it_moves_and_only_then(vehicle):
+    ap = vehicle.autopilot
+    ap.params.FLTMODE6, ap.params.FLTMODE1 = 2.0, 5.0
+
+    def frames(pulse, n=20):
+        for _ in range(n):
+            send(vehicle, 1500, 1500, 1000, 1500, pulse)
+            pilot.read(vehicle)
+            switch.read_mode(vehicle)
+            wait(vehicle, 0.02)
+
+    frames(1800)
+    assert ap.modes.number == 2
+    ap.modes.number = 4  # by the ground station
+    frames(1800)
+    assert ap.modes.number == 4
+    frames(1100, 5)
+    assert ap.modes.number == 4  # shorter than the debounce
+    frames(1100)
+    assert ap.modes.number == 5
+
+
+@pytest.mark.parametrize(
+    ("pulse", "position"),
+    ((900, -1), (1000, 0), (1231, 1), (1361, 2), (1491, 3), (1621, 4), (1750, 5), (2200, -1)),
+)
+def test_positions_of_the_mode_switch(pulse, position):
+    assert mode_switch.position(pulse) == position
+
+
+@pytest.mark.parametrize(
+    ("armed", "yaw", "rudder", "after"),
+    ((0, 1900, 2, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)),
+)
+def test_yaw_stick_arms_and_disarms_after_two_seconds(vehicle, armed, yaw, rudder, after):
+    ap = vehicle.autopilot
+    ap.params.ARMING_RUDDER = float(rudder)
+    ap.arming.armed = armed
+    for _ in range(110):
+        send(vehicle, 1500, 1500, 1000, yaw)
+        pilot.read(vehicle)
+        switch.read_rudder(vehicle)
+        wait(vehicle, 0.02)
+    assert ap.arming.armed == after

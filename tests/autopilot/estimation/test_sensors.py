@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Barometer, magnetometer and GPS messages: conversions, checks, origin."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from sitl.autopilot.estimation import barometer, gps, magnetometer, origin
+from tests.autopilot.estimation import synthetic_flight as sf
+
+
+def _vehicle():
+    v = sf.Copter.of(sf.new(), 0)
+    s = v.sensors
+    s.gps_fix, s.gps_satellites, s.gps_eph = 3, 10, 121
+    s.gps_lat, s.gps_lon, s.gps_alt = -353632620, 1491652370, 584000
+    return v
+
+
+@pytest.mark.parametrize(("altitude", "hpa"), [(0.0, 1013.25), (1000.0, 898.746), (5000.0, 540.199)])
+def test_standard_atmosphere(altitude: float, hpa: float) -> None:
+    assert barometer.standard_altitude(hpa) == pytest.approx(altitude, abs=0.2)  # ISO 2533 tables
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), 0.0, -5.0, 99.0, 1300.0])
+def test_broken_pressure_is_passed_over(bad: float) -> None:
+    v = _vehicle()
+    v.sensors.baro_count, v.sensors.abs_pressure = 1, bad
+    barometer.read(v.autopilot.ekf, v.sensors, 1000)
+    assert v.autopilot.ekf.baro_n == 0
+
+
+@pytest.mark.parametrize("bad", [(float("nan"), 0.2, 0.3), (0.2, float("inf"), 0), (0, 0, 0), (5.0, 0, 0)])
+def test_broken_field_is_passed_over(bad) -> None:
+    v = _vehicle()
+    v.sensors.mag_count, v.sensors.mag = 1, bad
+    magnetometer.read(v.autopilot.ekf, v.sensors, 1000)
+    assert v.autopilot.ekf.mag_n == 0
+
+
+def test_a_good_fix_is_sane_and_passes() -> None:
+    v = _vehicle()
+    assert gps.sane(v.sensors)
+    assert gps.quality(v.autopilot.params, v.sensors)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("gps_fix", 2),
+        ("gps_lat", 910000000),
+        ("gps_lon", -1810000000),
+        ("gps_alt", 2**31 - 1),
+        ("gps_vel", (0, 40000, 0)),
+        ("gps_vel", (-(2**31), 0, 0)),
+    ],
+)
+def test_a_fix_with_figures_that_make_no_sense_is_refused(name: str, value) -> None:
+    v = _vehicle()
+    v.sensors[name] = value
+    assert not gps.sane(v.sensors)
+
+
+@pytest.mark.parametrize(("name", "value"), [("gps_satellites", 5), ("gps_eph", 300), ("gps_eph", 0)])
+def test_quality_checks_can_be_switched_off(name: str, value: int) -> None:
+    v = _vehicle()
+    v.sensors[name] = value
+    assert not gps.quality(v.autopilot.params, v.sensors)
+    v.autopilot.params.EK3_GPS_CHECK = 0
+    assert gps.quality(v.autopilot.params, v.sensors)
+
+
+def test_origin_is_set_once() -> None:
+    ap = _vehicle().autopilot
+    assert origin.set_origin(ap, 910000000, 0, 0.0) == 0
+    assert origin.set_origin(ap, -353632620, 1491652370, float("nan")) == 0
+    assert origin.set_origin(ap, -353632620, 1491652370, 584.0) == 1
+    assert origin.set_origin(ap, 0, 0, 0.0) == 0
+    e = ap.estimate
+    assert (e.origin_set, e.origin_lat, e.origin_lon, e.origin_alt) == (1, -353632620, 1491652370, 584.0)
+    assert math.degrees(ap.ekf.declination) == pytest.approx(12.7, abs=0.3)
+
+
+def test_yaw_turns_by_the_declination_learnt(ap) -> None:
+    ap.ekf.q[0] = 1.0
+    ap.ekf.yaw_aligned = 1
+    origin.place_origin(ap, -353632620, 1491652370, 584.0, 0)
+    assert 2 * math.atan2(ap.ekf.q[3], ap.ekf.q[0]) == pytest.approx(ap.ekf.declination)
+    assert ap.estimate.reset_yaw == pytest.approx(ap.ekf.declination)
+    assert ap.estimate.reset_yaw_count == 1

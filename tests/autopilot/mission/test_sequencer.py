@@ -1,0 +1,408 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The order in which commands are given, and what is told meanwhile.
+
+Nothing is flown here: commands complete by event.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sitl.autopilot import events
+from sitl.autopilot.copter.mission import COMMANDS as COPTER
+from sitl.autopilot.copter.modes import auto_yaw
+from sitl.autopilot.copter.navigation import command as path_command
+from sitl.autopilot.copter.navigation import waypoint
+from sitl.autopilot.copter.parameters import TABLE
+from sitl.autopilot.mission import item as c
+from sitl.autopilot.mission import jumps
+from sitl.autopilot.mission.item import MissionItem, home_item
+from sitl.autopilot.mission.mission import Mission
+from sitl.autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from sitl.autopilot.mission.sequencer import Sequencer
+from sitl.autopilot.mission.validate import check
+from sitl.autopilot.navigation import command, path
+from sitl.autopilot.navigation.state import (
+    COMPLETE,
+    CONDITION_DELAY,
+    CONDITION_NONE,
+    LAND,
+    LOITER_UNLIMITED,
+    NONE,
+    RUNNING,
+    STOPPED,
+    WAYPOINT,
+)
+from sitl.vehicle.record import Copter
+
+LAT, LON, ALT = -353632621, 1491652371, 584.0
+WP = MissionItem(c.NAV_WAYPOINT, x=LAT + 1000, y=LON, z=10.0)
+TAKEOFF = MissionItem(c.NAV_TAKEOFF, z=10.0)
+SPEED = MissionItem(c.DO_CHANGE_SPEED, p1=1.0, p2=5.0)
+
+
+def jump(target: int, times: int) -> MissionItem:
+    """DO_JUMP."""
+    return MissionItem(c.DO_JUMP, p1=float(target), p2=float(times))
+
+
+class Vehicle:
+    """A vehicle in AUTO, 10 m over home, whose commands complete when the test says so."""
+
+    def __init__(self, *items: MissionItem) -> None:
+        self.fleet = Copter.fleet(1)
+        self.v: Any = Copter.of(self.fleet, 0)
+        ap = self.v.autopilot
+        TABLE.set_defaults(ap.params)
+        ap.estimate.origin_set = 1
+        ap.estimate.origin_lat, ap.estimate.origin_lon, ap.estimate.origin_alt = LAT, LON, ALT
+        ap.estimate.pos = ap.estimate.pos.replace(z=-10.0)
+        ap.modes.number = COPTER.auto
+        self.mission = Mission((home_item(LAT, LON, ALT), *items)) if items else Mission()
+        self.sequencer = Sequencer(self, COPTER)
+        self.nav = ap.modes.nav
+        self.told: list[Any] = []
+
+    def start(self) -> Vehicle:
+        """Enter AUTO."""
+        self.told += self.sequencer.start(self.v)
+        return self
+
+    def complete(self) -> int:
+        """The command under way is done; returns the number of the next."""
+        path_command.begin(self.v.autopilot, int(self.v.time_us))
+        command.complete(self.v.autopilot, int(self.v.time_us))
+        self.told += self.sequencer.attend()
+        return int(self.nav.command_seq) if self.nav.mission_state == RUNNING else 0
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass for conditions."""
+        self.v.time_us += round(seconds * 1e6)
+        command.check_condition(self.v.autopilot, int(self.v.time_us), 1)
+        self.told += self.sequencer.attend()
+
+    def order(self, most: int = 20) -> list[int]:
+        """Numbers of the commands as they are given, from the present one on."""
+        seen = [int(self.nav.command_seq)]
+        while len(seen) < most and (seq := self.complete()) > 0:
+            seen.append(seq)
+        return seen
+
+    def texts(self) -> list[str]:
+        """What was said."""
+        return [n.text for n in self.told if isinstance(n, Text)]
+
+
+def test_texts_as_recorded() -> None:
+    """The recorded square says these texts and numbers, in this order."""
+    p = Vehicle(TAKEOFF, WP, WP._replace(y=LON + 500), MissionItem(c.NAV_LAND)).start()
+    assert p.v.autopilot.modes.mission_takes_off == 1
+    p.order()
+    assert p.told[:10] == [
+        Text(6, "Mission: 1 Takeoff"),
+        CurrentChanged(1),
+        ItemReached(1),
+        Text(6, "Mission: 2 WP"),
+        CurrentChanged(2),
+        ItemReached(2),
+        Text(6, "Reached command #2"),
+        Text(6, "Mission: 3 WP"),
+        CurrentChanged(3),
+        ItemReached(3),
+    ]
+    assert "Mission: 4 Land" in p.texts()
+
+
+def test_disarming_starts_again() -> None:
+    """Landed and disarmed in AUTO: back to item 1;
+    the landing that completes in the same tick is not told.
+    """
+    p = Vehicle(TAKEOFF, MissionItem(c.NAV_LAND)).start()
+    assert p.complete() == 2
+    assert p.nav.command_kind == LAND
+    events.emit(p.v.autopilot.events, 0, events.DISARMED, 13.0, 0.0)
+    command.complete(p.v.autopilot, 0)
+    p.told.clear()
+    p.told += p.sequencer.attend()
+    assert p.told == [Text(6, "Mission: 1 Takeoff"), CurrentChanged(1)]
+
+
+@pytest.mark.parametrize(
+    ("items", "order"),
+    [
+        ([WP, WP, jump(1, 2), WP], [1, 2, 1, 2, 1, 2, 4]),
+        ([WP, jump(1, 0), WP], [1, 3]),
+        ([WP, WP, jump(2, 1), jump(1, 1), WP], [1, 2, 2, 1, 2, 5]),
+        ([WP, jump(4, 1), WP, WP], [1, 4]),
+        ([WP, jump(99, 1), WP], [1]),
+        ([WP, jump(0, 1), WP], [1]),
+        ([WP, jump(2, -1), WP], [1]),
+        ([WP, jump(2, 3), WP], [1, 3]),
+        ([WP, jump(3, -1), jump(2, -1)], [1]),
+        ([WP, WP, jump(1, -1)], [1, 2] * 10),
+        ([WP, SPEED, jump(2, -1)], [1]),
+        ([SPEED, WP, SPEED], [2]),
+        ([SPEED, SPEED], [0]),
+    ],
+)
+def test_order(items: list[MissionItem], order: list[int]) -> None:
+    """Jumps with counts, forwards, nowhere, to themselves, in circles, for ever."""
+    p = Vehicle(*items).start()
+    assert p.order() == order
+    if len(order) < 20:
+        assert p.nav.mission_state == COMPLETE
+        assert p.nav.command_kind == LOITER_UNLIMITED
+
+
+def test_jumps_are_told_and_kept_in_the_record() -> None:
+    """A jump says its count, and a copy of the record goes on from there."""
+    p = Vehicle(WP, WP, jump(1, 2), WP).start()
+    p.complete()
+    assert p.complete() == 1
+    assert "Mission: 3 Jump 1/2" in p.texts()
+    assert jumps.runs(p.nav) == {3: 1}
+    copy = p.fleet.copy()
+    assert p.order() == [1, 2, 1, 2, 4]
+    p.fleet[:] = copy
+    assert p.order() == [1, 2, 1, 2, 4]
+
+
+def test_do_commands_run_on_the_way_to_the_next_command() -> None:
+    """The first before the next navigation command begins, the others once it is under way, as in ArduPilot."""
+    p = Vehicle(WP, SPEED, SPEED._replace(p2=3.0), WP, SPEED._replace(p2=7.0)).start()
+    assert p.texts() == ["Mission: 1 WP"]
+    assert p.nav.speed_ne == 0.0
+    p.told.clear()
+    assert p.complete() == 4
+    assert p.texts() == [
+        "Reached command #1", "Mission: 2 ChangeSpeed", "Mission: 4 WP", "Mission: 3 ChangeSpeed"
+    ]  # fmt: skip
+    assert p.nav.speed_ne == 3.0
+    assert p.complete() == 0
+    assert p.nav.speed_ne == 7.0
+
+
+def test_only_the_first_of_the_last_do_commands_runs() -> None:
+    p = Vehicle(WP, SPEED, SPEED._replace(p2=3.0)).start()
+    assert p.complete() == 0
+    assert p.nav.speed_ne == 5.0
+    assert p.nav.mission_state == COMPLETE
+
+
+def test_conditions_hold_the_do_commands_behind_them_back() -> None:
+    wait = MissionItem(c.CONDITION_DELAY, p1=2.0)
+    p = Vehicle(WP, SPEED, wait, SPEED._replace(p2=3.0), WP, SPEED._replace(p2=7.0), WP).start()
+    assert p.complete() == 5
+    assert p.texts()[-2:] == ["Mission: 5 WP", "Mission: 3 CondDelay"]
+    assert p.nav.speed_ne == 5.0
+    assert p.nav.condition_kind == CONDITION_DELAY
+    p.wait(1.9)
+    assert p.nav.speed_ne == 5.0
+    p.wait(0.1)
+    assert p.nav.speed_ne == 3.0
+    assert p.nav.condition_kind == CONDITION_NONE
+    assert ItemReached(3) in p.told
+    assert p.complete() == 7
+    assert p.nav.speed_ne == 7.0
+
+
+def test_held_back_is_passed_over() -> None:
+    """A do-command whose condition is not met in time does not run."""
+    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
+    assert p.complete() == 4
+    assert p.complete() == 5
+    p.wait(100.0)
+    assert p.nav.speed_ne == 0.0
+
+
+def test_a_condition_begins_anew_when_the_mission_goes_on() -> None:
+    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
+    assert p.complete() == 4
+    p.sequencer.stop(p.v)
+    p.told.clear()
+    p.start()
+    assert p.texts() == ["Mission: 2 CondDelay", "Mission: 4 WP"]
+    p.wait(60.0)
+    assert p.nav.speed_ne == 5.0
+    p.sequencer.stop(p.v)
+    p.told.clear()
+    p.start()
+    assert p.texts() == ["Mission: 4 WP"]
+
+
+def test_a_turn_goes_on_when_the_next_command_begins() -> None:
+    """CONDITION_YAW runs before the waypoint behind it, which does not turn the nose back."""
+    p = Vehicle(WP, MissionItem(c.CONDITION_YAW, p1=90.0), WP, WP).start()
+    yaw = p.v.autopilot.modes.auto_yaw
+    p.complete()
+    assert yaw.mode == auto_yaw.FIXED
+    p.complete()
+    assert yaw.mode != auto_yaw.FIXED
+
+
+def test_leaving_and_resuming() -> None:
+    """AUTO goes on where it was; MIS_RESTART starts again, unless an item was chosen meanwhile."""
+    p = Vehicle(WP, WP._replace(x=LAT), WP, WP).start()
+    assert p.complete() == 2
+    p.told += p.sequencer.on_event(p.v, events.MODE_CHANGED, 5.0, 0.0)
+    assert p.nav.mission_state == STOPPED
+    assert p.nav.command_kind == NONE
+    p.told.clear()
+    p.told += p.sequencer.on_event(p.v, events.MODE_CHANGED, 3.0, 0.0)
+    assert p.texts() == ["Mission: 2 WP"]
+    p.v.autopilot.params.MIS_RESTART = 1
+    p.sequencer.stop(p.v)
+    p.start()
+    assert p.nav.command_seq == 1
+    p.sequencer.stop(p.v)
+    assert p.sequencer.set_current(p.v, 3) == (True, [CurrentChanged(3)])
+    p.start()
+    assert p.nav.command_seq == 3
+
+
+def test_leaving_keeps_the_new_modes_legs() -> None:
+    """RTL asks for its leg before the shell hears that AUTO was left; it gets it."""
+    p = Vehicle(WP).start()
+    ap = p.v.autopilot
+    waypoint.stop(ap)
+    ap.modes.number, ap.modes.nav.speed_ne = 6, 4.0
+    path.request_leg(ap, 0, 0.0, 0.0, -15.0)
+    events.emit(ap.events, 0, events.MODE_CHANGED, 6.0, 0.0)
+    p.sequencer.attend()
+    assert p.nav.current.segments > 0
+    assert p.nav.speed_ne == 4.0
+    assert p.nav.mission_state == STOPPED
+
+
+def test_set_current_in_flight() -> None:
+    """The chosen item is flown at once, jumps count anew; numbers outside the mission are refused."""
+    p = Vehicle(WP, WP, jump(1, 1), WP).start()
+    p.order(4)
+    ok, told = p.sequencer.set_current(p.v, 2)
+    assert ok
+    assert Text(6, "Mission: 2 WP") in told
+    assert p.order() == [2, 1, 2, 4]
+    assert p.sequencer.set_current(p.v, 5) == (False, [])
+    assert p.sequencer.set_current(p.v, -1) == (False, [])
+    ok, _ = p.sequencer.set_current(p.v, 0)
+    assert ok
+    assert p.nav.command_seq == 1
+    assert Vehicle().sequencer.set_current(p.v, 0) == (False, [])
+
+
+def test_end_on_the_ground() -> None:
+    """On the ground the mission's end leaves no command; AUTO disarms."""
+    p = Vehicle(MissionItem(c.NAV_LAND)).start()
+    p.v.autopilot.arming.landed = 1
+    p.complete()
+    assert p.nav.mission_state == COMPLETE
+    assert p.nav.command_kind == NONE
+
+
+def test_new_mission_in_flight() -> None:
+    """The present command goes on; the next comes from the new mission, which may be shorter."""
+    p = Vehicle(WP, WP, WP).start()
+    p.complete()
+    assert not p.sequencer.may_clear(p.v)
+    land = MissionItem(c.NAV_LAND)
+    assert p.sequencer.set_mission(p.v, Mission((*p.mission.items[:3], land))) == []
+    assert p.nav.command_kind == WAYPOINT
+    assert p.complete() == 3
+    assert p.nav.command_kind == LAND
+    p.sequencer.set_mission(p.v, Mission(p.mission.items[:2]))
+    assert p.complete() == 0
+    assert p.nav.mission_state == COMPLETE
+    assert p.v.autopilot.params.MIS_TOTAL == 2
+
+
+def test_a_changed_command_under_way_begins_anew() -> None:
+    p = Vehicle(WP, WP, WP).start()
+    elsewhere = WP._replace(y=LON + 5000)
+    same = p.mission.items[1]._replace(current=1)
+    assert p.sequencer.set_mission(p.v, Mission((p.mission.items[0], same, WP))) == []
+    begun = int(p.nav.command_count)
+    notes = p.sequencer.set_mission(p.v, Mission((p.mission.items[0], elsewhere, WP)))
+    assert Text(2, "Auto mission changed, restarted command") in notes
+    assert p.nav.command_count == begun + 1 and p.nav.command_seq == 1
+    assert p.nav.target[1] == pytest.approx(5000 * 0.009, abs=5.0)
+    p.sequencer.set_mission(p.v, Mission(p.mission.items[:1]))
+    assert p.nav.mission_state == COMPLETE
+
+
+def test_corner_is_planned_ahead() -> None:
+    """The leg after the next is known when a waypoint without delay begins, through jumps and do-commands."""
+    there = WP._replace(x=LAT + 3000)
+    p = Vehicle(SPEED, WP, SPEED, jump(6, 1), WP, there).start()
+    assert p.nav.current.fast == 1
+    assert p.nav.next.length == pytest.approx(2000 * 0.0111319, rel=1e-3)
+    assert p.nav.current.top_speed == 5.0
+    assert Vehicle(WP._replace(p1=1.0), there).start().nav.current.fast == 0
+    assert Vehicle(WP, MissionItem(c.NAV_LAND)).start().nav.current.fast == 0
+
+
+@pytest.mark.parametrize("frame", [0, 3, 10])
+def test_altitude_frames(frame: int) -> None:
+    """Above sea level, above home, above terrain (flat, at home's height)."""
+    p = Vehicle(WP._replace(frame=frame, z=594.0 if frame == 0 else 10.0)).start()
+    assert p.nav.target[2] == pytest.approx(-10.0)
+
+
+def test_set_home_and_roi() -> None:
+    """DO_SET_HOME moves home to a place or to the vehicle; DO_SET_ROI turns the nose to a place."""
+    roi = MissionItem(c.DO_SET_ROI, x=LAT + 1000, y=LON + 1000)
+    p = Vehicle(MissionItem(c.DO_SET_HOME, 0, x=LAT + 2000, y=LON, z=600.0), roi, WP).start()
+    home = p.v.autopilot.home
+    assert (int(home.lat), float(home.alt), int(home.locked)) == (LAT + 2000, 600.0, 1)
+    assert home.pos[0] == pytest.approx(2000 * 0.0111319, rel=1e-3)
+    assert p.v.autopilot.modes.auto_yaw.roi[0] == pytest.approx(11.13, abs=0.01)
+    p = Vehicle(MissionItem(c.DO_SET_HOME, p1=1.0), WP).start()
+    assert p.v.autopilot.home.alt == pytest.approx(594.0)
+
+
+small = st.integers(-2, 8).map(float)
+anything = st.one_of(small, st.floats(allow_nan=False, allow_infinity=False, width=32))
+items = st.builds(
+    MissionItem,
+    st.sampled_from(sorted(COPTER.taken)),
+    st.sampled_from([0, 3, 10]),
+    anything,
+    anything,
+    anything,
+    small,
+    st.sampled_from([0, LAT, LAT + 5000, -900000000]),
+    st.sampled_from([0, LON, LON - 5000, 1800000000]),
+    st.sampled_from([0.0, 10.0, -82999.0]),
+    st.just(1),
+    st.just(0),
+)
+acts = st.lists(st.sampled_from(["complete", "wait", "leave", "start", "set", "disarm", "speed"]), max_size=12)
+
+
+@given(st.lists(items.filter(lambda i: check(i) == 0), max_size=8), st.lists(acts, max_size=12))
+@settings(max_examples=60, deadline=None)
+def test_no_mission_breaks_it(listed: list[MissionItem], todo: list[str]) -> None:
+    """Any valid items in any order, with anything happening: no error, and the state stays in its bounds."""
+    p = Vehicle(*listed).start()
+    for act in todo:
+        if act == "complete":
+            p.complete()
+        elif act == "wait":
+            p.wait(3.0)
+        elif act in ("leave", "start"):
+            p.sequencer.on_event(p.v, events.MODE_CHANGED, 5.0 if act == "leave" else 3.0, 0.0)
+        elif act == "set":
+            p.sequencer.set_current(p.v, len(listed) // 2)
+        elif act == "disarm":
+            p.sequencer.on_event(p.v, events.DISARMED, 0.0, 0.0)
+        else:
+            p.sequencer.change_speed(p.v, 0, 2.0)
+        assert p.nav.mission_state in (STOPPED, RUNNING, COMPLETE)
+        assert 0 <= p.nav.mission_current <= len(listed)
+        assert np.isfinite(p.nav.target).all()
+        if p.nav.mission_state == RUNNING:
+            assert p.nav.command_kind != NONE

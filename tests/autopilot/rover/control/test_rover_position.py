@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Position control on ArduPilot's SITL rover: the recorded drive to a point, reverse, jumps of the estimate."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sitl.autopilot.rover.control import forward_speed, motors, position, speed, steering
+from sitl.autopilot.rover.control.state import DT
+from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle
+
+
+def ready(heading=0.0, **params):
+    car = Car(arm(make_vehicle(**{**RECORDED, **params})), heading)
+    ap = car.v.autopilot
+    position.set_limits(ap, 5.0, 1.0, steering.lat_accel_max(ap), 1.0)
+    assert position.init(ap) == 1
+    return car
+
+
+def follow(car, backward=0):
+    """One period towards what the targets say."""
+    v, c = car.v, car.v.autopilot.control.position
+    forward_speed.sense(v)
+    position.set_reversed(v.autopilot, backward)
+    position.update(v)
+    speed.drive(v, float(c.desired_speed))
+    motors.set_steering(v.autopilot, steering.out_from_rate(v.autopilot, float(c.desired_turn_rate)))
+    finish(v)
+    car.move()
+
+
+def test_point_20_m_to_the_right_as_recorded():
+    """A real ArduRover, GUIDED: 3 m away at 7.8 s, 1 m at 9.2 s, peak 3.96 m/s, and swings out 1.45 m to the north."""
+    car = ready()
+    target = (0.0, 20.0)
+    away, speeds, north = [], [], []
+    for _ in range(500):
+        position.input_pos(car.v.autopilot, *target)
+        follow(car)
+        away.append(math.dist(car.position, target))
+        speeds.append(car.speed)
+        north.append(car.position[0])
+    times = np.arange(500) * DT + 0.08
+    assert times[np.argmax(np.array(away) < 3.0)] == pytest.approx(7.8, abs=0.2)
+    assert times[np.argmax(np.array(away) < 1.0)] == pytest.approx(9.2, abs=0.2)
+    assert max(speeds) == pytest.approx(3.96, abs=0.03)
+    assert max(north) == pytest.approx(1.45, abs=0.2)
+
+
+def test_a_car_keeps_the_speed_of_its_tightest_turn_where_a_skid_steered_one_waits():
+    wide, tight = ready(), ready(SERVO1_FUNCTION=73.0, SERVO3_FUNCTION=74.0)
+    for car in (wide, tight):
+        ap = car.v.autopilot
+        forward_speed.sense(car.v)
+        position.set_pos_vel_accel(ap, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0)
+        position.update(car.v)
+        assert ap.control.position.desired_turn_rate > 0.5
+    least = math.sqrt(0.5 * 0.6 * 9.80665 * 0.9)
+    assert wide.v.autopilot.control.position.desired_speed == pytest.approx(least)
+    assert tight.v.autopilot.control.position.desired_speed == pytest.approx(0.0)
+
+
+def test_backwards():
+    car = ready()
+    for _ in range(700):
+        position.input_pos(car.v.autopilot, -10.0, 1.0)
+        follow(car, backward=1)
+    assert math.dist(car.position, (-10.0, 1.0)) < 0.6
+    assert abs(math.remainder(car.heading, 2 * math.pi)) < 0.5
+
+
+def test_smooth_path_is_followed():
+    car = ready()
+    omega, radius = 0.2, 10.0
+    worst = 0.0
+    for k in range(1500):
+        a = omega * k * DT
+        s, c = math.sin(a), math.cos(a)
+        position.set_pos_vel_accel(
+            car.v.autopilot, radius * s, radius * (1 - c), radius * omega * c, radius * omega * s,
+            -radius * omega**2 * s, radius * omega**2 * c,
+        )  # fmt: skip
+        follow(car)
+        if k > 750:
+            worst = max(worst, math.hypot(*position.pos_error(car.v.autopilot)))
+    assert worst < 0.6
+
+
+def test_target_follows_a_jump_of_the_estimate():
+    car = ready()
+    ap = car.v.autopilot
+    for _ in range(50):
+        position.input_pos(ap, 10.0, 0.0)
+        follow(car)
+    before = position.pos_error(ap)
+    ap.estimate.pos = ap.estimate.pos.replace(x=ap.estimate.pos.x + 5.0)
+    ap.estimate.reset_ne_count += 1
+    position.update(car.v)
+    assert position.pos_error(ap) == pytest.approx(before, abs=0.05)
+
+
+def test_disarmed_or_lost_it_brakes():
+    car = ready()
+    ap = car.v.autopilot
+    for _ in range(50):
+        position.input_pos(ap, 10.0, 3.0)
+        follow(car)
+    before = float(ap.control.speed.desired)
+    ap.estimate.position_ok = 0
+    position.update(car.v)
+    assert ap.control.position.desired_turn_rate == 0.0
+    assert ap.control.position.desired_speed == pytest.approx(before - 1.0 * DT)
+    assert position.init(ap) == 0
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_bad_targets_are_not_taken_over(bad):
+    car = ready()
+    ap = car.v.autopilot
+    before = list(ap.control.position.pos_target)
+    position.input_pos(ap, bad, 0.0)
+    position.input_pos_vel_accel(ap, 0.0, 0.0, bad, 0.0, 0.0, 0.0)
+    position.set_pos_vel_accel(ap, 0.0, 0.0, 0.0, 0.0, 0.0, bad)
+    assert list(ap.control.position.pos_target) == before
+
+
+@pytest.mark.parametrize("speed_max", [5.0, 0.25])
+def test_a_way_straight_back_begins_with_a_turn(speed_max):
+    """Also of a vehicle that is never fast: else nothing turns it, and it drives away for ever."""
+    car = ready(PSC_POS_P=1.0)
+    ap = car.v.autopilot
+    position.set_limits(ap, speed_max, 1.0, steering.lat_accel_max(ap), 1.0)
+    position.set_pos_vel_accel(ap, -10.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    follow(car)
+    assert ap.control.position.desired_lat_accel > 0.0

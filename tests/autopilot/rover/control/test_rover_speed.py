@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Speed loop: acceleration limits, feed-forward, brake, standing, what a speed comes from."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from sitl.autopilot.rover.control import forward_speed, speed
+from sitl.autopilot.rover.control.state import DT
+from tests.autopilot.rover.control.rover_car import PERIOD_US, arm, finish, make_vehicle, set_motion
+
+
+def rolling(forward=0.0, **params):
+    v = arm(make_vehicle(**params))
+    set_motion(v, 0.3, forward, 0.0)
+    return v
+
+
+def run(v, wanted, periods):
+    throttle = 0.0
+    for _ in range(periods):
+        throttle = speed.throttle_for_speed(v, wanted)
+        finish(v)
+    return throttle
+
+
+def test_desired_speed_starts_at_the_present_speed_and_changes_with_accel_max():
+    v = rolling(1.0, ATC_ACCEL_MAX=2.0)
+    assert speed.desired_speed_accel_limited(v.autopilot, 9.0) == 9.0
+    run(v, 9.0, 5)
+    assert speed.desired_speed(v.autopilot) == pytest.approx(1.0 + 5 * 2.0 * DT)
+
+
+def test_deceleration_has_its_own_limit():
+    v = rolling(5.0, ATC_DECEL_MAX=3.0)
+    run(v, 0.0, 5)
+    assert speed.desired_speed(v.autopilot) == pytest.approx(5.0 - 5 * 3.0 * DT)
+    assert speed.stopping_distance(v.autopilot, 6.0) == pytest.approx(6.0)
+
+
+def test_cruise_throttle_is_fed_forward():
+    v = rolling(4.0, CRUISE_SPEED=5.0, CRUISE_THROTTLE=30.0)
+    assert run(v, 4.0, 3) == pytest.approx(4.0 * 0.3 / 5.0)
+
+
+def test_brake_off_never_works_against_the_motion():
+    v = rolling(3.0, ATC_BRAKE=0.0)
+    assert run(v, 0.0, 100) == 0.0
+    assert v.autopilot.control.speed.limit_low == 1
+    wound_up = v.autopilot.control.speed.loop.integrator
+    run(v, 0.0, 100)
+    assert v.autopilot.control.speed.loop.integrator == wound_up
+    assert run(rolling(3.0), 0.0, 100) < 0.0
+
+
+def test_stop_stands_below_stop_speed_and_for_a_while_after():
+    v = rolling(0.05)
+    assert speed.throttle_for_stop(v) == (0.0, 1)
+    finish(v)
+    set_motion(v, 0.3, 0.5, 0.0)
+    assert speed.throttle_for_stop(v) == (0.0, 1)
+    for _ in range(16):
+        finish(v)
+    throttle, stands = speed.throttle_for_stop(v)
+    assert stands == 0
+    assert throttle != 0.0
+
+
+def test_without_a_speed_nothing_drives_and_a_stop_stands():
+    v = rolling(3.0)
+    v.autopilot.estimate.status_flags = 0
+    assert speed.throttle_for_speed(v, 5.0) == 0.0
+    assert speed.throttle_for_stop(v) == (0.0, 1)
+
+
+def test_drive_at_zero_is_a_controlled_stop():
+    v = rolling(2.0)
+    for _ in range(150):
+        speed.drive(v, 0.0)
+        finish(v)
+    assert v.autopilot.control.speed.desired == 0.0
+    assert v.autopilot.control.motors.throttle < 0.0
+    set_motion(v, 0.3, 0.0, 0.0)
+    speed.drive(v, 0.0)
+    assert v.autopilot.control.motors.throttle == 0.0
+
+
+@pytest.mark.parametrize(
+    ("params", "most"),
+    [
+        ({"CRUISE_SPEED": 5.0, "CRUISE_THROTTLE": 30.0}, 5.0 / 0.3),
+        ({"CRUISE_SPEED": 5.0, "CRUISE_THROTTLE": 2.0}, 5.0),
+        ({"CRUISE_SPEED": 20.0, "CRUISE_THROTTLE": 10.0}, 30.0),
+        ({"SPEED_MAX": 4.0}, 4.0),
+    ],
+)
+def test_speed_at_full_throttle(params, most):
+    assert speed.speed_max(rolling(**params).autopilot) == pytest.approx(most)
+
+
+def test_speed_from_the_receiver_has_the_sign_of_its_course():
+    v = rolling(3.0)
+    v.autopilot.estimate.status_flags = 1
+    v.sensors.gps_fix = 3
+    v.sensors.gps_vel = (300, 400, 0)
+    assert forward_speed.forward_speed(v) == (1, pytest.approx(5.0))
+    v.sensors.gps_vel = (-300, -400, 0)
+    assert forward_speed.forward_speed(v) == (1, pytest.approx(-5.0))
+
+
+def test_speed_from_the_wheels():
+    v = rolling(3.0)
+    v.autopilot.estimate.status_flags = 0
+    for k in range(100):
+        v.sensors.wheel_count = k + 1
+        v.sensors.wheel_distance = (-0.02 * k, -0.04 * k)
+        forward_speed.sense(v)
+        v.time_us += PERIOD_US
+    assert forward_speed.forward_speed(v) == (1, pytest.approx(-1.5))
+    v.time_us += 600_000
+    assert forward_speed.forward_speed(v) == (0, 0.0)
+
+
+def test_turn_rate_about_the_vertical_of_a_leaning_body():
+    v = rolling()
+    ap = v.autopilot
+    ap.estimate.q = (math.cos(0.25), math.sin(0.25), 0.0, 0.0)
+    ap.estimate.rates = (0.0, 0.3, 0.4)
+    assert forward_speed.yaw_rate(ap) == pytest.approx(0.3 * math.sin(0.5) + 0.4 * math.cos(0.5))
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_bad_numbers_brake(bad):
+    v = rolling(2.0)
+    speed.drive(v, bad)
+    speed.throttle_for_speed(v, bad)
+    assert math.isfinite(v.autopilot.control.speed.desired)
+    v.autopilot.estimate.vel = v.autopilot.estimate.vel.replace(x=bad)
+    assert forward_speed.forward_speed(v) == (0, 0.0)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Turn-rate and heading loops: order of the limits, starting afresh, what saturation does to the integrator."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from sitl.autopilot.rover.control import forward_speed, motors, steering
+from sitl.autopilot.rover.control.state import DT, GRAVITY
+from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, set_motion
+
+
+def moving(speed=0.0, turn_rate=0.0, heading=0.0, **params):
+    v = arm(make_vehicle(**params))
+    set_motion(v, heading, speed, turn_rate)
+    forward_speed.sense(v)
+    return v
+
+
+def run(v, rate, periods):
+    out = 0.0
+    for _ in range(periods):
+        out = steering.out_from_rate(v.autopilot, rate)
+        motors.set_steering(v.autopilot, out)
+        finish(v)
+    return out
+
+
+def test_turn_rate_grows_no_faster_than_acc_max():
+    v = moving()
+    run(v, 1.0, 5)
+    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(5 * math.radians(120.0) * DT)
+    assert v.autopilot.control.steering.limit_right == 1
+
+
+def test_turn_rate_decays_no_faster_than_dec_max():
+    v = moving(ATC_STR_DEC_MAX=60.0)
+    run(v, 1.0, 40)
+    run(v, 0.0, 5)
+    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(1.0 - 5 * math.radians(60.0) * DT)
+
+
+def test_rate_limit():
+    v = moving(ATC_STR_RAT_MAX=20.0)
+    run(v, 3.0, 100)
+    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(math.radians(20.0))
+
+
+def test_lateral_acceleration_limit():
+    v = moving(speed=8.0)
+    run(v, 3.0, 100)
+    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(0.6 * GRAVITY / 8.0)
+    assert steering.lat_accel(v.autopilot, 3.0, 8.0) == pytest.approx(0.6 * GRAVITY)
+
+
+def test_first_call_starts_at_the_present_turn_rate_and_a_pause_forgets():
+    v = moving(speed=2.0, turn_rate=0.5)
+    run(v, 0.5, 50)
+    v.autopilot.control.steering.rate.integrator = 0.3
+    v.autopilot.estimate.rates = v.autopilot.estimate.rates.replace(z=-0.4)
+    for _ in range(11):
+        finish(v)
+    assert not steering.is_active(v.autopilot)
+    assert steering.desired_turn_rate(v.autopilot) == 0.0
+    steering.out_from_rate(v.autopilot, 0.5)
+    assert v.autopilot.control.steering.turn_rate == pytest.approx(-0.4 + math.radians(120.0) * DT)
+    assert v.autopilot.control.steering.rate.integrator == pytest.approx(0.0, abs=1e-3)
+
+
+def test_feed_forward_and_proportional():
+    v = moving(speed=1.0, ATC_STR_RAT_I=0.0, ATC_STR_ACC_MAX=0.0, ATC_STR_RAT_FF=0.5, ATC_STR_RAT_P=0.1)
+    assert steering.out_from_rate(v.autopilot, 0.8) == pytest.approx(0.8 * 0.5 + 0.8 * 0.1)
+
+
+def test_integrator_rests_below_the_scaling_speed_and_learns_above():
+    slow, fast = moving(speed=0.8), moving(speed=2.0)
+    run(slow, 0.5, 100)
+    run(fast, 0.5, 100)
+    assert slow.autopilot.control.steering.rate.integrator == pytest.approx(0.0, abs=0.01)
+    assert fast.autopilot.control.steering.rate.integrator > 0.1
+
+
+def test_heading_gives_a_rate_that_can_stop_in_time():
+    v = moving(heading=3.0)
+    ap = v.autopilot
+    assert steering.turn_rate_from_heading(ap, -3.0, 0.0) == pytest.approx((2 * math.pi - 6.0) * 2.0)
+    assert steering.turn_rate_from_heading(ap, 1.0, 0.0) == pytest.approx(-math.sqrt(2 * 2.0 * math.radians(120.0)))
+    assert steering.turn_rate_from_heading(ap, 1.0, 0.4) == pytest.approx(-0.4)
+
+
+def test_lateral_acceleration_to_turn_rate():
+    assert steering.turn_rate_from_lat_accel(2.0, 4.0) == 0.5
+    assert steering.turn_rate_from_lat_accel(2.0, 0.1) == 2.0
+    assert steering.turn_rate_from_lat_accel(2.0, -0.1) == -2.0
+    v = moving(speed=-4.0, ATC_STR_ACC_MAX=0.0)
+    steering.out_from_lat_accel(v.autopilot, 2.0)
+    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(-0.5)
+    assert steering.desired_lat_accel(v.autopilot) == 2.0
+
+
+def test_no_speed_no_steering_by_lateral_acceleration():
+    v = moving()
+    v.autopilot.control.speed.forward_ok = 0
+    assert steering.out_from_lat_accel(v.autopilot, 2.0) == 0.0
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_bad_numbers_steer_straight_and_leave_no_trace(bad):
+    v = moving(speed=2.0)
+    for law in (steering.out_from_rate, steering.out_from_lat_accel):
+        assert math.isfinite(law(v.autopilot, bad))
+        finish(v)
+    assert math.isfinite(steering.out_from_heading(v.autopilot, bad, 0.0))
+    assert steering.desired_turn_rate(v.autopilot) == 0.0

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Names and needs of the modes; the texts that a recorded ArduRover says."""
+
+from __future__ import annotations
+
+import pytest
+
+from sitl.autopilot import events
+from sitl.autopilot.rover import failsafe, texts
+from sitl.autopilot.rover.modes import numbers
+from tests.autopilot.rover.modes.driven_rover import Rover
+
+
+def test_numbers_are_ardurovers() -> None:
+    assert numbers.NAMES == {
+        0: "MANUAL", 1: "ACRO", 3: "STEERING", 4: "HOLD", 5: "LOITER", 7: "SIMPLE", 9: "CIRCLE", 10: "AUTO", 11: "RTL",
+        12: "SMART_RTL", 15: "GUIDED", 16: "INITIALISING",
+    }  # fmt: skip
+    assert [n for n in range(30) if numbers.is_known(n)] == sorted(numbers.NAMES)
+
+
+def test_only_hands_and_hold_do_without_a_position() -> None:
+    free = [n for n in numbers.NAMES if not numbers.requires_position(n)]
+    assert [numbers.NAMES[n] for n in free] == ["MANUAL", "ACRO", "STEERING", "HOLD"]
+    assert [n for n in free if not numbers.requires_velocity(n, False)] == [numbers.MANUAL, numbers.HOLD]
+    assert not numbers.requires_velocity(numbers.ACRO, True)  # a skid-steered one turns without a speed
+
+
+def test_ways_home_are_not_for_arming() -> None:
+    refused = [numbers.NAMES[n] for n in numbers.NAMES if not numbers.allows_arming(n)]
+    assert refused == ["RTL", "SMART_RTL", "INITIALISING"]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "got"), [(4, 4), (15, 15), (7, 7), (5, 16), (9, 16), (10, 16), (11, 16), (12, 16), (2, 16)]
+)
+def test_initial_mode_is_one_that_can_be_entered_at_power_on(wanted: int, got: int) -> None:
+    """LOITER and CIRCLE need a place, the ways home need one, AUTO needs a mission."""
+    ap = Rover(INITIAL_MODE=wanted, MODE_CH=0).ap
+    assert ap.modes.number == got
+
+
+@pytest.mark.parametrize(
+    ("code", "a", "b", "said"),
+    [
+        (events.ARMED, 1, 0, [(6, "Throttle armed")]),
+        (events.DISARMED, 1, 0, [(6, "Throttle disarmed")]),
+        (events.GUIDED_TIMEOUT, 3, 0, [(4, "target not received last 3secs, stopping")]),
+        (events.DESTINATION_REACHED, 11, 0, [(6, "Reached destination")]),
+        (events.MODE_REFUSED, 99, numbers.NO_SUCH_MODE, [(4, "No such mode 99")]),
+        (events.MODE_REFUSED, 11, numbers.INIT_FAILED, [(4, "Flight mode change failed")]),
+        (
+            events.MODE_REFUSED,
+            10,
+            numbers.NO_MISSION,
+            [(5, "No Mission. Can't set AUTO."), (4, "Flight mode change failed")],
+        ),
+        (events.CRASH_HOLD, 0, 0, [(0, "Crash: Going to HOLD")]),
+        (events.FAILSAFE, 1, 1, [(4, "Radio Failsafe")]),
+        (events.FAILSAFE, 1, 0, [(6, "Radio Failsafe Cleared")]),
+        (events.FAILSAFE, failsafe.CONTINUES, 1, [(4, "Failsafe - Continuing Auto Mode")]),
+        (events.FAILSAFE, 5, 1, [(2, "EKF failsafe")]),
+        (events.CIRCLE_ADAPTED, 1, 2.0, [(4, "Circle: radius increased to TURN_RADIUS ( 2.0)")]),
+        (events.PATH_LOST, 1, 0, [(4, "SmartRTL deactivated: buffer full")]),
+        (events.LANDED, 0, 0, []),
+    ],
+)
+def test_what_is_said(code: int, a: float, b: float, said: list[tuple[int, str]]) -> None:
+    assert texts.texts(code, a, b) == said

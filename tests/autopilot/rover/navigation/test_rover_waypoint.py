@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Legs, corners, speed changes, reversing and pivot turns, driven in plain Python."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sitl.autopilot.events import LEG_ENDING
+from sitl.autopilot.navigation import path
+from sitl.autopilot.navigation.state import SPEED_REQUEST
+from sitl.autopilot.rover.modes.numbers import GUIDED
+from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.rover.navigation import pivot, waypoint
+from sitl.autopilot.rover.navigation.planner import PLANNER
+from tests.autopilot.rover.modes.driven_rover import Rover
+
+SKID = {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
+
+
+class Driver(Rover):
+    """Armed in GUIDED; destinations are given to ``navigation.waypoint``, the mode drives after it."""
+
+    def __init__(self, **params: float) -> None:
+        super().__init__(**params)
+        self.run(2.0)
+        self.arm()
+        assert request(self.v, GUIDED, 2) == 0
+        self.rows: list[tuple[float, ...]] = []
+
+    def to(self, n: float, e: float) -> Driver:
+        """Go there along a leg."""
+        waypoint.set_destination(self.v, n, e)
+        return self.follow()
+
+    def follow(self) -> Driver:
+        """Let GUIDED drive after what ``waypoint`` has."""
+        self.ap.modes.guided.submode = 1
+        self.ap.modes.guided.has_target = 1
+        PLANNER.serve(self.ap, int(self.v.time_us))
+        return self
+
+    def step(self) -> None:
+        """One period; a change of speed asks the shell for new legs."""
+        super().step()
+        if (LEG_ENDING, SPEED_REQUEST, 0.0) in self.events():
+            PLANNER.change_speed(self.ap)
+
+    def until_reached(self, most: float = 60.0) -> float:
+        """Seconds until the destination is reached; infinity when it is not."""
+        for k in range(round(most / 0.02)):
+            self.step()
+            nav = self.ap.modes.nav
+            self.rows.append((*self.position, self.speed, float(nav.pos[0]), float(nav.pos[1])))
+            if waypoint.reached(self.ap):
+                return 0.02 * (k + 1)
+        return math.inf
+
+
+def test_a_leg_ends_at_its_destination() -> None:
+    p = Driver().to(30.0, 0.0)
+    assert path.distance(p.ap) == pytest.approx(30.0)
+    assert path.bearing(p.ap) == 0.0
+    assert p.until_reached() < 20.0
+    assert p.position[0] == pytest.approx(30.0, abs=3.0)
+    p.run(5.0)
+    assert abs(p.speed) < 0.05
+    assert p.position[0] == pytest.approx(30.0, abs=1.0)
+
+
+def test_not_reached_while_the_next_leg_is_planned() -> None:
+    p = Driver().to(10.0, 0.0)
+    p.until_reached()
+    waypoint.set_destination(p.v, 20.0, 0.0)
+    assert not waypoint.reached(p.ap)
+    PLANNER.serve(p.ap, int(p.v.time_us))
+    assert not waypoint.reached(p.ap)
+    assert p.ap.modes.nav.current.origin[0] == pytest.approx(10.0)  # goes on from the end of the last leg
+
+
+def test_a_corner_is_rounded_without_a_stop_and_near_the_waypoint() -> None:
+    p = Driver()
+    waypoint.set_destinations(p.v, 25.0, 0.0, 25.0, 25.0)
+    p.follow()
+    assert waypoint.is_fast(p.ap)
+    p.until_reached()
+    p.to(25.0, 25.0)
+    assert p.ap.modes.nav.joined == 1
+    p.until_reached()
+    rows = np.array(p.rows)
+    corner = rows[(np.hypot(rows[:, 0] - 25.0, rows[:, 1]) < 6.0)]
+    assert corner[:, 2].min() > 1.5
+    target_gap = np.hypot(rows[:, 3] - 25.0, rows[:, 4]).min()
+    assert 0.5 < target_gap < 3.3  # WP_RADIUS holds in the middle of the turn
+    assert np.hypot(rows[:, 0] - 25.0, rows[:, 1]).min() < 4.0
+
+
+def test_beyond_the_finish_line_counts_as_reached() -> None:
+    p = Driver(WP_RADIUS=0.5).to(10.0, 0.0)
+    p.place(12.0, 8.0)
+    assert p.until_reached(30.0) < 30.0
+
+
+def test_crosstrack_is_negative_on_the_right() -> None:
+    p = Driver().to(20.0, 0.0)
+    p.place(5.0, 2.0)
+    p.step()
+    assert p.ap.modes.nav.drive.crosstrack == pytest.approx(-2.0, abs=0.05)
+    waypoint.stop(p.v)
+    assert p.ap.modes.nav.drive.crosstrack == 0.0
+
+
+def test_speed_changes_on_the_way_and_not_more_than_twice_a_second() -> None:
+    p = Driver().to(100.0, 0.0)
+    p.run(8.0)
+    assert p.speed > 4.0
+    assert waypoint.set_speed(p.ap, 2.0) == 1
+    p.run(8.0)
+    assert p.speed == pytest.approx(2.0, abs=0.15)
+    for wrong in (math.nan, math.inf, 0.0, -1.0, 0.01):
+        assert waypoint.set_speed(p.ap, wrong) == 0
+    assert waypoint.top_speed(p.ap) == 2.0
+    for nudge, seen in ((3.0, 3.0), (4.0, 3.0), (1.0, 3.0)):
+        waypoint.set_nudge_speed(p.ap, nudge)
+        waypoint.update(p.v)
+        assert p.ap.control.position.speed_max == seen
+    p.run(0.6)
+    assert p.ap.control.position.speed_max == 2.0
+    assert p.until_reached() < 60.0
+
+
+def test_backwards() -> None:
+    p = Driver()
+    waypoint.set_reversed(p.ap, 1)
+    p.to(-20.0, 0.0)
+    p.run(5.0)
+    assert p.speed < -1.0
+    assert p.position[0] < -2.0
+    assert abs(math.degrees(p.heading)) < 10.0
+    p.until_reached()
+    assert p.position == pytest.approx((-20.0, 0.0), abs=3.0)
+
+
+def test_a_shaped_destination_may_change_at_any_time() -> None:
+    p = Driver()
+    for k in range(20):
+        waypoint.set_destination_shaped(p.v, 10.0 + k, 0.0)
+        p.follow()
+        p.run(0.2)
+    assert p.speed > 1.0
+    assert p.until_reached() < 30.0
+    assert p.position[0] == pytest.approx(29.0, abs=3.0)
+
+
+@pytest.mark.parametrize("backward", [0, 1])
+def test_straight_behind_is_no_way_without_end(backward: int) -> None:
+    """Nothing pushes a car to either side then; it turns all the same."""
+    p = Driver()
+    waypoint.set_reversed(p.ap, backward)
+    p.to(20.0 if backward else -20.0, 0.0)
+    assert p.until_reached() < 40.0
+
+
+@pytest.mark.parametrize("because", ["disarmed", "no position", "no destination"])
+def test_brakes_when_it_cannot_go(because: str) -> None:
+    p = Driver().to(50.0, 0.0)
+    p.run(6.0)
+    if because == "disarmed":
+        p.ap.arming.armed = 0
+    elif because == "no position":
+        p.ap.estimate.position_ok = 0
+    else:
+        waypoint.stop(p.v)
+    before = float(p.ap.control.speed.desired)
+    waypoint.update(p.v)
+    drive = p.ap.modes.nav.drive
+    assert 0.0 < drive.desired_speed < before
+    assert drive.desired_turn_rate == drive.crosstrack == 0.0
+
+
+def test_pivot_turn() -> None:
+    """A skid-steered vehicle stops, turns on the spot, waits WP_PIVOT_DELAY, goes on; a car never does."""
+    assert not pivot.would_turn(Driver().ap, math.pi)
+    p = Driver(**SKID, WP_PIVOT_DELAY=1.0)
+    assert pivot.would_turn(p.ap, math.radians(61.0))
+    assert not pivot.would_turn(p.ap, math.radians(59.0))
+    p.to(0.0, 20.0)
+    assert pivot.is_active(p.ap)
+    waypoint.update(p.v)
+    assert p.ap.modes.nav.drive.desired_speed == 0.0
+    assert 0.0 < p.ap.modes.nav.drive.desired_turn_rate <= math.radians(60.0) + 1e-9
+    p.place(0.0, 0.0, math.radians(88.0))
+    waypoint.update(p.v)
+    assert pivot.is_active(p.ap)
+    p.v.time_us += 1_100_000
+    waypoint.update(p.v)
+    assert not pivot.is_active(p.ap)
+
+
+def test_reversed_on_the_way_a_skid_steered_vehicle_turns_round() -> None:
+    """Else it would stand for ever with its nose where its tail should go."""
+    p = Driver(**SKID).to(60.0, 0.0)
+    p.place(10.0, 0.0)
+    waypoint.set_reversed(p.ap, 1)
+    assert pivot.is_active(p.ap)
+    waypoint.update(p.v)
+    assert abs(p.ap.modes.nav.drive.desired_turn_rate) > 0.5
+    pivot.end(p.ap)
+    waypoint.set_reversed(p.ap, 1)  # said again, it changes nothing
+    assert not pivot.is_active(p.ap)
+
+
+@pytest.mark.parametrize(("backward", "turn"), [(0, 1.0), (1, -1.0)])
+def test_standing_it_turns_as_for_the_way_it_will_drive(backward: int, turn: float) -> None:
+    """Towards a destination on the right of its nose or, backwards, away from it."""
+    p = Driver(**SKID, WP_PIVOT_ANGLE=0.0)
+    waypoint.set_reversed(p.ap, backward)
+    p.to(20.0, 5.0)
+    for _ in range(100):
+        waypoint.update(p.v)
+        p.v.time_us += 20_000
+        p.ap.control.tick += 1
+    assert p.ap.modes.nav.drive.desired_turn_rate * turn > 0.0
+
+
+def test_a_pivot_corner_is_a_stop() -> None:
+    p = Driver(**SKID)
+    waypoint.set_destinations(p.v, 20.0, 0.0, 20.0, 20.0)
+    p.follow()
+    assert not waypoint.is_fast(p.ap)
+    assert p.ap.modes.nav.drive.pivot_next == 1
+    waypoint.set_destinations(p.v, 20.0, 0.0, 40.0, 10.0)
+    p.follow()
+    assert waypoint.is_fast(p.ap)
+
+
+def test_wp_pivot_angle_of_zero_means_none() -> None:
+    p = Driver(**SKID, WP_PIVOT_ANGLE=0.0)
+    assert not pivot.would_turn(p.ap, math.pi)
+
+
+def test_limits_that_its_motion_does_not_fit_leave_the_leg_as_it_is() -> None:
+    p = Driver(ATC_ACCEL_MAX=5.0, WP_ACCEL=5.0, WP_JERK=5.0, WP_SPEED=30.0).to(300.0, 0.0)
+    p.run(1.5)
+    leg = p.ap.modes.nav.current
+    before = float(leg.duration)
+    p.ap.params.WP_ACCEL = p.ap.params.WP_JERK = 0.01
+    waypoint.set_speed(p.ap, 2.0)
+    p.run(1.0)
+    assert float(leg.duration) == before
+
+
+def test_limits() -> None:
+    ap = Driver(ATC_ACCEL_MAX=0.0, WP_ACCEL=0.0, WP_JERK=0.0).ap
+    assert waypoint.accel_max(ap) == waypoint.UNLIMITED
+    ap.params.ATC_ACCEL_MAX, ap.params.ATC_DECEL_MAX = 2.0, 1.5
+    assert waypoint.accel_max(ap) == 1.5
+    assert waypoint.jerk_max(ap) == 1.5
+    ap.params.WP_ACCEL, ap.params.WP_JERK = 0.5, 3.0
+    assert (waypoint.accel_max(ap), waypoint.jerk_max(ap)) == (0.5, 3.0)
+    ap.params.TURN_RADIUS = 7.0
+    assert waypoint.corner_radius(ap) == 7.0

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Failsafes: what sets them off, when, and what follows."""
+
+from __future__ import annotations
+
+import pytest
+
+from sitl.autopilot.rover import pilot
+from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, MANUAL, RTL, SMART_RTL
+from sitl.autopilot.rover.modes.set_mode import request
+from tests.autopilot.rover.modes.driven_rover import Rover
+
+
+def driving(**params: float) -> Rover:
+    rover = Rover(**params).arm()
+    rover.run(1.5)
+    rover.place(20.0, 0.0)
+    rover.sticks(throttle=1600)
+    rover.run(0.5)
+    rover.events()
+    return rover
+
+
+def lose_radio(rover: Rover, seconds: float) -> None:
+    rover.sticks(throttle=890)
+    rover.run(seconds)
+
+
+def test_a_lost_radio_centres_the_sticks_at_once_and_acts_later() -> None:
+    rover = driving()
+    lose_radio(rover, 0.04)
+    assert pilot.steering_and_throttle(rover.ap) == (0.0, 0.0)
+    rover.run(0.5)
+    assert rover.ap.control.motors.throttle == 0.0
+    assert rover.ap.modes.number == MANUAL
+    rover.run(1.1)
+    assert rover.ap.modes.number == HOLD
+    assert rover.texts()[0] == "Radio Failsafe"
+
+
+@pytest.mark.parametrize(
+    ("action", "mode"), [(0, MANUAL), (1, RTL), (2, HOLD), (3, SMART_RTL), (4, SMART_RTL)], ids=str
+)
+def test_fs_action(action: int, mode: int) -> None:
+    rover = driving(FS_ACTION=float(action))
+    lose_radio(rover, 1.7)
+    assert rover.ap.modes.number == mode
+
+
+def test_smart_rtl_without_a_path_becomes_rtl_or_hold() -> None:
+    for action, mode in ((3, RTL), (4, HOLD)):
+        rover = driving(FS_ACTION=float(action), SRTL_POINTS=0.0)
+        lose_radio(rover, 1.7)
+        assert rover.ap.modes.number == mode
+
+
+def test_a_radio_that_returns_in_time_is_forgiven() -> None:
+    rover = driving()
+    lose_radio(rover, 1.4)
+    rover.sticks(throttle=1500)
+    rover.run(2.0)
+    assert rover.ap.modes.number == MANUAL
+    assert rover.texts() == []
+
+
+def test_cleared_is_said_and_the_mode_stays() -> None:
+    rover = driving()
+    lose_radio(rover, 2.0)
+    assert rover.ap.rc.override[2] == 0  # overrides are dropped: the receiver takes over
+    rover.run(0.1)
+    assert rover.texts() == ["Radio Failsafe", "Radio Failsafe Cleared"]
+    assert rover.ap.modes.number == HOLD
+
+
+def test_hold_is_left_alone_unless_fs_options_says_so() -> None:
+    for options, mode in ((0.0, HOLD), (1.0, RTL)):
+        rover = driving(FS_ACTION=1.0, FS_OPTIONS=options)
+        request(rover.v, HOLD, 2)
+        lose_radio(rover, 2.0)
+        assert rover.ap.modes.number == mode
+
+
+def test_a_mission_goes_on_without_radio_when_told_so() -> None:
+    rover = driving(FS_THR_ENABLE=2.0)
+    rover.ap.modes.mission_count = 2
+    assert request(rover.v, AUTO, 2) == 0
+    rover.events()
+    lose_radio(rover, 2.0)
+    assert rover.ap.modes.number == AUTO
+    assert rover.texts()[:2] == ["Radio Failsafe", "Failsafe - Continuing Auto Mode"]
+
+
+def test_ground_station_lost() -> None:
+    rover = driving(FS_GCS_ENABLE=1.0)
+    rover.ap.modes.failsafe.gcs_us = int(rover.v.time_us)
+    rover.run(6.4)
+    assert rover.ap.modes.number == MANUAL
+    rover.run(0.4)
+    assert rover.ap.modes.number == HOLD
+    assert rover.texts() == ["GCS Failsafe"]
+
+
+@pytest.mark.parametrize(("action", "mode"), [(1, RTL), (2, HOLD), (3, SMART_RTL)])
+def test_battery_low(action: int, mode: int) -> None:
+    rover = driving(BATT_LOW_VOLT=10.5, BATT_LOW_TIMER=1.0, BATT_FS_LOW_ACT=float(action))
+    rover.v.sensors.battery_voltage = 10.0
+    rover.run(1.3)
+    assert rover.ap.modes.number == mode
+
+
+def test_battery_critical_may_disarm() -> None:
+    rover = driving(BATT_CRT_VOLT=10.5, BATT_LOW_TIMER=1.0, BATT_FS_CRT_ACT=5.0)
+    rover.v.sensors.battery_voltage = 10.0
+    rover.run(1.3)
+    assert rover.ap.arming.armed == 0
+
+
+def test_bad_estimate_ends_modes_that_need_a_position() -> None:
+    rover = driving()
+    request(rover.v, GUIDED, 2)
+    rover.events()
+    rover.set_estimate(False)
+    rover.run(0.8)
+    assert rover.ap.modes.number == GUIDED
+    rover.run(0.4)
+    assert rover.ap.modes.number == HOLD
+    assert rover.texts() == ["EKF variance", "EKF failsafe"]
+    rover.set_estimate(True)
+    rover.run(1.3)
+    assert rover.texts() == ["EKF failsafe cleared"]
+
+
+def test_bad_estimate_is_no_matter_in_manual_nor_before_it_was_good() -> None:
+    rover = driving()
+    rover.set_estimate(False)
+    rover.run(2.0)
+    assert rover.ap.modes.number == MANUAL
+    never = Rover()
+    never.set_estimate(False)
+    never.arm().run(3.0)
+    assert "EKF variance" not in never.texts()

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The two ends of the link as machines of bytes: lockstep, repetitions, other worlds, numbers that cannot be right."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pytest
+
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter
+from sitl.bridge.hil import controls, sensor, truth
+from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
+from sitl.bridge.hil.foreign_clock import LATE
+from sitl.bridge.hil.sender import Sender
+from sitl.core.records import first_difference
+from tests.bridge.hil.hil_bench import Bench
+
+PX4 = 12
+
+
+def names(data: bytes) -> list[str]:
+    return [frame.kind.name for frame in Splitter().feed(data)]
+
+
+def decoded(data: bytes, name: str):
+    return [frame.kind.decode(frame.payload) for frame in Splitter().feed(data) if frame.kind.name == name]
+
+
+@pytest.fixture
+def bench() -> Bench:
+    bench = Bench()
+    assert bench.join() == TAKEN
+    return bench
+
+
+def test_joining_takes_the_state_and_no_time(bench: Bench) -> None:
+    assert bench.there.time_us == 0 and bench.physics.log == []
+    assert first_difference(bench.autopilot.fleet[1]["sensors"], bench.physics.fleet[1]["sensors"]) is None
+
+
+def test_each_answer_is_one_tick(bench: Bench) -> None:
+    for k in range(100):
+        assert bench.tick(0.01 * k) == TAKEN
+        assert bench.autopilot.v.time_us == bench.physics.v.time_us == 2500 * (k + 1)
+        assert bench.autopilot.v.tick == k + 1
+    assert bench.physics.log == [round(0.01 * k, 6) for k in range(100)]
+    assert first_difference(bench.autopilot.fleet[1]["sensors"], bench.physics.fleet[1]["sensors"]) is None
+
+
+def test_a_repeated_answer_is_not_flown_twice(bench: Bench) -> None:
+    answer = bench.here.controls()
+    first = bench.there.feed(answer)
+    assert bench.there.feed(answer) == first
+    assert bench.there.ticks == bench.there.repeated == 1
+    assert bench.here.feed(first) == TAKEN
+    assert bench.here.feed(first) == WAITING  # the same tick again
+    assert bench.here.repeated == 1 and bench.autopilot.v.time_us == 2500
+
+
+def test_controls_stay_the_same_until_they_are_answered(bench: Bench) -> None:
+    first = bench.here.controls()
+    bench.autopilot.v.actuators.controls[0] = 0.7
+    assert bench.here.controls() == first
+    bench.here.feed(bench.there.feed(first))
+    assert bench.here.controls() != first
+
+
+def test_a_link_lost_before_and_after_the_tick_resumes_exactly(bench: Bench) -> None:
+    bench.tick(0.1)
+    bench.autopilot.v.actuators.controls[0] = 0.2
+    bench.here.controls()  # lost on the way there
+    bench.there.greet()
+    assert bench.here.feed(bench.there.feed(bench.here.hello({}) + bench.here.controls())) == TAKEN
+    bench.autopilot.v.actuators.controls[0] = 0.3
+    bench.there.feed(bench.here.controls())  # its tick is lost on the way back
+    bench.there.greet()
+    assert bench.here.feed(bench.there.feed(bench.here.hello({}) + bench.here.controls())) == TAKEN
+    assert bench.physics.log == [0.1, 0.2, 0.3]
+    assert first_difference(bench.autopilot.fleet[1]["sensors"], bench.physics.fleet[1]["sensors"]) is None
+
+
+def test_physics_that_began_anew_is_another_world(bench: Bench) -> None:
+    for _ in range(5):
+        bench.tick()
+    bench.physics.power_on()
+    bench.say("COMMAND_LONG", command=246, param1=1)
+    before = bench.autopilot.v.time_us
+    assert bench.tick() == ELSEWHERE
+    assert bench.autopilot.v.time_us == before
+    bench.physics.log.clear()
+    assert bench.here.feed(bench.there.feed(bench.here.hello({}) + bench.here.ask_reboot())) == TAKEN
+    assert bench.physics.log == ["power on"] and bench.autopilot.v.time_us == 0
+
+
+def test_a_tick_under_way_is_not_taken_for_the_one_after_a_reboot(bench: Bench) -> None:
+    bench.tick()
+    late = bench.there.feed(bench.here.controls())
+    answer = bench.there.feed(bench.here.ask_reboot())
+    assert bench.here.feed(late) == WAITING
+    assert bench.here.feed(answer) == TAKEN
+    assert bench.autopilot.v.time_us == 0
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e9])
+def test_physics_refuses_absurd_controls_and_holds_time(bench: Bench, bad: float) -> None:
+    outputs = [0.0] * 16
+    outputs[5] = bad
+    for _ in range(3):
+        answer = bench.say("HIL_ACTUATOR_CONTROLS", time_usec=0, controls=outputs, flags=1)
+        assert "HIL_SENSOR" not in names(answer)
+    assert bench.there.refused == 3 and len(bench.there.notes) == 1 and "controls[5]" in bench.there.notes[0]
+    assert bench.there.ticks == 0
+    assert bench.tick() == TAKEN
+
+
+@pytest.mark.parametrize("field", ["xacc", "zgyro", "ymag", "abs_pressure", "temperature"])
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -1e30])
+def test_the_autopilot_refuses_absurd_sensors_and_holds_time(bench: Bench, field: str, bad: float) -> None:
+    good = bench.there.feed(bench.here.controls())
+    before = bench.autopilot.fleet.copy()
+    spoilt = Sender(1, 158).frame(
+        sensor.KIND, sensor.KIND.payload(**{**decoded(good, "HIL_SENSOR")[0]._asdict(), field: bad})
+    )
+    assert bench.here.feed(spoilt) == WAITING
+    assert bench.here.refused == 1 and field in bench.here.notes[0]
+    assert first_difference(before[1], bench.autopilot.fleet[1]) is None
+    assert bench.here.feed(good) == TAKEN
+
+
+def test_a_bad_gps_fix_spoils_its_tick(bench: Bench) -> None:
+    good = bench.there.feed(bench.here.controls())
+    gps = message("HIL_GPS")
+    bad = Sender(1, 158).frame(gps, gps.payload(time_usec=2500, lat=2_000_000_000, fix_type=3))
+    assert bench.here.feed(bad + good) == WAITING
+    assert bench.autopilot.v.sensors.gps_count == 0 and bench.autopilot.v.time_us == 0
+    assert bench.here.feed(good) == TAKEN
+
+
+def test_bytes_in_pieces_and_rubbish_between_frames(bench: Bench) -> None:
+    rng = random.Random(4)
+    for _ in range(50):
+        data = rng.randbytes(rng.randrange(20)) + b"\xfd\xff" + bench.here.controls()
+        answer = b"".join(bench.there.feed(data[k : k + 7]) for k in range(0, len(data), 7))
+        while not answer:  # what looked like a frame is waited for
+            answer = bench.there.feed(bench.here.controls())
+        found = [bench.here.feed(answer[k : k + 11]) for k in range(0, len(answer), 11)]
+        assert TAKEN in found
+    assert bench.autopilot.v.time_us == bench.physics.v.time_us == 50 * 2500
+
+
+def test_parameters_and_seeds_go_before_the_next_controls(bench: Bench) -> None:
+    bench.tick(0.5)
+    bench.here.set_parameter("SIM_WIND_SPD", 4.5)
+    bench.here.reseed(-2)
+    bench.tick(0.6)
+    assert bench.physics.log == [0.5, ("SIM_WIND_SPD", 4.5), ("seed", (1 << 64) - 2), 0.6]
+
+
+def test_truth_on_demand(bench: Bench) -> None:
+    bench.tick()
+    body = bench.physics.v.physics.body
+    body.vel, body.q = (1.0, -2.0, 0.5), (0.6, 0.0, 0.0, 0.8)
+    bench.here.feed(bench.there.feed(bench.here.ask_truth()))
+    assert bench.here.truth_us == 2500
+    assert bench.here.truth == bench.physics.truth()
+    assert bench.physics.log == [0.0]
+
+
+def test_px4_time_goes_by_itself_until_it_drives() -> None:
+    bench = Bench()
+    bench.there.greet()
+    assert not bench.there.freewheels  # silent so far
+    command = message("COMMAND_LONG")
+    bench.say("COMMAND_LONG", command=511, param1=truth.KIND.id, param2=5000)
+    bench.say("HEARTBEAT", autopilot=PX4)
+    assert bench.there.freewheels
+    assert "COMMAND_ACK" not in names(bench.there.go_on())
+    ticks = [names(bench.there.go_on()) for _ in range(4)]
+    assert sum("HIL_STATE_QUATERNION" in tick for tick in ticks) == 2
+    assert all(tick[-1] == "HIL_SENSOR" for tick in ticks)
+    answer = bench.say("HIL_ACTUATOR_CONTROLS", time_usec=9000, controls=[0.4], flags=1)  # by its own clock
+    assert names(answer)[-1] == "HIL_SENSOR" and not bench.there.freewheels
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=9000, controls=[0.5], flags=1) == b""
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=11000, controls=[0.6], flags=1)
+    assert bench.physics.log[5:] == [round(0.838 * part, 6) for part in (0.4, 0.6)]  # of the rotors' range
+    assert command.id == 76
+
+
+def test_px4_that_answers_late_is_waited_for_by_going_on() -> None:
+    """Its clock counts from the first tick that it got: at 12.5 ms here it is 10 ms there."""
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    for _ in range(5):
+        bench.there.go_on()
+    for late in (5000, 7500):  # two ticks are still under way to it
+        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=late, controls=[0.4], flags=1) == b""
+        assert bench.there.freewheels
+    assert names(bench.say("HIL_ACTUATOR_CONTROLS", time_usec=10_000, controls=[0.4], flags=1))[-1] == "HIL_SENSOR"
+    assert not bench.there.freewheels and bench.there.time_us == 15_000
+
+
+def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    bench.there.go_on()
+    answers = 0
+    while bench.there.freewheels:
+        bench.there.go_on()
+        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=2500 * answers, controls=[0.4], flags=1)
+        answers += 1
+    assert answers == LATE + 1
+
+
+def test_an_autopilot_without_lockstep_never_stops_time() -> None:
+    bench = Bench()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5, controls=[0.4], flags=0) == b""
+    assert bench.there.freewheels
+    bench.there.go_on()
+    assert bench.physics.log == [round(0.838 * 0.4, 6)]
+
+
+def test_sticks_of_the_physics_side(bench: Bench) -> None:
+    bench.there.move_sticks((1500, 1500, 1200))
+    bench.tick()
+    bench.tick()
+    s = bench.autopilot.v.sensors
+    assert (s.rc_count, s.rc_time_us, int(s.rc_channels[2])) == (1, 2500, 1200)
+
+
+def test_an_autopilot_of_another_vehicle_is_not_answered() -> None:
+    bench = Bench()
+    bench.there._type = 10
+    answer = bench.there.feed(bench.here.hello({}) + bench.here.ask_state())
+    assert names(answer) == ["STATUSTEXT"] and "MAV_TYPE 2" in bench.there.notes[0]
+    assert bench.here.feed(answer) == WAITING and "MAV_TYPE 2" in bench.here.notes[0]
+
+
+def test_unknown_commands_and_parameters(bench: Bench) -> None:
+    assert decoded(bench.say("COMMAND_LONG", command=22), "COMMAND_ACK")[0].result == 3
+    assert decoded(bench.say("COMMAND_LONG", command=512, param1=30), "COMMAND_ACK")[0].result == 2
+    assert bench.say("PARAM_SET", param_id=b"ATC_RAT_RLL_P", param_value=9.0) == b""
+    nan = bench.say("COMMAND_LONG", command=511, param1=truth.KIND.id, param2=math.nan)
+    assert decoded(nan, "COMMAND_ACK")[0].result == 2
+    assert controls.KIND.id == 93

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a record to messages and back: the same bits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sitl.bridge.frame import Splitter
+from sitl.bridge.hil import battery, controls, gps, hits, ranging, sensor, sticks, truth, wheels
+from sitl.bridge.hil.inbox import Inbox
+from sitl.bridge.hil.measurements import Measurements
+from sitl.bridge.hil.numbers import RefusedError
+from sitl.core.record_reader import RecordReader
+from sitl.core.records import first_difference
+from sitl.physics.carried import Carried
+from sitl.vehicle.kinds import KINDS
+from sitl.vehicles import apply, load
+from tests.bridge.hil.hil_bench import Vehicle
+
+single = st.floats(-90.0, 90.0, width=32)
+
+
+def reader(vehicle: Vehicle) -> RecordReader:
+    return RecordReader(vehicle.fleet, vehicle.index)
+
+
+def across(source: Vehicle, is_all: bool = True) -> Vehicle:
+    """A vehicle that has taken all that ``source`` measures."""
+    other = Vehicle()
+    inbox = Inbox(other.fleet, other.index, other.v)
+    *kept, last = Splitter().feed(Measurements(source.fleet, source.index, source.v).everything())
+    for frame in kept:
+        inbox.keep(frame.kind.id, frame.payload)
+    values = inbox.end(last.payload)
+    assert values is not None
+    inbox.take(values, is_all)
+    return other
+
+
+@given(st.lists(single, min_size=9, max_size=9), st.floats(300.0, 1100.0, width=32), st.integers(0, 1 << 40))
+def test_imu_and_clock(values: list[float], pressure: float, tick: int) -> None:
+    source = Vehicle()
+    v, s = source.v, source.v.sensors
+    v.time_us = s.time_us = 2500 * tick
+    v.tick = tick
+    s.acc, s.gyro, s.mag, s.abs_pressure, s.temperature = values[:3], values[3:6], values[6:], pressure, -3.25
+    s.mag_count = s.baro_count = 1
+    other = across(source)
+    assert first_difference(other.fleet[1]["sensors"], source.fleet[1]["sensors"]) is None
+    assert other.v.time_us == v.time_us and other.v.tick == tick
+
+
+def test_updated_flags_follow_the_counters() -> None:
+    source = Vehicle()
+    writer = sensor.SensorWriter(reader(source))
+    flags = []
+    for mag, baro in ((1, 1), (1, 1), (2, 1), (2, 2)):
+        source.v.sensors.mag_count, source.v.sensors.baro_count = mag, baro
+        flags.append(sensor.SensorReader.read(writer.payload())[14])
+    assert flags == [0x1BFF, 0x3F, 0x1FF, 0x1A3F]
+
+
+@given(
+    st.integers(-900_000_000, 900_000_000),
+    st.integers(-1_800_000_000, 1_800_000_000),
+    st.integers(-500_000, 9_000_000),
+    st.lists(st.integers(-20_000, 20_000), min_size=3, max_size=3),
+    st.sampled_from((1, 3)),
+)
+def test_gps(lat: int, lon: int, alt: int, velocity: list[int], fix: int) -> None:
+    source = Vehicle()
+    s = source.v.sensors
+    s.gps_count, s.gps_time_us, s.gps_fix, s.gps_satellites = 1, 7500, fix, 10
+    s.gps_lat, s.gps_lon, s.gps_alt, s.gps_eph, s.gps_epv = lat, lon, alt, 9999, 150
+    s.gps_vel = velocity
+    other = across(source)
+    assert list(other.v.sensors.gps_vel) == velocity
+    for name in ("count", "time_us", "fix", "satellites", "lat", "lon", "alt", "eph", "epv"):
+        assert other.v.sensors["gps_" + name] == s["gps_" + name], name
+
+
+def test_the_same_fix_again_is_not_a_new_one() -> None:
+    source, other = Vehicle(), Vehicle()
+    source.v.sensors.gps_count, source.v.sensors.gps_time_us, source.v.sensors.gps_fix = 1, 200_000, 3
+    (payload,), taker = gps.GpsWriter(reader(source)).payloads(), gps.GpsReader(other.v)
+    taker.write(taker.read(payload))
+    source.v.sensors.gps_fix = 0  # the receiver is switched off
+    taker.write(taker.read(gps.GpsWriter(reader(source)).payloads()[0]))
+    assert other.v.sensors.gps_count == 1 and other.v.sensors.gps_fix == 0
+
+
+@given(st.integers(0, 400_000), st.integers(0, 32_000))
+def test_battery(millivolts: int, centiamperes: int) -> None:
+    source = Vehicle()
+    s = source.v.sensors
+    s.battery_voltage, s.battery_current = 0.001 * millivolts, 0.01 * centiamperes
+    t = across(source).v.sensors
+    assert (t.battery_voltage, t.battery_current) == (s.battery_voltage, s.battery_current)
+
+
+def test_a_battery_without_cells_is_refused() -> None:
+    with pytest.raises(RefusedError):
+        battery.BatteryReader.read(battery.KIND.payload(voltages=(65535,) * 10))
+
+
+@given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6))
+def test_wheels(left: float, right: float) -> None:
+    source = Vehicle()
+    source.v.sensors.wheel_count, source.v.sensors.wheel_distance = 1, (left, right)
+    other = across(source)
+    assert list(other.v.sensors.wheel_distance) == [left, right] and other.v.sensors.wheel_count == 1
+
+
+@pytest.mark.parametrize("distance", [(math.nan, 0.0), (0.0, math.inf)])
+def test_wheels_that_roll_nowhere_are_refused(distance: tuple[float, float]) -> None:
+    with pytest.raises(RefusedError, match="distance"):
+        wheels.WheelReader.read(wheels.KIND.payload(distance=distance, count=2))
+
+
+def test_a_whole_scan_and_a_range() -> None:
+    source = Vehicle()
+    s, samples = source.v.sensors, int(source.v.physics.airframe.lidar_samples)
+    assert samples > ranging.PART
+    s.lidar_ranges[:samples] = np.linspace(0.1, 9.0, samples)
+    s.lidar_ranges[3:7] = np.inf
+    s.lidar_count, s.lidar_time_us, s.rangefinder_count, s.rangefinder_range = 1, 25_000, 1, (1.2345678,)
+    other = across(source)
+    assert (
+        first_difference(other.fleet[1]["sensors"]["lidar_ranges"], source.fleet[1]["sensors"]["lidar_ranges"]) is None
+    )
+    assert other.v.sensors.rangefinder_range[0] == s.rangefinder_range[0]
+    assert (other.v.sensors.lidar_count, other.v.sensors.lidar_time_us) == (1, 25_000)
+    assert other.v.sensors.rangefinder_count == 1
+
+
+def test_a_scan_of_another_lidar_is_refused() -> None:
+    source = Vehicle()
+    taker = ranging.ScanReader(source.v, 100)
+    first = ranging.SCAN.payload(name=b"LASER", data=[1.0] * 58, array_id=0)
+    taker.read(first)
+    for number, data in ((1, [1.0] * 58), (2, [1.0] * 58), (1, [1.0] * 42 + [math.nan] * 15 + [1.0]), (0, [-1.0] * 58)):
+        with pytest.raises(RefusedError):
+            taker.read(ranging.SCAN.payload(name=b"LASER", data=data, array_id=number))
+
+
+def test_a_scan_with_a_part_missing_is_not_shown() -> None:
+    source = Vehicle()
+    taker = ranging.ScanReader(source.v, 100)
+    last = ranging.SCAN.payload(name=b"LASER", data=[1.0] * 42 + [math.nan] * 16, array_id=1)
+    taker.write(taker.read(last))  # type: ignore[arg-type]
+    assert source.v.sensors.lidar_count == 0
+
+
+def test_hits_in_this_tick_only() -> None:
+    source = Vehicle()
+    source.v.time_us = 5000
+    ground = source.v.physics.ground
+    ground.hit_count, ground.hit_speed, ground.hit_time_us = 3, 1.25, 5000
+    other = across(source)
+    assert (other.v.physics.ground.hit_count, other.v.physics.ground.hit_speed) == (1, 1.25)
+    assert other.v.physics.ground.hit_time_us == 5000
+    ground.hit_time_us = 2500
+    assert across(source).v.physics.ground.hit_count == 0
+    assert hits.HitReader(other.v).read(hits.KIND.payload(name=b"WHATEVER", x=math.nan)) is None
+
+
+@given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=16, max_size=16), st.booleans())
+def test_controls(outputs: list[float], armed: bool) -> None:
+    source, other = Vehicle(), Vehicle()
+    source.v.time_us, source.v.actuators.controls, source.v.actuators.armed = 7500, outputs, int(armed)
+    given_ = controls.read_controls(controls.controls_writer(reader(source))())
+    controls.actuators_writer(other.fleet, other.index)(given_)
+    assert given_.time_us == 7500 and given_.is_lockstep and given_.is_armed == armed
+    assert other.v.actuators.controls.tobytes() == source.v.actuators.controls.tobytes()
+    assert other.v.actuators.armed == armed
+
+
+@pytest.mark.parametrize(
+    ("frame", "lowest", "highest"),
+    [("ardupilot_quad", 0.15, 0.95), ("erle_copter", 0.0, 0.838), ("erle_rover", 0.0, 1.0)],
+)
+def test_parts_of_the_rotors_range(frame: str, lowest: float, highest: float) -> None:
+    airframe = load(frame)
+    v = KINDS[airframe.kind].record()
+    apply(airframe, v)
+    span = controls.rotor_range(v.physics.airframe)
+    assert span == pytest.approx((lowest, highest))
+    given = controls.Controls(1, 1, (0.0, 0.5, 1.0), 129)
+    assert controls.stretch(given, *span).outputs == pytest.approx((lowest, 0.5 * (lowest + highest), highest))
+
+
+def test_truth() -> None:
+    told = Carried(
+        (0.5, 0.5, -0.5, 0.5), (0.25, 0.0, -1.5), -353632620, 1491652370, 584123, (12, -300, 7), (0, 5, -1000)
+    )
+    assert truth.read_truth(truth.truth_payload(123_000, told)) == (123_000, told)
+    with pytest.raises(RefusedError, match="attitude x"):
+        truth.read_truth(truth.truth_payload(0, told._replace(attitude=(1.0, math.nan, 0.0, 0.0))))
+
+
+def test_pressure_altitude_of_the_standard_atmosphere() -> None:
+    assert sensor.pressure_altitude(1013.25) == pytest.approx(0.0)
+    assert sensor.pressure_altitude(954.61) == pytest.approx(500.0, abs=1.0)
+
+
+def test_sticks() -> None:
+    other = Vehicle()
+    taker = sticks.SticksReader(other.v)
+    taker.write(taker.read(sticks.sticks_payload(5000, (1500, 1100, 1900))))
+    assert other.v.sensors.rc_channels.tolist() == [1500, 1100, 1900] + [0] * 9
+    assert (other.v.sensors.rc_count, other.v.sensors.rc_time_us) == (1, 5000)
+    with pytest.raises(RefusedError, match="chan2_raw = 3000"):
+        taker.read(sticks.sticks_payload(5000, (1500, 3000)))
+    kind, payload = sticks.frame_for(True, 5000, (1500, 1100))
+    assert kind.name == "RC_CHANNELS" and kind.decode(payload).chan2_raw == 1100

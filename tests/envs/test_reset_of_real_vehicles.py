@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A vehicle that does not prove to be a simulator is not reset: in the air, a reset would let it fall."""
+
+from __future__ import annotations
+
+import gymnasium as gym
+import pytest
+
+import sitl.envs  # noqa: F401
+from sitl.envs import EnvOptionError, NotASimulatorError
+from sitl.missions.pilot import Pilot
+from sitl.simulation import Simulation
+from tests.envs.real_vehicle import RealVehicle
+
+ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
+DISARM, MODE, REBOOT, REQUEST_MESSAGE = 400, 176, 246, 512
+QUESTIONS = {"PARAM_REQUEST_READ", "COMMAND_LONG"}
+
+
+def hovering() -> Simulation:
+    """A copter that hovers 5 m above the ground."""
+    simulation = Simulation("erle_copter")
+    pilot = Pilot(simulation)
+    pilot.boot()
+    pilot.arm()
+    pilot.send_command("NAV_TAKEOFF", altitude=5.0)
+    pilot.fly(10.0)
+    simulation.bridge.remove_link(pilot.connection.endpoint.link)
+    return simulation
+
+
+def height(simulation: Simulation) -> float:
+    return -float(simulation.v.autopilot.estimate.pos[2])
+
+
+def test_an_airborne_vehicle_that_may_be_real_hears_only_questions_and_flies_on():
+    simulation = hovering()
+    mode = int(simulation.v.autopilot.modes.number)
+    with RealVehicle(simulation) as vehicle:
+        env = gym.make(COPTER, connection=f"udpout:127.0.0.1:{vehicle.port}", patience=1.0)
+        for _ in range(2):
+            with (
+                pytest.warns(UserWarning, match="clock cannot be held"),
+                pytest.raises(
+                    NotASimulatorError, match=r"armed, in mode 4.*SIM_WIND_SPD.*in the air.*reset=\"reboot\""
+                ),
+            ):
+                env.reset(seed=1)
+        env.close()
+    assert {name for name, _ in vehicle.heard} == QUESTIONS
+    assert vehicle.commands() == {REQUEST_MESSAGE}
+    assert simulation.v.autopilot.arming.armed == 1
+    assert int(simulation.v.autopilot.modes.number) == mode
+    simulation.advance(5.0)
+    assert height(simulation) == pytest.approx(5.0, abs=0.5)
+
+
+def test_a_vehicle_on_the_ground_is_neither_armed_nor_rebooted():
+    simulation = Simulation("erle_rover", world="maze_erlerover")
+    with RealVehicle(simulation) as vehicle:
+        env = gym.make(ROVER, connection=f"udpout:127.0.0.1:{vehicle.port}", patience=1.0)
+        with (
+            pytest.warns(UserWarning, match="clock cannot be held"),
+            pytest.raises(NotASimulatorError, match="disarmed, in mode"),
+        ):
+            env.reset(seed=1)
+        env.close()
+    assert vehicle.commands() == {REQUEST_MESSAGE}
+    assert simulation.before_boot_us == 0
+
+
+@pytest.mark.parametrize(("hidden", "options"), [(True, {"reset": "reboot"}), (False, {})])
+def test_a_simulator_is_reset_and_so_is_what_the_user_says(hidden, options):
+    simulation = Simulation("erle_rover", world="maze_erlerover")
+    simulation.advance(60.0)
+    with RealVehicle(simulation, hidden) as vehicle:
+        env = gym.make(ROVER, connection=f"udpout:127.0.0.1:{vehicle.port}", patience=2.0, **options)
+        with pytest.warns(UserWarning, match="clock cannot be held"):
+            env.reset(seed=1)
+        env.close()
+    assert {DISARM, MODE, REBOOT} <= vehicle.commands()
+    assert simulation.before_boot_us > 0
+    assert simulation.v.autopilot.arming.armed == 1
+
+
+@pytest.mark.parametrize("value", ["Reboot", "", None, True])
+def test_other_words_are_refused(value):
+    with pytest.raises(EnvOptionError, match=r"reset .* is not known; it is one of simulator, reboot"):
+        gym.make(ROVER, reset=value)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""When it is logged and what: LOG_ parameters, reboots; parameters and missions that change."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from sitl.logs.tlog import LogError
+from tests.logs.dataflash.logged_run import Run, read_log
+
+
+def test_nothing_is_logged_before_arming(tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    run.simulation.advance(3.0)
+    run.simulation.close()
+    assert not run.path.exists()
+
+
+def test_log_disarmed_logs_from_boot_on(tmp_path: Path) -> None:
+    run = Run(tmp_path, LOG_DISARMED=1.0)
+    run.simulation.advance(3.0)
+    run.simulation.close()
+    log = read_log(run.path)
+    assert log["BAT"][0].TimeUS <= 200_000
+    assert "ArduPilot Ready" in [m.Message for m in log["MSG"]]
+
+
+def test_log_disarmed_3_keeps_flights_alone(tmp_path: Path) -> None:
+    run = Run(tmp_path, LOG_DISARMED=3.0)
+    run.simulation.advance(1.0)
+    assert run.path.exists()
+    run.simulation.close()
+    assert not run.path.exists()
+
+
+def test_backend_0_logs_nothing(tmp_path: Path) -> None:
+    run = Run(tmp_path, LOG_BACKEND_TYPE=0.0, LOG_DISARMED=1.0)
+    run.simulation.advance(1.0)
+    run.simulation.close()
+    assert not run.path.exists()
+
+
+def test_logging_pauses_after_disarming_and_goes_on_in_the_same_file(tmp_path: Path) -> None:
+    run = Run(tmp_path, "rover")
+    run.arm()
+    run.client.command(400, 0)
+    run.simulation.advance(30.0)
+    run.arm()
+    run.simulation.advance(2.0)
+    run.simulation.close()
+    log = read_log(run.path)
+    stamps = [m.TimeUS * 1e-6 for m in log["BAT"]]
+    gaps = [b - a for a, b in pairwise(stamps)]
+    assert 14.0 < max(gaps) < 17.0
+    assert [m.ArmState for m in log["ARM"]] == [1, 0, 1]
+    assert list(tmp_path.iterdir()) == [run.path]
+
+
+def test_bitmask_chooses_at_any_time(tmp_path: Path) -> None:
+    run = Run(tmp_path, LOG_DISARMED=1.0, LOG_BITMASK=1 << 9)
+    run.simulation.advance(1.0)
+    run.set("LOG_BITMASK", 1)
+    run.simulation.advance(1.0)
+    run.simulation.close()
+    log = read_log(run.path)
+    assert 9 <= len(log["BAT"]) <= 12 and "IMU" not in log
+    assert len(log["ATT"]) == 55  # 1.1 s at 50 Hz
+    assert log["BAT"][-1].TimeUS < log["ATT"][1].TimeUS
+    assert [(m.Name, m.Value) for m in log["PARM"]][-1] == ("LOG_BITMASK", 1.0)
+
+
+def test_a_reboot_begins_another_log(tmp_path: Path) -> None:
+    run = Run(tmp_path, LOG_DISARMED=1.0)
+    run.simulation.advance(2.0)
+    run.client.command(246, 1)
+    run.simulation.advance(2.0)
+    run.simulation.close()
+    first, second = read_log(run.path), read_log(tmp_path / "run.2.bin")
+    assert first["BAT"][-1].TimeUS > 1_000_000
+    assert second["BAT"][0].TimeUS < 300_000
+    assert "Barometer 1 calibration complete" in [m.Message for m in second["MSG"]]
+
+
+def test_missions_and_their_items_are_told(tmp_path: Path) -> None:
+    from sitl.autopilot.mission.item import NAV_LAND, NAV_TAKEOFF, MissionItem
+    from sitl.autopilot.mission.mission import Mission
+
+    run = Run(tmp_path)
+    home = MissionItem(16, 0)
+    items = (home, MissionItem(NAV_TAKEOFF, 3, z=3.0), MissionItem(NAV_LAND, 3))
+    run.simulation.sequencer.set_mission(run.simulation.v, Mission(items))
+    run.arm()
+    run.client.command(300)  # MISSION_START
+    run.simulation.advance(8.0)
+    run.simulation.close()
+    log = read_log(run.path)
+    assert [(m.CTot, m.CNum, m.CId) for m in log["CMD"]] == [(3, 0, 16), (3, 1, 22), (3, 2, 21)]
+    assert [(m.CNum, m.CId) for m in log["MISE"]][:1] == [(1, 22)]
+    assert "AUTO" in [m.Mode for m in log["MODE"]] or 3 in [m.ModeNum for m in log["MODE"]]
+
+
+def test_a_log_of_before_is_not_written_over(tmp_path: Path) -> None:
+    (tmp_path / "run.bin").write_bytes(b"mine")
+    run = Run(tmp_path, LOG_DISARMED=1.0)
+    run.simulation.advance(0.5)
+    run.simulation.close()
+    assert run.path.read_bytes() == b"mine"
+    assert read_log(tmp_path / "run.2.bin")["FMT"]
+
+
+def test_a_folder_that_cannot_be_written_to_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    run = Run(tmp_path / "file", LOG_DISARMED=1.0)
+    with pytest.raises(LogError, match=r"run\.bin"):
+        run.simulation.advance(0.5)
+    run.simulation.advance(0.5)  # said once; the run can go on

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+import math
+
+import numpy as np
+import pytest
+from pytest import approx
+
+from sitl.core.geodesy import METRES_PER_DEGE7
+from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
+
+
+def samples(rig, sample, field, count):
+    out = np.empty((count, 3))
+    for k in range(count):
+        sample(rig.p, rig.v.sensors, rig.v.rng)
+        out[k] = rig.v.sensors[field]
+    return out
+
+
+def test_imu_noise_has_its_density_and_biases(rig):
+    r = rig("erle_copter", acc_scale_error=0.0)
+    acc = samples(r, imu.sample, "acc", 1000)
+    assert acc.std(axis=0) == approx([0.004 * 20.0] * 3, rel=0.1)
+    assert acc.mean(axis=0) == approx(np.array([0.0, 0.0, -9.80665]) + r.p.sensors.acc_bias, abs=0.01)
+    gyro = samples(r, imu.sample, "gyro", 1000)
+    assert gyro.std(axis=0) == approx([3.394e-4 * 20.0] * 3, rel=0.1)
+    assert gyro.mean(axis=0) == approx(r.p.sensors.gyro_bias, abs=1e-3)
+
+
+def test_turn_on_biases_differ_by_seed_with_their_deviation(rig):
+    biases = np.array([rig("erle_copter", seed=s).p.sensors.gyro_bias for s in range(60)])
+    assert biases.std() == approx(0.0087, rel=0.15)
+
+
+def test_in_run_bias_settles_at_its_deviation(rig):
+    r = rig("erle_copter", acc_bias_time=1.0)
+    values = np.empty((3000, 3))
+    for k in range(len(values)):
+        imu.walk(r.p, r.v.rng)
+        values[k] = r.p.sensors.acc_walk
+    assert values[100:].std() == approx(0.006 * math.sqrt(0.5), rel=0.1)
+
+
+def test_imu_saturates(rig):
+    r = rig("erle_copter")
+    r.p.body.specific_force = (1000.0, -1000.0, 0.0)
+    imu.sample(r.p, r.v.sensors, r.v.rng)
+    assert r.v.sensors.acc[:2] == (176.0, -176.0)
+
+
+def test_noise_scale_zero_is_the_truth(rig):
+    r = rig("erle_copter", noise_scale=0.0)
+    r.step(3)
+    s = r.v.sensors
+    assert list(s.acc) == approx([0.0, 0.0, -9.80665], abs=1e-6)
+    assert list(s.gyro) == [0.0, 0.0, 0.0]
+    assert list(s.mag) == approx(r.p.place.field, abs=1e-7)
+
+
+def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
+    r = rig(gps_fix_time=0.01, gps_start=0.01)
+    p, s = r.p, r.v.sensors
+    arrivals = []
+    for tick in range(1, 400):
+        p.body.pos[0] = 0.0025 * tick * 10.0  # 10 m/s north
+        before = int(s.gps_count)
+        gps.update(p, s, tick, tick * 2500, r.v.rng)
+        if s.gps_count != before:
+            arrivals.append(tick)
+            north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
+            then = tick - 40  # 100 ms ago
+            assert north == approx(0.0025 * then * 10.0, abs=0.006)  # steps of 1e-7 degree
+            assert s.gps_time_us == tick * 2500
+    assert np.diff(arrivals).tolist() == [80] * (len(arrivals) - 1)
+
+
+def test_gps_has_no_fix_at_first(rig):
+    r = rig("erle_copter", gps_start=0.0025, gps_fix_time=1.0)
+    p, s = r.p, r.v.sensors
+    fixes = {}
+    for tick in range(1, 600):
+        gps.update(p, s, tick, tick * 2500, r.v.rng)
+        fixes[tick] = int(s.gps_fix)
+    assert fixes[40] == 0 and fixes[60] == 1 and fixes[400] == 1 and fixes[599] == 3
+    assert s.gps_eph == 80 and s.gps_satellites == 12
+    assert s.gps_alt == approx(584000, abs=4000)
+
+
+def test_gps_errors_have_their_deviation(rig):
+    r = rig("erle_copter", gps_fix_time=0.1, gps_drift_horizontal=0.0, gps_drift_vertical=0.0)
+    rows = []
+    for k in range(600):
+        gps.take(r.p, 10_000 + k, r.v.rng)
+        gps.deliver(r.p, r.v.sensors, 20_000 + k, 0)
+        s = r.v.sensors
+        north = (int(s.gps_lat) - int(r.p.place.lat)) * METRES_PER_DEGE7
+        rows.append((north, s.gps_alt / 1e3 - 584.0, *s.gps_vel))
+    north, up, *velocity = np.array(rows).std(axis=0)
+    assert (north, up) == approx((0.10, 0.20), rel=0.12)
+    assert velocity == approx([5.0, 5.0, 8.0], rel=0.12)  # [cm/s]
+
+
+def test_barometer_shows_the_standard_atmosphere(rig):
+    r = rig("erle_copter", baro_drift=0.0)
+    r.p.body.pos[2] = -100.0
+    values = np.empty(800)
+    for k in range(len(values)):
+        barometer.sample(r.p, r.v.sensors, r.v.rng)
+        values[k] = r.v.sensors.abs_pressure
+    assert values.mean() == approx(1013.25 * (1.0 - 684.0 / 44330.8) ** 5.25588, abs=0.005)  # ISA at 684 m
+    assert values.std() == approx(0.015, rel=0.12)
+    assert r.v.sensors.temperature == approx(15.0 - 0.0065 * 684.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("heading", [0.0, 90.0, 217.0])
+def test_magnetometer_shows_heading_and_declination(rig, heading):
+    r = rig(heading=heading, mag_noise=0.0)
+    magnetometer.sample(r.p, r.v.sensors, r.v.rng)
+    x, y, z = list(r.v.sensors.mag)
+    magnetic = math.degrees(math.atan2(-y, x)) % 360.0
+    assert (heading - magnetic) % 360.0 == approx(12.8, abs=0.3)  # ArduPilot's COMPASS_DEC there: 12.80 deg
+    assert math.sqrt(x * x + y * y + z * z) == approx(0.58, abs=0.01)
+    assert z < 0.0  # southern hemisphere: the field points up
+
+
+def test_sensor_rates(rig):
+    r = rig()
+    r.step(160)
+    assert r.v.sensors.mag_count == 1 + 160 // 5
+    assert r.v.sensors.baro_count == 1 + 160 // 8
+    assert r.v.sensors.time_us == 400_000 == r.v.time_us
