@@ -28,6 +28,18 @@ class Channel(ParameterGroup):
     MIN: float = param(1100, 800, 2200, "us", "Least pulse of channel {n}")
 
 
+class Gps(ParameterGroup):
+    DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix")
+
+
+class Twice(parameters.Parameters):
+    GPS1: Gps
+
+
+class Wrong(ParameterGroup):
+    RATE: Gains = group("x", Q=1.0)
+
+
 class Toy(parameters.Parameters):
     """A firmware with a winch."""
 
@@ -81,11 +93,9 @@ def test_a_parameter_by_its_full_name_is_the_one_at_its_path():
 
 
 def test_what_cannot_be():
-    class Wrong(ParameterGroup):
-        RATE: Gains = group("x", Q=1.0)
-
-    Wrong.__module__ = __name__
     with pytest.raises(ValueError, match=r"RATE\.: \['Q'\] changed, which Gains does not have"):
         list(rows(Wrong))
+    with pytest.raises(ValueError, match=r"parameters defined twice: \['GPS1_DELAY_MS'\]"):
+        Table(Twice)
     with pytest.raises(UnknownFieldError, match=r"no element \[2\] of 'MODE'"):
         locate(Toy.dtype, "MODE[2]")
