@@ -70,7 +70,7 @@ def innovate_state(ekf: Ekf, k: int, residual: float, variance: float) -> Innova
 
 @law
 def innovate_position(ekf: Ekf, axis: int, age: float, residual: float, variance: float) -> Innovation:
-    """Innovation of the position north (0), east (1) or down (2) [m] of ``age`` [s] ago: dp(t - d) = dp(t) - d dv(t)."""
+    """Innovation of the position north (0), east (1) or down (2) [m] ``age`` [s] ago: dp(t - d) = dp(t) - d dv(t)."""
     clear_row(ekf)
     ekf.h[POS + axis] = 1.0
     ekf.h[VEL + axis] = -age
