@@ -23,7 +23,7 @@ from sitl.simulation import Simulation
 
 from . import copter
 from .figures import shown
-from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, upload
+from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 ROVER_SQUARE = copter.SQUARE
@@ -90,11 +90,11 @@ def rover_mission(simulation: Simulation) -> Witness:
     """A square of 30 m in AUTO."""
     pilot = Witness(simulation)
     pilot.boot()
-    upload(pilot, [(0, 16, *ROVER_SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in ROVER_SQUARE)])
+    pilot.transfer(items([(0, 16, *ROVER_SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in ROVER_SQUARE)]))
     pilot.arm(1.0)
     pilot.phase("mission")
     pilot.choose_mode("AUTO")
-    pilot.fly(180.0, lambda: bool(pilot.reached) and pilot.reached[-1][1] == len(ROVER_SQUARE))
+    pilot.fly(180.0, lambda: bool(pilot.reached) and pilot.reached[-1] == len(ROVER_SQUARE))
     pilot.phase("arrived")
     pilot.fly(5.0)
     return pilot
@@ -139,7 +139,7 @@ def fly(frame: str, script: Script, physics: str, seed: int = 0, **options: Any)
         pilot = script(simulation)
     finally:
         simulation.close()
-    return Flown(np.array(pilot.truth), pilot.phases, pilot.reached, pilot.now)
+    return Flown(np.array(pilot.truth), pilot.phases, pilot.telemetry.reached, pilot.now)
 
 
 @dataclass(frozen=True)
