@@ -68,7 +68,7 @@ def of_world(world: World) -> str:
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
-    """What a simulation is made of, as JSON has it."""
+    """Description of a simulation's code and settings, as JSON types."""
     found = simulation.resolved.to_json()
     if found["world"] is not None and simulation.world is not None:
         found["world"]["digest"] = of_world(simulation.world)
@@ -77,12 +77,12 @@ def describe(simulation: Simulation) -> dict[str, Any]:
 
 
 def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between two runs' descriptions, in words: code first, then what is simulated."""
+    """Differences between two runs' descriptions, in words: code first, then settings."""
     return [*code_differences(then["version"], now["version"]), *vehicle_differences(then, now)]
 
 
 def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between two versions of the code, in words."""
+    """Differences between two versions of the code, in words."""
     found = []
     rooms = [name for name in now["sources"] if then["sources"].get(name) != now["sources"][name]]
     if rooms:
@@ -96,7 +96,7 @@ def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[st
 
 
 def vehicle_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between what was simulated, in words."""
+    """Differences between two simulations' settings, in words."""
     found = []
     if then["airframe"]["name"] != now["airframe"]["name"]:
         found.append(f"airframe {then['airframe']['name']} -> {now['airframe']['name']}")

@@ -55,4 +55,4 @@ def watch_obstacles(vehicle: Vehicle) -> None:
     if obstacles.hit_count > 0 and obstacles.hit_time_us == vehicle.time_us:
         emit(vehicle.autopilot.events, vehicle.time_us, HIT_OBSTACLE, float(obstacles.hit_speed), 0.0)
     if obstacles.wanted != 0:
-        vehicle.autopilot.events.attention = 1
+        vehicle.autopilot.events.attention = True

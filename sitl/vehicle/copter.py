@@ -65,8 +65,8 @@ def apply_sim_parameters(v: Copter) -> None:
     sim_parameters.apply(v)
     params, rotors = v.autopilot.params, v.physics.rotors
     for k in range(len(rotors.efficiency)):
-        fails = int(params.SIM_ENGINE_FAIL) >> k & 1
-        rotors.efficiency[k] = params.SIM_ENGINE_MUL if fails else 1.0
+        fails = int(params.SIM.ENGINE_FAIL) >> k & 1
+        rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0
 
 
 def motor_output(v: Copter) -> float:

@@ -11,7 +11,7 @@ PREFIX = "SIM_"
 def apply(v: Any) -> None:
     """Bring what every kind of vehicle has in line with the SIM_ parameters of ``v``."""
     params, physics, wind = v.autopilot.params, v.physics, v.physics.wind
-    wind.speed, wind.direction = params.SIM_WIND_SPD, params.SIM_WIND_DIR
-    wind.turbulence, wind.time_constant = params.SIM_WIND_TURB, params.SIM_WIND_TC
-    physics.sensors.gps_off = int(params.SIM_GPS1_ENABLE == 0)
-    v.autopilot.rc.has_receiver = int(params.SIM_RC_FAIL == 0)
+    wind.speed, wind.direction = params.SIM.WIND_SPD, params.SIM.WIND_DIR
+    wind.turbulence, wind.time_constant = params.SIM.WIND_TURB, params.SIM.WIND_TC
+    physics.sensors.gps_off = int(params.SIM.GPS1_ENABLE == 0)
+    v.autopilot.rc.has_receiver = int(params.SIM.RC_FAIL == 0)

@@ -10,9 +10,9 @@ from importlib.metadata import EntryPoint
 import pytest
 
 from sitl import vehicles
-from sitl.bridge.client import Client
 from sitl.bridge.profile import Profile
 from sitl.bridge.telemetry.builder import builders
+from sitl.client import Endpoint
 from sitl.errors import OptionError
 from sitl.logs.kind import logs_of
 from sitl.physics.engine import EngineError
@@ -40,8 +40,8 @@ def simulation(boat: Kind) -> Iterator[Simulation]:
     simulation.close()
 
 
-def _connect(simulation: Simulation) -> Client:
-    client = Client()
+def _connect(simulation: Simulation) -> Endpoint:
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     client.send("HEARTBEAT", type=6, autopilot=8)
     return client

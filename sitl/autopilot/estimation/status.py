@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from ...core.algebra import euler_of
 from ...core.kernels import law
-from ...core.rotations import quat_to_euler
+from ..state import Estimate
 from .alignment import CALIBRATE
 from .gps import POSITION_TIMEOUT_US
+from .state import Ekf
 
 ATTITUDE = 1
 VELOCITY_HORIZ = 2
@@ -22,18 +24,18 @@ GPS_GLITCHING = 32768
 
 
 @law
-def flags(ekf, now_us):
+def flags(ekf: Ekf) -> int:
     """EKF_STATUS_FLAGS of the filter."""
     if ekf.phase == CALIBRATE:
         return UNINITIALIZED
     value = VELOCITY_VERT | POS_VERT_ABS
-    if ekf.tilt_aligned != 0:
+    if ekf.tilt_aligned:
         value |= ATTITUDE
-    if ekf.gps_in_use != 0:
+    if ekf.gps_in_use:
         value |= VELOCITY_HORIZ | POS_HORIZ_REL | PRED_POS_HORIZ_REL
-        if now_us - ekf.gps_pos_fused_us < POSITION_TIMEOUT_US:
+        if ekf.now_us - ekf.gps_pos_fused_us < POSITION_TIMEOUT_US:
             value |= POS_HORIZ_ABS | PRED_POS_HORIZ_ABS
-        if ekf.gps_glitch != 0:
+        if ekf.gps_glitch:
             value |= GPS_GLITCHING
     else:
         value |= CONST_POS_MODE
@@ -41,31 +43,24 @@ def flags(ekf, now_us):
 
 
 @law
-def publish_status(ap, now_us):
+def publish_status(ekf: Ekf, estimate: Estimate) -> None:
     """What changes slowly: flags and biases."""
-    ekf, estimate = ap.ekf, ap.estimate
-    value = flags(ekf, now_us)
-    estimate.status_flags = value
-    estimate.attitude_ok = 1 if ekf.tilt_aligned != 0 and ekf.yaw_aligned != 0 else 0
-    estimate.position_ok = 1 if value & POS_HORIZ_ABS != 0 else 0
-    for k in range(3):
-        estimate.gyro_bias[k] = ekf.gyro_bias[k]
-        estimate.acc_bias[k] = ekf.acc_bias[k]
+    estimate.status_flags = flags(ekf)
+    estimate.attitude_ok = ekf.tilt_aligned and ekf.yaw_aligned
+    estimate.position_ok = estimate.status_flags & POS_HORIZ_ABS != 0
+    estimate.gyro_bias = ekf.gyro_bias
+    estimate.acc_bias = ekf.acc_bias
 
 
 @law
-def publish(ap, dt):
-    """What changes every tick; corrections of the filter reach it with the time constant EK3_TAU_OUTPUT."""
-    ekf, estimate = ap.ekf, ap.estimate
-    keep = max(0.0, 1.0 - 100.0 * dt / ap.params.EK3_TAU_OUTPUT)
-    for k in range(4):
-        estimate.q[k] = ekf.q[k]
-    for k in range(3):
-        ekf.lag_vel[k] *= keep
-        ekf.lag_pos[k] *= keep
-        estimate.vel[k] = ekf.vel[k] + ekf.lag_vel[k]
-        estimate.pos[k] = ekf.pos[k] + ekf.lag_pos[k]
-        estimate.rates[k] = ekf.last_gyro[k]
-        estimate.acc_ned[k] = ekf.last_acc_ned[k]
-    roll, pitch, yaw = quat_to_euler(ekf.q[0], ekf.q[1], ekf.q[2], ekf.q[3])
-    estimate.euler[0], estimate.euler[1], estimate.euler[2] = roll, pitch, yaw
+def publish(ekf: Ekf, estimate: Estimate, dt: float, tau: float) -> None:
+    """What changes every tick of ``dt`` [s]; corrections of the filter reach it with the time constant ``tau`` [cs]."""
+    keep = max(0.0, 1.0 - 100.0 * dt / tau)
+    ekf.lag_vel *= keep
+    ekf.lag_pos *= keep
+    estimate.vel = ekf.vel + ekf.lag_vel
+    estimate.pos = ekf.pos + ekf.lag_pos
+    estimate.rates = ekf.last_gyro
+    estimate.acc_ned = ekf.last_acc_ned
+    estimate.q = ekf.q
+    estimate.euler = euler_of(ekf.q)

@@ -18,7 +18,7 @@ from .robot import Volume
 
 Rows = Mapping[str, tuple[float, ...]]
 Limits = tuple[tuple[float, ...], tuple[float, ...], tuple[int, ...]]
-"""Low, high, and which columns of the set-point."""
+"""Low limits, high limits, and the columns of the set-point that they belong to."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class RobotKind:
     tick: float
     """Period of its autopilot's loop [s]."""
     crash_range: float
-    """The paper's [m]."""
+    """Range below which a reading is a crash, as in the paper [m]."""
     discrete: Mapping[str, Rows]
     continuous: Mapping[str, Limits]
     takes_off: bool
@@ -44,7 +44,7 @@ class RobotKind:
     """The same when PX4 controls it; None: environments do not drive it then."""
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The usual actions of a form, for a kind of set-point."""
+        """The default actions of a form, "discrete" or "continuous", for a kind of set-point."""
         if form == "discrete":
             if setpoint.name not in self.discrete:
                 allowed = ", ".join(self.discrete)
@@ -63,7 +63,7 @@ def robot_kind(name: str) -> RobotKind:
 
 
 def volume(airframe: Airframe, climbs: float) -> Volume:
-    """What a vehicle takes up, with the room to climb so high [m]."""
+    """The volume of a vehicle, extended upwards by the height that it climbs [m]."""
     reach = max(abs(x) for x in airframe.value("contact_along")) if airframe.value("contact_discs") > 1 else 0.0
     return Volume(
         float(reach + airframe.value("contact_radius")),

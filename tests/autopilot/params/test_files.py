@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.params import docs, files
 from sitl.autopilot.params.table import Table, stored
 from sitl.core.records import as_dict
@@ -95,12 +95,6 @@ def test_every_parameter_accepts_its_default_and_fits_the_wire(table: Table) -> 
 def test_the_documentation_page_has_every_parameter(table: Table) -> None:
     page = docs.page("copter", table)
     assert all(f"| {p.name} |" in page for p in table)
-
-
-def test_a_name_that_is_there_twice_is_refused() -> None:
-    parameter = TABLE["RTL_ALT"]
-    with pytest.raises(ValueError, match="RTL_ALT"):
-        Table((parameter, parameter))
 
 
 WIRE = {"2": "int8", "4": "int16", "6": "int32", "9": "float"}

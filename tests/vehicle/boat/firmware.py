@@ -10,19 +10,27 @@ from sitl.autopilot import state
 from sitl.autopilot.firmware import Firmware
 from sitl.autopilot.mission.commands import Commands
 from sitl.autopilot.navigation.planner import Planner
-from sitl.autopilot.params.table import collect
+from sitl.autopilot.params import parameters
+from sitl.autopilot.params.parameter import param
+from sitl.autopilot.params.table import Table
 from sitl.core.kernels import law
 
-from . import parameters
-
 AHEAD = 0
-TABLE = collect(parameters, {})
+
+
+class Parameters(parameters.Parameters):
+    """The boat's parameters: those of all firmwares, and its own."""
+
+    BOAT_THROTTLE: float = param(0.5, 0.0, 1.0, "", "Throttle while it is armed")
+
+
+TABLE = Table(Parameters)
 
 
 class Autopilot(state.Autopilot):
     """The boat's firmware."""
 
-    params: TABLE.record  # type: ignore[name-defined]
+    params: Parameters
 
 
 @law

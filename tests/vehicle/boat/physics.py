@@ -15,14 +15,22 @@ from sitl.physics.native.power_on import Home, clear, place, wake
 from sitl.physics.native.prepare import prepare_shared
 from sitl.physics.native.sensors.sense import sense
 from sitl.vehicles import Airframe, sensor_sets
-from sitl.vehicles.figures.battery import BATTERY
-from sitl.vehicles.figures.body import BODY, OUTLINE
-from sitl.vehicles.figures.figure import Figure, figures_record
-from sitl.vehicles.figures.ranging import RANGING
-from sitl.vehicles.figures.sensors import SENSORS
+from sitl.vehicles.figures import common
+from sitl.vehicles.figures.battery import Battery
+from sitl.vehicles.figures.body import Body, Outline
+from sitl.vehicles.figures.figure import figure, figures
+from sitl.vehicles.figures.ranging import Ranging
+from sitl.vehicles.figures.sensors import Sensors
 
-FIGURES = (*BODY, *BATTERY, *SENSORS, *OUTLINE, *RANGING, Figure("speed_max", "m/s", "at full throttle", 0.1, 50.0))
-FIGURES_RECORD = figures_record(FIGURES)
+
+class Motor(Record):
+    """What drives it."""
+
+    speed_max: float = figure("m/s", "at full throttle", 0.1, 50.0)
+
+
+class Figures(common.Figures, Body, Battery, Sensors, Outline, Ranging, Motor):
+    """All figures of a boat."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,8 +38,8 @@ class BoatAirframe(Airframe):
     """A boat as data."""
 
     kind: ClassVar[str] = "boat"
-    known = FIGURES
-    dtype = FIGURES_RECORD.dtype
+    known = figures(Figures)
+    dtype = Figures.dtype
 
 
 class Hull(Record):
@@ -43,7 +51,7 @@ class Hull(Record):
 class Physics(records.Physics):
     """The physics of a boat."""
 
-    airframe: FIGURES_RECORD  # type: ignore[valid-type]
+    airframe: Figures
     hull: Hull
 
 
