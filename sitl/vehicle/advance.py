@@ -64,7 +64,7 @@ def react_copter(fleet, index):
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     copter.update(fleet, index)
-    remember(vehicle)
+    keep_sample(vehicle)
 
 
 @law
@@ -75,7 +75,14 @@ def react_rover(fleet, index):
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     rover.update(fleet, index)
-    remember(vehicle)
+    keep_sample(vehicle)
+
+
+@law
+def keep_sample(vehicle):
+    """Last thing of a tick: a sample for on-board logs when it is time."""
+    ap, sensors = vehicle.autopilot, vehicle.sensors
+    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.euler)
 
 
 @law
