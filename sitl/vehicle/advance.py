@@ -45,7 +45,8 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     control(fleet, index)
-    remember(vehicle)
+    ap, sensors = vehicle.autopilot, vehicle.sensors
+    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.euler)
 
 
 @law

@@ -36,7 +36,7 @@ def make() -> Any:
     ap.rc.channels[:8] = (1500, 1500, 1000, 1500, 1800, 1000, 1000, 1800)
     ap.rc.receiver_ok = 1
     ap.rc.receiver_us = v.time_us
-    home.set_here(v)
+    home.set_here(v.autopilot.home, v.autopilot.estimate)
     return v
 
 
