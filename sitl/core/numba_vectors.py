@@ -11,8 +11,9 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import types
+from numba.core.imputils import lower_constant
 from numba.core.typing.templates import AbstractTemplate, infer, infer_global, signature
-from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
+from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable, typeof_impl
 
 from .vectors import VALUES, Value
 
@@ -81,6 +82,16 @@ def _register(cls: type[Value]) -> VectorType:
 
 TYPES: dict[type[Value], VectorType] = {cls: _register(cls) for cls in VALUES}
 """Class of a value -> its Numba type."""
+
+
+@typeof_impl.register(Value)
+def _typeof(value: Value, context: Any) -> VectorType:
+    return TYPES[type(value)]
+
+
+@lower_constant(VectorType)
+def _constant(context: Any, builder: Any, kind: VectorType, value: Value) -> Any:
+    return _make(context, builder, kind, [context.get_constant(types.float64, number) for number in value])
 
 
 def _by_component(instruction: str) -> Any:

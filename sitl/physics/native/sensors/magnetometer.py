@@ -3,21 +3,24 @@
 
 from __future__ import annotations
 
+from ....core.algebra import rotate_inverse
+from ....core.border import Sensors
 from ....core.kernels import law
-from ....core.rng import normal
-from ....core.rotations import quat_rotate_inverse
+from ....core.rng import Rng, normal_vector
+from ....core.vectors import Quat, Vec3
+from ..records import Figures, Physics
 
 
 @law
-def sample(p, sensors, rng):
+def measure_field(q: Quat, field: Vec3, figures: Figures, rng: Rng) -> Vec3:
+    """Field [gauss] that a sensor at attitude ``q`` shows, body frame; ``field``: NED."""
+    scale, offset = figures.noise_scale, figures.mag_offset
+    noise = scale * figures.mag_noise
+    return rotate_inverse(q, field) + scale * Vec3(offset[0], offset[1], offset[2]) + noise * normal_vector(rng)
+
+
+@law
+def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write mag [gauss], body frame."""
-    a, q, field = p.airframe, p.body.q, p.place.field
-    x, y, z = quat_rotate_inverse(
-        float(q[0]), float(q[1]), float(q[2]), float(q[3]), float(field[0]), float(field[1]), float(field[2])
-    )
-    scale = float(a.noise_scale)
-    noise = scale * float(a.mag_noise)
-    sensors.mag[0] = x + scale * float(a.mag_offset[0]) + noise * normal(rng)
-    sensors.mag[1] = y + scale * float(a.mag_offset[1]) + noise * normal(rng)
-    sensors.mag[2] = z + scale * float(a.mag_offset[2]) + noise * normal(rng)
+    sensors.mag = measure_field(p.body.q, p.place.field, p.airframe, rng)
     sensors.mag_count += 1
