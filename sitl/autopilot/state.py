@@ -14,7 +14,7 @@ from .events import EVENT_RING
 from .failsafe_state import Failsafe
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
-from .params.table import Parameters
+from .params.parameters import Parameters
 
 LIDAR_SAMPLES = 360
 """Readings of a scan that there is room for."""

@@ -101,7 +101,7 @@ def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
 
 
 def behind_velocity(rows: np.ndarray) -> float:
-    """How far [m] the estimated position is behind the integral of the estimated velocity, along east."""
+    """Lag of the estimated position behind the integral of the estimated velocity, along east [m]."""
     t, v = rows[:, 0], rows[:, VY]
     integral = float(np.sum(np.diff(t) * 0.5 * (v[1:] + v[:-1])))
     return integral - float(rows[-1, Y] - rows[0, Y])

@@ -34,7 +34,7 @@ COLUMNS = ("t", "north", "east", "down", "vn", "ve", "vd", "roll", "pitch", "yaw
 
 
 class Witness(Pilot):
-    """A pilot that also writes down the truth."""
+    """A pilot that records the simulator's truth."""
 
     def __init__(self, simulation: Simulation) -> None:
         super().__init__(simulation)
@@ -144,22 +144,22 @@ def fly(frame: str, script: Script, physics: str, seed: int = 0, **options: Any)
 
 @dataclass(frozen=True)
 class Difference:
-    """How one engine's flight differs from another's, over all phases at equal times since each one's begin."""
+    """Differences between the flights of two engines over all phases, at equal times since the start of each phase."""
 
     path_rms: float
-    """[m]"""
+    """RMS distance between the paths [m]."""
     path_max: float
-    """[m]"""
+    """Greatest distance between the paths [m]."""
     lean_rms: float
-    """Of roll and pitch together [deg]."""
+    """RMS difference of roll and pitch together [deg]."""
     heading_rms: float
     """[deg]"""
     output_mean: float
-    """Of the motors' mean output [share of the full range]."""
+    """Mean difference of the motors' mean output [fraction of the full range]."""
     energy: float
     """[% of the other's]"""
     duration: float
-    """From the first phase to the end [s]."""
+    """Duration from the first phase to the end [s]."""
     items: float
     """Greatest difference in the time at which a mission item was reached [s]."""
 
@@ -223,8 +223,8 @@ def table(flown: dict[str, dict[str, Flown]]) -> str:
 
 
 def plot(flown: dict[str, dict[str, Flown]], title: str, path: Path) -> None:
-    """Every flight: plan, height or speed, pitch or heading, output, all engines on top of each other; and how far each
-    is from where native physics has the vehicle."""
+    """Plot each flight with all engines: plan, height or speed, pitch or heading, output, and the distance of each from
+    native physics."""
     figure = new_figure(20.0, 4.0 * len(flown), title)
     axes = figure.subplots(len(flown), 5, squeeze=False)
     for row, (flight, engines) in zip(axes, flown.items()):
@@ -251,13 +251,13 @@ def plot(flown: dict[str, dict[str, Flown]], title: str, path: Path) -> None:
 
 
 def _places(flown: Flown, t: Array) -> Array:
-    """Where it was at times since its first phase, NED [m]."""
+    """Positions at times since the first phase, north, east, down [m], shape (n, 3)."""
     rows, start = flown.rows, min(flown.phases.values())
     return np.column_stack([np.interp(t, rows[:, 0] - start, rows[:, k]) for k in (1, 2, 3)])
 
 
 def fly_all(frame: str, engines: list[str]) -> dict[str, dict[str, Flown]]:
-    """Every flight of a frame on every engine."""
+    """Fly all flights of a frame on each engine."""
     flights = FLIGHTS[frame].items()
     return {name: {engine: fly(frame, script, engine) for engine in engines} for name, script in flights}
 

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.modes.numbers import is_known
-from sitl.autopilot.copter.table import TABLE as PARAMETERS
+from sitl.autopilot.copter.parameters import TABLE as PARAMETERS
 from sitl.bridge import dialect
 from sitl.bridge.client import Client
 from sitl.bridge.copter.commands import COMMANDS

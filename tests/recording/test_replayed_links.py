@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sitl.bridge.client import Client
 from sitl.bridge.links.link import Link, Peer
-from sitl.recording.entries import Kind
+from sitl.recording.entries import EntryKind
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import Recording, read
 from sitl.recording.replay import Replay
@@ -60,7 +60,7 @@ def test_a_client_that_reads_too_slowly(core: Core, tmp_path: Path) -> None:
         simulation.advance(1.0)
     simulation.close()
     recording = read(tmp_path / "slow.rec")
-    assert [entry.data[0] for entry in recording.entries if entry.kind is Kind.CONGESTED] == [1, 0, 1, 0]
+    assert [entry.data[0] for entry in recording.entries if entry.kind is EntryKind.CONGESTED] == [1, 0, 1, 0]
     assert replayed(recording, core) == tap.frames
 
 
@@ -84,8 +84,8 @@ def test_lockstep(core: Core, tmp_path: Path) -> None:
     simulation.close()
     recording = read(tmp_path / "lockstep.rec")
     kinds = [entry.kind for entry in recording.entries]
-    assert kinds.count(Kind.LOCKSTEP) == 1 and kinds.count(Kind.ANSWERED) >= 9
-    assert Kind.BEAT in kinds
+    assert kinds.count(EntryKind.LOCKSTEP) == 1 and kinds.count(EntryKind.GRANTED) >= 9
+    assert EntryKind.HEARTBEAT in kinds
     assert replayed(recording, core) == tap.frames
 
 

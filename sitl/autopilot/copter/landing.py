@@ -118,7 +118,7 @@ def is_at_rest(v):
     ap = v.autopilot
     if ap.control.motors.limit_throttle_lower == 0:
         return False
-    if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC_THR_MIX_MIN:
+    if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC.THR_MIX_MIN:
         return False
     asked, off = leans_far(ap)
     if (asked or off) and not is_meant_to_land(ap):

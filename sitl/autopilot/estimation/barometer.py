@@ -62,7 +62,7 @@ def fuse(ap, now_us):
     if ekf.baro_n < FUSE_SAMPLES:
         return 0
     down = ekf.baro_ground - ekf.baro_sum / ekf.baro_n
-    sigma = noise.HEIGHT * params.EK3_ALT_M_NSE
+    sigma = noise.HEIGHT * params.EK3.ALT_M_NSE
     variance = sigma * sigma / ekf.baro_n
     age = 1e-6 * (now_us - ekf.baro_us_sum / ekf.baro_n)
     _empty(ekf)
@@ -71,7 +71,7 @@ def fuse(ap, now_us):
     ekf.h[VEL + 2] = -age
     residual = down - (ekf.pos[2] - age * ekf.vel[2])
     innovation, s = innovate(ekf, residual, variance)
-    ratio = gate_ratio(innovation * innovation, s, params.EK3_ALT_M_NSE, params.EK3_HGT_I_GATE)
+    ratio = gate_ratio(innovation * innovation, s, params.EK3.ALT_M_NSE, params.EK3.HGT_I_GATE)
     ap.estimate.variance_hgt = math.sqrt(ratio)
     if ratio < 1.0:
         correct(ekf, innovation, s, NIS_BAROMETER)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle that is reached by a socket, as it is: a simulator reboots for every episode."""
+"""A vehicle behind a socket, which reboots for every episode."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ from ..mavlink.preparation import reboot
 from ..mavlink.simulator import REBOOT, is_simulator, refusal
 from ..options import EnvOptionError
 from .robot import Pose
-from .vehicles import Ready, Seat, Vehicles
+from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
 
 class SocketVehicles(Vehicles):
-    """See ``Vehicles``; there is one."""
+    """See ``Vehicles``; there is one vehicle."""
 
     simulates: ClassVar[bool] = False
 
-    def __init__(self, seat: Seat) -> None:
-        options = seat.options
+    def __init__(self, setup: VehicleSetup) -> None:
+        options = setup.options
         self._connection = options["connection"]
         if options["count"] > 1 or options["gcs"] is not None or options["params"]:
             raise EnvOptionError(
                 f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
             )
-        super().__init__(seat)
+        super().__init__(setup)
         self._pose: Pose | None = None
 
     @property
     def where(self) -> str:
         return f"connection {self._connection!r}"
 
-    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
+    def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         if self._pose not in (None, pose):
             raise EnvOptionError(f"{self.where}: the vehicle starts where it was started")
         self._pose = pose
         link = self.links[0]
         if link is None:
-            link = connect(self._connection, len(self.seat.angles), self.options["patience"])
-            link.heard.angles = self.seat.angles
+            link = connect(self._connection, len(self.setup.angles), self.options["patience"])
+            link.heard.angles = self.setup.angles
             self.links[0] = link
         else:
             link.is_simulator = is_simulator(link)

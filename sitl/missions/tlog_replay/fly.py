@@ -18,9 +18,9 @@ from .steps import Send, Sender, Step, Upload
 READY_S = 120.0
 """A vehicle that is not ready by then will not be [simulated s]."""
 LANDING_S = 300.0
-"""How long a vehicle that was disarmed at the end of the log may take for it [simulated s]."""
+"""Time to land for a vehicle that was disarmed at the end of the log [simulated s]."""
 LATE_S = 60.0
-"""How much later it may reach the items of a mission [simulated s]."""
+"""Allowed delay in reaching the items of a mission [simulated s]."""
 RESULTS = ("ACCEPTED", "TEMPORARILY_REJECTED", "DENIED", "UNSUPPORTED", "FAILED", "IN_PROGRESS", "CANCELLED")
 """MAV_RESULT"""
 _HEADERS = frozenset(("target_system", "target_component"))
@@ -35,14 +35,14 @@ def result_name(result: int | None) -> str:
 
 @dataclass
 class Report:
-    """How a log was flown."""
+    """Result of flying a log."""
 
     notes: list[str] = field(default_factory=list)
-    """What could not be taken over or went otherwise without harm."""
+    """What could not be taken over, or differed without harm."""
     faults: list[str] = field(default_factory=list)
     """What the vehicle of the log did and this one refused."""
     waited: float = 0.0
-    """How long steps had to wait for this vehicle [s]."""
+    """Total time that steps waited for this vehicle [s]."""
     sent: int = 0
     """Messages sent."""
 
@@ -58,7 +58,7 @@ class _Player(Station):
         self.set_values: dict[str, float] = {}
 
     def of(self, sender: Sender) -> Client:
-        """The client that says what a sender said."""
+        """The client that stands for a sender."""
         if sender not in self.clients:
             client = self.clients[sender] = Client(system=sender[0], component=sender[1])
             self.simulation.bridge.add_link(client.link)
@@ -69,13 +69,13 @@ class _Player(Station):
         self.hear()
 
     def hear(self) -> None:
-        """What came back to every sender."""
+        """Receive the messages to all senders."""
         for client in self.clients.values():
             for name, fields in client.receive():
                 self._take(name, fields)
 
     def until(self, time_us: int) -> None:
-        """Let time pass up to exactly a time; what comes meanwhile is heard when it does, to a tenth of a second."""
+        """Advance to a time; messages are received within a tenth of a second of their arrival."""
         while self.simulation.time_us < time_us:
             self._advance(min(time_us, (self.simulation.time_us // STEP_US + 1) * STEP_US))
             self.hear()
@@ -102,7 +102,7 @@ class LogFlight:
         self.station = _Player(simulation, advance, senders[0] if senders else (255, 190))
         self.report = Report(notes=list(script.notes))
         self._late_us = 0
-        """How far behind the log we are."""
+        """Delay behind the log [us]."""
         self._asked: list[tuple[float, Send]] = []
         """(time, step) of each command that was sent."""
         self._has_waited = False
@@ -182,7 +182,7 @@ class LogFlight:
         self.station.until(end_us if until_us is None else min(end_us, until_us))
         if until_us is not None:
             return
-        wanted = {int(said.fields.seq) for said in log.of_vehicle("MISSION_ITEM_REACHED")}
+        wanted = {int(message.fields.seq) for message in log.of_vehicle("MISSION_ITEM_REACHED")}
         self.station.wait(LATE_S, lambda: wanted <= {seq for _, seq in self.station.reached} or not self.station.armed)
         armed = log.changes("armed")
         if len(armed) > 1 and not armed[-1][1] and self.station.armed:
@@ -193,12 +193,12 @@ class LogFlight:
                 self.report.faults.append("still armed at the end; the log's vehicle was not")
 
     def _why(self, when: float) -> str:
-        """What the vehicle said to a command that it refused."""
+        """The vehicle's status text about a command that it refused."""
         texts = (text for t, severity, text in self.station.texts if severity <= 4 and 0.0 <= t - when <= 0.5)
         return "".join(f": {text}" for text in list(texts)[:1])
 
     def _compare(self) -> None:
-        """What the two vehicles answered, flew and reached."""
+        """Compare the answers, modes and items of the two vehicles."""
         answers = self.station.answers
         for when, step in self._asked:
             queue = answers.get(step.command or 0, [])
@@ -209,7 +209,7 @@ class LogFlight:
                 continue
             text = f"{when:.1f} s: {step.title} was {result_name(step.result)} then, is {result_name(now)} now"
             (self.report.faults if step.result == 0 else self.report.notes).append(text + self._why(when))
-        then = [int(said.fields.seq) for said in self.script.log.of_vehicle("MISSION_ITEM_REACHED")]
+        then = [int(message.fields.seq) for message in self.script.log.of_vehicle("MISSION_ITEM_REACHED")]
         now_reached = [seq for _, seq in self.station.reached]
         if sorted(set(then)) != sorted(set(now_reached)):
             self.report.notes.append(f"items reached then {_list(then)}, now {_list(now_reached)}")

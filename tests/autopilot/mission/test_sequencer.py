@@ -18,7 +18,7 @@ from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.copter.modes import auto_yaw
 from sitl.autopilot.copter.navigation import command as path_command
 from sitl.autopilot.copter.navigation import waypoint
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission import jumps
 from sitl.autopilot.mission.item import MissionItem, home_item

@@ -16,7 +16,7 @@ pytest.importorskip("pybullet")
 
 from sitl import worlds
 from sitl.envs.options import EnvOptionError
-from sitl.envs.robots.autopilot import AutopilotRobot, Ready
+from sitl.envs.robots.autopilot import AutopilotRobot, EpisodeState
 from sitl.physics.engine import EngineError
 from sitl.physics.pybullet.engine import BulletEngine
 from sitl.simulation import Simulation
@@ -155,7 +155,7 @@ def test_a_simulation_takes_all_of_a_snapshot_or_nothing() -> None:
 
 def test_a_robot_refuses_it_by_name() -> None:
     robot = AutopilotRobot("office_erlecopter", frame="erle_copter", physics="pybullet")
-    taken = Ready(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
+    taken = EpisodeState(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
     broken = dataclasses.replace(taken, simulation=dataclasses.replace(taken.simulation, plant=b""))
     with pytest.raises(EnvOptionError, match="cannot be restored"):
         robot.restore(0, broken)

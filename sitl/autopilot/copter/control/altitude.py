@@ -159,7 +159,7 @@ def update_d(ap):
     c.last_tick = ap.control.tick
     at_least, at_most = motors.limit_throttle_lower != 0, motors.limit_throttle_upper != 0
 
-    kp = float(p.PSC_POSZ_P)
+    kp = float(p.PSC.POSZ_P)
     accel = float(c.correction_accel)
     error = float(c.pos_desired) - float(est.pos[2])
     if not finite(error):
@@ -178,17 +178,17 @@ def update_d(ap):
 
     c.accel_target = float(c.accel_desired) + update_directional(
         c.vel, float(c.vel_target), float(est.vel[2]), DT, at_most, at_least,
-        float(p.PSC_VELZ_P), float(p.PSC_VELZ_I), float(p.PSC_VELZ_D), float(p.PSC_VELZ_FF),
-        float(p.PSC_VELZ_IMAX) * 0.01, float(p.PSC_VELZ_FLTE), float(p.PSC_VELZ_FLTD),
+        float(p.PSC.VELZ.P), float(p.PSC.VELZ.I), float(p.PSC.VELZ.D), float(p.PSC.VELZ.FF),
+        float(p.PSC.VELZ.IMAX) * 0.01, float(p.PSC.VELZ.FLTE), float(p.PSC.VELZ.FLTD),
     )  # fmt: skip
 
     hover = hover_throttle(ap)
     throttle = hover - update_saturating(
         c.accel, float(c.accel_target), float(est.acc_ned[2]), DT, at_least or at_most,
-        float(p.PSC_ACCZ_P) * ACCZ_UNIT, float(p.PSC_ACCZ_I) * ACCZ_UNIT, float(p.PSC_ACCZ_D) * ACCZ_UNIT,
-        float(p.PSC_ACCZ_FF) * ACCZ_UNIT, float(p.PSC_ACCZ_D_FF) * ACCZ_UNIT,
-        max(float(p.PSC_ACCZ_IMAX) * _ACCZ_IMAX_UNIT, hover), float(p.PSC_ACCZ_PDMX) * _ACCZ_IMAX_UNIT,
-        float(p.PSC_ACCZ_FLTT), float(p.PSC_ACCZ_FLTE), float(p.PSC_ACCZ_FLTD),
+        float(p.PSC.ACCZ.P) * ACCZ_UNIT, float(p.PSC.ACCZ.I) * ACCZ_UNIT, float(p.PSC.ACCZ.D) * ACCZ_UNIT,
+        float(p.PSC.ACCZ.FF) * ACCZ_UNIT, float(p.PSC.ACCZ.D_FF) * ACCZ_UNIT,
+        max(float(p.PSC.ACCZ.IMAX) * _ACCZ_IMAX_UNIT, hover), float(p.PSC.ACCZ.PDMX) * _ACCZ_IMAX_UNIT,
+        float(p.PSC.ACCZ.FLTT), float(p.PSC.ACCZ.FLTE), float(p.PSC.ACCZ.FLTD),
     )  # fmt: skip
     set_throttle_out(ap, throttle, 1, _THROTTLE_HZ)
 

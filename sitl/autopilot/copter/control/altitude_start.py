@@ -27,12 +27,12 @@ def set_max_speed_accel_d(ap, speed_down, speed_up, accel):
     c.speed_down = abs(speed_down)
     c.speed_up = abs(speed_up)
     c.accel_max = max(abs(accel), 0.01)
-    jerk = max(float(p.PSC_JERK_Z), 0.01)
+    jerk = max(float(p.PSC.JERK_Z), 0.01)
     most = min(GRAVITY, float(c.accel_max)) * TWO_PI / 5.0
-    if p.PSC_ACCZ_FLTT > 0.0:
-        jerk = min(jerk, most * float(p.PSC_ACCZ_FLTT))
-    if p.PSC_ACCZ_FLTE > 0.0:
-        jerk = min(jerk, most * float(p.PSC_ACCZ_FLTE))
+    if p.PSC.ACCZ.FLTT > 0.0:
+        jerk = min(jerk, most * float(p.PSC.ACCZ.FLTT))
+    if p.PSC.ACCZ.FLTE > 0.0:
+        jerk = min(jerk, most * float(p.PSC.ACCZ.FLTE))
     c.jerk_max = jerk
     set_correction_speed_accel_d(ap, speed_down, speed_up, accel)
 
@@ -76,7 +76,7 @@ def init_d(ap):
     c.accel.integrator = (
         hover_throttle(ap)
         - float(ap.control.attitude.throttle_in)
-        - ACCZ_UNIT * (float(p.PSC_ACCZ_P) * (target - measured) + float(p.PSC_ACCZ_FF) * target)
+        - ACCZ_UNIT * (float(p.PSC.ACCZ.P) * (target - measured) + float(p.PSC.ACCZ.FF) * target)
     )
     c.reset_count = est.reset_d_count
     c.last_tick = ap.control.tick
@@ -115,7 +115,7 @@ def relax_d(ap, throttle):
 def stopping_point_d(ap):
     """Altitude [m, down] where the vehicle stops from its present climb or descent."""
     c = ap.control.pos_d
-    kp = float(ap.params.PSC_POSZ_P)
+    kp = float(ap.params.PSC.POSZ_P)
     p = float(ap.estimate.pos[2])
     if kp <= 0.0 or c.accel_max <= 0.0:
         return p

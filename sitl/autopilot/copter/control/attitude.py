@@ -54,14 +54,14 @@ def _begin(ap):
     """What every input starts with; returns whether targets are shaped (ATC_RATE_FF_ENAB)."""
     follow_yaw_reset(ap)
     advance_target(ap)
-    return ap.params.ATC_RATE_FF_ENAB != 0.0
+    return ap.params.ATC.RATE_FF_ENAB != 0.0
 
 
 @law
 def _shape_euler(ap, roll, pitch, yaw, yaw_rate, use_yaw, yaw_slew):
     """Shape towards Euler angles: heading ``yaw`` when ``use_yaw`` != 0, else a turn at ``yaw_rate``."""
     a = ap.control.attitude
-    tau = float(ap.params.ATC_INPUT_TC)
+    tau = float(ap.params.ATC.INPUT_TC)
     r, p, y = float(a.target_euler[0]), float(a.target_euler[1]), float(a.target_euler[2])
     ax, ay, az = accel_max(ap)
     ax, ay, az = euler_accel_limits(r, p, ax, ay, az)
@@ -73,7 +73,7 @@ def _shape_euler(ap, roll, pitch, yaw, yaw_rate, use_yaw, yaw_slew):
         if yaw_slew > 0.0:
             ey = constrain(ey, -yaw_slew, yaw_slew)
     else:
-        ey = shape_rate(ey, yaw_rate, az, float(ap.params.PILOT_Y_RATE_TC), DT)
+        ey = shape_rate(ey, yaw_rate, az, float(ap.params.PILOT.Y_RATE_TC), DT)
     wx, wy, wz = body_rates(r, p, er, ep, ey)
     wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
     set_target_rate(ap, wx, wy, wz)
@@ -131,7 +131,7 @@ def _target_error(ap, w, x, y, z):
 def _shape_rotation(ap, rx, ry, rz, p, q, r, yaw_max):
     """Shape towards an attitude that is (rx, ry, rz) [rad] away and itself turns at (p, q, r) [rad/s]."""
     a = ap.control.attitude
-    tau = float(ap.params.ATC_INPUT_TC)
+    tau = float(ap.params.ATC.INPUT_TC)
     ax, ay, az = accel_max(ap)
     wx = shape_angle(rx, tau, ax, float(a.target_rate[0]), p, 0.0, DT)
     wy = shape_angle(ry, tau, ay, float(a.target_rate[1]), q, 0.0, DT)
@@ -178,11 +178,11 @@ def input_thrust_vector_heading_rate(ap, tx, ty, tz, heading_rate):
     w, x, y, z = _target_error(ap, w, x, y, z)
     rx, ry, _rz, _angle, hw, hx, hy = split_error(w, x, y, z)
     if shaped:
-        tau = float(ap.params.ATC_INPUT_TC)
+        tau = float(ap.params.ATC.INPUT_TC)
         ax, ay, az = accel_max(ap)
         wx = shape_angle(rx, tau, ax, float(a.target_rate[0]), 0.0, 0.0, DT)
         wy = shape_angle(ry, tau, ay, float(a.target_rate[1]), 0.0, 0.0, DT)
-        wz = shape_rate(float(a.target_rate[2]), heading_rate, az, float(ap.params.PILOT_Y_RATE_TC), DT)
+        wz = shape_rate(float(a.target_rate[2]), heading_rate, az, float(ap.params.PILOT.Y_RATE_TC), DT)
         wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
         set_target_rate(ap, wx, wy, wz)
     else:
@@ -226,7 +226,7 @@ def input_rates(ap, p, q, r):
         ax, ay, az = accel_max(ap)
         p = shape_rate(float(a.target_rate[0]), p, ax, 0.0, DT)
         q = shape_rate(float(a.target_rate[1]), q, ay, 0.0, DT)
-        r = shape_rate(float(a.target_rate[2]), r, az, float(ap.params.PILOT_Y_RATE_TC), DT)
+        r = shape_rate(float(a.target_rate[2]), r, az, float(ap.params.PILOT.Y_RATE_TC), DT)
     p, q, r = limit_rates(ap, p, q, r, 0.0)
     set_target_rate(ap, p, q, r)
     correct(ap)

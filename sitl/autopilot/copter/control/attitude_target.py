@@ -30,15 +30,15 @@ _YAW_ACCEL = (math.radians(10.0), math.radians(120.0))
 def accel_max(ap):
     """Angular acceleration limits of the shaping [rad/s^2], 0 for none."""
     p = ap.params
-    return (float(p.ATC_ACCEL_R_MAX) * CDEG, float(p.ATC_ACCEL_P_MAX) * CDEG, float(p.ATC_ACCEL_Y_MAX) * CDEG)
+    return (float(p.ATC.ACCEL_R_MAX) * CDEG, float(p.ATC.ACCEL_P_MAX) * CDEG, float(p.ATC.ACCEL_Y_MAX) * CDEG)
 
 
 @law
 def limit_rates(ap, p, q, r, yaw_max):
     """Rates within ATC_RATE_*_MAX (roll and pitch on an ellipse) and ``yaw_max`` [rad/s]; 0 is no limit."""
-    roll = float(ap.params.ATC_RATE_R_MAX) * DEG
-    pitch = float(ap.params.ATC_RATE_P_MAX) * DEG
-    yaw = float(ap.params.ATC_RATE_Y_MAX) * DEG
+    roll = float(ap.params.ATC.RATE_R_MAX) * DEG
+    pitch = float(ap.params.ATC.RATE_P_MAX) * DEG
+    yaw = float(ap.params.ATC.RATE_Y_MAX) * DEG
     if roll > 0.0 and pitch > 0.0:
         n = math.sqrt(p * p / (roll * roll) + q * q / (pitch * pitch))
         if n > 1.0:
@@ -59,8 +59,8 @@ def slew_yaw_max(ap):
     """Fastest turn of modes that fly by themselves [rad/s]: ATC_SLEW_YAW, at most ATC_RATE_Y_MAX; 0 is no
     limit.
     """
-    slew = float(ap.params.ATC_SLEW_YAW) * CDEG
-    most = float(ap.params.ATC_RATE_Y_MAX) * DEG
+    slew = float(ap.params.ATC.SLEW_YAW) * CDEG
+    most = float(ap.params.ATC.RATE_Y_MAX) * DEG
     return min(slew, most) if most > 0.0 and slew > 0.0 else slew
 
 
@@ -120,9 +120,9 @@ def correct(ap):
 
     accel_r, accel_p, accel_y = accel_max(ap)
     accel_yaw = constrain(0.5 * accel_y, _YAW_ACCEL[0], _YAW_ACCEL[1])
-    yaw_p = float(p.ATC_ANG_YAW_P)
-    if p.ATC_RAT_YAW_P > 0.0 and yaw_p > 0.0:
-        most = min(inverse_sqrt_controller(1.0 / float(p.ATC_RAT_YAW_P), yaw_p, accel_yaw), _YAW_ERROR_MAX)
+    yaw_p = float(p.ATC.ANG_YAW_P)
+    if p.ATC.RAT_YAW.P > 0.0 and yaw_p > 0.0:
+        most = min(inverse_sqrt_controller(1.0 / float(p.ATC.RAT_YAW.P), yaw_p, accel_yaw), _YAW_ERROR_MAX)
         if abs(rz) > most:
             # The heading cannot follow: the target waits for it, with thrust where it was asked to be.
             rz = constrain(rz, -most, most)
@@ -131,8 +131,8 @@ def correct(ap):
             w, x, y, z = quat_multiply(bw, bx, by, bz, ew, ex, ey, ez)
             set_target(ap, w, x, y, z)
 
-    wx = _corrected(rx, float(p.ATC_ANG_RLL_P), accel_r)
-    wy = _corrected(ry, float(p.ATC_ANG_PIT_P), accel_p)
+    wx = _corrected(rx, float(p.ATC.ANG_RLL_P), accel_r)
+    wy = _corrected(ry, float(p.ATC.ANG_PIT_P), accel_p)
     wz = sqrt_controller(rz, yaw_p, accel_yaw if accel_y > 0.0 else 0.0, DT)
     wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
 

@@ -31,17 +31,17 @@ _HOVER_MIN, _HOVER_MAX = 0.125, 0.6875  # range in which a hover throttle is bel
 @law
 def hover_throttle(ap):
     """Throttle 0 .. 1 that holds the vehicle in the air (MOT_THST_HOVER, learnt in flight)."""
-    return constrain(float(ap.params.MOT_THST_HOVER), _HOVER_MIN, _HOVER_MAX)
+    return constrain(float(ap.params.MOT.THST_HOVER), _HOVER_MIN, _HOVER_MAX)
 
 
 @law
 def learn_hover_throttle(ap, dt):
     """One step of learning, to be called every ``dt`` while hovering level (MOT_HOVER_LEARN not 0)."""
     throttle = float(ap.control.motors.throttle)
-    if ap.params.MOT_HOVER_LEARN == 0.0 or throttle <= 0.0:
+    if ap.params.MOT.HOVER_LEARN == 0.0 or throttle <= 0.0:
         return
-    hover = float(ap.params.MOT_THST_HOVER)
-    ap.params.MOT_THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
+    hover = float(ap.params.MOT.THST_HOVER)
+    ap.params.MOT.THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
 
 
 @law
@@ -143,8 +143,8 @@ def command_motors(ap):
     p = ap.params
     motors = ap.control.motors
     state = int(motors.spool_state)
-    spin_min = float(p.MOT_SPIN_MIN)
-    span = float(p.MOT_SPIN_MAX) - spin_min
+    spin_min = float(p.MOT.SPIN_MIN)
+    span = float(p.MOT.SPIN_MAX) - spin_min
     for k in range(MOTORS):
         if state == SHUT_DOWN:
             motors.actuator[k] = 0.0
@@ -155,10 +155,10 @@ def command_motors(ap):
             if not finite(thrust):
                 thrust = 0.0
             wanted = spin_min + span * command_from_thrust(
-                thrust, float(p.MOT_THST_EXPO), float(motors.lift_max), float(motors.voltage_ratio)
+                thrust, float(p.MOT.THST_EXPO), float(motors.lift_max), float(motors.voltage_ratio)
             )
         motors.actuator[k] = slew(
-            float(motors.actuator[k]), wanted, float(p.MOT_SLEW_UP_TIME), float(p.MOT_SLEW_DN_TIME)
+            float(motors.actuator[k]), wanted, float(p.MOT.SLEW_UP_TIME), float(p.MOT.SLEW_DN_TIME)
         )
 
 
@@ -171,24 +171,24 @@ def update(ap, time_us):
         update_slow(ap)
     armed = ap.arming.armed != 0
     filter_throttle(motors, armed)
-    spin_min = float(p.MOT_SPIN_MIN)
-    idle = float(p.MOT_SPIN_ARM) / spin_min if spin_min > 0.0 else 0.0
+    spin_min = float(p.MOT.SPIN_MIN)
+    idle = float(p.MOT.SPIN_ARM) / spin_min if spin_min > 0.0 else 0.0
     enabled = armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US
-    spool(motors, enabled, float(p.MOT_SPOOL_TIME), float(p.MOT_SPOOL_TIM_DN), idle)
+    spool(motors, enabled, float(p.MOT.SPOOL_TIME), float(p.MOT.SPOOL_TIM_DN), idle)
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
         gain = float(motors.compensation_gain)
         out = mix(
             motors,
-            int(p.FRAME_TYPE),
+            int(p.FRAME.TYPE),
             float(motors.roll) * gain,
             float(motors.pitch) * gain,
             float(motors.yaw) * gain,
             float(motors.throttle) * gain,
             float(motors.throttle_avg_max) * gain,
             min(float(motors.thrust_max) * gain, 1.0),
-            float(p.MOT_YAW_HEADROOM) * 0.001,
+            float(p.MOT.YAW_HEADROOM) * 0.001,
         )
         motors.throttle_out = out / gain
     command_motors(ap)
@@ -200,8 +200,8 @@ def update(ap, time_us):
 @law
 def write_actuators(ap, actuators):
     """Pulses [us] and 0 .. 1 controls of the border; disarmed motors get MOT_PWM_MIN and zero."""
-    least = int(ap.params.MOT_PWM_MIN)
-    span = int(ap.params.MOT_PWM_MAX) - least
+    least = int(ap.params.MOT.PWM_MIN)
+    span = int(ap.params.MOT.PWM_MAX) - least
     if span <= 0:
         least = 1000
         span = 1000

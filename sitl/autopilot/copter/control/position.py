@@ -164,8 +164,8 @@ def _velocity_loop(ap):
     """Acceleration (north, east) [m/s^2] that the velocity PID asks for."""
     c = ap.control.pos_ne
     p = ap.params
-    kp, ki, kd, kff = float(p.PSC_VELXY_P), float(p.PSC_VELXY_I), float(p.PSC_VELXY_D), float(p.PSC_VELXY_FF)
-    gain_e, gain_d = lowpass_gain(float(p.PSC_VELXY_FLTE), DT), lowpass_gain(float(p.PSC_VELXY_FLTD), DT)
+    kp, ki, kd, kff = float(p.PSC.VELXY.P), float(p.PSC.VELXY.I), float(p.PSC.VELXY.D), float(p.PSC.VELXY.FF)
+    gain_e, gain_d = lowpass_gain(float(p.PSC.VELXY.FLTE), DT), lowpass_gain(float(p.PSC.VELXY.FLTD), DT)
     for k in range(2):
         error = float(c.vel_target[k]) - float(ap.estimate.vel[k])
         if not finite(error):
@@ -184,7 +184,7 @@ def _velocity_loop(ap):
     if step_n * float(c.limit[0]) + step_e * float(c.limit[1]) > 0.0:
         # Into the limit: the integrator may turn but not grow.
         new_n, new_e = limit_length(new_n, new_e, math.sqrt(i_n * i_n + i_e * i_e))
-    new_n, new_e = limit_length(new_n, new_e, float(p.PSC_VELXY_IMAX) * 0.01)
+    new_n, new_e = limit_length(new_n, new_e, float(p.PSC.VELXY.IMAX) * 0.01)
     if ki == 0.0:
         new_n, new_e = 0.0, 0.0
     c.vel_integrator[0], c.vel_integrator[1] = new_n, new_e
@@ -204,7 +204,7 @@ def update_ne(ap):
     _follow_reset_ne(ap)
     c.last_tick = ap.control.tick
 
-    kp = float(ap.params.PSC_POSXY_P)
+    kp = float(ap.params.PSC.POSXY_P)
     accel = float(c.correction_accel)
     en, ee = float(c.pos_desired[0]) - float(est.pos[0]), float(c.pos_desired[1]) - float(est.pos[1])
     if not finite(en + ee):

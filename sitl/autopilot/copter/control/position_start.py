@@ -25,10 +25,10 @@ def set_max_speed_accel_ne(ap, speed, accel):
     p = ap.params
     c.speed_max = speed
     c.accel_max = max(accel, 0.01)
-    jerk = max(float(p.PSC_JERK_XY), 0.01)
-    if p.ATC_RATE_FF_ENAB != 0.0:
-        rate = min(float(p.ATC_RATE_R_MAX), float(p.ATC_RATE_P_MAX)) * 100.0 * _CDEG
-        snap = min(float(p.ATC_ACCEL_R_MAX), float(p.ATC_ACCEL_P_MAX)) * _CDEG * GRAVITY
+    jerk = max(float(p.PSC.JERK_XY), 0.01)
+    if p.ATC.RATE_FF_ENAB != 0.0:
+        rate = min(float(p.ATC.RATE_R_MAX), float(p.ATC.RATE_P_MAX)) * 100.0 * _CDEG
+        snap = min(float(p.ATC.ACCEL_R_MAX), float(p.ATC.ACCEL_P_MAX)) * _CDEG * GRAVITY
         if rate > 0.0:
             jerk = min(jerk, rate * GRAVITY)
         if snap > 0.0:
@@ -47,8 +47,8 @@ def set_correction_speed_accel_ne(ap, speed, accel):
 @law
 def lean_max_ne(ap):
     """Greatest lean [rad]: PSC_ANGLE_MAX, or ANGLE_MAX where that is 0."""
-    if ap.params.PSC_ANGLE_MAX > 0.0:
-        return float(ap.params.PSC_ANGLE_MAX) * 100.0 * _CDEG
+    if ap.params.PSC.ANGLE_MAX > 0.0:
+        return float(ap.params.PSC.ANGLE_MAX) * 100.0 * _CDEG
     return float(ap.params.ANGLE_MAX) * _CDEG
 
 
@@ -165,6 +165,6 @@ def stopping_point_ne(ap):
     speed = math.sqrt(vn * vn + ve * ve)
     if not speed > 1e-6:
         return (n, e)
-    distance = inverse_sqrt_controller(min(speed, float(c.speed_max)), float(ap.params.PSC_POSXY_P), float(c.accel_max))
+    distance = inverse_sqrt_controller(min(speed, float(c.speed_max)), float(ap.params.PSC.POSXY_P), float(c.accel_max))
     k = distance / speed
     return (n + vn * k, e + ve * k)

@@ -28,18 +28,18 @@ def update(ap):
     target = ap.control.attitude.rate_target
     motors.roll = update_saturating(
         rate.roll, float(target[0]), float(rates[0]), DT, motors.limit_roll != 0,
-        p.ATC_RAT_RLL_P, p.ATC_RAT_RLL_I, p.ATC_RAT_RLL_D, p.ATC_RAT_RLL_FF, p.ATC_RAT_RLL_D_FF,
-        p.ATC_RAT_RLL_IMAX, p.ATC_RAT_RLL_PDMX, p.ATC_RAT_RLL_FLTT, p.ATC_RAT_RLL_FLTE, p.ATC_RAT_RLL_FLTD,
+        p.ATC.RAT_RLL.P, p.ATC.RAT_RLL.I, p.ATC.RAT_RLL.D, p.ATC.RAT_RLL.FF, p.ATC.RAT_RLL.D_FF,
+        p.ATC.RAT_RLL.IMAX, p.ATC.RAT_RLL.PDMX, p.ATC.RAT_RLL.FLTT, p.ATC.RAT_RLL.FLTE, p.ATC.RAT_RLL.FLTD,
     )  # fmt: skip
     motors.pitch = update_saturating(
         rate.pitch, float(target[1]), float(rates[1]), DT, motors.limit_pitch != 0,
-        p.ATC_RAT_PIT_P, p.ATC_RAT_PIT_I, p.ATC_RAT_PIT_D, p.ATC_RAT_PIT_FF, p.ATC_RAT_PIT_D_FF,
-        p.ATC_RAT_PIT_IMAX, p.ATC_RAT_PIT_PDMX, p.ATC_RAT_PIT_FLTT, p.ATC_RAT_PIT_FLTE, p.ATC_RAT_PIT_FLTD,
+        p.ATC.RAT_PIT.P, p.ATC.RAT_PIT.I, p.ATC.RAT_PIT.D, p.ATC.RAT_PIT.FF, p.ATC.RAT_PIT.D_FF,
+        p.ATC.RAT_PIT.IMAX, p.ATC.RAT_PIT.PDMX, p.ATC.RAT_PIT.FLTT, p.ATC.RAT_PIT.FLTE, p.ATC.RAT_PIT.FLTD,
     )  # fmt: skip
     motors.yaw = update_saturating(
         rate.yaw, float(target[2]), float(rates[2]), DT, motors.limit_yaw != 0,
-        p.ATC_RAT_YAW_P, p.ATC_RAT_YAW_I, p.ATC_RAT_YAW_D, p.ATC_RAT_YAW_FF, p.ATC_RAT_YAW_D_FF,
-        p.ATC_RAT_YAW_IMAX, p.ATC_RAT_YAW_PDMX, p.ATC_RAT_YAW_FLTT, p.ATC_RAT_YAW_FLTE, p.ATC_RAT_YAW_FLTD,
+        p.ATC.RAT_YAW.P, p.ATC.RAT_YAW.I, p.ATC.RAT_YAW.D, p.ATC.RAT_YAW.FF, p.ATC.RAT_YAW.D_FF,
+        p.ATC.RAT_YAW.IMAX, p.ATC.RAT_YAW.PDMX, p.ATC.RAT_YAW.FLTT, p.ATC.RAT_YAW.FLTE, p.ATC.RAT_YAW.FLTD,
     )  # fmt: skip
 
 

@@ -32,7 +32,7 @@ def set_throttle_out(ap, throttle, angle_boost, filter_hz):
     update_lean_max(ap, throttle)
     motors.throttle_filter_hz = filter_hz
     out = throttle
-    if angle_boost != 0 and ap.params.ATC_ANGLE_BOOST != 0.0:
+    if angle_boost != 0 and ap.params.ATC.ANGLE_BOOST != 0.0:
         cos_lean = float(attitude.cos_lean)
         out = throttle * constrain(10.0 * cos_lean, 0.0, 1.0) / constrain(cos_lean, 0.1, 1.0)
     motors.throttle_in = out
@@ -54,7 +54,7 @@ def update_lean_max(ap, throttle):
     elif ap.control.tick % LEAN_TICKS == 0:
         lean = math.acos(constrain(throttle / (_LEAN_THROTTLE * thrust_max), 0.0, 1.0))
         dt = LEAN_TICKS * DT
-        attitude.lean_max += dt / (dt + float(ap.params.ATC_ANG_LIM_TC)) * (lean - float(attitude.lean_max))
+        attitude.lean_max += dt / (dt + float(ap.params.ATC.ANG_LIM_TC)) * (lean - float(attitude.lean_max))
 
 
 @law
@@ -66,13 +66,13 @@ def lean_limit(ap):
 @law
 def set_mix_min(ap):
     """Throttle first: landing, idle on the ground."""
-    ap.control.attitude.mix_desired = float(ap.params.ATC_THR_MIX_MIN)
+    ap.control.attitude.mix_desired = float(ap.params.ATC.THR_MIX_MIN)
 
 
 @law
 def set_mix_man(ap):
     """Throttle in the pilot's hand."""
-    ap.control.attitude.mix_desired = float(ap.params.ATC_THR_MIX_MAN)
+    ap.control.attitude.mix_desired = float(ap.params.ATC.THR_MIX_MAN)
 
 
 @law
@@ -80,7 +80,7 @@ def set_mix_max(ap, ratio):
     """Attitude first; ``ratio`` 0 .. 1 between the least and the most priority."""
     r = constrain(ratio, 0.0, 1.0)
     p = ap.params
-    ap.control.attitude.mix_desired = (1.0 - r) * float(p.ATC_THR_MIX_MIN) + r * float(p.ATC_THR_MIX_MAX)
+    ap.control.attitude.mix_desired = (1.0 - r) * float(p.ATC.THR_MIX_MIN) + r * float(p.ATC.THR_MIX_MAX)
 
 
 @law

@@ -66,15 +66,15 @@ def update_slow(ap):
     p = ap.params
     motors = ap.control.motors
     resting = resting_voltage(motors, float(ap.battery.voltage), float(ap.battery.current))
-    most = float(p.MOT_BAT_VOLT_MAX)
-    least = float(p.MOT_BAT_VOLT_MIN)
+    most = float(p.MOT.BAT_VOLT_MAX)
+    least = float(p.MOT.BAT_VOLT_MIN)
     if most <= 0.0 or least >= most or not resting >= 0.25 * least:
         motors.voltage_ratio = 1.0
         motors.lift_max = 1.0
     else:
         ratio = constrain(resting, max(least, 0.6 * most), most) / most
         motors.voltage_ratio += lowpass_gain(_VOLTAGE_HZ, SLOW_DT) * (ratio - float(motors.voltage_ratio))
-        expo = constrain(float(p.MOT_THST_EXPO), -1.0, 1.0)
+        expo = constrain(float(p.MOT.THST_EXPO), -1.0, 1.0)
         v = float(motors.voltage_ratio)
         motors.lift_max = v * (1.0 - expo) + expo * v * v
     gain = 1.0 / max(float(motors.lift_max), 0.1)

@@ -9,8 +9,8 @@ from typing import Any
 
 from sitl.autopilot.copter.control import motors, rate, throttle_mix
 from sitl.autopilot.copter.control.init import init
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
-from sitl.autopilot.copter.table import TABLE
 from sitl.autopilot.state import Actuators
 from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_normalise, quat_to_euler
 

@@ -11,7 +11,7 @@ from typing import Any
 from sitl.autopilot.copter.control import position
 from sitl.autopilot.copter.mission import COMMANDS
 from sitl.autopilot.copter.navigation import command
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.navigation.command import check_condition, complete

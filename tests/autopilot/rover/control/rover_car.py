@@ -10,21 +10,18 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.autopilot.params.table import collect
-from sitl.autopilot.rover import parameters
 from sitl.autopilot.rover.control import update
 from sitl.autopilot.rover.control.init import init
 from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control
+from sitl.autopilot.rover.parameters import TABLE, Parameters
 from sitl.autopilot.state import Actuators, Autopilot, Sensors
 from sitl.core.records import Record
-
-TABLE = collect(parameters, parameters.DEFAULTS)
 
 
 class CarAutopilot(Autopilot):
     """A firmware without modes."""
 
-    params: TABLE.record
+    params: Parameters
     control: Control
 
 

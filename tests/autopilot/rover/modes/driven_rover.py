@@ -18,8 +18,8 @@ from sitl.autopilot.rover.firmware import power_on
 from sitl.autopilot.rover.modes import guided
 from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
+from sitl.autopilot.rover.parameters import TABLE
 from sitl.autopilot.rover.state import Autopilot
-from sitl.autopilot.rover.table import TABLE
 from sitl.autopilot.state import Actuators, Sensors
 from sitl.core.records import Record
 
