@@ -61,7 +61,7 @@ def core_alone(pilot: Pilot) -> Callable[[], float]:
         start = time.process_time()
         first = int(simulation.v.tick)
         while int(simulation.v.tick) - first < ticks:
-            simulation.v.autopilot.events.attention = 0
+            simulation.v.autopilot.events.attention = False
             advance(ticks)
         taken = time.process_time() - start
         simulation.restore(snapshot)

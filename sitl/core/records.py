@@ -354,16 +354,18 @@ def _number_access(field: Field, store: str, k: int) -> property:
 def _value_access(cls: type[Value], store: str, k: int) -> property:
     count = len(cls.NAMES)
     new = tuple.__new__
+    whole = store in ("_i8", "_i4")
 
     def read(self: Any) -> Any:
-        return new(cls, getattr(self, store)[k : k + count].tolist())
+        numbers = getattr(self, store)[k : k + count].tolist()
+        return new(cls, map(float, numbers) if whole else numbers)
 
     def write(self: Any, value: Any) -> None:
         numbers = getattr(self, store)
         for j, number in enumerate(np.asarray(value, float).tolist() if not isinstance(value, tuple) else value):
             if j >= count:
                 raise TypeError(f"{value!r} does not have the {count} components of a {cls.__name__}")
-            numbers[k + j] = number
+            numbers[k + j] = int(number) if whole else number
 
     return property(read, write)
 

@@ -31,7 +31,7 @@ def session(seed: int) -> bytes:
             mavlink.MAVLink_mission_count_message(1, 1, 3),
             mavlink.MAVLink_timesync_message(0, rng.randint(0, 2**40)),
         )))  # fmt: skip
-        bench.vehicle.v.autopilot.estimate.pos[:] = [rng.uniform(-100, 100) for _ in range(3)]
+        bench.vehicle.v.autopilot.estimate.pos = [rng.uniform(-100, 100) for _ in range(3)]
         bench.run(rng.choice((0.0025, 0.05, 0.3)))
         heard += bench.client.link.receive() + other.link.receive()
     return heard

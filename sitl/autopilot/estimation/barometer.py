@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from . import noise
 from .covariance import clear
 from .fusion import NIS_BAROMETER, clear_row, correct, gate_ratio, innovate
@@ -93,6 +94,6 @@ def reset_height(ap, down, variance):
     ekf.pos[2] = down
     ekf.lag_pos[2] = 0.0
     shift(ekf, 2, jump, 0.0)
-    estimate.reset_pos[2] = down - estimate.pos[2]
-    estimate.reset_vel[2] = 0.0
+    estimate.reset_pos = Vec3(estimate.reset_pos.x, estimate.reset_pos.y, down - estimate.pos.z)
+    estimate.reset_vel = Vec3(estimate.reset_vel.x, estimate.reset_vel.y, 0.0)
     estimate.reset_d_count += 1

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from ...core.algebra import IDENTITY
 from ...core.kernels import law, unit
+from ...core.vectors import Vec3
 from .. import events
 from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
 from .alignment import CALIBRATE, RUN, TILT, YAW
@@ -81,10 +83,9 @@ def _boot(ap, now_us):
         events.emit(ap.events, now_us, events.EKF_INITIALISED, 0.0, 0.0)
         return
     ekf.q[0] = 1.0
-    estimate.q[0] = 1.0
+    estimate.q = IDENTITY
     estimate.status_flags = status.UNINITIALIZED
-    for k in range(3):
-        estimate.rates[k] = ekf.good_gyro[k]
+    estimate.rates = Vec3(ekf.good_gyro[0], ekf.good_gyro[1], ekf.good_gyro[2])
 
 
 @unit

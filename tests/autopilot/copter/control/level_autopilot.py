@@ -20,7 +20,7 @@ def make_autopilot() -> Any:
     ap = Autopilot()
     TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0
-    ap.estimate.q[0] = 1.0
+    ap.estimate.q = ap.estimate.q.replace(w=1.0)
     init(ap)
     return ap
 
@@ -51,8 +51,8 @@ def output(ap: Any, actuators: Any) -> None:
 
 def set_attitude(ap: Any, w: float, x: float, y: float, z: float) -> None:
     """Put an attitude into the estimate."""
-    ap.estimate.q[:] = quat_normalise(w, x, y, z)
-    ap.estimate.euler[:] = quat_to_euler(*ap.estimate.q)
+    ap.estimate.q = quat_normalise(w, x, y, z)
+    ap.estimate.euler = quat_to_euler(*ap.estimate.q)
 
 
 def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120.0, 50.0)) -> None:
@@ -60,8 +60,7 @@ def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120
     1.
     """
     est, m = ap.estimate, ap.control.motors
-    for k, demand in enumerate((m.roll, m.pitch, m.yaw)):
-        limited = min(max(float(demand), -1.0), 1.0)
-        est.rates[k] += (authority[k] * limited - 0.3 * est.rates[k]) * dt
+    demands = [min(max(float(demand), -1.0), 1.0) for demand in (m.roll, m.pitch, m.yaw)]
+    est.rates = [r + (a * d - 0.3 * r) * dt for r, a, d in zip(est.rates, authority, demands, strict=True)]
     q = quat_multiply(*est.q, *quat_from_rotation_vector(*(float(r) * dt for r in est.rates)))
     set_attitude(ap, *q)

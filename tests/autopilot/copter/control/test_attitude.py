@@ -151,7 +151,7 @@ def test_a_jump_of_the_estimated_heading_does_not_turn_the_vehicle(ap):
 def test_reset_yaw_target_keeps_lean(ap):
     ap.params.ATC_RATE_FF_ENAB = 0.0
     attitude.input_euler_roll_pitch_yaw(ap, 0.3, 0.1, 0.0, 0)
-    ap.estimate.euler[2] = 2.5
+    ap.estimate.euler = ap.estimate.euler.replace(yaw=2.5)
     attitude.reset_yaw_target(ap)
     assert tuple(ap.control.attitude.target_euler) == pytest.approx((0.3, 0.1, 2.5))
 
@@ -167,8 +167,8 @@ BAD_INPUTS = [
     lambda ap, bad: attitude.input_rates(ap, 0.0, bad, 0.0),
     lambda ap, bad: attitude.set_throttle_out(ap, bad, 1, 2.0),
     lambda ap, bad: ap.control.attitude.target_q.__setitem__(0, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
-    lambda ap, bad: ap.estimate.q.__setitem__(1, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
-    lambda ap, bad: ap.estimate.rates.__setitem__(1, bad) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
+    lambda ap, bad: setattr(ap.estimate, "q", (1.0, bad, 0.0, 0.0)) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
+    lambda ap, bad: setattr(ap.estimate, "rates", (0.0, bad, 0.0)) or attitude.input_rates(ap, 0.0, 0.0, 0.0),
 ]
 
 

@@ -33,8 +33,10 @@ def move_ne(ap, acc, wind=(0.0, 0.0)):
     for k in range(2):
         acc[k] += (float(ap.control.pos_ne.accel_target[k]) - acc[k]) * DT / LAG
         a = acc[k] + wind[k]
-        ap.estimate.pos[k] += ap.estimate.vel[k] * DT + 0.5 * a * DT * DT
-        ap.estimate.vel[k] += a * DT
+        pos, vel = list(ap.estimate.pos), list(ap.estimate.vel)
+        pos[k] += vel[k] * DT + 0.5 * a * DT * DT
+        vel[k] += a * DT
+        ap.estimate.pos, ap.estimate.vel = tuple(pos), tuple(vel)
     ap.control.tick += 1
 
 
@@ -45,9 +47,9 @@ def move_d(ap, thrust):
     wanted = float(ap.control.motors.throttle_in) / hover_throttle(ap)
     thrust += (min(max(wanted, 0.0), 2.5) - thrust) * DT / LAG
     a = GRAVITY * (1.0 - thrust)
-    ap.estimate.acc_ned[2] = a
-    ap.estimate.pos[2] += ap.estimate.vel[2] * DT + 0.5 * a * DT * DT
-    ap.estimate.vel[2] += a * DT
+    ap.estimate.acc_ned = ap.estimate.acc_ned.replace(z=a)
+    ap.estimate.pos = ap.estimate.pos.replace(z=ap.estimate.pos.z + ap.estimate.vel[2] * DT + 0.5 * a * DT * DT)
+    ap.estimate.vel = ap.estimate.vel.replace(z=ap.estimate.vel.z + a * DT)
     ap.control.tick += 1
     return thrust
 
@@ -157,8 +159,8 @@ def test_jump_of_the_estimate_moves_the_path_with_it(ap):
     position.update_ne(ap)
     before = tuple(ap.control.pos_ne.accel_target)
     ap.control.tick += 1
-    ap.estimate.pos[0] += 7.0
-    ap.estimate.pos[2] -= 3.0
+    ap.estimate.pos = ap.estimate.pos.replace(x=ap.estimate.pos.x + 7.0)
+    ap.estimate.pos = ap.estimate.pos.replace(z=ap.estimate.pos.z - 3.0)
     ap.estimate.reset_ne_count += 1
     ap.estimate.reset_d_count += 1
     position.update_ne(ap)
@@ -170,18 +172,18 @@ def test_jump_of_the_estimate_moves_the_path_with_it(ap):
 
 def test_stopping_point_is_ahead_and_bounded(ap):
     spooled(ap)
-    ap.estimate.vel[:] = (3.0, 4.0, -5.0)
+    ap.estimate.vel = (3.0, 4.0, -5.0)
     n, e = position.stopping_point_ne(ap)
     assert n / e == pytest.approx(0.75)
     assert math.hypot(n, e) == pytest.approx(0.5 * 2.5 + 25.0 / 5.0)
     assert altitude.stopping_point_d(ap) == -3.0
-    ap.estimate.vel[:] = 0.0
+    ap.estimate.vel = (0.0, 0.0, 0.0)
     assert position.stopping_point_ne(ap) == (0.0, 0.0)
 
 
 def test_lean_targets_give_the_acceleration(ap):
     spooled(ap)
-    ap.estimate.euler[2] = 0.7
+    ap.estimate.euler = ap.estimate.euler.replace(yaw=0.7)
     ap.control.pos_ne.accel_target[:] = (1.0, -2.0)
     roll, pitch = position.lean_targets(ap)
     assert position.lean_accel(roll, pitch, 0.7) == pytest.approx((1.0, -2.0))
@@ -191,8 +193,7 @@ def test_straight_line_to_a_point_keeps_all_limits(ap):
     spooled(ap)
     for _ in range(1200):
         position_ned.input_pos_ned(ap, 30.0, 0.0, -30.0)
-        ap.estimate.pos[:2] = ap.control.pos_ne.pos_desired
-        ap.estimate.pos[2] = ap.control.pos_d.pos_desired
+        ap.estimate.pos = (*ap.control.pos_ne.pos_desired, ap.control.pos_d.pos_desired)
         assert -ap.control.pos_d.vel_desired <= 2.5 * 1.02
         assert ap.control.pos_ne.vel_desired[0] <= 2.5 * 1.02  # 45 degrees: as fast as it may climb
     assert ap.control.pos_ne.vel_desired[0] == pytest.approx(-ap.control.pos_d.vel_desired, abs=0.3)

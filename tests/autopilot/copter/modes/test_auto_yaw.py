@@ -113,7 +113,7 @@ def test_nose_follows_the_desired_velocity_but_not_a_slow_one(flying):
 def test_roi_is_looked_at_from_anywhere(flying):
     guided.set_roi(flying, 10.0, 10.0, 0.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 4)
-    flying.autopilot.estimate.pos[0] = 20.0
+    flying.autopilot.estimate.pos = flying.autopilot.estimate.pos.replace(x=20.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(3 * math.pi / 4)
     guided.clear_roi(flying)
     assert flying.autopilot.modes.auto_yaw.mode == auto_yaw.LOOK_AT_NEXT_WP
