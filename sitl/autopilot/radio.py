@@ -7,9 +7,9 @@ Sources: ArduPilot's parameters RCn_*, RCMAP_*, RC_OVERRIDE_TIME; RC_CHANNELS_OV
 
 from __future__ import annotations
 
+from ..core.border import RC_INPUTS
 from ..core.kernels import law
 from ..core.scalars import constrain
-from .state import RC_INPUTS
 
 RC_TICKS = 8
 """Ticks between two frames of the receiver: 50 Hz."""

@@ -13,7 +13,17 @@ from llvmlite import ir
 from numba.core import types
 from numba.core.imputils import lower_constant
 from numba.core.typing.templates import AbstractTemplate, infer, infer_global, signature
-from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable, typeof_impl
+from numba.extending import (
+    NativeValue,
+    box,
+    lower_builtin,
+    make_attribute_wrapper,
+    models,
+    register_model,
+    type_callable,
+    typeof_impl,
+    unbox,
+)
 
 from .vectors import VALUES, Value
 
@@ -94,6 +104,22 @@ def _constant(context: Any, builder: Any, kind: VectorType, value: Any) -> Any:
     return _make(context, builder, kind, [context.get_constant(types.float64, number) for number in value])
 
 
+@unbox(VectorType)
+def _unbox(kind: VectorType, value: Any, c: Any) -> NativeValue:
+    numbers = [c.pyapi.float_as_double(c.pyapi.tuple_getitem(value, k)) for k in range(len(kind.names))]
+    return NativeValue(_make(c.context, c.builder, kind, numbers), is_error=c.pyapi.c_api_error())
+
+
+@box(VectorType)
+def _box(kind: VectorType, value: Any, c: Any) -> Any:
+    cls = c.pyapi.unserialize(c.pyapi.serialize_object(kind.cls))
+    numbers = [c.pyapi.float_from_double(part) for part in components(c.builder, kind, value)]
+    boxed = c.pyapi.call_function_objargs(cls, numbers)
+    for number in (cls, *numbers):
+        c.pyapi.decref(number)
+    return boxed
+
+
 def _by_component(instruction: str) -> Any:
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         kind = sig.return_type
@@ -149,14 +175,18 @@ def _template(base: type, key: Any) -> None:
     infer_global(key)(type(f"{base.__name__}_{key.__name__}", (base,), {}))
 
 
-for _key, _name in ((operator.add, "fadd"), (operator.sub, "fsub")):
+_SUMS = ((operator.add, "fadd"), (operator.iadd, "fadd"), (operator.sub, "fsub"), (operator.isub, "fsub"))
+for _key, _name in _SUMS:
     _template(_SameKinds, _key)
     lower_builtin(_key, VectorType, VectorType)(_by_component(_name))
 _template(_Multiply, operator.mul)
-lower_builtin(operator.mul, VectorType, types.Number)(_by_number("fmul", False))
 lower_builtin(operator.mul, types.Number, VectorType)(_by_number("fmul", True))
-_template(_KindAndNumber, operator.truediv)
-lower_builtin(operator.truediv, VectorType, types.Number)(_by_number("fdiv", False))
+for _key in (operator.imul, operator.truediv, operator.itruediv):
+    _template(_KindAndNumber, _key)
+for _key, _name in (
+    (operator.mul, "fmul"), (operator.imul, "fmul"), (operator.truediv, "fdiv"), (operator.itruediv, "fdiv")
+):  # fmt: skip
+    lower_builtin(_key, VectorType, types.Number)(_by_number(_name, False))
 _template(_Negate, operator.neg)
 
 

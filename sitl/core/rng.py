@@ -8,6 +8,7 @@ of the family is used because its arithmetic fits into int64, so that Numba and 
 from __future__ import annotations
 
 import math
+
 from .kernels import law
 from .records import Ints, Record, array
 from .vectors import Vec3

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from ..autopilot.copter.state import Autopilot as CopterAutopilot
 from ..autopilot.rover.state import Autopilot as RoverAutopilot
-from ..autopilot.state import Actuators, Autopilot, Sensors
+from ..autopilot.state import Autopilot
+from ..core.border import Actuators, Sensors
 from ..core.records import Record
 from ..core.rng import Rng
 from ..physics.native.copter.state import Physics as CopterPhysics

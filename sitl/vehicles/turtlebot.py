@@ -29,7 +29,7 @@ FIGURES = (
     Figure("range_max", "m", "greatest reading of the lidar; what is farther is inf", 1e-3, 1e4),
     Figure("range_noise", "m", "standard deviation of a reading", 0.0, 10.0, 0.0),
 )
-FIGURES_RECORD = figures_record(FIGURES)
+FIGURES_RECORD = figures_record("Turtlebot", FIGURES)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.core.rotations import quat_to_euler
+from sitl.core.algebra import euler_of
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.worlds.contact import clearance
@@ -41,10 +41,10 @@ def lidar_distance(robot: Any) -> float:
         north, east, down = to_ned(*place)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
         v = robot.simulation(0).v
-        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at.tolist()  # type: ignore[attr-defined]
-        heading = quat_to_euler(*body.q.tolist())[2]
+        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at.tolist()
+        heading = euler_of(body.q).yaw
         c, s = math.cos(heading), math.sin(heading)
-        north, east, down = body.pos.tolist()
+        north, east, down = body.pos
         north, east = north + forward * c - right * s, east + forward * s + right * c
         down += below - robot.world.floor_z
     else:

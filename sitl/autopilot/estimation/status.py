@@ -57,13 +57,7 @@ def publish_status(ap, now_us):
 def publish(ap, dt):
     """What changes every tick; corrections of the filter reach it with the time constant EK3_TAU_OUTPUT."""
     ekf, estimate = ap.ekf, ap.estimate
-<<<<<<< HEAD
     keep = max(0.0, 1.0 - 100.0 * dt / ap.params.EK3.TAU_OUTPUT)
-    for k in range(4):
-        estimate.q[k] = ekf.q[k]
-=======
-    keep = max(0.0, 1.0 - 100.0 * dt / ap.params.EK3_TAU_OUTPUT)
->>>>>>> est
     for k in range(3):
         ekf.lag_vel[k] *= keep
         ekf.lag_pos[k] *= keep

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+
 from ...core import rng as random
 from ...core.algebra import ZERO
 from ...core.border import Sensors

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
 
 from ...core.border import Actuators, Sensors
-from ...core.records import Float32, Floats, Record, Records, Stored, array, repeat
+from ...core.records import Float32, FloatRows, Record, Records, Stored, array, repeat
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...worlds.geometry import SOLID_FIGURES
@@ -141,7 +141,7 @@ class Obstacles(Record):
     north: float  # where it was gathered, as body.pos [m]
     east: float  # [m]
     complete: float  # every solid nearer to there is in the list [m]
-    rows: Floats = array(OBSTACLES_MAX, SOLID_FIGURES)
+    rows: FloatRows = array(OBSTACLES_MAX, SOLID_FIGURES)
     wanted: bool  # the list no longer does
     looked: Vec3  # where the vehicle was when distances were last worked out [m]
     clear: float  # the nearest solid was at least this far away then [m]

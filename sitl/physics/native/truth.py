@@ -41,6 +41,4 @@ def read(v: Any) -> Truth:
     lat, lon = add_offset(place.lat, place.lon, b.pos.x, b.pos.y)
     on_ground = not hasattr(p, "ground") or p.ground.state != GROUND_AIRBORNE  # a rover never leaves it
     alt, euler = place.alt - b.pos.z, euler_of(b.q)
-    return Truth(
-        v.time_us, lat * 1e-7, lon * 1e-7, alt, b.pos, b.vel, euler, b.rates, b.specific_force, on_ground
-    )
+    return Truth(v.time_us, lat * 1e-7, lon * 1e-7, alt, b.pos, b.vel, euler, b.rates, b.specific_force, on_ground)

@@ -71,4 +71,4 @@ LEGS = (
 )
 
 FIGURES = (*BODY, *AIR, *HUBS, *ROTORS, *BATTERY, *LEGS, *SENSORS, *OUTLINE, *RANGING)
-FIGURES_RECORD = figures_record(FIGURES)
+FIGURES_RECORD = figures_record("Copter", FIGURES)

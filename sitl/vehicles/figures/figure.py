@@ -29,10 +29,10 @@ class Figure(NamedTuple):
     """Values of the kind's model figure that need it; empty: all do."""
 
 
-def figures_record(figures: Sequence[Figure]) -> type[Record]:
-    """A record with one field for each figure, under its name."""
+def figures_record(kind: str, figures: Sequence[Figure]) -> type[Record]:
+    """A record with one field for each figure, under its name; ``kind`` of vehicle, "Copter", names the record."""
     members: dict[str, Any] = {"__annotations__": {f.name: int if f.whole else float for f in figures}}
     for figure in figures:
         if figure.length > 1:
             members[figure.name] = array(figure.length, stored="i8" if figure.whole else "f8")
-    return type("Figures", (Record,), members)
+    return type(f"{kind}Figures", (Record,), {**members, "__module__": __name__})

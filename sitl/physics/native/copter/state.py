@@ -3,10 +3,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Float32, Floats, Record, array
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import FIGURES_RECORD, ROTORS_MAX
 from .. import records as shared
+
+if TYPE_CHECKING:  # the fields come from a table
+    from ..records import Figures
+else:
+    Figures = FIGURES_RECORD
 
 
 class Derived(shared.Derived):
@@ -53,7 +60,7 @@ class Ground(Record):
 class Physics(shared.Physics):
     """The physics of a copter."""
 
-    airframe: FIGURES_RECORD  # type: ignore[valid-type]
+    airframe: Figures
     derived: Derived
     ground: Ground
     rotors: Rotors

@@ -11,7 +11,7 @@ from .. import battery, obstacles, wind
 from ..body import GRAVITY, Inertia, Wrench, fly
 from ..records import Vehicle
 from ..sensors.sense import sense
-from ..tick import TICK_S, TICK_US
+from ..tick import TICK_US
 from . import rotors
 from .ground import Legs, absorb, lifts_off, rest, touch
 from .state import GROUND_AIRBORNE, GROUND_STANDING, Physics

@@ -3,10 +3,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Record
 from ....core.vectors import Vec2
 from ....vehicles.figures.rover import FIGURES_RECORD
 from .. import records as shared
+
+if TYPE_CHECKING:  # the fields come from a table
+    from ..records import Figures
+else:
+    Figures = FIGURES_RECORD
 
 
 class Derived(shared.Derived):
@@ -40,6 +47,6 @@ class Wheels(Record):
 class Physics(shared.Physics):
     """The physics of a rover."""
 
-    airframe: FIGURES_RECORD  # type: ignore[valid-type]
+    airframe: Figures
     derived: Derived
     wheels: Wheels

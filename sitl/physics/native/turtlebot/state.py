@@ -3,9 +3,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Record
 from ....core.rng import Rng
 from ....vehicles.turtlebot import FIGURES_RECORD
+
+if TYPE_CHECKING:  # the fields come from a table
+    from ..records import Figures
+else:
+    Figures = FIGURES_RECORD
 
 TICK_US = 10_000
 """Physics step [us], as the original's."""
@@ -13,7 +20,7 @@ TICK_S = 1e-6 * TICK_US
 
 
 class Command(Record):
-    """What the robot was told to do."""
+    """What the robot shall do."""
 
     forward: float  # speed [m/s]
     turn: float  # rate [rad/s], counter-clockwise seen from above
@@ -30,14 +37,14 @@ class Body(Record):
     speed: float  # forward, of the last tick [m/s]
     yaw_rate: float  # clockwise, of the last tick [rad/s]
     clearance: float  # it can go so far in any direction before it may touch something [m]
-    collided: int  # 1: a solid has stopped it since it was last advanced
+    collided: bool  # a solid has stopped it since it was last advanced
 
 
 class Turtlebot(Record):
     """A whole Turtlebot."""
 
     time_us: int  # since it was placed
-    figures: FIGURES_RECORD  # type: ignore[valid-type]
+    figures: Figures
     command: Command
     body: Body
     rng: Rng
