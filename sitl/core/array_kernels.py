@@ -119,7 +119,9 @@ def _type(hint: Any) -> Any:
         return types.Array(numba_type(get_args(hint)[0]), 1, "C")
     if issubclass(hint, Value):
         return TYPES[hint]
-    return types.NamedTuple([_type(part) for part in get_type_hints(hint, include_extras=True).values()], hint)
+    return types.BaseTuple.from_types(
+        [_type(part) for part in get_type_hints(hint, include_extras=True).values()], hint
+    )
 
 
 def _layouts(types: Any) -> Iterator[str]:

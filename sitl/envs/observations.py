@@ -44,20 +44,20 @@ class DigitPlan(NamedTuple):
 
 
 @law
-def digits_of(scans: NarrowTable, plan: DigitPlan, out: IntTable) -> None:
-    """The paper's rule: each ``plan.every``-th reading, rounded down; inf and nan have digits of their own.
+def digits_of(scans: NarrowTable, every: int, when_inf: int, highest: int, out: IntTable) -> None:
+    """The paper's rule: each ``every``-th reading, rounded down; inf and nan have digits of their own.
 
-    Readings above ``plan.highest`` give that: a user's ``randomise`` function may have extended the lidar's range.
+    Readings above ``highest`` give ``highest``: a user's ``randomise`` function may have extended the lidar's range.
     """
     for i in range(out.shape[0]):
         for k in range(out.shape[1]):
-            reading = float(scans[i, k * plan.every])
+            reading = float(scans[i, k * every])
             if math.isinf(reading):
-                out[i, k] = plan.when_inf
+                out[i, k] = when_inf
             elif math.isnan(reading):
                 out[i, k] = 0
             else:
-                out[i, k] = min(int(reading), plan.highest)
+                out[i, k] = min(int(reading), highest)
 
 
 _digits = Kernel(digits_of)
@@ -100,7 +100,7 @@ class Digits:
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         out = np.empty((robot.count, self._plan.digits), np.int64)
-        _digits(robot.scan, self._plan, out)
+        _digits(robot.scan, *self._plan[:3], out)
         return out
 
 

@@ -166,7 +166,8 @@ def clearance(geometry: Geometry, north: float, east: float, top: float, bottom:
         radius: of the volume [m].
     """
     volume = Volume(Vec2(north, east), float(top), float(bottom), float(radius))
-    return _nearest(geometry.solids, len(geometry), volume)
+    found = _nearest(geometry.solids, len(geometry), volume)
+    return Contact(float(found.distance), found.normal, found.solid)
 
 
 def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floats) -> Listed:
@@ -182,7 +183,8 @@ def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floa
         How many rows were written, and the distance [m] of the nearest solid that was left out (inf: none was). As
         long as a robot's volume stays within that distance of the place it can touch only what is listed.
     """
-    return _gather(geometry.solids, Vec2(north, east), reach, rows)
+    count, complete = _gather(geometry.solids, Vec2(north, east), reach, rows)
+    return Listed(count, float(complete))
 
 
 def rows(count: int) -> Floats:

@@ -108,7 +108,7 @@ def run_episode(
         touched: whether something stopped it, shape (1,).
     """
     key, total, steps = extent.first, 0.0, 0
-    commands = robot.orders.commands
+    commands, plan = robot.orders.commands, rules.digits
     action = choose_first(learners, table, key)
     while True:
         commands[0, 0], commands[0, 1] = rules.table[action, 0], rules.table[action, 1]
@@ -116,7 +116,7 @@ def run_episode(
         advance_fleet(robot.fleet, robot.orders, robot.solids, robot.beams, robot.readings)
         ended = count_crashes(robot.readings, rules.crash_range, touched, rules.contact_ends, robot.crashed)
         reward = rules.crash_reward if ended != 0 else rules.action_rewards[action]
-        digits_of(robot.readings, rules.digits, robot.digits)
+        digits_of(robot.readings, plan.every, plan.when_inf, plan.highest, robot.digits)
         after = key_of(robot.digits[0], radix)
         action = learn_first(learners, table, Move(key, action, reward, after, ended != 0))
         key = after
@@ -179,7 +179,7 @@ class CompiledLoop:
         episode = self._run(
             *learner.arguments(limit), learner.table.radix, extent, self._rules, self._robot, self._touched
         )
-        return Outcome(episode.steps, episode.reward, episode.crashes != 0)
+        return Outcome(episode.steps, float(episode.reward), episode.crashes != 0)
 
 
 def _step_limit(env: Any) -> int | None:

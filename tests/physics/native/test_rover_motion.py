@@ -42,9 +42,9 @@ def test_an_inertial_integration_of_gyro_and_accelerometer_gives_the_path(rig):
             acc = np.array(rotate(half, r.p.body.specific_force)) + (0.0, 0.0, 9.80665)
             pos += 0.0025 * (vel + 0.00125 * acc)
             vel += 0.0025 * acc
-        assert list(q) == list(approx(r.p.body.q), abs=1e-9)
-        assert vel.tolist() == list(approx(r.p.body.vel), abs=1e-6)
-        assert pos.tolist() == list(approx(r.p.body.pos), abs=1e-3)
+        assert list(q) == approx(r.p.body.q, abs=1e-9)
+        assert vel.tolist() == approx(r.p.body.vel, abs=1e-6)
+        assert pos.tolist() == approx(r.p.body.pos, abs=1e-3)
 
 
 def test_body_stays_level_and_the_driven_axle_does_not_slide(rig):
