@@ -6,12 +6,13 @@ The border to physics is in ``core.border``.
 
 from __future__ import annotations
 
-from ..core.records import Floats, Ints, Record, array
+from typing import Protocol
+
+from ..core.border import Actuators, Sensors
+from ..core.records import Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
-from .arming_state import Arming
 from .estimation.state import Ekf
-from .events import EVENT_RING
-from .failsafe_state import Failsafe
+from .events import Events
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
@@ -79,15 +80,35 @@ class BatteryState(Record):
     remaining_pct: float
 
 
-class Events(Record):
-    """A ring of what happened, for the shell."""
+class Arming(Record):
+    """Whether the motors are armed, and what the landing and crash detectors know."""
 
-    count: int  # events so far; event k is at k % EVENT_RING
-    attention: bool  # the core returns to the shell at the end of this tick
-    time_us: Ints = array(EVENT_RING, stored="i8")
-    code: Ints = array(EVENT_RING, stored="i8")  # sitl.autopilot.events
-    a: Floats = array(EVENT_RING)
-    b: Floats = array(EVENT_RING)
+    armed: bool
+    armed_us: int  # when last armed
+    auto_armed: bool  # throttle raised or take-off commanded since arming
+    landed: bool
+    landed_maybe: bool
+    landed_ticks: int
+    idle_us: int  # armed on the ground with throttle down, for DISARM_DELAY
+    crash_ticks: int
+    prearm_ok: bool  # SYS_STATUS health bit MAV_SYS_STATUS_PREARM_CHECK
+
+
+class Failsafe(Record):
+    """What the failsafes watch and which of them are on."""
+
+    gcs_us: int  # last heartbeat of the ground station; 0 none so far (written by the bridge)
+    gcs: bool  # failsafe is on
+    radio: bool
+    radio_count: int  # consecutive frames with a throttle below FS_THR_VALUE
+    battery: int  # 0 none, 1 low, 2 critical
+    battery_low_us: int  # since when below the low limit; 0 not
+    battery_critical_us: int
+    ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
+    ekf_count: int  # tenths of a second of bad variance
+    ekf_vel: float  # filtered variances
+    ekf_pos: float
+    ekf_mag: float
 
 
 class Modes(Record):
@@ -124,3 +145,23 @@ class Autopilot(Record):
     control: Control
     events: Events
     inertial: InertialRing
+
+
+class Vehicle(Protocol):
+    """What the autopilot sees of the vehicle that it flies: time, sensors, and what it writes."""
+
+    @property
+    def time_us(self) -> int:
+        """Since boot [us]; only physics advances it."""
+
+    @property
+    def sensors(self) -> Sensors:
+        """Border: written by physics."""
+
+    @property
+    def actuators(self) -> Actuators:
+        """Border: written by the autopilot."""
+
+    @property
+    def autopilot(self) -> Autopilot:
+        """The firmware."""

@@ -20,10 +20,11 @@ from sitl.errors import SitlError
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
+from sitl.vehicles.figures.copter import Figures as CopterFigures
 
 from . import copter
 from .figures import shown
-from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, upload
+from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 ROVER_SQUARE = copter.SQUARE
@@ -45,8 +46,9 @@ class Witness(Pilot):
         super().note()
         v = self.simulation.v
         body, battery, controls = v.physics.body, v.physics.battery, v.actuators.controls
-        if self.simulation.kind.name == "copter":
-            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))  # type: ignore[attr-defined]
+        figures = v.physics.airframe
+        if isinstance(figures, CopterFigures):
+            output = float(np.mean(controls[: figures.rotor_count]))
         else:
             output = float(controls[2])
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0
@@ -90,11 +92,11 @@ def rover_mission(simulation: Simulation) -> Witness:
     """A square of 30 m in AUTO."""
     pilot = Witness(simulation)
     pilot.boot()
-    upload(pilot, [(0, 16, *ROVER_SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in ROVER_SQUARE)])
+    pilot.transfer(items([(0, 16, *ROVER_SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in ROVER_SQUARE)]))
     pilot.arm(1.0)
     pilot.phase("mission")
     pilot.choose_mode("AUTO")
-    pilot.fly(180.0, lambda: bool(pilot.reached) and pilot.reached[-1][1] == len(ROVER_SQUARE))
+    pilot.fly(180.0, lambda: bool(pilot.reached) and pilot.reached[-1] == len(ROVER_SQUARE))
     pilot.phase("arrived")
     pilot.fly(5.0)
     return pilot
@@ -139,7 +141,7 @@ def fly(frame: str, script: Script, physics: str, seed: int = 0, **options: Any)
         pilot = script(simulation)
     finally:
         simulation.close()
-    return Flown(np.array(pilot.truth), pilot.phases, pilot.reached, pilot.now)
+    return Flown(np.array(pilot.truth), pilot.phases, pilot.telemetry.reached, pilot.now)
 
 
 @dataclass(frozen=True)

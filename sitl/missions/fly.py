@@ -10,12 +10,14 @@ from dataclasses import dataclass, field
 from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_RETURN_TO_LAUNCH, home_item
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.navigation.state import COMPLETE
+from sitl.client import Text
+from sitl.client.session import STEP_US
 from sitl.core.geodesy import offset_ne
 from sitl.errors import OptionError
 from sitl.simulation import Simulation
 
 from .path import Deviation, PathWatch
-from .station import STEP_US, Station, StationError
+from .station import Station, StationError
 
 READY_S = 120.0
 """Time within which a vehicle must be ready to arm [simulated s]."""
@@ -59,8 +61,7 @@ class Outcome:
     """Deviation from the straight lines of the mission."""
     hits: int = 0
     """Number of contacts with solids of the world."""
-    texts: list[tuple[float, int, str]] = field(default_factory=list)
-    """(time [s], severity, text) of status texts."""
+    texts: list[Text] = field(default_factory=list)
 
     @property
     def duration(self) -> float:
@@ -162,18 +163,16 @@ class _Flight:
         station.wait_ready(READY_S)
         outcome.ready = station.now
         self.on_step(station.now, "ready to arm")
-        station.upload(self.items)
+        station.transfer(self.items)
         self.on_step(station.now, f"mission of {len(self.items) - 1} items uploaded")
-        station.choose_mode("GUIDED")
+        station.set_mode("GUIDED")
         station.arm()
         self.on_step(station.now, "armed")
         self._wh = float(self.simulation.v.autopilot.battery.consumed_wh)
         outcome.started = station.now
         self.watch = PathWatch(self.simulation)
-        station.choose_mode("AUTO")
-        if self.simulation.kind.name == "copter":
-            station.start_mission()
-        if not station.wait(self.limit_s, self._is_over):
+        station.start_mission()
+        if not station.passes(self._is_over, self.limit_s):
             outcome.reason = f"not ended after {self.limit_s:g} s, at item {self._current} of {len(self.items) - 1}"
             return
         if station.armed and self.simulation.kind.name == "rover":
@@ -197,7 +196,7 @@ class _Flight:
             stood[0] = stood[0] + 1 if math.hypot(float(vel[0]), float(vel[1])) < STANDS else 0
             return stood[0] * STEP_US >= STANDING_S * 1e6
 
-        self.station.wait(STOPPING_S, stands)
+        self.station.passes(stands, STOPPING_S)
         self.station.disarm()
 
     def _judge(self) -> None:
@@ -230,15 +229,15 @@ class _Flight:
                 self._mode = station.mode
             if int(nav.command_seq) and station.mode == "AUTO":
                 self._current = int(nav.command_seq)
-        for time, seq in station.reached[self._seen :]:
+        for time, seq in station.telemetry.reached[self._seen :]:
             item = self.items[seq] if seq < len(self.items) else home_item(0, 0, 0.0)
             self.on_step(time, f"item {seq} of {len(self.items) - 1} {item.name} done")
-        self._seen = len(station.reached)
+        self._seen = len(station.telemetry.reached)
 
     def result(self) -> Outcome:
         """The result so far."""
         outcome, station, watch = self.outcome, self.station, self.watch
-        outcome.ended, outcome.texts, outcome.items = station.now, station.texts, station.reached
+        outcome.ended, outcome.texts, outcome.items = station.now, station.texts, station.telemetry.reached
         if watch is not None:
             outcome.energy = float(self.simulation.v.autopilot.battery.consumed_wh) - self._wh
             outcome.distance, outcome.deviation = watch.distance, watch.deviation

@@ -37,6 +37,7 @@ class ForeignVehicle:
         self.firmware = self.kind.firmware
         self.v = plant.craft.v
         """Only the physics in it is valid: the autopilot is the foreign one."""
+        self.before_boot_us = 0
         self.connection: Foreign = launch(choice, plant, {}, 0, _PATIENCE_S)
         self.connection.tap = self._tell
         self._links: list[InProcessLink] = []
@@ -52,6 +53,11 @@ class ForeignVehicle:
         self._links.append(link)
 
     @property
+    def system(self) -> int:
+        """MAVLink id of the vehicle."""
+        return int(self.connection.inbox.system)
+
+    @property
     def time_us(self) -> int:
         """Simulated time since power-on [us]."""
         return self.connection.time_us
@@ -62,7 +68,7 @@ class ForeignVehicle:
             for peer in link.peers:
                 data = peer.take()
                 if data:
-                    self.connection.client.link.send(data)
+                    self.connection.endpoint.link.send(data)
         self.connection.run(max(time_us - self.time_us, 0))
 
     def _tell(self, data: bytes) -> None:

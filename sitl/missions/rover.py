@@ -8,7 +8,7 @@ import numpy as np
 from sitl.simulation import Simulation
 
 from .figures import VX, Figure, X, Y, crossing, path_rms, speeds, stopped, with_distance
-from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, upload
+from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 from .recording import Recording
 
 SQUARE = [(-353630824, 1491652371), (-353630824, 1491654574), (-353632621, 1491654574), (-353632621, 1491652371)]
@@ -48,10 +48,10 @@ def drive(simulation: Simulation) -> Pilot:
     pilot.phase("HOLD0")
     pilot.choose_mode("HOLD")
     pilot.fly(4.0)
-    upload(pilot, [(0, 16, *SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in SQUARE)])
+    pilot.transfer(items([(0, 16, *SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in SQUARE)]))
     pilot.phase("AUTO")
     pilot.choose_mode("AUTO")
-    pilot.fly(60.0, lambda: bool(pilot.reached) and pilot.reached[-1][1] == len(SQUARE))
+    pilot.fly(60.0, lambda: bool(pilot.reached) and pilot.reached[-1] == len(SQUARE))
     pilot.fly(10.0)
     pilot.phase("vel_2_before_hold")
     pilot.choose_mode("GUIDED")

@@ -7,8 +7,8 @@ import random
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import TAKEOFF, Pilot
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import Pilot
 from sitl.simulation import Core, Simulation
 from tests.bridge.fakes import Bench
 
@@ -88,12 +88,12 @@ def test_every_byte_of_a_flight_has_its_time_whatever_the_step(core: Core) -> No
     pilot = Pilot(Simulation(core=core))
     pilot.boot()
     pilot.arm()
-    listener = Client()
+    listener = Endpoint()
     pilot.simulation.bridge.add_link(listener.link)
     listener.set_interval("ATTITUDE", 4.0)
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 2.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=2.0)
     pilot.fly(6.0)
-    pilot.client.command(21)
+    pilot.send_command("NAV_LAND")
     pilot.fly(0.1)
     listener.link.receive()
     start = pilot.simulation.snapshot()

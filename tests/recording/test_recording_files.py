@@ -101,12 +101,12 @@ def test_a_header_that_misses_something(tmp_path: Path) -> None:
 
 
 def test_a_killed_run_can_be_flown_as_far_as_it_was_written(core: Core, tmp_path: Path) -> None:
-    from sitl.bridge.client import Client
+    from sitl.client.endpoint import Endpoint
 
     path = tmp_path / "killed.rec"
     simulation = Simulation(core=core)
     recorder = Recorder(simulation, path, flush_us=1_000_000)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     for _ in range(25):
         client.send("HEARTBEAT", type=6, autopilot=8)

@@ -41,7 +41,7 @@ def lidar_distance(robot: Any) -> float:
         north, east, down = to_ned(*place)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
         v = robot.simulation(0).v
-        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at.tolist()
+        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
         heading = euler_of(body.q).yaw
         c, s = math.cos(heading), math.sin(heading)
         north, east, down = body.pos

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl import vehicles, worlds
+from sitl.client.connection import Connection
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
@@ -27,8 +28,7 @@ from sitl.worlds import World, planar
 from sitl.worlds.frames import from_heading, from_ned
 
 from ..actions import Action
-from ..mavlink.connection import Connection
-from ..mavlink.ends import LinkLostError
+from ..mavlink.errors import LinkLostError
 from ..mavlink.preparation import ALIGN_US, hear_again, set_intervals, set_mode
 from ..mavlink.simulator import RESETS, SIMULATOR
 from ..options import EnvOptionError, unknown
@@ -191,19 +191,19 @@ class AutopilotRobot:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
         if link is None:
             raise LinkLostError(f"{self._vehicles.where} is not open; reset() opens it")
-        heard = link.heard
-        interval_us = min(math.gcd(ALIGN_US, us), link.longest_interval_us)
+        heard = link.inbox
+        interval_us = min(math.gcd(ALIGN_US, us), heard.longest_interval_us)
         if now.setpoint != setpoint.name or now.interval_us != interval_us:
             now = self._change(link, now, setpoint.name, interval_us)
             self._states[index] = now
         hits, scans, goal_ms = heard.hits, heard.scans, heard.position[0] + us // 1000
         if wait_us > 0:
-            if not link.splits_steps:
+            if not link.is_held:
                 raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
             link.run(wait_us)
         if wait_us < us:
             kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), heard, now.origin)
-            link.client.send_payload(kind, payload)
+            link.endpoint.send_payload(kind, payload)
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
@@ -227,7 +227,7 @@ class AutopilotRobot:
         """Copy the last telemetry into the arrays."""
         link, now = self._vehicles.links[index], self._states[index]
         assert link is not None
-        heard = link.heard
+        heard = link.inbox
         _, n, e, d, vn, ve, vd = heard.position
         heading = heard.attitude[3]
         c, s = math.cos(heading), math.sin(heading)

@@ -5,9 +5,14 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..mavlink.connection import Lockstep, connect
+from gymnasium import logger
+
+from sitl.client.connection import Lockstep, connect
+from sitl.errors import OptionError
+
 from ..mavlink.preparation import reboot
 from ..mavlink.simulator import REBOOT, is_simulator, refusal
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
@@ -38,8 +43,12 @@ class SocketVehicles(Vehicles):
         self._pose = pose
         link = self.links[0]
         if link is None:
-            link = connect(self._connection, len(self.setup.angles), self.options["patience"])
-            link.heard.angles = self.setup.angles
+            inbox = StepTelemetry(len(self.setup.angles))
+            try:
+                link = connect(self._connection, inbox, self.options["patience"], warn=logger.warn)
+            except OptionError as error:
+                raise EnvOptionError(str(error)) from None
+            link.inbox.angles = self.setup.angles
             self.links[0] = link
         else:
             link.is_simulator = is_simulator(link)
@@ -55,4 +64,4 @@ class SocketVehicles(Vehicles):
     def time_us(self, index: int) -> int:
         link = self.links[index]
         assert link is not None
-        return 1000 * (link.time_ms if isinstance(link, Lockstep) else int(link.heard.position[0]))
+        return link.time_us

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import math
 
+from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.foreign.choice import PX4, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
-from ..mavlink.connection import Connection
 from ..mavlink.foreign import Foreign, launch
 from ..mavlink.simulator import REBOOT, is_simulator, refusal
 from ..options import EnvOptionError
@@ -49,7 +49,7 @@ class ForeignVehicles(Vehicles):
         before, self.links[index] = self.links[index], None
         link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
         self.links[index] = link
-        link.heard.angles = self.setup.angles
+        link.inbox.angles = self.setup.angles
         return self.begun(index, self.prepare(link, pose))
 
     def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:

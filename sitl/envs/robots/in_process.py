@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
 from sitl.bridge.links.address import LinkAddressError, open_link
+from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import NATIVE
 from sitl.plants.local import LocalPlant
@@ -20,8 +21,8 @@ from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 
-from ..mavlink.connection import InProcess
 from ..mavlink.preparation import INTERVAL_US
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
@@ -74,11 +75,11 @@ class InProcessVehicles(Vehicles):
         state = self._states.get(key)
         if state is None:
             simulation = self._simulation(pose, figures)
-            link = InProcess(simulation, len(self.setup.angles))
-            link.heard.angles = self.setup.angles
+            link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
+            link.inbox.angles = self.setup.angles
             origin = self.prepare(link, pose)
             state = EpisodeState(
-                simulation.snapshot(), link.heard.memory(), origin, simulation.time_us, "", INTERVAL_US
+                simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US
             )
             link.close()
             if len(self._states) >= _MAX_STATES:
@@ -109,8 +110,8 @@ class InProcessVehicles(Vehicles):
         link = self.links[index]
         if link is None:
             simulation = self._simulation()
-            link = self.links[index] = InProcess(simulation, len(self.setup.angles))
-            link.heard.angles = self.setup.angles
+            link = self.links[index] = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
+            link.inbox.angles = self.setup.angles
             if index == 0 and self._gcs is not None:
                 simulation.bridge.add_link(self._gcs)
         assert isinstance(link, InProcess)
@@ -131,7 +132,7 @@ class InProcessVehicles(Vehicles):
         if not isinstance(link, InProcess):
             raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
         return EpisodeState(
-            link.simulation.snapshot(), link.heard.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
+            link.simulation.snapshot(), link.inbox.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
         )
 
     def restore(self, index: int, state: EpisodeState) -> None:
@@ -140,5 +141,5 @@ class InProcessVehicles(Vehicles):
             link.simulation.restore(state.simulation)
         except (OptionError, EngineError) as error:
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
-        link.client.link.receive()
-        link.heard.recall(state.telemetry)
+        link.endpoint.link.receive()
+        link.inbox.recall(state.telemetry)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
@@ -16,7 +17,6 @@ from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
 from ..mavlink import px4, setpoints
-from ..mavlink.connection import Connection
 from ..mavlink.preparation import INTERVAL_US, prepare
 from ..options import EnvOptionError
 from .autopilot_kinds import PX4_KIND, Kind
@@ -143,11 +143,11 @@ class Vehicles(ABC):
     def prepare(self, link: Connection, pose: Pose) -> tuple[float, float, float]:
         """Arm and take off a vehicle that has just booted; returns its local origin in the world: north, east, down
         [m]."""
-        kind, heard = self.setup.kind, link.heard
+        kind, heard = self.setup.kind, link.inbox
         take_off = self.options["take_off"] if self.setup.airframe.kind == "copter" else 0.0
 
         def hold_sticks() -> None:
-            link.client.send_payload(*setpoints.override(_AT_REST, heard, ()))
+            link.endpoint.send_payload(*setpoints.override(_AT_REST, heard, ()))
 
         if kind is PX4_KIND:
             px4.prepare(link, take_off)

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from sitl.bridge.client import Client
 from sitl.bridge.dialect import FieldError, message
+from sitl.client import Endpoint
 from sitl.simulation import Simulation
 
-from ..station import STEP_US, Station, StationError
+from ..station import Station, StationError
 from .extract import ANSWER_S, Script
 from .steps import Send, Sender, Step, Upload
 
@@ -51,35 +51,29 @@ class _Player(Station):
     """A ground station that also is every other sender of the log."""
 
     def __init__(self, simulation: Simulation, advance: Callable[[int], object] | None, main: Sender) -> None:
-        super().__init__(simulation, advance)
-        self.client.system, self.client.component = main
-        self.clients: dict[Sender, Client] = {main: self.client}
         self.answers: dict[int, list[tuple[float, int]]] = {}
-        self.set_values: dict[str, float] = {}
+        super().__init__(simulation, advance)
+        own = self.connection.endpoint
+        own.system, own.component = main
+        self.endpoints: dict[Sender, Endpoint] = {main: own}
 
-    def of(self, sender: Sender) -> Client:
-        """The client that stands for a sender."""
-        if sender not in self.clients:
-            client = self.clients[sender] = Client(system=sender[0], component=sender[1])
-            self.simulation.bridge.add_link(client.link)
-        return self.clients[sender]
+    def of(self, sender: Sender) -> Endpoint:
+        """The endpoint that sends what a sender sent."""
+        if sender not in self.endpoints:
+            endpoint = self.endpoints[sender] = Endpoint(system=sender[0], component=sender[1])
+            self.simulation.bridge.add_link(endpoint.link)
+        return self.endpoints[sender]
 
-    def step(self) -> None:
-        super().step()
-        self.hear()
-
-    def hear(self) -> None:
-        """Receive the messages to all senders."""
-        for client in self.clients.values():
-            for name, fields in client.receive():
+    def step(self, stop_us: int | None = None) -> None:
+        super().step(stop_us)
+        for endpoint in self.endpoints.values():
+            for name, fields in endpoint.receive():
                 self._take(name, fields)
 
     def until(self, time_us: int) -> None:
-        """Advance to a time; messages are received within a tenth of a second of their arrival."""
+        """Let time pass up to exactly a time; what comes meanwhile is taken in a tenth of a second later at most."""
         while self.simulation.time_us < time_us:
-            self._advance(min(time_us, (self.simulation.time_us // STEP_US + 1) * STEP_US))
-            self.hear()
-        self.hear()
+            self.step(time_us)
 
     def _take(self, name: str, fields: Any) -> None:
         super()._take(name, fields)
@@ -144,7 +138,7 @@ class LogFlight:
 
     def _upload(self, step: Upload) -> None:
         try:
-            self.station.upload(step.items)
+            self.station.transfer(step.items)
         except StationError as error:
             if step.result in (None, 0):
                 self.report.faults.append(f"{self._at()}: {error}; the log's vehicle took it")
@@ -156,7 +150,7 @@ class LogFlight:
         kind = message(step.name)
         fields = {name: value for name, value in step.fields.items() if name not in _HEADERS}
         if "target_system" in kind.fields:
-            fields["target_system"] = self.station.target
+            fields["target_system"] = self.station.system
         if "target_component" in kind.fields:
             fields["target_component"] = int(step.fields.get("target_component", 1))
         try:
@@ -183,11 +177,11 @@ class LogFlight:
         if until_us is not None:
             return
         wanted = {int(message.fields.seq) for message in log.of_vehicle("MISSION_ITEM_REACHED")}
-        self.station.wait(LATE_S, lambda: wanted <= {seq for _, seq in self.station.reached} or not self.station.armed)
+        self.station.passes(lambda: wanted <= set(self.station.reached) or not self.station.armed, LATE_S)
         armed = log.changes("armed")
         if len(armed) > 1 and not armed[-1][1] and self.station.armed:
             end = self.station.now
-            if self.station.wait(LANDING_S, lambda: not self.station.armed):
+            if self.station.passes(lambda: not self.station.armed, LANDING_S):
                 self.report.notes.append(f"disarmed {self.station.now - end:.1f} s later than the log's vehicle")
             else:
                 self.report.faults.append("still armed at the end; the log's vehicle was not")
@@ -209,8 +203,8 @@ class LogFlight:
                 continue
             text = f"{when:.1f} s: {step.title} was {result_name(step.result)} then, is {result_name(now)} now"
             (self.report.faults if step.result == 0 else self.report.notes).append(text + self._why(when))
-        then = [int(message.fields.seq) for message in self.script.log.of_vehicle("MISSION_ITEM_REACHED")]
-        now_reached = [seq for _, seq in self.station.reached]
+        then = [int(said.fields.seq) for said in self.script.log.of_vehicle("MISSION_ITEM_REACHED")]
+        now_reached = self.station.reached
         if sorted(set(then)) != sorted(set(now_reached)):
             self.report.notes.append(f"items reached then {_list(then)}, now {_list(now_reached)}")
 

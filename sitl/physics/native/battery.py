@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from .records import BatteryState, Figures
+from ...vehicles.figures.battery import Battery
+from .records import BatteryState
 
 OPEN_CIRCUIT = (0.714, 0.845, 0.869, 0.895, 0.905, 0.919, 0.938, 0.957, 0.976, 0.990, 1.0)
 """Share of the full voltage at charge 0, 0.1 ... 1: a lithium-polymer cell (4.20, 3.86, 3.00 V)."""
@@ -19,7 +20,7 @@ def open_circuit(charge: float) -> float:
 
 
 @law
-def discharge(battery: BatteryState, power: float, figures: Figures, charge_per_amp: float) -> None:
+def discharge(battery: BatteryState, power: float, figures: Battery, charge_per_amp: float) -> None:
     """Draw the motors' power [W] for one tick; ``charge_per_amp``: loss of charge (of 1) per ampere and tick [1/A]."""
     full = figures.battery_voltage_full
     current = figures.avionics_current + power / max(battery.voltage, 0.1 * full)

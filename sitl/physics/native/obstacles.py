@@ -17,9 +17,10 @@ import math
 from ...core.algebra import dot, rotate_inverse
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
+from ...vehicles.figures.body import Outline
 from ...worlds.contact import Contact, Volume, nearest_of
 from .body import GRAVITY
-from .records import Body, Figures, Obstacles, Physics
+from .records import Body, Obstacles, Physics
 from .tick import TICK_S
 
 HIT_SPEED = 0.1
@@ -40,19 +41,19 @@ in one tick would be beyond what an accelerometer can show."""
 
 
 @law
-def disc(body: Body, figures: Figures, k: int) -> Volume:
+def disc(body: Body, outline: Outline, k: int) -> Volume:
     """Where disc ``k`` of the outline is."""
-    along, q, pos = figures.contact_along[k], body.q, body.pos
+    along, q, pos = outline.contact_along[k], body.q, body.pos
     n = pos.x + along * (1.0 - 2.0 * (q.y * q.y + q.z * q.z))
     e = pos.y + along * 2.0 * (q.x * q.y + q.w * q.z)
     d = pos.z + along * 2.0 * (q.x * q.z - q.w * q.y)
-    return Volume(Vec2(n, e), d - figures.contact_top, d + figures.contact_bottom, figures.contact_radius)
+    return Volume(Vec2(n, e), d - outline.contact_top, d + outline.contact_bottom, outline.contact_radius)
 
 
 @law
-def nearest(body: Body, obstacles: Obstacles, figures: Figures, k: int) -> Contact:
+def nearest(body: Body, obstacles: Obstacles, outline: Outline, k: int) -> Contact:
     """The listed solid nearest to disc ``k`` of the outline."""
-    return nearest_of(obstacles.rows, obstacles.count, disc(body, figures, k))
+    return nearest_of(obstacles.rows, obstacles.count, disc(body, outline, k))
 
 
 @law
@@ -85,11 +86,11 @@ def stand(body: Body, into: float) -> None:
 
 
 @law
-def half_length(figures: Figures) -> float:
+def half_length(outline: Outline) -> float:
     """How far the middles of the outline's discs are from the origin at most [m]."""
     longest = 0.0
-    for k in range(figures.contact_discs):
-        longest = max(longest, abs(figures.contact_along[k]))
+    for k in range(outline.contact_discs):
+        longest = max(longest, abs(outline.contact_along[k]))
     return longest
 
 
@@ -104,15 +105,15 @@ def is_clear(o: Obstacles, body: Body, half: float) -> bool:
 
 
 @law
-def push_out(o: Obstacles, body: Body, figures: Figures) -> float:
+def push_out(o: Obstacles, body: Body, outline: Outline) -> float:
     """Push the body out of the solids that it is in, and note what is near; returns the greatest speed into one [m/s],
     below 0 when it was not pushed.
     """
     o.touching = False
     speed, clear = -1.0, math.inf
-    for k in range(figures.contact_discs):
+    for k in range(outline.contact_discs):
         for _ in range(2):  # a corner has two sides
-            contact = nearest(body, o, figures, k)
+            contact = nearest(body, o, outline, k)
             clear = min(clear, contact.distance)
             if contact.distance < _TOUCH:
                 o.touching = True
@@ -128,13 +129,13 @@ def push_out(o: Obstacles, body: Body, figures: Figures) -> float:
 @law
 def collide(p: Physics, time_us: int) -> bool:
     """After the body has moved in a world: keep it out of solids. Returns whether it was pushed."""
-    o, body, figures = p.obstacles, p.body, p.airframe
-    half = half_length(figures)
+    o, body, outline = p.obstacles, p.body, p.airframe
+    half = half_length(outline)
     if is_clear(o, body, half):
         return False
     before = body.vel
-    speed = push_out(o, body, figures)
-    ask(o, body, half, figures.contact_radius)
+    speed = push_out(o, body, outline)
+    ask(o, body, half, outline.contact_radius)
     if speed < 0.0:
         return False
     report_hit(o, speed, time_us)

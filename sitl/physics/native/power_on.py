@@ -12,9 +12,10 @@ from ...core.earth_field import field_ned
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...vehicles import Airframe, apply
+from ...vehicles.figures.sensors import Sensors as SensorFigures
 from . import atmosphere, wind
 from .body import GRAVITY
-from .records import Figures, Physics, SensorState, Vehicle
+from .records import Physics, SensorState, Vehicle
 from .sensors import barometer, magnetometer, power
 
 Home = tuple[float, float, float, float]
@@ -58,7 +59,7 @@ def wake(v: Vehicle[Physics]) -> None:
     first_samples(p, v.sensors, v.rng)
 
 
-def draw_errors(s: SensorState, a: Figures, rng: Rng) -> None:
+def draw_errors(s: SensorState, a: SensorFigures, rng: Rng) -> None:
     """Draw what stays from power-on to power-off: turn-on biases, scale errors and where the drifts start."""
     draws = [[random.normal(rng) for _ in range(5)] for _ in range(3)]  # axis by axis
     acc_bias, gyro_bias, acc_scale, gyro_scale, drift = (Vec3(*axes) for axes in zip(*draws, strict=True))

@@ -8,12 +8,13 @@ Only physics and the shell read them; the autopilot sees ``sensors``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Protocol, TypeVar
+from typing import Annotated, Protocol, TypeVar
 
 from ...core.border import Actuators, Sensors
 from ...core.records import Float32, FloatRows, Record, Records, Stored, array, repeat
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
+from ...vehicles.figures.common import Figures
 from ...worlds.geometry import SOLID_FIGURES
 
 
@@ -151,14 +152,6 @@ class Obstacles(Record):
     hit_speed: Float32  # of the last one, into the solid [m/s]
     hit_time_us: int  # when the last one was
     impulse: Vec3  # velocity taken away that the accelerometer still has to show, NED [m/s]
-
-
-class Figures(Record):
-    """The airframe's figures (``sitl.vehicles.figures``)."""
-
-    if TYPE_CHECKING:  # the fields come from tables
-
-        def __getattr__(self, name: str) -> Any: ...
 
 
 class Physics(Record):

@@ -9,27 +9,18 @@ whatever its rotors do.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from ....core.algebra import ZERO, multiply, normalise, rotate, rotate_inverse
 from ....core.kernels import law
 from ....core.vectors import Quat, Vec3
+from ....vehicles.figures.copter import Legs
 from ..body import GRAVITY, small_rotation
-from ..records import Body, Figures
+from ..records import Body
 from ..tick import TICK_S
 from .state import GROUND_LYING, GROUND_STANDING, Ground
 
 _LEVEL = 1e-5
 """Lean [rad] below which a standing vehicle is at rest."""
-
-
-class Legs(NamedTuple):
-    """What a vehicle stands on."""
-
-    friction: float
-    """Coulomb coefficient."""
-    time_constant: float
-    """Time in which they take up a lean [s]."""
 
 
 @law
@@ -39,18 +30,18 @@ def upright(q: Quat) -> float:
 
 
 @law
-def touch(body: Body, ground: Ground, figures: Figures, time_us: int) -> None:
+def touch(body: Body, ground: Ground, legs: Legs, time_us: int) -> None:
     """Called in the air after a substep: stop at the ground when it is reached."""
     pos, vel = body.pos, body.vel
     if pos.z < 0.0 or vel.z < 0.0:
         return
-    if vel.z > figures.hit_speed:
+    if vel.z > legs.hit_speed:
         ground.hit_count += 1
         ground.hit_speed = vel.z
         ground.hit_time_us = time_us
     ground.impulse += vel.z
     body.pos, body.vel, body.rates = Vec3(pos.x, pos.y, 0.0), Vec3(vel.x, vel.y, 0.0), ZERO
-    if upright(body.q) < math.cos(figures.tip_angle):
+    if upright(body.q) < math.cos(legs.tip_angle):
         ground.state = GROUND_LYING
     else:
         ground.state = GROUND_STANDING
@@ -97,12 +88,12 @@ def rest(body: Body, acc: Vec3, stands: bool, legs: Legs, dt: float) -> Vec3:
         The specific force [m/s^2], body frame.
     """
     q, before = body.q, body.vel
-    vel = slide(before, rotate(q, acc) if stands else ZERO, legs.friction, dt)
+    vel = slide(before, rotate(q, acc) if stands else ZERO, legs.ground_friction, dt)
     n, e = body.pos.x + 0.5 * dt * (before.x + vel.x), body.pos.y + 0.5 * dt * (before.y + vel.y)
     body.pos, body.vel = Vec3(n, e, 0.0), vel
     body.rates = ZERO
     if stands:
-        rates = levelling_rates(q, max(legs.time_constant, dt))
+        rates = levelling_rates(q, max(legs.leg_time_constant, dt))
         if rates.x != 0.0 or rates.y != 0.0:
             body.q = normalise(multiply(q, small_rotation(rates * dt)))
         body.rates = rates

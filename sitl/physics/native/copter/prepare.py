@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.vectors import Vec3
+from ....vehicles.figures.copter import Figures
 from ..prepare import decay, prepare_shared
-from ..records import Figures
 from ..tick import TICK_S
 from .state import Derived
 
@@ -17,7 +17,7 @@ def prepare(a: Figures, d: Derived) -> None:
     dt = TICK_S / max(a.substeps, 1)
     d.dt = dt
     d.inverse_mass = 1.0 / a.mass
-    d.inverse_inertia = Vec3(1.0 / a.inertia[0], 1.0 / a.inertia[1], 1.0 / a.inertia[2])
+    d.inverse_inertia = Vec3(1.0 / a.inertia.x, 1.0 / a.inertia.y, 1.0 / a.inertia.z)
     d.control_scale = 1.0 / (a.control_max - a.control_min)
     d.command_step = a.command_slew * TICK_S
     d.decay_up = decay(a.time_constant_up, dt)

@@ -17,9 +17,9 @@ from ....core.algebra import ZERO
 from ....core.kernels import law
 from ....core.records import Floats
 from ....core.vectors import Vec3
-from ....vehicles.figures.copter import THRUST_MOMENTUM
+from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
 from ..body import Wrench
-from ..records import Air, Figures
+from ..records import Air
 from .state import Derived, Rotors
 
 

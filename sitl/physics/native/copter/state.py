@@ -3,17 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ....core.records import Float32, Floats, Record, array
 from ....core.vectors import Vec3
-from ....vehicles.figures.copter import FIGURES_RECORD, ROTORS_MAX
+from ....vehicles.figures.copter import ROTORS_MAX, Figures
 from .. import records as shared
-
-if TYPE_CHECKING:  # the fields come from a table
-    from ..records import Figures
-else:
-    Figures = FIGURES_RECORD
 
 
 class Derived(shared.Derived):

@@ -13,7 +13,7 @@ from ..records import Vehicle
 from ..sensors.sense import sense
 from ..tick import TICK_US
 from . import rotors
-from .ground import Legs, absorb, lifts_off, rest, touch
+from .ground import absorb, lifts_off, rest, touch
 from .state import GROUND_AIRBORNE, GROUND_STANDING, Physics
 from .wrench import act
 
@@ -30,23 +30,16 @@ def begin(v: Vehicle[Physics]) -> None:
 
 
 @law
-def inertia(p: Physics) -> Inertia:
-    """Of the airframe."""
-    moments = p.airframe.inertia
-    return Inertia(Vec3(moments[0], moments[1], moments[2]), p.derived.inverse_inertia, p.derived.inverse_mass)
-
-
-@law
 def substep(p: Physics, wrench: Wrench, time_us: int) -> Vec3:
     """Advance the body by a substep; returns its specific force [m/s^2], body frame."""
-    body, ground, figures, dt = p.body, p.ground, p.airframe, p.derived.dt
-    acc = p.derived.inverse_mass * wrench.force
+    body, ground, figures, inverse_mass, dt = p.body, p.ground, p.airframe, p.derived.inverse_mass, p.derived.dt
+    acc = inverse_mass * wrench.force
     stands = ground.state == GROUND_STANDING
-    if stands and lifts_off(body.q, wrench.force, p.derived.inverse_mass):
+    if stands and lifts_off(body.q, wrench.force, inverse_mass):
         ground.state = GROUND_AIRBORNE
     if ground.state != GROUND_AIRBORNE:
-        return rest(body, acc, stands, Legs(figures.ground_friction, figures.leg_time_constant), dt)
-    fly(body, wrench, inertia(p), dt)
+        return rest(body, acc, stands, figures, dt)
+    fly(body, wrench, Inertia(figures.inertia, p.derived.inverse_inertia, inverse_mass), dt)
     touch(body, ground, figures, time_us)
     return acc
 

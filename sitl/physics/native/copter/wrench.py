@@ -6,9 +6,8 @@ from __future__ import annotations
 from ....core.algebra import rotate_inverse
 from ....core.kernels import law
 from ....core.vectors import Vec3
-from ....vehicles.figures.copter import THRUST_MOMENTUM
+from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
 from ..body import Wrench
-from ..records import Figures
 from .rotors import Flow, lag, momentum_wrench, speed_squared_wrench
 from .state import Physics
 
@@ -22,14 +21,14 @@ def add_air(wrench: Wrench, spin_up: float, flow: Flow, figures: Figures, densit
     area, inertia = figures.drag_area, figures.inertia
     half, damping = 0.5 * density, figures.angular_damping
     force = Vec3(
-        f.x - half * area[0] * v.x * abs(v.x),
-        f.y - half * area[1] * v.y * abs(v.y),
-        f.z - half * area[2] * v.z * abs(v.z),
+        f.x - half * area.x * v.x * abs(v.x),
+        f.y - half * area.y * v.y * abs(v.y),
+        f.z - half * area.z * v.z * abs(v.z),
     )
     torque = Vec3(
-        m.x - damping * inertia[0] * rates.x,
-        m.y - damping * inertia[1] * rates.y,
-        m.z + (spin_up - damping * inertia[2] * rates.z),
+        m.x - damping * inertia.x * rates.x,
+        m.y - damping * inertia.y * rates.y,
+        m.z + (spin_up - damping * inertia.z * rates.z),
     )
     return Wrench(force, torque)
 

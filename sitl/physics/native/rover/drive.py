@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ....core.kernels import law
-from ..records import Figures
+from ....vehicles.figures.rover import Figures
 from ..tick import TICK_S
 from .state import Derived
 

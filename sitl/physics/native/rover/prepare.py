@@ -6,10 +6,9 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
+from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Figures
 from ..body import GRAVITY
 from ..prepare import decay, prepare_shared, whole_ticks
-from ..records import Figures
 from ..tick import TICK_S
 from .state import Derived
 
@@ -37,7 +36,7 @@ def yaw_acceleration(a: Figures) -> float:
         torque = 0.5 * force * a.track
     else:
         return 0.0
-    return torque / a.inertia[2]
+    return torque / a.inertia.z
 
 
 @law

@@ -3,17 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ....core.records import Record
 from ....core.vectors import Vec2
-from ....vehicles.figures.rover import FIGURES_RECORD
+from ....vehicles.figures.rover import Figures
 from .. import records as shared
-
-if TYPE_CHECKING:  # the fields come from a table
-    from ..records import Figures
-else:
-    Figures = FIGURES_RECORD
 
 
 class Derived(shared.Derived):

@@ -6,8 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....vehicles.figures.rover import STEERING_FRONT_WHEELS
-from ..records import Figures
+from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, Figures
 from .state import Derived
 
 

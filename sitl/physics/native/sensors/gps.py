@@ -16,7 +16,8 @@ from ....core.geodesy import add_offset
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Vec3
-from ..records import GPS_RING, Figures, Physics, SensorState
+from ....vehicles.figures.sensors import Sensors as SensorFigures
+from ..records import GPS_RING, Physics, SensorState
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""
@@ -65,7 +66,7 @@ def take(p: Physics, tick: int, rng: Rng) -> None:
 
 
 @law
-def deliver(s: SensorState, sensors: Sensors, now: Clock, figures: Figures) -> None:
+def deliver(s: SensorState, sensors: Sensors, now: Clock, figures: SensorFigures) -> None:
     """Hand the oldest fix to the reader when its time has come."""
     if s.gps_tail == s.gps_head:
         return
@@ -81,7 +82,7 @@ def deliver(s: SensorState, sensors: Sensors, now: Clock, figures: Figures) -> N
         sensors.gps_vel = fix.vel
         sensors.gps_eph = _nearest(100.0 * figures.gps_hdop)
         sensors.gps_epv = _nearest(100.0 * figures.gps_vdop)
-        sensors.gps_satellites = figures.gps_satellites
+        sensors.gps_satellites = int(figures.gps_satellites)
     else:
         sensors.gps_eph = UNKNOWN_DOP
         sensors.gps_epv = UNKNOWN_DOP

@@ -8,15 +8,16 @@ from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Quat, Vec3
-from ..records import Figures, Physics
+from ....vehicles.figures.sensors import Sensors as SensorFigures
+from ..records import Physics
 
 
 @law
-def measure_field(q: Quat, field: Vec3, figures: Figures, rng: Rng) -> Vec3:
+def measure_field(q: Quat, field: Vec3, figures: SensorFigures, rng: Rng) -> Vec3:
     """Field [gauss] that a sensor at attitude ``q`` shows, body frame; ``field``: NED."""
-    scale, offset = figures.noise_scale, figures.mag_offset
+    scale = figures.noise_scale
     noise = scale * figures.mag_noise
-    return rotate_inverse(q, field) + scale * Vec3(offset[0], offset[1], offset[2]) + noise * normal_vector(rng)
+    return rotate_inverse(q, field) + scale * figures.mag_offset + noise * normal_vector(rng)
 
 
 @law

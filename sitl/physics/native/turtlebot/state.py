@@ -3,16 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ....core.records import Record
 from ....core.rng import Rng
-from ....vehicles.turtlebot import FIGURES_RECORD
-
-if TYPE_CHECKING:  # the fields come from a table
-    from ..records import Figures
-else:
-    Figures = FIGURES_RECORD
+from ....vehicles.turtlebot import Figures
 
 TICK_US = 10_000
 """Physics step [us], as the original's."""

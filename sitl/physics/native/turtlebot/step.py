@@ -14,8 +14,8 @@ from ....core.array_kernels import Table
 from ....core.kernels import law
 from ....core.scalars import TWO_PI
 from ....core.vectors import Vec2
+from ....vehicles.turtlebot import Figures
 from ....worlds.contact import Volume, nearest_of
-from ..records import Figures
 from .state import TICK_S, TICK_US, Turtlebot
 
 

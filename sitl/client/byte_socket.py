@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Client ends of sockets: bytes to a vehicle and back. What is sent together travels together."""
+"""The client's end of a socket to a vehicle. What is sent together travels together."""
 
 from __future__ import annotations
 
@@ -7,37 +7,23 @@ import contextlib
 import select
 import socket
 
-from sitl.errors import VehicleError
-
-from ..options import EnvOptionError
+from ..errors import LinkLostError, OptionError
 
 FORMS = (
-    '"inprocess", "udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there) '
+    '"udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there) '
     'or "tcp:HOST:PORT" (connect to one)'
 )
 _BUFFER = 1 << 21
 
 
-class LinkLostError(VehicleError, ConnectionError):
-    """No vehicle there, or no longer; the message names the connection."""
-
-
-class NotReadyError(VehicleError, RuntimeError):
-    """A vehicle that does not become ready for an episode; the message says what it told."""
-
-
-class NotASimulatorError(NotReadyError):
-    """A vehicle that is not reset, because nothing proves that it is a simulator; nothing was sent that changes it."""
-
-
-class SocketEnd:
-    """A socket as ``sitl.bridge.client.Client`` wants it; nothing blocks but ``wait``.
+class ByteSocket:
+    """A socket as ``Endpoint`` wants it; nothing blocks but ``wait``.
 
     Args:
         text: one of the forms.
 
     Raises:
-        EnvOptionError: it is none of them.
+        OptionError: it is none of them.
         LinkLostError: it cannot be opened.
     """
 
@@ -45,7 +31,7 @@ class SocketEnd:
         kind, _, rest = text.partition(":")
         host, _, port = rest.rpartition(":")
         if kind not in ("udp", "udpin", "udpout", "tcp") or not host or not port.isdigit() or not 0 < int(port) < 65536:
-            raise EnvOptionError(f"connection {text!r} is none of {FORMS}")
+            raise OptionError(f"connection {text!r} is none of {FORMS}")
         self.name = text
         self._stream = kind == "tcp"
         self._peer: tuple[str, int] | None = None
@@ -56,7 +42,7 @@ class SocketEnd:
             if self._stream:
                 self._socket.settimeout(5.0)
                 self._socket.connect(address)
-                from sitl.bridge.links.echo import refuse_echo  # here: importing the package loads nothing of sitl
+                from ..bridge.links.echo import refuse_echo  # here: only TCP needs it
 
                 refuse_echo(self._socket)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -97,7 +83,7 @@ class SocketEnd:
                 self._socket.sendto(data, self._peer)
 
     def wait(self, seconds: float) -> bool:
-        """Until something can be read, at most so long (wall time). True when it can."""
+        """Until something can be read, at most so long [s of wall time]. True when it can."""
         return bool(select.select([self._socket], [], [], seconds)[0])
 
     def receive(self) -> bytes:
@@ -125,5 +111,5 @@ class SocketEnd:
         return b"".join(parts)
 
     def close(self) -> None:
-        """Let go of the socket; may be called twice."""
+        """Close the socket; may be called twice."""
         self._socket.close()

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from sitl.core.geodesy import offset_ne
+from ..core.geodesy import offset_ne
 
 ARMED = 0x80
 """HEARTBEAT.base_mode: MAV_MODE_FLAG_SAFETY_ARMED."""
@@ -15,22 +16,41 @@ READY_BITS = 0x10 | 0x01
 """EKF_STATUS_REPORT: attitude, absolute position."""
 PREARM_BIT = 0x10000000
 """SYS_STATUS: MAV_SYS_STATUS_PREARM_CHECK."""
-RATES_HZ = {"HEARTBEAT": 10, "GLOBAL_POSITION_INT": 10, "ATTITUDE": 10, "SYS_STATUS": 2, "EKF_STATUS_REPORT": 2}
-"""What is asked for, and how often."""
+ON_GROUND = 1
+"""EXTENDED_SYS_STATE: MAV_LANDED_STATE_ON_GROUND."""
 
 
-class Place(NamedTuple):
+class Position(NamedTuple):
     """From home."""
 
     north: float
     """[m]"""
     east: float
     """[m]"""
-    height: float
-    """[m]"""
+    altitude: float
+    """Above home [m]."""
+
+    @property
+    def height(self) -> float:
+        """The altitude, under the name that the pytest plugin has for it [m]."""
+        return self.altitude
 
     def __str__(self) -> str:
-        return f"{self.north:.1f} m north, {self.east:.1f} m east, {self.height:.1f} m high"
+        return f"{self.north:.1f} m north, {self.east:.1f} m east, {self.altitude:.1f} m high"
+
+
+class Attitude(NamedTuple):
+    """From ATTITUDE."""
+
+    roll: float
+    """[rad]"""
+    pitch: float
+    """[rad]"""
+    yaw: float
+    """-pi .. pi [rad]"""
+
+
+NO_ATTITUDE = Attitude(math.nan, math.nan, math.nan)
 
 
 class Text(NamedTuple):
@@ -45,23 +65,26 @@ class Text(NamedTuple):
 
 @dataclass
 class Telemetry:
-    """The last of each; NaN until it was heard."""
+    """The last of each; NaN until it was received."""
 
-    custom_mode: int = -1
+    mode_names: Mapping[int, str] = field(default_factory=dict)
+    """Of this vehicle, by their numbers."""
+    mode_number: int = -1
+    """custom_mode of HEARTBEAT; -1 before the first."""
     armed: bool = False
     lat: int = 0
     """[degE7]"""
     lon: int = 0
+    """[degE7]"""
     alt: float = math.nan
     """Above mean sea level [m]."""
-    height: float = math.nan
+    altitude: float = math.nan
     """Above home [m]."""
     velocity: tuple[float, float, float] = (math.nan, math.nan, math.nan)
     """North, east, down [m/s]."""
     heading: float = math.nan
     """[deg], 0 .. 360"""
-    attitude: tuple[float, float, float] = (math.nan, math.nan, math.nan)
-    """Roll, pitch, yaw [rad]."""
+    attitude: Attitude = NO_ATTITUDE
     home: tuple[int, int, float] | None = None
     """[degE7], [degE7], [m] above mean sea level."""
     has_position: bool = False
@@ -77,9 +100,10 @@ class Telemetry:
     items: list[int] = field(default_factory=list)
     """Mission items that were under way while it was armed."""
     parameters: dict[str, float] = field(default_factory=dict)
+    """Values by name, as they were sent last."""
     texts: list[Text] = field(default_factory=list)
     reached: list[tuple[float, int]] = field(default_factory=list)
-    """(time, mission item)"""
+    """(time [s], mission item)"""
     pieces: dict[int, str] = field(default_factory=dict)
     """Beginnings of long texts."""
 
@@ -92,23 +116,39 @@ class Telemetry:
         )  # fmt: skip
 
     @property
-    def place(self) -> Place:
-        """Where it is from home; NaN without a position."""
-        if self.home is None or math.isnan(self.height):
-            return Place(math.nan, math.nan, self.height)
+    def mode(self) -> str:
+        """Flight mode; "" before the first HEARTBEAT."""
+        return "" if self.mode_number < 0 else self.mode_names.get(self.mode_number, str(self.mode_number))
+
+    @property
+    def position(self) -> Position:
+        """From home; NaN without one."""
+        if self.home is None or math.isnan(self.altitude):
+            return Position(math.nan, math.nan, self.altitude)
         north, east = offset_ne(self.home[0], self.home[1], self.lat, self.lon)
-        return Place(north, east, self.height)
+        return Position(float(north), float(east), self.altitude)
+
+    @property
+    def groundspeed(self) -> float:
+        """[m/s]"""
+        north, east, _ = self.velocity
+        return float((north * north + east * east) ** 0.5)
+
+    @property
+    def climb_rate(self) -> float:
+        """Upward [m/s]."""
+        return -self.velocity[2]
 
     def take(self, time: float, name: str, m: Any) -> None:
-        """A message."""
+        """A message, received at a simulated time [s]."""
         if name == "GLOBAL_POSITION_INT":
-            self.lat, self.lon, self.alt, self.height = m.lat, m.lon, m.alt * 1e-3, m.relative_alt * 1e-3
+            self.lat, self.lon, self.alt, self.altitude = m.lat, m.lon, m.alt * 1e-3, m.relative_alt * 1e-3
             self.velocity = (m.vx * 0.01, m.vy * 0.01, m.vz * 0.01)
             self.heading = m.hdg * 0.01 if m.hdg != 65535 else math.nan
         elif name == "ATTITUDE":
-            self.attitude = (m.roll, m.pitch, m.yaw)
+            self.attitude = Attitude(m.roll, m.pitch, m.yaw)
         elif name == "HEARTBEAT":
-            self.custom_mode, self.armed = int(m.custom_mode), bool(m.base_mode & ARMED)
+            self.mode_number, self.armed = int(m.custom_mode), bool(m.base_mode & ARMED)
         elif name == "STATUSTEXT":
             self._text(time, m)
         elif name == "MISSION_ITEM_REACHED":

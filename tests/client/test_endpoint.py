@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.client import Client
 from sitl.bridge.dialect import FieldError, UnknownMessageError, message
+from sitl.client.endpoint import Endpoint
 
 
 @pytest.mark.parametrize(("name", "field", "value", "allowed"), [
@@ -26,7 +26,7 @@ from sitl.bridge.dialect import FieldError, UnknownMessageError, message
     ("ATT_POS_MOCAP", "q", 1.0, "a sequence"),
 ])  # fmt: skip
 def test_a_value_that_does_not_fit_is_named(name: str, field: str, value: Any, allowed: str) -> None:
-    client = Client()
+    client = Endpoint()
     with pytest.raises(FieldError) as caught:
         client.send(name, **{field: value})
     error = caught.value
@@ -39,11 +39,11 @@ def test_what_fits_is_packed() -> None:
     packed = message("ATT_POS_MOCAP").payload(q=(1.0, 0.5), x=-3.0)
     assert message("ATT_POS_MOCAP").decode(packed).q == (1.0, 0.5, 0.0, 0.0)
     with pytest.raises(UnknownMessageError, match="param9"):
-        Client().send("COMMAND_LONG", param9=1.0)
+        Endpoint().send("COMMAND_LONG", param9=1.0)
 
 
 def test_a_command_has_seven_parameters() -> None:
-    client = Client()
+    client = Endpoint()
     client.command(400, *range(7))
     with pytest.raises(FieldError, match=r"COMMAND_LONG\.param8 .*param1 \.\. param7"):
         client.command(400, *range(8))
@@ -52,11 +52,11 @@ def test_a_command_has_seven_parameters() -> None:
 @pytest.mark.parametrize("rate", [math.nan, math.inf, -1.0])
 def test_a_rate_that_is_none_is_refused(rate: float) -> None:
     with pytest.raises(FieldError, match=r"ATTITUDE\.rate_hz"):
-        Client().set_interval("ATTITUDE", rate)
+        Endpoint().set_interval("ATTITUDE", rate)
 
 
 def test_rate_0_stops_a_message() -> None:
-    client = Client()
+    client = Endpoint()
     for rate, interval in ((0.0, -1.0), (4.0, 250_000.0)):
         client.set_interval("ATTITUDE", rate)
         frame = client._splitter.feed(client.link.peers[0].take())[0]

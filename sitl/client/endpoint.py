@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A MAVLink client in the vehicle's own process: real bytes, no socket, no thread."""
+"""Messages to bytes and bytes to messages: the client's end of a link, without time and without waiting."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import math
 from functools import partial
 from typing import Any, NamedTuple, Protocol
 
-from .dialect import FieldError, message
-from .frame import Splitter, encode_v2
-from .links.inprocess import InProcessLink
+from ..bridge.dialect import FieldError, message
+from ..bridge.frame import Splitter, encode_v2
+from ..bridge.links.inprocess import InProcessLink
 
 
 class Received(NamedTuple):
@@ -22,8 +22,8 @@ class Received(NamedTuple):
 _received = partial(tuple.__new__, Received)
 
 
-class End(Protocol):
-    """A client's end of a link: an :class:`InProcessLink`, or a socket."""
+class ByteStream(Protocol):
+    """What carries the bytes: an :class:`InProcessLink`, or a socket."""
 
     def send(self, data: bytes) -> None:
         """To the vehicle."""
@@ -32,19 +32,20 @@ class End(Protocol):
         """All bytes from the vehicle since the last call."""
 
 
-class Client:
-    """The other end of an :class:`InProcessLink`, or of a socket.
+class Endpoint:
+    """Encodes messages onto a link and decodes what comes back. It waits for nothing.
 
     Args:
         link: the link that the vehicle's bridge has, or the client's end of another; None: a new one in process.
-        system, component: who sends; 255 and 190 are a ground station's.
+        system, component: MAVLink ids of the sender; 255 and 190 are a ground station's.
     """
 
-    def __init__(self, link: End | None = None, system: int = 255, component: int = 190) -> None:
+    def __init__(self, link: ByteStream | None = None, system: int = 255, component: int = 190) -> None:
         self.link: Any = link or InProcessLink()
         self.system, self.component = system, component
+        self.sequence = 0
+        """Of the next frame, 0 .. 255."""
         self._splitter = Splitter()
-        self._sequence = 0
 
     def send(self, name: str, **fields: Any) -> None:
         """Encode and send one message; fields not given are zero.
@@ -58,21 +59,28 @@ class Client:
 
     def send_payload(self, kind: Any, payload: bytes) -> None:
         """Send one message whose payload is packed already (the quick way for set-points)."""
-        self.link.send(encode_v2(kind, payload, self._sequence, self.system, self.component))
-        self._sequence = (self._sequence + 1) & 0xFF
+        self.link.send(encode_v2(kind, payload, self.sequence, self.system, self.component))
+        self.sequence = (self.sequence + 1) & 0xFF
 
-    def command(self, number: int, *params: float, target: int = 1) -> None:
-        """Send a COMMAND_LONG with up to seven parameters."""
+    def command(self, number: int, *params: float, target: int = 1, confirmation: int = 0) -> None:
+        """Send a COMMAND_LONG (MAV_CMD ``number``) with up to seven parameters."""
         if len(params) > 7:
             raise FieldError("COMMAND_LONG", f"param{len(params)}", params[-1], "param1 .. param7")
         values = dict(zip(("param1", "param2", "param3", "param4", "param5", "param6", "param7"), params))
-        self.send("COMMAND_LONG", target_system=target, target_component=1, command=number, **values)
+        self.send(
+            "COMMAND_LONG",
+            target_system=target,
+            target_component=1,
+            command=number,
+            confirmation=confirmation,
+            **values,
+        )
 
-    def set_interval(self, name: str, rate_hz: float) -> None:
-        """Ask for a message at a rate (MAV_CMD_SET_MESSAGE_INTERVAL); 0 stops it."""
+    def set_interval(self, name: str, rate_hz: float, target: int = 1) -> None:
+        """Ask for a message at a rate [Hz] (MAV_CMD_SET_MESSAGE_INTERVAL); 0 stops it."""
         if not (math.isfinite(rate_hz) and rate_hz >= 0.0):
             raise FieldError(name, "rate_hz", rate_hz, "finite numbers from 0 (stop) on")
-        self.command(511, message(name).id, 1e6 / rate_hz if rate_hz > 0 else -1)
+        self.command(511, message(name).id, 1e6 / rate_hz if rate_hz > 0 else -1, target=target)
 
     def receive(self) -> list[Received]:
         """All messages since the last call, in order."""
