@@ -7,11 +7,12 @@ Sources: ArduPilot's parameters RCn_*, RCMAP_*, RC_OVERRIDE_TIME; RC_CHANNELS_OV
 
 from __future__ import annotations
 
+from ..core.border import RC_INPUTS, Sensors
 from ..core.kernels import law
 from ..core.scalars import constrain
 from .params.parameters import Parameters
 from .params.radio import RcChannel, RcMap
-from .state import RC_INPUTS, Radio, Sensors
+from .state import Radio
 
 RC_TICKS = 8
 """Ticks between two frames of the receiver: 50 Hz."""

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sitl.core.rotations import quat_to_euler
+from sitl.core.algebra import euler_of
 from sitl.errors import SitlError
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
@@ -47,7 +47,7 @@ class Witness(Pilot):
         body, battery = v.physics.body, v.physics.battery
         output = self.simulation.kind.motor_output(v)
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0
-        row = (*body.pos.tolist(), *body.vel.tolist(), *quat_to_euler(*body.q.tolist()))
+        row = (*body.pos, *body.vel, *euler_of(body.q))
         self.truth.append((self.now, *row, output, self._wh))
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..core.record_reader import RecordReader
 from ..errors import OptionError
-from ..physics.native.obstacles import OBSTACLES_MAX
+from ..physics.native.records import OBSTACLES_MAX
 from ..scenario import StartPose
 from ..vehicles import Airframe
 from ..worlds import World, contact
@@ -65,17 +65,17 @@ class Surroundings:
             reader: of the same.
             lists_solids: native physics finds the solids near the vehicle in its record; other engines have their own.
         """
-        self._obstacles, self._position = v.physics.obstacles, v.physics.body.pos
+        self._obstacles, self._body = v.physics.obstacles, v.physics.body
         self.is_wanted: Callable[[], int] = reader.field("physics.obstacles.wanted")
         """Whether the vehicle needs a new list of the solids near it."""
-        self._position[:] = self.position
-        self._obstacles.present = int(lists_solids and len(self.world.geometry) > 0)
+        self._body.pos = self.position
+        self._obstacles.present = lists_solids and len(self.world.geometry) > 0
         if lists_solids:
             self.gather()
 
     def gather(self) -> None:
         """List the solids near the vehicle in its record."""
-        o, north, east = self._obstacles, float(self._position[0]), float(self._position[1])
+        o, (north, east, _) = self._obstacles, self._body.pos
         count, complete = contact.near(self.world.geometry, north, east, REACH, self._rows)
         rows = o.rows
         rows[:] = 0.0
@@ -84,7 +84,7 @@ class Surroundings:
         rows[:count, BOTTOM] += self.floor
         o.count, o.north, o.east, o.complete = count, north, east, complete
         o.clear = 0.0
-        o.wanted = 0
+        o.wanted = False
 
     def _check_free(self, airframe: Airframe) -> None:
         top, bottom = float(airframe.value("contact_top")), float(airframe.value("contact_bottom"))

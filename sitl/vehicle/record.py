@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ..autopilot.state import Actuators, Autopilot, Sensors
+from ..autopilot.state import Autopilot
+from ..core.border import Actuators, Sensors
 from ..core.records import Record
 from ..core.rng import Rng
 from ..physics.native.records import Physics

@@ -13,5 +13,5 @@ def apply(v: Any) -> None:
     params, physics, wind = v.autopilot.params, v.physics, v.physics.wind
     wind.speed, wind.direction = params.SIM.WIND_SPD, params.SIM.WIND_DIR
     wind.turbulence, wind.time_constant = params.SIM.WIND_TURB, params.SIM.WIND_TC
-    physics.sensors.gps_off = int(params.SIM.GPS1_ENABLE == 0)
+    physics.sensors.gps_off = params.SIM.GPS1_ENABLE == 0
     v.autopilot.rc.has_receiver = int(params.SIM.RC_FAIL == 0)

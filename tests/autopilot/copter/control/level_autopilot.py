@@ -11,7 +11,7 @@ from sitl.autopilot.copter.control import motors, rate, throttle_mix
 from sitl.autopilot.copter.control.init import init
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
-from sitl.autopilot.state import Actuators
+from sitl.core.border import Actuators
 from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_normalise, quat_to_euler
 
 
