@@ -10,11 +10,30 @@ from __future__ import annotations
 import math
 
 from .kernels import law
+from .records import Floats
 from .vectors import Euler, Quat, Vec2, Vec3
 
 IDENTITY = Quat(1.0, 0.0, 0.0, 0.0)
 ZERO2 = Vec2(0.0, 0.0)
 ZERO = Vec3(0.0, 0.0, 0.0)
+
+
+@law
+def vec2_of(array: Floats) -> Vec2:
+    """The vector that the first two elements of an array are."""
+    return Vec2(array[0], array[1])
+
+
+@law
+def vec3_of(array: Floats) -> Vec3:
+    """The vector that the first three elements of an array are."""
+    return Vec3(array[0], array[1], array[2])
+
+
+@law
+def quat_of(array: Floats) -> Quat:
+    """The quaternion that the first four elements of an array are."""
+    return Quat(array[0], array[1], array[2], array[3])
 
 
 @law
@@ -45,6 +64,12 @@ def by_component(a: Vec3, b: Vec3) -> Vec3:
 def finite_vector(v: Vec3) -> bool:
     """Whether all components are finite."""
     return v.x - v.x == 0.0 and v.y - v.y == 0.0 and v.z - v.z == 0.0
+
+
+@law
+def finite2(v: Vec2) -> bool:
+    """Whether both components are finite."""
+    return v.x - v.x == 0.0 and v.y - v.y == 0.0
 
 
 @law

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sitl.autopilot import home
-from sitl.autopilot.copter.control.init import init as init_control
+from sitl.autopilot.copter.control.update import init as init_control
 from sitl.autopilot.copter.modes.init import init as init_modes
 from sitl.autopilot.copter.table import TABLE
 from sitl.vehicle.record import Copter

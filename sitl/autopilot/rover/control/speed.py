@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
-from ...control.pid import reset_filter, update_saturating
+from ...control.pid import PidGains, reset_filter, update_pid
 from . import motors
 from .forward_speed import forward_speed
 from .recent import now_tick, recent
@@ -100,11 +100,11 @@ def throttle_for_speed(v, desired):
     s.desired = desired_speed_accel_limited(ap, desired if finite(desired) else 0.0)
 
     saturated = m.limit_lower != 0 or m.limit_upper != 0 or s.limit_low != 0 or s.limit_high != 0
-    throttle = cruise_throttle(ap, float(s.desired)) + update_saturating(
-        s.loop, float(s.desired), speed, DT, saturated,
+    gains = PidGains(
         p.ATC_SPEED_P, p.ATC_SPEED_I, p.ATC_SPEED_D, p.ATC_SPEED_FF, p.ATC_SPEED_D_FF,
         p.ATC_SPEED_IMAX, p.ATC_SPEED_PDMX, p.ATC_SPEED_FLTT, p.ATC_SPEED_FLTE, p.ATC_SPEED_FLTD,
     )  # fmt: skip
+    throttle = cruise_throttle(ap, s.desired) + update_pid(s.loop, s.desired, speed, DT, saturated, gains)
     s.limit_low = 0
     s.limit_high = 0
     if p.ATC_BRAKE == 0.0:

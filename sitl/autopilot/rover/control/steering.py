@@ -11,7 +11,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
-from ...control.pid import reset_filter, update_saturating
+from ...control.pid import PidGains, reset_filter, update_pid
 from .forward_speed import yaw_rate
 from .recent import now_tick, recent
 from .state import DT, GRAVITY
@@ -117,11 +117,11 @@ def out_from_rate(ap, turn_rate):
         rate = _limited(s, rate, -most, most)
     s.turn_rate = rate
 
-    return update_saturating(
-        s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0,
+    gains = PidGains(
         p.ATC_STR_RAT_P, p.ATC_STR_RAT_I, p.ATC_STR_RAT_D, p.ATC_STR_RAT_FF, p.ATC_STR_RAT_D_FF,
         p.ATC_STR_RAT_IMAX, p.ATC_STR_RAT_PDMX, p.ATC_STR_RAT_FLTT, p.ATC_STR_RAT_FLTE, p.ATC_STR_RAT_FLTD,
     )  # fmt: skip
+    return update_pid(s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0, gains)
 
 
 @law

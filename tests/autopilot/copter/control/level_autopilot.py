@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from sitl.autopilot.copter.control import motors, rate, throttle_mix
-from sitl.autopilot.copter.control.init import init
+from sitl.autopilot.copter.control.update import init
 from sitl.autopilot.copter.state import Autopilot
 from sitl.autopilot.copter.table import TABLE
 from sitl.autopilot.state import Actuators
