@@ -76,7 +76,7 @@ def fleet(pilot: Pilot, core: Core, size: int) -> Callable[[], float]:
 
 def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable[[], float]:
     """A client that sends a velocity set-point and reads telemetry as MAVLink bytes at ``rate_hz``, in lockstep."""
-    simulation, client = pilot.simulation, pilot.client
+    simulation, client = pilot.simulation, pilot.connection.endpoint
     client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)  # stops all streams, a rover's own too
     for name in messages:
         client.set_interval(name, rate_hz)

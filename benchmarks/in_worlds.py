@@ -12,7 +12,7 @@ import statistics
 import time
 from collections.abc import Callable
 
-from sitl.missions.pilot import TAKEOFF, Pilot
+from sitl.missions.pilot import Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
@@ -27,12 +27,12 @@ def ready(frame: str, world: str | None, core: Core, scans_hz: float = 0.0) -> P
     pilot.boot()
     pilot.arm()
     if core.kind.name == "copter":
-        pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 1.2)
+        pilot.send_command("NAV_TAKEOFF", altitude=1.2)
         pilot.fly(8.0)
-    pilot.client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)
+    pilot.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)
     for name in ("LOCAL_POSITION_NED", "ATTITUDE", "EKF_STATUS_REPORT", "SYS_STATUS"):
-        pilot.client.set_interval(name, 0.0)
-    pilot.client.set_interval("DEBUG_FLOAT_ARRAY", scans_hz)
+        pilot.set_rate(name, 0.0)
+    pilot.set_rate("DEBUG_FLOAT_ARRAY", scans_hz)
     pilot.simulation.advance(0.1)
     return pilot
 
@@ -45,7 +45,7 @@ def whole(pilot: Pilot) -> Callable[[], float]:
         start = time.process_time()
         simulation.advance(SECONDS)
         taken = time.process_time() - start
-        pilot.client.receive()
+        pilot.connection.endpoint.receive()
         simulation.restore(snapshot)
         return SECONDS / taken
 
@@ -61,7 +61,7 @@ def core_alone(pilot: Pilot) -> Callable[[], float]:
         start = time.process_time()
         first = int(simulation.v.tick)
         while int(simulation.v.tick) - first < ticks:
-            simulation.v.autopilot.events.attention = 0
+            simulation.v.autopilot.events.attention = False
             advance(ticks)
         taken = time.process_time() - start
         simulation.restore(snapshot)

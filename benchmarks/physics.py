@@ -39,11 +39,11 @@ def under_way(frame: str, physics: str) -> Pilot:
     pilot.boot()
     pilot.arm()
     if simulation.kind.name == "copter":
-        pilot.client.command(22, 0, 0, 0, 0, 0, 0, 10.0)
+        pilot.send_command(22, 0, 0, 0, 0, 0, 0, 10.0)
         pilot.fly(10.0)
-    pilot.client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)  # stops all streams
+    pilot.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)  # stops all streams
     for name in ("LOCAL_POSITION_NED", "ATTITUDE"):
-        pilot.client.set_interval(name, 10.0)
+        pilot.set_rate(name, 10.0)
     return pilot
 
 
@@ -54,7 +54,7 @@ def driven(pilot: Pilot, seconds: float = SECONDS) -> Callable[[], float]:
         for k in range(round(seconds * 10)):
             pilot.setpoint(VELOCITY_ONLY, velocity=(1.0 if k % 100 < 50 else -1.0, 0.0, 0.0))
             pilot.simulation.advance(0.1)
-            pilot.client.receive()
+            pilot.connection.endpoint.receive()
         return seconds
 
     return run

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation
 
 Array = np.ndarray[Any, Any]
@@ -22,7 +22,7 @@ def begin(frame: str, core: Core, estimator: str = "ekf") -> Pilot:
     pilot.boot()
     pilot.arm()
     if core.kind.name == "copter":
-        pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)
+        pilot.send_command("NAV_TAKEOFF", altitude=10.0)
         pilot.fly(20.0)
     else:
         pilot.stream_setpoint(20.0, VELOCITY_ONLY, (SPEED, 0.0, 0.0))

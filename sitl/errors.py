@@ -24,6 +24,10 @@ class VehicleError(SitlError):
     """A vehicle that cannot be reached, or does not do what it must; the message says which, and what it told."""
 
 
+class LinkLostError(VehicleError, ConnectionError):
+    """No vehicle at the other end of a MAVLink connection, or no longer; the message names the connection."""
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The end of a message about a name that is not known: "; did you mean ...?" with the nearest, or nothing."""
     near = get_close_matches(name, list(known), 1)

@@ -311,7 +311,7 @@ class Simulation:
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
-        self.v.autopilot.events.attention = 0
+        self.v.autopilot.events.attention = False
         self.bridge.on_events()
         self.bridge.tell(self.sequencer.attend())
         self._events_seen = int(self._event_count())

@@ -15,7 +15,7 @@ import pytest
 
 from sitl import vehicles
 from sitl.core import records
-from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicle.advance import advance_copter
@@ -27,7 +27,7 @@ def take_off(core: Core, frame: str = "erle_copter", seed: int = 0) -> Pilot:
     pilot = Pilot(Simulation(frame, seed=seed, core=core))
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=5.0)
     return pilot
 
 
@@ -35,17 +35,17 @@ def telemetry_digest(core: Core, seed: int) -> str:
     """Hash of every byte a client receives over a flight with set-points."""
     pilot = Pilot(Simulation(seed=seed, core=core))
     digest = hashlib.sha256()
-    receive = pilot.client.link.receive
+    receive = pilot.connection.endpoint.link.receive
 
     def tapped() -> bytes:
         data = receive()
         digest.update(data)
         return data
 
-    pilot.client.link.receive = tapped  # type: ignore[method-assign]
+    pilot.connection.endpoint.link.receive = tapped  # type: ignore[method-assign]
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=5.0)
     pilot.fly(8.0)
     pilot.stream_setpoint(3.0, VELOCITY_ONLY, (2.0, -1.0, 0.0))
     return digest.hexdigest()
@@ -140,11 +140,9 @@ def test_time_is_exact(core: Core) -> None:
 def test_reboot_keeps_parameters_and_time_goes_on(core: Core) -> None:
     pilot = Pilot(Simulation(core=core))
     pilot.fly(3.0)
-    pilot.client.send(
-        "PARAM_SET", target_system=1, target_component=1, param_id=b"WPNAV_SPEED", param_value=300.0, param_type=9
-    )
+    pilot.send("PARAM_SET", param_id=b"WPNAV_SPEED", param_value=300.0, param_type=9)
     pilot.fly(1.0)
-    pilot.client.command(246, 1)
+    pilot.send_command("PREFLIGHT_REBOOT_SHUTDOWN", 1)
     pilot.fly(1.0)
     simulation = pilot.simulation
     assert (246, 0) in pilot.acks

@@ -57,6 +57,10 @@ def _walk(record: np.dtype[Any], path: str, offsets: tuple[int, ...]) -> Iterato
 
 def _leaf_or_walk(kind: np.dtype[Any], path: str, offsets: tuple[int, ...]) -> Iterator[Leaf]:
     base, count = kind.base, int(np.prod(kind.shape, dtype=int))
+    if base.names is None and kind.shape and path.startswith(PARAMETERS):  # FLTMODE[0] is FLTMODE1
+        for k in range(count):
+            yield Leaf(f"{path}{k + 1}", base, tuple(start + k * base.itemsize for start in offsets), 1)
+        return
     if base.names is None:
         yield Leaf(path, base, offsets, count)
         return

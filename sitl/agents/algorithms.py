@@ -16,26 +16,26 @@ from .runs.watch import Watch
 
 
 class Policy(Protocol):
-    """A model that plays, without learning."""
+    """A learnt policy."""
 
     def check(self, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
         """Raises AgentError when it cannot play in an environment of these spaces."""
 
     def begin(self, seed: int) -> None:
-        """An episode begins; same seed, same choices."""
+        """Start an episode; the same seed gives the same choices."""
 
     def act(self, observation: Any) -> Any:
         """The action for an observation."""
 
 
 class Algorithm(Protocol):
-    """A module that can train; functions of it."""
+    """The functions of a module that implements an algorithm."""
 
     LENGTH: Mapping[str, int]
-    """Of a run when the user does not say: {"episodes": ...} or {"steps": ...}."""
+    """Default length of a run: {"episodes": ...} or {"steps": ...}."""
 
     LIBRARIES: tuple[str, ...]
-    """Whose versions its results depend on, besides those of every run."""
+    """Libraries whose versions results depend on, besides those of every run."""
 
     def settings(self, algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
         """All settings, the given ones and defaults, checked. Raises AgentError."""
@@ -47,7 +47,7 @@ class Algorithm(Protocol):
         """Train until the run is done or ``watch.stop``; from the model in the folder when there is one."""
 
     def policy(self, folder: RunFolder) -> Policy:
-        """What the run has learnt. Raises AgentError."""
+        """The policy that the run has learnt. Raises AgentError."""
 
 
 ALGORITHMS = {
@@ -74,7 +74,7 @@ def load(algorithm: str) -> Algorithm:
 
 
 def policy_of(folder: RunFolder) -> Policy:
-    """What a run has learnt, ready to play.
+    """The policy that a run has learnt.
 
     Raises:
         AgentError: it has no model yet.

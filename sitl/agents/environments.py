@@ -23,8 +23,8 @@ def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
     """Make the environment of a run.
 
     Args:
-        config: of the run.
-        options: that replace the run's.
+        config: configuration of the run.
+        options: options that replace the run's.
 
     Raises:
         AgentError: no such environment, or an option that it does not take.
@@ -33,8 +33,9 @@ def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
 
 
 def try_all(configs: Iterable[RunConfig]) -> None:
-    """See that the environments of runs can be made and learnt in, for training and for their evaluation, before a
-    folder is.
+    """Check that the environments of runs, for training and for evaluation, can be made and learnt in, before any
+    folder
+    is made.
 
     Raises:
         AgentError: see ``make``, or the algorithm does not learn from such observations or actions.
@@ -53,7 +54,7 @@ def try_all(configs: Iterable[RunConfig]) -> None:
 
 
 def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:
-    """As ``make``, of so many robots at once."""
+    """As ``make``, with ``count`` robots in one vector environment."""
 
     def call(given: dict[str, Any]) -> gym.vector.VectorEnv[Any, Any, Any]:
         return gym.make_vec(config.env, num_envs=count, max_episode_steps=config.max_steps, **given)
@@ -77,7 +78,7 @@ def _made(call: Callable[[dict[str, Any]], _Env], config: RunConfig, options: Ma
 
 
 def seed_of(seed: int, episode: int) -> int:
-    """Seed of an episode's reset: follows from the run's, so that a run can go on from anywhere."""
+    """Seed of an episode's reset. It follows from the run's seed, so that a run can be resumed at any episode."""
     return int(np.random.SeedSequence([seed, episode]).generate_state(1)[0])
 
 

@@ -19,7 +19,7 @@ from .algorithms import Policy
 from .errors import AgentError
 from .laps import CENTRES, LapCounter
 from .runs.folder import RunFolder
-from .runs.local import Stopped, Tell
+from .runs.local import SendProgress, Stopped
 from .runs.plan import EPISODES, EvaluationPlan
 
 Pose = tuple[float, float, float]
@@ -28,53 +28,53 @@ Pose = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Played:
-    """One episode."""
+    """Result of one episode."""
 
     reward: float
     steps: int
     terminated: bool
-    """It ended by itself: a crash, or a goal reached."""
+    """The episode ended by itself: a crash, or a goal reached."""
     crashed: bool
     reached: bool
-    """A goal, where there is one."""
+    """The goal was reached (False for tasks without a goal)."""
     simulated_s: float
     laps: float
-    """Net turns round the middle of the world; nan where there is no such thing."""
+    """Net turns around the centre of the world; nan in worlds without laps."""
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Of many episodes."""
+    """Results of several episodes."""
 
     episodes: tuple[Played, ...]
 
     @property
     def mean_reward(self) -> float:
-        """Of an episode."""
+        """Mean reward of an episode."""
         return float(np.mean([played.reward for played in self.episodes]))
 
     @property
     def crash_rate(self) -> float:
-        """Share of the episodes that ended in a crash."""
+        """Fraction of the episodes that ended in a crash."""
         return float(np.mean([played.crashed for played in self.episodes]))
 
     @property
     def mean_laps(self) -> float:
-        """Of an episode, whole laps only; nan where laps are not counted."""
+        """Mean number of whole laps of an episode; nan where laps are not counted."""
         return float(np.mean([math.floor(p.laps) if p.laps == p.laps else math.nan for p in self.episodes]))
 
     @property
     def lap_rate(self) -> float:
-        """Share of the episodes with a whole lap or more and no crash."""
+        """Fraction of the episodes with a whole lap or more and no crash."""
         return float(np.mean([played.laps >= 1.0 and not played.crashed for played in self.episodes]))
 
     @property
     def mean_simulated_s(self) -> float:
-        """Of an episode [s]."""
+        """Mean simulated time of an episode [s]."""
         return float(np.mean([played.simulated_s for played in self.episodes]))
 
     def sentence(self) -> str:
-        """For people."""
+        """Summary in one line."""
         count = len(self.episodes)
         crashes = sum(played.crashed for played in self.episodes)
         parts = [f"{count} episodes: mean reward {self.mean_reward:.0f}", f"{crashes} crashes"]
@@ -104,9 +104,9 @@ def evaluate(
 
     Args:
         env: it must truncate its episodes.
-        policy: that plays.
-        episodes: how many.
-        seed: of the resets and of the policy's own choices.
+        policy: policy that plays.
+        episodes: number of episodes.
+        seed: seed of the resets and of the policy's own choices.
         poses: where the episodes start, in turn; None: where the environment says.
         watch: called after each episode.
         first: number of the first one; each follows from its number and the seed alone.
@@ -125,14 +125,14 @@ def evaluate(
 
 
 class Interrupted(SitlError):
-    """Ends an evaluation between two episodes."""
+    """Raised to end an evaluation between two episodes."""
 
 
-def until_stopped(tell: Tell, stopped: Stopped) -> Callable[[Played], None]:
-    """A ``watch`` for work on many runs: tells 1 after each episode, and raises Interrupted when it shall end."""
+def until_stopped(send_progress: SendProgress, stopped: Stopped) -> Callable[[Played], None]:
+    """A ``watch`` callback that sends 1 after each episode, and raises Interrupted when the work is asked to stop."""
 
     def watch(played: Played) -> None:
-        tell(1)
+        send_progress(1)
         if stopped():
             raise Interrupted
 
@@ -171,7 +171,7 @@ def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str
 def stage(
     run: RunFolder, plan: EvaluationPlan, seed: int = 0
 ) -> Iterator[tuple[gym.Env[Any, Any], Policy, list[Pose] | None]]:
-    """What an evaluation of a run needs: environment, policy and, where the plan moves them, start poses.
+    """Environment, policy and (where the plan moves them) start poses for the evaluation of a run.
 
     Raises:
         AgentError: no model, or an environment that cannot be made.
@@ -186,12 +186,12 @@ def stage(
 
 
 def evaluate_run(run: RunFolder, plan: EvaluationPlan | None = None, seed: int = 0) -> Evaluation:
-    """Play what a run has learnt.
+    """Play the learnt policy of a run.
 
     Args:
-        run: that has a model.
+        run: run that has a model.
         plan: how; None: as the run says.
-        seed: of the evaluation.
+        seed: seed of the evaluation.
 
     Raises:
         AgentError: no model, or not of this environment.

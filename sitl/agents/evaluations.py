@@ -11,13 +11,13 @@ from pathlib import Path
 from .evaluate import Evaluation, Interrupted, evaluate, stage, until_stopped
 from .runs.backends import Workers
 from .runs.folder import RunFolder
-from .runs.local import Stopped, Tell
+from .runs.local import SendProgress, Stopped
 from .runs.plan import EvaluationPlan
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some of the episodes of an evaluation; can be pickled."""
+    """A range of the episodes of an evaluation; picklable."""
 
     run: Path
     plan: EvaluationPlan
@@ -29,28 +29,29 @@ class Part:
 def evaluate_runs(
     runs: Sequence[RunFolder], plans: Sequence[EvaluationPlan], seed: int = 0, workers: Workers | None = None
 ) -> list[Evaluation]:
-    """Play what runs have learnt.
+    """Play the learnt policies of runs.
 
     Args:
-        runs: that have a model.
-        plans: of each, how it is played.
-        seed: of the evaluations.
-        workers: that play; where there are more of them than runs, the episodes of a run are divided among them.
+        runs: runs that have a model.
+        plans: a plan for each run.
+        seed: seed of the evaluations.
+        workers: workers that play; where there are more of them than runs, the episodes of a run are divided among
+            them.
 
     Raises:
         AgentError: no model, or not of this environment.
         KeyboardInterrupt: it was interrupted.
     """
     workers = workers or Workers()
-    shares = [_shares(plan.episodes, -(-workers.jobs // len(runs))) for plan in plans]
+    ranges = [_ranges(plan.episodes, -(-workers.jobs // len(runs))) for plan in plans]
     parts = [
         Part(run.path, plan, seed, first, count)
-        for run, plan, some in zip(runs, plans, shares)
+        for run, plan, some in zip(runs, plans, ranges)
         for first, count in some
     ]
     found = iter(workers.each(play_part, parts, workers.jobs))
     out = []
-    for some in shares:
+    for some in ranges:
         evaluations = [next(found) for _ in some]
         if None in evaluations:
             raise KeyboardInterrupt
@@ -58,17 +59,19 @@ def evaluate_runs(
     return out
 
 
-def play_part(part: Part, tell: Tell, stopped: Stopped) -> Evaluation | None:
-    """Play a part; tells 1 after each episode. None when it was stopped."""
+def play_part(part: Part, send_progress: SendProgress, stopped: Stopped) -> Evaluation | None:
+    """Play a part; sends 1 after each episode. None when it was stopped."""
     with stage(RunFolder(part.run), part.plan, part.seed) as (env, policy, poses):
         try:
-            return evaluate(env, policy, part.count, part.seed, poses, until_stopped(tell, stopped), part.first)
+            return evaluate(
+                env, policy, part.count, part.seed, poses, until_stopped(send_progress, stopped), part.first
+            )
         except Interrupted:
             return None
 
 
-def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
-    """(first, how many) of at most so many parts."""
+def _ranges(episodes: int, count: int) -> list[tuple[int, int]]:
+    """Split episodes into at most ``count`` parts: (first episode, number of episodes)."""
     bounds = [episodes * k // min(count, episodes) for k in range(min(count, episodes) + 1)]
     return [(first, last - first) for first, last in pairwise(bounds)]
 
@@ -76,7 +79,8 @@ def _shares(episodes: int, count: int) -> list[tuple[int, int]]:
 def evaluate_groups(
     groups: Sequence[Sequence[RunFolder]], plans: Sequence[EvaluationPlan], workers: Workers | None = None
 ) -> list[list[Evaluation]]:
-    """The same of groups of runs, all at once, with a plan for each group; an evaluation for each run of each."""
+    """As ``evaluate_runs``, for groups of runs with a plan for each group; returns an evaluation for each run of each
+    group."""
     runs = [run for group in groups for run in group]
     each = [plan for group, plan in zip(groups, plans) for _ in group]
     found = iter(evaluate_runs(runs, each, workers=workers))

@@ -13,21 +13,21 @@ from .errors import AgentError
 from .gif import Gif, Picture, pillow
 
 FASTEST_S = 0.04
-"""Least time that a picture of a film stands: viewers slow down GIFs that change faster [s]."""
+"""Shortest duration of a frame [s]: viewers slow down GIFs with shorter ones."""
 
 
 class Film(Protocol):
-    """Takes pictures; the file is whole when it is closed."""
+    """An animation file; complete when it is closed."""
 
     def add(self, picture: Picture) -> None:
-        """The next picture; all are of one size."""
+        """Append a frame, shape (height, width, 3); all frames have the same size."""
 
     def close(self) -> None:
-        """Write what is not yet written."""
+        """Write what is buffered, and close the file."""
 
 
 class Mp4:
-    """An MP4 (H.264), encoded by ffmpeg while it grows."""
+    """An MP4 (H.264), encoded by ffmpeg frame by frame."""
 
     def __init__(self, path: Path, seconds: float, program: str) -> None:
         self._path, self._rate, self._program = path, 1.0 / seconds, program
@@ -53,15 +53,15 @@ class Mp4:
         """See ``Film``."""
         if self._process is None:
             return
-        _, said = self._process.communicate()
+        _, errors = self._process.communicate()
         code, self._process = self._process.returncode, None
         if code != 0:
-            last = said.decode(errors="replace").strip().splitlines()
+            last = errors.decode(errors="replace").strip().splitlines()
             raise AgentError(f"{self._path} cannot be written: ffmpeg: {last[-1] if last else f'exit code {code}'}")
 
 
 class Reel:
-    """A film in which every picture stands long enough: of steps that pass faster, some are left out.
+    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S.
 
     Args:
         path: .gif or .mp4.
@@ -74,7 +74,7 @@ class Reel:
 
     def __init__(self, path: Path, step_s: float) -> None:
         self.every = max(round(FASTEST_S / step_s), 1) if step_s < FASTEST_S else 1
-        """A picture each so many steps."""
+        """Number of steps per frame."""
         seconds = self.every * step_s
         self._steps, self.pictures = 0, 0
         if not path.parent.is_dir():
@@ -92,13 +92,13 @@ class Reel:
             raise AgentError(f"{path}: a film is a .gif or an .mp4")
 
     def wants(self) -> bool:
-        """Called once a step: whether its picture is taken."""
+        """Whether this step becomes a frame; call it once per step."""
         wanted = self._steps % self.every == 0
         self._steps += 1
         return wanted
 
     def add(self, picture: Picture) -> None:
-        """The next picture."""
+        """Append a frame, shape (height, width, 3)."""
         self._film.add(picture)
         self.pictures += 1
 

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GIF files that are written as they grow, so that a film of an hour needs no more memory than one picture.
+"""GIF files that are written frame by frame, so that an hour of animation needs no more memory than one frame.
 
-Source: the GIF89a specification; Netscape's extension lets a film repeat.
+Source: the GIF89a specification; Netscape's extension lets an animation repeat. Pillow's own writer, and imageio on it,
+hold all frames until the file is saved and merge frames that do not change; imageio's frame-by-frame writer fails with
+current NumPy releases when it crops frames to what changed.
 """
 
 from __future__ import annotations
@@ -19,14 +21,15 @@ from .errors import AgentError
 
 Picture = npt.NDArray[np.uint8]
 """Shape (height, width, 3)."""
-_COLOURS = 64
-"""Of the first picture of a GIF."""
-_DRAWN, _SEEN, _NEAR = 4096, 12, 16
-"""A picture of more colours is a photograph; pixels that a colour must have to count; how far apart colours differ."""
+_FIRST_COLOURS = 64
+"""Number of palette entries taken from the first frame."""
+_MAX_COLOURS, _MIN_PIXELS, _MIN_DISTANCE = 4096, 12, 16
+"""A frame with more colours is a photograph, and adds none to the palette; number of pixels a new colour needs to be
+added; its distance to the nearest palette entry, as the largest difference of a channel (0 .. 255)."""
 
 
 def pillow() -> Any:
-    """The library. Raises MissingExtra."""
+    """The module ``PIL.Image``. Raises MissingExtra."""
     try:
         from PIL import Image
     except ImportError:
@@ -35,10 +38,14 @@ def pillow() -> Any:
 
 
 class Gif:
-    """A GIF that repeats for ever, written as it grows: of each picture what differs from the one before.
+    """A GIF that repeats forever; each frame holds the rectangle that differs from the frame before.
 
-    Its colours are those of the first picture, and others as they come: a trail is not there at the begin. The palette
-    stands at the begin of the file and is written last.
+    The palette starts with the colours of the first frame and grows with later ones (a trail comes later).
+    It stands at the start of the file, and is written when the file is closed.
+
+    Args:
+        path: the file.
+        seconds: duration of a frame [s], at least 0.02.
     """
 
     def __init__(self, path: Path, seconds: float) -> None:
@@ -51,7 +58,7 @@ class Gif:
     def add(self, picture: Picture) -> None:
         """See ``Film``."""
         image = pillow().fromarray(picture)
-        self._meet(image)
+        self._extend_palette(image)
         drawn = image.quantize(palette=self._palette, dither=0)
         pixels = np.asarray(drawn)
         try:
@@ -64,21 +71,21 @@ class Gif:
             raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
         self._shown = pixels
 
-    def _meet(self, image: Any) -> None:
-        """Take the colours of much of a picture into the palette, where there is nothing near."""
+    def _extend_palette(self, image: Any) -> None:
+        """Add frequent colours of a frame to the palette where it has none near."""
         known = len(self._colours)
         if known == 0:
-            first = image.quantize(_COLOURS)
+            first = image.quantize(_FIRST_COLOURS)
             count = 1 + max(index for _, index in first.getcolors())
             self._colours = np.array(first.getpalette()[: 3 * count], np.int64).reshape(-1, 3)
-        for count, colour in image.getcolors(_DRAWN) or ():  # none of a photograph: the first one's colours must do
-            if count >= _SEEN and np.abs(self._colours - colour).max(axis=1).min() > _NEAR:
+        for count, colour in image.getcolors(_MAX_COLOURS) or ():  # None for a photograph
+            if count >= _MIN_PIXELS and np.abs(self._colours - colour).max(axis=1).min() > _MIN_DISTANCE:
                 self._colours = np.concatenate([self._colours, [colour]])[:256]
         if len(self._colours) > known:
             self._palette.putpalette(self._table())
 
     def _table(self) -> bytes:
-        """256 colours; places without one hold the first."""
+        """The palette as 768 bytes; unused entries hold the first colour."""
         unused = np.repeat(self._colours[:1], 256 - len(self._colours), axis=0)
         return np.concatenate([self._colours, unused]).astype(np.uint8).tobytes()
 
@@ -97,24 +104,24 @@ class Gif:
 
 
 _GIF_TABLE, _GIF_END = 13, b";"
-"""Where the table of colours stands; the last byte."""
+"""Offset of the palette in the file; the trailer byte."""
 
 
 def _gif_head(width: int, height: int) -> bytes:
-    """Screen of 256 colours, which are not yet known, and that it repeats."""
+    """Header, a palette of 256 entries to be filled in later, and the extension that makes it repeat."""
     screen = struct.pack("<6sHHBBB", b"GIF89a", width, height, 0xF7, 0, 0)
     return screen + bytes(768) + b"\x21\xff\x0bNETSCAPE2.0\x03\x01" + struct.pack("<H", 0) + b"\x00"
 
 
 def _gif_picture(image: Any, place: tuple[int, int], ms: int) -> list[bytes]:
-    """A picture that is laid on what is there, and stands so long."""
+    """A frame drawn over the one before at ``place`` (left, top) for ``ms`` milliseconds."""
     from PIL import GifImagePlugin
 
     return GifImagePlugin.getdata(image, place, duration=ms, disposal=1)
 
 
 def _changed(before: npt.NDArray[np.uint8] | None, now: npt.NDArray[np.uint8]) -> tuple[int, int, int, int]:
-    """Left, top, right, bottom of what differs, at least one pixel."""
+    """Left, top, right, bottom of the pixels that differ; one pixel when none do."""
     if before is None:
         return 0, 0, now.shape[1], now.shape[0]
     differs = before != now

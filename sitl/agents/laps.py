@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Laps of worlds that are a loop: how often a robot has gone round what is in the middle."""
+"""Counts laps in worlds that are a loop around a central solid."""
 
 from __future__ import annotations
 
 import math
 
 CENTRES = {"circuit": (2.0, -1.9), "circuit2": (-1.7, -3.5), "circuit2c": (-1.7, -3.5), "round": (0.8, -2.25)}
-"""World -> x, y of a place inside of the solids that the loop goes round [m]."""
+"""World -> x, y of a position inside the central solids [m]."""
 
 
 class LapCounter:
-    """Counts the turns of a path round a place.
+    """Counts the turns of a path around a position.
 
     Args:
         centre: x, y [m].
@@ -20,10 +20,10 @@ class LapCounter:
         self._centre = centre
         self._angle: float | None = None
         self.turned = 0.0
-        """Sum of the angle, clockwise positive [rad]."""
+        """Accumulated angle, positive clockwise [rad]."""
 
     def take(self, x: float, y: float) -> None:
-        """The next place of the path [m], less than half a turn from the last."""
+        """Add the next position of the path [m], less than half a turn from the last."""
         angle = math.atan2(y - self._centre[1], x - self._centre[0])
         if self._angle is not None:
             self.turned += math.remainder(self._angle - angle, 2.0 * math.pi)
@@ -31,5 +31,5 @@ class LapCounter:
 
     @property
     def laps(self) -> float:
-        """Net, in the direction that there are more of."""
+        """Net number of turns, in the predominant direction."""
         return abs(self.turned) / (2.0 * math.pi)

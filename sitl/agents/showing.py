@@ -22,7 +22,7 @@ from .film import Reel
 from .runs.folder import RunFolder
 
 STEP_S = 1.0
-"""Of a step whose environment does not say how long it is [s]."""
+"""Step time of environments that do not give one [s]."""
 AfterStep = Callable[[Any], bool]
 """Called with the environment after each reset and step; False ends the show."""
 Ended = Callable[[int, int, float, bool], None]
@@ -48,16 +48,16 @@ def play(env: gym.Env[Any, Any], policy: Policy, episodes: int, seed: int, after
 
 
 def film(run: RunFolder, path: Path, episodes: int, seed: int, speed: float, ended: Ended, **options: Any) -> int:
-    """Play onto a film; returns how many pictures it has.
+    """Record episodes in a file; returns its number of frames.
 
     Args:
-        run: that has a model.
+        run: run that has a model.
         path: .gif or .mp4.
-        episodes: how many.
-        seed: of the episodes.
-        speed: how many times real time the film passes.
+        episodes: number of episodes.
+        seed: seed of the episodes.
+        speed: speed of the animation relative to real time.
         ended: see ``Ended``.
-        options: of the environment, which replace the run's.
+        options: options of the environment, which replace the run's.
 
     Raises:
         AgentError: no model, or no such film.
@@ -91,7 +91,7 @@ def film(run: RunFolder, path: Path, episodes: int, seed: int, speed: float, end
 
 
 def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended, **options: Any) -> None:
-    """Play in a window, until it is closed; the arguments are those of ``film``.
+    """Show episodes in a window until it is closed; arguments as in ``film``.
 
     Raises:
         AgentError: no model, or no screen.
@@ -113,10 +113,10 @@ def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended,
 
 
 class Pace:
-    """Waits, so that calls are at least so far apart [s].
+    """Limits the rate of calls: each call waits until ``seconds`` after the last one.
 
     Args:
-        seconds: of wall time.
+        seconds: least time between two calls [s], wall time.
         clock, sleep: of the wall, unless a test has others.
     """
 
@@ -130,7 +130,7 @@ class Pace:
         self._next: float | None = None
 
     def __call__(self) -> bool:
-        """Wait; always true."""
+        """Wait; returns True."""
         now = self._clock()
         if self._next is not None and self._next > now:
             self._sleep(self._next - now)
@@ -146,7 +146,7 @@ def _step_s(env: gym.Env[Any, Any]) -> float:
 
 
 def _check_screen() -> None:
-    """Raises AgentError when what is shown goes nowhere, without the user having asked for that."""
+    """Refuse a display that nobody can see, unless the user asked for it. Raises AgentError."""
     import pygame
 
     if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_init():

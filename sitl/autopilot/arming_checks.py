@@ -94,7 +94,7 @@ _GYROS_US = 23_400_000
 @law
 def wants(v, check):
     """Whether ARMING_CHECK asks for a check (CHECK_*)."""
-    return (int(v.autopilot.params.ARMING_CHECK) & (CHECK_ALL | check)) != 0
+    return (int(v.autopilot.params.ARMING.CHECK) & (CHECK_ALL | check)) != 0
 
 
 @law
@@ -123,11 +123,11 @@ def battery_checks(v):
     ap = v.autopilot
     p = ap.params
     failed = 0
-    if p.BATT_MONITOR > 0.0 and wants(v, CHECK_BATTERY):
-        if ap.battery.voltage < p.BATT_ARM_VOLT:
+    if p.BATT.MONITOR > 0.0 and wants(v, CHECK_BATTERY):
+        if ap.battery.voltage < p.BATT.ARM_VOLT:
             failed |= BATTERY_VOLTAGE
-        left = p.BATT_CAPACITY - ap.battery.consumed_mah
-        if p.BATT_ARM_MAH > 0.0 and left < p.BATT_ARM_MAH:
+        left = p.BATT.CAPACITY - ap.battery.consumed_mah
+        if p.BATT.ARM_MAH > 0.0 and left < p.BATT.ARM_MAH:
             failed |= BATTERY_CAPACITY
         if ap.modes.failsafe.battery != 0:
             failed |= BATTERY_FAILSAFE

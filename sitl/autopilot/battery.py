@@ -16,13 +16,13 @@ def update(v):
     ap = v.autopilot
     battery = ap.battery
     p = ap.params
-    if p.BATT_MONITOR < 3.0:
+    if p.BATT.MONITOR < 3.0:
         battery.voltage = 0.0
         battery.current = 0.0
         battery.remaining_pct = -1.0
         return
     battery.voltage = float(v.sensors.battery_voltage)
-    if p.BATT_MONITOR < 4.0:
+    if p.BATT.MONITOR < 4.0:
         battery.current = 0.0
         battery.remaining_pct = -1.0
         return
@@ -30,8 +30,8 @@ def update(v):
     hours = PERIOD_S / 3600.0
     battery.consumed_mah += battery.current * hours * 1000.0
     battery.consumed_wh += battery.current * battery.voltage * hours
-    if p.BATT_CAPACITY > 0.0:
-        left = p.BATT_CAPACITY - battery.consumed_mah
-        battery.remaining_pct = constrain(100.0 * left / p.BATT_CAPACITY, 0.0, 100.0)
+    if p.BATT.CAPACITY > 0.0:
+        left = p.BATT.CAPACITY - battery.consumed_mah
+        battery.remaining_pct = constrain(100.0 * left / p.BATT.CAPACITY, 0.0, 100.0)
     else:
         battery.remaining_pct = -1.0

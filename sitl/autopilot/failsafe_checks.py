@@ -42,15 +42,15 @@ def is_gcs_lost(v):
     """Whether the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge) was there and is missing."""
     ap = v.autopilot
     heard = ap.modes.failsafe.gcs_us
-    return ap.params.FS_GCS_ENABLE > 0.0 and heard > 0 and v.time_us - heard > ap.params.FS_GCS_TIMEOUT * 1e6
+    return ap.params.FS.GCS_ENABLE > 0.0 and heard > 0 and v.time_us - heard > ap.params.FS.GCS_TIMEOUT * 1e6
 
 
 @law
 def below(v, volt, mah):
     """(voltage under ``volt``, charge left under ``mah``), limits of zero being off."""
     battery = v.autopilot.battery
-    left = v.autopilot.params.BATT_CAPACITY - battery.consumed_mah
-    counts = v.autopilot.params.BATT_MONITOR >= 4.0
+    left = v.autopilot.params.BATT.CAPACITY - battery.consumed_mah
+    counts = v.autopilot.params.BATT.MONITOR >= 4.0
     return (volt > 0.0 and battery.voltage < volt, mah > 0.0 and counts and left < mah)
 
 
@@ -63,13 +63,13 @@ def battery_fell_to(v):
     ap = v.autopilot
     fs = ap.modes.failsafe
     p = ap.params
-    if p.BATT_MONITOR < 3.0 or ap.arming.armed == 0:
+    if p.BATT.MONITOR < 3.0 or ap.arming.armed == 0:
         fs.battery_low_us = 0
         fs.battery_critical_us = 0
         return 0
-    wait = p.BATT_LOW_TIMER * 1e6
+    wait = p.BATT.LOW_TIMER * 1e6
     found = 0
-    volt, charge = below(v, p.BATT_CRT_VOLT, p.BATT_CRT_MAH)
+    volt, charge = below(v, p.BATT.CRT_VOLT, p.BATT.CRT_MAH)
     if not volt:
         fs.battery_critical_us = 0
     elif fs.battery_critical_us == 0:
@@ -78,7 +78,7 @@ def battery_fell_to(v):
         fs.battery = 2
         found = 2
         tell(v, BATTERY_CRITICAL, 1)
-    volt, charge = below(v, p.BATT_LOW_VOLT, p.BATT_LOW_MAH)
+    volt, charge = below(v, p.BATT.LOW_VOLT, p.BATT.LOW_MAH)
     if not volt:
         fs.battery_low_us = 0
     elif fs.battery_low_us == 0:
@@ -116,7 +116,7 @@ def is_estimate_bad(v, cutoff):
     fs.ekf_vel = follow(float(fs.ekf_vel), float(est.variance_vel), gain)
     fs.ekf_pos = follow(float(fs.ekf_pos), float(est.variance_pos), gain)
     fs.ekf_mag = follow(float(fs.ekf_mag), float(est.variance_mag), gain)
-    limit = ap.params.FS_EKF_THRESH
+    limit = ap.params.FS.EKF_THRESH
     count = 0
     if fs.ekf_mag >= limit:
         count += 1

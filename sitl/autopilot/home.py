@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ..core.geodesy import add_offset, offset_ne
 from ..core.kernels import law
+from ..core.vectors import Vec3
 
 
 @law
@@ -14,14 +15,11 @@ def set_here(v):
     est = ap.estimate
     if est.origin_set == 0:
         return 0
-    n, e, d = float(est.pos[0]), float(est.pos[1]), float(est.pos[2])
-    lat, lon = add_offset(int(est.origin_lat), int(est.origin_lon), n, e)
+    lat, lon = add_offset(est.origin_lat, est.origin_lon, est.pos.x, est.pos.y)
     ap.home.lat = int(lat + 0.5) if lat >= 0.0 else int(lat - 0.5)
     ap.home.lon = int(lon + 0.5) if lon >= 0.0 else int(lon - 0.5)
-    ap.home.alt = est.origin_alt - d
-    ap.home.pos[0] = n
-    ap.home.pos[1] = e
-    ap.home.pos[2] = d
+    ap.home.alt = est.origin_alt - est.pos.z
+    ap.home.pos = est.pos
     ap.home.is_set = 1
     return 1
 
@@ -42,9 +40,7 @@ def set_place(v, lat, lon, alt, lock):
     ap.home.lat = lat
     ap.home.lon = lon
     ap.home.alt = alt
-    ap.home.pos[0] = n
-    ap.home.pos[1] = e
-    ap.home.pos[2] = est.origin_alt - alt
+    ap.home.pos = Vec3(n, e, est.origin_alt - alt)
     ap.home.is_set = 1
     ap.home.locked = 1 if lock != 0 else 0
     return 1

@@ -34,7 +34,7 @@ def remember(v):
     k = int(ring.count) % INERTIAL_RING
     ring.count += 1
     ring.time_us[k] = v.time_us
-    for axis in range(3):
-        ring.acc[k, axis] = float(v.sensors.acc[axis])
-        ring.gyro[k, axis] = float(v.sensors.gyro[axis])
-        ring.euler[k, axis] = v.autopilot.estimate.euler[axis]
+    acc, gyro, euler = v.sensors.acc, v.sensors.gyro, v.autopilot.estimate.euler
+    ring.acc[k, 0], ring.acc[k, 1], ring.acc[k, 2] = acc.x, acc.y, acc.z
+    ring.gyro[k, 0], ring.gyro[k, 1], ring.gyro[k, 2] = gyro.x, gyro.y, gyro.z
+    ring.euler[k, 0], ring.euler[k, 1], ring.euler[k, 2] = euler.roll, euler.pitch, euler.yaw

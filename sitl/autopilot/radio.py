@@ -24,20 +24,20 @@ _THROTTLE = 2
 def calibration(p, channel):
     """(min, trim, max [us], reversed, dead zone [us]) of channel 1 .. 8."""
     if channel == 1:
-        return (p.RC1_MIN, p.RC1_TRIM, p.RC1_MAX, p.RC1_REVERSED, p.RC1_DZ)
+        return (p.RC[0].MIN, p.RC[0].TRIM, p.RC[0].MAX, p.RC[0].REVERSED, p.RC[0].DZ)
     if channel == 2:
-        return (p.RC2_MIN, p.RC2_TRIM, p.RC2_MAX, p.RC2_REVERSED, p.RC2_DZ)
+        return (p.RC[1].MIN, p.RC[1].TRIM, p.RC[1].MAX, p.RC[1].REVERSED, p.RC[1].DZ)
     if channel == 3:
-        return (p.RC3_MIN, p.RC3_TRIM, p.RC3_MAX, p.RC3_REVERSED, p.RC3_DZ)
+        return (p.RC[2].MIN, p.RC[2].TRIM, p.RC[2].MAX, p.RC[2].REVERSED, p.RC[2].DZ)
     if channel == 4:
-        return (p.RC4_MIN, p.RC4_TRIM, p.RC4_MAX, p.RC4_REVERSED, p.RC4_DZ)
+        return (p.RC[3].MIN, p.RC[3].TRIM, p.RC[3].MAX, p.RC[3].REVERSED, p.RC[3].DZ)
     if channel == 5:
-        return (p.RC5_MIN, p.RC5_TRIM, p.RC5_MAX, p.RC5_REVERSED, p.RC5_DZ)
+        return (p.RC[4].MIN, p.RC[4].TRIM, p.RC[4].MAX, p.RC[4].REVERSED, p.RC[4].DZ)
     if channel == 6:
-        return (p.RC6_MIN, p.RC6_TRIM, p.RC6_MAX, p.RC6_REVERSED, p.RC6_DZ)
+        return (p.RC[5].MIN, p.RC[5].TRIM, p.RC[5].MAX, p.RC[5].REVERSED, p.RC[5].DZ)
     if channel == 7:
-        return (p.RC7_MIN, p.RC7_TRIM, p.RC7_MAX, p.RC7_REVERSED, p.RC7_DZ)
-    return (p.RC8_MIN, p.RC8_TRIM, p.RC8_MAX, p.RC8_REVERSED, p.RC8_DZ)
+        return (p.RC[6].MIN, p.RC[6].TRIM, p.RC[6].MAX, p.RC[6].REVERSED, p.RC[6].DZ)
+    return (p.RC[7].MIN, p.RC[7].TRIM, p.RC[7].MAX, p.RC[7].REVERSED, p.RC[7].DZ)
 
 
 @law
@@ -68,13 +68,13 @@ def ranged(pulse, low, high, reverse, dead):
 def stick_channel(p, axis):
     """Channel 1 .. 8 of roll (0), pitch (1), throttle (2), yaw (3)."""
     if axis == 0:
-        channel = int(p.RCMAP_ROLL)
+        channel = int(p.RCMAP.ROLL)
     elif axis == 1:
-        channel = int(p.RCMAP_PITCH)
+        channel = int(p.RCMAP.PITCH)
     elif axis == 2:
-        channel = int(p.RCMAP_THROTTLE)
+        channel = int(p.RCMAP.THROTTLE)
     else:
-        channel = int(p.RCMAP_YAW)
+        channel = int(p.RCMAP.YAW)
     if channel < 1 or channel > 8:
         channel = axis + 1
     return channel

@@ -7,14 +7,17 @@ HIL_ACTUATOR_CONTROLS carry, at that precision (https://mavlink.io/en/messages/c
 
 from __future__ import annotations
 
-from ..core.records import Float32, Floats, Int32, Ints, Record, array
+from typing import Annotated
+
+from ..core.records import Float32, Floats, Int32, Ints, Record, Stored, array
+from ..core.vectors import Euler, Quat, Vec2, Vec3
 from .arming_state import Arming
 from .estimation.state import Ekf
 from .events import EVENT_RING
 from .failsafe_state import Failsafe
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
-from .params.table import Parameters
+from .params.parameters import Parameters
 
 LIDAR_SAMPLES = 360
 """Readings of a scan that there is room for."""
@@ -22,15 +25,18 @@ LIDAR_SAMPLES = 360
 RC_INPUTS = 12
 """Channels of HIL_RC_INPUTS_RAW."""
 
+NarrowVec3 = Annotated[Vec3, Stored("f4")]
+"""A vector at float32 precision, as HIL_SENSOR carries it."""
+
 
 class Sensors(Record):
     """What the autopilot gets from its sensors."""
 
     # HIL_SENSOR, one a tick
     time_us: int
-    acc: Floats = array(3, stored="f4")  # specific force, body [m/s^2]; at rest and level (0, 0, -9.81)
-    gyro: Floats = array(3, stored="f4")  # body rates [rad/s]
-    mag: Floats = array(3, stored="f4")  # field, body [gauss]
+    acc: NarrowVec3  # specific force, body [m/s^2]; at rest and level (0, 0, -9.81)
+    gyro: NarrowVec3  # body rates [rad/s]
+    mag: NarrowVec3  # field, body [gauss]
     abs_pressure: Float32  # [hPa]
     temperature: Float32  # [degC]
     mag_count: int  # samples so far; a change tells the reader that the sample is new
@@ -44,21 +50,20 @@ class Sensors(Record):
     gps_alt: Int32  # above mean sea level [mm]
     gps_eph: Int32  # HDOP * 100
     gps_epv: Int32  # VDOP * 100
-    gps_vel: Ints = array(3, stored="i4")  # NED [cm/s]
+    gps_vel: Annotated[Vec3, Stored("i4")]  # NED, whole [cm/s]
     gps_satellites: Int32
     # BATTERY_STATUS
     battery_voltage: Float32  # [V]
     battery_current: Float32  # [A]
     # WHEEL_DISTANCE, of a vehicle with encoders
     wheel_count: int  # samples so far
-    wheel_distance: Floats = array(2)  # rolled by the left and right driven wheel since power-on, forward positive [m]
+    wheel_distance: Vec2  # rolled by the left and right driven wheel since power-on, forward positive [m]
     # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.plants.lidar)
     lidar_count: int  # scans so far
     lidar_time_us: int  # of the last one
     rangefinder_count: int  # readings so far
-    lidar_ranges: Floats = array(
-        LIDAR_SAMPLES, stored="f4"
-    )  # counter-clockwise from right to left [m]; inf: nothing in range
+    # counter-clockwise from right to left [m]; inf: nothing in range
+    lidar_ranges: Floats = array(LIDAR_SAMPLES, stored="f4")
     rangefinder_range: Floats = array(1, stored="f4")  # looking down [m]; inf: nothing in range
     # HIL_RC_INPUTS_RAW: frames of a receiver that the physics side has; without any there is a simulated transmitter
     rc_count: int  # frames so far
@@ -71,36 +76,36 @@ class Actuators(Record):
 
     controls: Floats = array(16, stored="f4")  # 0 .. 1 a rotor (zero when disarmed), -1 .. 1 a servo or a wheel's motor
     pwm: Ints = array(16, stored="i8")  # the same as pulses [us], whole microseconds
-    armed: int
+    armed: bool
 
 
 class Estimate(Record):
     """What the estimator says of the vehicle."""
 
-    q: Floats = array(4)  # body to NED
-    euler: Floats = array(3)  # roll, pitch, yaw
-    rates: Floats = array(3)  # body rates without bias [rad/s], every tick
-    acc_ned: Floats = array(3)  # acceleration NED, gravity removed [m/s^2], every tick
-    vel: Floats = array(3)  # NED [m/s]
-    pos: Floats = array(3)  # NED from the origin [m]; pos[2] negative up
-    gyro_bias: Floats = array(3)
-    acc_bias: Floats = array(3)
-    origin_set: int
+    q: Quat  # body to NED
+    euler: Euler  # roll, pitch, yaw [rad]
+    rates: Vec3  # body rates without bias [rad/s], every tick
+    acc_ned: Vec3  # acceleration NED, gravity removed [m/s^2], every tick
+    vel: Vec3  # NED [m/s]
+    pos: Vec3  # NED from the origin [m]
+    gyro_bias: Vec3  # body [rad/s]
+    acc_bias: Vec3  # body [m/s^2]
+    origin_set: bool
     origin_lat: int  # [degE7]
-    origin_lon: int
+    origin_lon: int  # [degE7]
     origin_alt: float  # above mean sea level [m]
     status_flags: int  # EKF_STATUS_FLAGS
     variance_vel: float  # normalised test ratios as in EKF_STATUS_REPORT
     variance_pos: float
     variance_hgt: float
     variance_mag: float
-    attitude_ok: int  # aligned in tilt and yaw
-    position_ok: int  # GPS in use: modes that need a position may be armed
+    attitude_ok: bool  # aligned in tilt and yaw
+    position_ok: bool  # GPS in use: modes that need a position may be armed
     reset_ne_count: int  # counts jumps of horizontal position/velocity, so that controllers can follow
     reset_d_count: int
     reset_yaw_count: int
-    reset_pos: Floats = array(3)  # last jump of pos [m]
-    reset_vel: Floats = array(3)  # last jump of vel [m/s]
+    reset_pos: Vec3  # last jump of pos [m]
+    reset_vel: Vec3  # last jump of vel [m/s]
     reset_yaw: float  # last jump of yaw [rad]
 
 
@@ -110,20 +115,20 @@ class Radio(Record):
     channels: Ints = array(18, stored="i8")  # pulses in use [us]; 0 unknown
     override: Ints = array(18, stored="i8")  # 0 none
     override_us: Ints = array(18, stored="i8")  # when the override was last given
-    has_receiver: int  # a receiver is fitted
+    has_receiver: bool  # a receiver is fitted
     receiver_us: int  # last good frame
-    receiver_ok: int
+    receiver_ok: bool
 
 
 class HomeState(Record):
     """Home."""
 
-    is_set: int
-    locked: int  # set by the user: arming does not move it
+    is_set: bool
+    locked: bool  # set by the user: arming does not move it
     lat: int  # [degE7]
-    lon: int
+    lon: int  # [degE7]
     alt: float  # above mean sea level [m]
-    pos: Floats = array(3)  # NED from the origin [m]
+    pos: Vec3  # NED from the origin [m]
 
 
 class BatteryState(Record):
@@ -140,7 +145,7 @@ class Events(Record):
     """A ring of what happened, for the shell."""
 
     count: int  # events so far; event k is at k % EVENT_RING
-    attention: int  # not 0: the core returns to the shell at the end of this tick
+    attention: bool  # the core returns to the shell at the end of this tick
     time_us: Ints = array(EVENT_RING, stored="i8")
     code: Ints = array(EVENT_RING, stored="i8")  # sitl.autopilot.events
     a: Floats = array(EVENT_RING)
@@ -157,7 +162,7 @@ class Modes(Record):
     wanted: int  # a mode asks for another one: its number + 1, 0 none
     wanted_reason: int
     mission_count: int  # items of the mission, home included (written by the shell)
-    mission_takes_off: int  # its first navigation command is a take-off (written by the shell)
+    mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
     nav: Nav
 
 

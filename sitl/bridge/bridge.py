@@ -67,7 +67,7 @@ class Bridge:
         self.channels = self.board.channels
         self.taps = self.board.taps
         """Get every frame, in and out: ``taps.append(writer)``."""
-        self._system = self.reader.field("autopilot.params.MAV_SYSID")
+        self._system = self.reader.field("autopilot.params.MAV.SYSID")
         self._time_us: Callable[[], int] = self.reader.field("time_us")
         self._parameters: dict[str, Callable[[], float]] = {}
         self.listeners: list[Listener] = []
@@ -131,9 +131,10 @@ class Bridge:
         """Present value of a parameter, None when the firmware has none of this name."""
         read = self._parameters.get(name)
         if read is None:
-            if name not in self.vehicle.firmware.table:
+            table = self.vehicle.firmware.table
+            if name not in table:
                 return None
-            read = self._parameters[name] = self.reader.field(f"autopilot.params.{name}")
+            read = self._parameters[name] = self.reader.field(f"autopilot.params.{table[name].path}")
         return float(read())
 
     # ------------------------------------------------------------------ links

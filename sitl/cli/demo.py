@@ -53,7 +53,7 @@ def demo(options: argparse.Namespace) -> int:
     command = [sys.executable, str(script), f"udpin://{runner.HOST}:{port}"]
     try:
         with FlightProgress(simulation) as progress:
-            code = execute.run_script(simulation, command, options.speedup, None, progress.update)
+            code = execute.run_script(simulation, command, options.speedup, None, progress.refresh)
     finally:
         simulation.close()
     wall = time.monotonic() - start
@@ -77,7 +77,7 @@ def demo(options: argparse.Namespace) -> int:
 
 
 def check_installed(script: Path) -> None:
-    """What the demo needs besides the simulator.
+    """Check that what the demo needs is installed.
 
     Raises:
         OptionError: the example is not there.
@@ -114,8 +114,8 @@ class FlightProgress:
         )  # fmt: skip
         self._was_armed = False
 
-    def update(self) -> None:
-        """Redraw now and then."""
+    def refresh(self) -> None:
+        """Redraw the bar when it is due."""
         if self._simulation.time_us < self._next_us:
             return
         self._next_us = self._simulation.time_us + _SHOWN_US

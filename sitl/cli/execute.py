@@ -60,7 +60,7 @@ def execute(options: argparse.Namespace) -> int:
     command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
     try:
-        code = run_script(simulation, command, options.speedup, options.duration, status.update)
+        code = run_script(simulation, command, options.speedup, options.duration, status.refresh)
         recordings.say_why(simulation, f"script ended with exit code {code}")
         return code
     finally:
@@ -76,7 +76,7 @@ class ScriptPace:
         self.slice_us = pacer.slice_us
 
     def after_slice(self, simulation: Simulation) -> None:
-        """Let the script's clock go on."""
+        """Advance the script's clock."""
         self._pacer.pace(simulation.time_us)
 
 
@@ -130,7 +130,7 @@ def run_script(
 
 
 def end(script: subprocess.Popen[bytes], page: ClockPage | None) -> None:
-    """Ask a script that still runs to end, and see that it does, in 10 s or when we are told to end once more.
+    """End a script that is still running: ask it, and wait 10 s or until a second interrupt.
 
     What it has started and left on the simulation's clock is ended too: its vehicle is gone.
     """
@@ -152,7 +152,7 @@ def end(script: subprocess.Popen[bytes], page: ClockPage | None) -> None:
 
 @contextlib.contextmanager
 def terminable() -> Iterator[None]:
-    """While it lasts, SIGTERM ends the command in an orderly way, as Ctrl-C does."""
+    """A context in which SIGTERM ends the command as Ctrl-C does."""
 
     def leave(number: int, _: object) -> None:
         raise SystemExit(128 + number)

@@ -31,7 +31,7 @@ from .progress import CompileProgress
 
 
 def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
-    """Which autopilot flies."""
+    """Add the options that choose the autopilot."""
     parser.add_argument(
         "--autopilot", default=NATIVE, metavar="NAME[:PROGRAM|:CONNECTION]", help=f"who flies it: {FORMS}"
     )
@@ -75,7 +75,7 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
     status = PlantStatus(plant, say, not options.quiet)
     clock = plant.craft.reader.field("time_us")
     try:
-        session.serve(lambda: not stopped and clock() < until_us, status.update)
+        session.serve(lambda: not stopped and clock() < until_us, status.refresh)
     finally:
         status.close()
         session.close()
@@ -97,7 +97,7 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
 
 
 def build_plant(options: argparse.Namespace) -> LocalPlant:
-    """Physics and world as the options say; SIM_ parameters of the files that we know act on them."""
+    """Physics and world by the options; known SIM_ parameters of the parameter files act on them."""
     airframe = vehicles.load(options.frame or VEHICLES[options.vehicle])
     check_kind(options.frame, airframe, options.vehicle)
     values: dict[str, float] = {}
@@ -111,7 +111,7 @@ def build_plant(options: argparse.Namespace) -> LocalPlant:
 
 
 def open_links(options: argparse.Namespace) -> list[Link]:
-    """Where clients reach the autopilot: as for our own."""
+    """Open the links on which clients reach the autopilot, as for our own."""
     step = 10 * options.instance
     outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS] if options.out is None else options.out
     links: list[Link] = [open_link(text) for text in outputs if text != "none"]
@@ -128,7 +128,7 @@ def build_session(
     log: TlogWriter | None,
     say: Sayer,
 ) -> Session:
-    """The autopilot on its plant."""
+    """The session of the autopilot on its plant."""
     clock = plant.craft.reader.field("time_us")
 
     def tap(frame: bytes) -> None:
@@ -151,7 +151,7 @@ def build_session(
 
 
 class Sayer:
-    """Lines for people, from whatever thread, shown between two updates of the status line."""
+    """Messages from any thread, printed between two updates of the status line."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -161,7 +161,7 @@ class Sayer:
 
 
 class PlantStatus:
-    """One line on a terminal, rewritten a few times a second: what the physics knows."""
+    """A line on a terminal, rewritten four times a second, from the physics' state."""
 
     _PERIOD_S = 0.25
 
@@ -172,8 +172,8 @@ class PlantStatus:
         self._last_us = 0
         self._width = 0
 
-    def update(self) -> None:
-        """Rewrite the line when it is time to; say what has to be said."""
+    def refresh(self) -> None:
+        """Print pending messages, and rewrite the line when it is due."""
         while self._say.lines:
             print(f"\r{self._say.lines.pop(0)}".ljust(self._width), file=sys.stderr, flush=True)
         now = time.monotonic()
@@ -191,7 +191,7 @@ class PlantStatus:
         self._width = len(text)
 
     def close(self) -> None:
-        """Say what is left; leave the last line standing and go to the next."""
+        """End the line and print pending messages."""
         if self._enabled and self._width:
             sys.stderr.write("\n")
         while self._say.lines:

@@ -73,7 +73,7 @@ def seconds(text: str) -> float:
 
 
 def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
-    """What describes the vehicle and where it stands."""
+    """Add the options that describe the vehicle and its start."""
     parser.add_argument(
         "--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)"
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl physics``: the physics of a vehicle whose autopilot is elsewhere."""
+"""``sitl physics``: the physics of a vehicle whose autopilot is another process."""
 
 from __future__ import annotations
 

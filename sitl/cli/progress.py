@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the first start shows while the core is compiled."""
+"""The progress bar of compiling the core."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``--rec`` and ``--from``: keep a recording of a run; go on from one."""
+"""``--rec`` and ``--from``: record a run; continue from a recording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..simulation import Simulation
 from .progress import CompileProgress
 
 FLUSH_US = 1_000_000
-"""A run that is killed loses no more than this of its recording [simulated us]."""
+"""Longest part of a recording that is lost when a run is killed [simulated us]."""
 
 
 def add_recording_option(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def add_recording_option(parser: argparse.ArgumentParser) -> None:
 
 
 def add_from_option(parser: argparse.ArgumentParser) -> None:
-    """The option that goes on from a recording."""
+    """Add the option that continues from a recording."""
     parser.add_argument(
         "--from", dest="from_file", type=Path, metavar="FILE", help="go on where a recording or snapshot ends"
     )
@@ -42,14 +42,14 @@ def new_file(path: Path) -> Path:
 
 
 def record(simulation: Simulation, options: argparse.Namespace) -> Recorder | None:
-    """Start the recording that the options ask for."""
+    """Start the recording that the options request."""
     if getattr(options, "rec", None) is None:
         return None
     return Recorder(simulation, new_file(options.rec), FLUSH_US)
 
 
 def say_why(simulation: Simulation, why: str) -> None:
-    """Tell the recording of a run, if there is one, what stopped it."""
+    """Store the reason for the end of a run in its recording, if there is one."""
     journal = simulation.bridge.board.journal
     if isinstance(journal, Recorder):
         journal.stopped = why

@@ -87,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
     until_us = simulation.time_us + int(options.duration * 1e6) if options.duration else None
     serve = serve_lockstep if options.lockstep else partial(runner.serve, pace=Pacing(speedup))
     try:
-        serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=status.update)
+        serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=status.refresh)
         recordings.say_why(simulation, signal.Signals(stopped[0]).name if stopped else "--duration")
     finally:
         status.close()

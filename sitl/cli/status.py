@@ -11,7 +11,7 @@ from ..simulation import Simulation
 
 
 class StatusLine:
-    """One line on a terminal, rewritten a few times a second; elsewhere only what happened to clients."""
+    """A line on a terminal, rewritten four times a second; without a terminal only messages about lost clients."""
 
     _PERIOD_S = 0.25
 
@@ -23,12 +23,12 @@ class StatusLine:
         self._factor = 0.0
         self._width = 0
 
-    def update(self) -> None:
-        """Rewrite the line when it is time to; say which clients were lost and why."""
+    def refresh(self) -> None:
+        """Rewrite the line when it is due; print which clients were lost and why."""
         dropped = self._simulation.bridge.dropped
         for text in dropped:
             print(f"\r{text}".ljust(self._width), file=sys.stderr)
-        dropped.clear()  # told; a run may last for months
+        dropped.clear()  # printed; a run may last for months
         if not self._enabled or time.monotonic() < self._next:
             return
         now, time_us = time.monotonic(), self._simulation.time_us
@@ -41,7 +41,7 @@ class StatusLine:
         self._width = len(text)
 
     def close(self) -> None:
-        """Leave the last line standing and go to the next."""
+        """End the line."""
         if self._enabled and self._width:
             sys.stderr.write("\n")
 
@@ -63,5 +63,5 @@ def describe(simulation: Simulation, factor: float) -> str:
 
 
 def clients(simulation: Simulation) -> int:
-    """How many clients have been heard."""
+    """Number of clients that have sent messages."""
     return sum(channel.statistics.received > 0 for channel in simulation.bridge.channels)

@@ -33,6 +33,8 @@ Progress = Callable[[str, int, int], None]
 
 _fingerprints: dict[tuple[str, str], str] = {}
 """(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
+_SYMBOLS = "symbols name records by their classes"
+"""Machine code made with symbols of another kind cannot be loaded beside it."""
 _jitable: set[int] = set()
 _linked: set[str] = set()
 _records: dict[Any, str] = {}
@@ -55,7 +57,7 @@ def toolchain() -> str:
     features = numba.config.CPU_FEATURES
     if features is None:
         features = llvmlite.binding.get_host_cpu_features().flatten()
-    return " ".join((*versions, platform.machine(), processor, features, repr(law_options())))
+    return " ".join((*versions, platform.machine(), processor, features, repr(law_options()), _SYMBOLS))
 
 
 def record_class(path: str) -> type[Record]:

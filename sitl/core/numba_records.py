@@ -9,6 +9,7 @@ class, because Numba prints the name of each type into every symbol.
 from __future__ import annotations
 
 import math
+import zlib
 from functools import cache
 from typing import Any
 
@@ -39,12 +40,18 @@ class RecordType(types.Record):
         super().__init__(listed, cls.dtype.itemsize, True)
         self.values: dict[str, Any] = {f.name: _value_type(f) for f in cls.fields.values() if f.value is not None}
         """Field that reads as a value -> what it reads as."""
-        self.name = f"{cls.__module__}.{cls.__qualname__}"
+        # Numba takes types of one name for the same: classes that are made by a function may share theirs.
+        self.name = f"{cls.__module__}.{cls.__qualname__}@{zlib.crc32(cls.layout().encode()):08x}"
 
     @property
     def dtype(self) -> Any:
         """NumPy's type."""
         return self._numpy
+
+    @property
+    def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
+        """Its part of a symbol: its name; Numba's own part, a running number, means another type in another process."""
+        return self.name, ()
 
     def __repr__(self) -> str:
         return self.name

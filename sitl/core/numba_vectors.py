@@ -11,8 +11,9 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import types
+from numba.core.imputils import lower_constant
 from numba.core.typing.templates import AbstractTemplate, infer, infer_global, signature
-from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable
+from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable, typeof_impl
 
 from .vectors import VALUES, Value
 
@@ -81,6 +82,16 @@ def _register(cls: type[Value]) -> VectorType:
 
 TYPES: dict[type[Value], VectorType] = {cls: _register(cls) for cls in VALUES}
 """Class of a value -> its Numba type."""
+
+
+@typeof_impl.register(Value)
+def _typeof(value: Any, context: Any) -> Any:
+    return TYPES[type(value)]
+
+
+@lower_constant(VectorType)
+def _constant(context: Any, builder: Any, kind: VectorType, value: Any) -> Any:
+    return _make(context, builder, kind, [context.get_constant(types.float64, number) for number in value])
 
 
 def _by_component(instruction: str) -> Any:
@@ -172,3 +183,23 @@ class _Component(AbstractTemplate):
 @lower_builtin("static_getitem", VectorType, types.Any)
 def _component(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     return builder.extract_value(args[0], args[1])
+
+
+@infer_global(operator.getitem)
+class _AnyComponent(AbstractTemplate):
+    """By an index that is a variable: for laws that loop over a field that has become a value, until they go."""
+
+    def generic(self, args: Any, kws: Any) -> Any:
+        value, index = args
+        if isinstance(value, VectorType) and isinstance(index, types.Integer):
+            return signature(types.float64, *args)
+        return None
+
+
+@lower_builtin(operator.getitem, VectorType, types.Integer)
+def _any_component(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    first, *others = components(builder, sig.args[0], args[0])
+    for k, part in enumerate(others, 1):
+        is_k = builder.icmp_signed("==", args[1], ir.Constant(args[1].type, k))
+        first = builder.select(is_k, part, first)
+    return first

@@ -26,13 +26,19 @@ class UnknownFieldError(SitlError, KeyError):
 
 
 def locate(dtype: np.dtype[Any], path: str) -> tuple[int, str, int]:
-    """(offset [bytes], struct code, number of elements) of a field such as ``"autopilot.estimate.euler"``."""
+    """(offset [bytes], struct code, number of elements) of a field: "autopilot.estimate.euler", "radio.RC[0].MIN"."""
     offset = 0
-    for name in path.split("."):
+    for part in path.split("."):
+        name, _, index = part.removesuffix("]").partition("[")
         if dtype.fields is None or name not in dtype.fields:
             raise UnknownFieldError(f"no field {name!r} of {path!r} in the record; it has {list(dtype.names or ())}")
         dtype, step = dtype.fields[name][:2]
         offset += step
+        if index:
+            base, shape = dtype.subdtype if dtype.subdtype is not None else (dtype, ())
+            if len(shape) != 1 or not index.isdigit() or int(index) >= shape[0]:
+                raise UnknownFieldError(f"no element [{index}] of {name!r} in {path!r}; its shape is {shape}")
+            dtype, offset = base, offset + int(index) * base.itemsize
     base, shape = dtype.subdtype if dtype.subdtype is not None else (dtype, ())
     if base.str not in _CODES:
         raise UnknownFieldError(f"{path!r} is a {base}, not a number or an array of numbers")

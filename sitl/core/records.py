@@ -19,14 +19,15 @@ mypy know the fields::
     v = Copter.of(fleet, 0)  # a vehicle in a fleet's memory
 
 Numbers, booleans, vectors, quaternions and Euler angles read and write as values; arrays and nested records are
-references to the record's memory. A subclass goes on with the fields of its base, whose places it keeps.
+references to the record's memory. A subclass goes on with the fields of its base, whose places it keeps; those of
+several bases follow each other.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Protocol, Self, TypeVar, get_args, get_origin, get_type_hints, overload
 
 import numpy as np
@@ -96,6 +97,22 @@ class _Repeat:
     count: int
 
 
+@dataclass(frozen=True)
+class _Noted:
+    note: Any
+    stored: Stored | _Repeat | None
+
+
+def noted(note: Any, stored: Any = None) -> Any:
+    """Declares a field that carries a note (``Field.note``), such as the limits of a parameter.
+
+    Args:
+        note: anything.
+        stored: ``array(...)`` or ``repeat(...)`` where the annotation needs one.
+    """
+    return _Noted(note, stored)
+
+
 def repeat(record: type[Record], count: int) -> Any:
     """Declares a row of records: ``channels: Records[Channel] = repeat(Channel, 16)``."""
     return _Repeat(record, count)
@@ -116,6 +133,8 @@ class Field:
     """What it reads as: float, int, bool or a class of ``vectors``; None: as a reference."""
     record: type[Record] | None = None
     """The nested record, or what is repeated ``shape`` times."""
+    note: Any = None
+    """What ``noted`` says of it; a subclass that declares the field again without a note keeps its base's."""
 
     @property
     def numpy(self) -> Any:
@@ -132,22 +151,27 @@ class Field:
 _CODES = {float: "f8", int: "i8", bool: "i8"}
 
 
-def _declared(name: str, hint: Any, default: Any) -> Field:
+def _declared(name: str, hint: Any, default: Any, inherited: Field | None) -> Field:
     """The field that an annotation, with its default, declares (its place is worked out later)."""
+    note = inherited.note if inherited is not None else None
+    if isinstance(default, _Noted):
+        note, default = default.note, default.stored
     stored = default if isinstance(default, Stored | _Repeat) else None
     if get_origin(hint) is Annotated:
-        hint, *notes = get_args(hint)
-        stored = stored or next((n for n in notes if isinstance(n, Stored)), None)
+        hint, *more = get_args(hint)
+        stored = stored or next((n for n in more if isinstance(n, Stored)), None)
     if isinstance(stored, _Repeat):
-        return Field(name, 0, shape=(stored.count,), record=stored.record)
+        return Field(name, 0, shape=(stored.count,), record=stored.record, note=note)
     if isinstance(hint, type) and issubclass(hint, Record):
-        return Field(name, 0, record=hint)
+        return Field(name, 0, record=hint, note=note)
     if isinstance(hint, type) and issubclass(hint, Value):
-        return Field(name, 0, stored.code if stored else "f8", (len(hint.NAMES),), hint)
+        return Field(name, 0, stored.code if stored else "f8", (len(hint.NAMES),), hint, note=note)
     if stored is not None and stored.shape:
-        return Field(name, 0, stored.code, stored.shape)
+        return Field(name, 0, stored.code, stored.shape, note=note)
     if hint in _CODES:
-        return Field(name, 0, stored.code if stored else _CODES[hint], (), hint)
+        return Field(name, 0, stored.code if stored else _CODES[hint], (), hint, note=note)
+    if inherited is not None and (inherited.shape or inherited.record):  # an array or a row, as the base has it
+        return replace(inherited, note=note)
     raise TypeError(
         f"field {name!r} is a {hint!r}; a record holds float, int, bool, {', '.join(c.__name__ for c in _values())}, "
         "Float32, Int32, records, and arrays declared with array(...) or repeat(...)"
@@ -175,6 +199,8 @@ class Record(metaclass=_RecordMeta):
     """NumPy's type of the record, aligned as C does it."""
     fields: ClassVar[dict[str, Field]] = {}
     """Name -> field, in the order of memory."""
+    keeps_places: ClassVar[bool] = True
+    """Whether a field that a subclass declares again stays where the base has it; else it goes where it is declared."""
     _bytes: Any
     _f8: Any
     _i8: Any
@@ -190,19 +216,23 @@ class Record(metaclass=_RecordMeta):
             for name, hint in get_type_hints(cls, include_extras=True).items()
             if not name.startswith("_") and get_origin(hint) is not ClassVar and name not in ("dtype", "fields")
         }
+        inherited_fields = {
+            name: field for base in cls.__bases__ for name, field in getattr(base, "fields", {}).items()
+        }
+        order = [name for name in inherited_fields if cls.keeps_places or name not in own]
         declared = []
-        for name, hint in hints.items():
-            inherited = cls.fields.get(name)
+        for name in dict.fromkeys((*order, *(name for name in own if name in hints))):
+            hint, inherited = hints[name], inherited_fields.get(name)
             if inherited is not None and name not in own:
                 declared.append(inherited)
             else:
-                declared.append(_declared(name, hint, cls.__dict__.get(name)))
+                declared.append(_declared(name, hint, cls.__dict__.get(name), inherited))
         taken = [f.name for f in declared if hasattr(np.void, f.name) or hasattr(Record, f.name)]
         if taken:
             raise TypeError(f"{cls.__name__}: fields {taken} are attributes of records themselves; choose other names")
         cls.dtype = np.dtype([(f.name, f.numpy) for f in declared], align=True)
         offsets: Any = cls.dtype.fields or {}
-        cls.fields = {f.name: Field(f.name, offsets[f.name][1], f.code, f.shape, f.value, f.record) for f in declared}
+        cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
         for field in cls.fields.values():
             setattr(cls, field.name, _access(field))
 
@@ -326,16 +356,18 @@ def _number_access(field: Field, store: str, k: int) -> property:
 def _value_access(cls: type[Value], store: str, k: int) -> property:
     count = len(cls.NAMES)
     new = tuple.__new__
+    whole = store in ("_i8", "_i4")
 
     def read(self: Any) -> Any:
-        return new(cls, getattr(self, store)[k : k + count].tolist())
+        numbers = getattr(self, store)[k : k + count].tolist()
+        return new(cls, map(float, numbers) if whole else numbers)
 
     def write(self: Any, value: Any) -> None:
         numbers = getattr(self, store)
         for j, number in enumerate(np.asarray(value, float).tolist() if not isinstance(value, tuple) else value):
             if j >= count:
                 raise TypeError(f"{value!r} does not have the {count} components of a {cls.__name__}")
-            numbers[k + j] = number
+            numbers[k + j] = int(number) if whole else number
 
     return property(read, write)
 
@@ -390,5 +422,5 @@ def first_difference(a: Any, b: Any, path: str = "") -> str | None:
 
 __all__ = [
     "Field", "Float32", "Floats", "Int32", "Ints", "Record", "Records", "Stored", "array", "as_bytes", "as_dict",
-    "first_difference", "repeat",
+    "first_difference", "noted", "repeat",
 ]  # fmt: skip

@@ -38,6 +38,10 @@ class Value(tuple[float, ...]):
     def __truediv__(self, k: float) -> Self:
         return tuple.__new__(type(self), [a / k for a in self])
 
+    def replace(self, **components: float) -> Self:
+        """A copy in which the components named are changed (in plain Python, not in laws)."""
+        return type(self)(**{name: components.pop(name, value) for name, value in zip(self.NAMES, self)}, **components)
+
     def __repr__(self) -> str:
         parts = ", ".join(f"{name}={value!r}" for name, value in zip(self.NAMES, self, strict=True))
         return f"{type(self).__name__}({parts})"

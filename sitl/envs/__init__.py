@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-from .mavlink.ends import LinkLostError, NotASimulatorError, NotReadyError
+from .mavlink.errors import LinkLostError, NotASimulatorError, NotReadyError
 from .options import EnvOptionError
 
 __all__ = [
@@ -17,8 +17,8 @@ __all__ = [
 ]  # fmt: skip
 
 MAX_EPISODE_STEPS = 1500
-"""After which an episode is truncated: the paper's experiments stopped there. ``gym.make(..., max_episode_steps=-1)``
-has no limit, as the original environments themselves."""
+"""Number of steps after which an episode is truncated, as in the paper's experiments. ``gym.make(...,
+max_episode_steps=-1)`` sets no limit, as in the original environments."""
 
 PAPER = {
     "GazeboCircuitTurtlebotLIDAR-v0": "circuit-turtlebot",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Actions: a space, and the set-point that each action of it stands for."""
+"""Actions: an action space, and the set-point of each action."""
 
 from __future__ import annotations
 
@@ -19,31 +19,32 @@ Floats = npt.NDArray[np.float64]
 
 
 class Action(Protocol):
-    """A kind of actions, for one robot or many: rows of arrays."""
+    """Converts actions of one robot or many (a row a robot) to set-points."""
 
     setpoint: Setpoint
-    """What the numbers of a command mean."""
+    """The kind of set-point; it gives the meaning and unit of each column."""
 
     @property
     def space(self) -> gym.Space[Any]:
-        """Of one robot's actions."""
+        """Action space of one robot."""
 
     def room(self, count: int) -> npt.NDArray[Any]:
-        """An array for the actions of ``count`` robots."""
+        """A zero array for the actions of ``count`` robots, shape (count,) or (count, columns)."""
 
     def check(self, action: Any) -> Any:
-        """One robot's action in the form that ``room`` takes.
+        """One robot's action as a row of the array that ``room`` returns.
 
         Raises:
             InvalidAction: it is not in the space.
         """
 
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
-        """Set-points of the actions, shape (count, setpoint.width), into ``out``."""
+        """Write the set-points of the actions into ``out``, shape (count, setpoint.width), in the units of
+        ``setpoint``."""
 
 
 def _is_row(row: Any, width: int) -> bool:
-    """Whether it is so many finite numbers."""
+    """Whether ``row`` is ``width`` finite numbers."""
     try:
         numbers = np.asarray(row, np.float64)
     except (TypeError, ValueError):
@@ -55,8 +56,8 @@ class Discrete:
     """A table of set-points; action k is row k.
 
     Args:
-        setpoint: what the columns mean.
-        rows: name of the action -> numbers of its set-point.
+        setpoint: kind of set-point of the rows.
+        rows: name of the action -> its set-point, in the units of ``setpoint``.
     """
 
     def __init__(self, setpoint: Setpoint, rows: Mapping[str, Sequence[float]]) -> None:
@@ -96,9 +97,9 @@ class Continuous:
     """A box of set-points.
 
     Args:
-        setpoint: what the numbers mean.
-        low, high: limits of each number, in its unit.
-        columns: numbers of the set-point that the action gives; the others are 0. None: all.
+        setpoint: kind of set-point.
+        low, high: limits of each number of the action, in the set-point's units.
+        columns: columns of the set-point that the action sets; the others stay 0. None: all.
     """
 
     def __init__(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Latency: commands reach a robot some time after they were decided on; until then the one before goes on."""
+"""Latency: a command takes effect some time after the decision; the previous command holds until then."""
 
 from __future__ import annotations
 
@@ -22,28 +22,30 @@ LATENCY = Figure("latency", "s", "from a decision until its command reaches the 
 
 @dataclass(frozen=True)
 class Memory:
-    """What is under way to one robot; can be pickled."""
+    """Pending commands of one robot; picklable."""
 
     ticks: int
+    """Latency [ticks]."""
     done: int
+    """Number of commands given in the episode."""
     kept: tuple[tuple[float, ...], ...]
-    """Commands that have not arrived yet, oldest first."""
+    """Commands that have not taken effect yet, oldest first."""
 
 
 class Latency:
-    """Delays commands of ``robot.count`` robots, each by a time of its own.
+    """Delays the commands of ``robot.count`` robots, each by its own latency.
 
-    A command that is decided on at the begin of step k arrives a whole number of ticks later: in step k + q, after r
-    ticks of it, where latency = q steps + r ticks. So at most one command arrives in a step.
+    A command given at the start of step k takes effect a whole number of ticks later: in step k + q, after r ticks,
+    where latency = q steps + r ticks. So at most one command takes effect in a step.
 
     Args:
-        robot: that the commands are for; see ``Robot.tick``.
-        seconds: of latency, for all robots [s].
-        step_time: of a step [s].
-        width: numbers of a command.
+        robot: robot that receives the commands; its ``tick`` is the unit of latency.
+        seconds: initial latency of all robots [s], a whole number of ticks.
+        step_time: duration of a step [s].
+        width: number of columns of a command.
 
     Raises:
-        EnvOptionError: a latency that cannot be, or a robot whose class knows of none.
+        EnvOptionError: the latency is out of range or no whole number of ticks, or the robot does not support it.
     """
 
     def __init__(self, robot: Robot, seconds: float, step_time: float, width: int) -> None:
@@ -52,15 +54,15 @@ class Latency:
         self._tick, self._step = robot.tick, round(step_time / robot.tick)
         self._robots = np.arange(robot.count)
         self._done: Ints = np.zeros(robot.count, np.int64)
-        """Commands that each robot was given in its episode."""
+        """Number of commands given to each robot in its episode."""
         self.ticks: Ints = np.full(robot.count, self._check(seconds), np.int64)
-        """Of each robot."""
+        """Latency of each robot [ticks]."""
         self._kept = np.zeros((self.ticks[0] // self._step + 1, robot.count, width))
-        """Rings: the command of step k of an episode is row k % len."""
+        """Ring buffers, shape (depth, count, width): row k % depth holds the commands of step k of an episode."""
         self.due: Floats = np.zeros((robot.count, width))
-        """The commands that arrive in this step."""
+        """Commands that take effect in this step, shape (count, width)."""
         self.waits: Ints = np.zeros(robot.count, np.int64)
-        """Ticks of the step that pass before; those of a whole step where none arrives in it."""
+        """Ticks of this step before ``due`` takes effect, shape (count,); a whole step's where none does."""
 
     def _check(self, seconds: Any) -> int:
         valid = isinstance(seconds, int | float | np.number) and not isinstance(seconds, bool)
@@ -72,10 +74,10 @@ class Latency:
         return ticks
 
     def set(self, index: int, seconds: float) -> None:
-        """Another latency for the next episode of a robot, to the nearest tick.
+        """Set the latency of one robot for its next episode [s], rounded to the nearest tick.
 
         Raises:
-            EnvOptionError: it cannot be so long.
+            EnvOptionError: the latency is out of range.
         """
         if not math.isfinite(seconds):
             self._check(seconds)
@@ -92,11 +94,11 @@ class Latency:
             self._kept[step % rows, self._robots] = kept[step % before, self._robots]
 
     def begin(self, index: int) -> None:
-        """An episode of one robot begins: nothing is under way."""
+        """Start an episode of one robot: no command is pending."""
         self._done[index] = 0
 
     def post(self, commands: Floats, rows: npt.NDArray[np.bool_] | None) -> None:
-        """These robots (None: all) decide; sets ``due`` and ``waits`` of the step."""
+        """Give these robots (None: all) their commands of a step, shape (count, width); sets ``due`` and ``waits``."""
         kept, depth = self._kept, len(self._kept)
         robots = self._robots if rows is None else np.flatnonzero(rows)
         done = self._done[robots]
@@ -107,14 +109,14 @@ class Latency:
         self._done[robots] = done + 1
 
     def memory(self, index: int) -> Memory:
-        """Of one robot."""
+        """Pending commands of one robot, for a snapshot."""
         ticks, done = int(self.ticks[index]), int(self._done[index])
         first = max(done - ticks // self._step - 1, 0)
         rows = (self._kept[step % len(self._kept), index] for step in range(first, done))
         return Memory(ticks, done, tuple(tuple(row.tolist()) for row in rows))
 
     def recall(self, index: int, memory: Memory) -> None:
-        """Go on from there."""
+        """Restore the pending commands of one robot."""
         self._make_room(memory.ticks // self._step + 1)
         self.ticks[index], self._done[index] = memory.ticks, memory.done
         for age, row in enumerate(reversed(memory.kept), 1):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The environment of one robot: any robot in any world, with any task, observation and action."""
+"""The environment for one robot: any robot in any world, with any task, observation and action."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .tasks import Task
 
 
 class Navigate(gym.Env[Any, Any]):
-    """A robot that finds its way by lidar.
+    """A robot that navigates by lidar.
 
     Args:
         robot: name (``robots.ROBOTS``) or class.
@@ -31,18 +31,18 @@ class Navigate(gym.Env[Any, Any]):
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``) or Observation.
         action: "discrete", "continuous", a table (name of an action -> numbers of its set-point), or an Action.
-        setpoint: kind that named actions give, of those the robot takes (``setpoints``); None: its usual one.
-        step_time: simulated time of a step [s], exact; None: the robot's.
+        setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
+        step_time: simulated time of a step [s], exact; None: the robot's default.
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
             "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
             or a function of a random generator that gives one; None: the world's for the robot.
         randomise: figure of the robot, or "latency", -> (low, high), drawn for each episode; "draws" -> N: of N sets.
         render_mode: "rgb_array", "human" or None.
-        latency: simulated time from a decision until its command reaches the robot [s], a whole number of its ticks;
-            until then the command before goes on, and at the begin of an episode it stands or hovers.
-        robot_options: what this robot takes besides.
+        latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
+            The previous command holds until then; at the start of an episode the robot stands or hovers.
+        robot_options: further options of the robot's class.
 
-    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" (and what the task tells).
+    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" and what ``Task.info`` adds.
 
     Raises:
         EnvOptionError: an option that cannot be used; the message says what is allowed.
@@ -78,7 +78,7 @@ class Navigate(gym.Env[Any, Any]):
         self._bind()
 
     def _bind(self) -> None:
-        """What is looked up once, not in every step."""
+        """Look up once what every step needs."""
         session = self._session
         self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.task.info
@@ -97,7 +97,7 @@ class Navigate(gym.Env[Any, Any]):
 
     @property
     def session(self) -> Session:
-        """The pieces that this environment is put together of."""
+        """Robot, task, observation and action of this environment."""
         return self._session
 
     @property
@@ -133,8 +133,8 @@ class Navigate(gym.Env[Any, Any]):
         if self._plain_info:
             info: dict[str, Any] = {"crashed": terminated}
         else:
-            told = self._info(session.step).items()
-            info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in told}
+            rows = self._info(session.step).items()
+            info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in rows}
         if self._renderer is not None:
             self._renderer.note()
             self._show()
@@ -147,21 +147,22 @@ class Navigate(gym.Env[Any, Any]):
         return rows[0]
 
     def snapshot(self) -> Snapshot:
-        """Robot, episode and random numbers: ``restore`` goes on from here bit for bit. It can be pickled.
+        """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.
 
         The step count of a ``TimeLimit`` around this environment is not part of it.
         """
         return self._session.snapshot(0, self.np_random)
 
     def restore(self, snapshot: Snapshot) -> Any:
-        """Go back to a snapshot, of this or of an equal environment; returns the observation."""
+        """Restore a snapshot of this or of an equal environment; returns the observation."""
         self._session.restore(0, snapshot, self.np_random)
         if self._renderer is not None:
             self._renderer.start()
         return self._observation()
 
     def render(self) -> Any:
-        """A picture seen from above: shape (height, width, 3), uint8; None in "human" mode, which draws by itself."""
+        """An image from above, shape (height, width, 3), uint8; None in "human" mode, where ``step`` draws into a
+        window."""
         if self._renderer is None:
             gym.logger.warn(
                 "render() without a render mode: make the environment with "
@@ -175,7 +176,7 @@ class Navigate(gym.Env[Any, Any]):
             self._renderer.show()
 
     def close(self) -> None:
-        """Close the window and what the robot holds open; may be called twice."""
+        """Close the window and the robot's connections; may be called twice."""
         if self._renderer is not None:
             self._renderer.close()
         self._session.robot.close()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Observations: what an agent is told of a robot. Each makes the arrays of one robot or of many: a row a robot."""
+"""Observations: the arrays that an agent receives, for one robot or many, a row a robot."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ class Observation(Protocol):
     """A kind of observation."""
 
     def space(self, robot: Robot) -> gym.Space[Any]:
-        """Of one robot."""
+        """Observation space of one robot."""
 
     def observe(self, robot: Robot) -> Any:
-        """New arrays, a row a robot; a dictionary of arrays for a ``Dict`` space."""
+        """New arrays with a row a robot; a dict of arrays for a ``Dict`` space."""
 
 
 @law
 def digits_of(scans, every, when_inf, highest, out):
     """The paper's rule: each ``every``-th reading, rounded down; inf and nan have digits of their own.
 
-    A reading beyond the digit ``highest``, of a lidar that a function of the user's has given a longer range, is that.
+    Readings above ``highest`` give ``highest``: a user's ``randomise`` function may have extended the lidar's range.
     """
     for i in range(out.shape[0]):
         for k in range(out.shape[1]):
@@ -51,13 +51,14 @@ _digits = kernel("void(f4[:,::1], i8, i8, i8, i8[:,::1])")(digits_of)
 
 
 class Digits:
-    """The paper's observation: whole metres of five readings (six where the division leaves a rest), as MultiDiscrete.
+    """The paper's observation: five readings (six where the division has a remainder) in whole metres, as
+    MultiDiscrete.
 
-    Of n readings those are taken whose number divides by n // parts; each is rounded down, nan counts as 0.
+    Of n readings every (n // parts)-th is taken and rounded down; nan gives 0.
 
     Args:
         when_inf: digit for a reading of inf; None: the robot's (6 for Turtlebot, int(range) for the others).
-        parts: into how many the scan is divided.
+        parts: number of parts that the scan is divided into.
     """
 
     def __init__(self, when_inf: int | None = None, parts: int = 5) -> None:
@@ -79,7 +80,8 @@ class Digits:
 
     @property
     def plan(self) -> tuple[int, int, int, int]:
-        """Each so-many-th reading, digit of inf, greatest digit, how many digits: known once the space is made."""
+        """(Stride of the readings, digit of inf, greatest digit, number of digits); valid after ``space`` was
+        called."""
         return self._plan
 
     def observe(self, robot: Robot) -> Any:
@@ -91,7 +93,7 @@ class Digits:
 
 
 class Scan:
-    """All readings [m], float32, from right to left; the range of the lidar where it sees nothing."""
+    """All readings [m], float32, from right to left, shape (readings,); the lidar's range where nothing is in range."""
 
     def space(self, robot: Robot) -> gym.Space[Any]:
         """See ``Observation``."""
@@ -103,7 +105,7 @@ class Scan:
 
 
 class WithPose:
-    """Another observation, and the pose: a dictionary of "scan" and "pose" (x, y, z [m], yaw [rad], float32)."""
+    """Adds the pose to an observation: a dict of "scan" and "pose" (x, y, z [m], yaw [rad], float32, world frame)."""
 
     def __init__(self, scan: Observation) -> None:
         self.scan = scan
@@ -120,9 +122,10 @@ class WithPose:
 
 
 class WithGoal:
-    """Another observation, and the way to the goal of a task that has one.
+    """Adds the direction to the task's goal to an observation.
 
-    A dictionary of "goal" (distance [m], bearing [rad], left of the nose positive, float32) and what the other one has.
+    A dict of "goal" (distance [m], bearing [rad], positive to the left of the robot's heading, float32) and the other
+    observation's entries.
     """
 
     def __init__(self, other: Observation) -> None:
@@ -130,7 +133,7 @@ class WithGoal:
         self._task: Any = None
 
     def watch(self, task: Any) -> None:
-        """Take the goals of a task (``goals``: x, y of each robot's)."""
+        """Use the goals of a task (its ``goals``: x, y [m], shape (count, 2))."""
         if not hasattr(task, "goals"):
             raise EnvOptionError(f'observation with a goal: task {task!r} has none, as "goal" has')
         self._task = task

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a user may choose, and the errors when it cannot be."""
+"""Options of environments, and the error for options that cannot be used."""
 
 from __future__ import annotations
 

@@ -21,10 +21,10 @@ def turtlebot(world: str, speed: float = 0.3, turning_speed: float = 0.05, rewar
     """Options of a Turtlebot environment.
 
     Args:
-        world: its name.
-        speed: of "forward" [m/s].
-        turning_speed: of "left" and "right" [m/s], which turn by 0.3 rad/s.
-        reward: of "forward"; "left" and "right" give 1, a crash -200.
+        world: name of the world.
+        speed: speed of "forward" [m/s].
+        turning_speed: speed of "left" and "right" [m/s], which turn at 0.3 rad/s.
+        reward: reward of "forward"; "left" and "right" give 1, a crash -200.
     """
     rows = {"forward": (speed, 0.0), "left": (turning_speed, 0.3), "right": (turning_speed, -0.3)}
     return {

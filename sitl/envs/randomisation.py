@@ -16,10 +16,10 @@ from .options import EnvOptionError, unknown
 from .robots.robot import Robot
 
 Randomise = Mapping[str, tuple[float, float] | Callable[[np.random.Generator], float] | int]
-"""Figure -> (low, high), of which it is drawn evenly, or a function that draws it; DRAWS -> how many sets."""
+"""Figure -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of sets."""
 DRAWS = "draws"
-"""As a key: so many sets of figures are drawn once, always the same ones, and each episode takes one of them."""
-_MOST_DRAWS = 100_000
+"""Key whose value N means: N sets of figures are drawn once (always the same ones), and each episode takes one."""
+_MAX_DRAWS = 100_000
 
 
 def ranges_of(randomise: Any) -> Randomise:
@@ -34,15 +34,15 @@ def ranges_of(randomise: Any) -> Randomise:
 
 
 class Randomisation:
-    """Draws figures.
+    """Draws figures of a robot for each episode.
 
     Args:
         ranges: see ``Randomise``; "latency" is one of the figures.
-        robot: whose figures they are.
-        latency: of the robot's commands, None when it has none.
+        robot: robot whose figures are drawn.
+        latency: latency of its commands; None: it has none.
 
     Raises:
-        EnvOptionError: no such figure, a range that is none, or one beyond the figure's limits.
+        EnvOptionError: unknown figure, no valid range, or a range beyond the figure's limits.
     """
 
     def __init__(self, ranges: Randomise, robot: Robot, latency: Latency | None = None) -> None:
@@ -57,8 +57,8 @@ class Randomisation:
                 self._check(known[name], values, robot)
         self._sets: list[dict[str, float]] | None = None
         if draws is not None:
-            if not isinstance(draws, int) or isinstance(draws, bool) or not 1 <= draws <= _MOST_DRAWS:
-                raise EnvOptionError(f"randomise: {DRAWS} = {draws!r}; it must be a whole number 1 .. {_MOST_DRAWS}")
+            if not isinstance(draws, int) or isinstance(draws, bool) or not 1 <= draws <= _MAX_DRAWS:
+                raise EnvOptionError(f"randomise: {DRAWS} = {draws!r}; it must be a whole number 1 .. {_MAX_DRAWS}")
             rng = np.random.default_rng(0)
             self._sets = [self._drawn(rng) for _ in range(draws)]
 

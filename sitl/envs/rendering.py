@@ -17,11 +17,11 @@ from .tasks import ReachGoal, Task
 
 RENDER_MODES = ["rgb_array", "human"]
 SIZE = 640
-"""Of the longer side of a picture [pixels]."""
+"""Longer side of an image [pixels]."""
 PHOTOGRAPH = (640, 480)
-"""Width and height of a picture by the renderer of a physics engine [pixels]."""
+"""Width and height of an image by a physics engine's renderer [pixels]."""
 _BORDER = 0.5
-"""Around the world [m]."""
+"""Margin around the world [m]."""
 _PAPER, _WALL, _LOW_WALL = (250, 250, 247), (62, 68, 76), (190, 194, 198)
 _RAY, _TRAIL, _BODY, _CRASHED, _NOSE = (222, 168, 90), (70, 130, 180), (40, 90, 160), (200, 50, 40), (255, 255, 255)
 _GOAL = (60, 150, 80)
@@ -39,9 +39,9 @@ class Renderer:
     """Draws one robot of a ``Robot`` in its world.
 
     Args:
-        robot: whose world, pose and readings are drawn.
-        task: whose goal is drawn, if it has one.
-        index: of the robot.
+        robot: robot whose world, pose and readings are drawn.
+        task: task whose goal is drawn, if it has one.
+        index: index of the robot.
     """
 
     def __init__(self, robot: Robot, task: Task, index: int = 0) -> None:
@@ -52,26 +52,26 @@ class Renderer:
         self._scale = SIZE / max(extent)
         self._shape = tuple(max(math.ceil(length * self._scale), 64) for length in extent)
         self.trail: list[tuple[float, float]] = []
-        """Where the robot was after each step, on the picture."""
+        """Position of the robot after each step [pixels]."""
         self._plan: Any = None
-        self._trodden: Any = None
-        """The plan with the trail, as far as it is drawn."""
+        self._with_trail: Any = None
+        """The plan with the trail drawn so far."""
         self._drawn = 0
         self._canvas: Any = None
         self._window: Any = None
 
     def _point(self, x: float, y: float) -> tuple[float, float]:
-        """On the picture: x of the world to the right, y up."""
+        """World x, y [m] to image coordinates [pixels]: x to the right, y up."""
         return (x - self._low[0]) * self._scale, self._shape[1] - (y - self._low[1]) * self._scale
 
     def start(self) -> None:
-        """A new episode: the trail begins anew."""
+        """Start an episode with an empty trail."""
         self.trail = []
-        self._trodden = None
+        self._with_trail = None
         self.note()
 
     def note(self) -> None:
-        """Add the robot's place to the trail."""
+        """Add the robot's position to the trail."""
         x, y = self._robot.pose[self._index, :2].tolist()
         self.trail.append(self._point(x, y))
 
@@ -101,13 +101,13 @@ class Renderer:
         if self._plan is None:
             self._plan = self._draw_plan(pygame)
             self._canvas = pygame.Surface(self._shape)
-        if self._trodden is None:
-            self._trodden, self._drawn = self._plan.copy(), 1
+        if self._with_trail is None:
+            self._with_trail, self._drawn = self._plan.copy(), 1
         if len(self.trail) > self._drawn:
-            pygame.draw.lines(self._trodden, _TRAIL, False, self.trail[self._drawn - 1 :], 2)
+            pygame.draw.lines(self._with_trail, _TRAIL, False, self.trail[self._drawn - 1 :], 2)
             self._drawn = len(self.trail)
         canvas, robot = self._canvas, self._robot
-        canvas.blit(self._trodden, (0, 0))
+        canvas.blit(self._with_trail, (0, 0))
         if isinstance(self._task, ReachGoal):
             goal = self._point(*self._task.goals[self._index].tolist())
             pygame.draw.circle(canvas, _GOAL, goal, max(self._task.radius * self._scale, 3.0), 2)
@@ -125,7 +125,8 @@ class Renderer:
         return canvas
 
     def picture(self) -> npt.NDArray[np.uint8]:
-        """Shape (height, width, 3): by the renderer of the robot's physics if it has one, else seen from above."""
+        """An image, shape (height, width, 3), uint8: by the physics engine's renderer if it has one, else from
+        above."""
         photograph = getattr(self._robot, "photograph", None)
         taken = None if photograph is None else photograph(self._index, *PHOTOGRAPH)
         if taken is not None:
@@ -157,4 +158,4 @@ class Renderer:
             self._window = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**vars(self), "_plan": None, "_trodden": None, "_canvas": None, "_window": None}
+        return {**vars(self), "_plan": None, "_with_trail": None, "_canvas": None, "_window": None}

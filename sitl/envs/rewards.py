@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reward terms: functions of a step that give an array, one reward a robot. A task adds them up.
+"""Reward terms: functions of a step that return one reward a robot. A task adds them up.
 
-A term of your own is any function of a ``Step``: ``lambda step: -0.1 * abs(step.velocity[:, 3])``. It works on arrays
-with a row a robot, whether there is one robot or a thousand.
+Any function of a ``Step`` is a term: ``lambda step: -0.1 * abs(step.velocity[:, 3])``. Arrays have a row a robot.
 """
 
 from __future__ import annotations
@@ -20,19 +19,19 @@ Floats = npt.NDArray[np.float64]
 
 
 class Step:
-    """What has happened in a step: what reward terms look at. Arrays have a row a robot."""
+    """Data of a step for reward terms. Arrays have a row a robot."""
 
     def __init__(self, robot: Robot, seconds: float) -> None:
         self.robot = robot
         self.seconds = seconds
         """Simulated time of a step [s]."""
         self.actions: npt.NDArray[Any] = np.zeros(robot.count)
-        """As the agent gave them."""
+        """The agent's actions, as ``Action.check`` returns them."""
         self.commands: Floats = np.zeros((robot.count, 0))
-        """The set-points that they stand for."""
+        """Set-points of the actions, in the set-point's units, shape (count, setpoint.width)."""
         self.crashed: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
         self.reached: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
-        """Whether the goal was reached, where there is one."""
+        """Whether the goal was reached (False for tasks without a goal), shape (count,)."""
 
     @property
     def scan(self) -> npt.NDArray[np.float32]:
@@ -55,7 +54,7 @@ Term = Callable[[Step], Floats]
 
 
 class ByAction:
-    """A number for each action of a table: the paper's reward."""
+    """A fixed reward for each discrete action: the paper's reward."""
 
     def __init__(self, rewards: Sequence[float]) -> None:
         self.rewards = np.array(rewards, np.float64)
@@ -66,7 +65,7 @@ class ByAction:
 
 
 class Forward:
-    """Metres driven forward in the step, at the speed at its end, times ``per_metre``."""
+    """Forward speed at the end of the step times its duration [m], times ``per_metre``."""
 
     def __init__(self, per_metre: float = 25.0) -> None:
         self.per_metre = per_metre
@@ -77,7 +76,7 @@ class Forward:
 
 
 class Turning:
-    """Turn rate at the end of the step, as a magnitude [rad/s], times ``per_rad``: a penalty when that is negative."""
+    """Magnitude of the turn rate at the end of the step [rad/s] times ``per_rad``: a penalty when that is negative."""
 
     def __init__(self, per_rad: float = -1.0) -> None:
         self.per_rad = per_rad
@@ -88,7 +87,7 @@ class Turning:
 
 
 class EachStep:
-    """The same in every step."""
+    """A constant reward for each step."""
 
     def __init__(self, reward: float = -1.0) -> None:
         self.reward = reward
@@ -99,7 +98,7 @@ class EachStep:
 
 
 class Nearness:
-    """A penalty that grows from 0, where the nearest reading is ``distance`` [m], to ``most`` where it is 0."""
+    """A penalty that grows linearly from 0 at a nearest reading of ``distance`` [m] to ``most`` at a reading of 0."""
 
     def __init__(self, distance: float = 0.5, most: float = -1.0) -> None:
         if not distance > 0.0:
@@ -118,4 +117,4 @@ TERMS: dict[str, Callable[[], Term]] = {
     "each_step": EachStep,
     "nearness": Nearness,
 }
-"""By name, with their usual figures."""
+"""Terms by name, with default arguments."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Robot x world x task x observation x action, put together: for one robot or for many, before Gymnasium's classes."""
+"""Robot, world, task, observation and action of an environment, for one robot or many, below Gymnasium's classes."""
 
 from __future__ import annotations
 
@@ -32,29 +32,29 @@ from .tasks import TASKS, Task
 
 FORMS = ("discrete", "continuous")
 RESET_OPTIONS = ("pose", "reset_mask")
-"""The second is of vector environments."""
-LONGEST_STEP_S = 3600.0
-"""Of simulated time; ticks are counted in integers."""
+"""Options of ``reset``; the second one only in vector environments."""
+MAX_STEP_S = 3600.0
+"""Longest step, in simulated time [s]."""
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Everything of one robot and its episode; can be pickled."""
+    """State of one robot and its episode; picklable."""
 
     robot: Any
     task: Any
     rng: Mapping[str, Any]
-    """State of the generator that later episodes are drawn from."""
+    """State of the random generator of later episodes."""
     steps: int = 0
-    """Of the episode so far; vector environments count them themselves."""
+    """Steps of the episode so far; counted by vector environments only."""
     ended: bool = False
-    """Whether the next step of a vector environment begins another episode."""
+    """Whether the next step of a vector environment starts another episode."""
     late: Late | None = None
-    """What is under way to it; None: it has no latency."""
+    """Pending commands; None: there is no latency."""
 
 
 class Session:
-    """The pieces of an environment, for ``count`` robots; see ``Navigate`` for the arguments."""
+    """Robot, task, observation and action of an environment with ``count`` robots; arguments as in ``Navigate``."""
 
     def __init__(
         self,
@@ -81,7 +81,7 @@ class Session:
         self.seconds = self._check_step_time(step_time)
         ranges = ranges_of(randomise)
         self.latency = self._make_latency(latency, ranges)
-        """None: commands arrive at once."""
+        """None: commands take effect at once."""
         self.randomisation = Randomisation(ranges, self.robot, self.latency)
         self.starts = Starts(start, self.robot)
         self.task: Task = _named("task", task, TASKS, "judge")
@@ -91,7 +91,7 @@ class Session:
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
         self.actions = self.action.room(count)
-        """To be filled before ``advance``, a row a robot, with what ``action.check`` gives."""
+        """Actions of the next ``advance``, a row a robot, as ``action.check`` returns them."""
         self.commands = np.zeros((count, self.action.setpoint.width))
         self.rewards = np.zeros(count)
         self.terminated = np.zeros(count, np.bool_)
@@ -127,9 +127,9 @@ class Session:
         seconds, tick = self.robot.step_time if step_time is None else step_time, self.robot.tick
         valid = isinstance(seconds, int | float | np.number) and math.isfinite(seconds)
         ticks = round(seconds / tick) if valid else 0
-        if not 1 <= ticks <= LONGEST_STEP_S / tick or abs(seconds / tick - ticks) > 1e-5:
+        if not 1 <= ticks <= MAX_STEP_S / tick or abs(seconds / tick - ticks) > 1e-5:
             raise EnvOptionError(
-                f"step_time = {seconds!r}; it must be above 0 s, at most {LONGEST_STEP_S:g} s, and a whole number of "
+                f"step_time = {seconds!r}; it must be above 0 s, at most {MAX_STEP_S:g} s, and a whole number of "
                 f"{tick:g} s"
             )
         return round(ticks * tick, 9)  # exact, also for a float32 or a sum of tenths
@@ -142,7 +142,13 @@ class Session:
         return None if none else Latency(self.robot, seconds, self.seconds, self.action.setpoint.width)
 
     def reset(self, index: int, rng: np.random.Generator, options: Mapping[str, Any] | None) -> None:
-        """An episode of one robot begins; ``look`` follows. ``options``: "pose", a start pose for this episode."""
+        """Start an episode of one robot; call ``look`` afterwards.
+
+        Args:
+            index: index of the robot.
+            rng: random generator of its episodes.
+            options: "pose": start pose (x, y, yaw) or (x, y, z, yaw) in the world frame [m, rad].
+        """
         for option in options or ():
             if option not in RESET_OPTIONS:
                 raise unknown("reset: option", option, RESET_OPTIONS[:1])
@@ -157,11 +163,11 @@ class Session:
         self.task.start(index, self.robot, rng)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
-        """Read the lidars of robots that were reset."""
+        """Read the lidars of these robots (None: all) after ``reset``; ``rows`` has shape (count,)."""
         self.robot.look(rows)
 
     def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
-        """One step of these robots (None: all); fills ``rewards`` and ``terminated``."""
+        """Advance these robots (None: all) by one step; fills ``rewards`` and ``terminated``, shapes (count,)."""
         self.action.commands(self.actions, self.commands)
         if self.latency is None:
             self.robot.apply(self.action.setpoint, self.commands)
@@ -176,15 +182,15 @@ class Session:
         cast(LateRobot, self.robot).advance_late(self.seconds, latency.waits, rows)
 
     def snapshot(self, index: int, rng: np.random.Generator) -> Snapshot:
-        """Of one robot, with the generator of its episodes."""
+        """A snapshot of one robot, with the state of its random generator."""
         late = None if self.latency is None else self.latency.memory(index)
         return Snapshot(self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late)
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
-        """Put one robot back, and the generator of its episodes.
+        """Restore one robot and its random generator.
 
         Raises:
-            EnvOptionError: it is none, or of another kind of robot.
+            EnvOptionError: no snapshot, or one of another kind of robot.
         """
         if not isinstance(snapshot, Snapshot):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of an environment")
@@ -198,7 +204,7 @@ class Session:
 
 
 def _named(option: str, value: Any, known: Mapping[str, Callable[[], Any]], method: str) -> Any:
-    """The piece of that name, or a copy of the piece itself: two environments do not share what it remembers."""
+    """The object of a name, or a copy of the given object, so that two environments do not share its state."""
     if isinstance(value, str):
         if value not in known:
             raise unknown(option, value, known)

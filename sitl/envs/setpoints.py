@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Kinds of set-points: what the numbers mean that an action hands to a robot. A robot says which kinds it takes."""
+"""Kinds of set-points: names and units of the numbers that an action gives to a robot."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Setpoint:
-    """A kind of set-point: a row of numbers a robot."""
+    """A kind of set-point; one set-point is a row of numbers."""
 
     name: str
     columns: tuple[str, ...]
@@ -16,12 +16,12 @@ class Setpoint:
 
     @property
     def width(self) -> int:
-        """Numbers in a row."""
+        """Number of columns."""
         return len(self.columns)
 
 
 DRIVE = Setpoint("drive", ("forward [m/s]", "turn [rad/s]"))
-"""Wheels of a robot without autopilot; turn counter-clockwise seen from above."""
+"""Speeds of a robot without autopilot; turn is counter-clockwise seen from above."""
 RC_OVERRIDE = Setpoint("rc", tuple(f"channel {k} [us]" for k in range(1, 9)))
 """RC_CHANNELS_OVERRIDE; 0 releases a channel."""
 VELOCITY = Setpoint("velocity", ("forward [m/s]", "left [m/s]", "up [m/s]", "turn [rad/s]"))

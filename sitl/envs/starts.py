@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where an episode starts: the world's pose, one of one's own, or anywhere that the robot could drive to."""
+"""Start poses of episodes: the world's, a given one, or a random one that the robot can reach."""
 
 from __future__ import annotations
 
@@ -21,31 +21,33 @@ from .options import EnvOptionError
 from .robots.robot import Pose, Robot
 
 CELL = 0.1
-"""Side of the cells that reachable places are found in [m]."""
-_MOST_CELLS = 250_000
-"""Above which cells are made larger, as long as no wall fits between two of them."""
-_FAR_TOO_MANY_CELLS = 4_000_000
-_MOST_POSES = 100_000
+"""Side of a grid cell in the search for reachable positions [m]."""
+_MAX_CELLS = 250_000
+"""Number of cells above which cells are made larger, as long as no wall fits between two of them."""
+_CELL_LIMIT = 4_000_000
+"""Number of cells above which a world is refused."""
+_MAX_POSES = 100_000
 _MARGIN = 0.1
-"""A random place keeps this far from what would be a crash [m]."""
+"""Distance that a random position keeps from what would be a crash [m]."""
 
 StartOption = str | Sequence[float] | Callable[[np.random.Generator], Sequence[float]]
 """Name of one of the world's start poses, "turned", "random", "random:N", a pose, or a function that draws one.
 
-"turned" is the world's start place for the robot, with a random heading. "random:N" is one of N random poses, always
-the same ones: a vehicle with an autopilot is made ready once for each pose, which then costs nothing."""
+"turned" is the world's start position for the robot with a random heading. "random:N" is one of N random poses, always
+the same ones: a vehicle with an autopilot calculates its state after take-off once for each of them."""
 
 
 @law
 def mark_free(solids, first_n, first_e, cell, top, bottom, radius, margin, out):
-    """Which cells of a grid a robot can stand in, its axis in their middle, with a margin to solids, into ``out``.
+    """Mark the cells of a grid in whose centre a robot can stand with a margin to solids.
 
     Args:
         solids: rows of a ``Geometry``.
-        first_n, first_e: middle of cell (0, 0); north grows with the first number, east falls with the second [m].
-        cell: side [m].
-        top, bottom, radius: of the robot [m]; top and bottom are down coordinates.
-        margin: [m].
+        first_n, first_e: north and east of the centre of cell (0, 0) [m]; north grows with the row, east falls with the
+            column.
+        cell: side of a cell [m].
+        top, bottom, radius: the robot's cylinder [m]; top and bottom are down coordinates.
+        margin: distance to keep to solids [m].
         out: shape (rows, columns), 1 for free.
     """
     for i in range(out.shape[0]):
@@ -59,16 +61,16 @@ _mark_free = kernel("void(f8[:,::1], f8, f8, f8, f8, f8, f8, f8, i8[:,::1])")(ma
 
 
 class ReachableCells:
-    """Places that a robot can get to from its start pose without a crash, as cells of a grid.
+    """Positions that a robot can reach from its start pose without a crash, as cells of a grid.
 
     Args:
-        robot: one that starts where its world says.
+        robot: robot whose world, start pose and volume are used.
     """
 
     def __init__(self, robot: Robot) -> None:
         self._world, self._volume = robot.world, robot.volume
         self.margin = _MARGIN + max(robot.crash_range - robot.volume.radius, 0.0)
-        """Room that a place has around the robot [m]."""
+        """Free distance around the robot [m]."""
         start = robot.world.start(robot.name)
         self.z = start.position[2]
         x0, y0, x1, y1 = robot.world.bounds
@@ -76,15 +78,15 @@ class ReachableCells:
         self._low = np.array([x0 - reach, y0 - reach])
         extent = np.array([x1 + reach, y1 + reach]) - self._low
         largest = 1.9 * reach  # even the thinnest wall makes a band of twice the reach that no middle of a cell is in
-        self.cell = max(CELL, min(math.sqrt(float(extent[0] * extent[1]) / _MOST_CELLS), largest))
+        self.cell = max(CELL, min(math.sqrt(float(extent[0] * extent[1]) / _MAX_CELLS), largest))
         rows, columns = (math.ceil(length / self.cell) for length in extent.tolist())
-        if rows * columns > _FAR_TOO_MANY_CELLS:
+        if rows * columns > _CELL_LIMIT:
             size = f"{extent[0]:.0f} x {extent[1]:.0f} m"
             raise EnvOptionError(f"random places in world {self._world.name!r}: {size} is too large; say where instead")
         first = ((np.array(start.position[:2]) - self._low) / self.cell).astype(int).tolist()
         free = self._free(rows, columns)
         self.cells = np.array(self._flood(first, free))
-        """Their numbers along x and y, shape (n, 2)."""
+        """Indices of the cells along x and y, shape (n, 2)."""
         if len(self.cells) == 1 and not free[first[0], first[1]]:
             where = f"random places in world {self._world.name!r}"
             raise EnvOptionError(f"{where}: {robot.name} has no room at start {start.name!r} to set out")
@@ -100,7 +102,7 @@ class ReachableCells:
 
     @staticmethod
     def _flood(first: list[int], free: npt.NDArray[np.int64]) -> list[tuple[int, int]]:
-        """Free cells connected with the first, which counts whether it is free or not."""
+        """Free cells that are connected to the first cell, which is included even when it is not free."""
         columns = free.shape[1]
         left = {divmod(int(place), columns) for place in np.flatnonzero(free)}
         todo, found = [(first[0], first[1])], [(first[0], first[1])]
@@ -115,14 +117,14 @@ class ReachableCells:
         return sorted(found)
 
     def is_free(self, x: float, y: float) -> bool:
-        """Whether the robot stands free there, with the margin."""
+        """Whether the robot can stand at x, y [m] in the world frame, with the margin."""
         north, east, down = to_ned(x, y, self.z)
         v = self._volume
         found = clearance(self._world.geometry, north, east, down - v.top, down - v.bottom, v.radius)
         return found.distance > self.margin
 
     def draw(self, rng: np.random.Generator) -> tuple[float, float]:
-        """A random free place: x, y [m]."""
+        """A random reachable position: x, y [m] in the world frame."""
         while True:
             cell = self.cells[rng.integers(len(self.cells))]
             x, y = (self._low + self.cell * (cell + rng.random(2))).tolist()
@@ -131,29 +133,29 @@ class ReachableCells:
 
 
 class Turned:
-    """A place with a random heading.
+    """Draws poses at one position with a random heading.
 
     Args:
-        position: x, y, z [m].
+        position: x, y, z in the world frame [m].
     """
 
     def __init__(self, position: Sequence[float]) -> None:
         self.position = position
 
     def __call__(self, rng: np.random.Generator) -> Pose:
-        """The start pose of an episode."""
+        """A start pose: x, y, z [m], yaw [rad] in the world frame."""
         x, y, z = self.position
         return (x, y, z, float(rng.uniform(-math.pi, math.pi)))
 
 
 class OneOf:
-    """One of some poses, each as likely."""
+    """Draws one of some poses with equal probability."""
 
     def __init__(self, poses: Sequence[Pose]) -> None:
         self.poses = poses
 
     def __call__(self, rng: np.random.Generator) -> Pose:
-        """The start pose of an episode."""
+        """A start pose: x, y, z [m], yaw [rad] in the world frame."""
         return self.poses[int(rng.integers(len(self.poses)))]
 
 
@@ -162,10 +164,10 @@ class Starts:
 
     Args:
         option: see ``StartOption``.
-        robot: for which.
+        robot: robot that starts there.
 
     Raises:
-        EnvOptionError: no such start, or a pose that is none.
+        EnvOptionError: unknown start, or an invalid pose.
     """
 
     def __init__(self, option: StartOption | None, robot: Robot) -> None:
@@ -193,21 +195,21 @@ class Starts:
             self._pose = self.pose(option)
 
     def _few(self, option: str, cells: ReachableCells) -> Callable[[np.random.Generator], Any]:
-        """Draws from so many random poses as ``option`` says."""
+        """Draws from N random poses, for the option "random:N"."""
         try:
             count = int(option.removeprefix("random:"))
         except ValueError:
             count = 0
-        if not 1 <= count <= _MOST_POSES:
-            raise EnvOptionError(f'start {option!r}; it must be "random:N" with N from 1 to {_MOST_POSES}')
+        if not 1 <= count <= _MAX_POSES:
+            raise EnvOptionError(f'start {option!r}; it must be "random:N" with N from 1 to {_MAX_POSES}')
         rng = np.random.default_rng(0)
         return OneOf([(*cells.draw(rng), self._z, float(rng.uniform(-math.pi, math.pi))) for _ in range(count)])
 
     def pose(self, pose: Any) -> Pose:
-        """x, y, z, yaw of a pose that may lack z.
+        """Complete a pose (x, y, yaw) or (x, y, z, yaw) to x, y, z [m], yaw [rad].
 
         Raises:
-            EnvOptionError: it is none.
+            EnvOptionError: invalid pose, or one inside of a solid.
         """
         try:
             found = full_pose(pose, self._z)
@@ -217,7 +219,8 @@ class Starts:
         return found
 
     def _check_room(self, pose: Pose) -> None:
-        """Inside of a solid every reading is 0, which is no crash: the robot would drive out as if nothing were."""
+        """Refuse a pose inside of a solid: all readings are 0 there, which is no crash, so the robot could drive
+        out."""
         north, east, down = to_ned(*pose[:3])
         volume, world = self._robot.volume, self._robot.world
         near = clearance(world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0)
@@ -228,7 +231,7 @@ class Starts:
             raise EnvOptionError(f"start: ({x:g}, {y:g}, {z:g}) in world {world.name!r} is inside of {what}")
 
     def draw(self, rng: np.random.Generator) -> Pose:
-        """The start pose of an episode."""
+        """A start pose: x, y, z [m], yaw [rad] in the world frame."""
         if self._pose is not None:
             return self._pose
         if self._cells is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tasks: when an episode ends, and what a step is worth."""
+"""Tasks: the reward of a step, and the end of an episode."""
 
 from __future__ import annotations
 
@@ -19,12 +19,22 @@ from .robots.robot import Robot
 from .starts import ReachableCells
 
 _DRAWS = 100
-"""Of a random goal, until it is not one that the robot has reached where it starts."""
+"""Attempts to draw a random goal that the robot has not reached at its start."""
 
 
 @law
 def count_crashes(scans, crash_range, touched, contact_ends, out):
-    """Which robots have crashed, into ``out``; returns how many. A reading of 0 is none, as in the original."""
+    """Mark the robots that have crashed in ``out``; returns their number. A reading of 0 does not count, as in the
+    paper's
+    code.
+
+    Args:
+        scans: lidar readings [m], shape (count, readings).
+        crash_range: a reading above 0 and below it is a crash [m].
+        touched: 1 for robots that touched something, shape (count,).
+        contact_ends: whether touching is a crash.
+        out: shape (count,), bool.
+    """
     crashes = 0
     for i in range(out.shape[0]):
         crashed = contact_ends != 0 and touched[i] != 0
@@ -41,13 +51,13 @@ _crashes = kernel("i8(f4[:,::1], f8, i8[:], i8, b1[::1])")(count_crashes)
 
 
 class Task:
-    """Rewards, added up, until a crash ends the episode.
+    """The sum of reward terms; a crash ends the episode.
 
     Args:
-        rewards: terms: names (``rewards.TERMS``), objects of ``rewards`` or functions of your own.
-        crash_range: a reading below it is a crash [m]; 0: readings are none; None: the robot's.
-        crash_reward: of the step that ends in a crash, instead of its terms.
-        contact_ends: whether touching something is a crash, too.
+        rewards: reward terms: names (``rewards.TERMS``), objects of ``rewards``, or functions of a ``Step``.
+        crash_range: a reading below it is a crash [m]; 0: readings never are; None: the robot's.
+        crash_reward: reward of a step that ends in a crash, instead of its terms.
+        contact_ends: whether touching a solid is a crash, too.
     """
 
     def __init__(
@@ -71,14 +81,14 @@ class Task:
 
     @property
     def limit(self) -> float:
-        """A reading below it is a crash [m], once the task is prepared."""
+        """Readings below it are a crash [m]; valid after ``prepare``."""
         return self._range
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
-        """An episode of one robot begins; it stands at its start pose."""
+        """Called at the start of an episode of one robot, when it is at its start pose."""
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        """Rewards of a step, and who has ended, into the two arrays, shape (count,)."""
+        """Write the rewards of a step, and which episodes have ended, into two arrays of shape (count,)."""
         crashes = _crashes(step.scan, self._range, step.robot.collided, self.contact_ends, terminated)
         step.crashed = terminated
         first = True
@@ -94,27 +104,27 @@ class Task:
             rewards[terminated] = self.crash_reward
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
-        """What ``info`` tells of the step, a row a robot."""
+        """Entries of ``info`` for the step: arrays with a row a robot."""
         return {"crashed": step.crashed.copy()}
 
     def memory(self, index: int) -> Any:
-        """What the task remembers of the episode of one robot; can be pickled."""
+        """The task's state of one robot's episode, for a snapshot; picklable."""
         return None
 
     def recall(self, index: int, memory: Any) -> None:
-        """Put it back."""
+        """Restore what ``memory`` returned."""
 
 
 class ReachGoal(Task):
     """Come within ``radius`` of a goal, which ends the episode.
 
     Args:
-        goal: x, y [m]; None: another random place in every episode that the robot can get to from the world's start.
-        radius: [m].
-        goal_reward: of reaching it.
-        progress: reward for each metre nearer to the goal, as the crow flies.
-        rewards: more terms.
-        others: as ``Task``.
+        goal: x, y in the world frame [m]; None: a random position in every episode, reachable from the world's start.
+        radius: distance to the goal that counts as reached [m].
+        goal_reward: reward of reaching the goal.
+        progress: reward for each metre that the straight-line distance to the goal shrinks.
+        rewards: further reward terms.
+        others: further arguments of ``Task``.
     """
 
     def __init__(
@@ -178,12 +188,12 @@ class ReachGoal(Task):
 
 
 def paper(forward: float = 5.0, turn: float = 1.0, **others: Any) -> Task:
-    """The paper's: so much for forward, so much for either turn, -200 for a crash instead of it."""
+    """The paper's task: reward ``forward`` or ``turn`` by action; -200 for a crash instead."""
     return Task([ByAction((forward, turn, turn))], **others)
 
 
 TASKS: dict[str, Callable[[], Task]] = {"wander": lambda: Task([Forward()]), "paper": paper, "goal": ReachGoal}
-"""By name."""
+"""Tasks by name."""
 
 
 def _term(term: str | Term) -> Term:

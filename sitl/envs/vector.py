@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The environment of many robots: all advance in one compiled call, with the results of as many single environments."""
+"""The environment for many robots: one compiled call advances all, with the same results as single environments."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
     robot whose episode has ended is reset by the next ``step``, which ignores its action (``AutoresetMode.NEXT_STEP``).
 
     Args:
-        num_envs: how many.
-        max_episode_steps: after so many steps an episode is truncated; None: never.
-        others: as ``Navigate``.
+        num_envs: number of robots.
+        max_episode_steps: number of steps after which an episode is truncated; None: never.
+        others: arguments of ``Navigate``.
     """
 
     metadata = {  # noqa: RUF012 (Gymnasium's)
@@ -89,7 +89,7 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
 
     @property
     def robot(self) -> Robot:
-        """The robots: ``pose``, ``velocity``, ``scan``, ... with a row each."""
+        """The robots; ``pose``, ``velocity``, ``scan``, ... have a row for each."""
         return self._session.robot
 
     @property
@@ -178,16 +178,17 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
             rows[index] = check(actions[index])
 
     def _infos(self, rows: npt.NDArray[np.bool_]) -> dict[str, Any]:
-        """As Gymnasium's vector environments have them: each array with a mask of the robots that it is of."""
+        """Infos in Gymnasium's vector form: each array with a mask "_name" of the robots that it is valid for."""
         infos: dict[str, Any] = {}
         for name, value in self._session.task.info(self._session.step).items():
-            told = np.array(value)  # a task's own array stays as it is
-            told[~rows] = 0
-            infos[name], infos["_" + name] = told, rows.copy()
+            masked = np.array(value)  # a copy: the array belongs to the task
+            masked[~rows] = 0
+            infos[name], infos["_" + name] = masked, rows.copy()
         return infos
 
     def snapshot(self) -> list[Snapshot]:
-        """Of every robot, as ``Navigate.snapshot``, with its step count and whether its episode has ended."""
+        """A snapshot of each robot as by ``Navigate.snapshot``, with its step count and whether its episode has
+        ended."""
         return [
             replace(
                 self._session.snapshot(index, self._generator(index)),
@@ -198,7 +199,7 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         ]
 
     def restore(self, snapshots: Sequence[Snapshot]) -> Any:
-        """Put every robot back; returns the observations. Snapshots of a ``Navigate`` begin with a step count of 0."""
+        """Restore every robot; returns the observations. Snapshots of a ``Navigate`` have a step count of 0."""
         if len(snapshots) != self.num_envs:
             raise EnvOptionError(f"{len(snapshots)} snapshots for num_envs = {self.num_envs}")
         for index, snapshot in enumerate(snapshots):
@@ -213,7 +214,7 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         return self._session.observation.observe(self._session.robot)
 
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
-        """A picture of each robot."""
+        """An image of each robot, shape (height, width, 3), uint8; None without a render mode."""
         return tuple(renderer.picture() for renderer in self._renderers) if self._renderers else None
 
     def close_extras(self, **kwargs: Any) -> None:

@@ -16,7 +16,7 @@ from ..vehicles import Airframe
 from .process import AutopilotProcess
 
 SERIAL_PORTS = 8
-"""Ports from the base port on that it may listen on: TCP for its serial ports, and the last one, UDP, for sticks."""
+"""Number of ports from the base port that it may listen on: TCP for its serial ports, and the last one, UDP, for RC."""
 DEFAULTS = "vehicle.parm"
 FASTEST = 1000.0
 """Speed-up at which it never waits for the wall clock."""
@@ -55,7 +55,7 @@ def command(
         base: TCP port of its MAVLink.
         instance: adds to MAV_SYSID in ArduPilot's own way; its ports are given by the others.
         speedup: times the wall clock.
-        files: of parameters.
+        files: files of parameters.
     """
     where = ",".join(f"{number:.9g}" for number in home)
     return [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A plant's motion as a line of JSON: truth, since ArduPilot's simulator has sensor models of its own."""
+"""The simulated motion as JSON lines for ArduPilot, which has its own sensor models and needs the true state."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..bridge.ardupilot_json import motion
 from ..plants.plant import Craft
 
 CLOCK_LEAD = 1e-9
-"""The clock of the lines is fast by this part.
+"""Relative lead of the lines' clock.
 
 ArduPilot adds each difference of two timestamps to a clock of whole microseconds and cuts off the rest: with
 differences a rounding error below 2500 us it would lose a microsecond now and then. The lead, a microsecond in 1000 s,
@@ -21,7 +21,7 @@ _S = 1e-6 * (1.0 + CLOCK_LEAD)
 
 
 class BodyLines:
-    """Writes lines for one vehicle.
+    """Encodes JSON lines for one vehicle.
 
     Args:
         craft: the vehicle.
@@ -43,14 +43,14 @@ class BodyLines:
         self._extras = ""
 
     def line(self) -> bytes:
-        """How the body moves now; the state at the end of a tick."""
+        """The motion now as a JSON line: the state at the end of a tick."""
         slow = self._slow()
         if slow != self._seen:
             self._seen, self._extras = slow, self._others(slow)
         return motion.encode((self._clock() * _S, *self._motion()), self._extras)
 
     def _others(self, slow: tuple[Any, ...]) -> str:
-        """Range-finder, battery, and in wind what a vane shows; they change less often than the motion."""
+        """Range-finder, battery, and apparent wind when there is wind; they change less often than the motion."""
         readings, voltage, current, *wind = slow
         reading = None
         if readings > 0 and self._range_max > 0.0:  # out of range is farther than the sensor sees
@@ -58,7 +58,7 @@ class BodyLines:
         return motion.extra(reading, (voltage, current), self._vane(wind) if any(wind) else None)
 
     def _vane(self, wind: list[float]) -> tuple[float, float]:
-        """Where the air that meets the vehicle comes from, clockwise from its nose [rad], and how fast [m/s]."""
+        """Apparent wind: direction that it comes from, clockwise from the nose [rad], and speed [m/s]."""
         body = self._v.physics.body
         w, x, y, z = body.q.tolist()
         yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

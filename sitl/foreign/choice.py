@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which autopilot: ours, or a foreign one by its program or by where it runs already."""
+"""The choice of an autopilot: ours, a foreign program, or the address of a running one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..errors import OptionError
 
 NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
 PROGRAMS = {ARDUPILOT: {"copter": "arducopter", "rover": "ardurover"}, PX4: {"copter": "px4", "rover": "px4"}}
-"""Autopilot -> kind of vehicle -> its program's usual name."""
+"""Autopilot -> kind of vehicle -> default name of its program."""
 _REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 FORMS = (
     '"native", "ardupilot" or "px4" (the program is looked for in PATH), "ardupilot:PROGRAM", "px4:PROGRAM", or, for '
@@ -22,28 +22,28 @@ FORMS = (
 
 @dataclass(frozen=True)
 class Choice:
-    """An autopilot that is not ours."""
+    """A foreign autopilot."""
 
     kind: str
     """ARDUPILOT or PX4."""
     program: Path | None = None
-    """To be started; None: it runs already."""
+    """Program to start; None: it is running already."""
     connection: str | None = None
-    """Where the MAVLink of one that runs already is."""
+    """Address of the MAVLink of an autopilot that is running already."""
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Name for messages."""
         return f"{self.kind}:{self.program or self.connection}"
 
 
 def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | None:
-    """The autopilot that ``text`` means; None for our own.
+    """Parse the choice of an autopilot; None: our own.
 
     Args:
         text: one of the forms.
         vehicle: "copter" or "rover".
-        path: of the program, when the text does not say.
+        path: path of the program, when the text does not say.
 
     Raises:
         OptionError: none of the forms, or no such program.

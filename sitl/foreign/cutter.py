@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cuts a stream of MAVLink into frames without looking inside: dialects that we do not know pass."""
+"""Splits a MAVLink stream into frames without decoding them, so that unknown dialects pass."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _STARTS = bytes((MARK_V1, MARK_V2))
 
 
 class Cutter:
-    """Frames of one stream, told apart by start mark and length. TCP loses nothing, so that it stays in step; what
+    """Splits a stream into frames by start mark and length. TCP loses nothing, so that it stays in step; what
     does not begin with a start mark is left out."""
 
     def __init__(self) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Serves a plant to an autopilot over the MAVLink HIL link, a step at a time: for environments, which hold its time."""
+"""Serves a plant to an autopilot over the MAVLink HIL link step by step, for environments, which control its time."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ _READ = 1 << 16
 
 
 class HilHost:
-    """One plant at a TCP port. Before PX4 has booted, which it cannot do while time stands, physics goes on by the
-    clock on the wall, as its simulators do.
+    """Serves one plant at a TCP port. PX4 cannot boot while time stands still, so until it has booted physics
+    advances with
+    the wall clock.
 
     Args:
         plant: at power-on.
@@ -36,8 +37,8 @@ class HilHost:
         self, plant: LocalPlant, address: tuple[str, int], clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.boots = 0
-        """How many autopilots have connected."""
-        self._wall, self._connection, self._heard = clock, None, b""
+        """Number of autopilots that have connected."""
+        self._wall, self._connection, self._received = clock, None, b""
         self._due = float("-inf")
         self.seat(plant)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -54,7 +55,7 @@ class HilHost:
     _connection: socket.socket | None
 
     def seat(self, plant: LocalPlant) -> None:
-        """Serve this plant from now on."""
+        """Serve another plant from now on."""
         self.plant, self.end = plant, PhysicsEnd(SimulatedPlant(plant))
 
     @property
@@ -69,8 +70,8 @@ class HilHost:
         return self.end.time_us
 
     def listen(self) -> bool:
-        """Wait a moment for an answer of the autopilot; whether there is one, or a step is due without."""
-        if self._heard:
+        """Wait up to 0.2 s for an answer of the autopilot; True: there is one, or a step is due without."""
+        if self._received:
             return True
         if self._connection is None:
             self._accept()
@@ -80,14 +81,14 @@ class HilHost:
             if not select.select([self._connection], [], [], wait)[0]:
                 return self._wall() >= self._due
         try:
-            self._heard = self._connection.recv(_READ)
+            self._received = self._connection.recv(_READ)
         except TimeoutError:
             return False
         except OSError:
-            self._heard = b""
-        if not self._heard:
+            self._received = b""
+        if not self._received:
             self._drop()
-        return bool(self._heard)
+        return bool(self._received)
 
     def _accept(self) -> None:
         try:
@@ -101,12 +102,12 @@ class HilHost:
         self.boots += 1
 
     def step(self, until_us: int | None = None) -> None:
-        """Take the answer and step, or step without one while the autopilot boots."""
+        """Process the answer and step; while the autopilot boots, step without an answer."""
         if self._connection is None:
             return
-        heard, self._heard = self._heard, b""
-        if heard:
-            out = self.end.feed(heard)
+        data, self._received = self._received, b""
+        if data:
+            out = self.end.feed(data)
         elif self.end.freewheels:
             out = self.end.go_on()
             self._due = max(self._due + 1e-6 * TICK_US, self._wall())
@@ -125,6 +126,6 @@ class HilHost:
         self._connection = None
 
     def close(self) -> None:
-        """Serve no more; the plant is the caller's."""
+        """Close the sockets; the plant stays open."""
         self._drop()
         self._socket.close()

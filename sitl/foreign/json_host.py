@@ -16,20 +16,20 @@ from ..plants.local import LocalPlant
 from ..vehicle.record import TICK_US
 from .body import BodyLines
 
-_MOST = 65535
+_MAX_DATAGRAM = 65535
 _GATHERED = 10_000
-"""So many datagrams are looked through at once: nobody can keep us from answering."""
+"""Largest number of waiting datagrams that are read before answering, so that nobody can prevent an answer."""
 _IDLE_S = 0.01
-"""After so long without an answer of ours the frames that wait are looked through [s]."""
+"""Time without an answer of ours after which waiting datagrams are read through [s]."""
 
 
 class JsonHost:
-    """One plant at a UDP port.
+    """Serves one plant at a UDP port.
 
     Args:
         plant: at power-on, as ``sitl.plants.alone.stand_alone`` gives it.
         address: host and port to listen on; port 0: a free one.
-        say: takes what people should be told.
+        say: prints a message for the user.
         clock: wall time [s].
 
     Raises:
@@ -45,7 +45,7 @@ class JsonHost:
     ) -> None:
         self.end, self._say, self._wall = PhysicsEnd(), say, clock
         self.boots = 0
-        """How often the autopilot has been started anew, and the physics with it."""
+        """Number of restarts of the autopilot, each with the physics."""
         self.seat(plant)
         self._pending: Heard | None = None
         self._answered = float("-inf")
@@ -60,7 +60,7 @@ class JsonHost:
         wait_in_kernel(self._socket, WAIT_S)
 
     def seat(self, plant: LocalPlant) -> None:
-        """Serve this plant from now on."""
+        """Serve another plant from now on."""
         self.plant = plant
         self._lines = BodyLines(plant.craft)
         self._clock: Callable[[], int] = plant.craft.reader.field("time_us")
@@ -79,28 +79,28 @@ class JsonHost:
 
     @property
     def is_owing(self) -> bool:
-        """Whether the autopilot waits for an answer of ours."""
+        """Whether a request of the autopilot is pending."""
         return self._pending is not None
 
     def listen(self) -> bool:
-        """Wait a moment for a frame that asks for a step, unless one waits already; whether there is one."""
+        """Wait for a frame that requests a step, unless one is pending; returns whether there is one."""
         if self._pending is not None:
             return True
         try:
-            datagram, peer = self._socket.recvfrom(_MOST)
+            datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
         except OSError:  # none came, or our last answer met a closed port
             return False
         now = self._wall()
         waiting = {peer: datagram}
         if now - self._answered > _IDLE_S:
-            self._newest(waiting)
+            self._drain(waiting)
         for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
-            if self._hear(waiting[peer], peer, now):
+            if self._process(waiting[peer], peer, now):
                 return True
         return False
 
-    def _hear(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
-        """Take one datagram; whether it asks for a step."""
+    def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
+        """Process one datagram; returns whether it requests a step."""
         heard = self.end.hear(datagram, peer, now)
         if heard.note:
             self._say(heard.note)
@@ -114,18 +114,19 @@ class JsonHost:
         self._pending = heard
         return True
 
-    def _newest(self, waiting: dict[tuple[str, int], bytes]) -> None:
-        """Look through the datagrams that wait: the last frame of each sender counts, or the last that is none."""
+    def _drain(self, waiting: dict[tuple[str, int], bytes]) -> None:
+        """Read the waiting datagrams; of each sender the last frame counts, or its last datagram if there is no
+        frame."""
         for _ in range(_GATHERED):
             try:
-                datagram, peer = self._socket.recvfrom(_MOST, socket.MSG_DONTWAIT)
+                datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM, socket.MSG_DONTWAIT)
             except OSError:
                 return
             if peer not in waiting or is_frame(datagram) or not is_frame(waiting[peer]):
                 waiting[peer] = datagram
 
     def step(self, until_us: int | None = None) -> None:
-        """Do what the frame that waits asks for, and answer it; no further than ``until_us`` [us]."""
+        """Perform the requested step and answer it; at most until ``until_us`` [us since power-on]."""
         heard, self._pending = self._pending, None
         if heard is None or heard.servos is None:
             return
@@ -151,7 +152,7 @@ class JsonHost:
             self._say(f"an answer to {self._peer[0]}:{self._peer[1]} was not sent: {error.strerror or error}")
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None] = lambda: None) -> None:
-        """Answer until ``running()`` is false; ``on_turn`` is called now and then, also while nobody asks."""
+        """Answer until ``running()`` is false; ``on_turn`` is called from time to time, also without requests."""
         turn, turns = self.listen, 0
         while True:
             if turn():
@@ -165,5 +166,5 @@ class JsonHost:
                 on_turn()
 
     def close(self) -> None:
-        """Let go of the socket; the plant is the caller's."""
+        """Close the socket; the plant stays open."""
         self._socket.close()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl physics --listen json:[HOST:]PORT``: a plant for whatever autopilot speaks ArduPilot's JSON interface."""
+"""``sitl physics --listen json:[HOST:]PORT``: serves a plant to an autopilot that speaks ArduPilot's JSON interface."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def serve(
         plant: at power-on.
         address: "[HOST:]PORT", "HOST", or "" for the default port of the instance on this machine.
         instance: adds 10 to the default port for each.
-        say: takes what people should be told.
-        running: asked about every 0.1 s.
+        say: prints a message for the user.
+        running: checked about every 0.1 s.
 
     Raises:
         OptionError: the address cannot be had.

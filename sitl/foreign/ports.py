@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Free ports of this machine for programs that must be told theirs."""
+"""Free ports of this machine, for programs whose ports must be given."""
 
 from __future__ import annotations
 

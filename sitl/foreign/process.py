@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An autopilot's program as a process of ours: started in a folder of its own, and ended for certain."""
+"""A foreign autopilot's program as a child process in its own folder, which never outlives this process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LAST_LINES = 6
 
 
 class AutopilotEndedError(SitlError, RuntimeError):
-    """The autopilot's program has ended by itself; the message says how, and what it said last."""
+    """The autopilot's program has ended by itself; the message has its exit code or signal and its last output."""
 
 
 class AutopilotProcess:
@@ -29,9 +29,9 @@ class AutopilotProcess:
 
     Args:
         command: program and arguments; "{folder}" in an argument becomes the folder.
-        files: written into the folder before: name -> text.
-        environment: added to ours.
-        folder: where it runs and keeps its files; None: a new one that is deleted in the end.
+        files: files to write into the folder first: name -> text.
+        environment: environment variables added to ours.
+        folder: working folder; None: a temporary one that is deleted at the end.
 
     Raises:
         OptionError: it cannot be started.
@@ -61,16 +61,16 @@ class AutopilotProcess:
             why = error.strerror or error
             raise OptionError(f"autopilot {self.command[0]!r} cannot be started: {why}") from None
         self._watch = self._watched()
-        atexit.register(self.stop)  # who forgets it leaves no process behind
+        atexit.register(self.stop)  # also when the caller forgets to stop it
 
     def _watched(self) -> subprocess.Popen[bytes]:
-        """A shell that ends the program's group when we are gone without a word (kill -9): its input ends then."""
+        """A shell that kills the program's process group when this process is killed, because its input ends then."""
         script = ["/bin/sh", "-c", 'read _; kill -9 "-$0"', str(self._process.pid)]
         silent = subprocess.DEVNULL
         return subprocess.Popen(script, stdin=subprocess.PIPE, stdout=silent, stderr=silent, start_new_session=True)
 
     def _watch_no_more(self) -> None:
-        """Before the number of its group can be another's."""
+        """Stop watching before the number of its process group can be reused."""
         self._watch.kill()
         self._watch.wait()
         if self._watch.stdin is not None:
@@ -78,23 +78,22 @@ class AutopilotProcess:
 
     @property
     def pid(self) -> int:
-        """Number of the process, which leads a group of its own."""
+        """Process id, which is also the id of its process group."""
         return self._process.pid
 
     def is_running(self) -> bool:
-        """Whether it still runs."""
+        """Whether the process is running."""
         return self._process.poll() is None
 
     def check(self) -> None:
-        """AutopilotEndedError when it has ended."""
+        """Raise AutopilotEndedError if it has ended."""
         code = self._process.poll()
         if code is not None:
             self._watch_no_more()
             how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
-            said = self.said()
-            raise AutopilotEndedError(f"autopilot {self.command[0]} {how}; it said: {said}")
+            raise AutopilotEndedError(f"autopilot {self.command[0]} {how}; it said: {self.last_output()}")
 
-    def said(self) -> str:
+    def last_output(self) -> str:
         """The last lines of its output."""
         try:
             lines = (self.folder / OUTPUT).read_text(errors="replace").split("\n")
@@ -103,7 +102,7 @@ class AutopilotProcess:
         return " / ".join([line.strip() for line in lines if line.strip()][-_LAST_LINES:]) or "nothing"
 
     def stop(self) -> None:
-        """End it, and what it has started; may be called twice."""
+        """End the process and its children; may be called twice."""
         atexit.unregister(self.stop)
         if self._process.poll() is None:
             self._signal(signal.SIGTERM)

@@ -25,7 +25,7 @@ MODEL = "none_iris"
 PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550
 """UDP: where it sends to programs, from where, and where to ground stations; the first two are + N."""
 INSTANCES = 10
-"""Later ones (from 10 on) all send to port 14549, where programs cannot tell them apart."""
+"""Number of instances: from 10 on all send to port 14549, where programs cannot distinguish them."""
 
 
 def parameters(airframe: Airframe) -> dict[str, float]:
@@ -107,7 +107,7 @@ def start(
         program: ``build/px4_sitl_default/bin/px4``, whose start-up files are in ``build/px4_sitl_default/etc``.
         airframe: a copter.
         home: where it stands.
-        instance: of all its ports, and of its MAV_SYS_ID less one.
+        instance: number that gives its ports, and its MAV_SYS_ID less one.
         speedup: times the wall clock, by which it lengthens its time-outs.
         params: under PX4's names, over those of ``parameters``.
         folder: see ``AutopilotProcess``.

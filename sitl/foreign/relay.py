@@ -25,7 +25,7 @@ _UNSENT = 1 << 20
 
 
 class Relay:
-    """Between one autopilot and all clients.
+    """Relays frames between one autopilot and all clients.
 
     Args:
         address: host and port of the autopilot's MAVLink.
@@ -48,18 +48,18 @@ class Relay:
         self._retry_at = 0.0
         self._stopping = False
         self.frames = 0
-        """From the autopilot so far."""
+        """Number of frames from the autopilot so far."""
         for link in self._links:
             link.attach(self._selector, self._peers.append)
         self._thread = threading.Thread(target=self._run, name="mavlink relay", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the relay's thread."""
         self._thread.start()
 
     @property
     def is_connected(self) -> bool:
-        """Whether the autopilot is there."""
+        """Whether the autopilot is connected."""
         return self._autopilot is not None
 
     def _run(self) -> None:
@@ -67,7 +67,7 @@ class Relay:
             self.turn(_WAIT_S)
 
     def turn(self, seconds: float) -> None:
-        """Carry what is there; wait for something so long at most."""
+        """Relay pending frames; waits up to ``seconds`` [s] wall time for one."""
         if self._autopilot is None:
             self._connect()
         for key, _ in self._selector.select(seconds):

@@ -27,14 +27,14 @@ Tap = Callable[[bytes], None]
 
 
 class Session(Protocol):
-    """What flies a plant."""
+    """A session of an autopilot that flies a plant."""
 
     plant: LocalPlant
     clients: str | None
-    """Where its MAVLink is, when it is not on our links."""
+    """Address of its MAVLink, when that is not on our links."""
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
-        """Let physics and autopilot go on until ``running()`` is false; ``on_turn`` is called now and then.
+        """Advance physics and autopilot until ``running()`` is false; ``on_turn`` is called from time to time.
 
         Raises:
             AutopilotEndedError: the program that was started has ended.
@@ -55,7 +55,7 @@ class ArduPilotSession:
         speedup: times the wall clock.
         params: files of parameters.
         folder: see ``AutopilotProcess``.
-        say: takes what people should be told.
+        say: prints a message for the user.
         tap: see ``Relay``.
 
     Raises:

@@ -83,7 +83,7 @@ class Track:
         return self["t"]
 
     def between(self, begin: float, end: float) -> Track:
-        """What lies in [begin, end] [s]; modes begin with the one at that time."""
+        """The part within [begin, end] [s]; the first mode is the one active at ``begin``."""
         rows = (self.t >= begin - 1e-6) & (self.t <= end + 1e-6)
         before = [mode for t, mode in self.modes if t <= begin]
 
@@ -97,7 +97,7 @@ class Track:
         )
 
     def quantised(self) -> Track:
-        """As it comes back from bytes."""
+        """The track as it is read back from its bytes."""
         data = np.round(self.data / QUANTA) * QUANTA
 
         def at(events: list[Any]) -> list[Any]:
@@ -108,7 +108,7 @@ class Track:
         )
 
     def seen_from(self, home: tuple[float, float, float]) -> Track:
-        """The same flight with its places counted from another home."""
+        """The track relative to another home: latitude, longitude [deg], altitude [m]."""
         if home == self.home:
             return self
         north, east = offset_ne(home[0] * 1e7, home[1] * 1e7, self.home[0] * 1e7, self.home[1] * 1e7)

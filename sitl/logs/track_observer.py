@@ -17,7 +17,7 @@ NOWHERE = 1e6
 
 
 class Observed(Protocol):
-    """What is needed of a simulation."""
+    """The part of the simulation's interface that an observer uses."""
 
     fleet: np.ndarray[Any, Any]
     index: int
@@ -67,7 +67,7 @@ class TrackObserver:
         self._place: tuple[int, int, float] | None = None
         """Origin that rows are counted from [degE7, degE7, m]."""
         self._shift = (0.0, 0.0, 0.0)
-        """From there to the origin since the last boot [m]."""
+        """Vector from the home to the origin since the last boot [m]."""
         self._found_home: tuple[float, float, float] | None = None
         self._is_new = True
         self._note_mode(simulation.time_us * 1e-6, int(simulation.v.autopilot.modes.number))
@@ -142,7 +142,7 @@ class TrackObserver:
         self._texts.append((self._vehicle.time_us * 1e-6, severity, text))
 
     def parameter_set(self, name: str) -> None:
-        """Nothing to a track."""
+        """Not part of a track."""
 
     def reached(self, seq: int) -> None:
         """A mission item was reached."""
@@ -151,7 +151,7 @@ class TrackObserver:
     # ------------------------------------------------------------------ the track
 
     def track(self) -> Track:
-        """What there is of it up to now."""
+        """The track so far."""
         self._follow_events()
         data = np.array(self._rows) if self._rows else np.zeros((0, len(COLUMNS)))
         data = np.nan_to_num(data, nan=NOWHERE, posinf=NOWHERE, neginf=-NOWHERE)

@@ -40,14 +40,14 @@ class _Reader:
         self._pieces: dict[int, str] = {}
 
     def time(self, stamp_us: int) -> float:
-        """Of what has no time of its own."""
+        """Time of a message that has none of its own [s]."""
         if self._boot is None:
             return (stamp_us - self._first_us) * 1e-6
         at_us, boot_ms = self._boot
         return (self._before_us + boot_ms * 1000 + stamp_us - at_us) * 1e-6
 
     def read(self) -> None:
-        """Every frame."""
+        """Read all frames."""
         parser = dialect.MAVLink(None)
         parser.robust_parsing = True
         for stamp_us, raw in read_tlog(self.path):

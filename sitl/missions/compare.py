@@ -52,7 +52,7 @@ def figures(kind: str, estimator: str = "ekf", seed: int = 0, autopilot: str = "
 
 
 def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
-    """The same, flown by a foreign autopilot, which is started for each flight.
+    """As ``figures``, flown by a foreign autopilot that is started for each flight.
 
     Raises:
         OptionError: one that does not speak ArduPilot's commands.

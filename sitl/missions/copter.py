@@ -8,7 +8,7 @@ import numpy as np
 from sitl.simulation import Simulation
 
 from .figures import PITCH, ROLL, VX, VY, YAW, Figure, X, Y, Z, crossing, path_rms, speeds, with_distance
-from .pilot import CONDITION_YAW, MISSION_START, POSITION_ONLY, TAKEOFF, VELOCITY_ONLY, Pilot, upload
+from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 from .recording import Recording
 
 SQUARE = [(-353629926, 1491652371), (-353629926, 1491655676), (-353632621, 1491655676), (-353632621, 1491652371)]
@@ -21,7 +21,7 @@ def guided(simulation: Simulation, pilot: Pilot | None = None) -> Pilot:
     pilot.boot()
     pilot.arm(2.08)
     pilot.phase("takeoff")
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=10.0)
     pilot.fly(25.0)
     pilot.phase("pos_step_20N")
     pilot.setpoint(POSITION_ONLY, position=(20.0, 0.0, -10.0))
@@ -31,13 +31,13 @@ def guided(simulation: Simulation, pilot: Pilot | None = None) -> Pilot:
     pilot.phase("vel_zero")
     pilot.stream_setpoint(6.0, VELOCITY_ONLY, (0.0, 0.0, 0.0))
     pilot.phase("yaw_0_abs_ccw")
-    pilot.client.command(CONDITION_YAW, 0, 0, -1, 0)
+    pilot.send_command("CONDITION_YAW", 0, 0, -1, 0)
     pilot.fly(12.0)
     pilot.phase("yaw_90_abs")
-    pilot.client.command(CONDITION_YAW, 90, 0, 1, 0)
+    pilot.send_command("CONDITION_YAW", 90, 0, 1, 0)
     pilot.fly(12.0)
     pilot.phase("yaw_rel_cw_45_30dps")
-    pilot.client.command(CONDITION_YAW, 45, 30, 1, 1)
+    pilot.send_command("CONDITION_YAW", 45, 30, 1, 1)
     pilot.fly(8.0)
     pilot.phase("RTL")
     pilot.choose_mode("RTL")
@@ -49,13 +49,13 @@ def auto(simulation: Simulation, pilot: Pilot | None = None) -> Pilot:
     """Upload the recorded square, arm in GUIDED, switch to AUTO and start."""
     pilot = pilot or Pilot(simulation)
     pilot.boot()
-    items = [(0, 16, -353632621, 1491652371, 584.0), (3, 22, 0, 0, 10.0)]
-    items += [(3, 16, lat, lon, 10.0) for lat, lon in SQUARE] + [(3, 21, 0, 0, 0.0)]
-    upload(pilot, items)
+    rows = [(0, 16, -353632621, 1491652371, 584.0), (3, 22, 0, 0, 10.0)]
+    rows += [(3, 16, lat, lon, 10.0) for lat, lon in SQUARE] + [(3, 21, 0, 0, 0.0)]
+    pilot.transfer(items(rows))
     pilot.arm(1.08)
     pilot.phase("mission_start")
     pilot.choose_mode("AUTO")
-    pilot.client.command(MISSION_START, 0, 0)
+    pilot.send_command("MISSION_START")
     pilot.wait_disarmed(120.0)
     return pilot
 
@@ -101,7 +101,7 @@ def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
 
 
 def behind_velocity(rows: np.ndarray) -> float:
-    """How far [m] the estimated position is behind the integral of the estimated velocity, along east."""
+    """Lag of the estimated position behind the integral of the estimated velocity, along east [m]."""
     t, v = rows[:, 0], rows[:, VY]
     integral = float(np.sum(np.diff(t) * 0.5 * (v[1:] + v[:-1])))
     return integral - float(rows[-1, Y] - rows[0, Y])

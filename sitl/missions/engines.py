@@ -23,7 +23,7 @@ from sitl.simulation import Simulation
 
 from . import copter
 from .figures import shown
-from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, upload
+from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 ROVER_SQUARE = copter.SQUARE
@@ -34,7 +34,7 @@ COLUMNS = ("t", "north", "east", "down", "vn", "ve", "vd", "roll", "pitch", "yaw
 
 
 class Witness(Pilot):
-    """A pilot that also writes down the truth."""
+    """A pilot that records the simulator's truth."""
 
     def __init__(self, simulation: Simulation) -> None:
         super().__init__(simulation)
@@ -90,11 +90,11 @@ def rover_mission(simulation: Simulation) -> Witness:
     """A square of 30 m in AUTO."""
     pilot = Witness(simulation)
     pilot.boot()
-    upload(pilot, [(0, 16, *ROVER_SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in ROVER_SQUARE)])
+    pilot.transfer(items([(0, 16, *ROVER_SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in ROVER_SQUARE)]))
     pilot.arm(1.0)
     pilot.phase("mission")
     pilot.choose_mode("AUTO")
-    pilot.fly(180.0, lambda: bool(pilot.reached) and pilot.reached[-1][1] == len(ROVER_SQUARE))
+    pilot.fly(180.0, lambda: bool(pilot.reached) and pilot.reached[-1] == len(ROVER_SQUARE))
     pilot.phase("arrived")
     pilot.fly(5.0)
     return pilot
@@ -139,27 +139,27 @@ def fly(frame: str, script: Script, physics: str, seed: int = 0, **options: Any)
         pilot = script(simulation)
     finally:
         simulation.close()
-    return Flown(np.array(pilot.truth), pilot.phases, pilot.reached, pilot.now)
+    return Flown(np.array(pilot.truth), pilot.phases, pilot.telemetry.reached, pilot.now)
 
 
 @dataclass(frozen=True)
 class Difference:
-    """How one engine's flight differs from another's, over all phases at equal times since each one's begin."""
+    """Differences between the flights of two engines over all phases, at equal times since the start of each phase."""
 
     path_rms: float
-    """[m]"""
+    """RMS distance between the paths [m]."""
     path_max: float
-    """[m]"""
+    """Greatest distance between the paths [m]."""
     lean_rms: float
-    """Of roll and pitch together [deg]."""
+    """RMS difference of roll and pitch together [deg]."""
     heading_rms: float
     """[deg]"""
     output_mean: float
-    """Of the motors' mean output [share of the full range]."""
+    """Mean difference of the motors' mean output [fraction of the full range]."""
     energy: float
     """[% of the other's]"""
     duration: float
-    """From the first phase to the end [s]."""
+    """Duration from the first phase to the end [s]."""
     items: float
     """Greatest difference in the time at which a mission item was reached [s]."""
 
@@ -223,8 +223,8 @@ def table(flown: dict[str, dict[str, Flown]]) -> str:
 
 
 def plot(flown: dict[str, dict[str, Flown]], title: str, path: Path) -> None:
-    """Every flight: plan, height or speed, pitch or heading, output, all engines on top of each other; and how far each
-    is from where native physics has the vehicle."""
+    """Plot each flight with all engines: plan, height or speed, pitch or heading, output, and the distance of each from
+    native physics."""
     figure = new_figure(20.0, 4.0 * len(flown), title)
     axes = figure.subplots(len(flown), 5, squeeze=False)
     for row, (flight, engines) in zip(axes, flown.items()):
@@ -251,13 +251,13 @@ def plot(flown: dict[str, dict[str, Flown]], title: str, path: Path) -> None:
 
 
 def _places(flown: Flown, t: Array) -> Array:
-    """Where it was at times since its first phase, NED [m]."""
+    """Positions at times since the first phase, north, east, down [m], shape (n, 3)."""
     rows, start = flown.rows, min(flown.phases.values())
     return np.column_stack([np.interp(t, rows[:, 0] - start, rows[:, k]) for k in (1, 2, 3)])
 
 
 def fly_all(frame: str, engines: list[str]) -> dict[str, dict[str, Flown]]:
-    """Every flight of a frame on every engine."""
+    """Fly all flights of a frame on each engine."""
     flights = FLIGHTS[frame].items()
     return {name: {engine: fly(frame, script, engine) for engine in engines} for name, script in flights}
 

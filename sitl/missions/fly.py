@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Flies one mission from power-on to its end, and says how it went."""
+"""Flies one mission from power-on to its end."""
 
 from __future__ import annotations
 
@@ -10,23 +10,25 @@ from dataclasses import dataclass, field
 from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_RETURN_TO_LAUNCH, home_item
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.navigation.state import COMPLETE
+from sitl.client import Text
+from sitl.client.session import STEP_US
 from sitl.core.geodesy import offset_ne
 from sitl.errors import OptionError
 from sitl.simulation import Simulation
 
 from .path import Deviation, PathWatch
-from .station import STEP_US, Station, StationError
+from .station import Station, StationError
 
 READY_S = 120.0
-"""A vehicle that is not ready to arm by then has a fault [simulated s]."""
+"""Time within which a vehicle must be ready to arm [simulated s]."""
 LIMIT_S = 1800.0
 """Time limit of a flight unless another is given [simulated s since arming]."""
 FARTHEST = 20_000.0
-"""Places are nearer to the vehicle's home than this [m]: what is farther was planned for another home."""
+"""Greatest distance of a mission item from the vehicle's home: farther items were planned for another home [m]."""
 STANDS, STANDING_S = 0.1, 1.0
-"""A rover has arrived when it is slower than this [m/s] for this long [s]."""
+"""A rover has arrived when it is slower than STANDS [m/s] for STANDING_S [s]."""
 STOPPING_S = 30.0
-"""It has this long for it after its mission."""
+"""Time that a rover may take to stop after its mission [simulated s]."""
 
 
 class MissionRefused(OptionError):
@@ -35,41 +37,40 @@ class MissionRefused(OptionError):
 
 @dataclass
 class Outcome:
-    """How a mission went. Times are simulated seconds since the start of the simulation."""
+    """Result of a mission. Times are simulated seconds since the start of the simulation."""
 
     completed: bool = False
     reason: str = ""
-    """Why it was not; or what there is to say about its end."""
+    """Reason why it was not completed, or a remark on its end."""
     ready: float = math.nan
     started: float = math.nan
-    """When AUTO began."""
+    """Time at which AUTO started [s]."""
     ended: float = math.nan
-    """When the vehicle was disarmed, or the flight was given up."""
+    """Time of disarming, or of giving up [s]."""
     items: list[tuple[float, int]] = field(default_factory=list)
-    """(time, item) as they were reached."""
+    """(time [s], number of the item) for each item reached."""
     distance: float = 0.0
-    """Flown or driven since AUTO began [m]."""
+    """Distance since the start of AUTO [m]."""
     energy: float = 0.0
-    """Taken from the battery since AUTO began [Wh]."""
+    """Energy from the battery since the start of AUTO [Wh]."""
     top_speed: float = 0.0
-    """Along the ground [m/s]."""
+    """Greatest ground speed [m/s]."""
     top_height: float = 0.0
-    """Above home [m]."""
+    """Greatest height above home [m]."""
     deviation: Deviation = field(default_factory=Deviation)
-    """From the straight lines of the mission."""
+    """Deviation from the straight lines of the mission."""
     hits: int = 0
-    """How often the vehicle hit a solid of its world."""
-    texts: list[tuple[float, int, str]] = field(default_factory=list)
-    """(time, severity, text)"""
+    """Number of contacts with solids of the world."""
+    texts: list[Text] = field(default_factory=list)
 
     @property
     def duration(self) -> float:
-        """From the begin of AUTO to the end [s]."""
+        """Time from the start of AUTO to the end [s]."""
         return self.ended - self.started
 
 
-Tell = Callable[[float, str], None]
-"""Told of each step of the flight: (time [s], text)."""
+OnStep = Callable[[float, str], None]
+"""Called with each step of the flight: (time [s], text)."""
 
 
 def checked(mission: Mission, simulation: Simulation) -> Mission:
@@ -110,7 +111,7 @@ def fly(
     *,
     limit_s: float = LIMIT_S,
     advance: Callable[[int], object] | None = None,
-    tell: Tell = lambda time, text: None,
+    on_step: OnStep = lambda time, text: None,
 ) -> Outcome:
     """Wait until the vehicle is ready, upload, arm, AUTO, until it is disarmed; a rover is disarmed where it arrives.
 
@@ -119,12 +120,12 @@ def fly(
         mission: home first; home (0, 0) becomes the vehicle's.
         limit_s: simulated time after which it is given up, since arming.
         advance: lets simulated time pass until a time [us]; None: as fast as it can.
-        tell: told of each step.
+        on_step: called with each step.
 
     Raises:
         MissionRefused: the vehicle cannot fly it.
     """
-    flight = _Flight(simulation, checked(mission, simulation), limit_s, advance, tell)
+    flight = _Flight(simulation, checked(mission, simulation), limit_s, advance, on_step)
     try:
         flight.run()
     except StationError as error:
@@ -133,7 +134,7 @@ def fly(
 
 
 class _Flight:
-    """One flight under way."""
+    """A flight in progress."""
 
     def __init__(
         self,
@@ -141,14 +142,14 @@ class _Flight:
         mission: Mission,
         limit_s: float,
         advance: Callable[[int], object] | None,
-        tell: Tell,
+        on_step: OnStep,
     ) -> None:
-        self.simulation, self.limit_s, self.tell = simulation, limit_s, tell
+        self.simulation, self.limit_s, self.on_step = simulation, limit_s, on_step
         lat, lon, alt, _ = simulation.home
         home = home_item(round(lat * 1e7), round(lon * 1e7), alt) if mission.items[0].no_place else mission.items[0]
         self.items = (home, *mission.items[1:])
         self.last = max((seq for seq, item in enumerate(self.items) if seq and item.is_nav), default=0)
-        """The last navigation command."""
+        """Number of the last navigation command."""
         self.outcome = Outcome()
         self.station = Station(simulation, advance, self._look)
         self.watch: PathWatch | None = None
@@ -157,23 +158,21 @@ class _Flight:
         self._is_complete = False
 
     def run(self) -> None:
-        """All of it; StationError when the vehicle refuses a step."""
+        """Fly the mission; raises StationError when the vehicle refuses a step."""
         station, outcome = self.station, self.outcome
         station.wait_ready(READY_S)
         outcome.ready = station.now
-        self.tell(station.now, "ready to arm")
-        station.upload(self.items)
-        self.tell(station.now, f"mission of {len(self.items) - 1} items uploaded")
-        station.choose_mode("GUIDED")
+        self.on_step(station.now, "ready to arm")
+        station.transfer(self.items)
+        self.on_step(station.now, f"mission of {len(self.items) - 1} items uploaded")
+        station.set_mode("GUIDED")
         station.arm()
-        self.tell(station.now, "armed")
+        self.on_step(station.now, "armed")
         self._wh = float(self.simulation.v.autopilot.battery.consumed_wh)
         outcome.started = station.now
         self.watch = PathWatch(self.simulation)
-        station.choose_mode("AUTO")
-        if self.simulation.kind.name == "copter":
-            station.start_mission()
-        if not station.wait(self.limit_s, self._is_over):
+        station.start_mission()
+        if not station.passes(self._is_over, self.limit_s):
             outcome.reason = f"not ended after {self.limit_s:g} s, at item {self._current} of {len(self.items) - 1}"
             return
         if station.armed and self.simulation.kind.name == "rover":
@@ -188,8 +187,8 @@ class _Flight:
         return not self.station.armed or (self._is_complete and stays)
 
     def _stop_rover(self) -> None:
-        """Wait until it stands, and disarm it."""
-        self.tell(self.station.now, "mission complete")
+        """Wait until the rover stands, and disarm it."""
+        self.on_step(self.station.now, "mission complete")
         stood: list[int] = [0]
 
         def stands() -> bool:
@@ -197,11 +196,11 @@ class _Flight:
             stood[0] = stood[0] + 1 if math.hypot(float(vel[0]), float(vel[1])) < STANDS else 0
             return stood[0] * STEP_US >= STANDING_S * 1e6
 
-        self.station.wait(STOPPING_S, stands)
+        self.station.passes(stands, STOPPING_S)
         self.station.disarm()
 
     def _judge(self) -> None:
-        """Whether it was completed."""
+        """Decide whether the mission was completed."""
         outcome, station = self.outcome, self.station
         crash = next((text for _, _, text in station.texts if "Crash" in text), None)
         came_down = self._current == self.last and self.items[self.last].command in (NAV_LAND, NAV_RETURN_TO_LAUNCH)
@@ -218,7 +217,7 @@ class _Flight:
             outcome.reason = f"disarmed {at}{station.why(outcome.started)}"
 
     def _look(self) -> None:
-        """Ten times a second."""
+        """Called ten times a second: collect data for the result."""
         if self.watch is None:
             return
         station, nav = self.station, self.simulation.v.autopilot.modes.nav
@@ -226,23 +225,23 @@ class _Flight:
             self.watch.look()
             if station.mode != "GUIDED" and station.mode != self._mode:
                 if self._mode:
-                    self.tell(station.now, f"mode {station.mode}{station.why(station.now - 2.0)}")
+                    self.on_step(station.now, f"mode {station.mode}{station.why(station.now - 2.0)}")
                 self._mode = station.mode
             if int(nav.command_seq) and station.mode == "AUTO":
                 self._current = int(nav.command_seq)
-        for time, seq in station.reached[self._seen :]:
+        for time, seq in station.telemetry.reached[self._seen :]:
             item = self.items[seq] if seq < len(self.items) else home_item(0, 0, 0.0)
-            self.tell(time, f"item {seq} of {len(self.items) - 1} {item.name} done")
-        self._seen = len(station.reached)
+            self.on_step(time, f"item {seq} of {len(self.items) - 1} {item.name} done")
+        self._seen = len(station.telemetry.reached)
 
     def result(self) -> Outcome:
-        """What came of it."""
+        """The result so far."""
         outcome, station, watch = self.outcome, self.station, self.watch
-        outcome.ended, outcome.texts, outcome.items = station.now, station.texts, station.reached
+        outcome.ended, outcome.texts, outcome.items = station.now, station.texts, station.telemetry.reached
         if watch is not None:
             outcome.energy = float(self.simulation.v.autopilot.battery.consumed_wh) - self._wh
             outcome.distance, outcome.deviation = watch.distance, watch.deviation
             outcome.top_speed, outcome.top_height = watch.top_speed, watch.top_height
         outcome.hits = int(self.simulation.v.physics.obstacles.hit_count)
-        self.tell(station.now, "armed still" if station.armed else "disarmed")
+        self.on_step(station.now, "armed still" if station.armed else "disarmed")
         return outcome

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A foreign autopilot on our physics where a script expects a simulation: its time is held, its MAVLink is its own."""
+"""A foreign autopilot on our physics with the interface of a simulation, so that scripts can fly it."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _PATIENCE_S = 30.0
 
 
 class ForeignVehicle:
-    """What ``Pilot`` needs of a ``Simulation``.
+    """The part of the ``Simulation`` interface that ``Pilot`` uses.
 
     Args:
         choice: the autopilot.
         frame: airframe.
         home: where it stands.
-        seed: of wind and turbulence.
+        seed: seed of wind and turbulence.
         physics: name of the engine.
 
     Raises:
@@ -36,7 +36,8 @@ class ForeignVehicle:
         self.kind = KINDS[airframe.kind]
         self.firmware = self.kind.firmware
         self.v = plant.craft.v
-        """Of it, the physics is true; there is no autopilot of ours."""
+        """Only the physics in it is valid: the autopilot is the foreign one."""
+        self.before_boot_us = 0
         self.connection: Foreign = launch(choice, plant, {}, 0, _PATIENCE_S)
         self.connection.tap = self._tell
         self._links: list[InProcessLink] = []
@@ -48,8 +49,13 @@ class ForeignVehicle:
         return self
 
     def add_link(self, link: InProcessLink) -> None:
-        """Another client in this process."""
+        """Add a client in this process."""
         self._links.append(link)
+
+    @property
+    def system(self) -> int:
+        """MAVLink id of the vehicle."""
+        return int(self.connection.inbox.system)
 
     @property
     def time_us(self) -> int:
@@ -57,12 +63,12 @@ class ForeignVehicle:
         return self.connection.time_us
 
     def advance_to(self, time_us: int) -> None:
-        """Let the autopilot hear its clients and go on until a time."""
+        """Pass the clients' messages to the autopilot, and advance to a time [us]."""
         for link in self._links:
             for peer in link.peers:
                 data = peer.take()
                 if data:
-                    self.connection.client.link.send(data)
+                    self.connection.endpoint.link.send(data)
         self.connection.run(max(time_us - self.time_us, 0))
 
     def _tell(self, data: bytes) -> None:

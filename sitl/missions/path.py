@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How a mission was flown: distance, speed, height, and how far the vehicle was from the lines of its mission."""
+"""Distance, speed, height of a flight, and its deviation from the lines of its mission."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sitl.simulation import Simulation
 
 Point = tuple[float, float, float]
 LEGS = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME, commands.NAV_LOITER_UNLIM)
-"""Commands whose way is a straight line from where the one before ended."""
+"""Commands flown on a straight line from the end of the command before."""
 _NOWHERE: Point = (math.nan, math.nan, math.nan)
 
 
@@ -21,15 +21,15 @@ class Deviation:
     """The greatest distance from the lines of the mission."""
 
     distance: float = 0.0
-    """[m]"""
+    """Distance [m]."""
     seq: int = 0
-    """Item under way."""
+    """Number of the current item."""
     time: float = 0.0
-    """Since the start of the simulation [s]."""
+    """Time since the start of the simulation [s]."""
 
 
 class PathWatch:
-    """Follows one vehicle by its own estimate; ``look`` at equal steps while it is armed.
+    """Measures one vehicle's flight by its own estimate; call ``look`` at equal time steps while it is armed.
 
     Rovers are judged in the plane. Where two lines meet, the nearer counts: corners are cut as the firmware cuts them.
     """
@@ -38,9 +38,9 @@ class PathWatch:
         self._simulation = simulation
         self._flat = simulation.kind.name == "rover"
         self.distance = self.top_speed = 0.0
-        """[m], [m/s] along the ground."""
+        """Distance along the path [m]; greatest ground speed [m/s]."""
         self.top_height = 0.0
-        """Above home [m]."""
+        """Greatest height above home [m]."""
         self.deviation = Deviation()
         self._last: Point | None = None
         self._seq = 0
@@ -48,7 +48,7 @@ class PathWatch:
         self._legs: list[tuple[Point, Point]] = []
 
     def look(self) -> None:
-        """Take in where the vehicle is now."""
+        """Process the vehicle's current state."""
         ap = self._simulation.v.autopilot
         here: Point = tuple(float(x) for x in ap.estimate.pos)  # type: ignore[assignment]
         if self._flat:
@@ -67,7 +67,7 @@ class PathWatch:
                 self.deviation = Deviation(away, seq, self._simulation.time_us * 1e-6)
 
     def _begin(self, seq: int, here: Point) -> None:
-        """Another navigation command is under way: which lines are flown now."""
+        """A new navigation command starts: find the lines that are flown now."""
         ap = self._simulation.v.autopilot
         item = self._simulation.mission.get(seq)
         self._seq = seq
@@ -88,9 +88,9 @@ class PathWatch:
 
 
 def _distance(p: Point, a: Point, b: Point) -> float:
-    """From a point to a line from a to b [m]."""
+    """Distance of a point from the line segment from a to b [m]."""
     along = tuple(y - x for x, y in zip(a, b))
     square = sum(x * x for x in along)
-    share = 0.0 if square == 0.0 else sum(x * (q - r) for x, q, r in zip(along, p, a)) / square
-    share = min(max(share, 0.0), 1.0)
-    return math.dist(p, tuple(x + share * y for x, y in zip(a, along)))
+    fraction = 0.0 if square == 0.0 else sum(x * (q - r) for x, q, r in zip(along, p, a)) / square
+    fraction = min(max(fraction, 0.0), 1.0)
+    return math.dist(p, tuple(x + fraction * y for x, y in zip(a, along)))

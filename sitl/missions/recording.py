@@ -38,10 +38,10 @@ class Recording:
     """(time [s since boot], text) of status texts."""
     disarmed: float = float("nan")
 
-    def said(self, phase: str, text: str) -> float:
+    def text_time(self, phase: str, text: str) -> float:
         """Time from the phase's start until a text with these words; NaN when there is none."""
         start = self.phases[phase]
-        return next((t - start for t, said in self.texts if t >= start and text in said), float("nan"))
+        return next((t - start for t, found in self.texts if t >= start and text in found), float("nan"))
 
     def arrival(self, phase: str, seq: int) -> float:
         """Time from the phase's start until mission item ``seq`` was reached; NaN when it was not."""
@@ -85,7 +85,7 @@ PHASES = {
         "RTL": 173.091,
     },
 }
-"""When each command was sent [s since boot]."""
+"""Time of each command since boot [s]."""
 REACHED = {
     "copter_auto": [(57.299, 1), (65.98, 2), (72.02, 3), (78.059, 4), (86.139, 5)],
     "rover": [(131.512, 1), (136.691, 2), (141.851, 3), (151.072, 4)],

@@ -8,13 +8,13 @@ import numpy as np
 from sitl.simulation import Simulation
 
 from .figures import VX, Figure, X, Y, crossing, path_rms, speeds, stopped, with_distance
-from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, upload
+from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 from .recording import Recording
 
 SQUARE = [(-353630824, 1491652371), (-353630824, 1491654574), (-353632621, 1491654574), (-353632621, 1491652371)]
 """Corners of the recorded AUTO mission [degE7]."""
 TARGET = (26.555, 19.267)
-"""Of the recorded position step: 20 m east of where the rover stood [m]."""
+"""Target of the recorded position step: 20 m east of the rover's position [m]."""
 NORTH = (2.0, 0.0, 0.0)
 """The recorded velocity [m/s]."""
 FROM_FIRST = "AUTO from item 1 on"
@@ -48,10 +48,10 @@ def drive(simulation: Simulation) -> Pilot:
     pilot.phase("HOLD0")
     pilot.choose_mode("HOLD")
     pilot.fly(4.0)
-    upload(pilot, [(0, 16, *SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in SQUARE)])
+    pilot.transfer(items([(0, 16, *SQUARE[-1], 584.0), *((3, 16, lat, lon, 0.0) for lat, lon in SQUARE)]))
     pilot.phase("AUTO")
     pilot.choose_mode("AUTO")
-    pilot.fly(60.0, lambda: bool(pilot.reached) and pilot.reached[-1][1] == len(SQUARE))
+    pilot.fly(60.0, lambda: bool(pilot.reached) and pilot.reached[-1] == len(SQUARE))
     pilot.fly(10.0)
     pilot.phase("vel_2_before_hold")
     pilot.choose_mode("GUIDED")
@@ -72,15 +72,15 @@ def drive_figures(ours: Recording, theirs: Recording) -> list[Figure]:
     def add(name: str, unit: str, phase: str, duration: float, value) -> None:
         figures.append(Figure(name, unit, value(ours.since(phase, duration)), value(theirs.since(phase, duration))))
 
-    def said(name: str, phase: str, text: str) -> None:
-        figures.append(Figure(name, "s", ours.said(phase, text), theirs.said(phase, text)))
+    def compare_text(name: str, phase: str, text: str) -> None:
+        figures.append(Figure(name, "s", ours.text_time(phase, text), theirs.text_time(phase, text)))
 
     for speed in (1.0, 1.9):
         add(f"2 m/s north: {speed} m/s", "s", "vel_2N_10s", 10, lambda r, v=speed: crossing(r, VX, v))
     add("2 m/s north: peak speed", "m/s", "vel_2N_10s", 10, lambda r: float(speeds(r).max()))
     add("2 m/s north: speed from 8 s on", "m/s", "vel_2N_10s", 10, lambda r: float(speeds(r[r[:, 0] > 8.0]).mean()))
     add("2 m/s north: covered in 10 s", "m", "vel_2N_10s", 10, lambda r: float(r[-1, X] - r[0, X]))
-    said("set-point time-out: said", "vel_stop_sending", "target not received")
+    compare_text("set-point time-out: said", "vel_stop_sending", "target not received")
     add("set-point time-out: stopped", "s", "vel_stop_sending", 8, stopped)
     add("set-point time-out: covered", "m", "vel_stop_sending", 8, lambda r: float(r[-1, X] - r[0, X]))
     for name, phase, target in (("20 m east", "pos_step_20E", TARGET), ("back", "pos_home", (0.0, 0.0))):
@@ -103,7 +103,7 @@ def drive_figures(ours: Recording, theirs: Recording) -> list[Figure]:
     add("HOLD: covered", "m", "HOLD", 6, lambda r: float(np.hypot(r[-1, X] - r[0, X], r[-1, Y] - r[0, Y])))
     add("RTL: peak speed", "m/s", "RTL", 25, lambda r: float(speeds(r).max()))
     add("RTL: within 3 m of home", "s", "RTL", 25, lambda r: crossing(with_distance(r, 0.0, 0.0), 1, 3.0))
-    said("RTL: says that it is there", "RTL", "Reached destination")
+    compare_text("RTL: says that it is there", "RTL", "Reached destination")
     for recording in (ours, theirs):
         recording.phases[FROM_FIRST] = recording.phases["AUTO"] + recording.arrival("AUTO", 1)
     for phase, duration, from_start in PATHS:

@@ -40,7 +40,7 @@ class Block(NamedTuple):
     kind: int
     data: bytes
     at: int
-    """Where it begins in the file [bytes]."""
+    """Offset in the file [bytes]."""
 
 
 def _checksum(kind: int, packing: int, packed: bytes, before: int) -> int:

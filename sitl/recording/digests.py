@@ -44,7 +44,7 @@ class Sent:
         self._size = 0
 
     def digest(self) -> bytes:
-        """Of all until now."""
+        """Digest of all bytes so far."""
         self._take()
         return self._hash.digest()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What happened to a vehicle from outside, entry by entry, in the order in which it happened."""
+"""Entries of a recording: the inputs of a vehicle from outside, in order."""
 
 from __future__ import annotations
 
@@ -8,37 +8,37 @@ from enum import IntEnum
 from typing import NamedTuple
 
 
-class Kind(IntEnum):
-    """What an entry tells; ``number`` is a channel's, or a link's place in the order in which links were added."""
+class EntryKind(IntEnum):
+    """EntryKind of an entry; ``number`` is that of a channel, or the index of a link in the order of their addition."""
 
     LINK = 1
-    """A way for clients was opened; data: JSON [kind, name]."""
+    """A link was opened; data: JSON [kind, name]."""
     UNLINK = 2
-    """It was closed."""
-    CAME = 3
-    """A client came; data: number of its link."""
-    HEARD = 4
-    """Bytes of a client were read; data: they."""
-    ACTED = 5
-    """All bytes read were acted on (``Bridge.receive``)."""
-    ATTENDED = 6
-    """What they asked for was followed up while time did not move (``Simulation.advance_to`` the present)."""
-    LEFT = 7
-    """A client left; data: why."""
+    """A link was closed."""
+    CONNECTED = 3
+    """A client connected; data: number of its link."""
+    RECEIVED = 4
+    """Bytes of a client were read; data: the bytes."""
+    PROCESSED = 5
+    """All bytes read were processed (``Bridge.receive``)."""
+    SERVED = 6
+    """Requests were answered while time stood still (``Simulation.advance_to`` the present)."""
+    DISCONNECTED = 7
+    """A client disconnected; data: the reason."""
     CONGESTED = 8
-    """A client began (data 1) or ceased (0) to read too slowly; then how many bytes it had been sent."""
+    """A client started (data 1) or stopped (0) reading too slowly; then the number of bytes sent to it."""
     STREAMS = 9
-    """Stream groups for every client of a link; data: JSON {ending: Hz}."""
+    """Stream rates for every client of a link; data: JSON {stream group: Hz}."""
     LOCKSTEP = 10
-    """Clients push the clock from now on; data 0: no more."""
-    ANSWERED = 11
-    """Their grants that were due were answered."""
-    BEAT = 12
-    """A HEARTBEAT went out while time stood."""
+    """Clients advance the clock from now on; data 0: no longer."""
+    GRANTED = 11
+    """The clients' time grants that were due were answered."""
+    HEARTBEAT = 12
+    """A HEARTBEAT was sent while time stood still."""
     CHECK = 13
-    """Digests of the vehicle's record and of all telemetry (4 + 4 bytes), to find where a replay goes astray."""
-    BROKEN = 14
-    """What no replay can do: the vehicle was put back to a snapshot; data: in words."""
+    """Digests of the vehicle's record and of all telemetry (4 + 4 bytes), to locate differences of a replay."""
+    NOT_REPLAYABLE = 14
+    """An action that no replay can repeat: the vehicle was restored to a snapshot; data: description."""
     LOGS = 15
     """On-board logs are kept from now on, and clients can download them."""
 
@@ -48,13 +48,13 @@ class Entry(NamedTuple):
 
     time_us: int
     """Simulated time since the start of the simulation [us]."""
-    kind: Kind
+    kind: EntryKind
     number: int = 0
     data: bytes = b""
 
 
 def varint(value: int) -> bytes:
-    """A number from 0 on, seven bits a byte, least first."""
+    """An unsigned integer as a varint: seven bits a byte, least significant first."""
     out = bytearray()
     while value > 0x7F:
         out.append(value & 0x7F | 0x80)
@@ -64,10 +64,10 @@ def varint(value: int) -> bytes:
 
 
 def read_varint(data: bytes, at: int) -> tuple[int, int]:
-    """(The number at ``at``, where it ends).
+    """(The integer at offset ``at``, the offset after it).
 
     Raises:
-        IndexError: it does not end.
+        IndexError: the data ends within it.
     """
     value = shift = 0
     while True:
@@ -95,7 +95,7 @@ def decode(data: bytes, before_us: int) -> Iterator[Entry]:
     while at < len(data):
         try:
             step, at = read_varint(data, at)
-            kind = Kind(data[at])
+            kind = EntryKind(data[at])
             number, at = read_varint(data, at + 1)
             size, at = read_varint(data, at)
         except IndexError:

@@ -65,7 +65,7 @@ def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """As JSON has it."""
+    """A value as JSON types."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     return value.item() if isinstance(value, np.generic) else value
@@ -85,7 +85,7 @@ def of_world(world: World) -> str:
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
-    """What a simulation is made of, as JSON has it."""
+    """Description of a simulation's code and settings, as JSON types."""
     given = simulation.given
     frame, world = given["frame"], given["world"]
     name = simulation.airframe.name
@@ -118,12 +118,12 @@ def describe(simulation: Simulation) -> dict[str, Any]:
 
 
 def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between two runs' descriptions, in words: code first, then what is simulated."""
+    """Differences between two runs' descriptions, in words: code first, then settings."""
     return [*code_differences(then["version"], now["version"]), *vehicle_differences(then, now)]
 
 
 def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between two versions of the code, in words."""
+    """Differences between two versions of the code, in words."""
     found = []
     rooms = [name for name in now["sources"] if then["sources"].get(name) != now["sources"][name]]
     if rooms:
@@ -137,7 +137,7 @@ def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[st
 
 
 def vehicle_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """What differs between what was simulated, in words."""
+    """Differences between two simulations' settings, in words."""
     found = []
     if then["airframe"]["name"] != now["airframe"]["name"]:
         found.append(f"airframe {then['airframe']['name']} -> {now['airframe']['name']}")

@@ -20,14 +20,14 @@ from ..logs.track_observer import TrackObserver
 from ..simulation import Simulation
 from . import digests
 from .blocks import END, ENTRIES, HEADER, LZMA, SECTION, BlockReader, BlockWriter
-from .entries import Entry, Kind, encode, varint
+from .entries import Entry, EntryKind, encode, varint
 from .error import RecordingError
 from .identity import describe
 
 CHECK_US = 10_000_000
 """Simulated time between two digests that say where a replay goes astray [us]."""
 BLOCK_BYTES = 1 << 18
-"""As much is kept at most before it is written; ``flush`` writes at once."""
+"""Largest number of bytes kept before they are written; ``flush`` writes at once."""
 REPACKED_BYTES = 1 << 26
 """A recording up to this size is packed anew when the run ends: smaller, and equal runs give equal files."""
 LOG, TCP, UDP, IN_PROCESS, OTHER = "log", "tcp", "udp", "inprocess", "other"
@@ -41,7 +41,7 @@ _KINDS: tuple[tuple[type[Link], str], ...] = (
 
 
 def kind_of(link: Link) -> str:
-    """What kind of link it is; a replayed one is what it was."""
+    """EntryKind of a link; a replayed link has its original kind."""
     given = getattr(link, "kind", None)
     return given if isinstance(given, str) else next((name for type_, name in _KINDS if isinstance(link, type_)), OTHER)
 
@@ -51,7 +51,7 @@ class Recorder:
 
     Args:
         simulation: at power-on: no time has passed, and no client has been heard.
-        path: of the file; None: nothing is kept but the digests.
+        path: path of the file; None: nothing is kept but the digests.
         flush_us: simulated time after which what is collected is written [us]: a run that is killed loses no more.
 
     Raises:
@@ -67,13 +67,14 @@ class Recorder:
         self.simulation = simulation
         self.path = Path(path) if path is not None else None
         self.stopped = "ended"
-        """What stopped the run, in a word or two."""
+        """Reason for the end of the run, in a word or two."""
         self.channels: dict[int, digests.Sent] = {}
-        """Channel -> what it was sent."""
+        """Channel number -> digest of what it was sent."""
         self.checks: dict[int, bytes] | None = None
-        """Time [us] -> digests of that time; kept when a replay asks for it."""
+        """Time [us] -> digests at that time; kept only for a replay."""
         self.sections: dict[str, Any] = {}
-        """Name -> function that gives the bytes of a section when the run ends: "track", what is compared."""
+        """Section name -> function that returns its bytes at the end of the run ("track": the track for
+        comparisons)."""
         self.flush_us = flush_us
         self._flush_due_us, self._check_us = flush_us, CHECK_US
         self._writer: BlockWriter | None = None
@@ -83,10 +84,10 @@ class Recorder:
         self._links: dict[Link, int] = {}
         self._link_count = 0
         self._congested: set[Peer] = set()
-        self._hears = False
-        """Bytes have been read and not been acted on."""
+        self._unprocessed = False
+        """Whether bytes were read that have not been processed."""
         self._later: list[Entry] = []
-        self._attended = False
+        self._served = False
         self.is_closed = False
         if self.path is not None:
             self._writer = BlockWriter(self.path)
@@ -102,17 +103,17 @@ class Recorder:
 
     # ------------------------------------------------------------------ entries
 
-    def _note(self, kind: Kind, number: int = 0, data: bytes = b"") -> None:
+    def _note(self, kind: EntryKind, number: int = 0, data: bytes = b"") -> None:
         if self._writer is None:
             return
         now = self.simulation.time_us
         entry = Entry(now, kind, number, data)
-        if self._hears and kind is not Kind.HEARD:
+        if self._unprocessed and kind is not EntryKind.RECEIVED:
             self._later.append(entry)
             return
-        if self._attended and now == self._last_us:
-            self._append(Entry(now, Kind.ATTENDED))
-        self._attended = False
+        if self._served and now == self._last_us:
+            self._append(Entry(now, EntryKind.SERVED))
+        self._served = False
         self._append(entry)
 
     def _append(self, entry: Entry) -> None:
@@ -124,10 +125,10 @@ class Recorder:
             self.flush()
 
     def flush(self) -> None:
-        """Write what is collected: a run that is killed now can be flown again up to here.
+        """Write the collected entries: a run that is killed later can be replayed up to here.
 
         Raises:
-            RecordingError: that cannot be done (a full disk); the recording ends here.
+            RecordingError: they cannot be written (a full disk); the recording ends here.
         """
         if self._writer is None or not self._pending:
             return
@@ -141,33 +142,33 @@ class Recorder:
             self._writer = None
             raise
 
-    # ------------------------------------------------------------------ what the bridge tells
+    # ------------------------------------------------------------------ calls from the bridge (see ``Journal``)
 
     def link_added(self, link: Link) -> None:
         self._links[link] = self._link_count
-        self._note(Kind.LINK, self._link_count, json.dumps([kind_of(link), link.name]).encode())
+        self._note(EntryKind.LINK, self._link_count, json.dumps([kind_of(link), link.name]).encode())
         self._link_count += 1
 
     def link_removed(self, link: Link) -> None:
-        self._note(Kind.UNLINK, self._links.pop(link))
+        self._note(EntryKind.UNLINK, self._links.pop(link))
 
     def came(self, channel: Channel) -> None:
         self.channels[channel.number] = digests.Sent()
         number = next(number for link, number in self._links.items() if channel.peer in link.peers)
-        self._note(Kind.CAME, channel.number, varint(number))
+        self._note(EntryKind.CONNECTED, channel.number, varint(number))
 
     def left(self, channel: Channel) -> None:
         self._congested.discard(channel.peer)
-        self._note(Kind.LEFT, channel.number, channel.peer.why_closed.encode())
+        self._note(EntryKind.DISCONNECTED, channel.number, channel.peer.why_closed.encode())
 
     def heard(self, channel: Channel, data: bytes) -> None:
-        self._note(Kind.HEARD, channel.number, data)
-        self._hears = True
+        self._note(EntryKind.RECEIVED, channel.number, data)
+        self._unprocessed = True
 
     def acted(self) -> None:
-        if self._hears:
-            self._hears = False
-            self._note(Kind.ACTED)
+        if self._unprocessed:
+            self._unprocessed = False
+            self._note(EntryKind.PROCESSED)
             later, self._later = self._later, []
             for entry in later:
                 self._append(entry)
@@ -176,28 +177,30 @@ class Recorder:
         if channel.peer.congested != (channel.peer in self._congested):
             self._congested ^= {channel.peer}
             state = int(channel.peer in self._congested)
-            self._note(Kind.CONGESTED, channel.number, bytes([state]) + varint(self.channels[channel.number].count))
+            self._note(
+                EntryKind.CONGESTED, channel.number, bytes([state]) + varint(self.channels[channel.number].count)
+            )
 
     def streams(self, link: Link, rates_hz: Mapping[str, int]) -> None:
-        self._note(Kind.STREAMS, self._links[link], json.dumps(dict(rates_hz)).encode())
+        self._note(EntryKind.STREAMS, self._links[link], json.dumps(dict(rates_hz)).encode())
 
     def attended(self) -> None:
-        self._attended = True
+        self._served = True
 
     def beat(self) -> None:
-        self._note(Kind.BEAT)
+        self._note(EntryKind.HEARTBEAT)
 
     def lockstep(self, on: bool) -> None:
-        self._note(Kind.LOCKSTEP, 0, b"" if on else b"\0")
+        self._note(EntryKind.LOCKSTEP, 0, b"" if on else b"\0")
 
     def answered(self) -> None:
-        self._note(Kind.ANSWERED)
+        self._note(EntryKind.GRANTED)
 
     def logs(self) -> None:
-        self._note(Kind.LOGS)
+        self._note(EntryKind.LOGS)
 
     def restored(self) -> None:
-        self._note(Kind.BROKEN, 0, b"the vehicle was put back to a snapshot")
+        self._note(EntryKind.NOT_REPLAYABLE, 0, b"the vehicle was put back to a snapshot")
 
     def sent(self, channel: Channel, frames: list[bytes]) -> None:
         self.channels[channel.number].add(self.simulation.time_us, frames)
@@ -205,14 +208,14 @@ class Recorder:
     # ------------------------------------------------------------------ as an observer
 
     def observe(self) -> None:
-        """Write what is collected; now and then, note digests of the present."""
+        """Write the collected entries, and digests of the present state at intervals."""
         now = self.simulation.time_us
         if now >= self._check_us:  # at times that do not depend on how often it is written
             self._check_us = (now // CHECK_US + 1) * CHECK_US
             found = digests.check(self.simulation, self.channels)
             if self.checks is not None:
                 self.checks[now] = found
-            self._note(Kind.CHECK, 0, found)
+            self._note(EntryKind.CHECK, 0, found)
         if now >= self._flush_due_us:
             self.flush()
             self._flush_due_us = (now // self.flush_us + 1) * self.flush_us
@@ -221,7 +224,7 @@ class Recorder:
     # ------------------------------------------------------------------ the end
 
     def result(self) -> dict[str, Any]:
-        """How it ends: when, why, digests of the vehicle's record and of each channel."""
+        """End of the run: time, reason, digests of the vehicle's record and of each channel."""
         return {
             "time_us": self.simulation.time_us,
             "stopped": self.stopped,
@@ -230,7 +233,7 @@ class Recorder:
         }
 
     def close(self) -> None:
-        """Write the end; the simulation's own ``close`` does it, too."""
+        """Write the end of the recording; the simulation's ``close`` does it, too."""
         if self.is_closed:
             return
         self.is_closed = True
@@ -238,8 +241,8 @@ class Recorder:
         self.simulation.bridge.board.journal = None
         if self._writer is None or self.path is None:
             return
-        if self._attended and self.simulation.time_us == self._last_us:
-            self._append(Entry(self._last_us, Kind.ATTENDED))
+        if self._served and self.simulation.time_us == self._last_us:
+            self._append(Entry(self._last_us, EntryKind.SERVED))
         self.flush()
         for name, give in self.sections.items():
             self._writer.write(SECTION, name.encode() + b"\0" + give())
@@ -251,7 +254,7 @@ class Recorder:
 
 
 def repack(path: Path) -> None:
-    """Pack a whole recording as tightly as can be, in place; it is there at every moment."""
+    """Compress a whole recording with LZMA, in place and atomically."""
     blocks = list(BlockReader(path))
     beside = path.with_name(path.name + ".packing")
     writer = BlockWriter(beside)

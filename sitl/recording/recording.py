@@ -25,11 +25,11 @@ class Recording:
 
     path: Path
     header: dict[str, Any]
-    """What the run was made of (``identity.describe``)."""
+    """Description of the run (``identity.describe``)."""
     entries: list[Entry]
-    """What came from outside, in order."""
+    """Inputs from outside, in order."""
     end: dict[str, Any] | None = None
-    """How it ended (``Recorder.result``); None: the file has no end."""
+    """End of the run (``Recorder.result``); None: the file has no end."""
     sections: dict[str, bytes] = field(default_factory=dict)
     """Name -> bytes, for example "track"."""
     fault: str = ""

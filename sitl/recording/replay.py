@@ -22,29 +22,32 @@ from ..vehicles import Airframe, AirframeError
 from ..worlds import World, WorldError
 from . import identity
 from .digests import of_state
-from .entries import Entry, Kind, read_varint
+from .entries import Entry, EntryKind, read_varint
 from .error import RecordingError
 from .recorder import LOG, Recorder
 from .recording import Recording
 from .replayed_link import Flip, ReplayedLink, ReplayedPeer
 
-_STRUCTURE = frozenset((Kind.LINK, Kind.UNLINK, Kind.CAME, Kind.LEFT, Kind.STREAMS))
+_STRUCTURE = frozenset(
+    (EntryKind.LINK, EntryKind.UNLINK, EntryKind.CONNECTED, EntryKind.DISCONNECTED, EntryKind.STREAMS)
+)
 """Entries that can contradict those before them."""
 WriterOf = Callable[[Simulation], FrameWriter]
 
 
 class Replay:
-    """A vehicle that is made as the recorded one was, and hears what that heard, when it did.
+    """Simulates a recorded vehicle again, with the recorded inputs at their recorded times.
 
-    On the version that made the recording it sends the same bytes to every channel; on another it flies as that version
-    does. ``differences`` says what is not as it was.
+    With the version that made the recording it sends the same bytes to every channel; with another version it flies as
+    that version does. ``differences`` lists what differs from the recording.
 
     Args:
-        recording: what to fly.
-        frame, world: instead of the recorded ones, for files that are elsewhere now.
-        physics: instead of the recorded one.
-        core: the core of this kind of vehicle, if it is loaded already.
-        record: write a recording of the replay there.
+        recording: the recording.
+        frame, world: in place of the recorded ones, for files that have moved.
+        physics: engine in place of the recorded one.
+        core: the compiled core of this kind of vehicle, if it is loaded already.
+        progress: called with the progress of compiling the core.
+        record: path of a recording of the replay; None: none.
         log: makes the writer of what the recorded run's log was sent, if it had one; one more for each time that the
             run went on from a snapshot.
         bin_file: gives where on-board logs go, when the recorded run began to keep some; None: kept only if a client
@@ -70,18 +73,18 @@ class Replay:
     ) -> None:
         self.recording = recording
         for entry in recording.entries:
-            if entry.kind is Kind.BROKEN:
+            if entry.kind is EntryKind.NOT_REPLAYABLE:
                 raise RecordingError(f"{self._at_entry(entry)} {entry.data.decode()}: it cannot be flown")
         self.simulation = _build(recording, frame, world, physics, core, progress)
         try:
             self.differences = identity.differences(recording.header, identity.describe(self.simulation))
         except (KeyError, TypeError, AttributeError) as error:
             raise RecordingError(f"{_title(recording)}: what it was made of cannot be understood: {error!r}") from None
-        """What is not as it was when the recording was made, in words."""
+        """Differences from the conditions of the recording, in words."""
         self.recorder = Recorder(self.simulation, record)
         self.recorder.checks = {}
         self.astray: list[str] = []
-        """What the vehicle did or sent otherwise than the recorded one, in words, first things first."""
+        """Differences from the recorded behaviour, in words, in order of time."""
         self._log, self._bin_file = log, bin_file
         self._scratch: tempfile.TemporaryDirectory[str] | None = None
         self._at = 0
@@ -89,27 +92,27 @@ class Replay:
         self._peers: dict[int, ReplayedPeer] = {}
         self._flips: dict[int, list[Flip]] = defaultdict(list)
         self._good_us: dict[str, int] = {}
-        """What was compared -> when it was last the same."""
+        """Compared item -> last time at which it was equal [us]."""
         self._astray: set[str] = set()
         for entry in recording.entries:
-            if entry.kind is Kind.CONGESTED:
+            if entry.kind is EntryKind.CONGESTED:
                 sent, _ = read_varint(entry.data, 1)
                 self._flips[entry.number].append(Flip(entry.time_us, sent, bool(entry.data[0])))
 
     # ------------------------------------------------------------------ going on
 
     def next_us(self) -> int:
-        """When the next entry is due [us]; at its end, that of the recording."""
+        """Time of the next entry [us]; after the last one, of the end."""
         entries = self.recording.entries
         return entries[self._at].time_us if self._at < len(entries) else self.recording.end_us
 
     @property
     def is_over(self) -> bool:
-        """Whether all of it has been flown."""
+        """Whether the whole recording has been replayed."""
         return self._at >= len(self.recording.entries) and self.simulation.time_us >= self.recording.end_us
 
     def advance_to(self, time_us: int) -> None:
-        """Fly on until ``time_us``, and hear all that was heard at that time; not beyond the recording's end."""
+        """Advance to ``time_us`` [us], including the inputs at that time; at most to the recording's end."""
         time_us = min(time_us, self.recording.end_us)
         entries = self.recording.entries
         while self._at < len(entries) and entries[self._at].time_us <= time_us:
@@ -127,49 +130,49 @@ class Replay:
             self.simulation.advance_to(time_us)
 
     def run(self) -> list[str]:
-        """Fly all of it; returns what went otherwise (``astray``)."""
+        """Replay the whole recording; returns the differences found (``astray``)."""
         self.advance_to(self.recording.end_us)
         return self.verify()
 
     def _do(self, entry: Entry) -> None:
         bridge, number, kind = self.simulation.bridge, entry.number, entry.kind
-        if kind is Kind.HEARD:
+        if kind is EntryKind.RECEIVED:
             self._peer(entry).deliver(entry.data)
-        elif kind is Kind.ACTED:
+        elif kind is EntryKind.PROCESSED:
             bridge.receive()
-        elif kind is Kind.ATTENDED:
+        elif kind is EntryKind.SERVED:
             self.simulation.advance_to(self.simulation.time_us)
-        elif kind is Kind.LINK:
+        elif kind is EntryKind.LINK:
             self._open(number, *json.loads(entry.data))
-        elif kind is Kind.UNLINK:
+        elif kind is EntryKind.UNLINK:
             bridge.remove_link(self._links.pop(number))
-        elif kind is Kind.CAME:
+        elif kind is EntryKind.CONNECTED:
             link = self._links[read_varint(entry.data, 0)[0]]
             peer = ReplayedPeer(link.name, self.simulation, self._flips[number], link.writer)
             self._peers[number] = peer
             link.add_peer(peer)
-        elif kind is Kind.LEFT:
+        elif kind is EntryKind.DISCONNECTED:
             peer = self._peers.pop(number)
             peer.closed, peer.why_closed = True, entry.data.decode()
             for link in self._links.values():
                 if peer in link.peers:
                     link.peers.remove(peer)
             bridge.flush()
-        elif kind is Kind.STREAMS:
+        elif kind is EntryKind.STREAMS:
             bridge.stream_to(self._links[number], json.loads(entry.data))
-        elif kind is Kind.LOCKSTEP:
+        elif kind is EntryKind.LOCKSTEP:
             if entry.data:
                 bridge.free_clock()
             else:
                 bridge.push_clock()
-        elif kind is Kind.ANSWERED:
+        elif kind is EntryKind.GRANTED:
             if bridge.grants is not None:
                 bridge.grants.answer(bridge)
-        elif kind is Kind.BEAT:
+        elif kind is EntryKind.HEARTBEAT:
             bridge.beat()
-        elif kind is Kind.LOGS:
+        elif kind is EntryKind.LOGS:
             self._keep_logs()
-        elif kind is Kind.CHECK:
+        elif kind is EntryKind.CHECK:
             self._check(entry)
 
     def _peer(self, entry: Entry) -> ReplayedPeer:
@@ -211,7 +214,7 @@ class Replay:
                 self.astray.append(f"{name} differs from some time between {good:.0f} and {bad:.0f} s on")
 
     def verify(self) -> list[str]:
-        """At the end: compare the digests of the vehicle's state and of every channel."""
+        """Compare the digests of the vehicle's state and of all channels, at the end."""
         end = self.recording.end
         if end is None or not self.is_over:
             return self.astray
@@ -226,14 +229,14 @@ class Replay:
     # ------------------------------------------------------------------ live from here
 
     def go_live(self) -> Simulation:
-        """Take the recorded clients away: the vehicle is for others from here on."""
+        """Remove the recorded clients, so that others can take over the vehicle."""
         bridge = self.simulation.bridge
         for link in list(self._links.values()):
             bridge.remove_link(link)
         self._links.clear()
         self._peers.clear()
         bridge.free_clock()
-        bridge.dropped.clear()  # of the recorded clients: nobody waits to hear of them
+        bridge.dropped.clear()  # they concern the recorded clients only
         return self.simulation
 
     def close(self, stopped: str = "") -> None:
@@ -245,12 +248,12 @@ class Replay:
 
 
 def asks_for_logs(recording: Recording) -> bool:
-    """Whether a client asked for on-board logs: what it was sent depends on them."""
+    """Whether a client requested on-board logs, on which the bytes sent to it depend."""
     splitters: dict[int, Splitter] = defaultdict(Splitter)
     return any(
         frame.kind.name.startswith("LOG_REQUEST")
         for entry in recording.entries
-        if entry.kind is Kind.HEARD
+        if entry.kind is EntryKind.RECEIVED
         for frame in splitters[entry.number].feed(entry.data)
     )
 
@@ -278,7 +281,7 @@ def _build(
     core: Core | None,
     progress: Progress | None,
 ) -> Simulation:
-    """The vehicle of a recording, at power-on."""
+    """The simulation of a recording, at power-on."""
     header: dict[str, Any] = recording.header
     title = _title(recording)
     physics = physics or header["physics"]

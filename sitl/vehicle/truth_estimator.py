@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from ..core.algebra import euler_of
 from ..core.kernels import law
-from ..core.rotations import quat_to_euler
+from ..core.vectors import Quat, Vec3
 
 # EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
 # predicted relative and absolute position.
@@ -15,14 +16,12 @@ _ALL_WELL = 1 | 2 | 4 | 8 | 16 | 32 | 256 | 512
 def observe(v):
     """Copy attitude, rates, velocity, position and acceleration of the body into the autopilot's estimate."""
     body, place, e = v.physics.body, v.physics.place, v.autopilot.estimate
-    for k in range(3):
-        e.rates[k] = body.rates[k]
-        e.vel[k] = body.vel[k]
-        e.pos[k] = body.pos[k]
-        e.acc_ned[k] = body.acc_ned[k]
-    for k in range(4):
-        e.q[k] = body.q[k]
-    e.euler[0], e.euler[1], e.euler[2] = quat_to_euler(body.q[0], body.q[1], body.q[2], body.q[3])
+    e.rates = Vec3(body.rates[0], body.rates[1], body.rates[2])
+    e.vel = Vec3(body.vel[0], body.vel[1], body.vel[2])
+    e.pos = Vec3(body.pos[0], body.pos[1], body.pos[2])
+    e.acc_ned = Vec3(body.acc_ned[0], body.acc_ned[1], body.acc_ned[2])
+    e.q = Quat(body.q[0], body.q[1], body.q[2], body.q[3])
+    e.euler = euler_of(e.q)
     e.origin_lat, e.origin_lon, e.origin_alt = place.lat, place.lon, place.alt
     e.origin_set = 1
     e.attitude_ok = 1

@@ -11,9 +11,9 @@ from sitl.agents.runs.training import train_one
 
 
 def train_eagerly(path, tell, stopped):
-    """Tell of the process first; then train with checkpoints all the time."""
+    """Report the process first; then train with checkpoints all the time."""
     tell(os.getpid())
-    keeper._FIRST_S, keeper.PERIOD_S, keeper._TOLD_S = 0.02, 0.02, 0.02
+    keeper._FIRST_S, keeper.PERIOD_S, keeper._REPORT_S = 0.02, 0.02, 0.02
     return train_one(path, tell, stopped)
 
 

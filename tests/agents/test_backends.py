@@ -156,9 +156,9 @@ def test_workers_with_other_versions_are_refused(ray, monkeypatch):
     monkeypatch.setattr(module, "libraries", lambda: {**known, "gym-sitl": "0.0.0", "torch": "1.0"})
     with pytest.raises(AgentError, match=f"has gym-sitl {known['gym-sitl']}, not 0.0.0.*install the same there"):
         on_ray(train_one, ["never"])
-    crew = module._Crew(ray, train_one, [], lambda *words: None, {})
+    pool = module._Pool(ray, train_one, [], lambda *words: None, {})
     with pytest.raises(AgentError, match=r"worker at far cannot load gym-sitl: No module"):
-        crew._check({"place": "far", "error": "No module named 'agents'"})
+        pool._check({"place": "far", "error": "No module named 'agents'"})
 
 
 @pytest.mark.slow

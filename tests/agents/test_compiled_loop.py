@@ -65,7 +65,7 @@ def test_it_refuses_what_it_cannot_run():
 
 
 PLAIN = """
-from small_runs import learner_for, make
+from tests.agents.small_runs import learner_for, make
 from sitl.agents.tabular.compiled_loop import CompiledLoop
 env = make(steps=12)
 learner = learner_for(env, "sarsa")

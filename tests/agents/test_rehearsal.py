@@ -17,7 +17,7 @@ from sitl.agents.rehearsal.change import Change, is_covered
 from sitl.agents.rehearsal.plan import Plan
 from sitl.agents.rehearsal.rehearse import Rehearsed, Tried, rehearse, trials_of
 from sitl.agents.rehearsal.report import write_report
-from sitl.agents.rehearsal.share import advantage, share
+from sitl.agents.rehearsal.transfer_ratio import advantage, transfer_ratio
 from sitl.agents.rehearsal.trial import Trial, attempt
 from sitl.agents.rehearsal.truth import is_false_alarm, lidar_distance
 from sitl.agents.report.group import Group
@@ -77,7 +77,7 @@ def group(tmp_path_factory):
 
 def test_trials_are_paired_and_repeat(group):
     counts = []
-    one, two = (rehearse([group], CHANGES, seed=3, told=lambda index, n: counts.append(n))[0] for _ in range(2))
+    one, two = (rehearse([group], CHANGES, seed=3, on_progress=lambda index, n: counts.append(n))[0] for _ in range(2))
     assert one.home.rewards.shape == (2, 5) and len(counts) == 2 * 2 * (5 + 5 + 2)
     assert np.array_equal(one.home.rewards, two.home.rewards)
     assert np.array_equal(one.tried[0].rewards, two.tried[0].rewards)
@@ -89,7 +89,7 @@ def test_trials_are_paired_and_repeat(group):
 def test_what_a_policy_cannot_play_in_is_told(group):
     found = rehearse([group], CHANGES, episodes=1)[0]
     assert "the table is for" in found.tried[2].refused or "digits" in found.tried[2].refused
-    assert found.shares()[2] is None and not found.tried[0].refused
+    assert found.transfer_ratios()[2] is None and not found.tried[0].refused
 
 
 def test_at_home_it_must_play(tmp_path):
@@ -116,14 +116,14 @@ def test_domain_randomisation_is_no_part_of_home(tmp_path):
 def test_share_of_a_reward():
     rng = np.random.default_rng(1)
     home = rng.normal(100.0, 10.0, (3, 40))
-    half = share(home, 0.5 * home)
+    half = transfer_ratio(home, 0.5 * home)
     assert half == pytest.approx((0.5, 0.5, 0.5))  # paired: no spread at all
-    mixed = share(home, home * rng.uniform(0.0, 1.0, home.shape))
+    mixed = transfer_ratio(home, home * rng.uniform(0.0, 1.0, home.shape))
     assert mixed.low < mixed.value < mixed.high and 0.4 < mixed.value < 0.6
-    seeds = share(home, home * np.array([[1.0], [0.2], [0.6]]))
+    seeds = transfer_ratio(home, home * np.array([[1.0], [0.2], [0.6]]))
     assert seeds.high - seeds.low > 0.3  # the spread between seeds counts
-    assert share(home, home[:, :7]).value == pytest.approx(1.0)
-    assert math.isnan(share(-home, home).value)
+    assert transfer_ratio(home, home[:, :7]).value == pytest.approx(1.0)
+    assert math.isnan(transfer_ratio(-home, home).value)
 
 
 def test_advantage_has_one_measure_for_both():
@@ -133,7 +133,7 @@ def test_advantage_has_one_measure_for_both():
     found = advantage(home, first, other)
     assert found.low < found.value < found.high < 0.0 and found.value == pytest.approx(-0.1, abs=0.03)
     own = np.full((3, 20), 50.0)
-    assert share(own, other).value > share(home, first).value  # though it earns less
+    assert transfer_ratio(own, other).value > transfer_ratio(home, first).value  # though it earns less
     assert advantage(home, first, first).value == 0.0
 
 

@@ -16,6 +16,7 @@ import pytest
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
 from sitl.agents.runs import folder as folders
+from sitl.agents.runs import local
 from sitl.agents.runs.episodes import Episode, EpisodeLog
 from sitl.agents.runs.files import read_arrays
 from sitl.agents.runs.folder import RunFolder
@@ -26,6 +27,7 @@ from sitl.agents.tabular.checks import Checks
 from sitl.agents.tabular.learner import Learner
 from sitl.agents.tabular.settings import Settings
 from sitl.agents.tabular.table import Table
+from tests.agents import ray_works
 from tests.agents.small_runs import config, new, result
 
 
@@ -51,7 +53,7 @@ def test_a_run_is_a_folder_that_says_all(tmp_path):
 
 @pytest.mark.parametrize("algorithm", ["qlearn", "sarsa"])
 def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, algorithm, monkeypatch):
-    monkeypatch.setattr("sitl.agents.runs.keeper._TOLD_S", -1.0)  # tells of each episode
+    monkeypatch.setattr("sitl.agents.runs.keeper._REPORT_S", -1.0)  # tells of each episode
     whole, parts = new(tmp_path / "whole", algorithm), new(tmp_path / "parts", algorithm)
     train(whole)
     for episodes in (11, 12, 25, None):
@@ -61,7 +63,7 @@ def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, al
 
 
 def test_a_killed_run_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch):
-    monkeypatch.setattr("sitl.agents.runs.keeper._TOLD_S", -1.0)
+    monkeypatch.setattr("sitl.agents.runs.keeper._REPORT_S", -1.0)
     whole, killed = new(tmp_path / "whole"), new(tmp_path / "killed")
     train(whole)
     train(killed, 7)
@@ -128,6 +130,20 @@ def test_an_error_in_a_process_is_raised_here(tmp_path):
     good, bad = new(tmp_path / "good"), new(tmp_path / "bad", env_options={"world": "nowhere"})
     with pytest.raises(AgentError, match="nowhere"):
         train_all([good.path, bad.path], 2)
+
+
+def test_a_process_that_dies_or_raises_what_cannot_be_pickled_is_reported():
+    with pytest.raises(RuntimeError, match=r"a process .* died"):
+        local.each(ray_works.die, [1, 2], 2)
+    with pytest.raises(RuntimeError, match="OddError: this and that"):
+        local.each(ray_works.fail_oddly, [1, 2], 2)
+
+
+def test_items_not_begun_before_an_interrupt_have_no_result(tmp_path):
+    runs = [new(tmp_path / str(seed), seed=seed, episodes=200_000) for seed in range(4)]
+    told = lambda index, message: isinstance(message, int) and signal.raise_signal(signal.SIGTERM)  # noqa: E731
+    results = local.each(ray_works.train_eagerly, [run.path for run in runs], 2, told)
+    assert results[0] is False and results[2:] == [None, None]
 
 
 SLOW = "import sys; from pathlib import Path; from sitl.agents.runs.training import train_all; " + (

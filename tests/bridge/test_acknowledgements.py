@@ -20,7 +20,7 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.client import Client, Received
+from sitl.client.endpoint import Endpoint, Received
 from sitl.simulation import Simulation
 
 DATA = Path(__file__).parent / "data"
@@ -36,7 +36,7 @@ UNASKED = ("PreArm: ", "EKF3 ", "AHRS: ", "Field Elevation", "ArduPilot Ready", 
 """Beginnings of texts that come by the clock, not by the command."""
 
 
-def send(client: Client, row: dict[str, Any]) -> None:
+def send(client: Endpoint, row: dict[str, Any]) -> None:
     """Send a row's command or parameter message."""
     if "long" in row:
         client.command(*row["long"])
@@ -85,7 +85,7 @@ def measured(text: str) -> str:
 def replayed(frame: str) -> dict[str, dict[str, Any]]:
     """Every row sent to one simulated vehicle, in order: label -> what it answered."""
     simulation = Simulation(frame)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     answers = {}
     for row in ROWS[frame]:

@@ -11,12 +11,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.modes.numbers import is_known
-from sitl.autopilot.copter.table import TABLE as PARAMETERS
+from sitl.autopilot.copter.parameters import TABLE as PARAMETERS
 from sitl.bridge import dialect
-from sitl.bridge.client import Client
 from sitl.bridge.copter.commands import COMMANDS
+from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
-from sitl.missions.pilot import MISSION_START, SET_MODE, TAKEOFF, Pilot, upload
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Core, Simulation, Snapshot
 from tests.bridge.wire_messages import messages, numbers
 
@@ -42,31 +42,31 @@ class Phases:
         self._keep("booting")
         pilot.boot()
         self._keep("ready")
-        upload(pilot, MISSION)
+        pilot.transfer(items(MISSION))
         pilot.arm()
         self._keep("armed")
-        pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 8.0)
+        pilot.send_command("NAV_TAKEOFF", altitude=8.0)
         pilot.fly(2.5)
         self._keep("climbing")
         pilot.fly(12.0)
         self._keep("hovering")
-        pilot.client.command(SET_MODE, 1, 3)
-        pilot.client.command(MISSION_START)
+        pilot.send_command("DO_SET_MODE", 1, 3)
+        pilot.send_command("MISSION_START")
         pilot.fly(3.0)
         self._keep("on a mission")
-        pilot.client.command(LAND)
+        pilot.send_command("NAV_LAND")
         pilot.fly(4.0)
         self._keep("landing")
 
     def _keep(self, name: str) -> None:
-        self.pilot.client.receive()
+        self.pilot.connection.endpoint.receive()
         self.at[name] = self.simulation.snapshot()
 
-    def go(self, name: str) -> tuple[Simulation, Client]:
+    def go(self, name: str) -> tuple[Simulation, Endpoint]:
         """The vehicle at this phase."""
-        self.pilot.client.receive()
+        self.pilot.connection.endpoint.receive()
         self.simulation.restore(self.at[name])
-        return self.simulation, self.pilot.client
+        return self.simulation, self.pilot.connection.endpoint
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def check_defined(simulation: Simulation) -> None:
     assert all(0 <= int(p) <= 2200 for p in simulation.v.actuators.pwm[:4])
 
 
-def land(simulation: Simulation, client: Client) -> None:
+def land(simulation: Simulation, client: Endpoint) -> None:
     """A land command is accepted and ends on the ground, disarmed."""
     simulation.advance(4.0)  # overrides and set-points of before expire
     client.receive()

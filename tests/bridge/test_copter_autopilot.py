@@ -42,7 +42,7 @@ class CopterBench(Bench):
         """On the ground with a position, in GUIDED, armed."""
         self.vehicle.locate()
         ap = self.vehicle.v.autopilot
-        ap.estimate.attitude_ok = ap.estimate.q[0] = 1
+        ap.estimate.attitude_ok, ap.estimate.q = True, (1.0, 0.0, 0.0, 0.0)
         ap.modes.number = 4
         ap.arming.armed = 1
         self.vehicle.v.time_us = 60_000_000
@@ -98,7 +98,7 @@ def test_set_points_reach_guided(copter: CopterBench) -> None:
 def test_home(copter: CopterBench) -> None:
     assert copter.command(179, 1) == 4
     copter.ready()
-    copter.vehicle.v.autopilot.estimate.pos[:] = (10.0, 0.0, -2.0)
+    copter.vehicle.v.autopilot.estimate.pos = (10.0, 0.0, -2.0)
     assert copter.command(179, 1) == 0
     home = copter.vehicle.v.autopilot.home
     assert home.locked == 1 and home.alt == 586.0 and home.lat > HOME[0]

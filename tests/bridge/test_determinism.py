@@ -7,8 +7,8 @@ import random
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import TAKEOFF, Pilot
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import Pilot
 from sitl.simulation import Core, Simulation
 from tests.bridge.fakes import Bench
 
@@ -31,7 +31,7 @@ def session(seed: int) -> bytes:
             mavlink.MAVLink_mission_count_message(1, 1, 3),
             mavlink.MAVLink_timesync_message(0, rng.randint(0, 2**40)),
         )))  # fmt: skip
-        bench.vehicle.v.autopilot.estimate.pos[:] = [rng.uniform(-100, 100) for _ in range(3)]
+        bench.vehicle.v.autopilot.estimate.pos = [rng.uniform(-100, 100) for _ in range(3)]
         bench.run(rng.choice((0.0025, 0.05, 0.3)))
         heard += bench.client.link.receive() + other.link.receive()
     return heard
@@ -88,12 +88,12 @@ def test_every_byte_of_a_flight_has_its_time_whatever_the_step(core: Core) -> No
     pilot = Pilot(Simulation(core=core))
     pilot.boot()
     pilot.arm()
-    listener = Client()
+    listener = Endpoint()
     pilot.simulation.bridge.add_link(listener.link)
     listener.set_interval("ATTITUDE", 4.0)
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 2.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=2.0)
     pilot.fly(6.0)
-    pilot.client.command(21)
+    pilot.send_command("NAV_LAND")
     pilot.fly(0.1)
     listener.link.receive()
     start = pilot.simulation.snapshot()

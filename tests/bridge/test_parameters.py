@@ -7,7 +7,7 @@ import random
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from tests.bridge.fakes import Bench, Client
 
 

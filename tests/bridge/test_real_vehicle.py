@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import MISSION_START, SET_MODE, Pilot, upload
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Core, Simulation
+
+DO_SET_MODE = 176
 
 MOTOR_TEST, SET_SERVO, SET_RELAY = 209, 183, 181
 ACCEPTED, DENIED, FAILED = 0, 2, 4
@@ -22,7 +24,7 @@ class Bench:
 
     def __init__(self, core: Core, **options: object) -> None:
         self.simulation = Simulation("ardupilot_quad", core=core, **options)  # type: ignore[arg-type]
-        self.client = Client()
+        self.client = Endpoint()
         self.simulation.bridge.add_link(self.client.link)
         self.texts: list[str] = []
 
@@ -117,7 +119,7 @@ def test_an_origin_is_taken_once(core: Core) -> None:
 
 
 def test_prearm_failures_are_said_every_30_s(bench: Bench) -> None:
-    assert bench.command(SET_MODE, 1, 4) == ACCEPTED
+    assert bench.command(DO_SET_MODE, 1, 4) == ACCEPTED
     bench.wait(24.8)
     assert not [t for t in bench.texts if t.startswith("PreArm: ")]
     bench.wait(1.0)
@@ -128,9 +130,7 @@ def test_prearm_failures_are_said_every_30_s(bench: Bench) -> None:
 
 
 def test_parameters_that_the_firmware_owns_are_not_set(bench: Bench) -> None:
-    bench.client.send(
-        "PARAM_SET", target_system=1, target_component=1, param_id=b"MIS_TOTAL", param_value=5, param_type=4
-    )
+    bench.client.send("PARAM_SET", param_id=b"MIS_TOTAL", param_value=5, param_type=4)
     bench.simulation.advance(0.05)
     values = [m.fields for m in bench.client.receive() if m.name == "PARAM_VALUE"]
     assert [(m.param_id, m.param_value) for m in values] == [(b"MIS_TOTAL", 0.0)]
@@ -140,11 +140,11 @@ def test_mission_start_starts_again_when_auto_is_over(core: Core) -> None:
     """AUTO stays selected after the landing; MISSION_START must fly the mission once more."""
     pilot = Pilot(Simulation(core=core))
     pilot.boot()
-    upload(pilot, MISSION)
+    pilot.transfer(items(MISSION))
     for flight in (1, 2):
         pilot.simulation.v.autopilot.params.AUTO_OPTIONS = 3.0
-        pilot.client.command(SET_MODE, 1, 3)
+        pilot.send_command("DO_SET_MODE", 1, 3)
         pilot.arm(1.0)
-        pilot.client.command(MISSION_START)
+        pilot.send_command("MISSION_START")
         pilot.wait_disarmed(90.0)
-        assert [seq for _, seq in pilot.reached].count(2) == flight
+        assert pilot.reached.count(2) == flight

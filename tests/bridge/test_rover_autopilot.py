@@ -40,7 +40,7 @@ class RoverBench(Bench):
         """With a position, in GUIDED, armed."""
         self.vehicle.locate()
         ap = self.vehicle.v.autopilot
-        ap.estimate.attitude_ok = ap.estimate.q[0] = 1
+        ap.estimate.attitude_ok, ap.estimate.q = True, (1.0, 0.0, 0.0, 0.0)
         ap.modes.number = GUIDED
         ap.arming.armed = 1
         self.vehicle.v.time_us = 60_000_000
@@ -71,7 +71,7 @@ def test_arming_too_early_is_refused_with_reasons(rover: RoverBench) -> None:
 
 def test_a_forced_arming_needs_nothing_and_a_moving_rover_is_disarmed(rover: RoverBench) -> None:
     assert rover.command(400, 1, 2989) == ACCEPTED
-    rover.vehicle.v.autopilot.estimate.vel[:] = (2.0, 0.0, 0.0)
+    rover.vehicle.v.autopilot.estimate.vel = (2.0, 0.0, 0.0)
     assert rover.command(400, 0) == ACCEPTED and not rover.autopilot.armed()
     rover.bridge.on_events()
 

@@ -8,9 +8,11 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import SET_MODE, Pilot, upload
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation
+
+DO_SET_MODE = 176
 
 HOLD, AUTO, RTL, GUIDED = 4, 10, 11, 15
 POSITION, VELOCITY, VELOCITY_AND_RATE, VELOCITY_AND_YAW = 0xDF8, 0xDC7, 0x5C7, 0x9C7
@@ -26,7 +28,7 @@ class Driver:
 
     def __init__(self, frame: str) -> None:
         self.simulation = Simulation(frame, home=(HOME[0] * 1e-7, HOME[1] * 1e-7, 584.0, 0.0))
-        self.client = Client()
+        self.client = Endpoint()
         self.simulation.bridge.add_link(self.client.link)
         self.heard: list[Any] = []
 
@@ -56,7 +58,7 @@ class Driver:
     def ready(self) -> None:
         """With a position, in GUIDED, armed."""
         self.wait(45.0)
-        assert self.command(SET_MODE, 1, GUIDED) == 0
+        assert self.command(DO_SET_MODE, 1, GUIDED) == 0
         assert self.command(400, 1) == 0, self.texts()
 
     def local(self, mask: int, frame: int = 1, seconds: float = 0.0, **fields: float) -> None:
@@ -90,7 +92,7 @@ def test_backwards_and_in_circles(driver: Driver) -> None:
     assert float(driver.ap.estimate.vel[0]) == pytest.approx(-1.0, abs=0.2)
     driver.local(VELOCITY_AND_RATE, frame=8, seconds=6.0, vx=1.0, yaw_rate=0.5)
     assert float(driver.ap.estimate.rates[2]) == pytest.approx(0.5, abs=0.1) and driver.speed > 0.8
-    assert driver.command(SET_MODE, 1, HOLD) == 0
+    assert driver.command(DO_SET_MODE, 1, HOLD) == 0
     driver.wait(5.0)
     assert driver.speed < 0.1
 
@@ -116,14 +118,14 @@ def test_a_place_is_reached_and_told(driver: Driver) -> None:
 def test_a_mission_from_upload_to_its_end() -> None:
     pilot = Pilot(Simulation("ardupilot_rover", home=(HOME[0] * 1e-7, HOME[1] * 1e-7, 584.0, 0.0)))
     pilot.fly(45.0)
-    upload(pilot, MISSION)
-    pilot.client.command(SET_MODE, 1, GUIDED)
-    pilot.client.command(400, 1)
+    pilot.transfer(items(MISSION))
+    pilot.send_command("DO_SET_MODE", 1, GUIDED)
+    pilot.send_command("COMPONENT_ARM_DISARM", 1)
     pilot.fly(1.0)
-    pilot.client.command(300)
+    pilot.send_command("MISSION_START")
     pilot.fly(30.0)
-    assert [seq for _, seq in pilot.reached] == [1, 2]
-    said = [text for _, text in pilot.texts]
+    assert pilot.reached == [1, 2]
+    said = [text for _, _, text in pilot.texts]
     assert said[-1] == "Mission Complete" and "Reached waypoint #1" in said and "Flight plan received" in said
     place = pilot.simulation.v.autopilot.estimate.pos
     assert math.dist(place[:2], (10.0, 10.0)) < float(pilot.simulation.v.autopilot.params.WP_RADIUS)
@@ -159,7 +161,7 @@ def test_motor_test_turns_the_wheels_for_a_while(driver: Driver) -> None:
 
 
 def test_sticks_drive_in_manual(driver: Driver) -> None:
-    assert driver.command(SET_MODE, 1, 0) == 0
+    assert driver.command(DO_SET_MODE, 1, 0) == 0
     for _ in range(6):
         driver.client.send("MANUAL_CONTROL", target=1, x=32767, y=500, z=300, r=32767)
         driver.wait(0.5)
@@ -184,7 +186,7 @@ def test_the_same_bytes_after_a_restore(driver: Driver) -> None:
     driver.wait(0.1)
     snapshot = driver.simulation.snapshot()
     first = record()
-    assert driver.command(SET_MODE, 1, RTL) == 0
+    assert driver.command(DO_SET_MODE, 1, RTL) == 0
     driver.wait(1.0)
     driver.simulation.restore(snapshot)
     assert record() == first and len(first) > 20_000

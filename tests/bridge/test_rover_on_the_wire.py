@@ -13,12 +13,14 @@ from hypothesis import strategies as st
 from sitl.autopilot.rover.firmware import FIRMWARE
 from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, RTL, SMART_RTL, is_known
 from sitl.bridge import dialect
-from sitl.bridge.client import Client
 from sitl.bridge.rover.commands import COMMANDS
+from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
-from sitl.missions.pilot import MISSION_START, SET_MODE, Pilot, upload
+from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation, Snapshot
 from tests.bridge.wire_messages import messages, numbers
+
+DO_SET_MODE = 176
 
 MISSION = [
     (0, 16, -353632621, 1491652371, 584.0), (3, 16, -353630824, 1491652371, 0.0), (3, 16, -353630824, 1491654574, 0.0),
@@ -41,38 +43,38 @@ class Phases:
         self._keep("booting")
         pilot.fly(45.0)
         self._keep("ready")
-        upload(pilot, MISSION)
-        pilot.client.command(SET_MODE, 1, GUIDED)
-        pilot.client.command(400, 1)
+        pilot.transfer(items(MISSION))
+        pilot.send_command("DO_SET_MODE", 1, GUIDED)
+        pilot.send_command("COMPONENT_ARM_DISARM", 1)
         pilot.fly(1.0)
         assert self.simulation.v.autopilot.arming.armed, pilot.texts
         self._keep("armed")
         place = {"coordinate_frame": 1, "type_mask": 0xDF8, "x": 8.0, "y": 5.0}
-        pilot.client.send("SET_POSITION_TARGET_LOCAL_NED", **TARGET, **place)
+        pilot.send("SET_POSITION_TARGET_LOCAL_NED", **TARGET, **place)
         pilot.fly(3.0)
         self._keep("to a place")
         speed = {"coordinate_frame": 8, "type_mask": 0xDC7, "vx": 1.0}
-        pilot.client.send("SET_POSITION_TARGET_LOCAL_NED", **TARGET, **speed)
+        pilot.send("SET_POSITION_TARGET_LOCAL_NED", **TARGET, **speed)
         pilot.fly(2.0)
         self._keep("at speed")
-        pilot.client.command(MISSION_START)
+        pilot.send_command("MISSION_START")
         pilot.fly(4.0)
         self._keep("on a mission")
         for mode, name in ((RTL, "on the way home"), (SMART_RTL, "back the same way")):
-            pilot.client.command(SET_MODE, 1, mode)
+            pilot.send_command("DO_SET_MODE", 1, mode)
             pilot.fly(2.0)
             assert self.simulation.v.autopilot.modes.number == mode, pilot.texts
             self._keep(name)
 
     def _keep(self, name: str) -> None:
-        self.pilot.client.receive()
+        self.pilot.connection.endpoint.receive()
         self.at[name] = self.simulation.snapshot()
 
-    def go(self, name: str) -> tuple[Simulation, Client]:
+    def go(self, name: str) -> tuple[Simulation, Endpoint]:
         """The vehicle at this phase."""
-        self.pilot.client.receive()
+        self.pilot.connection.endpoint.receive()
         self.simulation.restore(self.at[name])
-        return self.simulation, self.pilot.client
+        return self.simulation, self.pilot.connection.endpoint
 
 
 @pytest.fixture(scope="module")
@@ -98,11 +100,11 @@ def check_defined(simulation: Simulation) -> None:
     assert all(0 <= int(p) <= 2200 for p in simulation.v.actuators.pwm[:4])
 
 
-def hold(simulation: Simulation, client: Client) -> None:
+def hold(simulation: Simulation, client: Endpoint) -> None:
     """HOLD is accepted and stops it; it can be disarmed."""
     simulation.advance(4.0)  # overrides and set-points of before expire
     system = int(simulation.v.autopilot.params.MAV_SYSID)
-    for command, wait in (((SET_MODE, 1, HOLD), 20.0), ((400, 0), 0.1)):
+    for command, wait in (((DO_SET_MODE, 1, HOLD), 20.0), ((400, 0), 0.1)):
         client.receive()
         client.command(*command, target=system)
         simulation.advance(wait)

@@ -24,7 +24,7 @@ def guided(rover_bench: Bench) -> Bench:
     rover_bench.vehicle.v.autopilot.modes.number = GUIDED
     rover_bench.vehicle.v.autopilot.params.WP_SPEED = WP_SPEED
     estimate = rover_bench.vehicle.v.autopilot.estimate
-    estimate.euler[2], estimate.pos[:] = math.pi / 2, (100.0, 200.0, 0.0)
+    estimate.euler, estimate.pos = (0.0, 0.0, math.pi / 2), (100.0, 200.0, 0.0)
     return rover_bench
 
 

@@ -77,7 +77,7 @@ def test_throttle_and_outputs(rover_bench: Bench) -> None:
 def test_wheel_distance_needs_encoders(rover_bench: Bench) -> None:
     sensors = rover_bench.vehicle.v.sensors
     assert get(rover_bench, "WHEEL_DISTANCE") is None
-    sensors.wheel_count, sensors.wheel_distance[:] = 7, (12.5, -3.0)
+    sensors.wheel_count, sensors.wheel_distance = 7, (12.5, -3.0)
     rolled = get(rover_bench, "WHEEL_DISTANCE")
     assert rolled.count == 2 and list(rolled.distance[:3]) == [12.5, -3.0, 0.0]
 
@@ -87,7 +87,7 @@ def driving(rover_bench: Bench) -> Bench:
     """At (3, 4) m, on the way to (3, 24) m, with the target of the moment at (8, 9) m."""
     rover_bench.vehicle.locate()
     ap = rover_bench.vehicle.v.autopilot
-    ap.estimate.pos[:], ap.modes.nav.target[:] = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
+    ap.estimate.pos, ap.modes.nav.target[:] = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
     ap.modes.loiter.place[:], ap.modes.circle.target[:] = (13.0, 4.0), (-7.0, 4.0)
     ap.modes.nav.drive.crosstrack, ap.control.position.pos_target[:] = -1.5, (8.0, 9.0)
     return rover_bench
@@ -135,7 +135,7 @@ def test_no_number_of_the_record_stops_telemetry(rover_bench: Bench, value: floa
     v = rover_bench.vehicle.v
     for mode in (AUTO, RTL, GUIDED, 5, 9, 12):
         v.autopilot.modes.number, v.autopilot.estimate.origin_set = mode, 1
-        v.autopilot.estimate.pos[:] = value
+        v.autopilot.estimate.pos = value
         v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_state.POSITION, value
         v.autopilot.control.motors.throttle = v.autopilot.control.motors.out_throttle = value
         for number in rover_bench.bridge.telemetry:

@@ -17,7 +17,7 @@ def guided(bench: Bench) -> Bench:
     bench.vehicle.locate()
     bench.vehicle.v.autopilot.modes.number = 4
     estimate = bench.vehicle.v.autopilot.estimate
-    estimate.euler[2], estimate.pos[:] = math.pi / 2, (100.0, 200.0, -10.0)
+    estimate.euler, estimate.pos = (0.0, 0.0, math.pi / 2), (100.0, 200.0, -10.0)
     return bench
 
 

@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import pytest
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation
 
 TARGET = {"target_system": 1, "target_component": 1}
-Script = Callable[[Client], None]
+Script = Callable[[Endpoint], None]
 
 
 @pytest.fixture
@@ -22,9 +22,9 @@ def flying(core: Core) -> Pilot:
     pilot = Pilot(Simulation(core=core))
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=5.0)
     pilot.fly(3.0)
-    pilot.client.link.receive()
+    pilot.connection.endpoint.link.receive()
     return pilot
 
 
@@ -32,19 +32,19 @@ def record(pilot: Pilot, script: Script, seconds: float = 3.0) -> bytes:
     """Every byte that the client gets from now on, in steps of 0.1 s with the script at each."""
     heard = b""
     for _ in range(round(seconds * 10)):
-        script(pilot.client)
+        script(pilot.connection.endpoint)
         pilot.simulation.advance(0.1)
-        heard += pilot.client.link.receive()
+        heard += pilot.connection.endpoint.link.receive()
     return heard
 
 
-def set_velocity(client: Client) -> None:
+def set_velocity(client: Endpoint) -> None:
     client.send("SET_POSITION_TARGET_LOCAL_NED", **TARGET, coordinate_frame=1, type_mask=VELOCITY_ONLY, vx=1.0)
 
 
 def disturb(pilot: Pilot) -> None:
     """Change everything that a snapshot has to bring back."""
-    client = pilot.client
+    client = pilot.connection.endpoint
     client.command(511, 30, 33_333)
     client.command(511, 32, -1)
     client.send("REQUEST_DATA_STREAM", **TARGET, req_stream_id=0, req_message_rate=7, start_stop=1)
@@ -52,9 +52,9 @@ def disturb(pilot: Pilot) -> None:
     client.send("MISSION_COUNT", **TARGET, count=3)
     client.send("PARAM_SET", **TARGET, param_id=b"MAV_SYSID", param_value=9, param_type=2)
     pilot.simulation.advance(1.0)
-    pilot.client.command(400, 0, 21196, target=9)
+    pilot.send_command("COMPONENT_ARM_DISARM", 0, 21196, target=9)
     pilot.simulation.advance(0.37)
-    pilot.client.link.receive()
+    pilot.connection.endpoint.link.receive()
 
 
 def test_the_same_bytes_again(flying: Pilot) -> None:
@@ -81,7 +81,7 @@ def test_in_the_middle_of_everything(flying: Pilot, wait: float) -> None:
     client.link.receive()
     snapshot = flying.simulation.snapshot()
 
-    def finish(client: Client) -> None:
+    def finish(client: Endpoint) -> None:
         client.send("MISSION_ITEM_INT", **TARGET, seq=1, frame=3, command=22, z=10.0)
 
     first = record(flying, finish)
@@ -93,7 +93,7 @@ def test_in_the_middle_of_everything(flying: Pilot, wait: float) -> None:
 
 def test_from_power_on(core: Core) -> None:
     simulation = Simulation(core=core)
-    listener = Client()
+    listener = Endpoint()
     simulation.bridge.add_link(listener.link)
     snapshot = simulation.snapshot()
     simulation.advance(7.0)
@@ -119,7 +119,7 @@ def test_across_a_reboot(flying: Pilot) -> None:
 def test_a_new_client_stays(flying: Pilot) -> None:
     snapshot = flying.simulation.snapshot()
     first = record(flying, set_velocity)
-    late = Client(system=250)
+    late = Endpoint(system=250)
     flying.simulation.bridge.add_link(late.link)
     late.set_interval("ATTITUDE", 20.0)
     record(flying, set_velocity)

@@ -25,10 +25,10 @@ def test_position_and_attitude(bench: Bench) -> None:
     v = bench.vehicle.v
     bench.vehicle.locate()
     v.time_us = 12_345_678
-    v.autopilot.estimate.pos[:] = (100.0, -50.0, -20.0)
-    v.autopilot.estimate.vel[:] = (1.5, -2.5, 0.25)
-    v.autopilot.estimate.euler[:] = (0.1, -0.2, -math.pi / 2)
-    v.autopilot.estimate.rates[:] = (0.01, 0.02, 0.03)
+    v.autopilot.estimate.pos = (100.0, -50.0, -20.0)
+    v.autopilot.estimate.vel = (1.5, -2.5, 0.25)
+    v.autopilot.estimate.euler = (0.1, -0.2, -math.pi / 2)
+    v.autopilot.estimate.rates = (0.01, 0.02, 0.03)
     where = get(bench, "GLOBAL_POSITION_INT")
     assert where.time_boot_ms == 12345
     assert where.lat == pytest.approx(HOME[0] + 100.0 / 0.0111318845, abs=1)
@@ -48,9 +48,9 @@ def test_position_and_attitude(bench: Bench) -> None:
 
 def test_imu_units(bench: Bench) -> None:
     sensors = bench.vehicle.v.sensors
-    sensors.acc[:] = (0.0, 9.80665, -9.80665)
-    sensors.gyro[:] = (0.5, 0.0, -0.25)
-    sensors.mag[:] = (0.25, -0.05, 0.4)
+    sensors.acc = (0.0, 9.80665, -9.80665)
+    sensors.gyro = (0.5, 0.0, -0.25)
+    sensors.mag = (0.25, -0.05, 0.4)
     sensors.abs_pressure, sensors.temperature = 945.0, 25.5
     raw = get(bench, "RAW_IMU")
     assert (raw.xacc, raw.zgyro, raw.xmag, raw.temperature) == (0, -250, 250, 2550)

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.core.numba_records import numba_type
 from sitl.core.records import Float32, Ints, Record, array, as_dict
-from sitl.vehicle.record import Copter
+from sitl.core.vectors import Value
+from sitl.vehicle.record import Copter, Rover
 
 
 class Small(Record):
@@ -32,9 +34,11 @@ def compare(ours: Any, theirs: Any) -> int:
         a, b = getattr(ours, name), theirs[name]
         if isinstance(a, Record):
             count += compare(a, b)
+        elif isinstance(a, tuple) and not isinstance(a, Value):
+            count += sum(compare(one, other) for one, other in zip(a, b, strict=True))
         else:
             assert np.array_equal(a, b), name
-            assert isinstance(a, float | int | np.ndarray), name
+            assert isinstance(a, float | int | np.ndarray | Value), name
             count += 1
     return count
 
@@ -50,15 +54,15 @@ def test_the_view_reads_every_field() -> None:
 def test_writes_go_to_the_fleet() -> None:
     fleet = filled()
     ours, theirs, other = Copter.of(fleet, 1), fleet[1]["autopilot"], fleet[0].copy()
-    ours.autopilot.estimate.pos[1] = 5.5
+    ours.autopilot.estimate.pos = ours.autopilot.estimate.pos.replace(y=5.5)
     ours.autopilot.estimate.vel = (1.0, 2.0, 3.0)
     ours.autopilot.modes.number = True
     ours.sensors.gps_lat = 17
     ours.autopilot.params["MAV_SYSID"] = 3
     assert theirs["estimate"]["pos"][1] == 5.5
-    assert theirs["estimate"]["vel"].tolist() == ours.autopilot.estimate.vel.tolist() == [1.0, 2.0, 3.0]
+    assert theirs["estimate"]["vel"].tolist() == list(ours.autopilot.estimate.vel) == [1.0, 2.0, 3.0]
     assert (theirs["modes"]["number"], fleet[1]["sensors"]["gps_lat"]) == (1, 17)
-    assert ours.autopilot.params["MAV_SYSID"] == theirs["params"]["MAV_SYSID"] == 3.0
+    assert ours.autopilot.params["MAV_SYSID"] == theirs["params"]["MAV"]["SYSID"] == 3.0
     assert fleet[0] == other
 
 
@@ -87,3 +91,14 @@ def test_small_types() -> None:
     assert fleet["a"].tolist() == [0.0, 2.5, 0.0] and fleet["c"].tolist() == [-4, 9, -4]
     with pytest.raises(ValueError, match="one block"):
         Small.of(fleet[::2], 0)
+
+
+def test_records_of_one_name_and_different_fields_are_different_types() -> None:
+    first, second = (type("Twin", (Record,), {"__annotations__": {name: float}}) for name in ("a", "b"))
+    assert numba_type(first) != numba_type(second)
+
+
+def test_symbols_of_compiled_laws_name_their_records():
+    """The copter's and the rover's cores are compiled in separate processes and loaded into one."""
+    for cls in (Copter, Rover, Small):
+        assert numba_type(cls).mangling_args == (numba_type(cls).name, ())

@@ -50,7 +50,7 @@ class RoverChaos(RoverSoak):
         self.set_parameter("SIM_RC_FAIL", self.dice.choice((0, 1)))
 
     def ground_station(self) -> None:
-        self.client.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
+        self.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
         self.set_parameter("FS_GCS_ENABLE", self.dice.choice((0, 1, 2)))
 
     def tune(self) -> None:

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import copy
 import itertools
 import math
 from typing import Any
 
 import numpy as np
 
+from sitl.client import Moment
 from sitl.simulation import Core
 from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
 
@@ -21,8 +21,8 @@ POSITION, VELOCITY, VELOCITY_YAW, VELOCITY_YAW_RATE, YAW, YAW_RATE = 0xDF8, 0xDC
 BODY = 8
 
 
-_READY: dict[tuple[object, ...], tuple[Any, dict[str, Any]]] = {}
-"""Rovers that have booted, by what they were made with: the snapshot, and what their driver had heard."""
+_READY: dict[tuple[object, ...], tuple[Moment, list[Any], list[Any]]] = {}
+"""Rovers that have booted, by what they were made with: the moment, and the rows of their driver."""
 
 
 class Driver(Witness):
@@ -81,13 +81,11 @@ class Driver(Witness):
         if known is None:
             self.boot()
             self.fly(0.1)
-            heard = {name: getattr(self, name) for name in ("rows", "track", "texts", "armed", "position", "checked")}
-            _READY[self._made_with] = (self.simulation.snapshot(), copy.deepcopy(heard))
+            _READY[self._made_with] = (self.snapshot(), list(self.rows), list(self.track))
             return self
-        self.simulation.advance(0.0)  # reads what the client has asked for
-        self.client.receive()
-        self.simulation.restore(known[0])
-        self.__dict__.update(copy.deepcopy(known[1]))
+        self.connection.run(0)  # the vehicle reads what its client has asked for
+        self.restore(known[0])
+        self.rows, self.track = list(known[1]), list(known[2])
         return self
 
     def armed_in(self, mode: int = GUIDED) -> Driver:
@@ -128,7 +126,7 @@ class Driver(Witness):
     def start_mission(self, *items: Item) -> None:
         """Upload, AUTO; armed."""
         assert self.upload(*items) == 0
-        self.reached.clear()
+        self.telemetry.reached.clear()
         assert self.set_mode(AUTO), self.texts
 
     def finish_mission(self, seconds: float) -> None:

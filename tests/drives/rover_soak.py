@@ -99,7 +99,7 @@ class RoverSoak(ByDice, Driver):
             self.fly(1.1)
         assert self.ask(REBOOT, 1) == 0, self.story()
         self.ask_for_telemetry()
-        self.position = self.checked = False
+        self.telemetry.has_position = self.telemetry.checked = False
         self.ready()
         self.arm()
 
@@ -136,8 +136,8 @@ class RoverSoak(ByDice, Driver):
     def set_attitude(self) -> None:
         d = self.dice
         half = 0.5 * d.uniform(-3.0, 3.0)
-        self.client.send(
-            "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=d.choice((7, 3, 0x83)),
+        self.send(
+            "SET_ATTITUDE_TARGET", type_mask=d.choice((7, 3, 0x83)),
             q=[math.cos(half), 0.0, 0.0, math.sin(half)], thrust=d.uniform(-1, 1), body_yaw_rate=d.uniform(-1, 1),
         )  # fmt: skip
 
@@ -163,7 +163,7 @@ class RoverSoak(ByDice, Driver):
              (300, (0, 0)))
         )  # fmt: skip
         self.log.append(f"{number} {params}")
-        self.client.command(number, *params)
+        self.send_command(number, *params)
 
     def load_mission(self) -> None:
         items = [Item(WAYPOINT, (self.dice.uniform(0.0, self.size), 0.0))]

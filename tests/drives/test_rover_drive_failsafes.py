@@ -33,7 +33,7 @@ REFUSED = 4
 
 def beat(d: Driver) -> None:
     """A ground station's heartbeat."""
-    d.client.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
+    d.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
 
 
 @ALL

@@ -136,7 +136,7 @@ def test_time_out(core: Core, frame: str) -> None:
     d.wait_until_it_stands()
     assert np.hypot(*(d.place - place)) == pytest.approx(stopping_distance(d, speed), rel=0.1, abs=0.5 * speed)
     d.fly(5.0)
-    assert sum(said == TIMED_OUT for _, said in d.texts) == 1
+    assert sum(said == TIMED_OUT for _, _, said in d.texts) == 1
     assert d.mode == GUIDED
 
 
@@ -188,8 +188,8 @@ def test_share_of_the_speed_by_attitude_target(core: Core, frame: str) -> None:
     d = Driver(core, frame, estimator="truth").armed_in()
     half = math.radians(30.0) / 2
     for _ in range(120):
-        d.client.send(
-            "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=7,
+        d.send(
+            "SET_ATTITUDE_TARGET", type_mask=7,
             q=(math.cos(half), 0.0, 0.0, math.sin(half)), thrust=0.6,
         )  # fmt: skip
         d.fly(0.1)

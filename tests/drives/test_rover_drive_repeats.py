@@ -64,7 +64,7 @@ def test_from_a_snapshot(core: Core, frame: str) -> None:
         sent = b""
         for _ in range(100):
             d.simulation.advance(0.1)
-            sent += d.client.link.receive()
+            sent += d.connection.endpoint.link.receive()
         return sent + d.simulation.fleet.tobytes()
 
     first = go_on()
@@ -73,7 +73,7 @@ def test_from_a_snapshot(core: Core, frame: str) -> None:
     d.let_go()
     d.simulation.restore(snapshot)
     assert d.simulation.fleet.tobytes() == record and d.simulation.mission is mission
-    d.client.receive()
+    d.connection.endpoint.receive()
     assert go_on() == first
 
 

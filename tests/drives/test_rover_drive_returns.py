@@ -68,7 +68,7 @@ def test_rtl(core: Core, frame: str, estimator: str) -> None:
     back_home(d)
     assert d.mode == RTL and d.armed
     d.fly(10.0)
-    assert sum("Reached destination" in said for _, said in d.texts) == 1
+    assert sum("Reached destination" in said for _, _, said in d.texts) == 1
 
 
 @ALL

@@ -8,8 +8,8 @@ import socket
 import threading
 from typing import Any
 
-from sitl.bridge.client import Client
 from sitl.bridge.frame import Splitter, encode_v2
+from sitl.client.endpoint import Endpoint
 from sitl.simulation import Simulation
 
 _STEP_US = 20_000
@@ -27,7 +27,7 @@ class RealVehicle:
         self.simulation, self.hidden = simulation, hidden
         self.heard: list[tuple[str, Any]] = []
         """Name and fields of each message that came from the client."""
-        self._client, self._splitter, self._sequence = Client(), Splitter(), 0
+        self._client, self._splitter, self._sequence = Endpoint(), Splitter(), 0
         simulation.bridge.add_link(self._client.link)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", 0))

@@ -9,7 +9,7 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.bridge.telemetry import ranging
-from sitl.envs.mavlink.telemetry import SECTORS, Telemetry
+from sitl.envs.mavlink.telemetry import SECTORS, StepTelemetry
 
 COPTER = "GazeboOfficeErleCopterLIDAR-v0"
 
@@ -20,7 +20,7 @@ def test_sectors_are_spread_over_the_readings(monkeypatch):
     monkeypatch.delitem(ranging.BUILDERS, "DEBUG_FLOAT_ARRAY")
     sectors = gym.make(COPTER, observation="scan")
     rough, _ = sectors.reset(seed=2)
-    assert sectors.unwrapped.robot.link(0).heard.scan_kind is SECTORS
+    assert sectors.unwrapped.robot.link(0).inbox.scan_kind is SECTORS
     assert rough == pytest.approx(seen, abs=0.0051)
     assert not np.array_equal(rough, seen)
     for action in (0, 1, 2, 0):
@@ -29,7 +29,7 @@ def test_sectors_are_spread_over_the_readings(monkeypatch):
 
 
 def test_a_sector_that_was_not_measured_is_out_of_range():
-    heard = Telemetry(3)
+    heard = StepTelemetry(3)
     heard.scan_kind, heard.angles = SECTORS, np.radians([-90.0, 0.0, 90.0])
     distances = [65535] * 72
     distances[0], distances[18], distances[54] = 150, 250, 1001  # ahead, right, left: beyond the range

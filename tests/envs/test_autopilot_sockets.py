@@ -12,9 +12,9 @@ import pytest
 
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
+from sitl.client import connect
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.connection import connect
-from sitl.envs.mavlink.ends import LinkLostError
+from sitl.envs.mavlink.errors import LinkLostError
 from tests.envs import lockstep_vehicle
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
@@ -78,7 +78,7 @@ class Lossy:
 
 
 def test_lost_datagrams_change_nothing(tmp_path, monkeypatch):
-    monkeypatch.setattr("sitl.envs.mavlink.connection._REPEAT_S", 0.05)
+    monkeypatch.setattr("sitl.client.connection._REPEAT_S", 0.05)
     port = lockstep_vehicle.free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):
@@ -86,7 +86,7 @@ def test_lost_datagrams_change_nothing(tmp_path, monkeypatch):
         there = gym.make(ROVER, observation="scan+pose", connection=f"udp:127.0.0.1:{port}")
         a, b = here.reset(seed=5)[0], there.reset(seed=5)[0]
         link = there.unwrapped.robot.link(0)
-        link.end = link.client.link = lossy = Lossy(link.end, 5)
+        link.stream = link.endpoint.link = lossy = Lossy(link.stream, 5)
         for k in range(40):
             for name in a:
                 assert np.array_equal(a[name], b[name]), (k, name)
@@ -164,9 +164,9 @@ def test_a_vehicle_that_another_client_reboots_is_noticed(tmp_path):
         env = gym.make(ROVER, connection=f"tcp:127.0.0.1:{port}")
         env.reset(seed=1)
         env.step(0)
-        other = connect(f"tcp:127.0.0.1:{port}", 271, 5.0)
-        assert other.command(400, 0.0, 21196.0) == 0
-        assert other.command(246, 1.0) == 0
+        other = connect(f"tcp:127.0.0.1:{port}", patience=5.0)
+        assert other.command("COMPONENT_ARM_DISARM", arm=0, force=21196) == 0
+        assert other.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1) == 0
         with pytest.raises(LinkLostError, match="rebooted"):
             env.step(0)
         assert env.reset(seed=1)[0].tolist() == [6, 4, 10, 13, 4, 6]

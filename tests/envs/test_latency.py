@@ -201,7 +201,7 @@ def test_draws_come_from_a_few_sets_whose_vehicles_stay_prepared():
         env.reset(seed=seed)
         v = env.robot.simulation(0).v
         found.add((float(v.physics.airframe.mass), float(v.physics.wind.speed)))
-    assert len(found) == len(env.robot._vehicles._ready) == 2
+    assert len(found) == len(env.robot._vehicles._states) == 2
     other = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}).unwrapped
     other.reset(seed=11)
     assert float(other.robot.simulation(0).v.physics.airframe.mass) in {mass for mass, _ in found}

@@ -8,7 +8,7 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, NotASimulatorError
-from sitl.missions.pilot import TAKEOFF, Pilot
+from sitl.missions.pilot import Pilot
 from sitl.simulation import Simulation
 from tests.envs.real_vehicle import RealVehicle
 
@@ -23,9 +23,9 @@ def hovering() -> Simulation:
     pilot = Pilot(simulation)
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=5.0)
     pilot.fly(10.0)
-    simulation.bridge.remove_link(pilot.client.link)
+    simulation.bridge.remove_link(pilot.connection.endpoint.link)
     return simulation
 
 

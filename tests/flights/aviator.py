@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from sitl.missions.pilot import TAKEOFF
 from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.pilots.witness import (
@@ -71,7 +70,7 @@ class Aviator(Witness):
 
     def take_off(self, height: float) -> None:
         """Take off, armed in GUIDED."""
-        assert self.ask(TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
+        assert self.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.fly(30.0 + height, lambda: self.height > height - 0.5), f"at {self.height} m, {self.texts}"
         self.fly(4.0)
 

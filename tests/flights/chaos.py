@@ -49,7 +49,7 @@ class Chaos(Soak):
             self.let_go()
 
     def ground_station(self) -> None:
-        self.client.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
+        self.send("HEARTBEAT", type=6, autopilot=8, mavlink_version=3)
         self.set_parameter("FS_GCS_ENABLE", self.dice.choice((0, 1, 5, 7)))
 
     def tune(self) -> None:

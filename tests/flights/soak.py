@@ -7,11 +7,13 @@ import math
 
 import numpy as np
 
-from sitl.missions.pilot import ARM, CONDITION_YAW, TAKEOFF
+from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.flights import aviator
 from tests.flights.aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
 from tests.pilots.by_dice import ByDice
+from tests.pilots.witness import CONDITION_YAW
+from tests.pilots.witness import TAKEOFF_ITEM as TAKEOFF
 
 MODES = (STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 CHANGE_SPEED, PAUSE, MISSION_CURRENT, REBOOT = 178, 193, 224, 246
@@ -93,7 +95,7 @@ class Soak(ByDice, Aviator):
         assert self.ask(REBOOT, 1) == 0, self.story()
         self.let_go()
         self.ask_for_telemetry()
-        self.position = self.checked = False
+        self.telemetry.has_position = self.telemetry.checked = False
         self.ready()
 
     def act(self) -> None:
@@ -115,7 +117,7 @@ class Soak(ByDice, Aviator):
         d = self.dice
         if self.mode != GUIDED:
             self.set_mode(GUIDED)
-        self.client.send(
+        self.send(
             "SET_POSITION_TARGET_LOCAL_NED", target_system=1, target_component=1,
             coordinate_frame=d.choice((1, 7, 8, 9)), type_mask=d.choice(MASKS), x=d.uniform(-60, 60),
             y=d.uniform(-60, 60), z=d.uniform(-25, -4), vx=d.uniform(-8, 8), vy=d.uniform(-8, 8),
@@ -128,9 +130,7 @@ class Soak(ByDice, Aviator):
         half = 0.5 * d.uniform(-0.4, 0.4)
         axis = d.uniform(-3.0, 3.0)
         q = [math.cos(half), math.sin(half) * math.cos(axis), math.sin(half) * math.sin(axis), 0.0]
-        self.client.send(
-            "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=7, q=q, thrust=d.uniform(0.3, 0.7)
-        )
+        self.send("SET_ATTITUDE_TARGET", type_mask=7, q=q, thrust=d.uniform(0.3, 0.7))
 
     def stick(self) -> None:
         d = self.dice
@@ -151,7 +151,7 @@ class Soak(ByDice, Aviator):
              (300, (0, 0)))
         )  # fmt: skip
         self.log.append(f"{number} {params}")
-        self.client.command(number, *params)
+        self.send_command(number, *params)
 
     def weather(self) -> None:
         self.set_parameter("SIM_WIND_SPD", self.dice.uniform(0, 6))

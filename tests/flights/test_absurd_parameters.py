@@ -12,7 +12,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.params.parameter import FLOAT, Parameter
-from sitl.missions.pilot import ARM, POSITION_ONLY, TAKEOFF, VELOCITY_ONLY
+from sitl.missions.pilot import ARM, POSITION_ONLY, VELOCITY_ONLY
 from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
 from tests.pilots.witness import TAKEOFF_ITEM, WAYPOINT, Item, Witness
@@ -33,7 +33,7 @@ def _moving(kind: str) -> tuple[Witness, Any]:
     assert p.upload(*([Item(TAKEOFF_ITEM, None, 10.0)] if kind == "copter" else []), *places) == 0
     assert p.ask(ARM, 1, wait=2.0) == 0, p.texts
     if kind == "copter":
-        assert p.ask(TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0) == 0
+        assert p.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, 5.0) == 0
         p.fly(8.0)
     p.stream(3.0, VELOCITY_ONLY, vx=2.0)
     assert p.vel[0] > 1.0
@@ -57,13 +57,13 @@ def _settings(kind: str) -> st.SearchStrategy[dict[str, float]]:
 def _fly(kind: str, values: dict[str, float], speed: float) -> None:
     p, start = _moving(kind)
     p.simulation.advance(0.0)
-    p.client.receive()
+    p.connection.endpoint.receive()
     p.simulation.restore(start)
     for name, value in values.items():
-        p.client.send(
-            "PARAM_SET", target_system=1, target_component=1, param_id=name.encode(), param_value=value, param_type=9
+        p.send(
+            "PARAM_SET", param_id=name.encode(), param_value=value, param_type=9
         )  # fmt: skip
-    p.client.command(CHANGE_SPEED, 1, speed, -1)
+    p.send_command(CHANGE_SPEED, 1, speed, -1)
     p.fly(0.1)
     for act in ("rtl", "guided", "auto", "rtl"):
         if act == "guided":

@@ -22,7 +22,7 @@ def fly_attitude(
     """Attitude [deg] at 20 Hz."""
     q = list(quat_from_euler(*np.radians((roll, pitch, yaw))))
     for _ in range(round(seconds * 20)):
-        p.client.send("SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=0b111, q=q, thrust=thrust)
+        p.send("SET_ATTITUDE_TARGET", type_mask=0b111, q=q, thrust=thrust)
         p.fly(0.05)
 
 
@@ -57,8 +57,8 @@ def test_a_stale_attitude_levels_off(core: Core, frame: str) -> None:
 def test_body_rates(core: Core, frame: str) -> None:
     p = Aviator(core, frame).hover()
     for _ in range(60):
-        p.client.send(
-            "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=0b10000011, thrust=0.5,
+        p.send(
+            "SET_ATTITUDE_TARGET", type_mask=0b10000011, thrust=0.5,
             body_yaw_rate=0.5,
         )  # fmt: skip
         p.fly(0.05)

@@ -29,7 +29,7 @@ BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 
 def beat(p: Aviator) -> None:
     """A ground station's heartbeat."""
-    p.client.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
+    p.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
 
 
 @pytest.mark.parametrize(("choice", "mode"), [(0, GUIDED), (1, RTL), (2, RTL), (3, RTL), (5, LAND), (7, BRAKE)])

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.missions.pilot import TAKEOFF
 from sitl.simulation import Core
-from tests.flights.aviator import AIRFRAMES, GUIDED, LAND, LOITER, Aviator
+from tests.flights.aviator import AIRFRAMES, GUIDED, LAND, LOITER, TAKEOFF_ITEM, Aviator
 from tests.flights.guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
@@ -87,7 +86,7 @@ def test_condition_yaw_to_where_it_is_turns_the_full_circle(core: Core) -> None:
 def test_roi_keeps_the_nose_on_a_place(core: Core, frame: str) -> None:
     p = Aviator(core, frame).hover()
     lat, lon = p.lat_lon(0.0, 20.0)
-    p.client.send("COMMAND_INT", target_system=1, target_component=1, frame=6, command=195, x=lat, y=lon, z=0.0)
+    p.send("COMMAND_INT", frame=6, command=195, x=lat, y=lon, z=0.0)
     p.fly(5.0)
     assert p.euler[2] == pytest.approx(90.0, abs=2.5)
     target(p, 0xDF8, x=20.0, y=20.0, z=-10.0)
@@ -102,10 +101,10 @@ def test_reposition_changes_the_mode_only_when_told(core: Core, frame: str) -> N
     p.set_mode(LOITER)
     lat, lon = p.lat_lon(-10.0, -10.0)
     place: dict[str, Any] = {"x": lat, "y": lon, "z": 15.0, "frame": 6, "command": 192, "param1": -1}
-    p.client.send("COMMAND_INT", target_system=1, target_component=1, **place)
+    p.send("COMMAND_INT", **place)
     p.sticks(2.0)
     assert p.mode == LOITER
-    p.client.send("COMMAND_INT", target_system=1, target_component=1, param2=1, **place)
+    p.send("COMMAND_INT", param2=1, **place)
     p.sticks(15.0)
     assert p.mode == GUIDED
     assert estimate(p) == pytest.approx([-10.0, -10.0, -15.0], abs=0.4)
@@ -118,7 +117,7 @@ def test_speed_of_a_reposition(core: Core) -> None:
         lat, lon = p.lat_lon(north, 0.0)
         place: dict[str, Any] = {"x": lat, "y": lon, "z": 10.0, "frame": 6, "command": 192, "param1": speed}
         start = p.now
-        p.client.send("COMMAND_INT", target_system=1, target_component=1, **place)
+        p.send("COMMAND_INT", **place)
         p.fly(20.0)
         assert np.linalg.norm(p.since(start)[:, 4:6], axis=1).max() == pytest.approx(speed, abs=0.3)
 
@@ -137,7 +136,7 @@ def test_numbers_that_are_none_stop_the_vehicle(core: Core, frame: str) -> None:
 
 def test_take_off_edge_cases(core: Core) -> None:
     p = Aviator(core).ready()
-    assert p.ask(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "disarmed"
+    assert p.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, 10.0) == 4, "disarmed"
     target(p, POSITION, x=5.0, z=-5.0)
     p.arm()
     target(p, POSITION, x=5.0, z=-5.0)
@@ -145,6 +144,6 @@ def test_take_off_edge_cases(core: Core) -> None:
     assert p.on_ground, "a position does not lift off"
     p.take_off(0.7)
     assert p.height == pytest.approx(0.7, abs=0.3)
-    assert p.ask(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "in the air"
+    assert p.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, 10.0) == 4, "in the air"
     p.set_mode(LAND)
     p.wait_disarmed(20.0)

@@ -51,8 +51,8 @@ def test_positions_in_global_frames(core: Core, frame: str, coordinates: int) ->
     p = Aviator(core, frame).hover()
     lat, lon = p.lat_lon(10.0, -10.0)
     height = 15.0 if coordinates in (3, 6, 10, 11) else float(p.ap.estimate.origin_alt) + 15.0
-    p.client.send(
-        "SET_POSITION_TARGET_GLOBAL_INT", target_system=1, target_component=1, coordinate_frame=coordinates,
+    p.send(
+        "SET_POSITION_TARGET_GLOBAL_INT", coordinate_frame=coordinates,
         type_mask=POSITION, lat_int=lat, lon_int=lon, alt=height,
     )  # fmt: skip
     p.fly(15.0)

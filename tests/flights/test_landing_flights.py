@@ -157,7 +157,7 @@ def test_rtl_speed(core: Core) -> None:
 def test_rtl_goes_to_the_home_that_was_set(core: Core) -> None:
     p = Aviator(core, "ardupilot_quad").hover()
     lat, lon = p.lat_lon(25.0, 0.0)
-    p.client.send("COMMAND_INT", target_system=1, target_component=1, frame=0, command=179, x=lat, y=lon, z=584.0)
+    p.send("COMMAND_INT", frame=0, command=179, x=lat, y=lon, z=584.0)
     p.fly(0.5)
     p.set_mode(RTL)
     p.wait_disarmed(80.0)

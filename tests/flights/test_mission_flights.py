@@ -60,7 +60,7 @@ def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
         Item(LAND_ITEM, (0.0, 20.0)),
     )  # fmt: skip
     assert not p.armed
-    assert [seq for _, seq in p.reached] == [1, 2, 3]
+    assert p.reached == [1, 2, 3]
     assert -p.since(start)[:, 3].min() == pytest.approx(15.0, abs=0.5)
     assert p.pos[:2] == pytest.approx([0.0, 20.0], abs=1.2)
     rows = p.since(start)
@@ -72,7 +72,7 @@ def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
 def test_return_lands_at_home(core: Core, frame: str) -> None:
     p, start = fly(core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 10.0), Item(RETURN))
     assert not p.armed
-    assert [seq for _, seq in p.reached] == [1, 2, 3]
+    assert p.reached == [1, 2, 3]
     assert -p.since(start)[:, 3].min() == pytest.approx(15.0, abs=0.5)
     assert np.linalg.norm(p.pos[:2]) < 1.2
 
@@ -84,7 +84,7 @@ def test_loiter_turns_both_ways_and_loiter_time(core: Core, frame: str) -> None:
         Item(LOITER_TURNS, (30.0, 0.0), 12.0, (2.0, 0.0, 8.0, 1.0)),
         Item(LOITER_TURNS, (30.0, 30.0), 12.0, (1.0, 0.0, -6.0, 1.0)), DOWN,
     )  # fmt: skip
-    assert [seq for _, seq in p.reached] == [1, 2, 3, 4]
+    assert p.reached == [1, 2, 3, 4]
     rows = np.array(p.rows)  # the vehicle's own position: circles are asked here, the receiver's error elsewhere
     for seq, centre, radius, turns in ((3, (30.0, 0.0), 8.0, 2.0), (4, (30.0, 30.0), 6.0, -1.0)):
         times = (p.reached_at(seq) - abs(turns) * 14.0, p.reached_at(seq))
@@ -100,7 +100,7 @@ def test_unlimited_loiter_ends_by_set_current(core: Core) -> None:
     p, _ = fly(core, "erle_copter", UP, Item(LOITER_UNLIMITED, (15.0, 0.0), 10.0), DOWN, seconds=60.0)
     assert p.armed
     assert p.pos[0] == pytest.approx(15.0, abs=1.5)
-    p.client.send("MISSION_SET_CURRENT", target_system=1, target_component=1, seq=3)
+    p.send("MISSION_SET_CURRENT", seq=3)
     p.wait_disarmed(40.0)
 
 
@@ -115,7 +115,7 @@ def test_jump(core: Core, times: int, seconds: float) -> None:
         core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), Item(WAYPOINT, (0.0, 0.0), 10.0),
         Item(JUMP, None, 0.0, (2.0, times)), DOWN, seconds=seconds,
     )  # fmt: skip
-    rounds = [seq for _, seq in p.reached].count(3)
+    rounds = p.reached.count(3)
     assert (rounds == 3 and not p.armed) if times == 2 else (rounds > 8 and p.armed)
 
 
@@ -215,7 +215,7 @@ def test_a_mission_is_flown_again_after_its_landing(core: Core) -> None:
     assert p.set_mode(AUTO)
     assert p.ask(300, 0, 0) == 0
     p.wait_disarmed(90.0)
-    assert [seq for _, seq in p.reached] == [1, 2, 1, 2]
+    assert p.reached == [1, 2, 1, 2]
 
 
 @BOTH

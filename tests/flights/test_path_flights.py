@@ -71,17 +71,17 @@ def test_five_kilometres(core: Core, wind: float) -> None:
 def test_the_square_in_strong_wind_ends_disarmed(core: Core, frame: str) -> None:
     """It stayed armed on the ground: the lean against the wind looked like flight."""
     p = under_way(core, frame, 90.0, SIM_WIND_SPD=9, SIM_WIND_TURB=1.5, SIM_WIND_DIR=45, ANGLE_MAX=4500)
-    assert [seq for _, seq in p.reached] == [1, 2, 3, 4]
+    assert p.reached == [1, 2, 3, 4]
     assert not p.armed
 
 
 @BOTH
 def test_set_current_in_flight(core: Core, frame: str) -> None:
     p = under_way(core, frame, 11.0)
-    p.client.send("MISSION_SET_CURRENT", target_system=1, target_component=1, seq=4)
+    p.send("MISSION_SET_CURRENT", seq=4)
     start = p.now
     p.wait_disarmed(60.0)
-    assert [seq for _, seq in p.reached] == [1, 4]
+    assert p.reached == [1, 4]
     rows = p.since(start)
     assert np.abs(rows[:, 7:9]).max() < 31.0
     assert p.pos[:2] == pytest.approx([0.0, 30.0], abs=1.2)
@@ -92,18 +92,18 @@ def test_upload_in_flight_goes_on_with_the_new_items(core: Core, frame: str) -> 
     p = under_way(core, frame, 13.0)
     assert p.upload(UP, Item(WAYPOINT, (0.0, 0.0), 12.0), Item(WAYPOINT, (-20.0, 0.0), 12.0), DOWN) == 0
     p.wait_disarmed(80.0)
-    assert [seq for _, seq in p.reached] == [1, 2, 3]
+    assert p.reached == [1, 2, 3]
     assert p.pos[:2] == pytest.approx([-20.0, 0.0], abs=1.2)
 
 
 def test_a_running_mission_is_not_cleared(core: Core) -> None:
     p = under_way(core, "erle_copter", 13.0)
-    p.answers.clear()
-    p.client.send("MISSION_CLEAR_ALL", target_system=1, target_component=1)
-    p.fly(0.3)
-    assert p.answers == [1]
+    with p.messages("MISSION_ACK") as answers:
+        p.send("MISSION_CLEAR_ALL")
+        p.fly(0.3)
+    assert [answer.type for answer in answers] == [1]
     p.wait_disarmed(80.0)
-    assert [seq for _, seq in p.reached] == [1, 2, 3, 4]
+    assert p.reached == [1, 2, 3, 4]
 
 
 @BOTH
@@ -115,7 +115,7 @@ def test_after_guided_it_resumes_or_restarts(core: Core, frame: str, restart: in
     p.fly(10.0)
     assert p.set_mode(AUTO)
     p.wait_disarmed(120.0)
-    assert [seq for _, seq in p.reached] == reached
+    assert p.reached == reached
 
 
 @BOTH
@@ -128,7 +128,7 @@ def test_pause_and_continue(core: Core, frame: str) -> None:
     assert np.linalg.norm(p.pos - here) < 0.5
     assert p.ask(193, 1) == 0
     p.wait_disarmed(80.0)
-    assert [seq for _, seq in p.reached] == [1, 2, 3, 4]
+    assert p.reached == [1, 2, 3, 4]
 
 
 @BOTH

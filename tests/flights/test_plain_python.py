@@ -60,9 +60,7 @@ def mission(*items: Item, seconds: float) -> Callable[[Aviator], None]:
 
 
 def attitude(p: Aviator) -> None:
-    p.client.send(
-        "SET_ATTITUDE_TARGET", target_system=1, target_component=1, type_mask=7, q=(0.98, 0.1, -0.15, 0.05), thrust=0.55
-    )
+    p.send("SET_ATTITUDE_TARGET", type_mask=7, q=(0.98, 0.1, -0.15, 0.05), thrust=0.55)
     p.fly(0.3)
 
 

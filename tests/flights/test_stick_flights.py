@@ -150,12 +150,12 @@ def test_manual_control_is_sticks_too(core: Core) -> None:
     p.let_go()
     heading = np.radians(p.euler[2])
     for _ in range(50):
-        p.client.send("MANUAL_CONTROL", target=1, x=500, y=0, z=500, r=0, buttons=0)
+        p.send("MANUAL_CONTROL", target=1, x=500, y=0, z=500, r=0, buttons=0)
         p.fly(0.1)
     forward = p.vel[:2] @ [np.cos(heading), np.sin(heading)]
     assert forward > 2.0
     for _ in range(40):
-        p.client.send("MANUAL_CONTROL", target=1, x=0, y=0, z=1000, r=500, buttons=0)
+        p.send("MANUAL_CONTROL", target=1, x=0, y=0, z=1000, r=500, buttons=0)
         p.fly(0.1)
     assert -p.vel[2] == pytest.approx(2.5, abs=0.2)
     assert turn_rate(p) > 60.0

@@ -13,7 +13,7 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.ends import LinkLostError
+from sitl.envs.mavlink.errors import LinkLostError
 from sitl.envs.mavlink.foreign import physics_port
 from sitl.envs.robots.autopilot import AutopilotRobot
 

@@ -74,7 +74,7 @@ def test_a_folder_that_was_named_stays(tmp_path):
     process = AutopilotProcess(python("print('said')"), {}, {}, tmp_path / "kept")
     process._process.wait()
     process.stop()
-    assert process.said() == "said"
+    assert process.last_output() == "said"
 
 
 def test_a_program_that_ends_is_told_of_with_its_last_words():
@@ -99,9 +99,9 @@ def test_a_program_that_does_not_heed_and_its_children_are_ended(monkeypatch):
         {},
         {},
     )
-    while len(process.said().split(" / ")) < 2:
+    while len(process.last_output().split(" / ")) < 2:
         process.check()
-    number = max(int(word) for word in process.said().split(" / "))
+    number = max(int(word) for word in process.last_output().split(" / "))
     process.stop()
     with pytest.raises(ProcessLookupError):
         while True:  # until its new parent has buried it

@@ -15,7 +15,7 @@ import pytest
 
 from sitl.bridge.ardupilot_json import motion
 from sitl.bridge.ardupilot_json.servos import decode
-from sitl.bridge.client import Client
+from sitl.client.endpoint import Endpoint
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.physics.engine import EngineError
@@ -90,7 +90,7 @@ def on_script(answers, **options):
 
 def test_a_flight_over_the_wire(server):
     simulation = Simulation("erle_copter", physics=server.physics, seed=3)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     simulation.advance(50.0)
     client.command(176, 1, 4)

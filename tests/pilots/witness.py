@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from sitl.autopilot.mission.item import MissionItem
+from sitl.client import MissionRefusedError
 from sitl.core.geodesy import add_offset
-from sitl.missions.pilot import ARM, SET_MODE, Pilot
+from sitl.missions.pilot import ARM, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, Simulation
 
@@ -46,8 +47,6 @@ class Witness(Pilot):
 
     def __init__(self, core: Core, frame: str, *, seed: int = 0, estimator: str = "ekf", **params: float) -> None:
         self.track: list[tuple[float, ...]] = []
-        self.items: tuple[Item, ...] = ()
-        self.answers: list[int] = []
         self._pulses: tuple[int, ...] | None = None
         super().__init__(Simulation(frame, seed=seed, estimator=estimator, core=core, params=params))
 
@@ -85,7 +84,7 @@ class Witness(Pilot):
 
     def said(self, text: str) -> bool:
         """Whether a status text had this in it."""
-        return any(text in said for _, said in self.texts)
+        return any(text in said for _, _, said in self.texts)
 
     def not_finite(self, *names: str) -> list[str]:
         """What is no number: of the truth, and in these parts of the autopilot's record."""
@@ -99,18 +98,12 @@ class Witness(Pilot):
 
     # ------------------------------------------------------------------ commands
 
-    def fly(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        """As Pilot.fly; sends the sticks that are held, at 25 Hz."""
-        stop = self.simulation.time_us + int(seconds * 1e6)
-        while self.simulation.time_us < stop:
-            if self._pulses is not None:
-                self.override(*self._pulses)
-            left = (stop - self.simulation.time_us) * 1e-6
-            if super().fly(min(0.04, left), until):
-                self._note()
-                return True
-            self._note()
-        return False
+    def step(self, stop_us: int | None = None) -> None:
+        """As a pilot does; sends the sticks that are held, at 25 Hz."""
+        if self._pulses is not None:
+            self.override(*self._pulses)
+        super().step(stop_us)
+        self._note()
 
     def _note(self) -> None:
         t = truth.read(self.simulation.v)
@@ -118,21 +111,21 @@ class Witness(Pilot):
 
     def set_mode(self, number: int) -> bool:
         """DO_SET_MODE; whether the vehicle is in that mode then."""
-        self.client.command(SET_MODE, 1, number)
+        self.send_command("DO_SET_MODE", 1, number)
         self.fly(0.1)
         return self.mode == number
 
     def ask(self, number: int, *params: float, wait: float = 0.1) -> int:
         """Send a command; its MAV_RESULT."""
         self.acks.clear()
-        self.client.command(number, *params)
+        self.send_command(number, *params)
         self.fly(wait)
         return dict(self.acks)[number]
 
     def set_parameter(self, name: str, value: float) -> None:
         """PARAM_SET."""
-        self.client.send(
-            "PARAM_SET", target_system=1, target_component=1, param_id=name.encode(), param_value=value,
+        self.send(
+            "PARAM_SET", param_id=name.encode(), param_value=value,
             param_type=9,
         )  # fmt: skip
         self.fly(0.05)
@@ -140,8 +133,8 @@ class Witness(Pilot):
 
     def target(self, mask: int, frame: int = 1, **fields: float) -> None:
         """SET_POSITION_TARGET_LOCAL_NED."""
-        self.client.send(
-            "SET_POSITION_TARGET_LOCAL_NED", target_system=1, target_component=1, coordinate_frame=frame,
+        self.send(
+            "SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=frame,
             type_mask=mask, **fields,
         )  # fmt: skip
 
@@ -160,7 +153,7 @@ class Witness(Pilot):
     def override(self, *pulses: int) -> None:
         """One RC_CHANNELS_OVERRIDE; channels not given are left alone."""
         channels = {f"chan{k + 1}_raw": p for k, p in enumerate((*pulses, *[KEEP] * (8 - len(pulses))))}
-        self.client.send("RC_CHANNELS_OVERRIDE", target_system=1, target_component=1, **channels)
+        self.send("RC_CHANNELS_OVERRIDE", **channels)
 
     def let_go(self) -> None:
         """Send no sticks any more."""
@@ -176,25 +169,17 @@ class Witness(Pilot):
 
     def upload(self, *items: Item) -> int:
         """Upload items (home is put in front) by the mission protocol; the MAV_MISSION_RESULT."""
-        self.items = (Item(WAYPOINT, (0.0, 0.0), 584.0, frame=ABSOLUTE), *items)
-        self.answers.clear()
-        self.client.send("MISSION_COUNT", target_system=1, target_component=1, count=len(self.items))
-        assert self.fly(10.0, lambda: bool(self.answers)), "no MISSION_ACK"
-        return self.answers[0]
+        home = Item(WAYPOINT, (0.0, 0.0), 584.0, frame=ABSOLUTE)
+        try:
+            self.transfer([self._mission_item(item) for item in (home, *items)])
+        except MissionRefusedError as error:
+            return error.result
+        return 0
+
+    def _mission_item(self, item: Item) -> MissionItem:
+        x, y = self.lat_lon(*item.place) if item.place else (0, 0)
+        return MissionItem(item.command, item.frame, *(*item.p, 0.0, 0.0, 0.0, 0.0)[:4], x=x, y=y, z=item.z)
 
     def reached_at(self, seq: int) -> float:
         """When MISSION_ITEM_REACHED first came for an item [s]; NaN when it did not."""
-        return next((time for time, number in self.reached if number == seq), math.nan)
-
-    def _take(self, name: str, fields: Any) -> None:
-        super()._take(name, fields)
-        if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
-            item = self.items[fields.seq]
-            x, y = self.lat_lon(*item.place) if item.place else (0, 0)
-            p = {f"param{k + 1}": value for k, value in enumerate(item.p)}
-            self.client.send(
-                "MISSION_ITEM_INT", target_system=1, target_component=1, seq=fields.seq, frame=item.frame,
-                command=item.command, autocontinue=1, x=x, y=y, z=item.z, **p,
-            )  # fmt: skip
-        elif name == "MISSION_ACK":
-            self.answers.append(fields.type)
+        return next((time for time, number in self.telemetry.reached if number == seq), math.nan)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from sitl.core import records
-from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.worlds import Box, Start, World, WorldError, contact, names
@@ -29,7 +29,7 @@ def hovering(core: Core, world: World | str, **options: object) -> Pilot:
     pilot = Pilot(Simulation("erle_copter", world=world, core=core, estimator="truth", **options))  # type: ignore[arg-type]
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 1.2)
+    pilot.send_command("NAV_TAKEOFF", altitude=1.2)
     pilot.fly(6.0)
     return pilot
 
@@ -45,9 +45,7 @@ def driving(core: Core, world: World | str, seconds: float, throttle: int = 1900
 
 def drive(pilot: Pilot, seconds: float, throttle: int, steering: int = 1500) -> None:
     for _ in range(round(10 * seconds)):
-        pilot.client.send(
-            "RC_CHANNELS_OVERRIDE", target_system=1, target_component=1, chan1_raw=steering, chan3_raw=throttle
-        )
+        pilot.send("RC_CHANNELS_OVERRIDE", chan1_raw=steering, chan3_raw=throttle)
         pilot.fly(0.1)
 
 
@@ -67,7 +65,7 @@ def test_a_copter_flown_into_a_wall_stops_there(cores: dict[str, Core]) -> None:
     t, o = truth.read(pilot.simulation.v), pilot.simulation.v.physics.obstacles
     assert t.pos[0] == pytest.approx(4.58, abs=1e-6) and abs(t.pos[1]) < 0.1 and -t.pos[2] > 1.0
     assert o.touching == 1 and o.hit_count == 1 and o.hit_speed == pytest.approx(2.0, abs=0.1)
-    assert [text for _, text in pilot.texts if "obstacle" in text] == [f"SIM Hit obstacle at {o.hit_speed:f} m/s"]
+    assert [text for _, _, text in pilot.texts if "obstacle" in text] == [f"SIM Hit obstacle at {o.hit_speed:f} m/s"]
     for _ in range(70):  # its position target has run ahead
         pilot.setpoint(VELOCITY_ONLY, velocity=(-1.0, 0.0, 0.0))
         pilot.fly(0.1)
@@ -79,7 +77,7 @@ def test_a_copter_lands_on_a_table_rests_and_takes_off_again(cores: dict[str, Co
     pilot = Pilot(Simulation("erle_copter", world=table, core=cores["copter"]))
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 3.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=3.0)
     pilot.fly(8.0)
     for _ in range(50):
         pilot.setpoint(VELOCITY_ONLY, velocity=(1.0, 0.0, 0.0))
@@ -97,7 +95,7 @@ def test_a_copter_lands_on_a_table_rests_and_takes_off_again(cores: dict[str, Co
     pilot.choose_mode("GUIDED")
     pilot.fly(0.5)
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 4.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=4.0)
     pilot.fly(8.0)
     assert -v.physics.body.pos[2] > 2.5
 
@@ -107,7 +105,7 @@ def test_a_rover_driven_into_a_wall_stops_there(cores: dict[str, Core], yaw: flo
     pilot = driving(cores["rover"], behind_a_wall(7.0, yaw), 9.0)
     v = pilot.simulation.v
     assert v.physics.obstacles.hit_speed == pytest.approx(1.59 * math.cos(yaw), abs=0.03)
-    assert sum("Hit obstacle" in text for _, text in pilot.texts) == 1
+    assert sum("Hit obstacle" in text for _, _, text in pilot.texts) == 1
     assert abs(v.physics.wheels.forward) < 0.05
     if yaw == 0.0:
         assert v.physics.body.pos[0] == pytest.approx(6.9 - 0.9 - 0.506, abs=1e-6)
@@ -119,7 +117,7 @@ def test_the_estimator_lives_through_a_crash(cores: dict[str, Core]) -> None:
     pilot = Pilot(Simulation("erle_copter", world=behind_a_wall(5.0), core=cores["copter"]))
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 1.2)
+    pilot.send_command("NAV_TAKEOFF", altitude=1.2)
     pilot.fly(6.0)
     for _ in range(60):
         pilot.setpoint(VELOCITY_ONLY, velocity=(2.0, 0.0, 0.0))
@@ -227,7 +225,7 @@ def test_the_same_from_a_snapshot(cores: dict[str, Core]) -> None:
     pilot = hovering(cores["copter"], behind_a_wall(5.0))
     simulation = pilot.simulation
     for name in ("DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR", "OBSTACLE_DISTANCE"):
-        pilot.client.set_interval(name, 10.0)
+        pilot.set_rate(name, 10.0)
     pilot.fly(0.1)
     snapshot, results = simulation.snapshot(), []
     for _ in range(2):
@@ -235,7 +233,7 @@ def test_the_same_from_a_snapshot(cores: dict[str, Core]) -> None:
         for _ in range(35):
             pilot.setpoint(VELOCITY_ONLY, velocity=(2.0, 0.5, 0.0))
             simulation.advance(0.1)
-            received += [(name, repr(fields)) for name, fields in pilot.client.receive()]
+            received += [(name, repr(fields)) for name, fields in pilot.connection.endpoint.receive()]
         results.append((simulation.fleet[0].tobytes(), received))
         assert simulation.v.physics.obstacles.hit_count == 1
         simulation.restore(snapshot)

@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from sitl.bridge.client import Client
-from sitl.missions.pilot import TAKEOFF, VELOCITY_ONLY, Pilot
+from sitl.client.endpoint import Endpoint
+from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.recording.recorder import Recorder
 from sitl.simulation import Core, Simulation
 
@@ -44,17 +44,17 @@ def hop(path: Path, core: Core | None, gain: float | None = None, late_s: float 
     pilot = Pilot(simulation)
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 4.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=4.0)
     pilot.fly(4.0 + late_s)
-    other = Client(system=250)
+    other = Endpoint(system=250)
     simulation.bridge.add_link(other.link)
     other.set_interval("ATTITUDE", 20.0)
     other.send("PARAM_REQUEST_LIST", target_system=1, target_component=1)
     pilot.stream_setpoint(1.0, VELOCITY_ONLY, (1.0, 0.5, 0.0))
     simulation.bridge.remove_link(other.link)
-    pilot.client.command(400, 0, 21196)
+    pilot.send_command("COMPONENT_ARM_DISARM", 0, 21196)
     simulation.advance(0.2)
-    pilot.client.command(246, 1)
+    pilot.send_command("PREFLIGHT_REBOOT_SHUTDOWN", 1)
     while simulation.time_us < SECONDS * 1e6:
         simulation.advance_to(min(simulation.time_us + 700_000, round(SECONDS * 1e6)))
     recorder.stopped = "the script ended"

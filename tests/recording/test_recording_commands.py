@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import sitl.cli
-from sitl.bridge.client import Client
 from sitl.cli import run
 from sitl.cli.recordings import resume
+from sitl.client.endpoint import Endpoint
 from sitl.errors import SitlError
 from sitl.missions.cli import replay
 from sitl.recording.error import RecordingError
@@ -74,7 +74,7 @@ def test_lockstep_goes_on_from_a_snapshot(hopped: Recorded, tmp_path: Path) -> N
         seed=None, params=None, physics="native", estimator="ekf", lockstep=True,
     )  # fmt: skip
     simulation = resume(options)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     reached: list[int] = []
 
@@ -100,7 +100,7 @@ def test_who_goes_on_from_lockstep_without_it_has_no_grants(core: Core, tmp_path
     assert replay.run() == [] and replay.simulation.bridge.grants is not None
     live = replay.go_live()
     assert live.bridge.grants is None
-    client = Client()
+    client = Endpoint()
     live.bridge.add_link(client.link)
     client.send("COMMAND_INT", target_system=1, target_component=1, command=31010, x=9_000)
     live.advance(1.0)

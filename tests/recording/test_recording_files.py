@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
-from sitl.recording.entries import Entry, Kind, decode, encode, read_varint, varint
+from sitl.recording.entries import Entry, EntryKind, decode, encode, read_varint, varint
 from sitl.recording.error import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
@@ -20,12 +20,12 @@ from sitl.simulation import Core, Simulation
 from tests.recording.recorded_flights import Recorded
 
 ENTRIES_OF_ANY_KIND = st.lists(
-    st.tuples(st.integers(0, 2**40), st.sampled_from(Kind), st.integers(0, 2**30), st.binary(max_size=300))
+    st.tuples(st.integers(0, 2**40), st.sampled_from(EntryKind), st.integers(0, 2**30), st.binary(max_size=300))
 )
 
 
 @given(ENTRIES_OF_ANY_KIND)
-def test_entries_survive_being_written(rows: list[tuple[int, Kind, int, bytes]]) -> None:
+def test_entries_survive_being_written(rows: list[tuple[int, EntryKind, int, bytes]]) -> None:
     entries = [Entry(*row) for row in sorted(rows, key=lambda row: row[0])]
     before, raw = 0, b""
     for entry in entries:
@@ -101,12 +101,12 @@ def test_a_header_that_misses_something(tmp_path: Path) -> None:
 
 
 def test_a_killed_run_can_be_flown_as_far_as_it_was_written(core: Core, tmp_path: Path) -> None:
-    from sitl.bridge.client import Client
+    from sitl.client.endpoint import Endpoint
 
     path = tmp_path / "killed.rec"
     simulation = Simulation(core=core)
     recorder = Recorder(simulation, path, flush_us=1_000_000)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     for _ in range(25):
         client.send("HEARTBEAT", type=6, autopilot=8)
@@ -115,7 +115,7 @@ def test_a_killed_run_can_be_flown_as_far_as_it_was_written(core: Core, tmp_path
     with pytest.raises(RecordingError, match=r"without its end mark; its run was killed.*goes up to 24\.000 s"):
         read(path)
     recording = read(path, unfinished=True)
-    assert sum(entry.kind is Kind.HEARD for entry in recording.entries) == 25
+    assert sum(entry.kind is EntryKind.RECEIVED for entry in recording.entries) == 25
     replay = Replay(recording, core=core)
     assert replay.run() == [] and replay.simulation.time_us == 24_000_000
 
@@ -138,7 +138,11 @@ def test_what_cannot_be_made_again(hopped: Recorded, core: Core, change: dict[st
 
 
 def test_entries_that_contradict_each_other(hopped: Recorded, core: Core) -> None:
-    for entry in (Entry(5, Kind.HEARD, 77, b"x"), Entry(5, Kind.UNLINK, 9), Entry(5, Kind.CAME, 3, b"\x07")):
+    for entry in (
+        Entry(5, EntryKind.RECEIVED, 77, b"x"),
+        Entry(5, EntryKind.UNLINK, 9),
+        Entry(5, EntryKind.CONNECTED, 3, b"\x07"),
+    ):
         recording = read(hopped.path)
         recording.entries.insert(1, entry)
         with pytest.raises(RecordingError, match=r"hop\.rec': at 0\.000 s"):

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sitl.bridge.client import Client
 from sitl.bridge.links.link import Link, Peer
-from sitl.recording.entries import Kind
+from sitl.client.endpoint import Endpoint
+from sitl.recording.entries import EntryKind
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import Recording, read
 from sitl.recording.replay import Replay
@@ -60,7 +60,7 @@ def test_a_client_that_reads_too_slowly(core: Core, tmp_path: Path) -> None:
         simulation.advance(1.0)
     simulation.close()
     recording = read(tmp_path / "slow.rec")
-    assert [entry.data[0] for entry in recording.entries if entry.kind is Kind.CONGESTED] == [1, 0, 1, 0]
+    assert [entry.data[0] for entry in recording.entries if entry.kind is EntryKind.CONGESTED] == [1, 0, 1, 0]
     assert replayed(recording, core) == tap.frames
 
 
@@ -69,7 +69,7 @@ def test_lockstep(core: Core, tmp_path: Path) -> None:
     Recorder(simulation, tmp_path / "lockstep.rec")
     tap = Frames()
     simulation.bridge.taps.append(tap)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     turns = iter(range(1, 14))
 
@@ -84,15 +84,15 @@ def test_lockstep(core: Core, tmp_path: Path) -> None:
     simulation.close()
     recording = read(tmp_path / "lockstep.rec")
     kinds = [entry.kind for entry in recording.entries]
-    assert kinds.count(Kind.LOCKSTEP) == 1 and kinds.count(Kind.ANSWERED) >= 9
-    assert Kind.BEAT in kinds
+    assert kinds.count(EntryKind.LOCKSTEP) == 1 and kinds.count(EntryKind.GRANTED) >= 9
+    assert EntryKind.HEARTBEAT in kinds
     assert replayed(recording, core) == tap.frames
 
 
 def test_the_log_of_a_replay_is_the_log_of_the_run(core: Core, tmp_path: Path) -> None:
     simulation = Simulation(core=core)
     Recorder(simulation, tmp_path / "x.rec")
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     log = runner.open_log(simulation, tmp_path, "first")
     client.command(512, 148)
@@ -114,7 +114,7 @@ def test_on_board_logs_that_a_client_downloads(core: Core, tmp_path: Path) -> No
     simulation = Simulation(core=core, params={"LOG_DISARMED": 1.0})
     Recorder(simulation, tmp_path / "x.rec")
     tap = Frames()
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     runner.open_log(simulation, tmp_path, "first")
     simulation.bridge.taps.append(tap)

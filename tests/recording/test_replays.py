@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from sitl.recording import identity
-from sitl.recording.entries import Kind
+from sitl.recording.entries import EntryKind
 from sitl.recording.error import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
@@ -35,8 +35,8 @@ def test_the_recording_says_what_happened(hopped: Recorded) -> None:
     assert recording.end is not None and recording.end["stopped"] == "the script ended"
     assert recording.end_us == SECONDS * 1e6
     kinds = [entry.kind for entry in recording.entries]
-    assert kinds.count(Kind.CAME) == kinds.count(Kind.LINK) == 2
-    assert kinds.count(Kind.UNLINK) == kinds.count(Kind.LEFT) == 1
+    assert kinds.count(EntryKind.CONNECTED) == kinds.count(EntryKind.LINK) == 2
+    assert kinds.count(EntryKind.UNLINK) == kinds.count(EntryKind.DISCONNECTED) == 1
     assert recording.header["seed"] == 7 and recording.header["params"] == {"SIM_WIND_SPD": 4.0}
     assert hopped.path.stat().st_size < 6000
 
@@ -74,8 +74,8 @@ def test_a_gain_changed_by_one_percent_is_seen_and_where(hopped: Recorded, core:
 
 def test_a_lost_message_is_seen(hopped: Recorded, core: Core) -> None:
     recording = read(hopped.path)
-    came = max(at for at, entry in enumerate(recording.entries) if entry.kind is Kind.CAME)
-    take_off = max(at for at, entry in enumerate(recording.entries[:came]) if entry.kind is Kind.HEARD)
+    came = max(at for at, entry in enumerate(recording.entries) if entry.kind is EntryKind.CONNECTED)
+    take_off = max(at for at, entry in enumerate(recording.entries[:came]) if entry.kind is EntryKind.RECEIVED)
     entries = recording.entries[:take_off] + recording.entries[take_off + 1 :]
     replay = Replay(type(recording)(recording.path, recording.header, entries, recording.end), core=core)
     assert any("channels differs" in text for text in replay.run())
@@ -111,6 +111,6 @@ def test_digests_do_not_depend_on_how_often_it_is_written(core: Core, tmp_path: 
     simulation.advance(31.0)
     simulation.close()
     recording = read(tmp_path / "sevens.rec")
-    checks = [entry.time_us for entry in recording.entries if entry.kind is Kind.CHECK]
+    checks = [entry.time_us for entry in recording.entries if entry.kind is EntryKind.CHECK]
     assert checks == [10_000_000, 20_000_000, 30_000_000]
     assert Replay(recording, core=core).run() == []

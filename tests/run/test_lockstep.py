@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.bridge.client import Client
 from sitl.bridge.services.grants import GRANT, RESEED
+from sitl.client.endpoint import Endpoint
 from sitl.run.lockstep import SLICE_US, serve_lockstep
 from sitl.simulation import Core, Simulation
 
@@ -33,29 +33,29 @@ def simulation(core: Core) -> Simulation:
 
 
 @pytest.fixture
-def client(simulation: Simulation) -> Client:
-    client = Client()
+def client(simulation: Simulation) -> Endpoint:
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     return client
 
 
-def grant(client: Client, time_ms: int) -> None:
+def grant(client: Endpoint, time_ms: int) -> None:
     client.send("COMMAND_INT", target_system=1, target_component=1, command=GRANT, x=time_ms)
 
 
-def answers(client: Client) -> list[tuple[int, int, int]]:
+def answers(client: Endpoint) -> list[tuple[int, int, int]]:
     acks = [m.fields for m in client.receive() if m.name == "COMMAND_ACK"]
     return [(ack.command, ack.result, ack.result_param2) for ack in acks]
 
 
-def test_time_stands_without_a_grant_and_heartbeats_go_out(simulation: Simulation, client: Client) -> None:
+def test_time_stands_without_a_grant_and_heartbeats_go_out(simulation: Simulation, client: Endpoint) -> None:
     script = Script(simulation, *[lambda: None] * 3)
     serve_lockstep(simulation, running=script.running)
     assert simulation.time_us == 0
     assert [m.name for m in client.receive()].count("HEARTBEAT") == 1
 
 
-def test_a_grant_is_answered_after_all_that_falls_due_on_the_way(simulation: Simulation, client: Client) -> None:
+def test_a_grant_is_answered_after_all_that_falls_due_on_the_way(simulation: Simulation, client: Endpoint) -> None:
     client.set_interval("ATTITUDE", 10)
     script = Script(simulation, lambda: grant(client, 1000), *[lambda: None] * 3)
     serve_lockstep(simulation, running=script.running)
@@ -69,7 +69,7 @@ def test_a_grant_is_answered_after_all_that_falls_due_on_the_way(simulation: Sim
     assert max(k for k, name in enumerate(names) if name == "ATTITUDE") < end
 
 
-def test_repeated_and_older_grants_only_get_their_answer(simulation: Simulation, client: Client) -> None:
+def test_repeated_and_older_grants_only_get_their_answer(simulation: Simulation, client: Endpoint) -> None:
     grants = (100, 100, 40, 0, -1, 101)
     script = Script(simulation, *[lambda t=t: grant(client, t) for t in grants])
     serve_lockstep(simulation, running=script.running)
@@ -80,7 +80,7 @@ def test_repeated_and_older_grants_only_get_their_answer(simulation: Simulation,
     assert simulation.time_us == 102_500  # whole ticks
 
 
-def test_time_goes_on_counting_over_a_reboot(simulation: Simulation, client: Client) -> None:
+def test_time_goes_on_counting_over_a_reboot(simulation: Simulation, client: Endpoint) -> None:
     def reboot() -> None:
         client.command(246, 1.0)
         grant(client, 300)
@@ -91,7 +91,7 @@ def test_time_goes_on_counting_over_a_reboot(simulation: Simulation, client: Cli
     assert simulation.bridge.now_us == 100_000
 
 
-def test_a_run_ends_at_its_duration_whatever_is_granted(simulation: Simulation, client: Client) -> None:
+def test_a_run_ends_at_its_duration_whatever_is_granted(simulation: Simulation, client: Endpoint) -> None:
     script = Script(simulation, lambda: grant(client, 60_000), *[lambda: None] * 10)
     serve_lockstep(simulation, until_us=700_000, running=script.running)
     assert simulation.time_us == 700_000
@@ -99,7 +99,7 @@ def test_a_run_ends_at_its_duration_whatever_is_granted(simulation: Simulation, 
 
 def test_noise_can_be_seeded_anew(core: Core) -> None:
     def gyro(seed: int) -> tuple[float, ...]:
-        simulation, client = Simulation("erle_copter", core=core), Client()
+        simulation, client = Simulation("erle_copter", core=core), Endpoint()
         simulation.bridge.add_link(client.link)
 
         def ask() -> None:
@@ -113,7 +113,7 @@ def test_noise_can_be_seeded_anew(core: Core) -> None:
     assert gyro(-7) == gyro(-7) != gyro(8)
 
 
-def test_other_runs_do_not_know_the_commands(simulation: Simulation, client: Client) -> None:
+def test_other_runs_do_not_know_the_commands(simulation: Simulation, client: Endpoint) -> None:
     grant(client, 100)
     client.command(GRANT, 1.0)
     simulation.advance(0.01)

@@ -5,7 +5,7 @@ import pytest
 from pytest import approx
 
 from sitl import vehicles
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError, ardupilot_quad
 from sitl.vehicles.figures.copter import FIGURES_RECORD

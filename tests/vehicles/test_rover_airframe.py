@@ -2,7 +2,7 @@
 import pytest
 
 from sitl import vehicles
-from sitl.autopilot.rover.table import TABLE
+from sitl.autopilot.rover.parameters import TABLE
 from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.rover import FIGURES_RECORD

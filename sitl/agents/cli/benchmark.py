@@ -49,7 +49,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run_paper(options: argparse.Namespace) -> int:
     """Run ``sitl benchmark paper``."""
-    out, seeds, crew = options.out, range(options.seeds), workers(options)
+    out, seeds, pool = options.out, range(options.seeds), workers(options)
     wanted: list[tuple[str, list[RunFolder]]] = []
     main: dict[tuple[str, str], int] = {}
     for algorithm, title in TITLES.items():
@@ -68,21 +68,21 @@ def run_paper(options: argparse.Namespace) -> int:
                 runs = paper.runs_of(out, algorithm, paper.TEXTBOOK, seeds, options.episodes, step)
                 wanted.append((f"{title}, steps of {seconds:g} s", runs))
     todo = [run for _, runs in wanted for run in runs if not is_done(run)]
-    if todo and not _train(todo, crew):
+    if todo and not _train(todo, pool):
         print("interrupted; the same command goes on", file=sys.stderr)
         return 130
     groups = [Group(name, runs) for name, runs in wanted]
     found = {key: groups[index] for key, index in main.items()}
-    print(paper.write_report(found, groups[len(main) :], out, options.play, crew))
+    print(paper.write_report(found, groups[len(main) :], out, options.play, pool))
     return 0
 
 
-def _train(runs: list[RunFolder], crew: Workers) -> bool:
+def _train(runs: list[RunFolder], pool: Workers) -> bool:
     # a progress bar counts episodes or steps, not both
     batches = [[run for run in runs if (run.config.episodes is None) is by_steps] for by_steps in (False, True)]
     for batch in batches:
         if batch:
             with Bar(batch) as bar:
-                if not train_all([run.path for run in batch], crew.jobs, bar, crew.each):
+                if not train_all([run.path for run in batch], pool.jobs, bar, pool.each):
                     return False
     return True

@@ -44,7 +44,7 @@ def declare(actions: argparse._SubParsersAction[argparse.ArgumentParser], train:
 
 def run(options: argparse.Namespace, train: Train) -> int:
     """Run the command."""
-    crew = workers(options)
+    pool = workers(options)
     chosen = [recipes.load(name) for name in options.only or recipes.names()]
     check_all(chosen, options.seeds)
     plots.figure()  # before hours are spent, see that pictures can be drawn
@@ -52,9 +52,9 @@ def run(options: argparse.Namespace, train: Train) -> int:
     todo = [one for group in runs for one in group if not is_done(one)]
     items = [(one.path, recipe) for recipe, group in zip(chosen, runs) for one in group]
     driven: list[Driven | None] = [None]
-    if not todo or train(todo, crew):
+    if not todo or train(todo, pool):
         print(f"playing {len(items)} runs", file=sys.stderr)
-        driven = crew.each(environments.drive_one, items, crew.jobs)
+        driven = pool.each(environments.drive_one, items, pool.jobs)
     played = [one for one in driven if one is not None]
     if len(played) < len(items):
         print("interrupted; the same command goes on", file=sys.stderr)

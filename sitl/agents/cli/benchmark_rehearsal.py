@@ -50,7 +50,7 @@ def declare(actions: argparse._SubParsersAction[argparse.ArgumentParser], train:
 
 def run(options: argparse.Namespace, train: Train) -> int:
     """Run the command."""
-    crew = workers(options)
+    pool = workers(options)
     chosen = [plans.load(name) for name in options.only or plans.names()]
     plans.check_names(chosen)
     recipes = {plan.name: recipes_of(plan, options.steps) for plan in chosen}
@@ -62,11 +62,11 @@ def run(options: argparse.Namespace, train: Train) -> int:
     }
     todo = [one for pair in runs.values() for group in pair.values() for one in group if not is_done(one)]
     sections = {}
-    if not todo or train(todo, crew):
+    if not todo or train(todo, pool):
         for plan in chosen:
             groups = [Group(title, group) for title, group in runs[plan.name].items()]
             print(f"rehearsing {plan.name}: {PLAIN} and randomised", file=sys.stderr)
-            found = with_bar(groups, plan.chosen(), options.episodes, 0, None, crew)
+            found = with_bar(groups, plan.chosen(), options.episodes, 0, None, pool)
             if found is None:
                 break
             sections[plan.name] = found

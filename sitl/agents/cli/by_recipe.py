@@ -46,5 +46,5 @@ def config_by_recipe(options: argparse.Namespace) -> RunConfig:
 
 
 def folder_name(options: argparse.Namespace, config: RunConfig) -> str:
-    """Of a run, when the user does not say."""
+    """Default folder name of a run."""
     return config.name if options.recipe is None else recipes.load(options.recipe).name

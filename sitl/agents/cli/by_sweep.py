@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import environments
+from ..report.statistics import scipy_stats
 from ..report.sweep import write_table
 from ..runs import folder as folders
 from ..runs import sweep as sweeps
@@ -37,13 +38,15 @@ def runs_of_sweep(options: argparse.Namespace, path: Path, configure: Configure,
 
     Args:
         options: with ``sweep``.
-        path: of the sweep's folder.
+        path: path of the sweep's folder.
         configure: makes a run of options.
         open_: makes its folder, or opens it.
 
     Raises:
         AgentError: a name or a value that cannot be; then no folder was made.
+        MissingExtra: no SciPy, which the sweep's table needs at the end.
     """
+    scipy_stats()
     found = sweeps.combinations(options.sweep)
     configs = [configure(_with(options, values)) for values in found]
     environments.try_all(configs)

@@ -32,8 +32,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Run the command."""
-    crew = workers(options)
+    pool = workers(options)
     groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
-    path = compare(groups, options.out, options.block, options.play, crew)
+    path = compare(groups, options.out, options.block, options.play, pool)
     print(path)
     return 0

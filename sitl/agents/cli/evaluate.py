@@ -35,10 +35,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def evaluate(options: argparse.Namespace) -> int:
     """Run the command."""
     changes = assignments(options.option)
-    crew, runs = workers(options), folders.find(options.run)
+    pool, runs = workers(options), folders.find(options.run)
     plans = [
         run.config.evaluation.changed(options.episodes, options.jitter, options.max_steps, changes) for run in runs
     ]
-    for run, found in zip(runs, evaluate_runs(runs, plans, options.seed, crew)):
+    for run, found in zip(runs, evaluate_runs(runs, plans, options.seed, pool)):
         print(f"{run.path}: {found.sentence()}")
     return 0

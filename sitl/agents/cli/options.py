@@ -72,7 +72,7 @@ def add_jobs(parser: argparse.ArgumentParser) -> None:
 
 
 def workers(options: argparse.Namespace) -> Workers:
-    """What ``add_jobs`` added.
+    """The workers that the options of ``add_jobs`` select.
 
     Raises:
         AgentError: an address without ``--backend ray``.

@@ -52,7 +52,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Run the command."""
-    crew = workers(options)
+    pool = workers(options)
     groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
     environments = {group.config.env for group in groups}
     if len(environments) > 1:
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     changes = plan.chosen(options.only or ())
     EvaluationPlan().changed(jitter=options.jitter)  # refuses one that cannot be
     make_folder(options.out)  # before all is played, see that it can be written
-    found = with_bar(groups, changes, options.episodes, options.seed, options.jitter, crew)
+    found = with_bar(groups, changes, options.episodes, options.seed, options.jitter, pool)
     if found is None:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130
@@ -79,13 +79,13 @@ def with_bar(
     episodes: int | None,
     seed: int,
     jitter: float | None,
-    crew: Workers,
+    pool: Workers,
 ) -> list[Rehearsed] | None:
     """``rehearse`` with a progress bar of all episodes."""
     total = sum(trial.episodes for group in groups for trial in trials_of(group.runs, changes, episodes, seed))
     with tqdm(total=total, unit="episode", file=sys.stderr, disable=None, smoothing=0.1) as bar:
 
-        def told(index: int, count: Any) -> None:
+        def on_progress(index: int, count: Any) -> None:
             bar.update(count)
 
-        return rehearse(groups, changes, episodes, seed, jitter, crew.jobs, told, crew.each)
+        return rehearse(groups, changes, episodes, seed, jitter, pool.jobs, on_progress, pool.each)

@@ -58,7 +58,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def train(options: argparse.Namespace) -> int:
     """Run the command."""
-    crew = workers(options)
+    pool = workers(options)
     path, runs = _runs(options)
     if all(is_done(run) for run in runs):
         if is_sweep(path):
@@ -66,7 +66,7 @@ def train(options: argparse.Namespace) -> int:
         print(f"{path} is done; --episodes or --steps lets it go on")
         return 0
     with Bar(runs) as bar:
-        done = train_all([run.path for run in runs], crew.jobs, bar, crew.each)
+        done = train_all([run.path for run in runs], pool.jobs, bar, pool.each)
         summary = f"{bar.steps:,} steps in {bar.wall_s:.1f} s: {bar.speed()}"
     for folder, group in _groups(path, runs).items():
         _draw(folder, group)

@@ -15,10 +15,10 @@ _TAKES = {"dqn": "discrete", "sac": "continuous"}
 
 
 class Actions:
-    """Between the actions of a network and those of an environment.
+    """Converts the actions of a network to those of an environment.
 
     Args:
-        space: of the environment's actions.
+        space: space of the environment's actions.
         algorithm: "dqn", "ppo" or "sac".
 
     Raises:
@@ -32,15 +32,15 @@ class Actions:
         if _TAKES.get(algorithm, form) != form:
             raise AgentError(f"{algorithm} learns {_TAKES[algorithm]} actions: --option action={_TAKES[algorithm]}")
         self.environment = space
-        """Of the environment."""
+        """Action space of the environment."""
         self._box = space if isinstance(space, gym.spaces.Box) else None
         self.space: gym.Space[Any] = (
             space if self._box is None else gym.spaces.Box(-1.0, 1.0, self._box.shape, np.float32)
         )
-        """Of the network."""
+        """Action space of the network."""
 
     def to_environment(self, actions: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Actions of the environment; both have a row a robot."""
+        """The environment's actions for the network's; both have a row a robot."""
         if self._box is None:
             return actions.astype(np.int64)
         low, high = self._box.low, self._box.high

@@ -23,20 +23,20 @@ from .settings import Settings
 
 BEST = "best.zip"
 JITTER = 0.1
-"""By which starts are moved [m, rad] where all are one."""
+"""Distance by which start poses are moved where all are the same, in x and y [m] and yaw [rad]."""
 SEED = 2**31
-"""Of the starts and the resets: the same for every network."""
+"""Seed of start poses and resets, the same for every network."""
 
 
 class Checks:
-    """Of one run.
+    """Evaluates the network of one run at intervals and keeps the best one.
 
     Args:
-        config: of the run. Episodes are played as those of its evaluation, which may have other starts and be longer
-            than those that are learnt from; where they all start at one place, starts are moved by up to 0.1 m and
-            0.1 rad.
+        config: configuration of the run. Episodes are played as those of its evaluation, which may have other starts
+            and be longer than those that are learnt from; where they all start at one place, starts are moved by up
+            to 0.1 m and 0.1 rad.
         figures: its settings; they say how often.
-        path: of the best model; what another run left there is removed.
+        path: path of the best model; what another run left there is removed.
         begun: steps after which the run goes on; 0: it is new.
     """
 
@@ -57,11 +57,11 @@ class Checks:
         self._poses: list[Pose] | None = None
 
     def _next(self, steps: int) -> float:
-        """Steps after which the next check is due."""
+        """Number of steps after which the next check is due."""
         return (steps // self._every + 1) * self._every if self._every else np.inf
 
     def after(self, model: Any, done: bool = False) -> None:
-        """Rounds of learning are over, all of them if ``done``: check when it is time."""
+        """Called after rounds of learning; ``done``: after the last one. Checks the network when it is due."""
         steps = model.num_timesteps
         if steps < self._due and not (done and self._every):
             return
@@ -74,7 +74,7 @@ class Checks:
             checkpoint.save_best(self._path, model, spaces, score)
 
     def score(self, model: Any) -> checkpoint.Score:
-        """How good the model is now: it plays all episodes at once."""
+        """Score of the model: all episodes are played at once."""
         env = self._made()
         features = Features(env.single_observation_space, self._figures.sectors)
         frames = Frames(self._count, self._figures.frames, features.width)
@@ -100,7 +100,7 @@ class Checks:
         return self._env
 
     def _begun(self, env: gym.vector.VectorEnv[Any, Any, Any]) -> Any:
-        """What the robots see at the start of their episodes: the same in each check."""
+        """First observations of the episodes, the same in each check."""
         seeds: Any = [environments.seed_of(SEED, k) for k in range(self._count)]
         if self._poses is None:
             return env.reset(seed=seeds)[0]
@@ -111,6 +111,6 @@ class Checks:
         return observations
 
     def close(self) -> None:
-        """Let go of the robots."""
+        """Close the environment."""
         if self._env is not None:
             self._env.close()

@@ -15,7 +15,7 @@ from ..errors import AgentError
 
 Rows = npt.NDArray[np.float32]
 _NEAR = 10.0
-"""Distance and coordinates that count as 1 [m]."""
+"""Distances and coordinates that give a feature of 1 [m]."""
 
 
 class Features:
@@ -27,8 +27,8 @@ class Features:
     - the way to a goal: distance, cosine and sine of the bearing; a pose: x, y, z, cosine and sine of the yaw.
 
     Args:
-        space: of one robot's observations.
-        sectors: of a scan; 0: every reading for itself.
+        space: space of one robot's observations.
+        sectors: number of sectors of a scan; 0: each reading is a feature.
 
     Raises:
         AgentError: a kind of observation that is none of these.
@@ -45,7 +45,7 @@ class Features:
         sample: Any = space.sample()
         one = {k: v[None] for k, v in sample.items()} if isinstance(sample, dict) else sample[None]
         self.width = int(self(one).shape[1])
-        """Numbers in a row."""
+        """Number of features of a robot."""
 
     def _part(self, name: str, space: gym.Space[Any]) -> Callable[[Any], Rows]:
         if name == "goal":
@@ -68,7 +68,7 @@ class Features:
 
 
 def nearest(scans: Rows, sectors: int) -> Rows:
-    """Nearest reading of each of so many sectors of equal width; scans have shape (count, readings)."""
+    """Nearest reading [m] of each of ``sectors`` sectors of equal width; scans have shape (count, readings)."""
     readings = scans.shape[1]
     if sectors == 0 or sectors >= readings:
         return scans
@@ -89,12 +89,12 @@ def _pose(poses: Any) -> Rows:
 
 
 class Frames:
-    """The last few features of each robot, side by side, the newest first.
+    """The last ``frames`` features of each robot in a row, the newest first.
 
     Args:
-        count: of robots.
-        frames: how many.
-        width: of features.
+        count: number of robots.
+        frames: number of observations in a row.
+        width: number of features of a robot.
     """
 
     def __init__(self, count: int, frames: int, width: int) -> None:
@@ -103,7 +103,7 @@ class Frames:
         """Shape (count, frames * width)."""
 
     def begin(self, features: Rows, robots: Any = slice(None)) -> Rows:
-        """Episodes of these robots begin: what they see now was always so. Returns all rows."""
+        """Start episodes of these robots: all frames hold the first observation. Returns all rows."""
         times = self.rows.shape[1] // self._width
         self.rows[robots] = np.tile(features[robots], (1, times))
         return self.rows

@@ -12,11 +12,11 @@ from sitl.core.extras import MissingExtra
 CLASSES = {"dqn": "DQN", "ppo": "PPO", "sac": "SAC"}
 """Algorithm -> its class in stable-baselines3."""
 LIBRARIES = ("torch", "stable-baselines3")
-"""Whose versions results depend on."""
+"""Libraries whose versions results depend on."""
 
 
 def require() -> None:
-    """See that the libraries are there, without the seconds that loading them takes.
+    """Check that the libraries are installed, without importing them, which takes seconds.
 
     Raises:
         MissingExtra: one is not installed.
@@ -41,7 +41,7 @@ def stable_baselines3() -> Any:
 
 
 def torch(threads: int | None = None) -> Any:
-    """The module; with ``threads``, set to so many in this process.
+    """The module torch; ``threads``: number of threads to set for this process.
 
     Raises:
         MissingExtra: it is not installed.

@@ -17,9 +17,9 @@ def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
 
     Args:
         algorithm: "dqn", "ppo" or "sac".
-        settings: of that algorithm.
-        robots: that it will learn with.
-        seed: of its weights and choices.
+        settings: settings of that algorithm.
+        robots: robots that it will learn with.
+        seed: seed of its weights and choices.
     """
     hidden = [settings.width] * settings.layers
     common: dict[str, Any] = {

@@ -29,12 +29,12 @@ def _records() -> dict[str, type]:
     from sitl.bridge.bridge import BridgeState
     from sitl.bridge.channel import ChannelState
     from sitl.envs.latency import Memory
-    from sitl.envs.robots.vehicles import Ready
+    from sitl.envs.robots.vehicles import EpisodeState
     from sitl.envs.session import Snapshot
     from sitl.simulation import Snapshot as SimulationSnapshot
 
     return {
-        "environment": Snapshot, "latency": Memory, "vehicle": Ready, "simulation": SimulationSnapshot,
+        "environment": Snapshot, "latency": Memory, "vehicle": EpisodeState, "simulation": SimulationSnapshot,
         "mission": Mission, "mission item": MissionItem, "bridge": BridgeState, "channel": ChannelState,
     }  # fmt: skip
 

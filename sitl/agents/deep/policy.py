@@ -19,8 +19,8 @@ class DeepPolicy:
     """Takes the most likely action (PPO, SAC: the middle of the distribution), or the best (DQN).
 
     Args:
-        model: of stable-baselines3.
-        settings: that it was trained with.
+        model: model of stable-baselines3.
+        settings: settings that it was trained with.
         features, actions: of the environment that it was trained in.
     """
 

@@ -28,12 +28,12 @@ class Robots(VecEnv):
 
     Args:
         env: ``gymnasium.make_vec`` of one of this package's environments.
-        features: of its observations.
-        frames: how many are seen together.
-        actions: of its actions.
+        features: conversion of its observations.
+        frames: number of observations that the network sees together.
+        actions: conversion of its actions.
         reward_scale: factor of rewards.
-        tally: told of every step.
-        seeds: of the first episodes, one a robot.
+        tally: receives every step.
+        seeds: seeds of the first episodes, one a robot.
     """
 
     def __init__(
@@ -69,10 +69,10 @@ class Robots(VecEnv):
         rows = self._frames.push(self._features(observations))
         ended = terminated | truncated
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        told = self._tally.count(rewards, terminated, ended)
-        if told:
+        finished = self._tally.count(rewards, terminated, ended)
+        if finished:
             robots = np.flatnonzero(ended)
-            for index, (reward, steps) in zip(robots.tolist(), told, strict=True):
+            for index, (reward, steps) in zip(robots.tolist(), finished, strict=True):
                 infos[index] = {
                     "terminal_observation": rows[index].copy(),
                     "TimeLimit.truncated": bool(truncated[index] and not terminated[index]),
@@ -88,7 +88,7 @@ class Robots(VecEnv):
         return {"robots": snapshots, "frames": self._frames.rows, "tally": self._tally.memory()}
 
     def recall(self, memory: dict[str, Any]) -> None:
-        """Go on from there."""
+        """Restore the state that ``memory`` returned."""
         self._env.unwrapped.restore(memory["robots"])  # type: ignore[attr-defined]
         self._frames.rows[...] = memory["frames"]
         self._tally.recall(memory["tally"])

@@ -15,40 +15,40 @@ from ..errors import AgentError
 
 @dataclass(frozen=True)
 class Settings:
-    """What all have.
+    """Settings of all algorithms.
 
     Raises:
         AgentError: a figure outside its limits.
     """
 
     robots: int = 16
-    """How many learn at once, in one vector environment."""
+    """Number of robots that learn at once, in one vector environment."""
     sectors: int = 48
-    """Into how many a scan is divided; of each the nearest reading counts. 0: all readings."""
+    """Number of sectors that a scan is divided into; the nearest reading of each counts. 0: all readings."""
     frames: int = 3
-    """Observations that the agent sees together: this one and those of the steps before."""
+    """Number of successive observations that the network gets, the newest first."""
     reward_scale: float = 0.05
-    """Factor of rewards before they are learnt from; the run's log has them as they are."""
+    """Factor of rewards for learning; the run's log has the unscaled ones."""
     gamma: float = 0.99
     """Discount of a step, 0 .. 1."""
     learning_rate: float = 3e-4
     learning_rate_end: float = 3e-4
-    """It falls to this by the end of the run, linearly."""
+    """Learning rate at the end of the run; it falls linearly."""
     batch: int = 256
     """Samples of a gradient step."""
     width: int = 64
-    """Of each hidden layer."""
+    """Units of each hidden layer."""
     layers: int = 2
-    """How many are hidden."""
+    """Number of hidden layers."""
     threads: int = 1
-    """Of torch; with more than one, sums may differ in their last bits from machine to machine."""
+    """Threads of torch; with more than one, sums can differ in their last bits between machines."""
     check_every: int = 100_000
-    """Steps between two checks: the network plays greedily, and the best one is kept, which plays. 0: none."""
+    """Steps between two greedy evaluations of the network; the best network is kept for playing. 0: no checks."""
     check_episodes: int = 20
-    """That a check plays."""
+    """Number of episodes that a check plays."""
     check_by: str = "reward"
-    """What makes one the best: "reward", the highest mean reward, or "crashes", the fewest episodes that ended by
-    themselves (of equal ones, the highest mean reward)."""
+    """Criterion of the best network: "reward", the highest mean reward; "crashes", the fewest episodes that ended by
+    themselves (the highest mean reward decides between equals)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -76,11 +76,11 @@ class Ppo(Settings):
     rollout: int = 128
     """Steps of each robot between two updates."""
     epochs: int = 8
-    """How often each sample is learnt from."""
+    """Number of passes over each sample."""
     advantage_decay: float = 0.95
     """Lambda of the generalised advantage estimate."""
     clip: float = 0.2
-    """By how much the probability ratio of an action may leave 1."""
+    """Clipping range: how far the probability ratio of an action may differ from 1."""
     entropy: float = 0.01
     """Weight of the policy's entropy: exploration."""
     learning_rate_end: float = 3e-5
@@ -91,13 +91,13 @@ class OffPolicy(Settings):
     """DQN and SAC: both learn from a memory of past steps."""
 
     memory: int = 200_000
-    """Steps that are remembered, of all robots together."""
+    """Capacity of the replay memory: steps of all robots together."""
     warm_up: int = 5_000
     """Steps of random actions before learning begins."""
     learn_every: int = 1
     """Steps of each robot between two rounds of learning."""
     gradient_steps: int = 2
-    """In each round."""
+    """Number of gradient steps in each round."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Dqn(OffPolicy):
     epsilon_end: float = 0.05
     """Probability of a random action, once it has fallen from 1."""
     epsilon_share: float = 0.3
-    """Share of the run in which it falls."""
+    """Fraction of the run in which it falls."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class Sac(OffPolicy):
     """SAC. Source: Haarnoja et al., "Soft Actor-Critic Algorithms and Applications", arXiv:1812.05905."""
 
     tau: float = 0.005
-    """How far target networks follow in a gradient step."""
+    """Fraction by which target networks approach the network in a gradient step."""
 
 
 _CHOICES = {"check_by": ("reward", "crashes")}

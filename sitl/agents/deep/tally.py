@@ -13,10 +13,10 @@ from ..runs.episodes import Episode
 
 
 class Tally:
-    """Of so many robots.
+    """Counts rewards and steps of the episodes of several robots.
 
     Args:
-        count: of robots.
+        count: number of robots.
         step_time: simulated time of a step [s].
     """
 
@@ -24,7 +24,7 @@ class Tally:
         self.done = 0
         """Episodes."""
         self.done_steps = 0
-        """Of those."""
+        """Steps of the finished episodes."""
         self.epsilon = float("nan")
         """Probability of exploring now."""
         self._steps = np.zeros(count, np.int64)
@@ -58,10 +58,10 @@ class Tally:
         return rows
 
     def memory(self) -> dict[str, Any]:
-        """What ``recall`` needs to go on."""
+        """State for ``recall``."""
         return {"done": self.done, "done_steps": self.done_steps, "steps": self._steps, "rewards": self._rewards}
 
     def recall(self, memory: dict[str, Any]) -> None:
-        """Go on from there."""
+        """Restore the state that ``memory`` returned."""
         self.done, self.done_steps = memory["done"], memory["done_steps"]
         self._steps, self._rewards = memory["steps"].copy(), memory["rewards"].copy()

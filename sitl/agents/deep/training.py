@@ -93,11 +93,11 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     unwritten: list[Any] = []
 
     def between() -> bool:
-        """Between two rounds; returns whether the run ends here."""
+        """Called between two rounds of learning; returns whether the run ends here."""
         tally.epsilon = float(getattr(model, "exploration_rate", "nan"))
         rows = tally.take()
         if rows:
-            watch.told(rows)
+            watch.on_progress(rows)
             unwritten.extend(rows)
         done = config.episodes is not None and tally.done >= config.episodes
         done = done or (config.steps is not None and tally.done_steps >= config.steps)

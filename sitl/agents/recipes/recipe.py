@@ -15,28 +15,28 @@ from ..runs.plan import EvaluationPlan
 
 @dataclass(frozen=True)
 class Recipe:
-    """All of a run but its seed.
+    """A run without its seed.
 
     Raises:
         AgentError: no such algorithm, or a length that cannot be.
     """
 
     name: str
-    """Of its file, without the ending."""
+    """File name without the ending."""
     env: str
     """Id of the environment."""
     algorithm: str
     summary: str = ""
-    """A line for people."""
+    """One line for reports and lists."""
     episodes: int | None = None
     steps: int | None = None
-    """Length of a run; neither: the algorithm's."""
+    """Length of a run; both None: the algorithm's default."""
     max_steps: int = MAX_STEPS
-    """Of an episode."""
+    """Longest episode [steps]."""
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Of the environment."""
+    """Options of the environment."""
     settings: Mapping[str, Any] = field(default_factory=dict)
-    """Of the algorithm; those that are not there are as usual."""
+    """Settings of the algorithm; the others have their defaults."""
     evaluation: EvaluationPlan = field(default_factory=EvaluationPlan)
 
     def __post_init__(self) -> None:

@@ -15,7 +15,7 @@ _FOLDER = Path(__file__).parent
 
 
 def names() -> tuple[str, ...]:
-    """Of the recipes that come with the program."""
+    """Names of the recipes that come with the program."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 
 

@@ -16,7 +16,7 @@ from .recipe import Recipe
 
 
 def check_all(recipes: Sequence[Recipe], seeds: int) -> None:
-    """See that all can be trained, before one is.
+    """Check that all recipes can be trained, before any training starts.
 
     Raises:
         MissingExtra: some need what is not installed; the message says which do not.

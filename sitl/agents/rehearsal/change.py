@@ -14,7 +14,7 @@ from ..errors import AgentError
 from .worlds import altered
 
 GROUPS = ("world", "physics", "vehicle", "sensors", "latency", "step", "together")
-"""What changes can be of; reports go by them."""
+"""Groups of changes; reports are divided by them."""
 
 
 @dataclass(frozen=True)
@@ -29,21 +29,21 @@ class Change:
     group: str
     """One of ``GROUPS``."""
     scale: Mapping[str, float] = field(default_factory=dict)
-    """Figure of the robot -> factor of its usual value."""
+    """Figure of the robot -> factor of its default value."""
     set: Mapping[str, float] = field(default_factory=dict)
-    """Figure -> value."""
+    """Figure -> value, in the figure's unit."""
     latency: float | None = None
-    """[s]; None: as at home."""
+    """Latency [s]; None: unchanged."""
     mirror: bool = False
-    """The world of home, left and right changed."""
+    """Mirror the world left to right."""
     stretch: float = 1.0
-    """Factor of the lengths of the world of home."""
+    """Factor of the world's horizontal lengths."""
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Of the environment, which replace those of home."""
+    """Options of the environment, in place of the original ones."""
     episodes: int | None = None
-    """At most so many are played: for slow physics."""
+    """Largest number of episodes played; for slow physics."""
     by_default: bool = True
-    """Whether it is tried when the user does not name it."""
+    """Whether it is tried without being named."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.strip():
@@ -79,7 +79,7 @@ class Change:
 
     @classmethod
     def of(cls, values: Any) -> Change:
-        """From names and values, as a file has them.
+        """From the keys and values of a file.
 
         Raises:
             AgentError: no such key, a missing one, or a value that cannot be.
@@ -98,10 +98,10 @@ class Change:
         return cls(**values)
 
     def env_options(self, robot: Any, home: Mapping[str, Any]) -> dict[str, Any]:
-        """Options of the environment that make it.
+        """Options of the environment with this change.
 
         Args:
-            robot: of the environment at home (``sitl.envs.robots.robot.Robot``).
+            robot: robot of the environment at home (``sitl.envs.robots.robot.Robot``).
             home: options of the environment at home.
 
         Raises:
@@ -120,10 +120,11 @@ class Change:
 
 
 def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mapping[str, Any] | None) -> bool:
-    """Whether a policy has seen a change in its training: all that differs from home was drawn from ranges around it.
+    """Whether the randomisation of a policy's training covers a change: everything that differs was drawn from ranges
+    around it.
 
     Args:
-        options: of the environment under the change.
+        options: options of the environment under the change.
         home: at home.
         drawn: the option ``randomise`` of the training.
     """
@@ -138,7 +139,7 @@ def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mappi
 
 
 def usual(robot: Any, figure: str) -> float:
-    """The value of a figure of the robot's airframe.
+    """Default value of a figure of the robot.
 
     Raises:
         AgentError: it has none.
@@ -154,7 +155,7 @@ def usual(robot: Any, figure: str) -> float:
 
 
 def scaled(robot: Any, figure: str, factor: float) -> float:
-    """So many times the usual value, without the last bits that nobody meant."""
+    """``factor`` times the default value, rounded."""
     return float(f"{factor * usual(robot, figure):.12g}")
 
 

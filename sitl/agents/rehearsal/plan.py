@@ -38,7 +38,7 @@ class Plan:
     training: Mapping[str, Any] = field(default_factory=dict)
     """recipe: that ``sitl benchmark rehearsal`` trains by; steps or episodes: other than the recipe's."""
     randomise: Mapping[str, Any] = field(default_factory=dict)
-    """Of the randomised one: scale and set (figure -> low, high), latency (low, high), draws."""
+    """Randomisation of the second policy: scale and set (figure -> low, high), latency (low, high) [s], draws."""
 
     def __post_init__(self) -> None:
         names = [change.name for change in self.changes]
@@ -93,7 +93,7 @@ class Plan:
 
 
 def names() -> tuple[str, ...]:
-    """Of the plans that come with the program."""
+    """Names of the plans that come with the program."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 
 
@@ -111,7 +111,7 @@ def load(name: str | Path) -> Plan:
 
 
 def check_names(plans: Sequence[Plan]) -> None:
-    """See that no two plans have the same name.
+    """Check that no two plans have the same name.
 
     Raises:
         AgentError: two have.

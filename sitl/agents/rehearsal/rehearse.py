@@ -12,9 +12,9 @@ import numpy as np
 from ..report.group import Group
 from ..runs import folder as folders
 from ..runs.folder import RunFolder
-from ..runs.local import Told, each
+from ..runs.local import OnProgress, each
 from .change import Change
-from .share import Floats, Share, advantage, share
+from .transfer_ratio import Floats, Ratio, advantage, transfer_ratio
 from .trial import Result, Trial, attempt
 
 EPISODES = 50
@@ -24,21 +24,21 @@ Each = Callable[..., list[Any]]
 
 @dataclass(frozen=True)
 class Tried:
-    """Runs of a group under one change, or at home."""
+    """Results of a group of runs under one change, or without one."""
 
     rewards: Floats
-    """Shape (seeds, episodes); (0, 0) when it was refused."""
+    """Rewards, shape (seeds, episodes); (0, 0) when the change was refused."""
     crashed: Floats
-    """1 for a crash; the same shape."""
+    """1 for an episode with a crash, else 0; the same shape."""
     false_alarms: Floats
-    """1 for a crash that was a reading only; the same shape."""
+    """1 for a crash that was a lidar reading only, else 0; the same shape."""
     refused: str = ""
     seen: bool = False
     """Whether the randomisation that they were trained with covers the change."""
 
     @classmethod
     def of(cls, results: Sequence[Result]) -> Tried:
-        """Of one result for each seed."""
+        """From the results of each seed."""
         refused = next((result.refused for result in results if result.refused), "")
         if refused:
             nothing = np.zeros((0, 0))
@@ -52,27 +52,27 @@ class Tried:
 
     @property
     def mean(self) -> float:
-        """Reward of an episode."""
+        """Mean reward of an episode."""
         return float(self.rewards.mean())
 
 
 @dataclass(frozen=True)
 class Rehearsed:
-    """What a group of runs, which differ in their seeds only, gave."""
+    """Results of a group of runs that differ in their seeds only."""
 
     name: str
     runs: Sequence[RunFolder]
     home: Tried
     changes: Sequence[Change]
     tried: Sequence[Tried]
-    """Under each change."""
+    """Results under each change."""
 
-    def shares(self) -> list[Share | None]:
-        """Of the reward at home, under each change; None where it was not played."""
-        return [None if tried.refused else share(self.home.rewards, tried.rewards) for tried in self.tried]
+    def transfer_ratios(self) -> list[Ratio | None]:
+        """Reward under each change relative to that without it; None where it was not played."""
+        return [None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards) for tried in self.tried]
 
-    def advantages(self, first: Rehearsed) -> list[Share | None]:
-        """Over other runs under each change, see ``advantage``; None where one of the two was not played."""
+    def advantages(self, first: Rehearsed) -> list[Ratio | None]:
+        """Advantage over other runs under each change, see ``advantage``; None where one of the two was not played."""
         return [
             None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards)
             for a, b in zip(first.tried, self.tried)
@@ -86,13 +86,13 @@ def trials_of(
     seed: int = 0,
     jitter: float | None = None,
 ) -> list[Trial]:
-    """At home first, then under each change; for each, one trial a run.
+    """Trials without a change first, then under each change; one trial a run.
 
     Args:
-        runs: of a group.
-        changes: that are tried.
-        episodes: of a trial; None: as many as the run's evaluation has, ``EPISODES`` at most.
-        seed: of the episodes.
+        runs: runs of a group.
+        changes: changes that are tried.
+        episodes: episodes of a trial; None: as many as the run's evaluation has, ``EPISODES`` at most.
+        seed: seed of the episodes.
         jitter: see ``Trial``.
     """
     out = []
@@ -111,7 +111,7 @@ def rehearse(
     seed: int = 0,
     jitter: float | None = None,
     jobs: int = 1,
-    told: Told = lambda index, message: None,
+    on_progress: OnProgress = lambda index, message: None,
     do: Each = each,
 ) -> list[Rehearsed] | None:
     """Try groups of runs; None when it was interrupted.
@@ -119,15 +119,15 @@ def rehearse(
     Args:
         groups: names and runs.
         changes, episodes, seed, jitter: see ``trials_of``.
-        jobs: how many processes.
-        told: called with the number of a trial and 1 for each of its episodes.
+        jobs: number of processes.
+        on_progress: called with the number of a trial and 1 for each of its episodes.
         do: does the work for all trials, as ``sitl.agents.runs.local.each``.
 
     Raises:
         AgentError: a run cannot be played at home.
     """
     trials = [trials_of(group.runs, changes, episodes, seed, jitter) for group in groups]
-    found = do(attempt, [trial for some in trials for trial in some], jobs, told)
+    found = do(attempt, [trial for some in trials for trial in some], jobs, on_progress)
     if any(result is None for result in found):
         return None
     out, first = [], 0

@@ -16,13 +16,13 @@ from ..report.document import Document
 from ..runs.files import make_folder
 from .change import GROUPS
 from .rehearse import Rehearsed, Tried
-from .share import Share, mean_of
 from .tables import write_changes, write_episodes
+from .transfer_ratio import Ratio, mean_of
 from .truth import MARGIN
 
 SEEN = " (seen)"
 WEAK = 0.2
-"""Share of crashes at home above which the report warns."""
+"""Fraction of crashes without a change above which the report warns."""
 _LINE = 0.32
 """Height of a change in the picture [inch]."""
 
@@ -33,7 +33,7 @@ def write_report(sections: Mapping[str, Sequence[Rehearsed]], folder: Path, seed
     Args:
         sections: title -> runs side by side, all under the same changes.
         folder: for the files.
-        seed: that the episodes were played with.
+        seed: seed that the episodes were played with.
 
     Returns:
         path of the Markdown.
@@ -97,12 +97,12 @@ def _table(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
         label = f"{one.name}: " if len(rehearsed) > 1 else ""
         head += [f"{label}reward", f"{label}share", f"{label}crashes"]
     head += [f"{one.name} - {rehearsed[0].name}" for one in rehearsed[1:]]
-    shares = [one.shares() for one in rehearsed]
+    ratios = [one.transfer_ratios() for one in rehearsed]
     advantages = [one.advantages(rehearsed[0]) for one in rehearsed[1:]]
     rows = []
     for k, change in enumerate(rehearsed[0].changes):
         row = [change.name, change.group]
-        for one, found in zip(rehearsed, shares):
+        for one, found in zip(rehearsed, ratios):
             tried, its = one.tried[k], found[k]
             if its is None:
                 row += ["", "not played", ""]
@@ -114,7 +114,8 @@ def _table(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
 
 
 def _groups(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
-    """Head and rows: means over the changes of each group, of all, and of those that nobody was trained with."""
+    """Head and rows of the table of means over the changes: of each group, of all, and of those that no training
+    covered."""
     changes = rehearsed[0].changes
     played = [k for k in range(len(changes)) if not any(one.tried[k].refused for one in rehearsed)]
     unseen = [k for k in played if not any(one.tried[k].seen for one in rehearsed)]
@@ -130,15 +131,15 @@ def _groups(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]
             continue
         row = [title, str(len(numbers))]
         for one in rehearsed:
-            shares, value = one.shares(), float(np.mean([one.tried[k].mean for k in numbers]))
-            part = mean_of([shares[k] for k in numbers])
+            ratios, value = one.transfer_ratios(), float(np.mean([one.tried[k].mean for k in numbers]))
+            part = mean_of([ratios[k] for k in numbers])
             row += [f"{value:.0f}", "-" if math.isnan(part) else f"{_whole(part)} %"]
         rows.append(row)
     return head, rows
 
 
 def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
-    """What must be known before the figures are believed."""
+    """Cautions for the reader, before the results."""
     out = []
     weak = [one.name for one in rehearsed if one.home.crashed.mean() > WEAK]
     if weak:
@@ -167,33 +168,34 @@ def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
 
 
 def crashes(tried: Tried) -> str:
-    """How many there were, and how many of them were a reading only."""
+    """Number of crashes, and how many of them were by a reading only."""
     text, false_alarms = f"{int(tried.crashed.sum())} of {tried.crashed.size}", int(tried.false_alarms.sum())
     return f"{text} ({false_alarms} false)" if false_alarms else text
 
 
-def percent(share: Share) -> str:
-    """A share and its interval as text."""
-    if math.isnan(share.value):
+def percent(ratio: Ratio) -> str:
+    """A ratio and its interval in percent, as text."""
+    if math.isnan(ratio.value):
         return "-"
-    return f"{_whole(share.value)} % ({_whole(share.low)} .. {_whole(share.high)})"
+    return f"{_whole(ratio.value)} % ({_whole(ratio.low)} .. {_whole(ratio.high)})"
 
 
 def _whole(part: float) -> str:
-    """A share in percent; never -0."""
+    """A ratio in percent; never -0."""
     return "-" if math.isnan(part) else str(round(100.0 * part))
 
 
 def draw(path: Path, rehearsed: Sequence[Rehearsed]) -> Path:
-    """Shares as dots with their intervals, a line a change, a colour a run."""
+    """Transfer ratios as dots with their intervals, a line a change, a colour a run."""
     changes = rehearsed[0].changes
     made, axes = plots.figure(9.0, 1.2 + _LINE * len(changes) * (1.0 + 0.25 * (len(rehearsed) - 1)))
     place = axes[0, 0]
     lines = np.arange(len(changes), dtype=float)
     for number, (colour, one) in enumerate(zip(plots.COLOURS * 9, rehearsed)):
         offset = 0.6 * ((number + 0.5) / len(rehearsed) - 0.5)
-        found = [(line, share) for line, share in zip(lines, one.shares()) if share and not math.isnan(share.value)]
-        values = np.array([share for _, share in found], float).reshape(-1, 3) * 100.0
+        ratios = zip(lines, one.transfer_ratios())
+        found = [(line, ratio) for line, ratio in ratios if ratio and not math.isnan(ratio.value)]
+        values = np.array([ratio for _, ratio in found], float).reshape(-1, 3) * 100.0
         spread = np.abs(values[:, 1:] - values[:, :1]).T
         place.errorbar(
             values[:, 0], [line + offset for line, _ in found], xerr=spread, fmt="o", color=colour, label=one.name,

@@ -28,7 +28,7 @@ def write_changes(path: Path, sections: Mapping[str, Sequence[Rehearsed]]) -> No
         for one in rehearsed:
             rows.append((title, one.name, "home", "", one.home.mean, 1.0, 1.0, 1.0, *_parts(one.home), *4 * [""], ""))
             advantages = [None] * len(one.changes) if one is rehearsed[0] else one.advantages(rehearsed[0])
-            for change, tried, share, above in zip(one.changes, one.tried, one.shares(), advantages):
+            for change, tried, share, above in zip(one.changes, one.tried, one.transfer_ratios(), advantages):
                 figures: Sequence[Any] = ("",) * 6 if share is None else (tried.mean, *share, *_parts(tried))
                 last = (*(above or ("", "", "")), int(tried.seen), tried.refused)
                 rows.append((title, one.name, change.name, change.group, *figures, *last))
@@ -39,9 +39,9 @@ def write_episodes(path: Path, sections: Mapping[str, Sequence[Rehearsed]], seed
     """A row for each episode.
 
     Args:
-        path: of the file.
+        path: path of the file.
         sections: title -> runs.
-        seed: that the episodes were played with.
+        seed: seed that the episodes were played with.
 
     Raises:
         AgentError: it cannot be written.
@@ -58,5 +58,5 @@ def write_episodes(path: Path, sections: Mapping[str, Sequence[Rehearsed]], seed
 
 
 def _parts(tried: Tried) -> tuple[float, float]:
-    """Shares of the episodes that ended in a crash, and in a false one."""
+    """Fractions of the episodes that ended in a crash, and in a false one."""
     return float(tried.crashed.mean()), float(tried.false_alarms.mean())

@@ -19,7 +19,7 @@ def recipes_of(plan: Plan, steps: int | None = None) -> dict[str, Recipe]:
 
     Args:
         plan: with a recipe.
-        steps: of a training; None: as the plan says, or else the recipe.
+        steps: steps of a training; None: as the plan says, or else the recipe.
 
     Raises:
         AgentError: the plan says no recipe, or its randomisation is none of the robot's.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One run under one change: episodes are played, or it is told why they cannot be."""
+"""One run under one change: episodes are played, or the reason why they cannot be is recorded."""
 
 from __future__ import annotations
 
@@ -17,49 +17,49 @@ from ..errors import AgentError
 from ..evaluate import Interrupted, Played, evaluate, moved_starts, until_stopped
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
-from ..runs.local import Stopped, Tell
+from ..runs.local import SendProgress, Stopped
 from .change import Change, is_covered
 from .truth import is_false_alarm
 
 JITTER = 0.1
-"""[m, rad]"""
+"""Default distance by which start poses are moved, in x and y [m] and yaw [rad]."""
 _REFUSALS = (OptionError, VehicleError, MissingExtra)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What is to be played; can be pickled."""
+    """A run under one change; picklable."""
 
     run: Path
     change: Change | None
-    """None: at home."""
+    """None: without a change."""
     episodes: int
     seed: int = 0
-    """Of the resets: equal for all trials, which are thereby paired episode by episode."""
+    """Seed of the resets; equal for all trials, so that their episodes are paired."""
     jitter: float | None = None
     """Start poses are moved by up to so much [m, rad]; None: as the run is evaluated, see ``jitter_of``."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """Of a trial."""
+    """Result of a trial."""
 
     rewards: tuple[float, ...] = ()
-    """Of each episode."""
+    """Reward of each episode."""
     crashed: tuple[bool, ...] = ()
     false_alarms: tuple[bool, ...] = ()
     """Crashes that were a reading only, see ``truth``."""
     simulated_s: float = 0.0
-    """Of all episodes together [s]."""
+    """Simulated time of all episodes together [s]."""
     seen: bool = False
     """Whether the training's randomisation covers the change."""
     refused: str = ""
-    """Why it was not played; "" when it was."""
+    """Reason why it was not played; "" when it was."""
 
 
 def home_options(config: RunConfig) -> dict[str, Any]:
-    """Options of the environment at home: as the run is evaluated, but nothing is drawn at random of what it was
-    trained with, so that plain and randomised runs have the same home."""
+    """Options of the environment without a change: those of the run's evaluation, without the randomisation of its
+    training, so that plain and randomised runs are compared in the same environment."""
     out = {**config.evaluation.options}
     if "randomise" in {**config.env_options, **out}:
         out["randomise"] = None
@@ -67,8 +67,9 @@ def home_options(config: RunConfig) -> dict[str, Any]:
 
 
 def jitter_of(config: RunConfig, robot: Any) -> float:
-    """By how much starts are moved when nobody says: as the run is evaluated, but a robot without noise that always
-    starts at one place would play one episode over and over."""
+    """Default distance by which starts are moved [m, rad]: as in the run's evaluation; but a robot without noise that
+    always
+    starts at one place would repeat the same episode."""
     starts = "start" in {**config.env_options, **config.evaluation.options}
     if config.evaluation.jitter == 0.0 and not starts and isinstance(robot, Turtlebot):
         return JITTER
@@ -76,7 +77,7 @@ def jitter_of(config: RunConfig, robot: Any) -> float:
 
 
 def robot_name(config: RunConfig) -> str:
-    """Of the robot of a run.
+    """Name of the robot of a run.
 
     Raises:
         AgentError: its environment is none of this package's.
@@ -88,8 +89,8 @@ def robot_name(config: RunConfig) -> str:
         env.close()
 
 
-def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
-    """Play a trial; tells 1 after each episode. None when it was stopped.
+def attempt(trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result | None:
+    """Play a trial; sends 1 after each episode. None when it was stopped.
 
     Raises:
         AgentError: it cannot be played at home.
@@ -97,7 +98,7 @@ def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
     run = RunFolder(trial.run)
     config = run.config.with_(max_steps=run.config.evaluation.max_steps or run.config.max_steps)
     try:
-        return _play(run, config, trial, tell, stopped)
+        return _play(run, config, trial, send_progress, stopped)
     except Interrupted:
         return None
     except _REFUSALS as error:
@@ -106,13 +107,13 @@ def attempt(trial: Trial, tell: Tell, stopped: Stopped) -> Result | None:
         return Result(refused=str(error))
 
 
-def _play(run: RunFolder, config: RunConfig, trial: Trial, tell: Tell, stopped: Stopped) -> Result:
+def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result:
     policy = algorithms.policy_of(run)
     options = _options(config, trial.change)
     env = environments.make(config, **options)
 
     false_alarms: list[bool] = []
-    go_on = until_stopped(tell, stopped)
+    go_on = until_stopped(send_progress, stopped)
 
     def watch(played: Played) -> None:
         false_alarms.append(played.crashed and is_false_alarm(env))

@@ -13,16 +13,16 @@ from sitl.worlds.contact import clearance
 from sitl.worlds.frames import to_ned
 
 MARGIN = 0.05
-"""A crash farther from every solid than the crash range and this is a false alarm [m]."""
+"""Distance beyond the crash range from which a crash is a false alarm [m]."""
 _HALF_SLICE = 0.01
-"""Of what is looked at, above and below the lidar [m]."""
+"""Half height of the slice around the lidar that is looked at [m]."""
 
 
 def is_false_alarm(env: Any) -> bool:
-    """Whether the crash that has just ended an episode was a reading only: nothing was touched, and nothing was near.
+    """Whether the crash that ended the episode was a lidar reading only: nothing was touched, and nothing was near.
 
     Args:
-        env: of this package; of robots whose true place is not known no crash is called false.
+        env: environment of this package; no crash is a false alarm where the robot's true position is unknown.
     """
     inner = env.unwrapped
     robot, limit = inner.robot, getattr(inner.task, "limit", math.inf)
@@ -32,7 +32,7 @@ def is_false_alarm(env: Any) -> bool:
 
 
 def lidar_distance(robot: Any) -> float:
-    """True distance from the lidar to the nearest solid at its height, to all sides [m]; 0 where it is not known."""
+    """True horizontal distance from the lidar to the nearest solid at its height [m]; 0 where it is unknown."""
     if isinstance(robot, Turtlebot):
         x, y, z, yaw = robot.pose[0].tolist()
         figures = robot.robots.views[0].figures

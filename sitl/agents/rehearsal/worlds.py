@@ -12,7 +12,7 @@ from sitl.worlds.shapes import Box, Solid
 
 
 def altered(world: str | Path | World, mirror: bool = False, stretch: float = 1.0) -> World:
-    """The same world in another shape; heights stay.
+    """A mirrored or stretched copy of a world; heights stay.
 
     Args:
         world: name, .toml file or World.

@@ -45,7 +45,7 @@ def block_means(rewards: Floats, block: int = BLOCK) -> Floats:
 
 
 def block_names(episodes: int, block: int = BLOCK) -> list[str]:
-    """Of the blocks of ``block_means``: "0 to 200" are episodes 0, 1 ... 199; the last may be shorter."""
+    """Names of the blocks of ``block_means``: "0 to 200" are episodes 0 .. 199; the last block may be shorter."""
     return [f"{start} to {min(start + block, episodes)}" for start in range(0, episodes, block)]
 
 

@@ -33,11 +33,11 @@ def compare(
     """Write report.md, report.html, pictures and CSV files.
 
     Args:
-        groups: that are compared, of one environment.
+        groups: groups that are compared, of one environment.
         folder: for the files.
         block: episodes of an average; None: 200, or fewer where runs are short.
         play: greedy episodes of each run; 0: none.
-        workers: that play them.
+        workers: workers that play them.
 
     Returns:
         path of the Markdown.
@@ -95,7 +95,7 @@ def _each_once(groups: Sequence[Group]) -> None:
 
 
 def _remarks(groups: Sequence[Group]) -> list[str]:
-    """What a reader must know before comparing."""
+    """Remarks on differences between the groups."""
     texts = []
     differing = sorted(set(_task(groups[0])).union(*map(_task, groups)))
     differing = [name for name in differing if name != "observation"]  # rewards do not depend on what is seen
@@ -115,7 +115,7 @@ def _remarks(groups: Sequence[Group]) -> list[str]:
 
 
 def _unlike(groups: Sequence[Group], plans: Sequence[EvaluationPlan]) -> list[str]:
-    """What a reader must know where groups are not evaluated alike."""
+    """Remarks on groups that are evaluated differently."""
     how = [{**asdict(plan), "max_steps": plan.max_steps or g.config.max_steps} for g, plan in zip(groups, plans)]
     names = [name for name in how[0] if any(one[name] != how[0][name] for one in how)]
     if not names:
@@ -129,7 +129,7 @@ def _all_same(evaluation: Evaluation) -> bool:
 
 
 def _task(group: Group) -> dict[str, Any]:
-    """Of the environment: its options, and how long an episode can be."""
+    """Options of the environment and longest episode."""
     return {**group.config.env_options, "max_steps": group.config.max_steps}
 
 
@@ -144,5 +144,5 @@ def _about(group: Group, groups: Sequence[Group]) -> list[str]:
 
 
 def _settings(group: Group) -> dict[str, Any]:
-    """Of algorithm and environment."""
+    """Settings of the algorithm and options of the environment."""
     return {**group.config.settings, **_task(group)}

@@ -17,18 +17,18 @@ td+td,th+th{text-align:right}img{max-width:100%}code{background:#f3f3f3;padding:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text under a head; the first column is a name, the others are figures."""
+    """A table; the first column is a name, the others are numbers."""
 
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
 
     def markdown(self) -> str:
-        """As Markdown."""
+        """The document as Markdown."""
         lines = [self.head, ["---", *["---:"] * (len(self.head) - 1)], *self.rows]
         return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
     def html(self) -> str:
-        """As HTML."""
+        """The document as HTML."""
         head = "".join(f"<th>{_inline(cell)}</th>" for cell in self.head)
         rows = ("<tr>" + "".join(f"<td>{_inline(cell)}</td>" for cell in row) + "</tr>" for row in self.rows)
         return f"<table>\n<tr>{head}</tr>\n" + "\n".join(rows) + "\n</table>"
@@ -36,34 +36,34 @@ class Table:
 
 @dataclass
 class Document:
-    """Blocks in the order in which they were added."""
+    """A report as a sequence of blocks, in the order of their addition."""
 
     title: str
     _markdown: list[str] = field(default_factory=list)
     _html: list[str] = field(default_factory=list)
 
     def heading(self, text: str) -> None:
-        """Of a section."""
+        """Add the heading of a section."""
         self._add(f"## {text}", f"<h2>{_inline(text)}</h2>")
 
     def paragraph(self, text: str) -> None:
-        """Text; `code` in backquotes."""
+        """Add a paragraph; `code` in backquotes."""
         self._add(text, f"<p>{_inline(text)}</p>")
 
     def points(self, texts: Sequence[str]) -> None:
-        """A list; nothing when it is empty."""
+        """Add a list; nothing when it is empty."""
         if not texts:
             return
         items = "\n".join(f"<li>{_inline(text)}</li>" for text in texts)
         self._add("\n".join(f"- {text}" for text in texts), f"<ul>\n{items}\n</ul>")
 
     def table(self, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """A table."""
+        """Add a table."""
         made = Table(head, rows)
         self._add(made.markdown(), made.html())
 
     def picture(self, path: Path, text: str) -> None:
-        """A picture that lies beside the report."""
+        """Add a picture whose file lies beside the report."""
         self._add(f"![{text}]({path.name})", f'<p><img src="{html.escape(path.name)}" alt="{html.escape(text)}"></p>')
 
     def _add(self, markdown: str, as_html: str) -> None:
@@ -71,7 +71,7 @@ class Document:
         self._html.append(as_html)
 
     def write(self, folder: Path, name: str = "report") -> Path:
-        """Write both files; returns the path of the Markdown."""
+        """Write the Markdown and the HTML; returns the path of the Markdown."""
         markdown = "\n\n".join([f"# {self.title}", *self._markdown]) + "\n"
         title = html.escape(self.title)
         page = (

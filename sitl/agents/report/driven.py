@@ -22,18 +22,18 @@ from ..runs.plan import EvaluationPlan
 
 Floats = npt.NDArray[np.float64]
 DRAWN = 20
-"""Episodes whose trails are kept."""
+"""Number of episodes whose trails are kept."""
 
 
 @dataclass(frozen=True)
 class Facts:
-    """Of the environment that a run was evaluated in."""
+    """Facts about the environment that a run was evaluated in."""
 
     world: World
     robot: str
-    """Its name."""
+    """Name of the robot."""
     observation: str
-    """In words."""
+    """Description of the observation."""
     action: str
     step_s: float
     """Simulated time of a step [s]."""
@@ -41,13 +41,12 @@ class Facts:
 
 @dataclass(frozen=True)
 class Whereabouts:
-    """Of an episode: without them one that shuttles in a corner, or has left for open ground, looks like any other
-    that does not crash."""
+    """Extent of an episode's path: it shows a robot that shuttles in a corner or has left for open ground."""
 
     farthest_m: float
     """Greatest distance from its start [m]."""
     left: bool
-    """It ended outside of the rectangle that the walls of the world lie in."""
+    """The episode ended outside of the rectangle around the walls of the world."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ class Driven:
     trails: tuple[Floats, ...]
     """x, y of the first episodes after each step [m], each of shape (steps + 1, 2)."""
     whereabouts: tuple[Whereabouts, ...]
-    """Of all episodes."""
+    """Extents of all episodes."""
     facts: Facts
 
     @property
@@ -77,7 +76,7 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
     """Notes where the robot is after each reset and step; changes nothing.
 
     Args:
-        env: of one robot.
+        env: environment with one robot.
     """
 
     def __init__(self, env: gym.Env[Any, Any]) -> None:
@@ -104,11 +103,11 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
 
 
 def whereabouts(trail: Floats, world: World) -> Whereabouts:
-    """Of an episode.
+    """Extent of an episode's path.
 
     Args:
         trail: x, y [m], shape (n, 2).
-        world: that it was in.
+        world: world that the robot was in.
     """
     x0, y0, x1, y1 = world.bounds
     x, y = trail[-1].tolist()
@@ -122,11 +121,11 @@ def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
     robot: Any = env.unwrapped.robot  # type: ignore[attr-defined]
     if not hasattr(robot, "simulation"):
 
-        def told() -> tuple[float, float]:
+        def measured() -> tuple[float, float]:
             x, y = robot.pose[0, :2].tolist()
             return x, y
 
-        return told
+        return measured
 
     def true() -> tuple[float, float]:
         return from_ned(*robot.simulation(0).v.physics.body.pos.tolist())[:2]
@@ -138,7 +137,7 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
     """Play what the run in a folder has learnt.
 
     Args:
-        path: of the folder.
+        path: path of the folder.
         plan: how.
         watch: called after each episode.
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..evaluate import Interrupted, until_stopped
 from ..recipes import Recipe, names
-from ..runs.local import Stopped, Tell
+from ..runs.local import SendProgress, Stopped
 from . import curves
 from .document import Document
 from .driven import Driven, drive
@@ -28,11 +28,11 @@ Item = tuple[Path, Recipe]
 
 @dataclass(frozen=True)
 class Dish:
-    """What came of a recipe."""
+    """Results of a recipe."""
 
     recipe: Recipe
     group: Group
-    """Its runs, by seed."""
+    """Runs of the recipe, by seed."""
     driven: Sequence[Driven]
     """An evaluation of each."""
 
@@ -47,15 +47,15 @@ class Dish:
         return not math.isnan(self.driven[0].evaluation.mean_laps)
 
     def seeds(self) -> list[int]:
-        """Of the runs."""
+        """Seeds of the runs."""
         return [run.config.seed for run in self.group.runs]
 
 
-def drive_one(item: Item, tell: Tell, stopped: Stopped) -> Driven | None:
+def drive_one(item: Item, send_progress: SendProgress, stopped: Stopped) -> Driven | None:
     """Play what one run has learnt, as its recipe says; a ``Work``. Tells 1 after each episode; None when stopped."""
     path, recipe = item
     try:
-        return drive(path, recipe.evaluation, until_stopped(tell, stopped))
+        return drive(path, recipe.evaluation, until_stopped(send_progress, stopped))
     except Interrupted:
         return None
 
@@ -64,7 +64,7 @@ def write_report(dishes: Sequence[Dish], folder: Path) -> Path:
     """The report.
 
     Args:
-        dishes: of the recipes.
+        dishes: results of the recipes.
         folder: for the files.
 
     Returns:
@@ -225,7 +225,7 @@ def with_range(values: Sequence[float], form: str) -> str:
 
 
 def _duration(seconds: float) -> str:
-    """For people."""
+    """A duration [s] as text."""
     if seconds < 120.0:
         return f"{seconds:.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:,.0f} h"

@@ -50,11 +50,11 @@ class Group:
 
     @cached_property
     def lengths(self) -> list[int]:
-        """How many episodes each seed has."""
+        """Number of episodes of each seed."""
         return [len(run.episodes.rows()) for run in self.runs]
 
     def first(self, episodes: int) -> Group:
-        """The same, with its first episodes only."""
+        """A copy with the first episodes only."""
         cut = Group(self.name, self.runs)
         cut.rewards = self.rewards[:, :episodes]
         return cut

@@ -23,7 +23,8 @@ from .paper_tables import beside_paper, changes, shortfalls, times
 from .sections import aggregates, blocks_csv, curves_text, draw_curves, greedy_play, interval_text
 
 JITTER = 0.1
-"""By which greedy play moves the starts [m, rad]: from one start every episode would be the same."""
+"""Distance by which greedy play moves the starts, in x and y [m] and yaw [rad]: from one start all episodes are the
+same."""
 
 
 @dataclass(frozen=True)
@@ -61,12 +62,12 @@ def runs_of(
     """The runs of a variant, made where they are not there yet, and at least so long.
 
     Args:
-        folder: of all.
+        folder: folder of the benchmark.
         algorithm: "qlearn" or "sarsa".
         variant: see ``Variant``.
         seeds: one run each.
-        episodes: of each.
-        options: of the environment, which the paper's does not have.
+        episodes: episodes of each run.
+        options: options of the environment, which the paper's does not have.
 
     Raises:
         AgentError: there are other runs in its place.
@@ -100,7 +101,7 @@ def write_report(
         extra: runs with one thing changed.
         folder: for the files.
         play: greedy episodes of each run.
-        workers: that play them.
+        workers: workers that play them.
 
     Returns:
         path of the Markdown.

@@ -15,9 +15,9 @@ from .sections import with_interval
 from .statistics import difference, mean_interval
 
 _LONGEST = 5
-"""Blocks of the begin and of the end that are looked at, at most: in the first five epsilon is above 0.2."""
+"""Largest number of blocks compared at the start and at the end; in the first five epsilon is above 0.2."""
 _OTHERS = ("first visit", "terminal bootstrap", "redraw")
-"""What else the code does otherwise, alone."""
+"""Further differences between the code and the paper, each alone."""
 
 
 def reasons(groups: Mapping[str, Group]) -> list[str]:
@@ -36,7 +36,7 @@ def reasons(groups: Mapping[str, Group]) -> list[str]:
 
 
 class _Span:
-    """Some blocks of the runs and of the paper.
+    """A range of blocks of the runs and of the paper.
 
     Args:
         first, last: of the blocks, the last not included.
@@ -54,7 +54,7 @@ class _Span:
         return out
 
     def mean(self, name: str) -> str:
-        """Over seeds, with its interval."""
+        """Mean over seeds with its interval, as text."""
         mean, half = mean_interval(self.scores(name))
         return with_interval(float(mean), float(half))
 
@@ -63,16 +63,16 @@ class _Span:
         return float(np.mean(MEAN_REWARDS[algorithm][self._first : self._last]))
 
     def change(self, to: str, of: str) -> str:
-        """By how much one thing changed the mean, and whether that may be chance."""
+        """Effect of one change on the mean, and whether it may be chance."""
         return verdict(self.scores(to), self.scores(of))
 
     def nearest(self, names: Sequence[str], algorithm: str) -> str:
-        """Which mean is the nearest to the paper's."""
+        """The mean nearest to the paper's."""
         return min(names, key=lambda name: abs(float(self.scores(name).mean()) - self.paper(algorithm)))
 
 
 def verdict(a: Floats, b: Floats) -> str:
-    """Mean of A less that of B, with its 95 % interval, and what it is worth."""
+    """Difference of the means of A and B with its 95 % interval, and whether it is significant, as text."""
     apart, half = difference(a, b)
     if math.isnan(half):
         return f"{apart:+.0f}, of too few seeds to tell it from chance"
@@ -95,9 +95,9 @@ def _exploration(begin: _Span, end: _Span) -> str:
 
 
 def _discount(begin: _Span, end: _Span) -> str:
-    said, coded = "Q-learning, as coded", "Q-learning, as coded, gamma 0.8"
+    stated, coded = "Q-learning, as coded", "Q-learning, as coded, gamma 0.8"
     parts = [
-        f"{span.mean(said)} and {span.mean(coded)} in {span.title} ({span.change(coded, said)}; the paper's "
+        f"{span.mean(stated)} and {span.mean(coded)} in {span.title} ({span.change(coded, stated)}; the paper's "
         f"{span.paper('qlearn'):.0f})"
         for span in (begin, end)
     ]

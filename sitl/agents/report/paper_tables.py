@@ -17,7 +17,7 @@ from .sections import with_interval, write_csv
 from .statistics import mean_interval
 
 Groups = Mapping[tuple[str, str], Group]
-"""(algorithm, variant) -> its runs; all of one length."""
+"""(algorithm, variant) -> runs, all of the same length."""
 
 
 def beside_paper(document: Document, groups: Groups, folder: Path) -> None:
@@ -54,13 +54,13 @@ def beside_paper(document: Document, groups: Groups, folder: Path) -> None:
 
 
 def _ends(k: int, episodes: int) -> str:
-    """Where the paper's block ends when ours is shorter."""
+    """End of the paper's block when ours is shorter."""
     end = (k + 1) * BLOCK
     return "" if end <= episodes else f" (to {end})"
 
 
 def shortfalls(groups: Groups) -> list[str]:
-    """Where ours stays below the paper's, and whether by more than the seeds' spread; whole blocks only."""
+    """Blocks in which our mean is below the paper's, and whether by more than the seeds' spread; whole blocks only."""
     points = []
     for (algorithm, variant), group in groups.items():
         count = min(group.rewards.shape[1] // BLOCK, len(MEAN_REWARDS[algorithm]))
@@ -88,7 +88,7 @@ def shortfalls(groups: Groups) -> list[str]:
 
 
 def changes(document: Document, groups: Sequence[Group], extra: Sequence[Group]) -> None:
-    """Means of the blocks of all groups, a row each."""
+    """Add a table of the block means of all groups, a row each."""
     columns = [(group.name, group.blocks().mean(axis=0)) for group in [*groups, *extra]]
     count = max(len(means) for _, means in columns)
     head = ["from episode", *(f"{k * BLOCK}" for k in range(count))]
@@ -96,7 +96,7 @@ def changes(document: Document, groups: Sequence[Group], extra: Sequence[Group])
 
 
 def times(document: Document, groups: Sequence[Group]) -> None:
-    """Simulated and wall time of a run."""
+    """Add a table of the simulated and wall time of a run."""
     document.heading("Time")
     rows = []
     for group in groups:

@@ -17,12 +17,12 @@ _LINES = ("-", "--", ":", "-.")
 
 
 def styles() -> Iterator[tuple[str, str]]:
-    """Colours and kinds of lines that tell curves apart, for as many as there are."""
+    """Distinct pairs of colour and line style, without end."""
     return cycle((colour, line) for line, colour in product(_LINES, COLOURS))
 
 
 def figure(width: float = 9.0, height: float = 5.0, rows: int = 1, columns: int = 1, **options: Any) -> Any:
-    """A figure without a screen and its axes, an array of shape (rows, columns).
+    """A figure that needs no screen, and its axes, an array of shape (rows, columns); width, height [inch].
 
     Raises:
         MissingExtra: matplotlib is not installed.
@@ -31,7 +31,7 @@ def figure(width: float = 9.0, height: float = 5.0, rows: int = 1, columns: int 
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
+        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[report]'") from None
     made = Figure((width, height), layout="constrained")
     FigureCanvasAgg(made)
     return made, made.subplots(rows, columns, squeeze=False, **options)

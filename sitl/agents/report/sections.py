@@ -23,14 +23,14 @@ from .blocks import BLOCK, block_names
 from .curves import draw_means, draw_raw
 from .document import Document
 from .group import Group
-from .statistics import bootstrap, improvement_interval, iqm, mean_interval, profile_interval
+from .statistics import improvement_interval, iqm_interval, mean_interval, profile_interval
 
 _FEW = 5
-"""Seeds below which a bootstrap has too little to draw from."""
+"""Number of seeds below which bootstrap intervals are too narrow."""
 
 
 def write_csv(path: Path, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
-    """A table as a file."""
+    """Write a table as CSV."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(head)
@@ -50,7 +50,7 @@ def with_range(value: float, low: float, high: float, digits: int = 0) -> str:
 
 
 def interval_text(groups: Sequence[Group]) -> str:
-    """What the figures of tables of blocks are."""
+    """Explanation of the tables of blocks."""
     text = "Mean over seeds ± half of its 95 % interval (Student's)"
     return f"{text}; a single seed has no interval." if any(len(g.runs) == 1 for g in groups) else f"{text}."
 
@@ -72,7 +72,7 @@ def blocks_table(groups: Sequence[Group], block: int) -> tuple[list[str], list[l
 
 
 def blocks_csv(path: Path, groups: Sequence[Group], block: int) -> None:
-    """Mean reward of each block, of every seed."""
+    """Write the mean reward of each block and seed as CSV."""
     rows = (
         (group.name, run.config.seed, k * block, float(value))
         for group in groups
@@ -86,8 +86,8 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
     """Raw curves of the first seeds, on one scale, and the means of all groups.
 
     Args:
-        path: of the picture.
-        groups: whose curves are drawn.
+        path: path of the picture.
+        groups: groups whose curves are drawn.
         block: episodes of an average.
         paper: name -> means of its blocks, to be drawn beside ours.
     """
@@ -110,7 +110,7 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
 
 
 def curves_text(block: int) -> str:
-    """What ``draw_curves`` draws."""
+    """Explanation of the picture of ``draw_curves``."""
     return (
         "One picture for each group: the episodes of its first seed (thin), and their means (thick). The last has the "
         f"means over all seeds of the {block} episodes before each, with their 95 % intervals where there are several "
@@ -119,7 +119,7 @@ def curves_text(block: int) -> str:
 
 
 def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> Path:
-    """Performance profiles: the share of runs whose last block is above each level, with its 95 % interval."""
+    """Draw performance profiles: the fraction of runs whose last block is above each level, with its 95 % interval."""
     scores = [group.last(block) for group in groups]
     lowest, highest = min(s.min() for s in scores), max(s.max() for s in scores)
     around = 0.05 * (highest - lowest) or 0.05 * abs(highest) or 1.0
@@ -137,7 +137,7 @@ def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> 
 
 
 def aggregates(document: Document, folder: Path, groups: Sequence[Group], block: int) -> None:
-    """Interquartile means, probabilities of improvement, performance profiles, of groups of one length."""
+    """Add interquartile means, probabilities of improvement and performance profiles of groups of the same length."""
     count = groups[0].rewards.shape[1]
     over = f"episodes {max(count - block, 0)} to {count}"
     seeds = [len(group.runs) for group in groups]
@@ -145,7 +145,7 @@ def aggregates(document: Document, folder: Path, groups: Sequence[Group], block:
     for group in groups:
         cells = [group.name, str(len(group.runs))]
         for name, scores in {over: group.last(block), "all episodes": group.whole()}.items():
-            value, low, high = bootstrap(scores[None], iqm)
+            value, low, high = iqm_interval(scores)
             rows.append((group.name, "interquartile mean", name, value, low, high))
             cells.append(with_range(value, low, high))
         table.append([*cells, f"{group.best:.0f}"])
@@ -184,11 +184,11 @@ def greedy_play(
     """Greedy evaluations and their table.
 
     Args:
-        document: that it goes into.
+        document: document that the table is added to.
         folder: for greedy.csv.
-        groups: whose runs play.
-        plans: of each group.
-        workers: that play.
+        groups: groups whose runs play.
+        plans: plans of each group.
+        workers: workers that play.
 
     Returns:
         an evaluation for each run of each group.

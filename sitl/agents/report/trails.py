@@ -17,19 +17,19 @@ _PAPER, _WALL, _OTHER = "#fafaf7", "#3e444c", "#d5d9dd"
 _TRAIL, _START, _CRASH = "#1f77b4", "#2ca02c", "#d62728"
 _BORDER_M = 0.4
 _OUTSIDE = 0.15
-"""Of the world's size, that is shown beyond it where trails lead out of it."""
+"""Margin that is shown where trails leave the world, as a fraction of its size."""
 _ROOM_M = 2.0
-"""Around trails that take up a small part of a large world."""
+"""Margin around trails that fill a small part of a large world [m]."""
 _HEIGHT, _WIDEST = 7.5, 13.0
-"""Of the picture [inch]."""
+"""Height and greatest width of the picture [inch]."""
 
 
 def draw_trails(path: Path, world: World, trails: Sequence[Floats], crashed: Sequence[bool], title: str) -> Path:
-    """Draw them; returns the path of the picture.
+    """Draw trails in a world; returns the path of the picture.
 
     Args:
-        path: of the picture, a PNG.
-        world: whose solids are drawn: dark those at the height of its plan, light those above or below it.
+        path: path of the picture, a PNG.
+        world: world whose solids are drawn: dark those at the height of its plan, light those above or below it.
         trails: x, y [m], each of shape (n, 2).
         crashed: whether each ended in a crash.
         title: over the picture.
@@ -63,8 +63,9 @@ def draw_trails(path: Path, world: World, trails: Sequence[Floats], crashed: Seq
 
 
 def _extent(world: World, trails: Sequence[Floats]) -> tuple[Floats, Floats]:
-    """Corners of what is shown [m]: the world, or the part of a large one that trails are in. Of trails that lead far
-    out of it, the beginning."""
+    """Corners of the shown area [m]: the world, or the part of a large world with trails; of trails that lead far out
+    of
+    it, only the beginning."""
     x0, y0, x1, y1 = world.bounds
     border = max(_BORDER_M, _OUTSIDE * max(x1 - x0, y1 - y0))
     points = np.concatenate(trails)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where work is done, by name. All give the same results."""
+"""The backends that run work, by name. All give the same results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from ..errors import AgentError
 from . import local
-from .local import Told, Work
+from .local import OnProgress, Work
 
 BACKENDS = ("local", "ray")
 
@@ -19,36 +19,36 @@ def each(
     work: Work,
     items: Sequence[Any],
     jobs: int = 1,
-    told: Told = lambda index, message: None,
+    on_progress: OnProgress = lambda index, message: None,
     backend: str = "local",
     address: str | None = None,
 ) -> list[Any]:
-    """Do the work for all items; returns the results in their order, None for those not begun before an interrupt.
+    """Call ``work`` for each item; returns the results in order, None for items not started before an interrupt.
 
     Args:
-        work: a function of a module, so that other processes find it. It may read and write in the folders that its
-            item names, nowhere else: see ``parcels.paths_of``.
-        items: can be pickled.
-        jobs: how many at a time.
-        told: see ``local.Told``.
+        work: a module-level function, so that other processes can import it. It may read and write only in the
+            folders that its item names: see ``transfer.paths_of``.
+        items: picklable arguments of ``work``.
+        jobs: number of items at a time.
+        on_progress: see ``local.OnProgress``.
         backend: "local": processes of this machine; "ray": workers of a Ray cluster.
-        address: of the cluster; None: ``$RAY_ADDRESS``, else an instance on this machine.
+        address: address of the cluster; None: ``$RAY_ADDRESS``, else an instance on this machine.
 
     Raises:
         AgentError: no such backend, or an address for one that has none.
         MissingExtra: Ray is not installed.
-        Exception: what the work raised for an item; the others are stopped.
+        Exception: what ``work`` raised for an item; the other items are stopped.
     """
     check(backend, address)
     if backend == "ray":
         from . import on_ray
 
-        return on_ray.each(work, items, jobs, told, address)
-    return local.each(work, items, jobs, told)
+        return on_ray.each(work, items, jobs, on_progress, address)
+    return local.each(work, items, jobs, on_progress)
 
 
 def check(backend: str, address: str | None = None) -> None:
-    """See that there is such a backend, and that it can be used; raises as ``each`` does."""
+    """Check that a backend exists and can be used; raises as ``each`` does."""
     if backend not in BACKENDS:
         raise AgentError(f"backend {backend!r} is not known; it is one of {', '.join(BACKENDS)}")
     if address is not None and backend != "ray":
@@ -61,7 +61,7 @@ def check(backend: str, address: str | None = None) -> None:
 
 @dataclass(frozen=True)
 class Workers:
-    """How many, and where.
+    """Number of workers, and where they run.
 
     Raises:
         AgentError, MissingExtra: see ``each``.
@@ -76,5 +76,5 @@ class Workers:
 
     @property
     def each(self) -> Callable[..., list[Any]]:
-        """``each(work, items, jobs, told)`` there."""
+        """``each(work, items, jobs, on_progress)`` there."""
         return partial(each, backend=self.backend, address=self.address)

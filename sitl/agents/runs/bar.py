@@ -16,14 +16,15 @@ from .episodes import Episode
 from .folder import RunFolder
 
 _RECENT = 100
-"""Episodes that the shown reward is a mean of."""
+"""Number of episodes in the mean reward that is shown."""
 
 
 class Bar:
-    """Episodes (or steps) of all runs together, with reward, epsilon, steps a second and times real time.
+    """Progress bar over the episodes (or steps) of all runs, with reward, epsilon, steps per second and real-time
+    factor.
 
     Args:
-        runs: that are trained, with what they have done already.
+        runs: runs that are trained, with what they have done already.
     """
 
     def __init__(self, runs: Sequence[RunFolder]) -> None:
@@ -38,7 +39,7 @@ class Bar:
         self._start = time.perf_counter()
 
     def __call__(self, index: int, rows: Sequence[Episode]) -> None:
-        """Episodes of a run are done."""
+        """Count finished episodes of a run."""
         for row in rows:
             self._recent.append(row.reward)
             self.steps += row.steps
@@ -54,7 +55,7 @@ class Bar:
         return ", ".join([*parts, self.speed()])
 
     def speed(self) -> str:
-        """Of all runs together."""
+        """Speed of all runs together, as text."""
         wall = max(time.perf_counter() - self._start, 1e-9)
         out = f"{self.steps / wall:,.0f} steps/s"
         return out if math.isnan(self.simulated_s) else f"{out}, {self.simulated_s / wall:,.0f} x real time"

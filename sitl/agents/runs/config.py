@@ -20,13 +20,13 @@ from .plan import EvaluationPlan
 
 EPISODES = 3000
 MAX_STEPS = 1500
-"""The paper's."""
+"""Default lengths, the paper's: episodes of a run, steps of an episode."""
 _NO_DIFFERENCE = ("versions", "episodes", "steps", "evaluation")
 _LIBRARIES = ("numpy", "numba", "gymnasium")
 
 
 def versions(*libraries: str) -> dict[str, str]:
-    """Of this program, of Python, and of the libraries that results depend on."""
+    """Versions of this program, of Python, and of the libraries that results depend on."""
     found = {"gym-sitl": sitl.__version__, "python": platform.python_version()}
     return {**found, **{name: metadata.version(name) for name in (*_LIBRARIES, *libraries)}}
 
@@ -40,7 +40,7 @@ def code_of(env: Any, *options: Any) -> list[str]:
 
 @dataclass(frozen=True)
 class RunConfig:
-    """A run.
+    """The configuration of a run.
 
     Raises:
         AgentError: a length or a seed that cannot be.
@@ -50,20 +50,20 @@ class RunConfig:
     """Id of the environment."""
     algorithm: str
     env_options: Mapping[str, Any] = field(default_factory=dict)
-    """Given to ``gymnasium.make``; what JSON can hold."""
+    """Keyword arguments of ``gymnasium.make``, of JSON types."""
     settings: Mapping[str, Any] = field(default_factory=dict)
-    """Of the algorithm."""
+    """Settings of the algorithm."""
     seed: int = 0
     episodes: int | None = EPISODES
-    """After so many it is done; None: ``steps`` says when."""
+    """Length in episodes; None: ``steps`` gives it."""
     steps: int | None = None
-    """After so many, of all episodes together, it is done."""
+    """Length in steps of all episodes together; None: ``episodes`` gives it."""
     max_steps: int = MAX_STEPS
-    """Of an episode."""
+    """Longest episode [steps]."""
     versions: Mapping[str, str] = field(default_factory=versions)
-    """That it was made with."""
+    """Versions that the run was started with."""
     evaluation: EvaluationPlan = field(default_factory=EvaluationPlan)
-    """How it is played when the user does not say."""
+    """Default plan of evaluations."""
 
     def __post_init__(self) -> None:
         for name in ("episodes", "steps", "max_steps"):
@@ -78,7 +78,7 @@ class RunConfig:
 
     @property
     def name(self) -> str:
-        """Of its folder, when the user does not say."""
+        """Default name of its folder."""
         return f"{self.env.replace(':', '-').replace('/', '-')}-{self.algorithm}"
 
     @property
@@ -87,7 +87,7 @@ class RunConfig:
         return code_of(self.env, self.env_options, self.evaluation.options)
 
     def with_(self, **changes: Any) -> RunConfig:
-        """The same with some figures replaced."""
+        """A copy with some fields replaced."""
         return replace(self, **changes)
 
     def differences(self, other: RunConfig) -> list[str]:
@@ -101,7 +101,7 @@ class RunConfig:
 
     @classmethod
     def load(cls, path: Path) -> RunConfig:
-        """Read what ``save`` wrote.
+        """Read a configuration that ``save`` wrote.
 
         Raises:
             AgentError: it is something else, or it names code that the user has not allowed.

@@ -16,17 +16,17 @@ from .files import write_bytes
 
 
 class Episode(NamedTuple):
-    """A row. All but the last column repeat exactly when the run is repeated."""
+    """A row of the log. All columns but the last repeat exactly when the run is repeated."""
 
     episode: int
-    """From 0 on."""
+    """Number of the episode, from 0."""
     steps: int
     reward: float
-    """Sum."""
+    """Sum of the rewards."""
     epsilon: float
     """Probability of exploring; nan for algorithms that have none."""
     terminated: int
-    """1: it ended by itself (a crash, in the paper's environments); 0: at the limit of steps."""
+    """1: the episode ended by itself (a crash, in the paper's environments); 0: at the limit of steps."""
     simulated_s: float
     """Simulated time that it took [s]."""
     wall_s: float
@@ -58,7 +58,7 @@ class EpisodeLog:
             raise AgentError(f"{self.path} cannot be written: {error.strerror}") from None
 
     def keep(self, count: int) -> None:
-        """Forget all but the first rows: those that a checkpoint knows.
+        """Keep only the first ``count`` rows, those of the last checkpoint.
 
         Raises:
             AgentError: there are fewer.
@@ -70,7 +70,7 @@ class EpisodeLog:
         write_bytes(self.path, text.encode())
 
     def rows(self) -> list[Episode]:
-        """All whole rows.
+        """All complete rows.
 
         Raises:
             AgentError: it is no such file.
@@ -91,7 +91,7 @@ class EpisodeLog:
             raise AgentError(f"{self.path} is damaged: {error}") from None
 
     def column(self, name: str) -> npt.NDArray[np.float64]:
-        """One figure of all episodes."""
+        """One column over all episodes, shape (episodes,)."""
         return np.array([getattr(row, name) for row in self.rows()], np.float64)
 
 

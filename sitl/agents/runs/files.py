@@ -29,7 +29,7 @@ def make_folder(path: Path) -> None:
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Replace a file by this content.
+    """Write a file atomically.
 
     Raises:
         AgentError: it cannot be written.
@@ -44,19 +44,19 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def write_json(path: Path, value: Any) -> None:
-    """The same, of what JSON can hold, for people to read."""
+    """Write JSON atomically, indented."""
     write_bytes(path, (json.dumps(value, indent=2) + "\n").encode())
 
 
 def write_arrays(path: Path, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
-    """The same, of named arrays, as .npz."""
+    """Write named arrays atomically as .npz."""
     content = io.BytesIO()
     np.savez_compressed(content, **arrays)  # type: ignore[arg-type]
     write_bytes(path, content.getvalue())
 
 
 def read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
-    """What ``write_arrays`` wrote.
+    """Read the arrays that ``write_arrays`` wrote.
 
     Raises:
         AgentError: there is no such file, or it is something else.

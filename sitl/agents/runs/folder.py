@@ -21,10 +21,10 @@ CONFIG = "config.json"
 
 
 class RunFolder:
-    """One run.
+    """The folder of a run.
 
     Args:
-        path: of the folder, which has a config.json.
+        path: path of the folder, which has a config.json.
 
     Raises:
         AgentError: it has none.
@@ -55,7 +55,7 @@ class RunFolder:
         return cls(folder)
 
     def extend(self, episodes: int | None, steps: int | None) -> None:
-        """Set how long it is, for a resumed run that shall go on; None: as it was."""
+        """Set the length of a run that is resumed; None: unchanged."""
         config = self.config
         self.config = config.with_(
             episodes=config.episodes if episodes is None else episodes, steps=config.steps if steps is None else steps
@@ -65,7 +65,7 @@ class RunFolder:
 
     @classmethod
     def ensure(cls, path: str | Path, config: RunConfig) -> RunFolder:
-        """The run in a folder, made where there is none yet, and at least as long as ``config`` says.
+        """The run in a folder; it is made if there is none, and extended to the length of ``config``.
 
         Raises:
             AgentError: another run is there, or ``create`` says.
@@ -82,12 +82,12 @@ class RunFolder:
 
     @property
     def name(self) -> str:
-        """Of the folder."""
+        """Name of the folder."""
         return self.path.name
 
 
-def _longer(there: int | None, asked: int | None) -> int | None:
-    return asked if there is None or asked is None else max(there, asked)
+def _longer(there: int | None, requested: int | None) -> int | None:
+    return requested if there is None or requested is None else max(there, requested)
 
 
 def is_run(path: Path) -> bool:
@@ -116,7 +116,7 @@ def seed_folder(path: Path, seed: int) -> Path:
 
 
 def common(runs: Iterable[RunFolder]) -> RunConfig:
-    """What the runs of a group are, with the first one's seed.
+    """Configuration that the runs of a group share, with the first one's seed.
 
     Raises:
         AgentError: they differ in more than the seed.

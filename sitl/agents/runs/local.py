@@ -1,125 +1,112 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same work for many items, in this process or in several of this machine."""
+"""One function applied to many items, in this process or in several processes of this machine."""
 
 from __future__ import annotations
 
 import multiprocessing
 import pickle
 import signal
+import time
 import traceback
 from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from functools import partial
-from multiprocessing.connection import wait
 from typing import Any
 
 from .watch import Interrupts
 
-Tell = Callable[[Any], None]
+SendProgress = Callable[[Any], None]
 Stopped = Callable[[], bool]
-Work = Callable[[Any, Tell, Stopped], Any]
-"""``work(item, tell, stopped)``: tells of its progress, ends early when ``stopped()``, returns a result."""
-Told = Callable[[int, Any], None]
-"""Called with the number of an item and what its work told."""
+Work = Callable[[Any, SendProgress, Stopped], Any]
+"""``work(item, send_progress, stopped)`` reports its progress, returns early when ``stopped()``, returns a result."""
+OnProgress = Callable[[int, Any], None]
+"""Called with the index of an item and a message that its work sent."""
+_POLL_S, _GRACE_S = 0.1, 2.0
+"""Wall time between two checks for messages and interrupts; time that processes have to end by themselves [s]."""
+_messages: Any
+_stop: Any
+"""Set in each process of the pool: the queue of (index of an item, message), and the event that requests a stop."""
 
 
-def each(work: Work, items: Sequence[Any], jobs: int = 1, told: Told = lambda index, message: None) -> list[Any]:
-    """Do the work for all items; returns the results in their order, None for those not begun before an interrupt.
+def each(
+    work: Work, items: Sequence[Any], jobs: int = 1, on_progress: OnProgress = lambda index, message: None
+) -> list[Any]:
+    """Call ``work`` for each item; returns the results in order, None for items not started before an interrupt.
 
     Args:
-        work: a function of a module, so that other processes find it.
-        items: can be pickled.
-        jobs: how many processes; 1: this one.
-        told: see ``Told``.
+        work: a module-level function, so that other processes can import it.
+        items: picklable arguments of ``work``.
+        jobs: number of processes; 1: this process.
+        on_progress: see ``OnProgress``.
 
     Raises:
-        Exception: what the work raised for an item; the others are stopped.
+        Exception: what ``work`` raised for an item; the other items are stopped.
+        RuntimeError: a process died.
     """
-    with Interrupts() as asked:
+    with Interrupts() as interrupted:
         if min(jobs, len(items)) <= 1:
             results: list[Any] = [None] * len(items)
             for index, item in enumerate(items):
-                if not asked():
-                    results[index] = work(item, partial(told, index), asked)
+                if not interrupted():
+                    results[index] = work(item, partial(on_progress, index), interrupted)
             return results
-        return _in_processes(work, items, min(jobs, len(items)), told, asked)
+        return _in_processes(work, items, min(jobs, len(items)), on_progress, interrupted)
 
 
-def _in_processes(work: Work, items: Sequence[Any], jobs: int, told: Told, asked: Interrupts) -> list[Any]:
+def _in_processes(
+    work: Work, items: Sequence[Any], jobs: int, on_progress: OnProgress, interrupted: Interrupts
+) -> list[Any]:
     context = multiprocessing.get_context("spawn")
-    results: list[Any] = [None] * len(items)
-    todo = list(range(len(items)))
-    workers: dict[Any, Any] = {}
-    """Our end of the pipe -> the process."""
+    messages, stop = context.SimpleQueue(), context.Event()
+    others = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(jobs, context, _initialise, (messages, stop))
+    futures: list[Future[Any]] = []
     try:
-        for _ in range(jobs):
-            ours, theirs = context.Pipe()
-            process = context.Process(target=_serve, args=(theirs, work), daemon=True)
-            process.start()
-            theirs.close()
-            workers[ours] = process
-        busy = {connection: todo.pop(0) for connection in workers}
-        for connection, index in busy.items():
-            connection.send(items[index])
-        stopping = False
-        while busy:
-            if asked() and not stopping:
-                stopping, todo = True, []
-                for connection in busy:
-                    connection.send(None)
-            ready: list[Any] = list(wait(list(busy), 0.1))
-            for connection in ready:
-                index = busy[connection]
-                try:
-                    kind, content = connection.recv()
-                except (EOFError, OSError):
-                    workers[connection].join()
-                    if asked():  # by a Ctrl-C that met it before it could shut its ears
-                        del busy[connection]
-                        continue
-                    raise RuntimeError(f"the process of item {index} died ({workers[connection].exitcode})") from None
-                if kind == "told":
-                    told(index, content)
-                    continue
-                if kind == "raised":
-                    raise content
-                results[index] = content
-                del busy[connection]
-                if todo:
-                    busy[connection] = todo.pop(0)
-                    connection.send(items[busy[connection]])
-        return results
+        futures += [pool.submit(_run, work, index, item) for index, item in enumerate(items)]
+        running = set(futures)
+        while running:
+            finished, running = wait(running, _POLL_S, FIRST_COMPLETED)
+            while not messages.empty():
+                on_progress(*messages.get())
+            for future in finished:
+                future.result()
+            if interrupted():
+                stop.set()
+        return [future.result() for future in futures]
+    except BrokenProcessPool:
+        if interrupted():  # a terminal's Ctrl-C met a process before that ignored it
+            return [future.result() if not future.exception() else None for future in futures]
+        raise RuntimeError("a process that worked for an item, or one beside it, died") from None
     finally:
-        for connection, process in workers.items():
-            connection.close()  # it ends by this
-            process.join(2.0)
-            if process.is_alive():
-                process.terminate()
-                process.join()
+        stop.set()
+        pool.shutdown(wait=False, cancel_futures=True)
+        deadline = time.monotonic() + _GRACE_S
+        for process in set(multiprocessing.active_children()) - others:
+            process.join(max(deadline - time.monotonic(), 0.0))
+            process.terminate()
+            process.join()
 
 
-def _serve(connection: Any, work: Work) -> None:
-    """A process: works for the items that come, until the other end closes."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal's Ctrl-C reaches all; the first process says what then
+def _initialise(messages: Any, stop: Any) -> None:
+    """Initialise a process: it ignores a terminal's Ctrl-C, which the main process handles for all."""
+    global _messages, _stop
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _messages, _stop = messages, stop
+
+
+def _run(work: Work, index: int, item: Any) -> Any:
+    """Result for an item, in a process of the pool; None when a stop was requested before."""
+    if _stop.is_set():
+        return None
     try:
-        while True:
-            item = connection.recv()
-            if item is None:  # asked to stop just when it was done
-                continue
-            try:
-                content = ("done", work(item, partial(_tell, connection), connection.poll))
-            except Exception as error:
-                content = ("raised", sendable(error))
-            connection.send(content)
-    except (EOFError, OSError):
-        return
-
-
-def _tell(connection: Any, message: Any) -> None:
-    connection.send(("told", message))
+        return work(item, lambda message: _messages.put((index, message)), _stop.is_set)
+    except Exception as error:
+        raise sendable(error) from None
 
 
 def sendable(error: Exception) -> Exception:
-    """The error, or its text where it cannot be pickled."""
+    """The error; a RuntimeError with its traceback as text where it cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
         return error

@@ -12,8 +12,8 @@ from sitl.errors import did_you_mean
 from ..errors import AgentError
 
 EPISODES = 100
-MOST_JITTER = 1.0
-"""Starts that are moved farther are in walls; ``start`` of the environment gives others."""
+MAX_JITTER = 1.0
+"""Limit of ``jitter``: start poses moved farther are in walls (the option ``start`` gives others)."""
 
 
 @dataclass(frozen=True)
@@ -25,13 +25,13 @@ class EvaluationPlan:
     """
 
     episodes: int = EPISODES
-    """That are played."""
+    """Number of episodes."""
     jitter: float = 0.0
     """Start poses are moved by up to so much, in x and y [m] and in yaw [rad]."""
     max_steps: int | None = None
-    """Of an episode; None: as many as in training."""
+    """Longest episode [steps]; None: as in training."""
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Of the environment, which replace the run's."""
+    """Options of the environment, in place of the run's."""
 
     def __post_init__(self) -> None:
         for name in ("episodes", "max_steps"):
@@ -41,14 +41,14 @@ class EvaluationPlan:
             if not isinstance(value, int) or isinstance(value, bool) or value < 1:
                 raise AgentError(f"evaluation: {name} = {value!r}; it must be a whole number from 1 on")
         number = isinstance(self.jitter, int | float) and not isinstance(self.jitter, bool)
-        if not number or not 0.0 <= self.jitter <= MOST_JITTER:
-            raise AgentError(f"evaluation: jitter = {self.jitter!r}; it must be a number 0 .. {MOST_JITTER:g} [m, rad]")
+        if not number or not 0.0 <= self.jitter <= MAX_JITTER:
+            raise AgentError(f"evaluation: jitter = {self.jitter!r}; it must be a number 0 .. {MAX_JITTER:g} [m, rad]")
         if not isinstance(self.options, Mapping):
             raise AgentError(f"evaluation: options = {self.options!r}; it must be a table of names and values")
 
     @classmethod
     def of(cls, values: Any) -> EvaluationPlan:
-        """From names and values, as a file has them.
+        """From the keys and values of a file.
 
         Raises:
             AgentError: no such name, or a value that cannot be.
@@ -69,8 +69,9 @@ class EvaluationPlan:
         max_steps: int | None = None,
         options: Mapping[str, Any] | None = None,
     ) -> EvaluationPlan:
-        """The same with what is given. Starts that ``options`` say anew are moved only when ``jitter`` says so, too:
-        moved starts are all near one place."""
+        """A copy with what is given. When ``options`` set the start, starts are moved only if ``jitter`` says so:
+        moved starts
+        are all near one position."""
         if jitter is None:
             jitter = 0.0 if "start" in (options or {}) else self.jitter
         return EvaluationPlan(

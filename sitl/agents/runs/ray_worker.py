@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The far side of ``on_ray``: does the work for one item after another, in folders of its own."""
+"""The worker's side of ``on_ray``: works on one item after another, in temporary folders."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from ..deep.library import LIBRARIES
-from . import parcels
+from . import transfer
 from .config import versions
 from .local import Work, sendable
 
 Message = tuple[str, Any]
-"""("told", message), ("files", (number of the path, changes)), ("done", result) or ("raised", error)."""
+"""("progress", message), ("files", (number of the path, changes)), ("done", result) or ("raised", error)."""
 _SYNC_S = 0.1
-"""Wall time between two looks at what has changed."""
+"""Wall time between two checks for changed files [s]."""
 _WAIT_S = 0.5
-"""For how long ``messages`` waits for the first one [s]."""
+"""Time that ``messages`` waits for the first message [s]."""
 
 
 def libraries() -> dict[str, str]:
-    """Versions of what results depend on; of deep agents' libraries where they are installed."""
+    """Versions of the libraries that results depend on; those of deep agents where they are installed."""
     return versions(*(name for name in LIBRARIES if _installed(name)))
 
 
@@ -38,23 +38,23 @@ def _installed(name: str) -> bool:
 
 
 class Worker:
-    """Works in a thread, so that it can be asked and told meanwhile."""
+    """Runs work in a thread, so that messages can be read and a stop requested meanwhile."""
 
     def __init__(self) -> None:
         self._messages: SimpleQueue[Message] = SimpleQueue()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def begin(self, work: Work, item: Any, contents: Sequence[parcels.Content | bytes]) -> list[Message]:
-        """Begin with an item.
+    def begin(self, work: Work, item: Any, contents: Sequence[transfer.Content | bytes]) -> list[Message]:
+        """Start an item.
 
         Args:
             work: see ``local.Work``.
-            item: whose paths are those of the other machine.
-            contents: of these, as ``parcels.paths_of`` lists them.
+            item: with the paths of the sending machine.
+            contents: contents of these paths, in the order of ``transfer.paths_of``.
 
         Returns:
-            no messages yet.
+            an empty list: no messages yet.
         """
         self._stop.clear()
         self._thread = threading.Thread(target=self._work, args=(work, item, contents), daemon=True)
@@ -62,7 +62,7 @@ class Worker:
         return []
 
     def messages(self) -> list[Message]:
-        """Those since the last call; waits a moment for the first."""
+        """Messages since the last call; waits up to 0.5 s for the first."""
         try:
             found = [self._messages.get(timeout=_WAIT_S)]
         except Empty:
@@ -72,26 +72,26 @@ class Worker:
         return found
 
     def stop(self) -> None:
-        """Ask the work to end early."""
+        """Request the work to end early."""
         self._stop.set()
 
     def close(self) -> None:
-        """The same, and wait a moment until it has."""
+        """Request the work to end early, and wait up to 2 s for it."""
         self.stop()
         if self._thread is not None:
             self._thread.join(2.0)
 
-    def _work(self, work: Work, item: Any, contents: Sequence[parcels.Content | bytes]) -> None:
+    def _work(self, work: Work, item: Any, contents: Sequence[transfer.Content | bytes]) -> None:
         places: dict[Path, Path] = {}
         try:
             with tempfile.TemporaryDirectory(prefix="sitl-") as root:
-                for number, (path, content) in enumerate(zip(parcels.paths_of(item), contents)):
+                for number, (path, content) in enumerate(zip(transfer.paths_of(item), contents)):
                     places[path] = Path(root, str(number), path.name or "folder")
-                    parcels.unpack(places[path], content)
+                    transfer.unpack(places[path], content)
                 sync = _Sync(list(places.values()), self._messages)
 
-                def tell(message: Any) -> None:
-                    self._messages.put(("told", message))
+                def send_progress(message: Any) -> None:
+                    self._messages.put(("progress", message))
                     sync.now_and_then()
 
                 def stopped() -> bool:
@@ -99,23 +99,23 @@ class Worker:
                     return self._stop.is_set()
 
                 try:
-                    message = ("done", work(parcels.moved(item, places), tell, stopped))
+                    message = ("done", work(transfer.moved(item, places), send_progress, stopped))
                 finally:
                     sync.now()
             self._messages.put(message)
-        except BaseException as error:  # whatever ends this thread must be known on the other side
-            for path, place in places.items():  # which knows its own folder, not this one
+        except BaseException as error:  # any end of this thread is reported to the other side
+            for path, place in places.items():  # messages name the folders of the sending machine
                 error.args = tuple(a.replace(str(place), str(path)) if isinstance(a, str) else a for a in error.args)
             known = sendable(error) if isinstance(error, Exception) else RuntimeError(repr(error))
             self._messages.put(("raised", known))
 
 
 class _Sync:
-    """Sends what has changed in folders. Called by the work's own thread only, between its episodes: so that what is
-    sent is what an interrupted run leaves on a disk."""
+    """Sends the changed files of folders. Only the thread of the work calls it, between episodes: the files sent are a
+    state that an interrupted run leaves."""
 
     def __init__(self, folders: Sequence[Path], messages: SimpleQueue[Message]) -> None:
-        self._mirrored = [parcels.Mirrored(folder) for folder in folders]
+        self._mirrored = [transfer.Mirrored(folder) for folder in folders]
         self._messages = messages
         self._last = time.monotonic()
 

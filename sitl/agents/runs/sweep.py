@@ -69,7 +69,7 @@ def combinations(axes: Sequence[tuple[str, Sequence[Any]]]) -> list[Values]:
 
 
 def folder_name(values: Values) -> str:
-    """Of a combination."""
+    """Folder name of a combination."""
     return ",".join(f"{name.removeprefix(OPTION)}-{_word(value)}" for name, value in values.items())
 
 
@@ -81,7 +81,7 @@ class Sweep:
     """A folder of groups.
 
     Args:
-        path: of the folder.
+        path: path of the folder.
         combinations: name of a folder in it -> values.
     """
 
@@ -126,7 +126,7 @@ class Sweep:
 
     @property
     def names(self) -> list[str]:
-        """Of what is swept."""
+        """Names of the settings and options that are swept."""
         return list(next(iter(self.combinations.values()), {}))
 
     def groups(self) -> dict[str, list[RunFolder]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains run folders, one or many, whatever their algorithm."""
+"""Trains one or many run folders, with any algorithm."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 from .. import algorithms
 from .episodes import Episode
 from .folder import RunFolder
-from .local import Stopped, Tell, Told, each
+from .local import OnProgress, SendProgress, Stopped, each
 from .watch import Watch
 
 
-def train_one(path: Path, tell: Tell, stopped: Stopped) -> bool:
-    """Train the run in a folder; returns whether it is done, not interrupted."""
+def train_one(path: Path, send_progress: SendProgress, stopped: Stopped) -> bool:
+    """Train the run in a folder; returns True when it is complete, False when it was interrupted."""
     folder = RunFolder(path)
-    watch = Watch(tell, stopped)
+    watch = Watch(send_progress, stopped)
     algorithms.load(folder.config.algorithm).train(folder, watch)
     return is_done(folder)
 
@@ -25,31 +25,31 @@ def train_one(path: Path, tell: Tell, stopped: Stopped) -> bool:
 def train_all(
     paths: Sequence[Path],
     jobs: int = 1,
-    told: Told = lambda index, rows: None,
+    on_progress: OnProgress = lambda index, rows: None,
     do: Callable[..., list[Any]] = each,
 ) -> bool:
-    """Train several, each as a process of its own where ``jobs`` allows; returns whether all are done.
+    """Train several runs, ``jobs`` at a time in processes of their own; returns whether all are complete.
 
     Args:
-        paths: of the run folders.
-        jobs: how many at a time.
-        told: number of a run, and its new episodes.
-        do: does the work for all, as ``local.each``.
+        paths: run folders.
+        jobs: number of runs at a time.
+        on_progress: called with the index of a run and its new episodes.
+        do: runs the work, as ``local.each`` does.
     """
-    return all(do(train_one, list(paths), jobs, _once(told)))
+    return all(do(train_one, list(paths), jobs, _without_repeats(on_progress)))
 
 
-def _once(told: Told) -> Told:
-    """Told of each episode once, though a run that lost its worker goes through its last ones again."""
+def _without_repeats(on_progress: OnProgress) -> OnProgress:
+    """Report each episode once, although a run that lost its worker repeats its last ones."""
     newest: dict[int, int] = {}
 
-    def tell(index: int, rows: Sequence[Episode]) -> None:
+    def report(index: int, rows: Sequence[Episode]) -> None:
         new = [row for row in rows if row.episode > newest.get(index, -1)]
         if new:
             newest[index] = new[-1].episode
-            told(index, new)
+            on_progress(index, new)
 
-    return tell
+    return report
 
 
 def is_done(folder: RunFolder) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a trainer tells of its progress, and how it is asked to stop."""
+"""How a trainer reports its progress, and how it is asked to stop."""
 
 from __future__ import annotations
 
@@ -10,49 +10,52 @@ from typing import Any
 
 from .episodes import Episode
 
-Told = Callable[[list[Episode]], None]
+OnProgress = Callable[[list[Episode]], None]
 
 
 class Watch:
-    """Told of episodes as they are done; knows whether to stop.
+    """Receives episodes as they are done; says whether to stop.
 
     Args:
-        told: called with new episodes.
-        stopped: whether the run shall end here, to go on another time.
+        on_progress: called with new episodes.
+        stopped: whether the run shall pause here, to be resumed later.
     """
 
-    def __init__(self, told: Told = lambda rows: None, stopped: Callable[[], bool] = lambda: False) -> None:
-        self.told, self._stopped = told, stopped
+    def __init__(
+        self, on_progress: OnProgress = lambda rows: None, stopped: Callable[[], bool] = lambda: False
+    ) -> None:
+        self.on_progress, self._stopped = on_progress, stopped
 
     @property
     def stop(self) -> bool:
-        """Asked between episodes: finish what must be finished, save, return."""
+        """Whether to save and return; trainers check it between episodes."""
         return self._stopped()
 
 
 class Interrupts:
-    """While it lasts, a first SIGINT or SIGTERM sets ``asked``; a second SIGINT interrupts at once.
+    """A context in which the first SIGINT or SIGTERM only requests a stop; a second SIGINT raises KeyboardInterrupt.
 
-    Call it to learn whether to stop. Outside of the main thread, where signals cannot be caught, it is never set.
+    Calling it returns whether a stop was requested. Outside of the main thread, which cannot catch signals, it never
+    is.
     """
 
     def __init__(self) -> None:
-        self.asked = False
+        self.requested = False
         self._before: dict[int, Any] = {}
 
     def __call__(self) -> bool:
-        return self.asked
+        return self.requested
 
     def _ask(self, number: int, frame: FrameType | None) -> None:
-        if self.asked and number == signal.SIGINT:
+        if self.requested and number == signal.SIGINT:
             raise KeyboardInterrupt
-        self.asked = True
+        self.requested = True
 
     def __enter__(self) -> Interrupts:
         try:
             for number in (signal.SIGINT, signal.SIGTERM):
                 self._before[number] = signal.signal(number, self._ask)
-        except ValueError:  # another thread's business
+        except ValueError:  # not the main thread
             pass
         return self
 

@@ -25,9 +25,10 @@ from .loop import learn_episode
 from .outcome import Outcome
 
 JITTER = 0.1
-"""By which starts are moved [m, rad]; from the very start a robot without noise always does the same."""
+"""Distance by which starts are moved, in x and y [m] and yaw [rad]; from one start a robot without noise always does
+the same."""
 SEED = 2**31
-"""Of the starts, the resets, and the choices between equals: the same for every table."""
+"""Seed of starts, resets and choices between equal values; the same for every table."""
 
 
 def loop_of(env: gym.Env[Any, Any], learner: Learner) -> Callable[..., Outcome]:
@@ -36,12 +37,12 @@ def loop_of(env: gym.Env[Any, Any], learner: Learner) -> Callable[..., Outcome]:
 
 
 class Checks:
-    """Of one run.
+    """Evaluates the table of one run at intervals and keeps the best one.
 
     Args:
-        env: that it learns in; it is reset for each check.
-        learner: whose table plays; its settings say how often.
-        path: of the best table.
+        env: environment that it learns in; it is reset for each check.
+        learner: learner whose table plays; its settings say how often.
+        path: path of the best table.
     """
 
     def __init__(self, env: gym.Env[Any, Any], learner: Learner, path: Path) -> None:
@@ -63,7 +64,7 @@ class Checks:
             self._options = [{"pose": pose} for pose in moved_starts(env, count, SEED, JITTER)]
 
     def after(self, episodes: int) -> None:
-        """So many episodes are done: check when it is time."""
+        """Called after ``episodes`` episodes in all; checks the table when it is due."""
         if self._every == 0 or episodes % self._every:
             return
         score = self.score()
@@ -73,7 +74,7 @@ class Checks:
             write_arrays(self._path, {**self._learner.table.arrays(), **extra})
 
     def score(self) -> tuple[float, ...]:
-        """How good the table is now, the most important figure first; greater is better."""
+        """Score of the table, the most important figure first; greater is better."""
         player = self._player
         player.table = self._learner.table
         player.seed(SEED)

@@ -47,10 +47,10 @@ def run_episode(
         learners, keys, values, visits: of a learner; there must be room for ``limit`` states more.
         first: number of the first state.
         radix: see ``key_of``.
-        limit: of steps.
+        limit: largest number of steps.
         step_ticks: length of a step [physics steps].
         table: set-point of each action, shape (actions, 2).
-        action_rewards: of each action, shape (actions,).
+        action_rewards: reward of each action, shape (actions,).
         crash_range, contact_ends, crash_reward: of the task.
         every, when_inf, highest: of the digits.
         crashed, touched, digits: room, shape (1,); the robot's ``collided``; room, shape (1, n).

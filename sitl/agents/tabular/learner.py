@@ -27,7 +27,7 @@ class Learner:
         algorithm: "qlearn" or "sarsa".
         settings: hyper-parameters.
         table: what it has learnt already; it goes on with it.
-        seed: of its random numbers.
+        seed: seed of its random numbers.
         frozen: it plays greedily and does not learn.
 
     Raises:
@@ -57,7 +57,7 @@ class Learner:
 
     @property
     def states(self) -> int:
-        """How many states the table holds."""
+        """Number of states in the table."""
         return int(self._view.states)
 
     def seed(self, seed: int) -> None:

@@ -18,9 +18,9 @@ def learn_episode(
 
     Args:
         env: it must truncate its episodes (``gym.make(..., max_episode_steps=...)``).
-        learner: that learns.
-        seed: of the reset.
-        options: of the reset.
+        learner: the learner.
+        seed: seed of the reset.
+        options: options of the reset.
     """
     observation, _ = env.reset(seed=seed, options=options)
     key = learner.first_key(observation)

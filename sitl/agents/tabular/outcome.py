@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 
 class Outcome(NamedTuple):
-    """Of one episode."""
+    """Result of one episode."""
 
     steps: int
     reward: float
     """Sum."""
     terminated: bool
-    """It ended by itself (a crash, in the paper's environments), not by the limit of steps."""
+    """The episode ended by itself (a crash, in the paper's environments), not by the limit of steps."""

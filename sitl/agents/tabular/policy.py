@@ -16,7 +16,7 @@ class TablePolicy:
     """Takes the best action of each state; one of the best at random when there are more.
 
     Args:
-        table: whose values count.
+        table: table of values.
         epsilon: probability of a random action.
         first_state_apart: see ``Settings``.
     """
@@ -24,15 +24,15 @@ class TablePolicy:
     def __init__(self, table: Table, epsilon: float = 0.0, first_state_apart: bool = False) -> None:
         self.table, self.epsilon = table, epsilon
         self.unknown = 0
-        """How many times a state was asked for that the table does not know."""
+        """Number of look-ups of a state that is not in the table."""
         self._rng = np.random.default_rng(0)
         self._apart = table.size if first_state_apart else 0
         self._offset = 0
 
     def check(self, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
         """See ``Policy``."""
-        asked = Table.for_spaces(observations, actions)
-        mine, theirs = (self.table.radix.tolist(), self.table.actions), (asked.radix.tolist(), asked.actions)
+        wanted = Table.for_spaces(observations, actions)
+        mine, theirs = (self.table.radix.tolist(), self.table.actions), (wanted.radix.tolist(), wanted.actions)
         if mine != theirs:
             raise AgentError(
                 f"the table is for digits {mine[0]} and {mine[1]} actions; here are {theirs[0]} and {theirs[1]}"

@@ -8,7 +8,7 @@ from sitl.core.kernels import law
 
 @law
 def best_value(row):
-    """What the state of this row of values is worth to Q-learning, whatever action is taken in it."""
+    """Value of a state for Q-learning: the greatest value of its row."""
     best = float(row[0])
     for a in range(1, row.shape[0]):
         best = max(best, float(row[a]))

@@ -8,5 +8,5 @@ from sitl.core.kernels import law
 
 @law
 def value_taken(row, action):
-    """What the state of this row of values is worth to Sarsa when it takes the action in it."""
+    """Value of a state for Sarsa: that of the action taken."""
     return float(row[action])

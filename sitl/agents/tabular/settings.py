@@ -19,7 +19,7 @@ CHECKS = ("reward", "crashes")
 
 @dataclass(frozen=True)
 class Settings:
-    """Hyper-parameters; the defaults are the paper's, and learning is as in the textbooks.
+    """Hyper-parameters; the defaults are the paper's parameters and the textbooks' algorithm.
 
     Raises:
         AgentError: a figure outside its limits.
@@ -34,24 +34,24 @@ class Settings:
     epsilon_decay: float = 0.9986
     """Factor from one episode to the next."""
     epsilon_floor: float = 0.05
-    """Below which epsilon does not fall."""
+    """Smallest epsilon."""
     exploration: str = "uniform"
     """"uniform": any action, each as likely; "noise": the best after all values were disturbed (``exploration.py``)."""
     first_visit: bool = False
     """The first update of a pair of state and action stores the reward as it is, instead of alpha of the target."""
     terminal_bootstrap: bool = False
-    """After a crash the value of the state crashed in counts, as if the episode went on."""
+    """The value of the state after a crash counts, as if the episode continued."""
     redraw: bool = False
-    """Sarsa: the action learnt from is not the one taken, which is drawn anew. Q-learning has no use for it."""
+    """Sarsa: the action that is learnt from is drawn anew, not the one taken. No effect on Q-learning."""
     first_state_apart: bool = False
-    """The first state of an episode has a row of its own, not that of the same digits later on."""
+    """The first state of an episode has its own row, apart from equal digits later on."""
     check_every: int = 50
-    """After each so many episodes the table plays greedily, and the best one is kept (``checks.py``); 0: never."""
+    """Episodes between two greedy evaluations of the table; the best table is kept (``checks.py``). 0: no checks."""
     check_episodes: int = 20
-    """That it plays then."""
+    """Number of episodes that a check plays."""
     check_by: str = "reward"
-    """Which table is the best: "reward": that of the highest mean reward; "crashes": that whose episodes ended by
-    themselves least often, and the mean reward decides between equals."""
+    """Criterion of the best table: "reward": the highest mean reward; "crashes": the fewest episodes that ended by
+    themselves (the mean reward decides between equals)."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -88,7 +88,7 @@ class Settings:
 
     @classmethod
     def as_coded(cls, algorithm: str) -> Settings:
-        """What the code of the paper did, under the paper's figures."""
+        """The settings of the paper's code, with the paper's parameters."""
         coded = cls(first_visit=True, terminal_bootstrap=True, first_state_apart=True)
         return replace(coded, exploration="noise") if algorithm == "qlearn" else replace(coded, redraw=True)
 

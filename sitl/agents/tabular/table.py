@@ -23,8 +23,8 @@ class Table:
     """Values of actions in states that are made of digits.
 
     Args:
-        radix: how many values each digit can have.
-        actions: how many there are.
+        radix: number of values of each digit.
+        actions: number of actions.
 
     Raises:
         AgentError: no digits or actions, or more states than can be numbered.
@@ -40,13 +40,13 @@ class Table:
         if total > _FIRST_KEY_LIMIT // 2:
             raise AgentError(f"{total:.1e} states are too many for a table")
         self.size = total
-        """How many states there can be."""
+        """Number of possible states."""
         self.actions = actions
         self.keys = np.full(_LEAST_ROWS, EMPTY, np.int64)
         self.values = np.zeros((_LEAST_ROWS, actions))
         """Rows in no order of use; see ``row``."""
         self.visits = np.zeros((_LEAST_ROWS, actions), np.int64)
-        """How often each was updated."""
+        """Number of updates of each value."""
 
     @classmethod
     def for_spaces(cls, observations: gym.Space[Any], actions: gym.Space[Any]) -> Table:
@@ -97,14 +97,14 @@ class Table:
             move_rows(keys, values, visits, self.keys, self.values, self.visits)
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        """What a file holds: the states met, sorted, with their values and visits."""
+        """Arrays for a file: the states met, sorted, with their values and visits."""
         rows = np.flatnonzero(self.keys != EMPTY)
         rows = rows[np.argsort(self.keys[rows])]
         return {"radix": self.radix, "keys": self.keys[rows], "values": self.values[rows], "visits": self.visits[rows]}
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, npt.NDArray[Any]]) -> Table:
-        """From what ``arrays`` gave.
+        """A table from what ``arrays`` returned.
 
         Raises:
             AgentError: something else.

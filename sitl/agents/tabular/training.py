@@ -95,7 +95,7 @@ def load_table(path: str | Path) -> Table:
 
 
 def _resume(folder: RunFolder, learner: Learner) -> tuple[int, int]:
-    """Put the learner where the run's model is; returns the episodes and steps done."""
+    """Restore the learner from the run's model; returns the episodes and steps done."""
     path = folder.path / MODEL
     if not path.exists():
         folder.episodes.keep(0)

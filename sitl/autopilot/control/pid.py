@@ -11,6 +11,7 @@ from typing import NamedTuple
 from ...core.kernels import law
 from ...core.records import Record
 from ...core.scalars import TWO_PI, constrain, finite
+from ..params.gains import BasicPidGains, PidGains
 
 
 class Pid(Record):
@@ -24,8 +25,8 @@ class Pid(Record):
     integrator: float  # in the unit of the output
 
 
-class PidGains(NamedTuple):
-    """Gains, limits and filters of a loop, as ArduPilot's parameters of a PID have them."""
+class Gains(NamedTuple):
+    """Gains, limits and filters of a loop."""
 
     p: float
     i: float
@@ -47,6 +48,20 @@ class Blocked(NamedTuple):
 
 
 @law
+def pid_gains(group: PidGains) -> Gains:
+    """Gains from parameters."""
+    g = group
+    return Gains(g.P, g.I, g.D, g.FF, g.D_FF, g.IMAX, g.PDMX, g.FLTT, g.FLTE, g.FLTD)
+
+
+@law
+def basic_gains(group: BasicPidGains, i_max: float) -> Gains:
+    """Gains from parameters of a loop without a filter of the target; ``i_max`` in the unit of the output."""
+    g = group
+    return Gains(g.P, g.I, g.D, g.FF, 0.0, i_max, 0.0, 0.0, g.FLTE, g.FLTD)
+
+
+@law
 def lowpass_gain(cutoff_hz: float, dt: float) -> float:
     """Part of the difference that a first-order low-pass takes over in one period; 1 without a filter (0 Hz)."""
     x = TWO_PI * cutoff_hz * dt
@@ -56,7 +71,7 @@ def lowpass_gain(cutoff_hz: float, dt: float) -> float:
 
 
 @law
-def filter_error(pid: Pid, target: float, measurement: float, dt: float, gains: PidGains) -> None:
+def filter_error(pid: Pid, target: float, measurement: float, dt: float, gains: Gains) -> None:
     """Bring target, error and derivative up to date."""
     if not pid.started:
         pid.started = True
@@ -74,7 +89,7 @@ def filter_error(pid: Pid, target: float, measurement: float, dt: float, gains: 
 
 
 @law
-def integrate(pid: Pid, dt: float, blocked: Blocked, gains: PidGains) -> None:
+def integrate(pid: Pid, dt: float, blocked: Blocked, gains: Gains) -> None:
     """Integrate the error unless that would drive the integrator in a blocked direction."""
     if gains.i == 0.0:
         pid.integrator = 0.0
@@ -83,7 +98,7 @@ def integrate(pid: Pid, dt: float, blocked: Blocked, gains: PidGains) -> None:
 
 
 @law
-def update_pid(pid: Pid, target: float, measurement: float, dt: float, saturated: bool, gains: PidGains) -> float:
+def update_pid(pid: Pid, target: float, measurement: float, dt: float, saturated: bool, gains: Gains) -> float:
     """Output of a loop whose actuator reports only *that* it is saturated: then the integrator may only shrink."""
     if not (finite(target) and finite(measurement)):
         return 0.0
@@ -99,7 +114,7 @@ def update_pid(pid: Pid, target: float, measurement: float, dt: float, saturated
 
 @law
 def update_pid_directional(
-    pid: Pid, target: float, measurement: float, dt: float, blocked: Blocked, gains: PidGains
+    pid: Pid, target: float, measurement: float, dt: float, blocked: Blocked, gains: Gains
 ) -> float:
     """Output of a loop that knows in which direction its actuator is used up.
 

@@ -46,7 +46,7 @@ def mode_allows(v, method):
     if mode == AUTO:
         return (int(ap.params.AUTO_OPTIONS) & _ARM_ONLY) != 0
     if mode == GUIDED:
-        return method != BY_RUDDER or (int(ap.params.GUID_OPTIONS) & _ARM_ONLY) != 0
+        return method != BY_RUDDER or (int(ap.params.GUID.OPTIONS) & _ARM_ONLY) != 0
     return True
 
 
@@ -83,12 +83,12 @@ def equipment_checks(v):
     ap = v.autopilot
     p = ap.params
     failed = battery_checks(v)
-    if p.FS_THR_ENABLE > 0.0 and wants(v, CHECK_RC):
+    if p.FS.THR_ENABLE > 0.0 and wants(v, CHECK_RC):
         if ap.rc.receiver_ok == 0:
             failed |= RC_MISSING
-        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS_THR_VALUE:
+        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
-    if p.FRAME_CLASS != 1.0:
+    if p.FRAME.CLASS != 1.0:
         failed |= FRAME
     return failed
 
@@ -107,7 +107,7 @@ def arm_checks(v, method):
     mode = int(ap.modes.number)
     if not mode_allows(v, method):
         failed |= MODE
-    if method == BY_RUDDER and ap.params.ARMING_RUDDER < 1.0:
+    if method == BY_RUDDER and ap.params.ARMING.RUDDER < 1.0:
         failed |= RUDDER_DISABLED
     if method != BY_MAVLINK or (mode != GUIDED and mode != AUTO):
         if has_manual_throttle(mode):

@@ -22,7 +22,7 @@ SPEED_MAX = 10.0  # [m/s]
 def is_crashed(v):
     """Whether this tick looks like a crash: far off its lean, yet neither accelerating nor fast."""
     ap = v.autopilot
-    if ap.arming.armed == 0 or ap.arming.landed != 0 or ap.params.FS_CRASH_CHECK < 1.0:
+    if ap.arming.armed == 0 or ap.arming.landed != 0 or ap.params.FS.CRASH_CHECK < 1.0:
         return False
     attitude = ap.control.attitude
     if attitude.cos_lean > COS_LEAN_MIN or attitude.thrust_error_angle <= ANGLE_ERROR_MAX:

@@ -51,10 +51,10 @@ def update_radio(v):
     """After each frame of the receiver."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    enable = int(ap.params.FS_THR_ENABLE)
+    enable = int(ap.params.FS.THR_ENABLE)
     pulse = ap.rc.channels[stick_channel(ap.params, 2) - 1]
     heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver != 0
-    bad = enable > 0 and heard and (ap.rc.receiver_ok == 0 or pulse < ap.params.FS_THR_VALUE)
+    bad = enable > 0 and heard and (ap.rc.receiver_ok == 0 or pulse < ap.params.FS.THR_VALUE)
     if bad and fs.radio == 0:
         fs.radio_count += 1
         if fs.radio_count >= RADIO_FRAMES:
@@ -74,7 +74,7 @@ def update_radio(v):
 def start_radio(v, action):
     """Act on the lost radio, unless FS_OPTIONS lets the mode go on."""
     ap = v.autopilot
-    options = int(ap.params.FS_OPTIONS)
+    options = int(ap.params.FS.OPTIONS)
     mode = ap.modes.number
     if mode == AUTO and (options & _RADIO_AUTO) != 0 and ap.arming.landed == 0:
         return
@@ -92,12 +92,12 @@ def update_gcs(v):
     if lost and fs.gcs == 0:
         fs.gcs = 1
         tell(v, GCS, 1)
-        options = int(ap.params.FS_OPTIONS)
+        options = int(ap.params.FS.OPTIONS)
         mode = int(ap.modes.number)
         goes_on = mode == AUTO and (options & _GCS_AUTO) != 0
         goes_on = goes_on or (not is_autopilot(mode) and (options & _GCS_PILOT) != 0)
         if not goes_on or ap.arming.landed != 0:
-            act(v, gcs_action(int(ap.params.FS_GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
+            act(v, gcs_action(int(ap.params.FS.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
     elif not lost and fs.gcs != 0:
         fs.gcs = 0
         tell(v, GCS, 0)
@@ -109,7 +109,7 @@ def update_battery(v):
     p = v.autopilot.params
     level = battery_fell_to(v)
     if level != 0:
-        choice = int(p.BATT_FS_CRT_ACT) if level == 2 else int(p.BATT_FS_LOW_ACT)
+        choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
 
 
@@ -122,8 +122,8 @@ def update_ekf(v):
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    bad = is_estimate_bad(v, ap.params.FS_EKF_FILT)
-    if ap.params.FS_EKF_THRESH <= 0.0 or ap.arming.armed == 0 or ap.estimate.origin_set == 0:
+    bad = is_estimate_bad(v, ap.params.FS.EKF_FILT)
+    if ap.params.FS.EKF_THRESH <= 0.0 or ap.arming.armed == 0 or ap.estimate.origin_set == 0:
         fs.ekf_count = 0
         fs.ekf = 0
         return
@@ -144,7 +144,7 @@ def update_ekf(v):
 def start_ekf(v):
     """Act on the bad estimate."""
     ap = v.autopilot
-    action = int(ap.params.FS_EKF_ACTION)
+    action = int(ap.params.FS.EKF_ACTION)
     mode = int(ap.modes.number)
     if mode != LAND and (action == 0 or (not requires_position(mode) and action != 3)):
         return

@@ -83,7 +83,7 @@ def act(v, action, reason, method):
         arming.disarm(v, method, 1)
         return
     mode = ap.modes.number
-    if mode == LAND and (int(ap.params.FS_OPTIONS) & CONTINUE_LANDING) != 0:
+    if mode == LAND and (int(ap.params.FS.OPTIONS) & CONTINUE_LANDING) != 0:
         return
     if action == DO_RTL:
         if mode != RTL and set_mode.request(v, RTL, reason) != ACCEPTED:

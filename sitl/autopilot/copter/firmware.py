@@ -14,7 +14,7 @@ from .mission import COMMANDS
 from .modes.init import init as init_modes
 from .modes.numbers import NAMES
 from .modes.update import update as decide
-from .table import TABLE
+from .parameters import TABLE
 
 
 @law

@@ -87,7 +87,7 @@ def update(v):
         return
     if arming.landed != 0:
         motors = ap.control.motors
-        pushes = motors.throttle > 0.5 * hover_throttle(ap) and motors.spool_state == ground.IS_UNLIMITED
+        pushes = motors.throttle > 0.5 * hover_throttle(ap.params.MOT) and motors.spool_state == ground.IS_UNLIMITED
         if pushes and not is_taking_off(v):
             ground.set_landed(v, 0)
         return
@@ -118,7 +118,7 @@ def is_at_rest(v):
     ap = v.autopilot
     if not ap.control.motors.limit_throttle_lower:
         return False
-    if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC_THR_MIX_MIN:
+    if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC.THR_MIX_MIN:
         return False
     asked, off = leans_far(ap)
     if (asked or off) and not is_meant_to_land(ap):

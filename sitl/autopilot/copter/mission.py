@@ -174,7 +174,7 @@ def _circle(ap: Any, time_us: int, item: MissionItem, here: Point) -> None:
     """The leg to the nearest point of the circle, none when it is near."""
     nav = ap.modes.nav
     centre = point(ap, item, here)
-    radius = item.p3 if item.p3 != 0.0 else 0.01 * float(ap.params.CIRCLE_RADIUS)
+    radius = item.p3 if item.p3 != 0.0 else 0.01 * float(ap.params.CIRCLE.RADIUS)
     radius = min(max(radius, -WIDEST), WIDEST)
     n, e = float(ap.estimate.pos[0]) - centre[0], float(ap.estimate.pos[1]) - centre[1]
     away = math.hypot(n, e)

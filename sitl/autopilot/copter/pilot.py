@@ -54,14 +54,14 @@ def read_sticks(v):
         pilot.throttle_zero = 0
     elif v.time_us - pilot.throttle_zero_us >= THROTTLE_ZERO_US:
         pilot.throttle_zero = 1
-    cutoff = ap.params.PILOT_THR_FILT
+    cutoff = ap.params.PILOT.THR_FILT
     gain = 1.0
     if cutoff > 0.0:
         gain = FRAME_S / (FRAME_S + 1.0 / (2.0 * math.pi * cutoff))
     pilot.throttle_filtered += gain * (pilot.throttle - pilot.throttle_filtered)
-    tc = ap.params.PILOT_Y_RATE_TC
+    tc = ap.params.PILOT.Y_RATE_TC
     gain = 1.0 if tc <= 0.0 else FRAME_S / (FRAME_S + tc)
-    wanted = math.radians(ap.params.PILOT_Y_RATE) * expo(float(pilot.yaw), ap.params.PILOT_Y_EXPO)
+    wanted = math.radians(ap.params.PILOT.Y_RATE) * expo(float(pilot.yaw), ap.params.PILOT.Y_EXPO)
     pilot.yaw_rate += gain * (wanted - pilot.yaw_rate)
 
 
@@ -92,8 +92,8 @@ def climb_rate(ap):
     throttle = float(ap.modes.pilot.throttle)
     top = 0.5 + dead
     bottom = 0.5 - dead
-    up = ap.params.PILOT_SPEED_UP * 0.01
-    down = ap.params.PILOT_SPEED_DN * 0.01
+    up = ap.params.PILOT.SPEED_UP * 0.01
+    down = ap.params.PILOT.SPEED_DN * 0.01
     if down <= 0.0:
         down = up
     if throttle < bottom:

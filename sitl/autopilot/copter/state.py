@@ -6,12 +6,12 @@ from __future__ import annotations
 from .. import state as shared
 from .control.state import Control
 from .modes.state import Modes
-from .table import TABLE
+from .parameters import Parameters
 
 
 class Autopilot(shared.Autopilot):
     """The copter firmware."""
 
-    params: TABLE.record  # type: ignore[name-defined]
+    params: Parameters
     modes: Modes
     control: Control

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ...core.geodesy import offset_ne
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from .. import events
 from . import noise
 from .covariance import clear
@@ -26,8 +27,9 @@ def reset_ne(ap, n, e, vn, ve):
     for k in range(2):
         ekf.lag_pos[k] = 0.0
         ekf.lag_vel[k] = 0.0
-        estimate.reset_pos[k] = ekf.pos[k] - estimate.pos[k]
-        estimate.reset_vel[k] = ekf.vel[k] - estimate.vel[k]
+    pos, vel = estimate.pos, estimate.vel
+    estimate.reset_pos = Vec3(ekf.pos[0] - pos.x, ekf.pos[1] - pos.y, estimate.reset_pos.z)
+    estimate.reset_vel = Vec3(ekf.vel[0] - vel.x, ekf.vel[1] - vel.y, estimate.reset_vel.z)
     estimate.reset_ne_count += 1
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from . import noise
 from .covariance import clear
 from .fusion import NIS_BAROMETER, clear_row, correct, gate_ratio, innovate
@@ -62,7 +63,7 @@ def fuse(ap, now_us):
     if ekf.baro_n < FUSE_SAMPLES:
         return 0
     down = ekf.baro_ground - ekf.baro_sum / ekf.baro_n
-    sigma = noise.HEIGHT * params.EK3_ALT_M_NSE
+    sigma = noise.HEIGHT * params.EK3.ALT_M_NSE
     variance = sigma * sigma / ekf.baro_n
     age = 1e-6 * (now_us - ekf.baro_us_sum / ekf.baro_n)
     _empty(ekf)
@@ -71,7 +72,7 @@ def fuse(ap, now_us):
     ekf.h[VEL + 2] = -age
     residual = down - (ekf.pos[2] - age * ekf.vel[2])
     innovation, s = innovate(ekf, residual, variance)
-    ratio = gate_ratio(innovation * innovation, s, params.EK3_ALT_M_NSE, params.EK3_HGT_I_GATE)
+    ratio = gate_ratio(innovation * innovation, s, params.EK3.ALT_M_NSE, params.EK3.HGT_I_GATE)
     ap.estimate.variance_hgt = math.sqrt(ratio)
     if ratio < 1.0:
         correct(ekf, innovation, s, NIS_BAROMETER)
@@ -93,6 +94,6 @@ def reset_height(ap, down, variance):
     ekf.pos[2] = down
     ekf.lag_pos[2] = 0.0
     shift(ekf, 2, jump, 0.0)
-    estimate.reset_pos[2] = down - estimate.pos[2]
-    estimate.reset_vel[2] = 0.0
+    estimate.reset_pos = Vec3(estimate.reset_pos.x, estimate.reset_pos.y, down - estimate.pos.z)
+    estimate.reset_vel = Vec3(estimate.reset_vel.x, estimate.reset_vel.y, 0.0)
     estimate.reset_d_count += 1

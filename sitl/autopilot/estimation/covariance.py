@@ -60,9 +60,9 @@ def predict(ekf, params):
         for j in range(i):
             P[i, j], P[j, i] = P[j, i], P[i, j]
     _rows(ekf)
-    gyro, acc = noise.GYRO * params.EK3_GYRO_P_NSE, noise.ACC * params.EK3_ACC_P_NSE
-    gyro_bias, acc_bias = noise.GYRO_BIAS * params.EK3_GBIAS_P_NSE, noise.ACC_BIAS * params.EK3_ABIAS_P_NSE
-    mag_bias = noise.MAG_BIAS * params.EK3_MAGB_P_NSE
+    gyro, acc = noise.GYRO * params.EK3.GYRO_P_NSE, noise.ACC * params.EK3.ACC_P_NSE
+    gyro_bias, acc_bias = noise.GYRO_BIAS * params.EK3.GBIAS_P_NSE, noise.ACC_BIAS * params.EK3.ABIAS_P_NSE
+    mag_bias = noise.MAG_BIAS * params.EK3.MAGB_P_NSE
     for k in range(3):
         P[THETA + k, THETA + k] += gyro * gyro * dt
         P[VEL + k, VEL + k] += acc * acc * dt

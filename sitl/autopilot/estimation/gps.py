@@ -77,7 +77,7 @@ def sane(sensors):
 @law
 def quality(params, sensors):
     """Whether a sane fix passes the checks that EK3_GPS_CHECK asks for."""
-    mask, scale = int(params.EK3_GPS_CHECK), 0.01 * params.EK3_CHECK_SCALE
+    mask, scale = int(params.EK3.GPS_CHECK), 0.01 * params.EK3.CHECK_SCALE
     if mask & 1 and int(sensors.gps_satellites) < MIN_SATELLITES:
         return False
     return not (mask & 2 and (int(sensors.gps_eph) <= 0 or int(sensors.gps_eph) > MAX_HDOP * scale))
@@ -87,7 +87,7 @@ def quality(params, sensors):
 def _fuse_velocity(ap, sensors, a, b, share, now_us):
     """Fuse the fix's velocity against the past velocity; returns 1 when it passed the gate."""
     ekf, params = ap.ekf, ap.params
-    ne, d = noise.GPS_VELOCITY_NE * params.EK3_VELNE_M_NSE, noise.GPS_VELOCITY_D * params.EK3_VELD_M_NSE
+    ne, d = noise.GPS_VELOCITY_NE * params.EK3.VELNE_M_NSE, noise.GPS_VELOCITY_D * params.EK3.VELD_M_NSE
     # the first pass looks, the second fuses
     squares, variances = 0.0, 0.0
     for go in range(2):
@@ -103,9 +103,9 @@ def _fuse_velocity(ap, sensors, a, b, share, now_us):
                 squares += innovation * innovation
                 variances += s
         if go == 0:
-            n, v = params.EK3_VELNE_M_NSE, params.EK3_VELD_M_NSE
+            n, v = params.EK3.VELNE_M_NSE, params.EK3.VELD_M_NSE
             nominal = math.sqrt(2.0 * n * n + v * v)
-            ratio = gate_ratio(squares, variances, nominal, params.EK3_VEL_I_GATE)
+            ratio = gate_ratio(squares, variances, nominal, params.EK3.VEL_I_GATE)
             ap.estimate.variance_vel = math.sqrt(ratio)
             if ratio >= 1.0:
                 return 0
@@ -117,7 +117,7 @@ def _fuse_velocity(ap, sensors, a, b, share, now_us):
 def _fuse_position(ap, sensors, a, b, share, age, now_us):
     """Fuse the fix's horizontal position against the past position; returns 1 when it passed the gate."""
     ekf, params, estimate = ap.ekf, ap.params, ap.estimate
-    sigma = noise.GPS_POSITION * params.EK3_POSNE_M_NSE
+    sigma = noise.GPS_POSITION * params.EK3.POSNE_M_NSE
     n, e = offset_ne(estimate.origin_lat, estimate.origin_lon, int(sensors.gps_lat), int(sensors.gps_lon))
     squares, variances = 0.0, 0.0
     for go in range(2):
@@ -133,8 +133,8 @@ def _fuse_position(ap, sensors, a, b, share, age, now_us):
                 squares += innovation * innovation
                 variances += s
         if go == 0:
-            nominal = math.sqrt(2.0) * params.EK3_POSNE_M_NSE
-            ratio = gate_ratio(squares, variances, nominal, params.EK3_POS_I_GATE)
+            nominal = math.sqrt(2.0) * params.EK3.POSNE_M_NSE
+            ratio = gate_ratio(squares, variances, nominal, params.EK3.POS_I_GATE)
             estimate.variance_pos = math.sqrt(ratio)
             if ratio >= 1.0:
                 return 0

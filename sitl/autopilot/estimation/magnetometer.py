@@ -129,7 +129,7 @@ def fuse(ap, now_us):
     if ekf.field_known == 0 and ekf.yaw_aligned == 0:
         ekf.earth_field[0], ekf.earth_field[1], ekf.earth_field[2] = math.sqrt(n * n + e * e), 0.0, d
     h2 = ekf.earth_field[0] * ekf.earth_field[0] + ekf.earth_field[1] * ekf.earth_field[1]
-    mag, yaw = noise.MAG * params.EK3_MAG_M_NSE, noise.YAW * params.EK3_YAW_M_NSE
+    mag, yaw = noise.MAG * params.EK3.MAG_M_NSE, noise.YAW * params.EK3.YAW_M_NSE
     variance = mag * mag / (count * h2) + yaw * yaw
     residual = wrap_pi(ekf.declination - math.atan2(e, n))
     if ekf.yaw_aligned == 0:
@@ -138,8 +138,8 @@ def fuse(ap, now_us):
         return _realign(ap, residual, variance, now_us)
     _row(ekf)
     innovation, s = innovate(ekf, residual, variance)
-    nominal = params.EK3_MAG_M_NSE / math.sqrt(h2)
-    ratio = gate_ratio(innovation * innovation, s, nominal, params.EK3_YAW_I_GATE)
+    nominal = params.EK3.MAG_M_NSE / math.sqrt(h2)
+    ratio = gate_ratio(innovation * innovation, s, nominal, params.EK3.YAW_I_GATE)
     ap.estimate.variance_mag = math.sqrt(ratio)
     leaving = ekf.yaw_in_flight == 0 and ap.arming.armed != 0 and ekf.ground_d - ekf.pos[2] > IN_FLIGHT_HEIGHT
     if leaving:

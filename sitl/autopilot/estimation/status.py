@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from ...core.algebra import euler_of
 from ...core.kernels import law
-from ...core.rotations import quat_to_euler
+from ...core.vectors import Quat, Vec3
 from .alignment import CALIBRATE
 from .gps import POSITION_TIMEOUT_US
 
@@ -48,24 +49,22 @@ def publish_status(ap, now_us):
     estimate.status_flags = value
     estimate.attitude_ok = 1 if ekf.tilt_aligned != 0 and ekf.yaw_aligned != 0 else 0
     estimate.position_ok = 1 if value & POS_HORIZ_ABS != 0 else 0
-    for k in range(3):
-        estimate.gyro_bias[k] = ekf.gyro_bias[k]
-        estimate.acc_bias[k] = ekf.acc_bias[k]
+    estimate.gyro_bias = Vec3(ekf.gyro_bias[0], ekf.gyro_bias[1], ekf.gyro_bias[2])
+    estimate.acc_bias = Vec3(ekf.acc_bias[0], ekf.acc_bias[1], ekf.acc_bias[2])
 
 
 @law
 def publish(ap, dt):
     """What changes every tick; corrections of the filter reach it with the time constant EK3_TAU_OUTPUT."""
     ekf, estimate = ap.ekf, ap.estimate
-    keep = max(0.0, 1.0 - 100.0 * dt / ap.params.EK3_TAU_OUTPUT)
-    for k in range(4):
-        estimate.q[k] = ekf.q[k]
+    keep = max(0.0, 1.0 - 100.0 * dt / ap.params.EK3.TAU_OUTPUT)
     for k in range(3):
         ekf.lag_vel[k] *= keep
         ekf.lag_pos[k] *= keep
-        estimate.vel[k] = ekf.vel[k] + ekf.lag_vel[k]
-        estimate.pos[k] = ekf.pos[k] + ekf.lag_pos[k]
-        estimate.rates[k] = ekf.last_gyro[k]
-        estimate.acc_ned[k] = ekf.last_acc_ned[k]
-    roll, pitch, yaw = quat_to_euler(ekf.q[0], ekf.q[1], ekf.q[2], ekf.q[3])
-    estimate.euler[0], estimate.euler[1], estimate.euler[2] = roll, pitch, yaw
+    pos, vel, rates, acc = ekf.pos, ekf.vel, ekf.last_gyro, ekf.last_acc_ned
+    estimate.vel = Vec3(vel[0] + ekf.lag_vel[0], vel[1] + ekf.lag_vel[1], vel[2] + ekf.lag_vel[2])
+    estimate.pos = Vec3(pos[0] + ekf.lag_pos[0], pos[1] + ekf.lag_pos[1], pos[2] + ekf.lag_pos[2])
+    estimate.rates = Vec3(rates[0], rates[1], rates[2])
+    estimate.acc_ned = Vec3(acc[0], acc[1], acc[2])
+    estimate.q = Quat(ekf.q[0], ekf.q[1], ekf.q[2], ekf.q[3])
+    estimate.euler = euler_of(estimate.q)

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from ...core.algebra import IDENTITY
 from ...core.kernels import law, unit
+from ...core.vectors import Vec3
 from .. import events
 from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
 from .alignment import CALIBRATE, RUN, TILT, YAW
@@ -28,7 +30,7 @@ def hold(ap, now_us):
             fusion.fuse_state(ekf, VEL + k, -ekf.vel[k], noise.STILL_VELOCITY * noise.STILL_VELOCITY)
             fusion.fuse_state(ekf, POS + k, ekf.hold_pos[k] - ekf.pos[k], noise.STILL_POSITION * noise.STILL_POSITION)
     else:
-        sigma = ap.params.EK3_NOAID_M_NSE
+        sigma = ap.params.EK3.NOAID_M_NSE
         for k in range(2):
             fusion.fuse_state(ekf, POS + k, ekf.hold_pos[k] - ekf.pos[k], sigma * sigma)
     return 1
@@ -53,7 +55,7 @@ def step(fleet, i):
     if ekf.gps_in_use == 0:
         fused += hold(ap, now_us)
     if fused > 0:
-        fusion.inject(ekf, ap.params.EK3_ACC_BIAS_LIM, now_us)
+        fusion.inject(ekf, ap.params.EK3.ACC_BIAS_LIM, now_us)
         covariance.bound(ekf)
     if ekf.phase == TILT:
         alignment.check_tilt(ekf, ap.events, now_us)
@@ -73,7 +75,7 @@ def step(fleet, i):
 def _boot(ap, now_us):
     """A tick of gyro calibration."""
     ekf, estimate = ap.ekf, ap.estimate
-    if ap.params.EK3_ENABLE == 0:
+    if ap.params.EK3.ENABLE == 0:
         return
     if alignment.calibrate(ekf, now_us) != 0:
         barometer.set_ground(ekf)
@@ -81,10 +83,9 @@ def _boot(ap, now_us):
         events.emit(ap.events, now_us, events.EKF_INITIALISED, 0.0, 0.0)
         return
     ekf.q[0] = 1.0
-    estimate.q[0] = 1.0
+    estimate.q = IDENTITY
     estimate.status_flags = status.UNINITIALIZED
-    for k in range(3):
-        estimate.rates[k] = ekf.good_gyro[k]
+    estimate.rates = Vec3(ekf.good_gyro[0], ekf.good_gyro[1], ekf.good_gyro[2])
 
 
 @unit

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.geodesy import add_offset, offset_ne
+from ...core.vectors import Vec3
 from .item import RELATIVE_FRAMES, TERRAIN_FRAMES, MissionItem
 
 Point = tuple[float, float, float]
@@ -44,5 +45,5 @@ def set_home(ap: Any, item: MissionItem) -> None:
         n, e, _ = point(ap, item, (0.0, 0.0, d))
         lat, lon = item.x, item.y
     home.lat, home.lon, home.alt = round(lat), round(lon), float(estimate.origin_alt) - d
-    home.pos[0], home.pos[1], home.pos[2] = n, e, d
+    home.pos = Vec3(n, e, d)
     home.is_set = home.locked = 1

@@ -71,7 +71,7 @@ class Sequencer:
     def _publish(self, v: Any) -> None:
         """Tell the core what the mission is."""
         ap, mission = v.autopilot, self.mission
-        ap.params.MIS_TOTAL = float(len(mission))
+        ap.params.MIS.TOTAL = float(len(mission))
         ap.modes.mission_count = len(mission)
         first = mission.get(jumps.next_nav(mission, 1, {}, JUMPS))
         ap.modes.mission_takes_off = 1 if first is not None and first.command == NAV_TAKEOFF else 0
@@ -115,7 +115,7 @@ class Sequencer:
         notes: list[Note] = []
         if not self.mission.present or ap.estimate.origin_set == 0:
             return notes
-        restart = ap.params.MIS_RESTART == 1 and nav.mission_resume == 0
+        restart = ap.params.MIS.RESTART == 1 and nav.mission_resume == 0
         if restart or nav.mission_state == COMPLETE or nav.mission_current == 0:
             jumps.keep(nav, {})
             nav.mission_current = 0

@@ -12,7 +12,7 @@ def page(firmware: str, table: Table) -> str:
     lines = [
         f"# Parameters of the {firmware}",
         "",
-        f"Made by `sitl params --vehicle {firmware} --markdown` from `sitl/autopilot/params/groups/` and",
+        f"Made by `sitl params --vehicle {firmware} --markdown` from `sitl/autopilot/params/` and",
         f"`sitl/autopilot/{firmware}/parameters/`. Names and defaults are ArduPilot's;",
         "the range is what the firmware accepts.",
     ]

@@ -1,11 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One parameter, as data."""
+"""One parameter as data, and the declarations with which records of parameters are written.
+
+A group of parameters is a record whose fields are rows or groups::
+
+    class RateLoop(ParameterGroup):
+        P: float = param(0.135, 0.0, 5.0, "", "proportional gain")
+        FLTT: float = param(20.0, 0.0, 400.0, "Hz", "low-pass of the target; 0: none")
+
+    class AttitudeControl(ParameterGroup):
+        RAT_RLL: RateLoop = group("Roll rate loop")
+        RAT_YAW: RateLoop = group("Yaw rate loop", P=0.18)  # whose default differs
+
+A parameter's full name is ArduPilot's: the path to it, joined by underscores (ATC_RAT_YAW_P).
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 from numbers import Real
-from typing import NamedTuple
+from typing import Any, ClassVar, NamedTuple
+
+from ...core.records import Record, array, noted, repeat
 
 FLOAT, INT8, INT16, INT32 = "float", "int8", "int16", "int32"
 
@@ -29,6 +46,8 @@ class Parameter(NamedTuple):
     kind: str = FLOAT
     read_only: bool = False
     """The firmware's own: users read it."""
+    path: str = ""
+    """Where it lies in the record of parameters: "ATC.RAT_RLL.P", "RC[0].MIN"."""
 
     def refusal(self, value: float) -> str | None:
         """Why ``value`` cannot be set, or None when it can."""
@@ -43,3 +62,101 @@ class Parameter(NamedTuple):
         if limit is not None and abs(value) > limit + 1:
             return f"{self.name}: {value:g} does not fit {self.kind}"
         return None
+
+
+class ParameterGroup(Record):
+    """A group of parameters: eight bytes each, in the parameter's own unit (centidegrees stay centidegrees).
+
+    A field that a subclass declares again goes where the subclass has it: the order of fields is the order on the wire.
+    """
+
+    keeps_places: ClassVar[bool] = False
+
+
+Change = float | tuple[float, ...] | dict[str, Any]
+
+
+@dataclass(frozen=True)
+class _Group:
+    label: str
+    changes: dict[str, Change]
+
+
+def param(
+    default: float, low: float, high: float, unit: str, doc: str, kind: str = FLOAT, *, read_only: bool = False,
+    count: int = 0,
+) -> Any:  # fmt: skip
+    """Declares a parameter, or ``count`` numbered ones as an array.
+
+    Args:
+        default: ArduPilot's.
+        low, high: what the firmware accepts.
+        unit: of the value as the user sees it, "" for none.
+        doc: one line; "{n}" stands for the number of a numbered parameter or group.
+        kind: how the wire carries it: FLOAT, INT8, INT16, INT32.
+        read_only: the firmware's own.
+        count: ``FLTMODE: Floats = param(..., count=6)`` declares FLTMODE1 .. FLTMODE6.
+    """
+    row = Parameter("", default, low, high, unit, doc, kind, read_only)
+    return noted(row, array(count) if count else None)
+
+
+def group(label: str = "", **changes: Change) -> Any:
+    """Declares a group of which something differs from how its class has it.
+
+    Args:
+        label: what the group belongs to; precedes the doc of each row ("Roll rate loop: proportional gain").
+        changes: of rows under their names: another default, or a dictionary of what differs (``default``, ``high``,
+            ``unit``, ``doc``; that doc stands without the label).
+    """
+    return noted(_Group(label, changes))
+
+
+def numbered(record: type[ParameterGroup], count: int, **changes: Change) -> Any:
+    """Declares groups 1 .. ``count``: ``RC: Records[Channel] = numbered(Channel, 8)`` has RC1_MIN .. RC8_DZ.
+
+    Args:
+        record: one of them.
+        count: how many.
+        changes: as of ``group``; a tuple has a default for each.
+    """
+    return noted(_Group("", changes), repeat(record, count))
+
+
+def rows(record: type[Record], prefix: str = "", path: str = "", note: Any = None, n: int = 0) -> Iterator[Parameter]:
+    """All parameters of a record with their full names, in the order of memory.
+
+    Args:
+        record: the class.
+        prefix, path: of the names and of the places of its rows.
+        note: how it was declared.
+        n: its number, from 1, where it is one of many.
+
+    Raises:
+        ValueError: the declaration changes a row that is not there.
+    """
+    changed: _Group = note or _Group("", {})
+    unknown = changed.changes.keys() - record.fields.keys()
+    if unknown:
+        raise ValueError(f"{path or record.__name__}: {sorted(unknown)} changed, which {record.__name__} does not have")
+    for field in record.fields.values():
+        name, place = prefix + field.name, path + field.name
+        numbers = range(1, field.shape[0] + 1) if field.shape else ()
+        if field.record is not None:
+            for k in numbers:
+                yield from rows(field.record, f"{name}{k}_", f"{place}[{k - 1}].", field.note, k)
+            if not numbers:
+                yield from rows(field.record, f"{name}_", f"{place}.", field.note)
+            continue
+        doc = f"{changed.label}: {field.note.doc}" if changed.label else field.note.doc
+        row = _changed(field.note._replace(name=name, path=place, doc=doc), changed.changes.get(field.name, {}), n)
+        for k in numbers:
+            yield row._replace(name=f"{name}{k}", path=f"{place}[{k - 1}]", doc=row.doc.replace("{n}", str(k)))
+        if not numbers:
+            yield row._replace(doc=row.doc.replace("{n}", str(n)))
+
+
+def _changed(row: Parameter, change: Change, n: int) -> Parameter:
+    if isinstance(change, dict):
+        return row._replace(**change)
+    return row._replace(default=change[n - 1] if isinstance(change, tuple) else change)

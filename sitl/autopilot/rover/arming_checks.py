@@ -54,15 +54,15 @@ def equipment_checks(v):
     ap = v.autopilot
     p = ap.params
     failed = battery_checks(v)
-    if p.FS_THR_ENABLE > 0.0 and wants(v, CHECK_RC):
+    if p.FS.THR_ENABLE > 0.0 and wants(v, CHECK_RC):
         if ap.rc.receiver_ok == 0:
             failed |= RC_MISSING
-        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS_THR_VALUE:
+        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
     drives = servos.is_assigned(ap, servos.STEERING) or servos.is_assigned(ap, servos.THROTTLE)
     if not drives and not is_skid(ap):
         failed |= NO_OUTPUTS
-    if p.WP_SPEED <= 0.0 and wants(v, CHECK_PARAMETERS):
+    if p.WP.SPEED <= 0.0 and wants(v, CHECK_PARAMETERS):
         failed |= WAYPOINT_SPEED
     return failed
 
@@ -70,7 +70,7 @@ def equipment_checks(v):
 @law
 def check(v):
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
-    if v.autopilot.params.ARMING_CHECK == 0.0:
+    if v.autopilot.params.ARMING.CHECK == 0.0:
         return sensor_checks(v) & NOT_INITIALISED
     mode = 0 if allows_arming(int(v.autopilot.modes.number)) else MODE
     return sensor_checks(v) | estimate_checks(v) | equipment_checks(v) | mode
@@ -96,7 +96,7 @@ def check_now(v, method):
     ap = v.autopilot
     failed = check(v) | stick_checks(v, method)
     if method == BY_RUDDER:
-        if ap.params.ARMING_RUDDER < 1.0:
+        if ap.params.ARMING.RUDDER < 1.0:
             failed |= RUDDER_DISABLED
         if not allows_arming_by_stick(int(ap.modes.number)):
             failed |= MODE_BY_RUDDER

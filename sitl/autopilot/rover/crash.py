@@ -43,7 +43,7 @@ def is_blocked(ap):
 def update(v):
     """Ten times a second."""
     ap = v.autopilot
-    check = ap.params.FS_CRASH_CHECK
+    check = ap.params.FS.CRASH_CHECK
     watched = ap.arming.armed != 0 and check > 0.0 and is_autopilot(int(ap.modes.number))
     if not watched or motor_test.is_running(ap):
         ap.arming.crash_ticks = 0

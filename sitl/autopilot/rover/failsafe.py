@@ -59,7 +59,7 @@ def update_radio(v):
     p = ap.params
     pulse = ap.rc.channels[stick_channel(p, 2) - 1]
     heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver != 0
-    bad = p.FS_THR_ENABLE > 0.0 and heard and (ap.rc.receiver_ok == 0 or pulse < p.FS_THR_VALUE)
+    bad = p.FS.THR_ENABLE > 0.0 and heard and (ap.rc.receiver_ok == 0 or pulse < p.FS.THR_VALUE)
     ap.modes.failsafe.radio = 1 if bad else 0
     watch(v, BIT_RADIO, bad)
 
@@ -90,10 +90,10 @@ def watch(v, bit, bad):
     if links.acted != 0 and links.bad == 0:
         tell(v, kind_of(bit), 0)
     links.acted = int(links.acted) & int(links.bad)
-    if links.acted != 0 or not bad or v.time_us - links.since_us <= ap.params.FS_TIMEOUT * 1e6:
+    if links.acted != 0 or not bad or v.time_us - links.since_us <= ap.params.FS.TIMEOUT * 1e6:
         return
     mode = ap.modes.number
-    in_hold = mode == HOLD and (int(ap.params.FS_OPTIONS) & _ACTIVE_IN_HOLD) == 0
+    in_hold = mode == HOLD and (int(ap.params.FS.OPTIONS) & _ACTIVE_IN_HOLD) == 0
     if mode != RTL and not in_hold and not motor_test.is_running(ap):
         links.acted = links.bad
         begin(v, bit)
@@ -107,11 +107,11 @@ def begin(v, bit):
     tell(v, kind_of(bit), 1)
     for k in range(18):
         ap.rc.override[k] = 0
-    enabled = p.FS_THR_ENABLE if bit == BIT_RADIO else p.FS_GCS_ENABLE
+    enabled = p.FS.THR_ENABLE if bit == BIT_RADIO else p.FS.GCS_ENABLE
     if ap.modes.number == AUTO and enabled == _ENABLED_BUT_IN_AUTO:
         tell(v, CONTINUES, 1)
     else:
-        act(v, int(p.FS_ACTION), REASON_FAILSAFE, BY_BATTERY_FAILSAFE)
+        act(v, int(p.FS.ACTION), REASON_FAILSAFE, BY_BATTERY_FAILSAFE)
 
 
 @law
@@ -120,7 +120,7 @@ def update_battery(v):
     p = v.autopilot.params
     level = battery_fell_to(v)
     if level != 0:
-        choice = int(p.BATT_FS_CRT_ACT) if level == 2 else int(p.BATT_FS_LOW_ACT)
+        choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, choice, REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
 
 
@@ -135,7 +135,7 @@ def update_ekf(v):
     if ap.estimate.origin_set == 0:
         return
     bad = is_estimate_bad(v, 0.0)
-    if ap.params.FS_EKF_THRESH <= 0.0 or ap.arming.armed == 0:
+    if ap.params.FS.EKF_THRESH <= 0.0 or ap.arming.armed == 0:
         fs.ekf_count = 0
         clear_ekf(v)
         return
@@ -168,7 +168,7 @@ def clear_ekf(v):
 def begin_ekf(v):
     """Act on the bad estimate in a mode that needs a good one."""
     ap = v.autopilot
-    action = int(ap.params.FS_EKF_ACTION)
+    action = int(ap.params.FS.EKF_ACTION)
     if not requires_position(int(ap.modes.number)) or action == EKF_NOTHING:
         return
     if action != EKF_REPORT:

@@ -14,7 +14,7 @@ from .mission import COMMANDS
 from .modes.init import init as init_modes
 from .modes.numbers import NAMES
 from .modes.update import update as decide
-from .table import TABLE
+from .parameters import TABLE
 
 PERIOD_TICKS = 8
 """Modes and control run at 50 Hz (SCHED_LOOP_RATE), the estimator at every tick of 400 Hz."""

@@ -31,7 +31,7 @@ BAD_POSITION, FULL = 0, 1
 @law
 def capacity(ap):
     """Most points on the path."""
-    return min(max(int(ap.params.SRTL_POINTS), 0), PATH_POINTS)
+    return min(max(int(ap.params.SRTL.POINTS), 0), PATH_POINTS)
 
 
 @law
@@ -43,7 +43,7 @@ def set_home(v):
     path.simplified = 0
     path.active = 0
     path.home_saved = 0
-    if ap.estimate.position_ok == 0 or capacity(ap) == 0 or ap.params.SRTL_ACCURACY <= 0.0:
+    if ap.estimate.position_ok == 0 or capacity(ap) == 0 or ap.params.SRTL.ACCURACY <= 0.0:
         return
     path.good_us = v.time_us
     path.saved_us = v.time_us
@@ -86,7 +86,7 @@ def add(ap, n, e):
     if not finite(n + e):
         return 1
     last = int(path.points) - 1
-    if last >= 0 and math.hypot(n - path.n[last], e - path.e[last]) < ap.params.SRTL_ACCURACY:
+    if last >= 0 and math.hypot(n - path.n[last], e - path.e[last]) < ap.params.SRTL.ACCURACY:
         return 1
     if path.points >= capacity(ap):
         return 0
@@ -177,7 +177,7 @@ def simplify(ap):
         while path.keep[b] == 0:
             b += 1
         best, distance = farthest(path, a, b)
-        if distance > EPSILON_SHARE * ap.params.SRTL_ACCURACY:
+        if distance > EPSILON_SHARE * ap.params.SRTL.ACCURACY:
             path.keep[best] = 1
         else:
             a = b
@@ -232,7 +232,7 @@ def crossing(path, j, i):
 def cut_loops(ap):
     """Where a later stretch comes close to an earlier one, what lies between is cut out; from home outwards."""
     path = ap.modes.path
-    near = LOOP_SHARE * float(ap.params.SRTL_ACCURACY)
+    near = LOOP_SHARE * float(ap.params.SRTL.ACCURACY)
     j = 1
     while j < int(path.points) - 1:
         i = int(path.points) - 1

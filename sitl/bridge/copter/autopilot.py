@@ -39,7 +39,7 @@ class CopterAutopilot(BaseAutopilot):
         """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front."""
         motor = position - 1
         if in_order and 0 <= motor < motor_test.MOTORS:
-            motor = motor_test.motor_in_order(int(self._v.autopilot.params.FRAME_TYPE), motor)
+            motor = motor_test.motor_in_order(int(self._v.autopilot.params.FRAME.TYPE), motor)
         answer = int(motor_test.start(self._v, motor, throttle, seconds))
         if answer == motor_test.NOT_LANDED:
             self._say(CRITICAL, ["Motor Test: vehicle not landed"])

@@ -71,4 +71,4 @@ class GpsReader:
             s.gps_time_us = t
         s.gps_fix, s.gps_lat, s.gps_lon, s.gps_alt = fix, lat, lon, alt
         s.gps_eph, s.gps_epv, s.gps_satellites = eph, epv, satellites
-        s.gps_vel[:] = (vn, ve, vd)
+        s.gps_vel = (vn, ve, vd)

@@ -53,5 +53,5 @@ class WheelReader:
     def write(self, values: tuple[float, float]) -> None:
         """Put a sample into the record."""
         s = self._sensors
-        s.wheel_distance[:] = values
+        s.wheel_distance = values
         s.wheel_count += 1

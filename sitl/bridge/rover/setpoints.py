@@ -40,7 +40,7 @@ class RoverSetpoints(SetpointService):
         super().__init__(bridge)
         self._rover = cast("RoverAutopilot", bridge.autopilot)
         self._origin_set = bridge.reader.field("autopilot.estimate.origin_set")
-        self._wp_speed = bridge.reader.field("autopilot.params.WP_SPEED")
+        self._wp_speed = bridge.reader.field("autopilot.params.WP.SPEED")
 
     def _listens(self) -> bool:
         return self._mode() == self._guided or self._rover.is_guided_in_auto()

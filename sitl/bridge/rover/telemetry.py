@@ -67,7 +67,7 @@ def vfr_hud(context: Context) -> Build:
 def rc_channels_scaled(context: Context) -> Build:
     """RC_CHANNELS_SCALED: outputs to steering (1) and throttle (3), skid-steered to left and right, -10000 .. 10000."""
     names = ("steering", "throttle", "left", "right")
-    functions = (f"autopilot.params.SERVO{k}_FUNCTION" for k in range(1, OUTPUTS + 1))
+    functions = (f"autopilot.params.SERVO[{k}].FUNCTION" for k in range(OUTPUTS))
     read = context.fields("time_us", *(C + "motors.out_" + name for name in names), *functions)
     pack = message("RC_CHANNELS_SCALED").pack
 

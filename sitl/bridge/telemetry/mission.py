@@ -15,7 +15,7 @@ def mission_current(context: Context) -> Build:
     """MISSION_CURRENT: number of the item, number of items without home, state."""
     read = context.fields(
         M + "number", M + "nav.mission_state", M + "nav.mission_current",
-        "autopilot.params.MIS_TOTAL",
+        "autopilot.params.MIS.TOTAL",
     )  # fmt: skip
     pack, auto = message("MISSION_CURRENT").pack, context.profile.auto
 

@@ -55,7 +55,7 @@ def sys_status(context: Context) -> Build:
     """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
     read = context.fields(
         B + "voltage", B + "current", B + "remaining_pct", M + "number", A + "armed", A + "prearm_ok",
-        "autopilot.rc.receiver_ok", M + "failsafe.battery", "autopilot.params.BATT_MONITOR",
+        "autopilot.rc.receiver_ok", M + "failsafe.battery", "autopilot.params.BATT.MONITOR",
     )  # fmt: skip
     sensors = sensor_health(context)
     controllers, at_work, healthy_at_rest = context.profile.controllers
@@ -94,7 +94,7 @@ def ekf_status_report(context: Context) -> Build:
 def battery_status(context: Context) -> Build:
     """BATTERY_STATUS: mV, cA, mAh, hJ, %; what BATT_MONITOR does not measure is 65535 (cells, too) or -1."""
     names = ("voltage", "current", "consumed_mah", "consumed_wh", "remaining_pct")
-    read = context.fields(*(B + name for name in names), "autopilot.params.BATT_MONITOR")
+    read = context.fields(*(B + name for name in names), "autopilot.params.BATT.MONITOR")
     pack = message("BATTERY_STATUS").pack
 
     def build() -> bytes:

@@ -12,8 +12,11 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from sitl.bridge.client import Client
 from sitl.bridge.hil.numbers import BASE_PORT
+from sitl.client.byte_socket import ByteSocket
+from sitl.client.commands import command_number
+from sitl.client.connection import ACCEPTED, Connection
+from sitl.client.endpoint import Endpoint
 from sitl.errors import OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
@@ -25,10 +28,11 @@ from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT
 
-from .connection import ACCEPTED, Connection
-from .ends import LinkLostError, NotReadyError, SocketEnd
-from .preparation import ARM_DISARM, FORCE, REBOOT
+from .errors import LinkLostError, NotReadyError
+from .preparation import FORCE
+from .telemetry import StepTelemetry
 
+_REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 _SLICE_US = 20_000
 _ANSWER_US = 3_000_000
 """Simulated time within which a command is answered [us]."""
@@ -67,15 +71,14 @@ class Foreign(Connection):
     Args:
         host: serves the plant.
         plant: physics and world.
-        connection: form of ``SocketEnd``: where the autopilot's MAVLink is.
+        connection: form of ``ByteSocket``: where the autopilot's MAVLink is.
         process: the autopilot, when it was started for this.
         readings: of a scan.
         patience: wall time without a sign of life after which it is lost [s].
     """
 
     is_exact = False
-    sees = True
-    longest_interval_us = 20_000
+    inbox: StepTelemetry
 
     def __init__(
         self,
@@ -86,14 +89,15 @@ class Foreign(Connection):
         readings: int,
         patience: float,
     ) -> None:
-        super().__init__(readings)
+        super().__init__(Endpoint(), StepTelemetry(readings))
+        self.inbox.scans_by_mavlink, self.inbox.longest_interval_us = False, 20_000
         self.host, self.plant, self.process = host, plant, process
         self.patience, self._connection = patience, connection
         self._sensors, self._obstacles = plant.craft.v.sensors, plant.craft.v.physics.obstacles
         self._scans = self._hits = 0
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
-        self.end: SocketEnd | None = None
+        self.stream: ByteSocket | None = None
         try:
             self._connect()
             self.find()
@@ -114,19 +118,19 @@ class Foreign(Connection):
 
     def _connect(self) -> None:
         """Open its MAVLink, which may not be there yet."""
-        if self.end is not None:
-            self.end.close()
+        if self.stream is not None:
+            self.stream.close()
         until = time.monotonic() + (self.patience if self.process is None else max(self.patience, _START_S))
         while True:
             try:
-                self.end = SocketEnd(self._connection)
+                self.stream = ByteSocket(self._connection)
             except LinkLostError:
                 self._check()
                 if time.monotonic() >= until:
                     raise
                 time.sleep(0.05)  # wall time; the vehicle has none yet
             else:
-                self.client = Client(self.end)
+                self.streampoint = Endpoint(self.stream)
                 return
 
     def find(self) -> None:
@@ -135,10 +139,10 @@ class Foreign(Connection):
         Raises:
             LinkLostError: it is not.
         """
-        self.heard.system = 0
+        self.inbox.system = 0
         for _ in range(_HEARTBEAT_US // _SLICE_US):
             self.run(_SLICE_US)
-            if self.heard.system != 0:
+            if self.inbox.system != 0:
                 return
         raise LinkLostError(f"connection {self.name}: no HEARTBEAT in {_HEARTBEAT_US // 1_000_000} simulated seconds")
 
@@ -148,15 +152,15 @@ class Foreign(Connection):
         Raises:
             LinkLostError, NotReadyError: it does not boot.
         """
-        self.command(ARM_DISARM, 0.0, FORCE)
+        self.command("COMPONENT_ARM_DISARM", arm=0, force=FORCE)
         boots = self.host.boots
         try:
-            result = self.command(REBOOT, 1.0)
+            result = self.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
         except LinkLostError:  # its last word may be the answer
-            heard = self._result(REBOOT)
-            if heard is None:
+            answer = self.inbox.acks.get(_REBOOT)
+            if answer is None:
                 raise
-            result = heard
+            result = int(answer.result)
         if result != ACCEPTED:
             raise NotReadyError(f"{self.name}: the autopilot refuses to reboot (MAV_RESULT {result})")
         self.plant.close()
@@ -165,7 +169,7 @@ class Foreign(Connection):
         self._scans = self._hits = 0
         self.host.seat(plant)
         until = time.monotonic() + self.patience
-        self.heard.forget()
+        self.inbox.forget()
         while True:  # it closes its port, and opens it again when it boots
             try:
                 if self.host.boots != boots:
@@ -185,8 +189,8 @@ class Foreign(Connection):
 
     def run(self, us: int) -> None:
         host, goal, boots = self.host, self.host.time_us + us, self.host.boots
-        if self.end is not None:
-            self.end.flush()
+        if self.stream is not None:
+            self.stream.flush()
         turns = 0
         while host.time_us < goal and host.boots == boots:
             self._await()
@@ -220,33 +224,32 @@ class Foreign(Connection):
                 raise LinkLostError(str(error)) from None
 
     def _hear(self) -> None:
-        if self.end is None:
+        if self.stream is None:
             return
-        data = self.end.receive()
+        data = self.stream.receive()
         if data:
-            self.heard.feed(data)
+            self.inbox.feed(data)
             self.tap(data)
 
     def _look(self) -> None:
         """Take over the scan and the touches that are new."""
         scans, hits = int(self._sensors.lidar_count), int(self._obstacles.hit_count)
         if scans != self._scans:
-            self.heard.scan[: len(self.heard.angles)] = self._sensors.lidar_ranges[: len(self.heard.angles)]
-            self.heard.scans += 1
-        self.heard.hits += max(hits - self._hits, 0)
+            self.inbox.scan[: len(self.inbox.angles)] = self._sensors.lidar_ranges[: len(self.inbox.angles)]
+            self.inbox.scans += 1
+        self.inbox.hits += max(hits - self._hits, 0)
         self._scans, self._hits = scans, hits
 
-    def _answer(self, number: int) -> int | None:
+    def wait_answer(self, done: Callable[[], bool]) -> bool:
         for _ in range(_ANSWER_US // _SLICE_US):
             self.run(_SLICE_US)
-            result = self._result(number)
-            if result is not None:
-                return result
-        return None
+            if done():
+                return True
+        return False
 
     def close(self) -> None:
-        if self.end is not None:
-            self.end.close()
+        if self.stream is not None:
+            self.stream.close()
         if self.process is not None:
             self.process.stop()
         self.host.close()

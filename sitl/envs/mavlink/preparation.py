@@ -6,12 +6,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from .connection import ACCEPTED, Connection
-from .ends import NotReadyError
+from sitl.client.connection import ACCEPTED, Connection
+
+from .errors import NotReadyError
 from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN, SECTORS
 
-ARM_DISARM, SET_MODE, TAKE_OFF, REBOOT, SET_INTERVAL, REQUEST = 400, 176, 22, 246, 511, 512
-FORCE = 21196.0
+FORCE = 21196
+"""Second parameter of arming: even in the air."""
+CUSTOM_MODE_ENABLED = 1
+"""MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
 INTERVAL_US = 100_000
 """Of position, attitude and scan after ``prepare``."""
 ALIGN_US = 6_000_000
@@ -32,20 +35,20 @@ def reboot(link: Connection) -> None:
     Raises:
         NotReadyError: it refuses.
     """
-    link.command(ARM_DISARM, 0.0, FORCE)
-    name = {"target_system": link.heard.system, "target_component": 1, "param_id": LEARNED.encode()}
-    if not link.was_rebooted:
-        link.client.send("PARAM_REQUEST_READ", param_index=-1, **name)
+    link.command("COMPONENT_ARM_DISARM", arm=0, force=FORCE)
+    name = {"target_system": link.inbox.system, "target_component": 1, "param_id": LEARNED.encode()}
+    if not link.inbox.was_rebooted:
+        link.endpoint.send("PARAM_REQUEST_READ", param_index=-1, **name)
         link.pause(0 if link.is_exact else _SECOND)
-        link.learned = link.heard.parameters.get(LEARNED)
-        link.was_rebooted = True
-    elif link.learned is not None:
-        link.client.send("PARAM_SET", param_value=link.learned, param_type=_REAL_4, **name)
-    result = link.command(REBOOT, 1.0)
+        link.inbox.learned = link.inbox.parameters.get(LEARNED)
+        link.inbox.was_rebooted = True
+    elif link.inbox.learned is not None:
+        link.endpoint.send("PARAM_SET", param_value=link.inbox.learned, param_type=_REAL_4, **name)
+    result = link.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
     if result != ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses to reboot (MAV_RESULT {result}), so it cannot be reset")
     link.pause(0 if link.is_exact else 2 * _SECOND)
-    link.heard.forget()
+    link.inbox.forget()
 
 
 def set_intervals(link: Connection, interval_us: int) -> None:
@@ -56,11 +59,13 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     Raises:
         NotReadyError: the vehicle does not send one of them so often.
     """
-    for kind in (POSITION, ATTITUDE) if link.sees else (POSITION, ATTITUDE, link.heard.scan_kind):
-        result = link.command(SET_INTERVAL, kind.id, interval_us)
+    telemetry = link.inbox
+    scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink else ()
+    for kind in (POSITION, ATTITUDE, *scan):
+        result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
         if result != ACCEPTED and kind is SCAN:
-            link.heard.scan_kind = kind = SECTORS
-            result = link.command(SET_INTERVAL, kind.id, interval_us)
+            link.inbox.scan_kind = kind = SECTORS
+            result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
         if result != ACCEPTED:
             raise NotReadyError(
                 f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms "
@@ -70,8 +75,8 @@ def set_intervals(link: Connection, interval_us: int) -> None:
 
 def hear_again(link: Connection) -> None:
     """Ask for position, attitude and scan as they are: those of this instant were lost on the way."""
-    for kind in (POSITION, ATTITUDE, link.heard.scan_kind):
-        link.command(REQUEST, kind.id)
+    for kind in (POSITION, ATTITUDE, link.inbox.scan_kind):
+        link.command("REQUEST_MESSAGE", kind.id)
 
 
 def set_mode(link: Connection, number: int) -> None:
@@ -80,7 +85,7 @@ def set_mode(link: Connection, number: int) -> None:
     Raises:
         NotReadyError: it refuses.
     """
-    if link.command(SET_MODE, 1.0, number) != ACCEPTED:
+    if link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, number) != ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_told(link)}")
 
 
@@ -96,25 +101,25 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     Raises:
         NotReadyError: it does not get there; the message says what the vehicle told.
     """
-    heard = link.heard
-    link.client.send("REQUEST_DATA_STREAM", target_system=heard.system, target_component=1)  # stop all
+    heard = link.inbox
+    link.endpoint.send("REQUEST_DATA_STREAM", target_system=heard.system, target_component=1)  # stop all
     set_intervals(link, INTERVAL_US)
 
     def arms() -> bool:
-        if math.isnan(heard.position[1]) or link.command(SET_MODE, 1.0, guided) != ACCEPTED:
+        if math.isnan(heard.position[1]) or link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, guided) != ACCEPTED:
             return False
-        return link.command(ARM_DISARM, 1.0) == ACCEPTED
+        return link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
 
-    _until(link, arms, _SECOND, "does not arm")
+    until(link, arms, _SECOND, "does not arm")
     if take_off > 0.0:
         floor = heard.position[3]  # home is where it is armed, which is not the origin of local positions
-        if link.command(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, take_off) != ACCEPTED:
+        if link.command("NAV_TAKEOFF", altitude=take_off) != ACCEPTED:
             raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_told(link)}")
-        _until(link, lambda: abs(heard.position[3] - floor + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
+        until(link, lambda: abs(heard.position[3] - floor + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
                f"does not climb to {take_off:g} m")  # fmt: skip
     for _ in range(3):  # it may be lost on the way
         if heard.origin is None:
-            link.command(REQUEST, ORIGIN.id)
+            link.command("REQUEST_MESSAGE", ORIGIN.id)
     if heard.origin is None:
         raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
     if link.is_exact:
@@ -127,13 +132,26 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
 
 
-def _until(link: Connection, done: Callable[[], bool], every_us: int, complaint: str) -> None:
-    for _ in range(_PATIENCE_S * _SECOND // every_us):
+def until(
+    link: Connection,
+    done: Callable[[], bool],
+    every_us: int,
+    complaint: str,
+    seconds: int = _PATIENCE_S,
+    between: Callable[[], None] = lambda: None,
+) -> None:
+    """Let time go by until ``done()``; ``between``: called before each step.
+
+    Raises:
+        NotReadyError: not within so many seconds.
+    """
+    for _ in range(seconds * _SECOND // every_us):
         if done():
             return
+        between()
         link.pause(every_us)
-    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {_PATIENCE_S} s; {_told(link)}")
+    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; {_told(link)}")
 
 
 def _told(link: Connection) -> str:
-    return "it told: " + "; ".join(link.heard.texts[-4:]) if link.heard.texts else "it told nothing"
+    return "it said: " + "; ".join(link.inbox.last_texts[-4:]) if link.inbox.last_texts else "it said nothing"

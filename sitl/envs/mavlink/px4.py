@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from sitl.bridge.services.setpoints import (
     ACCELERATION_IGNORED,
@@ -14,12 +14,12 @@ from sitl.bridge.services.setpoints import (
     YAW_IGNORED,
     YAW_RATE_IGNORED,
 )
+from sitl.client.connection import ACCEPTED, Connection
 
-from .connection import ACCEPTED, Connection
-from .ends import NotReadyError
-from .preparation import ARM_DISARM, INTERVAL_US, ORIGIN, REQUEST, SET_MODE, set_intervals
+from .errors import NotReadyError
+from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
-from .telemetry import Telemetry
+from .telemetry import StepTelemetry
 
 OFFBOARD = 6
 """Main mode of PX4's, in param2 of DO_SET_MODE with MAV_MODE_FLAG_CUSTOM_MODE_ENABLED in param1."""
@@ -31,7 +31,7 @@ _BEFORE = 10
 _READY_S, _CLIMB_S = 90, 30
 
 
-def velocity(row: Sequence[float], heard: Telemetry, origin: Sequence[float]) -> Message:
+def velocity(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_POSITION_TARGET_LOCAL_NED: velocities [m/s] turned from the heading to north and east, turn rate [rad/s].
 
     PX4 takes them in the local frame on all its versions, in the body's on some.
@@ -59,9 +59,9 @@ def prepare(link: Connection, take_off: float) -> None:
     Raises:
         NotReadyError: it does not get there; the message says what the vehicle told.
     """
-    heard = link.heard
+    heard = link.inbox
     set_intervals(link, INTERVAL_US)
-    _until(link, lambda: not math.isnan(heard.position[1]), lambda: None, _READY_S, "has no position")
+    until(link, lambda: not math.isnan(heard.position[1]), _TENTH, "has no position", _READY_S)
     north, east, down = heard.position[1:4]
     heading = heard.attitude[3]
 
@@ -75,24 +75,27 @@ def prepare(link: Connection, take_off: float) -> None:
             type_mask=_PLACE_AND_YAW,
             **place,
         )
-        link.client.send_payload(LOCAL, target)
+        link.endpoint.send_payload(LOCAL, target)
 
     for _ in range(_BEFORE):
         hold()
         link.run(_TENTH)
 
-    def arms() -> bool:
-        return link.command(SET_MODE, 1.0, OFFBOARD) == ACCEPTED and link.command(ARM_DISARM, 1.0) == ACCEPTED
+    def offboard() -> bool:
+        return link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, OFFBOARD) == ACCEPTED
 
-    _until(link, arms, hold, _READY_S, "does not arm in OFFBOARD")
-    _until(
-        link, lambda: abs(heard.position[3] - down + take_off) < 0.15 and abs(heard.position[6]) < 0.15, hold,
-        _CLIMB_S, f"does not climb to {take_off:g} m",
+    def arms() -> bool:
+        return offboard() and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
+
+    until(link, arms, _TENTH, "does not arm in OFFBOARD", _READY_S, hold)
+    until(
+        link, lambda: abs(heard.position[3] - down + take_off) < 0.15 and abs(heard.position[6]) < 0.15, _TENTH,
+        f"does not climb to {take_off:g} m", _CLIMB_S, hold,
     )  # fmt: skip
     for _ in range(3):
         if heard.origin is None:
             hold()
-            link.command(REQUEST, ORIGIN.id)
+            link.command("REQUEST_MESSAGE", ORIGIN.id)
     if heard.origin is None:
         raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
     scans = heard.scans
@@ -101,13 +104,3 @@ def prepare(link: Connection, take_off: float) -> None:
         link.run(_TENTH)
     if heard.scans == scans:
         raise NotReadyError(f"{link.name}: the physics sends no scan")
-
-
-def _until(link: Connection, done: Callable[[], bool], hold: Callable[[], None], seconds: int, complaint: str) -> None:
-    for _ in range(10 * seconds):
-        if done():
-            return
-        hold()
-        link.pause(_TENTH)
-    told = "; ".join(link.heard.texts[-4:]) or "nothing"
-    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; it told: {told}")

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from .connection import PROOF, Connection
-from .ends import NotASimulatorError
+from sitl.client.connection import PROOF, Connection
+
+from .errors import NotASimulatorError
 
 SIMULATOR, REBOOT = "simulator", "reboot"
 RESETS = (SIMULATOR, REBOOT)
@@ -26,7 +27,7 @@ def is_simulator(link: Connection) -> bool:
 
 def refusal(link: Connection) -> NotASimulatorError:
     """The error for a vehicle that has not proved to be a simulator."""
-    heard: Any = link.heard
+    heard: Any = link.inbox
     mode = f"{'armed' if heard.armed else 'disarmed'}, in mode {heard.mode}" if heard.mode >= 0 else "no HEARTBEAT yet"
     return NotASimulatorError(
         f"connection {link.name}: the vehicle (system {heard.system}, {mode}) does not prove to be a simulator: it "

@@ -10,15 +10,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.bridge.dialect import message
+from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
+from sitl.client.inbox import AUTOPILOT, HEARTBEAT, TEXT, Inbox
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
-HEARTBEAT, ACK, TEXT, ORIGIN, PARAMETER = (
-    message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "GPS_GLOBAL_ORIGIN", "PARAM_VALUE")
-)
-COMPONENT = 1
+ORIGIN = message("GPS_GLOBAL_ORIGIN")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
@@ -30,7 +28,7 @@ _part = struct.Struct("<QH10s").unpack_from
 _seven = struct.Struct("<I6f").unpack_from
 
 
-class Telemetry:
+class StepTelemetry(Inbox):
     """The latest of each message.
 
     Args:
@@ -38,15 +36,13 @@ class Telemetry:
     """
 
     def __init__(self, readings: int) -> None:
-        self._splitter = Splitter()
+        super().__init__()
         self._parts = -(-readings // PART)
         self._fresh: set[int] = set()
         self._scan_us = -1
         self.scan: npt.NDArray[np.float32] = np.full(self._parts * PART, np.inf, np.float32)
         """The last whole scan and beyond [m], from right to left."""
         self._next = self.scan.copy()
-        self.system = 0
-        """Of the vehicle; 0 before it is heard."""
         self.position: tuple[float, ...] = (0, math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
         """Time since boot [ms]; north, east, down from the origin of its estimate [m]; the same of velocity [m/s]."""
         self.attitude: tuple[float, ...] = (0,) + 6 * (0.0,)
@@ -62,22 +58,24 @@ class Telemetry:
         self.mode, self.armed = -1, False
         self.origin: tuple[int, int, int] | None = None
         """Latitude, longitude [degE7], altitude [mm] of local positions."""
-        self.acks: list[Any] = []
-        """Answers to commands, until somebody takes them."""
-        self.parameters: dict[str, float] = {}
-        """Those that were asked for."""
-        self.texts: list[str] = []
-        """The last texts, newest last."""
-        self.words = 0
-        """Messages so far that a vehicle whose time stands does not send: all but HEARTBEAT and texts."""
+        self.scans_by_mavlink = True
+        """Whether scans and touches come by MAVLink; else the connection reads them off the physics."""
+        self.longest_interval_us = 1 << 62
+        """Greatest interval of telemetry that is new enough at the end of a step [us]."""
+        self.was_rebooted = False
+        self.learned: float | None = None
+        """What the vehicle may have changed by itself, as it was at first (``preparation.reboot``)."""
+
+    @property
+    def time_ms(self) -> int:
+        """The vehicle's clock, by its last position [ms]."""
+        return int(self.position[0])
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
         for kind, payload, _, system, component, _, _ in self._splitter.feed(data):
-            if component != COMPONENT or system != (self.system or system):
+            if component != AUTOPILOT or system != (self.system or system):
                 continue
-            if kind is not HEARTBEAT and kind is not TEXT:
-                self.words += 1
             if kind is POSITION:
                 self.position = _seven(payload.ljust(28, b"\0"))
             elif kind is ATTITUDE:
@@ -86,6 +84,8 @@ class Telemetry:
                 self._scan_part(payload.ljust(252, b"\0"))
             else:
                 self._other(kind, payload, system)
+                continue
+            self.count += 1
 
     def _scan_part(self, payload: bytes) -> None:
         time_us, number, name = _part(payload)
@@ -114,23 +114,17 @@ class Telemetry:
         self.scan[: len(number)] = np.where(number < len(distances), distances.take(number, mode="clip"), np.inf)
         self.scans += 1
 
-    def _other(self, kind: Any, payload: bytes, system: int) -> None:
+    def _other(self, kind: MessageType, payload: bytes, system: int) -> None:
         fields = kind.decode(payload)
+        self._note(kind, fields, system)
         if kind is HEARTBEAT:
-            self.system, self.mode, self.armed = system, fields.custom_mode, bool(fields.base_mode & ARMED)
-        elif kind is ACK:
-            self.system = system
-            self.acks.append(fields)
+            self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & ARMED)
         elif kind is SECTORS:
             self._sectors(fields)
-        elif kind is PARAMETER:
-            self.parameters[fields.param_id.decode("ascii", "replace")] = fields.param_value
         elif kind is ORIGIN:
             self.origin = (fields.latitude, fields.longitude, fields.altitude)
-        elif kind is TEXT:
-            if fields.text.startswith(HIT):
-                self.hits += 1
-            self.texts = [*self.texts[-9:], fields.text.decode("ascii", "replace")]
+        elif kind is TEXT and fields.text.startswith(HIT):
+            self.hits += 1
 
     def forget(self) -> None:
         """The vehicle boots: what it said before does not count any more."""
@@ -138,7 +132,7 @@ class Telemetry:
         self.origin, self.armed, self._scan_us = None, False, -1
         self._fresh.clear()
         self.acks.clear()
-        self.texts.clear()
+        self.last_texts.clear()
 
     def memory(self) -> tuple[Any, ...]:
         """What ``recall`` needs to go on as from here; can be pickled."""

@@ -28,8 +28,8 @@ def load(robot: str | Callable[..., Robot], world: World, count: int, options: M
     Args:
         robot: a name, or a class (any callable) that takes ``world``, ``count`` and its options.
         world: where.
-        count: how many.
-        options: of this robot.
+        count: number of robots.
+        options: options of this robot.
 
     Raises:
         EnvOptionError: no robot of that name, or it does not take such an option.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle with an autopilot as an environment's robot: everything passes as MAVLink bytes.
+"""A vehicle with an autopilot as an environment's robot: commands and telemetry are MAVLink bytes.
 
-An episode begins armed, in GUIDED, a copter in the air. How vehicles are had and brought there differs: ``in_process``,
-``by_socket``, ``foreign``; what happens in a step does not.
+An episode starts armed, in GUIDED, a copter in the air. The modules ``in_process``, ``by_socket`` and ``foreign``
+differ in how they get vehicles and bring them to that state; a step is the same for all.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl import vehicles, worlds
+from sitl.client.connection import Connection
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
@@ -27,8 +28,7 @@ from sitl.worlds import World, planar
 from sitl.worlds.frames import from_heading, from_ned
 
 from ..actions import Action
-from ..mavlink.connection import Connection
-from ..mavlink.ends import LinkLostError
+from ..mavlink.errors import LinkLostError
 from ..mavlink.preparation import ALIGN_US, hear_again, set_intervals, set_mode
 from ..mavlink.simulator import RESETS, SIMULATOR
 from ..options import EnvOptionError, unknown
@@ -38,38 +38,40 @@ from .by_socket import SocketVehicles
 from .foreign import ForeignVehicles
 from .in_process import InProcessVehicles
 from .robot import Floats, Pose
-from .vehicles import INPROCESS, NOWHERE, Ready, Seat, Vehicles
+from .vehicles import INPROCESS, NOT_STARTED, EpisodeState, Vehicles, VehicleSetup
 
 _TRIES = 20
 
 
-def have(seat: Seat, choice: Choice | None) -> Vehicles:
-    """The vehicles, in the way that the options say."""
+def make_vehicles(setup: VehicleSetup, choice: Choice | None) -> Vehicles:
+    """Vehicles in process, behind a socket, or with a foreign autopilot, as the options say."""
     if choice is not None:
-        return ForeignVehicles(seat, choice)
-    return InProcessVehicles(seat) if seat.options["connection"] == INPROCESS else SocketVehicles(seat)
+        return ForeignVehicles(setup, choice)
+    return InProcessVehicles(setup) if setup.options["connection"] == INPROCESS else SocketVehicles(setup)
 
 
 class AutopilotRobot:
     """See ``Robot``. ``"erle_copter"`` and ``"erle_rover"`` are this one with their airframes.
 
     Args:
-        world: that it moves in.
-        count: of vehicles.
-        frame: airframe: a name, a .py file, or an ``Airframe``; it needs a lidar.
-        connection: "inprocess", or where a vehicle is reached: "udp:HOST:PORT", "udpout:HOST:PORT", "tcp:HOST:PORT".
-            One started with ``sitl run --lockstep`` goes exactly as far as each step says; others run in real time.
-        take_off: height that a copter hovers at when an episode begins [m].
-        home: latitude, longitude [deg], altitude [m] of the world's origin (its heading does not count).
-        params: values under ArduPilot's names, in process.
-        gcs: where a ground station listens to the first vehicle, as ``sitl run --out`` has it; None: nowhere.
-        patience: wall time without an answer after which a connection is lost [s].
-        physics: what simulates it, in process or under a foreign autopilot: "native", "pybullet" (see
+        world: world that the vehicles move in.
+        count: number of vehicles.
+        frame: airframe with a lidar: a name, a .py file, or an ``Airframe``.
+        connection: "inprocess", or the address of a vehicle: "udp:HOST:PORT", "udpout:HOST:PORT", "tcp:HOST:PORT".
+            A vehicle started with ``sitl run --lockstep`` advances by exactly one step at a time; others run in real
+            time.
+        take_off: height at which a copter hovers at the start of an episode, 0.5 .. 100 [m].
+        home: latitude, longitude [deg], altitude [m] of the world's origin; the heading is not used.
+        params: parameter values by ArduPilot's names, for vehicles in process.
+        gcs: address of a ground station that receives the first vehicle's telemetry, as in ``sitl run --out``; None:
+            none.
+        patience: wall time without an answer after which a connection counts as lost [s].
+        physics: engine for vehicles in process or with a foreign autopilot, e.g. "native", "pybullet" (see
             ``sitl.simulation.Simulation``).
-        autopilot: "native", or a foreign one on our physics, by its program or by where its MAVLink is:
-            "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started, or rebooted, for
+        autopilot: "native", or a foreign autopilot on our physics, by its program or the address of its MAVLink:
+            "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started or rebooted for
             each episode, and has no snapshots.
-        autopilot_path: the program, when ``autopilot`` does not say.
+        autopilot_path: path of the program, when ``autopilot`` does not give it.
         reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
             proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
     """
@@ -118,12 +120,13 @@ class AutopilotRobot:
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
-        self._vehicles = had = have(Seat(self._options, airframe, kind, self.world, self.angles), choice)
+        setup = VehicleSetup(self._options, airframe, kind, self.world, self.angles)
+        self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
-        self.crash_range, self.tick = kind.crash_range, max(kind.tick, had.shortest_step)
+        self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
         self.figures: Mapping[str, Figure] = (
-            {**{f.name: f for f in airframe.known if f.length == 1 and not f.whole}, **had.surroundings}
-            if had.simulates
+            {**{f.name: f for f in airframe.known if f.length == 1 and not f.whole}, **made.extra_figures}
+            if made.simulates
             else {}
         )
         self.volume = volume(airframe, take_off if airframe.kind == "copter" else 0.0)
@@ -134,10 +137,10 @@ class AutopilotRobot:
         self.time = np.zeros(count)
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
         self._base_along = float(airframe.value("base_along"))
-        self._now = [NOWHERE] * count
+        self._states = [NOT_STARTED] * count
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The kind's own: see ``autopilot_kinds``."""
+        """The vehicle kind's actions: see ``autopilot_kinds``."""
         return self.kind.action(form, setpoint)
 
     # ------------------------------------------------------------------ episodes
@@ -149,7 +152,7 @@ class AutopilotRobot:
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
         try:
-            self._now[index] = self._vehicles.begin(index, pose, seed)
+            self._states[index] = self._vehicles.begin(index, pose, seed)
         except LinkLostError:
             self.close()
             raise
@@ -175,7 +178,7 @@ class AutopilotRobot:
     def advance_late(
         self, seconds: float, waits: npt.NDArray[np.int64], rows: npt.NDArray[np.bool_] | None = None
     ) -> None:
-        """See ``Robot``: the message is sent after the wait."""
+        """See ``Robot``: the set-point message is sent after ``waits`` ticks."""
         us, tick_us = round(1e6 * seconds), round(1e6 * self.tick)
         try:
             for index in range(self.count) if rows is None else np.flatnonzero(rows).tolist():
@@ -185,22 +188,22 @@ class AutopilotRobot:
             raise
 
     def _step(self, index: int, us: int, wait_us: int = 0) -> None:
-        link, now, setpoint = self._vehicles.links[index], self._now[index], self._setpoint
+        link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
         if link is None:
             raise LinkLostError(f"{self._vehicles.where} is not open; reset() opens it")
-        heard = link.heard
-        interval_us = min(math.gcd(ALIGN_US, us), link.longest_interval_us)
+        heard = link.inbox
+        interval_us = min(math.gcd(ALIGN_US, us), heard.longest_interval_us)
         if now.setpoint != setpoint.name or now.interval_us != interval_us:
             now = self._change(link, now, setpoint.name, interval_us)
-            self._now[index] = now
+            self._states[index] = now
         hits, scans, goal_ms = heard.hits, heard.scans, heard.position[0] + us // 1000
         if wait_us > 0:
-            if not link.splits_steps:
+            if not link.is_held:
                 raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
             link.run(wait_us)
         if wait_us < us:
             kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), heard, now.origin)
-            link.client.send_payload(kind, payload)
+            link.endpoint.send_payload(kind, payload)
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
@@ -212,19 +215,19 @@ class AutopilotRobot:
         self.collided[index] = heard.hits > hits
         self._read(index)
 
-    def _change(self, link: Connection, now: Ready, setpoint: str, interval_us: int) -> Ready:
-        """Another mode, other intervals: before the first step of an episode."""
+    def _change(self, link: Connection, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
+        """Set the mode and the telemetry intervals that the set-point needs; before the first step of an episode."""
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
             set_mode(link, self.kind.modes[setpoint])
-        return Ready(None, None, now.origin, now.began_us, setpoint, interval_us)
+        return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 
     def _read(self, index: int) -> None:
-        """What was heard, into the arrays."""
-        link, now = self._vehicles.links[index], self._now[index]
+        """Copy the last telemetry into the arrays."""
+        link, now = self._vehicles.links[index], self._states[index]
         assert link is not None
-        heard = link.heard
+        heard = link.inbox
         _, n, e, d, vn, ve, vd = heard.position
         heading = heard.attitude[3]
         c, s = math.cos(heading), math.sin(heading)
@@ -237,32 +240,32 @@ class AutopilotRobot:
         self.time[index] = 1e-6 * (self._vehicles.time_us(index) - now.began_us)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
-        """See ``Robot``; the scan of the instant was read already."""
+        """See ``Robot``; ``reset`` has already read the scan."""
 
     def link(self, index: int) -> Connection | None:
         """The connection to a vehicle, after its first reset."""
         return self._vehicles.links[index]
 
     def simulation(self, index: int) -> Simulation:
-        """A vehicle in process itself, to look at what MAVLink does not tell."""
+        """The simulation of a vehicle in process, for values that MAVLink does not send."""
         return self._vehicles.simulation(index)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
-        """A picture by the renderer of the vehicle's physics; None when it has none."""
+        """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
         return self._vehicles.photograph(index, width, height)
 
-    # ------------------------------------------------------------------ other times
+    # ------------------------------------------------------------------ snapshots
 
     def snapshot(self, index: int) -> Any:
         """See ``Robot``."""
-        return self._vehicles.snapshot(index, self._now[index])
+        return self._vehicles.snapshot(index, self._states[index])
 
     def restore(self, index: int, snapshot: Any) -> None:
         """See ``Robot``."""
-        if self._vehicles.has_snapshots and not isinstance(snapshot, Ready):
+        if self._vehicles.has_snapshots and not isinstance(snapshot, EpisodeState):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of a vehicle")
         self._vehicles.restore(index, snapshot)
-        self._now[index] = snapshot
+        self._states[index] = snapshot
         self.collided[index] = 0
         self._read(index)
 

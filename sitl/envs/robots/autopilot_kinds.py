@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What differs between vehicles with an autopilot: modes, set-points, usual actions."""
+"""Modes, set-points and default actions of the kinds of vehicles with an autopilot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .robot import Volume
 
 Rows = Mapping[str, tuple[float, ...]]
 Limits = tuple[tuple[float, ...], tuple[float, ...], tuple[int, ...]]
-"""Low, high, and which columns of the set-point."""
+"""Low limits, high limits, and the columns of the set-point that they belong to."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,12 @@ class Kind:
     tick: float
     """Period of its autopilot's loop [s]."""
     crash_range: float
-    """The paper's [m]."""
+    """Range below which a reading is a crash, as in the paper [m]."""
     discrete: Mapping[str, Rows]
     continuous: Mapping[str, Limits]
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The usual actions of a form, for a kind of set-point."""
+        """The default actions of a form, "discrete" or "continuous", for a kind of set-point."""
         if form == "discrete":
             if setpoint.name not in self.discrete:
                 allowed = ", ".join(self.discrete)
@@ -49,7 +49,7 @@ class Kind:
 
 
 def volume(airframe: Airframe, climbs: float) -> Volume:
-    """What a vehicle takes up, with the room to climb so high [m]."""
+    """The volume of a vehicle, extended upwards by the height that it climbs [m]."""
     reach = max(abs(x) for x in airframe.value("contact_along")) if airframe.value("contact_discs") > 1 else 0.0
     return Volume(
         float(reach + airframe.value("contact_radius")),

@@ -1,45 +1,54 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle that is reached by a socket, as it is: a simulator reboots for every episode."""
+"""A vehicle behind a socket, which reboots for every episode."""
 
 from __future__ import annotations
 
 from typing import ClassVar
 
-from ..mavlink.connection import Lockstep, connect
+from gymnasium import logger
+
+from sitl.client.connection import Lockstep, connect
+from sitl.errors import OptionError
+
 from ..mavlink.preparation import reboot
 from ..mavlink.simulator import REBOOT, is_simulator, refusal
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .robot import Pose
-from .vehicles import Ready, Seat, Vehicles
+from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
 
 class SocketVehicles(Vehicles):
-    """See ``Vehicles``; there is one."""
+    """See ``Vehicles``; there is one vehicle."""
 
     simulates: ClassVar[bool] = False
 
-    def __init__(self, seat: Seat) -> None:
-        options = seat.options
+    def __init__(self, setup: VehicleSetup) -> None:
+        options = setup.options
         self._connection = options["connection"]
         if options["count"] > 1 or options["gcs"] is not None or options["params"]:
             raise EnvOptionError(
                 f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
             )
-        super().__init__(seat)
+        super().__init__(setup)
         self._pose: Pose | None = None
 
     @property
     def where(self) -> str:
         return f"connection {self._connection!r}"
 
-    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
+    def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         if self._pose not in (None, pose):
             raise EnvOptionError(f"{self.where}: the vehicle starts where it was started")
         self._pose = pose
         link = self.links[0]
         if link is None:
-            link = connect(self._connection, len(self.seat.angles), self.options["patience"])
-            link.heard.angles = self.seat.angles
+            inbox = StepTelemetry(len(self.setup.angles))
+            try:
+                link = connect(self._connection, inbox, self.options["patience"], warn=logger.warn)
+            except OptionError as error:
+                raise EnvOptionError(str(error)) from None
+            link.inbox.angles = self.setup.angles
             self.links[0] = link
         else:
             link.is_simulator = is_simulator(link)
@@ -55,4 +64,4 @@ class SocketVehicles(Vehicles):
     def time_us(self, index: int) -> int:
         link = self.links[index]
         assert link is not None
-        return 1000 * (link.time_ms if isinstance(link, Lockstep) else int(link.heard.position[0]))
+        return link.time_us

@@ -1,36 +1,35 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles with an autopilot that is not ours, on our physics: its program is started anew, or rebooted, for every
-episode."""
+"""Vehicles with a foreign autopilot on our physics. Its program is restarted or rebooted for every episode."""
 
 from __future__ import annotations
 
 import math
 
+from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.foreign.choice import PX4, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
-from ..mavlink.connection import Connection
 from ..mavlink.foreign import Foreign, launch
 from ..mavlink.simulator import REBOOT, is_simulator, refusal
 from ..options import EnvOptionError
 from .robot import Pose
-from .vehicles import INPROCESS, Ready, Seat, Vehicles
+from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
 
 
 class ForeignVehicles(Vehicles):
     """See ``Vehicles``.
 
     Args:
-        seat: what they are made of.
+        setup: what they are made from.
         choice: the autopilot.
     """
 
-    def __init__(self, seat: Seat, choice: Choice) -> None:
+    def __init__(self, setup: VehicleSetup, choice: Choice) -> None:
         self._choice = choice
-        options, airframe = seat.options, seat.airframe
+        options, airframe = setup.options, setup.airframe
         if choice.kind == PX4 and airframe.kind != "copter":
             raise EnvOptionError(f"{self.where} flies copters here; {airframe.name} is a {airframe.kind}")
         if options["connection"] != INPROCESS:
@@ -39,28 +38,28 @@ class ForeignVehicles(Vehicles):
             raise EnvOptionError(f"{self.where}: gcs is for our own autopilot in process")
         if choice.program is None and (options["count"] > 1 or options["params"]):
             raise EnvOptionError(f"{self.where} is one vehicle as it is: no count or params")
-        super().__init__(seat)
+        super().__init__(setup)
 
     @property
     def where(self) -> str:
         return f"autopilot {self._choice.name}"
 
-    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
-        figures, airframe = self.changed[index], self.seat.airframe
+    def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
+        figures, airframe = self.changed[index], self.setup.airframe
         before, self.links[index] = self.links[index], None
         link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
         self.links[index] = link
-        link.heard.angles = self.seat.angles
+        link.inbox.angles = self.setup.angles
         return self.begun(index, self.prepare(link, pose))
 
     def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:
-        """A foreign autopilot that has just booted on physics at power-on.
+        """Boot a foreign autopilot on physics at power-on.
 
         Args:
-            before: link of the episode before: closed, or rebooted when its program is not ours to start.
-            airframe: with the figures of this episode.
-            pose: that it stands at.
-            seed: of the physics.
+            before: connection of the last episode; it is closed, or reused when we did not start the program.
+            airframe: airframe with the figures of this episode.
+            pose: start pose x, y, z [m], yaw [rad].
+            seed: seed of the physics' noise.
         """
         choice, options = self._choice, self.options
         rebooted = before if isinstance(before, Foreign) and choice.program is None else None
@@ -68,11 +67,11 @@ class ForeignVehicles(Vehicles):
             before.close()
         try:
             plant = stand_alone(
-                airframe, home=options["home"], backend=options["physics"], seed=seed, world=self.seat.world,
+                airframe, home=options["home"], backend=options["physics"], seed=seed, world=self.setup.world,
                 start=(*pose[:3], math.degrees(pose[3])),
             )  # fmt: skip
             if rebooted is None:
-                found = launch(choice, plant, options["params"] or {}, len(self.seat.angles), options["patience"])
+                found = launch(choice, plant, options["params"] or {}, len(self.setup.angles), options["patience"])
                 try:
                     self._check(found)
                 except BaseException:

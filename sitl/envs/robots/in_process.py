@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles with our autopilot in this process. The state in which an episode begins is reached once for each start pose
-and then restored, with a new seed for the noise."""
+"""Vehicles with our autopilot in this process.
+
+The state at the start of an episode is calculated once for each start pose and then restored, with a new seed of the
+noise.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
 from sitl.bridge.links.address import LinkAddressError, open_link
+from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import NATIVE
 from sitl.plants.local import LocalPlant
@@ -17,32 +21,32 @@ from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 
-from ..mavlink.connection import InProcess
 from ..mavlink.preparation import INTERVAL_US
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
-from .vehicles import Ready, Seat, Vehicles
+from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
-_MOST_READY = 2048
-"""Start poses, with their figures, of which the state after take-off is kept: some 40 kB each. A new one takes some
-30 ms of one core."""
+_MAX_STATES = 2048
+"""Number of start states that are kept, one for each start pose and set of figures: about 40 kB each. Calculating one
+takes about 30 ms."""
 WIND = {
     "wind_speed": ("SIM_WIND_SPD", Figure("wind_speed", "m/s", "of the steady wind", 0.0, 50.0, 0.0)),
     "wind_direction": ("SIM_WIND_DIR", Figure("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0)),
     "wind_turbulence": ("SIM_WIND_TURB", Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0)),
 }
-"""Figures that are no airframe's: the parameters that make the wind, and what is allowed. A rover does not feel it."""
+"""Figure -> parameter of the wind, and the figure's limits. Wind acts on copters only."""
 
 
 class InProcessVehicles(Vehicles):
     """See ``Vehicles``. The first one is made at once: options that cannot be taken are refused here."""
 
     has_snapshots: ClassVar[bool] = True
-    shortest_step: ClassVar[float] = 0.0
+    min_step: ClassVar[float] = 0.0
 
-    def __init__(self, seat: Seat) -> None:
-        super().__init__(seat)
-        self._ready: dict[Any, Ready] = {}
+    def __init__(self, setup: VehicleSetup) -> None:
+        super().__init__(setup)
+        self._states: dict[Any, EpisodeState] = {}
         self._core: Core | None = None
         gcs = self.options["gcs"]
         try:
@@ -52,44 +56,46 @@ class InProcessVehicles(Vehicles):
         self._link(0)
 
     @property
-    def surroundings(self) -> Mapping[str, Figure]:
-        return {name: figure for name, (_, figure) in WIND.items()} if self.seat.airframe.kind == "copter" else {}
+    def extra_figures(self) -> Mapping[str, Figure]:
+        return {name: figure for name, (_, figure) in WIND.items()} if self.setup.airframe.kind == "copter" else {}
 
     @property
     def where(self) -> str:
         return f"connection {self.options['connection']!r}"
 
-    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
-        ready = self._restored(pose, tuple(sorted(self.changed[index].items())))
-        self.restore(index, ready)
+    def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
+        state = self._restored(pose, tuple(sorted(self.changed[index].items())))
+        self.restore(index, state)
         self.simulation(index).reseed(seed)
-        return ready
+        return state
 
-    def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...]) -> Ready:
-        """The state after take-off at a pose; found once."""
+    def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...]) -> EpisodeState:
+        """The state after take-off at a pose; calculated on first use."""
         key = (pose, figures)
-        ready = self._ready.get(key)
-        if ready is None:
+        state = self._states.get(key)
+        if state is None:
             simulation = self._simulation(pose, figures)
-            link = InProcess(simulation, len(self.seat.angles))
-            link.heard.angles = self.seat.angles
+            link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
+            link.inbox.angles = self.setup.angles
             origin = self.prepare(link, pose)
-            ready = Ready(simulation.snapshot(), link.heard.memory(), origin, simulation.time_us, "", INTERVAL_US)
+            state = EpisodeState(
+                simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US
+            )
             link.close()
-            if len(self._ready) >= _MOST_READY:
-                del self._ready[next(iter(self._ready))]
-            self._ready[key] = ready
-        return ready
+            if len(self._states) >= _MAX_STATES:
+                del self._states[next(iter(self._states))]
+            self._states[key] = state
+        return state
 
     def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
-        options, airframe = self.options, self.seat.airframe
+        options, airframe = self.options, self.setup.airframe
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
         own = {name: value for name, value in figures if name not in WIND}
         params = {**(options["params"] or {}), **wind} if wind else options["params"]
         try:
             simulation = Simulation(
-                airframe.changed(**own) if own else airframe, world=self.seat.world, start=start,
+                airframe.changed(**own) if own else airframe, world=self.setup.world, start=start,
                 home=options["home"], params=params, core=self._core, physics=options["physics"],
             )  # fmt: skip
         except (OptionError, AirframeError, EngineError, ParameterError) as error:
@@ -104,8 +110,8 @@ class InProcessVehicles(Vehicles):
         link = self.links[index]
         if link is None:
             simulation = self._simulation()
-            link = self.links[index] = InProcess(simulation, len(self.seat.angles))
-            link.heard.angles = self.seat.angles
+            link = self.links[index] = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
+            link.inbox.angles = self.setup.angles
             if index == 0 and self._gcs is not None:
                 simulation.bridge.add_link(self._gcs)
         assert isinstance(link, InProcess)
@@ -121,19 +127,19 @@ class InProcessVehicles(Vehicles):
         plant = self.simulation(index).plant
         return plant.engine.render(width, height) if isinstance(plant, LocalPlant) and plant.engine else None
 
-    def snapshot(self, index: int, now: Ready) -> Ready:
+    def snapshot(self, index: int, now: EpisodeState) -> EpisodeState:
         link = self.links[index]
         if not isinstance(link, InProcess):
             raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
-        return Ready(
-            link.simulation.snapshot(), link.heard.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
+        return EpisodeState(
+            link.simulation.snapshot(), link.inbox.memory(), now.origin, now.began_us, now.setpoint, now.interval_us
         )
 
-    def restore(self, index: int, ready: Ready) -> None:
+    def restore(self, index: int, state: EpisodeState) -> None:
         link = self._link(index)
         try:
-            link.simulation.restore(ready.simulation)
+            link.simulation.restore(state.simulation)
         except (OptionError, EngineError) as error:
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
-        link.client.link.receive()
-        link.heard.recall(ready.heard)
+        link.endpoint.link.receive()
+        link.inbox.recall(state.telemetry)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an environment needs of a robot. An object stands for one robot or for many, all alone in the same world.
+"""The interface between an environment and its robots. An object is one robot or many, each alone in the same world.
 
 Poses are in the frame of world files: x forward, y left, z up [m], yaw counter-clockwise [rad].
 """
@@ -23,54 +23,54 @@ if TYPE_CHECKING:
 
 Floats = npt.NDArray[np.float64]
 Pose = tuple[float, float, float, float]
-"""x, y, z, yaw."""
+"""x, y, z [m], yaw [rad]."""
 
 
 @dataclass(frozen=True)
 class Volume:
-    """The vertical cylinder that a robot takes up."""
+    """The vertical cylinder that a robot occupies."""
 
     radius: float
-    """[m]."""
+    """Radius [m]."""
     bottom: float
-    """Above the z of its pose [m]."""
+    """Height of the lower end above the z of the robot's pose [m]."""
     top: float
-    """[m]."""
+    """Height of the upper end above the z of the robot's pose [m]."""
 
 
 class Robot(Protocol):
-    """One robot, or many. Its class is called with ``world`` and ``count``, and options of its own."""
+    """One robot or many. The class takes ``world``, ``count`` and its own options."""
 
     name: str
     count: int
     world: World
     volume: Volume
     tick: float
-    """A step of an environment is a whole number of these [s]."""
+    """Resolution of time: an environment's step is a whole number of ticks [s]."""
     step_time: float
-    """Of a step when the user does not say [s]."""
+    """Default duration of a step [s]."""
     crash_range: float
-    """A reading below it is a crash [m], when the task does not say."""
+    """Default range below which a reading is a crash [m]."""
     setpoints: tuple[Setpoint, ...]
-    """Kinds that ``apply`` takes; the first is the default."""
+    """Kinds of set-points that ``apply`` accepts; the first is the default."""
     figures: Mapping[str, Figure]
-    """What ``set_figure`` may change, and within which limits."""
+    """Figures that ``set_figure`` can change, with their limits."""
     range_max: float
-    """No reading but inf is greater [m]."""
+    """Greatest finite reading [m]."""
     digit_when_inf: int
-    """The paper's digit for a reading of inf."""
+    """The paper's digit for a reading of inf [m]."""
     angles: Floats
-    """Of the readings [rad], counter-clockwise from straight ahead, shape (readings,)."""
+    """Angles of the readings, counter-clockwise from straight ahead, shape (readings,) [rad]."""
     scan: npt.NDArray[np.float32]
     """Readings of the planar lidar [m], shape (count, readings), inf for nothing in range: each call writes into it."""
 
     @property
     def pose(self) -> Floats:
-        """x, y, z [m], yaw [rad], shape (count, 4)."""
+        """x, y, z [m], yaw [rad] in the world frame, shape (count, 4)."""
 
     @property
     def velocity(self) -> Floats:
-        """Forward, left, up [m/s], turn rate [rad/s], shape (count, 4)."""
+        """Forward, left, up velocity [m/s], yaw rate [rad/s], shape (count, 4)."""
 
     @property
     def collided(self) -> npt.NDArray[np.int64]:
@@ -81,38 +81,40 @@ class Robot(Protocol):
         """Simulated time since the reset [s], shape (count,)."""
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The usual actions of this robot: ``form`` "discrete" or "continuous", giving ``setpoint``."""
+        """The default actions of a form, "discrete" or "continuous", for a kind of set-point."""
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
-        """Put one robot to a pose, ready to move; ``look`` or ``advance`` follows. Same arguments, same future."""
+        """Put one robot at a pose, ready to move; call ``look`` or ``advance`` next. Deterministic in its arguments."""
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
-        """Read the lidars of these robots (None: all) where they are, without time passing."""
+        """Read the lidars of these robots (None: all; shape (count,)) without advancing time."""
 
     def apply(self, setpoint: Setpoint, commands: Floats) -> None:
-        """Set-points for the next ``advance``, shape (count, setpoint.width)."""
+        """Set-points for the next ``advance``, in the units of ``setpoint``, shape (count, setpoint.width)."""
 
     def advance(self, seconds: float, rows: npt.NDArray[np.bool_] | None = None) -> None:
-        """Move these robots (None: all) on by simulated time, and read all lidars; those not moved only look."""
+        """Advance these robots (None: all; shape (count,)) by simulated time [s], and read all lidars."""
 
     def set_figure(self, index: int, name: str, value: float) -> None:
-        """Change a figure of one robot before its ``reset``."""
+        """Change a figure of one robot, in the figure's unit, before its ``reset``."""
 
     def snapshot(self, index: int) -> Any:
-        """All of one robot that ``restore`` needs to go on bit for bit; can be pickled."""
+        """State of one robot; after ``restore`` it continues bit for bit. Picklable."""
 
     def restore(self, index: int, snapshot: Any) -> None:
-        """Put one robot back."""
+        """Restore one robot from a snapshot."""
 
     def close(self) -> None:
-        """Let go of what is open."""
+        """Close connections and engines."""
 
 
 class LateRobot(Robot, Protocol):
-    """What the option ``latency`` needs besides."""
+    """A robot that supports the option ``latency``."""
 
     def advance_late(
         self, seconds: float, waits: npt.NDArray[np.int64], rows: npt.NDArray[np.bool_] | None = None
     ) -> None:
-        """As ``advance``, but the commands of ``apply`` reach robot i only after ``waits[i]`` ticks; until then it goes
-        on as before. A robot whose wait is as long as the step gets none."""
+        """As ``advance`` (seconds [s]), but the set-point of robot i takes effect after ``waits[i]`` ticks, shape
+        (count,).
+
+        The previous set-point holds until then; for a whole step where the wait is as long as the step."""

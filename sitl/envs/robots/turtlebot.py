@@ -27,10 +27,10 @@ class Turtlebot:
     """See ``Robot``.
 
     Args:
-        world: that it drives in.
-        count: of robots.
-        airframe: figures.
-        lidar: rays and readings.
+        world: world that the robots drive in.
+        count: number of robots.
+        airframe: figures of the robots.
+        lidar: number of readings and field of view.
         physics: "native", or "pybullet": wheels that slip, walls that it slides along.
 
     Raises:
@@ -60,9 +60,9 @@ class Turtlebot:
         self.volume = Volume(airframe.value("radius"), airframe.value("bottom"), airframe.value("top"))
         self.range_max = float(airframe.value("range_max"))
         self.angles = planar.angles(lidar.readings, lidar.field_of_view)
-        self._ready()
+        self._bind()
 
-    def _ready(self) -> None:
+    def _bind(self) -> None:
         robots = self._robots
         self.scan = robots.scan
         self._ticks, self._seconds = robots.ticks, -1.0
@@ -71,12 +71,12 @@ class Turtlebot:
 
     @property
     def airframe(self) -> TurtlebotAirframe:
-        """Figures that all start with."""
+        """Figures that all robots start with."""
         return self._robots.airframe
 
     @property
     def robots(self) -> Turtlebots:
-        """The Turtlebots themselves."""
+        """The simulated Turtlebots."""
         return self._robots
 
     @property
@@ -130,7 +130,8 @@ class Turtlebot:
     def advance_late(
         self, seconds: float, waits: npt.NDArray[np.int64], rows: npt.NDArray[np.bool_] | None = None
     ) -> None:
-        """See ``Robot``. A robot that waits reads its lidar when the command arrives, too: its noise goes on."""
+        """See ``Robot``. A robot with a pending command also reads its lidar when the command takes effect: its noise
+        advances."""
         moving = np.ones(self.count, np.bool_) if rows is None else rows
         first = np.where(moving, waits, 0)
         late, touched = self._commands.copy(), np.zeros(self.count, np.bool_)
@@ -148,7 +149,7 @@ class Turtlebot:
         self.collided[touched] = 1
 
     def photograph(self, index: int, width: int, height: int) -> Any:
-        """A picture by the renderer of the robot's physics; None when it has none."""
+        """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
         render = getattr(self._robots, "render", None)
         return None if render is None else render(index, width, height)
 
@@ -177,11 +178,11 @@ class Turtlebot:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
-        self._ready()
+        self._bind()
 
 
 def _fleet(physics: str) -> type[Turtlebots]:
-    """The class of Turtlebots that a physics moves."""
+    """The class of Turtlebots for a physics engine."""
     if physics == "native":
         return Turtlebots
     if physics == "pybullet":

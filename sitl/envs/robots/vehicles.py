@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles with an autopilot, each at the other end of MAVLink's bytes: what all ways to have them share."""
+"""Vehicles with an autopilot behind a MAVLink connection: the base class of in-process, socket and foreign ones."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
@@ -16,7 +17,6 @@ from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
 from ..mavlink import px4, setpoints
-from ..mavlink.connection import Connection
 from ..mavlink.preparation import INTERVAL_US, prepare
 from ..options import EnvOptionError
 from .autopilot_kinds import PX4_KIND, Kind
@@ -27,117 +27,127 @@ _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Ready:
-    """A vehicle at a moment, and what its client has heard until then; can be pickled."""
+class EpisodeState:
+    """State of one vehicle's episode; picklable. As a snapshot it has the simulation and the telemetry, too."""
 
     simulation: Any
-    heard: Any
+    """Snapshot of the simulation; None while it runs."""
+    telemetry: Any
+    """Snapshot of the telemetry received; None while it runs."""
     origin: tuple[float, float, float]
-    """NED in the world of the origin of the vehicle's local positions [m]."""
+    """Origin of the vehicle's local position in the world: north, east, down [m]."""
     began_us: int
-    """Simulated time at which the episode began [us]."""
+    """Simulated time of the start of the episode [us]."""
     setpoint: str
-    """Kind that the vehicle's mode is for; "" before the first."""
+    """Kind of set-point that the flight mode takes; "" before the first."""
     interval_us: int
-    """Of telemetry."""
+    """Interval of telemetry [us]."""
 
 
-NOWHERE = Ready(None, None, (0.0, 0.0, 0.0), 0, "", INTERVAL_US)
+NOT_STARTED = EpisodeState(None, None, (0.0, 0.0, 0.0), 0, "", INTERVAL_US)
 
 
 @dataclass(frozen=True)
-class Seat:
-    """What vehicles are made of."""
+class VehicleSetup:
+    """What vehicles are made from."""
 
     options: Mapping[str, Any]
-    """Of the robot, by name."""
+    """Options of the robot, by name."""
     airframe: Airframe
     kind: Kind
     world: World
     angles: Floats
-    """Of the lidar's readings [rad]."""
+    """Angles of the lidar's readings, counter-clockwise from ahead, shape (readings,) [rad]."""
 
 
 class Vehicles(ABC):
-    """As many vehicles as the options say, and the connections to them.
+    """``options["count"]`` vehicles and the connections to them.
 
     Args:
-        seat: what they are made of.
+        setup: what they are made from.
 
     Raises:
-        EnvOptionError: options that cannot be taken.
+        EnvOptionError: an option is refused.
     """
 
     simulates: ClassVar[bool] = True
-    """Whether their physics is ours, with figures that may be changed."""
+    """Whether the physics is ours, so that figures can be changed."""
     has_snapshots: ClassVar[bool] = False
-    shortest_step: ClassVar[float] = 0.005
-    """A step of an environment is a whole number of these at least [s]: longer loops of an autopilot count more."""
+    min_step: ClassVar[float] = 0.005
+    """An environment's step is a whole multiple of this, or of the autopilot's loop period when that is longer [s]."""
 
-    def __init__(self, seat: Seat) -> None:
-        self.seat, self.options = seat, seat.options
+    def __init__(self, setup: VehicleSetup) -> None:
+        self.setup, self.options = setup, setup.options
         physics, count = self.options["physics"], self.options["count"]
         if physics not in BACKENDS or (physics != NATIVE and not self.simulates):
             raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(BACKENDS)}, of a vehicle in process")
         self.links: list[Connection | None] = [None] * count
-        """To each of them, once it was needed."""
+        """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
-        """Figures of each that are not the airframe's, by name."""
+        """Changed figures of each vehicle: name -> value, in the figure's unit."""
 
     @property
-    def surroundings(self) -> Mapping[str, Figure]:
-        """Figures that may be changed besides the airframe's."""
+    def extra_figures(self) -> Mapping[str, Figure]:
+        """Figures besides the airframe's that can be changed."""
         return {}
 
     @property
     @abstractmethod
     def where(self) -> str:
-        """For people: which option has led to them."""
+        """The option that selects these vehicles, for messages."""
 
     @abstractmethod
-    def begin(self, index: int, pose: Pose, seed: int) -> Ready:
-        """Bring one to where an episode begins, its link open.
+    def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
+        """Bring one vehicle to the start of an episode, with an open connection.
+
+        Args:
+            index: index of the vehicle.
+            pose: x, y, z [m], yaw [rad] in the world.
+            seed: seed of the sensors' noise.
 
         Raises:
-            EnvOptionError, LinkLostError, NotReadyError: that cannot be done.
+            EnvOptionError: an option is refused.
+            LinkLostError: the connection is lost.
+            NotReadyError: the vehicle does not arm or take off.
         """
 
     @abstractmethod
     def time_us(self, index: int) -> int:
-        """Simulated time of one, by a clock that goes on in an episode [us]."""
+        """Simulated time of one vehicle; it is continuous within an episode [us]."""
 
-    def snapshot(self, index: int, now: Ready) -> Ready:
-        """One as it is, with what is known of its episode."""
+    def snapshot(self, index: int, now: EpisodeState) -> EpisodeState:
+        """A snapshot of one vehicle and the state of its episode."""
         raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
 
-    def restore(self, index: int, ready: Ready) -> None:
-        """Put one back."""
+    def restore(self, index: int, state: EpisodeState) -> None:
+        """Restore one vehicle from a snapshot."""
         raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
 
     def simulation(self, index: int) -> Simulation:
-        """One itself, to look at what MAVLink does not tell."""
+        """The simulation of one vehicle, for values that MAVLink does not send."""
         raise EnvOptionError(f"{self.where}: only vehicles in process can be looked into")
 
     def photograph(self, index: int, width: int, height: int) -> Any:
-        """A picture by the renderer of its physics; None when it has none."""
+        """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
         return None
 
     def close(self) -> None:
-        """Let go of all links."""
+        """Close all connections."""
         for index, link in enumerate(self.links):
             if link is not None:
                 link.close()
             self.links[index] = None
 
-    # ------------------------------------------------------------------ for the ways to have them
+    # ------------------------------------------------------------------ for subclasses
 
     def prepare(self, link: Connection, pose: Pose) -> tuple[float, float, float]:
-        """Get one ready that has just booted; returns NED of its local origin in the world."""
-        kind, heard = self.seat.kind, link.heard
-        take_off = self.options["take_off"] if self.seat.airframe.kind == "copter" else 0.0
+        """Arm and take off a vehicle that has just booted; returns its local origin in the world: north, east, down
+        [m]."""
+        kind, heard = self.setup.kind, link.inbox
+        take_off = self.options["take_off"] if self.setup.airframe.kind == "copter" else 0.0
 
         def hold_sticks() -> None:
-            link.client.send_payload(*setpoints.override(_AT_REST, heard, ()))
+            link.endpoint.send_payload(*setpoints.override(_AT_REST, heard, ()))
 
         if kind is PX4_KIND:
             px4.prepare(link, take_off)
@@ -148,6 +158,6 @@ class Vehicles(ABC):
         north, east = offset_ne(lat, lon, *heard.origin[:2])
         return north, east, -pose[2]
 
-    def begun(self, index: int, origin: tuple[float, float, float]) -> Ready:
-        """An episode that begins now."""
-        return Ready(None, None, origin, self.time_us(index), "", INTERVAL_US)
+    def begun(self, index: int, origin: tuple[float, float, float]) -> EpisodeState:
+        """The state of an episode that starts now."""
+        return EpisodeState(None, None, origin, self.time_us(index), "", INTERVAL_US)

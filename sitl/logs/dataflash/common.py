@@ -48,7 +48,7 @@ def magnetometer(bit: int) -> Message:
 
 
 def pid(name: str, loop: str, gains: str, measured: str, bit: int, scale: float = 1.0) -> Message:
-    """A PID's inner life: target, measurement, error, parts of its output."""
+    """Target, measurement, error and output parts of a PID."""
     parts = (
         Field("Tar", "f", source=loop + ".target", scale=scale),
         Field("Act", "f", source=measured, scale=scale),
@@ -74,7 +74,7 @@ COMMAND = (
     Field("Frame", "B"),
 )
 
-HAPPENINGS = (
+EVENT_MESSAGES = (
     Message("PARM", (Field("Name", "N"), Field("Value", "f"), Field("Default", "f"))),
     Message("MSG", (Field("Message", "Z"),)),
     Message(
@@ -99,7 +99,7 @@ HAPPENINGS = (
         ),
     ),
 )  # fmt: skip
-"""Written when something happens, by ``happenings``."""
+"""Event messages, encoded by ``events.EventEncoder``."""
 
 POSITION = Message(
     "POS",
@@ -289,7 +289,7 @@ _BODY, _PLACE = "physics.body.", "physics.place."
 
 
 def gps(boot_unix_us: int) -> tuple[Message, ...]:
-    """GPS: its fixes, with the time of the week; ``boot_unix_us``: Unix time of boot.
+    """GPS: fixes with GPS week and time of week; ``boot_unix_us``: Unix time of boot [us].
 
     GPS time began in 1980 and has been 18 s ahead of UTC since 2017.
     """
@@ -335,4 +335,4 @@ TRUTH = Message(
     bits.MEDIUM,
     _ATTITUDE,
 )
-"""SIM: where the simulated vehicle really is."""
+"""SIM: true position and attitude of the simulated vehicle."""

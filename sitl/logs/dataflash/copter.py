@@ -14,7 +14,7 @@ A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C = "autopilot.control."
 _MOTORS, _ATTITUDE, _NE, _D = C + "motors.", C + "attitude.", C + "pos_ne.", C + "pos_d."
 _SHAPED_TICKS = 8
-"""A position controller that last ran longer ago is not at work."""
+"""Number of ticks without a run after which a position controller counts as inactive."""
 
 
 def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
@@ -57,7 +57,7 @@ def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
 
 
 def _boost(s: Any) -> Array:
-    """Throttle that the lean adds."""
+    """Additional throttle for the lean angle."""
     return s(_MOTORS + "throttle_in") - s(_ATTITUDE + "throttle_in")
 
 
@@ -67,7 +67,7 @@ CONTROL = Message(
         Field("ThI", "f", source=A + "modes.pilot.throttle"),
         Field("ABst", "f", source=_boost),
         Field("ThO", "f", source=_MOTORS + "throttle_out"),
-        Field("ThH", "f", source=A + "params.MOT_THST_HOVER"),
+        Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
         Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
         Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
         Field("BAlt", "e", "m", "B", derived.baro_altitude),
@@ -105,10 +105,10 @@ def _position(axis: str, k: int) -> Message:
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
-    """All that this LOG_BITMASK asks for; ``simulated``: the record holds the truth."""
+    """Messages that LOG_BITMASK enables; ``simulated``: the record holds the true state."""
     fast = bool(bitmask & bits.ATTITUDE_FAST)
     pids = tuple(
-        common.pid(name, f"{C}rate.{axis}", f"ATC_RAT_{short}_", f"{E}rates[{k}]", bits.COPTER_PID)
+        common.pid(name, f"{C}rate.{axis}", f"ATC.RAT_{short}.", f"{E}rates[{k}]", bits.COPTER_PID)
         for k, (name, axis, short) in enumerate(
             (("PIDR", "roll", "RLL"), ("PIDP", "pitch", "PIT"), ("PIDY", "yaw", "YAW"))
         )

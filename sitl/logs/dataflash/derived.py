@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers of a log that are not in the record as they are: functions of the samples, a column at a time."""
+"""Logged values that are calculated from the record: functions of the samples, a column at a time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Column = Callable[[Any], Array]
 
 
 def wrapped(path: str) -> Column:
-    """Angle [rad] of the record as degrees 0 .. 360."""
+    """An angle of the record [rad] in degrees, 0 .. 360."""
     return lambda s: np.mod(s(path) * DEG, 360.0)
 
 
@@ -34,7 +34,7 @@ def total(a: str, b: str) -> Column:
 
 
 def length(*paths: str) -> Column:
-    """Length of a vector."""
+    """Euclidean length of a vector."""
     return lambda s: np.sqrt(sum(s(path) ** 2 for path in paths))
 
 
@@ -49,12 +49,12 @@ def _longitude(lat0: Array, lon0: Array, lat: Array, east: Array) -> Array:
 
 
 def latitude(origin: str, position: str) -> Column:
-    """[degE7] of a position NED [m] from ``origin`` (paths that end in ``lat`` and ``lon``)."""
+    """Latitude [degE7] of a position NED [m] relative to ``origin`` (paths that end in ``lat`` and ``lon``)."""
     return lambda s: _latitude(s(origin + "lat"), s(position + "[0]"))
 
 
 def longitude(origin: str, position: str) -> Column:
-    """[degE7]"""
+    """Longitude [degE7]; arguments as in ``latitude``."""
 
     def column(s: Any) -> Array:
         lat0, lon0 = s(origin + "lat"), s(origin + "lon")
@@ -68,7 +68,7 @@ def _quaternion(s: Any, path: str) -> tuple[Array, Array, Array, Array]:
 
 
 def roll(path: str) -> Column:
-    """Of a quaternion, body to NED [deg]."""
+    """Roll of a quaternion, body to NED [deg]."""
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
@@ -78,7 +78,7 @@ def roll(path: str) -> Column:
 
 
 def pitch(path: str) -> Column:
-    """Of a quaternion, body to NED [deg]."""
+    """Pitch of a quaternion, body to NED [deg]."""
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
@@ -88,7 +88,7 @@ def pitch(path: str) -> Column:
 
 
 def yaw(path: str) -> Column:
-    """Of a quaternion, body to NED [deg], 0 .. 360."""
+    """Yaw of a quaternion, body to NED, 0 .. 360 [deg]."""
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
@@ -98,27 +98,27 @@ def yaw(path: str) -> Column:
 
 
 def gps_seconds(s: Any) -> Array:
-    """GPS time of the fix [s] less that of boot."""
+    """GPS time of the fix relative to boot [s]."""
     return s(S + "gps_time_us") * 1e-6
 
 
 def course(s: Any) -> Array:
-    """Of the GPS receiver over ground [deg], 0 .. 360."""
+    """Course over ground of the GPS receiver, 0 .. 360 [deg]."""
     return np.mod(np.arctan2(s(S + "gps_vel[1]"), s(S + "gps_vel[0]")) * DEG, 360.0)
 
 
 def pressure_altitude(s: Any) -> Array:
-    """In the standard atmosphere [m]."""
+    """Pressure altitude in the standard atmosphere [m]."""
     return 44330.77 * (1.0 - np.power(np.maximum(s(S + "abs_pressure"), 0.0) / 1013.25, 0.1902632))
 
 
 def baro_altitude(s: Any) -> Array:
-    """Above the ground where the barometer was calibrated [m]."""
+    """Barometric altitude above the ground where it was calibrated [m]."""
     return pressure_altitude(s) - s(A + "ekf.baro_ground")
 
 
 def resting_voltage(s: Any) -> Array:
-    """Voltage without the drop over the battery's resistance, as estimated [V]."""
+    """Estimated battery voltage without the drop over its resistance [V]."""
     return s(A + "battery.voltage") + s(A + "battery.current") * s(A + "control.motors.resistance")
 
 
@@ -128,7 +128,7 @@ def is_seen(path: str) -> Column:
 
 
 def estimates(s: Any) -> Array:
-    """Whether the filter runs, and knows its attitude."""
+    """Whether the filter runs and has an attitude."""
     return (s.raw(A + "ekf.use_external") == 0) & (s.raw(A + "ekf.tilt_aligned") != 0)
 
 

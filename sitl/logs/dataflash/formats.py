@@ -54,10 +54,10 @@ MULTIPLIERS = {
 NAME_BYTES, FORMAT_BYTES, LABEL_BYTES = 4, 16, 64
 
 Source = str | float | Callable[[Any], Any]
-"""Where a field comes from: the path of a number in the vehicle's record ("autopilot.estimate.euler[0]"), a constant,
-or a function of the samples (``s(path)`` gives a column)."""
+"""Source of a field: the path of a number in the vehicle's record ("autopilot.estimate.euler[0]"), a constant, or a
+function of the samples (``s(path)`` returns a column)."""
 RING = "@"
-"""What the path of a number in the ring of inertial samples begins with."""
+"""Prefix of paths of numbers in the ring of inertial samples."""
 
 
 class Field(NamedTuple):
@@ -80,9 +80,9 @@ class Message(NamedTuple):
     fields: tuple[Field, ...]
     """Without TimeUS, which every message but FMT has first."""
     rate: float = 0.0
-    """How often [Hz]; 0: when something happens."""
+    """Rate [Hz]; 0: written on events."""
     bits: int = 0
-    """It is written when LOG_BITMASK has one of these; 0: always."""
+    """Bits of LOG_BITMASK, any of which enables it; 0: always written."""
     change: str = ""
     """Path: write it when this number has changed; it is looked at ``rate`` times a second, or more often."""
     time: str = "time_us"
@@ -90,12 +90,11 @@ class Message(NamedTuple):
     when: Source = 1.0
     """Write it only while this is not zero."""
     ring: bool = False
-    """It is of the samples that the core keeps (``autopilot.inertial_ring``), at their rate; ``@acc[0]`` is a path
-    there."""
+    """Whether it holds the samples of ``autopilot.inertial_ring``, at their rate; ``@acc[0]`` is a path there."""
 
     @property
     def all_fields(self) -> tuple[Field, ...]:
-        """With TimeUS."""
+        """The fields with TimeUS."""
         return (Field("TimeUS", "Q", "s", "F", self.time), *self.fields)
 
     @property
@@ -143,7 +142,7 @@ def check(message: Message) -> None:
 
 FMT_NUMBER, UNIT_NUMBER, MULT_NUMBER, FMTU_NUMBER = 128, 129, 130, 131
 FIRST_NUMBER = 32
-"""Of the other messages; 128 is FMT's in every log, so readers can begin."""
+"""Number of the first other message; FMT is 128 in every log, so that readers can start."""
 _FMT = struct.Struct("<2sBBB4s16s64s")
 _UNIT = struct.Struct("<2sBQb64s")
 _MULT = struct.Struct("<2sBQbd")

@@ -12,26 +12,26 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 from ..tlog import LogError
-from .book import Book, Vehicle
+from .encoder import LogEncoder, Vehicle
 from .samples import place
 
 PERSIST_US = 15_000_000
-"""Logging goes on for so long after disarming."""
+"""Time after disarming during which logging continues [us]."""
 POLL_US = 100_000
-"""How often a logger that is not logging looks whether it should."""
+"""Period at which a logger that is not logging checks whether it should [us]."""
 _ALWAYS, _KEEP_FLIGHTS = (1, 2, 3), 3
 _COUNT, _ARMED, _ARMED_US = "autopilot.events.count", "autopilot.arming.armed", "autopilot.arming.armed_us"
 
 
 class Entry(NamedTuple):
-    """A log that can be read."""
+    """A log in the list that LOG_REQUEST_LIST gives."""
 
     number: int
-    """From 1 on."""
+    """Number of the log, from 1."""
     time_utc: int
-    """When it began [s, Unix]."""
+    """Start of the log [s, Unix]."""
     size: int
-    """[bytes] so far"""
+    """Size so far [bytes]."""
 
 
 class _File:
@@ -63,7 +63,7 @@ class DataFlash:
 
     Args:
         vehicle: the simulation.
-        path: of the first log (.bin); later ones get ``.2``, ``.3``, ... before the ending.
+        path: path of the first log (.bin); later ones get ``.2``, ``.3``, ... before the ending.
         epoch_us: Unix time of the start of the simulation [us].
         version: text that says which program this is.
     """
@@ -82,65 +82,65 @@ class DataFlash:
 
     def _boot(self) -> None:
         self._boot_us = self._vehicle.before_boot_us
-        self._book: Book | None = None
+        self._encoder: LogEncoder | None = None
         self._file: _File | None = None
         self._paused = False
         self._disarmed_us = -PERSIST_US
         self._since_us = 0
-        self._said: list[tuple[int, str]] = []
+        self._texts: list[tuple[int, str]] = []
         self._count = 0
         self._settings()
         self._find_due()
 
     def _settings(self) -> None:
         params = self._vehicle.v.autopilot.params
-        self._on = int(params.LOG_BACKEND_TYPE) & 1 != 0 and not self._closed
-        self._disarmed = int(params.LOG_DISARMED)
-        if self._book is not None:
-            self._book.choose(int(params.LOG_BITMASK))
+        self._on = int(params.LOG.BACKEND_TYPE) & 1 != 0 and not self._closed
+        self._disarmed = int(params.LOG.DISARMED)
+        if self._encoder is not None:
+            self._encoder.set_bitmask(int(params.LOG.BITMASK))
 
     @property
     def _now_us(self) -> int:
-        """Since boot."""
+        """Simulated time since boot [us]."""
         return int(self._words[self._time_at])
 
     # ------------------------------------------------------------------ observing
 
     def _find_due(self) -> None:
         now = self._words[self._time_at]
-        if self._book is None or self._paused:
+        if self._encoder is None or self._paused:
             self.due_us = self._boot_us + (now // POLL_US + 1) * POLL_US
             return
         due = now + POLL_US
-        for period in self._book.periods_us:
+        for period in self._encoder.periods_us:
             due = min(due, (now // period + 1) * period)
         self.due_us = self._boot_us + due
 
     def observe(self) -> None:
-        """Take a sample, or see whether to begin."""
+        """Take a sample, or start a log when it is due."""
         self._follow_reboot()
         armed = self._words[self._armed_at]
         now = self._words[self._time_at]
         if armed:
             self._disarmed_us = now
         wanted = self._on and (self._disarmed in _ALWAYS or now - self._disarmed_us < PERSIST_US)
-        if self._book is None or self._paused:
+        if self._encoder is None or self._paused:
             if wanted:
                 self._begin(now)
             else:
-                self._said.clear()
+                self._texts.clear()
         elif not wanted:
             self._paused, self._since_us = True, now
             self._flush()
-        book = self._book
-        if book is not None and not self._paused:
+        encoder = self._encoder
+        if encoder is not None and not self._paused:
             if self._words[self._count_at] != self._count:
                 self._count = self._words[self._count_at]
-                book.read_events()
-            if self._vehicle.mission is not book.mission:
-                book.mission_changed(now)
-            book.row()
-            if book.pending:
+                encoder.read_events()
+            if self._vehicle.mission is not encoder.mission:
+                encoder.mission_changed(now)
+            encoder.row()
+            if encoder.pending:
                 self._flush()
         if armed and self._file is not None:
             self._file.flown = True
@@ -152,22 +152,22 @@ class DataFlash:
             self._boot()
 
     def _begin(self, now: int) -> None:
-        """Begin a log, or go on with one; with what came since arming, or since boot."""
+        """Start a log or continue one, from the events since arming (or since boot, where LOG_DISARMED says so)."""
         armed_us = 0 if self._disarmed in _ALWAYS else self._words[self._armed_us_at]
         since = max(armed_us, self._since_us)
-        if self._book is None:
+        if self._encoder is None:
             unix_us = self.epoch_us + self._boot_us
-            bitmask = int(self._vehicle.v.autopilot.params.LOG_BITMASK)
+            bitmask = int(self._vehicle.v.autopilot.params.LOG.BITMASK)
             self._file = self._new_file(unix_us + now)
-            self._book = Book(self._vehicle, unix_us, bitmask, self._version)
-            self._book.begin(min(since, now))
+            self._encoder = LogEncoder(self._vehicle, unix_us, bitmask, self._version)
+            self._encoder.begin(min(since, now))
         self._paused = False
-        self._book.skip_events_before(since)
+        self._encoder.skip_events_before(since)
         self._count = -1
-        for time_us, text in self._said:
+        for time_us, text in self._texts:
             if time_us >= since:
-                self._book.said(time_us, text)
-        self._said.clear()
+                self._encoder.text(time_us, text)
+        self._texts.clear()
 
     def _new_file(self, unix_us: int) -> _File:
         while True:
@@ -188,45 +188,45 @@ class DataFlash:
     # ------------------------------------------------------------------ listening
 
     def said(self, severity: int, text: str) -> None:
-        """The vehicle told its clients something."""
+        """Log a status text that the vehicle sent."""
         self._follow_reboot()
         now = self._now_us
-        if self._book is None or self._paused:
-            self._said.append((now, text))
+        if self._encoder is None or self._paused:
+            self._texts.append((now, text))
             if self._words[self._armed_at]:
                 self.due_us = min(self.due_us, self._boot_us + now)  # the log begins with the next tick
             return
         self._catch_up()
-        self._book.said(now, text)
+        self._encoder.text(now, text)
 
     def parameter_set(self, name: str) -> None:
         """A parameter was set."""
         self._follow_reboot()
-        if self._book is not None and not self._paused:
+        if self._encoder is not None and not self._paused:
             self._catch_up()
-            self._book.parameter(self._now_us, name)
+            self._encoder.parameter(self._now_us, name)
         if name.startswith("LOG_"):
             self._settings()
             self._find_due()
 
     def reached(self, seq: int) -> None:
-        """Nothing to this log: it has CMD, and the text."""
+        """A mission item was reached: not logged, CMD and the status text say it."""
 
     def _catch_up(self) -> None:
-        """What the core emitted comes before what is said of it."""
-        if self._book is not None:
+        """Log the events of the autopilot before the texts about them."""
+        if self._encoder is not None:
             self._count = self._words[self._count_at]
-            self._book.read_events()
+            self._encoder.read_events()
 
     # ------------------------------------------------------------------ handing out
 
     def entries(self) -> list[Entry]:
-        """All logs, with all that is known by now in them."""
+        """All logs, after writing what is pending."""
         self._flush()
         return [Entry(k + 1, file.time_utc, file.size) for k, file in enumerate(self._files)]
 
     def read(self, number: int, offset: int, count: int) -> bytes:
-        """Bytes of a log; fewer at its end, none of one that is not there."""
+        """``count`` bytes of log ``number`` from ``offset`` on; fewer at its end, none when there is no such log."""
         if not (0 < number <= len(self._files)):
             return b""
         try:
@@ -237,11 +237,11 @@ class DataFlash:
             return b""
 
     def erase(self) -> None:
-        """Forget all logs, and begin another if one was being written. The files stay where they are."""
+        """Empty the list of logs and start a new one if one was being written. The files stay on disk."""
         self._end()
         self._files.clear()
         self._since_us = self._now_us
-        self._book = self._file = None
+        self._encoder = self._file = None
         self._find_due()
 
     def close(self) -> None:
@@ -249,15 +249,15 @@ class DataFlash:
         if not self._closed:
             self._closed = True
             self._end()
-            self._book = None
+            self._encoder = None
             self._on = False
 
     def _flush(self) -> None:
-        if self._book is not None and self._file is not None:
-            self._file.append(self._book.take_bytes())
+        if self._encoder is not None and self._file is not None:
+            self._file.append(self._encoder.take_bytes())
 
     def _end(self) -> None:
-        """Close the present log."""
+        """Close the log being written."""
         self._flush()
         file = self._file
         if file is None:

@@ -33,12 +33,12 @@ class Columns:
         return found if found.dtype == np.float64 else found.astype(np.float64)
 
     def raw(self, path: str) -> Array:
-        """The same in the record's own type."""
+        """A column in the record's own type."""
         column = self._samples.column(path)[1 : self._count + 1]
         return column if self._rows is None else column[self._rows]
 
     def before(self, path: str) -> Array:
-        """The same column of the rows before these."""
+        """The column of the rows before these."""
         return self._samples.column(path)[: self._count]
 
 
@@ -129,7 +129,7 @@ def values(f: Field, s: Columns) -> Array:
 
 
 class Plan:
-    """What is written of the samples of one vehicle."""
+    """Messages that are written from the samples of one vehicle."""
 
     def __init__(self, messages: Iterable[Message], numbers: dict[str, int], samples: Samples) -> None:
         sorted_out: dict[tuple[Any, ...], list[Message]] = {}
@@ -137,7 +137,7 @@ class Plan:
             sorted_out.setdefault((m.rate, m.when, m.change, m.ring, m.time), []).append(m)
         self.groups = [Group(found, numbers) for found in sorted_out.values()]
         self.periods_us = sorted({g.period_us for g in self.groups if not g.ring})
-        """At which multiples of time a sample is needed [us]."""
+        """Periods of the samples: one is needed at each multiple [us]."""
         self._samples = samples
         samples.want(TIME)
         for g in self.groups:

@@ -54,7 +54,7 @@ def _drives_itself(s: Any) -> Array:
 
 
 def _on_path(s: Any) -> Array:
-    """It follows a line to a place."""
+    """Whether it follows a line to a position."""
     return _any_of(s, _PATHS, (auto_state.WAYPOINT, auto_state.RTL), (guided_state.POSITION,))
 
 
@@ -67,7 +67,7 @@ def _on_circle(s: Any) -> Array:
 
 
 def _to_target(s: Any) -> tuple[Array, Array]:
-    """Where the vehicle is going, from where it is: north, east [m]; 0 when it goes to no place."""
+    """Vector from the vehicle to its target: north, east [m]; 0 without a target."""
     places = ((_on_path(s), "nav.target"), (_at_place(s), "loiter.place"), (_on_circle(s), "circle.target"))
 
     def way(k: int) -> Array:
@@ -87,7 +87,7 @@ def _bearing(s: Any) -> Array:
 
 
 def _heading(s: Any) -> Array:
-    """As it was asked for, else towards the target."""
+    """The commanded heading, else the bearing to the target."""
     asked = _any_of(s, (), (), (guided_state.HEADING_AND_SPEED,))
     turning = _any_of(s, (), (auto_state.HEADING_AND_SPEED,))
     headings = [derived.wrapped(f"{M}{name}.heading")(s) for name in ("guided", "auto")]
@@ -188,8 +188,8 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
             bits.CONTROL,
             when=S + "wheel_count",
         ),
-        common.pid("PIDS", _STEERING + "rate", "ATC_STR_RAT_", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
-        common.pid("PIDA", _SPEED + "loop", "ATC_SPEED_", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        common.pid("PIDS", _STEERING + "rate", "ATC.STR_RAT.", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        common.pid("PIDA", _SPEED + "loop", "ATC.SPEED.", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
         *common.FILTER,
         *((common.TRUTH,) if simulated else ()),
     )

@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
             file.mission,
             limit_s=options.time_limit,
             advance=paced(simulation, speedup),
-            tell=quiet if options.quiet else told,
+            on_step=quiet if options.quiet else print_step,
         )
         recordings.say_why(simulation, "mission completed" if outcome.completed else outcome.reason)
     finally:
@@ -83,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
     return 0 if outcome.completed else 1
 
 
-def told(time: float, text: str) -> None:
+def print_step(time: float, text: str) -> None:
     """Progress, at once also where the output is a pipe."""
     print(f"{time:8.1f} s  {text}", flush=True)
 
@@ -131,13 +131,13 @@ def paced(simulation: Simulation, speedup: float | None) -> Callable[[int], obje
 
 
 def summary(outcome: Outcome) -> str:
-    """What is to be said of a flight, in a few lines."""
-    said = ("completed" if outcome.completed else "NOT COMPLETED") + (f": {outcome.reason}" if outcome.reason else "")
+    """Summary of a flight, in a few lines."""
+    result = ("completed" if outcome.completed else "NOT COMPLETED") + (f": {outcome.reason}" if outcome.reason else "")
     if math.isnan(outcome.started):
-        return f"mission {said}"
+        return f"mission {result}"
     at = outcome.deviation
     lines = [
-        f"mission {said}",
+        f"mission {result}",
         f"  time {outcome.duration:.1f} s, distance {outcome.distance:.1f} m, energy {outcome.energy:.2f} Wh, "
         f"items reached {len(outcome.items)}",
         f"  top speed {outcome.top_speed:.2f} m/s, top height {outcome.top_height:.2f} m",

@@ -16,7 +16,7 @@ from sitl.errors import OptionError
 from sitl.logs.tlog import TlogWriter
 from sitl.physics.engines import NATIVE
 from sitl.recording.blocks import is_recording
-from sitl.recording.entries import Kind
+from sitl.recording.entries import EntryKind
 from sitl.recording.recorder import LOG
 from sitl.recording.recording import Recording, read
 from sitl.recording.replay import Replay
@@ -86,7 +86,7 @@ def replay_recording(options: argparse.Namespace) -> int:
     try:
         while simulation.time_us < min(until_us, recording.end_us):
             flown.advance_to(min(simulation.time_us + 10 * pace.slice_us, until_us))
-            status.update()
+            status.refresh()
             for _ in range(10 if pace.speedup is not None else 0):
                 pace.after_slice(simulation)
         flown.advance_to(until_us)
@@ -122,7 +122,7 @@ def verdict(flown: Replay, astray: list[str], exact: bool) -> int:
 
 def keeps_log(recording: Recording) -> bool:
     """Whether the recorded run wrote a log of its own."""
-    return any(entry.kind is Kind.LINK and f'"{LOG}"'.encode() in entry.data for entry in recording.entries)
+    return any(entry.kind is EntryKind.LINK and f'"{LOG}"'.encode() in entry.data for entry in recording.entries)
 
 
 class ReplayLog:
@@ -145,7 +145,7 @@ class ReplayLog:
 
     @property
     def path(self) -> Path:
-        """Of the present one."""
+        """Path of the current recording."""
         return self.paths[-1]
 
     def close(self) -> None:

@@ -47,7 +47,7 @@ def replay_tlog(options: argparse.Namespace) -> int:
         target = until_us if pace.speedup is None else min(until_us, simulation.time_us + pace.slice_us)
         simulation.advance_to(target)
         pace.after_slice(simulation)
-        status.update()
+        status.refresh()
 
     began = time.monotonic()
     try:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares two flights: how far, where, when, and whether that is within what is allowed."""
+"""Compares two flights: where and when they differ, by how much, and whether that is within tolerances."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Brings two flights together: in time, from where their missions begin; and along the way, whatever the time."""
+"""Aligns two flights: in time, from the start of their missions; and along the way, independent of time."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ from sitl.logs.track import NAMES, Track, is_angle, sampled
 Array = np.ndarray[Any, Any]
 
 STEP = 0.1
-"""Between two samples [s]."""
+"""Time between two samples [s]."""
 ELSEWHERE = 500.0
-"""Flights whose homes are farther apart are compared each from its own home [m]."""
+"""Distance between homes above which each flight is compared relative to its own home [m]."""
 BAND = 20.0
-"""A place of the way is looked for this far around the same time, beyond what the flights differ in length [s]."""
+"""Half width of the band of the alignment around equal times, beyond the difference in duration [s]."""
 LONGER = 120.0
-"""... but not by more than this [s]."""
+"""Largest difference in duration that widens the band [s]."""
 HEARTBEAT = 2.0
-"""What a ground station's log tells of modes may be this late [s]."""
+"""Largest delay of mode changes in a ground station's log [s]."""
 LAZY = 0.05
-"""Where many samples are at the same place (a hover), the one at the same time is meant: weight of time [m/s]."""
+"""Weight of time where many samples are at one position (a hover), so that the sample at the same time is matched
+[m/s]."""
 MOVING = 0.5
-"""Where one of the two goes slower than this in golden's direction, a place says nothing about time [m/s]."""
+"""Speed along golden's direction below which a position gives no time [m/s]."""
 START_NAMES = {"AUTO": "AUTO began", "armed": "arming", "start": "power-on"}
 
 
@@ -37,7 +38,7 @@ class AlignmentError(OptionError):
 
 @dataclass(frozen=True)
 class Pair:
-    """Two flights on one clock, which begins where both begin, and from one home."""
+    """Two flights with a common clock, which starts at the start of both, and a common home."""
 
     golden: Track
     new: Track
@@ -45,12 +46,12 @@ class Pair:
     align: str
     """"AUTO", "armed" or "start"."""
     starts: tuple[float, float]
-    """Each flight's own time of that [s]."""
+    """Start by each flight's own clock [s]."""
     notes: tuple[str, ...]
 
 
 def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -> Pair:
-    """Align two flights.
+    """Align two flights in time.
 
     Args:
         golden, new: the two.
@@ -77,13 +78,14 @@ def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -
         first, second = begin(golden, name), begin(new, name)
         if first is not None and second is not None:
             found = Pair(_from(golden, first), _from(new, second), name, (first, second), tuple(notes))
-            return _brought_together(found, golden, new) if coarse else found
+            return _with_aligned_clocks(found, golden, new) if coarse else found
     which = "golden" if begin(golden, align) is None else "the new flight"
     raise AlignmentError(f"align = {align!r}: {which} has no such moment ({START_NAMES.get(align, align)})")
 
 
-def _brought_together(found: Pair, golden: Track, new: Track) -> Pair:
-    """The same with the clocks shifted by what the new flight is late along the way, if that is a heartbeat's."""
+def _with_aligned_clocks(found: Pair, golden: Track, new: Track) -> Pair:
+    """The pair with clocks shifted by the new flight's median delay along the way, when that is at most a
+    heartbeat's."""
     matched = match(found.new, found.golden)
     moving = matched.of(np.linalg.norm(found.golden.data[:, 4:7], axis=1)) > MOVING
     late = float(np.median(matched.delay[moving])) if moving.any() else 0.0
@@ -101,7 +103,7 @@ def _brought_together(found: Pair, golden: Track, new: Track) -> Pair:
 
 
 def begin(track: Track, align: str) -> float | None:
-    """When it is, by the flight's own clock [s]."""
+    """Start of the comparison by the flight's own clock [s]; None: there is none."""
     armed = next((t for t, state in track.armed if state), None)
     if align == "armed":
         return armed
@@ -112,21 +114,21 @@ def begin(track: Track, align: str) -> float | None:
     return 0.0
 
 
-def _from(track: Track, start: float, told: float | None = None) -> Track:
-    """From a time to the disarming that follows, or to the end; on a clock that begins there.
+def _from(track: Track, start: float, logged: float | None = None) -> Track:
+    """The part of a track from a time [s] to the next disarming or the end, with its clock starting there.
 
     Args:
         track: the whole flight.
         start: where the clock begins [s].
-        told: when the log tells of that moment [s]: what happened counts from then on. None: at ``start``.
+        logged: time at which the log records that moment [s]; events count from there. None: at ``start``.
     """
     stop = next((t for t, state in track.armed if not state and t > start), float(track.t[-1]))
     t = track.t
     times = start + np.arange(int((min(stop, t[-1]) - start) / STEP + 1e-6) + 1) * STEP
     times = times[times >= t[0] - 1e-6]
     series = {name: (t, track[name]) for name in NAMES[1:]}
-    cut = track.between(start if told is None else told, stop + 1.0)
-    if told is not None and cut.modes:
+    cut = track.between(start if logged is None else logged, stop + 1.0)
+    if logged is not None and cut.modes:
         cut.modes[0] = (start, cut.modes[0][1])
 
     def shifted(events: list[Any]) -> list[Any]:
@@ -144,22 +146,22 @@ def _from(track: Track, start: float, told: float | None = None) -> Track:
 
 @dataclass(frozen=True)
 class Matched:
-    """For each sample of a flight, the place of another's way that is meant."""
+    """For each sample of a flight, its matching position on another flight's way."""
 
     index: Array
-    """As a broken index into the other's samples."""
+    """As a fractional index into the other's samples."""
     cross: Array
-    """Distance from that place in the plane [m]."""
+    """Horizontal distance from that position, shape (n,) [m]."""
     delay: Array
-    """Time at which the flight is there, less the other's [s]."""
+    """Delay relative to the other flight at that position, shape (n,) [s]."""
 
     def of(self, column: Array) -> Array:
-        """The other's values at these places."""
+        """The other flight's values at the matching positions."""
         return np.interp(self.index, np.arange(len(column)), column)
 
 
 def match(flight: Track, other: Track) -> Matched:
-    """Find each sample of ``flight`` on the way of ``other``: never going back on it, and as near as can be."""
+    """Match each sample of ``flight`` with the nearest position on the way of ``other``, in increasing order."""
     f, o = flight.data[:, 1:4], other.data[:, 1:4]
     if flight.data.shape == other.data.shape and (flight.data[:, :4] == other.data[:, :4]).all():
         return Matched(np.arange(len(f), dtype=float), np.zeros(len(f)), np.zeros(len(f)))
@@ -201,13 +203,13 @@ def _refined(f: Array, o: Array, tf: Array, to: Array, nearest: Array) -> Matche
         end = np.clip(nearest + step, 0, len(o) - 1)
         along = o[end] - o[nearest]
         square = (along * along).sum(axis=1)
-        share = np.where(square > 1e-9, ((f - o[nearest]) * along).sum(axis=1) / np.maximum(square, 1e-9), 0.0)
-        share = np.clip(share, 0.0, 1.0)
-        gap = f - o[nearest] - share[:, None] * along
+        fraction = np.where(square > 1e-9, ((f - o[nearest]) * along).sum(axis=1) / np.maximum(square, 1e-9), 0.0)
+        fraction = np.clip(fraction, 0.0, 1.0)
+        gap = f - o[nearest] - fraction[:, None] * along
         away = (gap * gap).sum(axis=1)
         better = away < best - 1e-12
         best = np.where(better, away, best)
-        index = np.where(better, nearest + step * share * (end != nearest), index)
+        index = np.where(better, nearest + step * fraction * (end != nearest), index)
     rows = np.arange(len(o))
     place = np.stack([np.interp(index, rows, o[:, k]) for k in range(2)], axis=1)
     cross = np.hypot(*(f[:, :2] - place).T)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a flight is as golden: figures with their limits, and the first divergence in words."""
+"""Compares a flight with its golden: figures with limits, and the first divergence in words."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import numpy as np
 
 from sitl.recording import identity
 
-from . import happenings, words
+from . import words
 from .alignment import Pair, pair
+from .events import SHIFTED, Event, compare_events
 from .flight import Flight
-from .happenings import Happening
 from .series import Differences, Series, measure
 from .tolerance import EVENTS, Tolerance, load
 
@@ -26,17 +26,17 @@ _EVENT_TITLES = {"items": "mission items", "modes": "modes", "texts": "texts"}
 
 @dataclass(frozen=True)
 class Figure:
-    """One number that is judged."""
+    """One figure with its limit."""
 
     name: str
-    """As tolerances have it, "cross_track.max"."""
+    """Name as in tolerance files: "cross_track.max"."""
     title: str
     value: float
     unit: str
     limit: float
     """Infinite: not judged."""
     at: float | None = None
-    """When the largest was, since the common start [s]."""
+    """Time of the largest value since the common start [s]."""
     words: str = ""
     """Where and how, or what."""
 
@@ -53,10 +53,10 @@ class Figure:
 
 @dataclass(frozen=True)
 class Divergence:
-    """Where the new flight leaves golden."""
+    """The first point where the new flight leaves golden."""
 
     t: float
-    """Since the common start [s]."""
+    """Time since the common start [s]."""
     words: str
 
 
@@ -69,12 +69,12 @@ class Comparison:
     pair: Pair
     tolerance: Tolerance
     differences: Differences
-    happenings: list[Happening]
+    events: list[Event]
     figures: list[Figure]
     first: Divergence | None
-    """The first thing beyond its limit."""
+    """The first difference beyond its limit."""
     first_trace: Divergence | None
-    """The first thing beyond rounding."""
+    """The first difference beyond rounding."""
     notes: list[str]
 
     @property
@@ -110,7 +110,7 @@ def compare(golden: Flight, new: Flight, tolerance: str | Path | Mapping[str, An
     limits = load(tolerance if tolerance is not None else default_tolerance(golden, new), golden.track.kind)
     both = pair(golden.track, new.track, limits.align, golden.coarse or new.coarse)
     differences = measure(both)
-    events = happenings.compare(both, limits)
+    events = compare_events(both, limits)
     figures = [figure for series in differences.series for figure in _of_series(both, series, differences, limits)]
     figures += _totals(both, limits)
     figures += [figure for kind in EVENTS for figure in _of_events(both, kind, events, limits)]
@@ -164,11 +164,11 @@ def _totals(both: Pair, limits: Tolerance) -> list[Figure]:
     return found
 
 
-def _of_events(both: Pair, kind: str, events: list[Happening], limits: Tolerance) -> list[Figure]:
+def _of_events(both: Pair, kind: str, events: list[Event], limits: Tolerance) -> list[Figure]:
     limit, title = limits.limit(f"{kind}.time"), _EVENT_TITLES[kind]
     mine = [event for event in events if event.kind == kind]
     wrong = [event for event in mine if event.difference(math.inf)]
-    text = "; ".join(words.happening(event, event.difference(math.inf)) for event in wrong[:5])
+    text = "; ".join(words.event_text(event, event.difference(math.inf)) for event in wrong[:5])
     text += f"; and {len(wrong) - 5} more" if len(wrong) > 5 else ""
     at = wrong[0].time if wrong else None
     order = 0.0 if math.isfinite(limit) else math.inf
@@ -176,15 +176,15 @@ def _of_events(both: Pair, kind: str, events: list[Happening], limits: Tolerance
     worst = max(mine, key=lambda event: abs(event.shift), default=None)
     late, when, text = 0.0, None, ""
     if worst is not None and worst.shift:
-        late, when, text = abs(worst.shift), worst.time, words.happening(worst, happenings.SHIFTED)
+        late, when, text = abs(worst.shift), worst.time, words.event_text(worst, SHIFTED)
     found.append(Figure(f"{kind}.time", f"{title}: time", late, "s", limit, when, text))
     return found
 
 
 def _first(
-    both: Pair, differences: Differences, events: list[Happening], limits: Tolerance, figures: list[Figure]
+    both: Pair, differences: Differences, events: list[Event], limits: Tolerance, figures: list[Figure]
 ) -> Divergence | None:
-    """The first thing that is beyond its limit, and how far it goes."""
+    """The first difference beyond its limit."""
     found: list[Divergence] = []
     for series in differences.series:
         limit = limits.limit(f"{series.name}.max")
@@ -202,7 +202,7 @@ def _first(
         difference = event.difference(limit)
         if difference and math.isfinite(limit):
             at = words.when(both, event.time - 1e-3)
-            found.append(Divergence(event.time, f"{at}: {words.happening(event, difference)}"))
+            found.append(Divergence(event.time, f"{at}: {words.event_text(event, difference)}"))
     if not found:
         worst_figure = next((figure for figure in figures if not figure.ok), None)
         if worst_figure is None:
@@ -219,8 +219,8 @@ def _first(
     return first
 
 
-def _trace(both: Pair, differences: Differences, events: list[Happening]) -> Divergence | None:
-    """The first thing that is not the same."""
+def _trace(both: Pair, differences: Differences, events: list[Event]) -> Divergence | None:
+    """The first difference beyond rounding."""
     found = []
     for series in differences.series:
         k = series.first_over(series.quantum)
@@ -231,12 +231,12 @@ def _trace(both: Pair, differences: Differences, events: list[Happening]) -> Div
         difference = event.difference(0.0011)
         if difference:
             at = words.when(both, event.time - 1e-3)
-            found.append(Divergence(event.time, f"{at}: {words.happening(event, difference)}"))
+            found.append(Divergence(event.time, f"{at}: {words.event_text(event, difference)}"))
     return min(found, key=lambda divergence: divergence.t, default=None)
 
 
 def _notes(golden: Flight, new: Flight) -> list[str]:
-    """What is known of why they differ."""
+    """Known reasons for differences."""
     notes = [f"golden: {note}" for note in golden.notes] + [f"new: {note}" for note in new.notes]
     if golden.header is not None and new.header is not None:
         notes += [f"differs: {text}" for text in identity.differences(golden.header, new.header)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A flight to compare: its track, and what is known of how it came about."""
+"""A flight to compare: its track, and where it comes from."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Flight:
     name: str
     track: Track
     header: dict[str, Any] | None = None
-    """What the run was made of (``sitl.recording.identity``), if it is known."""
+    """Description of the run (``sitl.recording.identity``); None: unknown."""
     digests: dict[str, Any] | None = None
-    """Digests of the vehicle's state at the end and of its telemetry, if they are known."""
+    """Digests of the vehicle's final state and of its telemetry; None: unknown."""
     coarse: bool = False
-    """Modes and arming are known to a heartbeat only."""
+    """Times of modes and arming are known to a heartbeat (1 s) only."""
     notes: tuple[str, ...] = field(default=())
-    """What is to be said of where the track comes from."""
+    """Remarks on the source of the track."""
 
 
 def read(path: str | Path, system: int | None = None, progress: Progress | None = None) -> Flight:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Verdicts as JUnit XML, which every continuous integration reads."""
+"""Results as JUnit XML for continuous integration."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class Case:
     suite: str
     name: str
     seconds: float = 0.0
-    """Wall time it took."""
+    """Wall time [s]."""
     failure: str = ""
-    """What went otherwise than it should; "": it passed."""
+    """Description of the failure; "": it passed."""
     error: str = ""
-    """Why it could not be carried out."""
+    """Reason why it could not be run; "": it was run."""
     output: str = ""
-    """What else there is to say."""
+    """Further output."""
 
 
 def cases_of(comparison: Comparison) -> list[Case]:
@@ -68,5 +68,5 @@ def _add(suite: xml.Element, case: Case) -> None:
 
 
 def _plain(text: str) -> str:
-    """Without characters that XML cannot hold."""
+    """A text without characters that XML cannot contain."""
     return "".join(c if c in "\t\n\r" or " " <= c <= "\ud7ff" or "\ue000" <= c <= "\ufffd" else "?" for c in text)

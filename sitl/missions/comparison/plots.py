@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of a comparison: the way from above, what was flown over time, and what differs."""
+"""Plots of a comparison: path from above, flight data over time, differences over time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _png(figure: Any) -> bytes:
 
 
 def _colours() -> Any:
-    """From the new flight's blue to the red of limits."""
+    """Colour map from the new flight's blue to the red of limits."""
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("distance", (NEW, "#7d4fa3", LIMIT))
@@ -42,7 +42,7 @@ def _quiet(axis: Any) -> None:
 
 
 def plan(comparison: Comparison) -> bytes:
-    """The ways from above; the new one takes its colour from how far it is from golden's."""
+    """Both paths from above; the new one is coloured by its distance from golden's. PNG bytes."""
     golden, new = comparison.pair.golden, comparison.pair.new
     cross = comparison.differences["cross_track"]
     limit = comparison.tolerance.limit("cross_track.max")
@@ -83,7 +83,7 @@ def plan(comparison: Comparison) -> bytes:
 
 
 def flown(comparison: Comparison) -> bytes:
-    """Height, speed, attitude and energy of both over time."""
+    """Height, speed, attitude and energy of both flights over time. PNG bytes."""
     golden, new = comparison.pair.golden, comparison.pair.new
 
     def heading(track: Any) -> Any:
@@ -116,7 +116,7 @@ def flown(comparison: Comparison) -> bytes:
 
 
 def differing(comparison: Comparison) -> bytes:
-    """Each difference over time with its limit."""
+    """Each difference over time with its limit. PNG bytes."""
     shown = [comparison.differences[name] for name in _SHOWN]
     if comparison.pair.new.kind == "rover":
         shown = [series for series in shown if np.isfinite(comparison.tolerance.limit(f"{series.name}.max"))]
@@ -161,7 +161,7 @@ def _events(axis: Any, comparison: Comparison) -> None:
 
 
 def _name_items(axis: Any, comparison: Comparison) -> None:
-    """Numbers of items above a panel, as many as there is room for."""
+    """Label the mission items above a panel, as far as there is room."""
     new = comparison.pair.new
     last, room = -np.inf, 0.015 * max(float(new.t[-1]), 1.0)
     for at, seq in new.items:

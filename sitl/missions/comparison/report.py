@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A comparison as one HTML file that needs nothing else, and as lines for a terminal."""
+"""A comparison as one self-contained HTML file, and as lines for a terminal."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sitl.core.extras import MissingExtra
 
 from . import junit, words
 from .compare import Comparison, Figure
-from .happenings import SHIFTED, Happening
+from .events import SHIFTED, Event
 
 HTML, JUNIT = "report.html", "junit.xml"
 STYLE = """
@@ -71,7 +71,7 @@ def write(comparison: Comparison, folder: str | Path, title: str = "") -> Path:
 
 
 def html(comparison: Comparison, title: str = "") -> str:
-    """The report."""
+    """The report as HTML."""
     new, golden = comparison.new, comparison.golden
     title = title or Path(new.name).name
     verdict = "Flies like golden" if comparison.ok else "Does not fly like golden"
@@ -94,7 +94,7 @@ def html(comparison: Comparison, title: str = "") -> str:
         _pictures(comparison),
         "<h2>What happened</h2><section><table><tr><th></th><th class=n>golden</th><th class=n>new</th>"
         "<th class=n>shift</th><th>event</th></tr>",
-        *(_event(comparison, event) for event in comparison.happenings),
+        *(_event(comparison, event) for event in comparison.events),
         "</table></section>",
     ]
     return (
@@ -119,8 +119,10 @@ def _row(figure: Figure) -> str:
     state, mark = ("", "&#10003;") if figure.ok else ("bad", "&#10007;")
     if not figure.is_judged:
         state, mark = "idle", "&middot;"
-    share = min(figure.value / figure.limit, 1.0) if figure.limit > 0.0 else float(not figure.ok)
-    bar = f'<span class="bar"><i style="width:{100.0 * share:.0f}%"></i></span>' if math.isfinite(figure.limit) else ""
+    fraction = min(figure.value / figure.limit, 1.0) if figure.limit > 0.0 else float(not figure.ok)
+    bar = ""
+    if math.isfinite(figure.limit):
+        bar = f'<span class="bar"><i style="width:{100.0 * fraction:.0f}%"></i></span>'
     value, limit = words.number(figure.value, figure.unit), words.number(figure.limit, figure.unit)
     return (
         f'<tr class="{state}"><td class="mark">{mark}</td><td>{escape(figure.title)}</td>'
@@ -129,7 +131,7 @@ def _row(figure: Figure) -> str:
     )
 
 
-def _event(comparison: Comparison, event: Happening) -> str:
+def _event(comparison: Comparison, event: Event) -> str:
     limit = comparison.tolerance.limit(f"{event.kind}.time")
     difference = event.difference(limit)
     is_bad = bool(difference) and math.isfinite(limit)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What differs between two aligned flights at every moment."""
+"""Differences between two aligned flights over time."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class Series:
-    """One difference, over the time of the new flight (NaN: there is nothing to compare)."""
+    """One difference over the time of the new flight; NaN where there is nothing to compare."""
 
     name: str
-    """As tolerances have it."""
+    """Name as in tolerance files."""
     title: str
     unit: str
     quantum: float
-    """Differences up to this come from rounding."""
+    """Largest difference that rounding explains."""
     t: Array
-    """Since the common start [s]."""
+    """Times since the common start, shape (n,) [s]."""
     values: Array
-    """New less golden; a distance where that has no sign."""
+    """New minus golden, shape (n,); distances have no sign."""
     gap: Array | None = None
-    """(n, 3) NED [m] from golden to the new flight, of distances."""
+    """Vector from golden to the new flight, north, east, down, shape (n, 3) [m]; distances only."""
 
     @property
     def size(self) -> Array:
-        """How large, NaN as 0."""
+        """Magnitudes, shape (n,); NaN as 0."""
         return np.nan_to_num(np.abs(self.values))
 
     @property
     def max(self) -> float:
-        """The largest."""
+        """The largest magnitude."""
         return float(self.size.max(initial=0.0))
 
     @property
@@ -47,24 +47,24 @@ class Series:
         return float(np.sqrt(np.mean(known * known))) if len(known) else 0.0
 
     def worst(self) -> int:
-        """Sample of the largest."""
+        """Index of the largest magnitude."""
         return int(np.argmax(self.size)) if len(self.values) else 0
 
     def first_over(self, limit: float) -> int | None:
-        """First sample that is larger than ``limit``."""
+        """Index of the first sample larger than ``limit``; None: there is none."""
         over = np.flatnonzero(self.size > limit + 1e-9)
         return int(over[0]) if len(over) else None
 
 
 @dataclass(frozen=True)
 class Differences:
-    """All of them."""
+    """All differences of two flights."""
 
     series: tuple[Series, ...]
     matched: Matched
-    """Place on golden's way of each sample of the new flight."""
+    """Matching position on golden's way of each sample of the new flight."""
     missed: Array
-    """Distance from each sample of golden to the new flight's way in the plane [m]: what was left out."""
+    """Horizontal distance from each sample of golden to the new flight's way, which shows what was left out [m]."""
 
     def __getitem__(self, name: str) -> Series:
         return next(series for series in self.series if series.name == name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How much two flights may differ: a TOML file, over one of the presets in ``presets/``."""
+"""Limits of the differences between two flights: a TOML file on top of a preset of ``presets/``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
 
 
 class ToleranceError(OptionError):
-    """A tolerance file that says what no tolerance says; names file, key and what is allowed."""
+    """An invalid tolerance file; names the file, the key and what is allowed."""
 
 
 @dataclass(frozen=True)
@@ -39,17 +39,18 @@ class Tolerance:
 
     name: str
     align: str
-    """Where time begins: "AUTO" (the mode's first begin while armed), "armed" (first arming), "start" (power-on);
-    "auto": the first of these that both flights have."""
+    """Start of the common time: "AUTO" (the first AUTO while armed), "armed" (first arming), "start" (power-on);
+    "auto": the
+    first of these that both flights have."""
     limits: Mapping[str, float]
-    """"cross_track.max" -> limit in the figure's unit; infinite: it is told, and not judged."""
+    """ "cross_track.max" -> limit in the figure's unit; infinite: reported, not judged."""
     ignore: tuple[re.Pattern[str], ...]
-    """Texts that do not count."""
+    """Status texts that match one of these are ignored."""
     numbers: bool
-    """Whether numbers in texts count."""
+    """Whether numbers in status texts are compared."""
 
     def limit(self, figure: str) -> float:
-        """Of "cross_track.max"."""
+        """Limit of a figure such as "cross_track.max", in its unit; infinite: not judged."""
         return self.limits.get(figure, math.inf)
 
 
@@ -113,7 +114,7 @@ def _build(title: str, table: Mapping[str, Any], kind: str) -> Tolerance:
 
 
 def _lay(found: dict[str, Any], layer: Mapping[str, Any], title: str, known: tuple[str, ...]) -> None:
-    """Put one table over what there is."""
+    """Override entries of ``found`` by those of a table."""
     for name, entry in layer.items():
         if name not in known:
             raise ToleranceError(f"{title}: {name!r} is not known; there are {', '.join(known)}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says when and how a flight differs: "12.4 s after item 3: 0.8 m east of golden"."""
+"""Times and differences in words: "12.4 s after item 3: 0.8 m east of golden"."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import math
 import numpy as np
 
 from .alignment import START_NAMES, Pair
-from .happenings import ADDED, MISSING, Happening
+from .events import ADDED, MISSING, Event
 from .series import Series
 
 _NED = (("north", "south"), ("east", "west"), ("below", "above"))
 
 
 def when(pair: Pair, t: float) -> str:
-    """A time by what the new flight had done last."""
+    """A time [s] relative to the new flight's last event."""
     before = [(at, f"item {seq}") for at, seq in pair.new.items if at <= t]
     before += [(at, f"mode {mode}") for at, mode in pair.new.modes if 0.0 < at <= t]
     since, what = max(before, default=(0.0, START_NAMES[pair.align]), key=lambda event: event[0])
@@ -49,8 +49,8 @@ def deviation(series: Series, k: int) -> str:
     }[series.name]
 
 
-def happening(event: Happening, difference: str) -> str:
-    """What is wrong with something that happened."""
+def event_text(event: Event, difference: str) -> str:
+    """How an event of the new flight differs from golden, in words."""
     if difference == MISSING:
         return f"{event.what} is missing (golden: at {event.golden or 0.0:.1f} s)"
     if difference == ADDED:
@@ -59,7 +59,7 @@ def happening(event: Happening, difference: str) -> str:
 
 
 def number(value: float, unit: str) -> str:
-    """A figure with its unit."""
+    """A value with its unit."""
     if not math.isfinite(value):
         return "-"
     digits = 1 if unit == "deg" else 3 if 0.0 < value < 0.1 else 2

@@ -22,15 +22,15 @@ KINDS = (SURVEY, CORRIDOR, STRUCTURE)
 LANDINGS = {"fwLandingPattern": "fixed-wing aircraft", "vtolLandingPattern": "VTOL aircraft"}
 STYLE = "TransectStyleComplexItem"
 FRAMES = {1: RELATIVE, 2: GLOBAL, 3: RELATIVE, 4: TERRAIN}
-"""Of CameraCalc.DistanceMode; 3, heights above terrain worked out by the ground station: here the ground is flat."""
+"""CameraCalc.DistanceMode -> frame; 3 is heights above terrain from the ground station, and the ground is flat here."""
 FARTHEST = 1e5
 """Greatest width, spacing, turnaround [m]."""
 ENTRIES = (FROM_END, FROM_END | FROM_RIGHT, 0, FROM_RIGHT)
-"""Of entryLocation: top left, top right, bottom left, bottom right, when lines run upwards."""
+"""Corner for entryLocation 0 .. 3: top left, top right, bottom left, bottom right, when lines run upwards."""
 
 
 def kind(entry: Node) -> str:
-    """Which complex item it is.
+    """Kind of a complex item.
 
     Raises:
         MissionFileError: none that copters or rovers fly.

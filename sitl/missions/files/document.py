@@ -48,7 +48,7 @@ class RallyPoint:
 
     place: Place
     height: float
-    """Above home [m]."""
+    """Height above home [m]."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class Complex:
     """Number of its first item in the mission."""
     count: int
     entry: Mapping[str, Any]
-    """As the plan has it."""
+    """The item as in the plan file."""
     stored: bool
-    """Its items were in the file; else they were made here."""
+    """True: its simple items were in the file; False: they were generated."""
 
 
 @dataclass(frozen=True)
@@ -78,13 +78,13 @@ class MissionFile:
     firmware_type: int = ARDUPILOT
     """MAV_AUTOPILOT"""
     cruise_speed: float | None = None
-    """Of vehicles on wings or wheels [m/s]; a ground station plans with it, no item carries it."""
+    """Planned speed of vehicles on wings or wheels [m/s]; no mission item carries it."""
     hover_speed: float | None = None
-    """Of multirotors [m/s]."""
+    """Planned speed of multirotors [m/s]."""
     circles: tuple[FenceCircle, ...] = ()
     polygons: tuple[FencePolygon, ...] = ()
     breach_return: tuple[float, float, float] | None = None
-    """Where to after leaving the fence: degrees, m above home."""
+    """Return point after a fence breach: latitude, longitude [deg], height above home [m]."""
     rally: tuple[RallyPoint, ...] = ()
     complexes: tuple[Complex, ...] = ()
 
@@ -110,5 +110,5 @@ class MissionFile:
         return bool(self.circles or self.polygons or self.rally)
 
     def simple(self) -> MissionFile:
-        """The same with the items of complex ones standing on their own."""
+        """A copy in which complex items are replaced by their simple items."""
         return replace(self, complexes=())

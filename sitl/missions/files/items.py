@@ -52,7 +52,7 @@ def make(
 
 
 def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) -> str:
-    """What is wrong with an item that is refused, in words."""
+    """Reason for the refusal of an item, in words."""
     of = f" (command {command} {COMMANDS[command].name})"
     if result == validate.UNSUPPORTED_FRAME:
         known = ", ".join(f"{number} {FRAME_NAMES[number]}" for number in PLACE_FRAMES)

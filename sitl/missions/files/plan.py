@@ -76,7 +76,7 @@ def _mission(found: Node) -> tuple[list[MissionItem], list[Complex]]:
     numbers: dict[int, int] = {}
     """doJumpId -> number of the item."""
     inner: dict[int, int] = {}
-    """The same of items within complex ones, which some programs number for themselves."""
+    """The same for items within complex ones, which some programs number separately."""
     jumps: list[tuple[int, Node]] = []
     for entry in found["items"]:
         kind = entry["type"].text

@@ -14,7 +14,7 @@ from .document import QUADROTOR, Complex, MissionFile
 from .items import has_degrees, numbers
 
 CRUISE_SPEED, HOVER_SPEED = 10.0, 5.0
-"""What a plan says when nothing else is known [m/s]."""
+"""Default speeds in a plan [m/s]."""
 RELATIVE_MODE, ABSOLUTE_MODE, TERRAIN_MODE = 1, 2, 4
 """AltitudeMode"""
 _MODES = {3: RELATIVE_MODE, 6: RELATIVE_MODE, 10: TERRAIN_MODE, 11: TERRAIN_MODE}

@@ -33,7 +33,7 @@ Point = tuple[float, float, float]
 
 
 def straightened(file: MissionFile) -> MissionFile:
-    """The same mission with waypoints along the curves; jumps lead to the same places as before.
+    """The mission with waypoints along its curves; jumps keep their targets.
 
     Raises:
         MissionFileError: a spline waypoint without a place, or more items than a mission holds.
@@ -81,7 +81,7 @@ def _curve(items: tuple[MissionItem, ...], seq: int, plane: Plane) -> list[Point
 
 
 def _start_direction(items: tuple[MissionItem, ...], seq: int, plane: Plane) -> Point | None:
-    """In which the curve to item ``seq`` begins; None when nothing says so."""
+    """Direction at the start of the curve to item ``seq``; None: undefined."""
     k = _beside(items, seq, -1)
     if k is None or items[k].p1 > 0.0:  # it waits there
         return None
@@ -93,7 +93,7 @@ def _start_direction(items: tuple[MissionItem, ...], seq: int, plane: Plane) -> 
 
 
 def _end_direction(items: tuple[MissionItem, ...], seq: int, start: Point, plane: Plane) -> Point | None:
-    """In which the curve to item ``seq`` ends."""
+    """Direction at the end of the curve to item ``seq``."""
     k = _beside(items, seq, 1)
     if k is None or items[seq].p1 > 0.0:
         return None

@@ -13,7 +13,7 @@ FROM_RIGHT, FROM_END = 1, 2
 
 
 def count_of(width: float, spacing: float) -> int:
-    """How many lines cover a width [m]: each covers half a spacing on both sides, and a thousandth more."""
+    """Number of lines that cover a width [m]: each covers half a spacing on both sides, plus a thousandth."""
     return max(1, math.ceil(width / spacing - 1e-3))
 
 

@@ -26,16 +26,16 @@ class Entry:
     name: str
     """"copter/square"."""
     file: str
-    """Beside the index."""
+    """File name, relative to the index."""
     description: str
     frame: str
-    """Airframe that it is made for."""
+    """Name of the airframe that it is made for."""
     world: str | None = None
-    """World that it needs."""
+    """Name of the world that it needs; None: none."""
     start: str | None = None
     """Start pose in the world; None: the world's own."""
     params: Mapping[str, float] = field(default_factory=dict)
-    """Parameters that it needs."""
+    """Parameters that it needs: name -> value."""
 
     @property
     def kind(self) -> str:
@@ -44,13 +44,13 @@ class Entry:
 
     @property
     def path(self) -> Path:
-        """Of the file."""
+        """Path of the mission file."""
         return FOLDER / self.file
 
 
 @cache
 def entries() -> dict[str, Entry]:
-    """Every mission by its name."""
+    """All missions by name."""
     with (FOLDER / "index.toml").open("rb") as file:
         index: dict[str, dict[str, Any]] = tomllib.load(file)
     return {

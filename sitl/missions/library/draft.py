@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A mission drawn in metres north and east of its home."""
+"""Builds missions from positions in metres north and east of home."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ Place = tuple[float, float]
 
 
 def degrees(north: float, east: float) -> Place:
-    """Latitude and longitude [deg] of a place."""
+    """Latitude, longitude [deg] of a position north, east of home [m]."""
     lat, lon = add_offset(round(LAT * 1e7), round(LON * 1e7), north, east)
     return (round(lat) * 1e-7, round(lon) * 1e-7)
 
 
 class Draft:
-    """A mission that grows item by item; each method gives the draft back."""
+    """A mission under construction; each method adds items and returns the draft."""
 
     def __init__(self, kind: str, description: str, *, text: bool = False, **index: Any) -> None:
         self.kind, self.description, self.index = kind, description, index
         self.suffix = ".waypoints" if text else ".plan"
-        """Its format."""
+        """Suffix of the file, which gives its format."""
         self.speed: float | None = None
-        """[m/s]; None: the airframe's own."""
+        """Ground speed [m/s]; None: the airframe's."""
         self._items = [c.home_item(round(LAT * 1e7), round(LON * 1e7), ALT)]
         self._complexes: list[Complex] = []
         self._fence: dict[str, Any] = {}
@@ -47,30 +47,30 @@ class Draft:
     def add(
         self, command: int, *params: float, at: Place | None = None, z: float = 0.0, frame: int = c.RELATIVE
     ) -> Draft:
-        """Any command; ``at`` metres north and east of home."""
+        """Add any command; ``at``: north, east of home [m]."""
         p1, p2, p3, p4 = (*params, *(0.0,) * (4 - len(params)))
         x, y = (round(v * 1e7) for v in degrees(*at)) if at is not None else (0, 0)
         self._items.append(MissionItem(command, frame, p1, p2, p3, p4, x, y, z))
         return self
 
     def take_off(self, height: float) -> Draft:
-        """Straight up."""
+        """Take off vertically to a height above home [m]."""
         return self.add(c.NAV_TAKEOFF, z=height)
 
     def to(self, *places: tuple[float, ...], z: float = 0.0, wait: float = 0.0, frame: int = c.RELATIVE) -> Draft:
-        """Waypoints (north, east[, height])."""
+        """Waypoints (north, east[, height above home]) [m]."""
         for place in places:
             self.add(c.NAV_WAYPOINT, wait, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z, frame=frame)
         return self
 
     def curve(self, *places: tuple[float, ...], z: float = 0.0) -> Draft:
-        """Spline waypoints."""
+        """Spline waypoints (north, east[, height above home]) [m]."""
         for place in places:
             self.add(c.NAV_SPLINE_WAYPOINT, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z)
         return self
 
     def land(self, at: Place | None = None) -> Draft:
-        """Land, at a place or where it is."""
+        """Land at north, east [m]; None: at the current position."""
         return self.add(c.NAV_LAND, at=at)
 
     def home(self) -> Draft:
@@ -83,11 +83,11 @@ class Draft:
         return self.add(c.DO_CHANGE_SPEED, 1.0, speed, -1.0)
 
     def jump(self, seq: int, times: int) -> Draft:
-        """Back to an item, so many times."""
+        """Jump to an item ``times`` times."""
         return self.add(c.DO_JUMP, float(seq), float(times))
 
     def complex(self, entry: dict[str, Any]) -> Draft:
-        """A survey, corridor or structure, of its description."""
+        """Add a survey, corridor or structure by its description in the plan format."""
         node = Node({"type": "ComplexItem", **entry}, "draft")
         items = complex_items.expand(node)
         self._complexes.append(Complex(complex_items.kind(node), self.next, len(items), node.value, False))
@@ -112,7 +112,7 @@ class Draft:
 
 
 def transects(spacing: float, height: float, turnaround: float = 0.0) -> dict[str, Any]:
-    """The part that surveys and corridors share."""
+    """The common part of surveys and corridors in the plan format; spacing and height [m]."""
     return {
         "CameraCalc": {
             "AdjustedFootprintFrontal": spacing,
@@ -134,7 +134,7 @@ def transects(spacing: float, height: float, turnaround: float = 0.0) -> dict[st
 
 
 def survey(corners: list[Place], angle: float, style: dict[str, Any], entry: int = 0) -> dict[str, Any]:
-    """A survey of a polygon (metres)."""
+    """A survey of a polygon with corners north, east of home [m]."""
     return {
         "TransectStyleComplexItem": style,
         "angle": angle,
@@ -148,7 +148,7 @@ def survey(corners: list[Place], angle: float, style: dict[str, Any], entry: int
 
 
 def circle(centre: Place, radius: float, count: int, start_deg: float = 0.0) -> list[Place]:
-    """Places on a circle, clockwise from a direction."""
+    """Positions on a circle, clockwise from a direction; north, east of home [m]."""
     turns = [math.radians(start_deg + 360.0 * k / count) for k in range(count)]
     return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in turns]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which flights a suite has: mission files of a folder, in variants, as its ``suite.toml`` says."""
+"""The flights of a suite: mission files of a folder, in variants, as its ``suite.toml`` says."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Case:
     """One flight of a suite."""
 
     name: str
-    """Of its golden, report and line."""
+    """Name of its golden, its report and its line in the table."""
     mission: Path
     golden: Path
     frame: str
@@ -80,7 +80,7 @@ class Case:
     params: Mapping[str, float] = field(default_factory=dict)
     physics: str = NATIVE
     tolerance: str | Mapping[str, Any] | None = None
-    """As ``comparison.tolerance.load`` takes it; None: by what the two flights are."""
+    """Tolerance for ``comparison.tolerance.load``; None: chosen by what the two flights are."""
     time_limit: float = LIMIT_S
 
 
@@ -164,11 +164,11 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     "name": lambda value: bool(re.fullmatch(r"[\w.+=,-]+", value)),
     "missions": lambda value: all(isinstance(pattern, str) for pattern in value),
 }
-"""What a value of the right type must also be."""
+"""Further condition on a value of the right type."""
 
 
 def _tolerance(folder: Path, value: Any) -> str | Mapping[str, Any]:
-    """As ``comparison.tolerance.load`` takes it, a file beside the suite by its path.
+    """The argument for ``comparison.tolerance.load``; a file beside the suite gets its path.
 
     Raises:
         ToleranceError: it does not.
@@ -184,7 +184,7 @@ def _files(folder: Path) -> list[dict[str, Any]]:
 
 
 def _is_mission(path: Path) -> bool:
-    """By its name; a text may be anything and must begin as missions do."""
+    """Whether a file is a mission, by its suffix; a .txt must begin as a QGC WPL file."""
     suffix = path.suffix.lower()
     if suffix != ".txt" or not path.is_file():
         return suffix in ENDINGS
@@ -193,7 +193,7 @@ def _is_mission(path: Path) -> bool:
 
 
 def _expanded(folder: Path, row: dict[str, Any]) -> list[dict[str, Any]]:
-    """A row for each mission that a row means."""
+    """A row for each mission that a row's pattern matches."""
     if ("file" in row) == ("library" in row):
         raise SuiteError(f"{folder / TOML}: [[missions]] has either file or library")
     if "file" in row:
@@ -258,5 +258,5 @@ def _vehicle(path: Path, row: dict[str, Any], entry: library.Entry | None) -> tu
 
 
 def _local(folder: Path, name: str | None) -> str | None:
-    """A file beside the suite, or a name."""
+    """The path of a file beside the suite, or the name unchanged."""
     return str(folder / name) if name is not None and (folder / name).is_file() else name

@@ -51,7 +51,7 @@ def fly_case(case: Case, update: bool = False, reports: str | None = None) -> Re
 
 @cache
 def _core(kind: str) -> Core:
-    """Loaded once a process."""
+    """The compiled core, loaded once per process."""
     return load_core(KINDS[kind])
 
 
@@ -133,7 +133,7 @@ def _golden(case: Case) -> Flight:
 
 
 def _keep(path: Path, golden: Path) -> None:
-    """Put a recording in golden's place; one of the two is there at every moment.
+    """Replace golden by a recording, atomically.
 
     Raises:
         SuiteError: it cannot be written there.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How one flight of a suite went."""
+"""Result of one flight of a suite."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 OK, DIFFERS, NO_GOLDEN, FAILED = "ok", "DIFFERS", "NO GOLDEN", "ERROR"
 KEPT, WRITTEN, REPLACED = "kept", "written", "replaced"
-"""What became of golden, when it may be updated."""
+"""What was done with golden, when it may be updated."""
 SHOWN = ("position.max", "cross_track.max", "altitude.max", "delay.max", "energy.max")
 """Figures of the table."""
 
@@ -19,11 +19,11 @@ class Result:
     name: str
     status: str
     words: str = ""
-    """What differs, or why there is nothing to compare."""
+    """Differences, or why nothing could be compared."""
     simulated: float = 0.0
-    """[s]"""
+    """Simulated time [s]."""
     wall: float = 0.0
-    """[s]"""
+    """Wall time [s]."""
     figures: dict[str, float] = field(default_factory=dict)
     """``SHOWN`` -> value in its own unit."""
     recording: str = ""
@@ -34,5 +34,5 @@ class Result:
 
     @property
     def ok(self) -> bool:
-        """Whether there is nothing to complain of."""
+        """Whether the flight is as expected."""
         return self.status in (OK, KEPT, WRITTEN, REPLACED)

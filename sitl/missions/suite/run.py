@@ -33,7 +33,7 @@ def run(
     reports: str | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Result]:
-    """Fly the cases; gives each result as it comes.
+    """Fly the cases; yields each result as it is ready.
 
     Args:
         jobs: flights at a time; None: one a core.
@@ -74,7 +74,7 @@ def _on_ray(cases: Sequence[Case], jobs: int | None, update: bool, reports: str 
 
 
 def _from_anywhere(case: Case) -> Case:
-    """The same with whole paths: processes of Ray may be in another folder."""
+    """The case with absolute paths: Ray's processes may have another working directory."""
 
     def whole(name: str | None) -> str | None:
         return str(Path(name).resolve()) if name is not None and Path(name).is_file() else name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results of a suite as lines, as JUnit XML, and as a page that leads to the reports."""
+"""Results of a suite as lines, as JUnit XML, and as an HTML index of the reports."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _HEADS = ("place [m]", "cross [m]", "height [m]", "delay [s]", "energy [%]")
 
 
 def head(width: int) -> str:
-    """First line of the table; ``width`` of the longest name."""
+    """First line of the table; ``width``: length of the longest name."""
     return f"{'mission':{width}}  {'':9}  " + "  ".join(_HEADS) + "   time [s]  wall [s]"
 
 
 def line(result: Result, width: int) -> str:
-    """One line, and what differs below it."""
+    """Line of a result, with the differences below it."""
     values = [f"{value:{len(name)}.2f}" for value, name in zip(result.figures.values(), _HEADS, strict=False)]
     values += [" " * len(name) for name in _HEADS[len(values) :]]
     found = f"{result.name:{width}}  {result.status:9}  " + "  ".join(values)
@@ -31,7 +31,7 @@ def line(result: Result, width: int) -> str:
 
 
 def summary(results: Sequence[Result], wall: float) -> str:
-    """Last line."""
+    """Last line of the table; ``wall``: wall time [s]."""
     bad = sum(not result.ok for result in results)
     simulated = sum(result.simulated for result in results)
     good = f"{len(results) - bad} of {len(results)} as they should be"

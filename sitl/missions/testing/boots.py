@@ -9,9 +9,11 @@ from typing import Any
 
 from sitl.physics.engines import NATIVE
 
-from .moments import Moment
+from .moments import RecordedMoment
 from .setup import Setup
 from .vehicle import Copter, Rover, Vehicle
+
+__tracebackhide__ = True
 
 KEPT = 32
 """As many beginnings are kept; each is a few dozen kB."""
@@ -20,12 +22,11 @@ EXACT = (NATIVE, "pybullet")
 Prepare = Callable[[Any], object]
 """What a vehicle does before its test begins."""
 Beginning = tuple[Setup, Prepare | None]
-_kept: OrderedDict[Beginning, Moment] = OrderedDict()
+_kept: OrderedDict[Beginning, RecordedMoment] = OrderedDict()
 
 
 def new(setup: Setup, name: str) -> Vehicle:
     """A vehicle at power-on."""
-    __tracebackhide__ = True
     return (Copter if setup.kind == "copter" else Rover)(setup.build, name)
 
 
@@ -34,7 +35,6 @@ def begin(vehicle: Vehicle, setup: Setup, after: Prepare | None = None) -> None:
 
     The first one of a set-up boots; what comes later goes on from there, the same to the bit.
     """
-    __tracebackhide__ = True
     beginning = (setup, after)
     is_kept = setup.physics in EXACT and _is_hashable(beginning)
     if is_kept and beginning in _kept:

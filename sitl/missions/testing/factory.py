@@ -12,6 +12,8 @@ from .logs import keep
 from .setup import Defaults, setup
 from .vehicle import Copter, Rover, Vehicle
 
+__tracebackhide__ = True
+
 
 class VehicleFactory:
     """``vehicle_factory("rover", world="maze")``: it is ready to arm; ``setup.setup`` says what is taken."""
@@ -45,7 +47,6 @@ class VehicleFactory:
             name: for messages and logs.
             options: frame, home, seed, estimator, params, world, start, physics, wind, mission.
         """
-        __tracebackhide__ = True
         wanted = setup(self.defaults, kind, **options)
         name = name or wanted.kind
         taken = sum(vehicle.name == name or vehicle.name.startswith(f"{name}-") for vehicle in self.vehicles)

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from types import TracebackType
 
-from .parameters import Tunable, UnknownName
+from sitl.client import Client, UnknownNameError
+
+__tracebackhide__ = True
 
 FAULTS = ("gps", "rc", "motor", "station", "wind")
 
@@ -14,19 +16,17 @@ class Fault:
     """A fault that lasts until ``repair``, or until the end of a ``with`` block."""
 
     def __init__(self, vehicle: Faulty, values: dict[str, float], silent: bool = False) -> None:
-        __tracebackhide__ = True
         self._vehicle, self._silent = vehicle, silent
-        self._before = {name: vehicle.parameter(name) for name in values}
-        vehicle.set_parameters(values)
+        self._before = {name: vehicle.params[name] for name in values}
+        vehicle.params.update(values)
         if silent:
-            vehicle._silent = True
+            vehicle.heartbeats(False)
 
     def repair(self) -> None:
         """All is as before."""
-        __tracebackhide__ = True
-        self._vehicle.set_parameters(self._before)
+        self._vehicle.params.update(self._before)
         if self._silent:
-            self._vehicle._silent = False
+            self._vehicle.heartbeats(True)
 
     def __enter__(self) -> Fault:
         return self
@@ -34,12 +34,11 @@ class Fault:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        __tracebackhide__ = True
         if error is None:
             self.repair()
 
 
-class Faulty(Tunable):
+class Faulty(Client):
     """A vehicle that can fail."""
 
     def fail(self, what: str, *, motor: int = 1, thrust: float = 0.0, speed: float = 10.0, direction: float = 0.0,
@@ -51,7 +50,6 @@ class Faulty(Tunable):
                 a share ``thrust`` of its thrust; "station": no heartbeat of this ground station any more;
                 "wind": ``speed`` [m/s] from ``direction`` [deg] with ``turbulence`` [m/s].
         """
-        __tracebackhide__ = True
         if what == "gps":
             return Fault(self, {"SIM_GPS1_ENABLE": 0})
         if what == "rc":
@@ -63,4 +61,4 @@ class Faulty(Tunable):
         if what == "motor" and self.kind == "copter":
             return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})
         known = [name for name in FAULTS if name != "motor" or self.kind == "copter"]
-        raise UnknownName(f"a {self.kind} has no fault {what!r}; there are {', '.join(known)}")
+        raise UnknownNameError(f"a {self.kind} has no fault {what!r}; there are {', '.join(known)}")

@@ -20,6 +20,8 @@ from ..comparison.alignment import AlignmentError
 from .logs import NOT_AGAIN, fly_again
 from .moments import Forking
 
+__tracebackhide__ = True
+
 Limits = str | Path | Mapping[str, Any] | None
 """See ``sitl.missions.comparison.tolerance.load``."""
 
@@ -73,9 +75,7 @@ class Golden(Forking):
             AssertionError: it is not, and where it left golden first; or there is no such golden. Only
                 ``--sitl-update-golden`` writes goldens.
         """
-        __tracebackhide__ = True
         path = self.golden.folder / golden
-        self.hear()
         with tempfile.TemporaryDirectory(prefix="sitl-") as folder:
             if self.golden.update:
                 self._update(path, self._record(Path(folder), "new"))
@@ -92,7 +92,6 @@ class Golden(Forking):
 
     def _record(self, folder: Path, stem: str) -> Path:
         """A recording of the flight so far."""
-        __tracebackhide__ = True
         if is_remote(self.simulation.physics):
             raise OptionError(f"physics {self.simulation.physics} cannot be started again: no recording, no golden")
         flown = fly_again(self, folder, stem, log=False)
@@ -102,7 +101,6 @@ class Golden(Forking):
 
     def _update(self, path: Path, new: Path) -> None:
         """Write a golden, unless it is this flight already."""
-        __tracebackhide__ = True
         book = self.golden
         if path.suffix != ".rec":
             raise AssertionError(f"golden {path} is not written: only recordings (.rec) are")

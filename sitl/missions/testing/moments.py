@@ -1,32 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Other futures: a vehicle put back to where it was, with all that its ground station knew."""
+"""A client whose bytes are kept, so that its flight can be flown again; and other futures of it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any, NoReturn
 
-from sitl.simulation import Snapshot
+from sitl import client
+from sitl.client.connection import InProcess
+from sitl.client.errors import ClientError
+from sitl.simulation import Simulation
 
-from .connected import Connected, Held
-from .script import Said
-from .telemetry import Telemetry
+from .script import Said, Script
+
+__tracebackhide__ = True  # failures show the line of the test
 
 
 @dataclass(frozen=True)
-class Moment:
-    """A vehicle at one moment, with all that its ground station knows."""
+class RecordedMoment:
+    """A vehicle at one moment, with all that its client knows and has sent."""
 
-    simulation: Snapshot
-    telemetry: Telemetry
+    vehicle: client.Moment
     said: tuple[Said, ...]
-    sequence: int
-    held: dict[str, Held]
-    next_us: dict[str, int]
-    found: int
-    silent: bool
-    acks: dict[int, int]
 
 
 @dataclass
@@ -38,40 +35,45 @@ class Kept:
     end_us: int
 
 
-class Forking(Connected):
-    """A vehicle that can be put back."""
+class Forking(client.Client):
+    """A vehicle that can be put back. What goes wrong fails the test: it raises AssertionError.
+
+    Args:
+        build: makes the simulation, at power-on; called again whenever the flight is flown again for its logs.
+        name: for messages and files.
+    """
 
     failed_fork: Kept | None = None
     """What went wrong in a fork."""
 
-    def snapshot(self) -> Moment:
-        """This moment, for ``restore``."""
-        self.hear()
-        return Moment(
-            self.simulation.snapshot(), self.telemetry.copy(), tuple(self.script.said), self.client._sequence,
-            dict(self._held), dict(self._next_us), self._found, self._silent, dict(self._acks),
-        )  # fmt: skip
+    def __init__(self, build: Callable[[], Simulation], name: str = "vehicle") -> None:
+        self.build = build
+        connection = InProcess(build())
+        self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
+        super().__init__(connection, name=name)
 
-    def restore(self, moment: Moment) -> None:
+    def raise_error(self, error: ClientError) -> NoReturn:
+        try:
+            super().raise_error(error)
+        except ClientError as complete:
+            raise AssertionError(str(complete)) from None
+
+    def snapshot(self) -> Any:
+        """This moment, for ``restore``."""
+        return RecordedMoment(super().snapshot(), tuple(self.script.said))
+
+    def restore(self, moment: Any) -> None:
         """Put the vehicle and all that is known of it back to a moment; what follows is as if nothing had been."""
-        self.client.receive()  # of another future
-        self.simulation.restore(moment.simulation)
-        self.telemetry = moment.telemetry.copy()
+        super().restore(moment.vehicle)
         self.script.said[:] = moment.said
-        self.client._sequence = moment.sequence
-        self._held, self._next_us = dict(moment.held), dict(moment.next_us)
-        self._found, self._silent, self._acks = moment.found, moment.silent, dict(moment.acks)
-        self._boot_us = self.simulation.before_boot_us
 
     @contextmanager
     def fork(self) -> Iterator[None]:
         """What is flown in the block has not been when the block is left."""
-        moment = self.snapshot()
-        try:
-            yield
-        except BaseException as error:
-            if self.failed_fork is None or self.failed_fork.error is not error:
-                self.failed_fork = Kept(error, list(self.script.said), self.simulation.time_us)
-            raise
-        finally:
-            self.restore(moment)
+        with super().fork():
+            try:
+                yield
+            except BaseException as error:
+                if self.failed_fork is None or self.failed_fork.error is not error:
+                    self.failed_fork = Kept(error, list(self.script.said), self.simulation.time_us)
+                raise

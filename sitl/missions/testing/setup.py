@@ -24,6 +24,8 @@ from .. import library
 from ..files import load
 from .missions import find
 
+__tracebackhide__ = True
+
 WIND = ("SIM_WIND_SPD", "SIM_WIND_DIR", "SIM_WIND_TURB")
 _cores: dict[str, Core] = {}
 compiling: Progress | None = None
@@ -50,7 +52,6 @@ class Setup:
 
     def build(self) -> Simulation:
         """The simulation at power-on."""
-        __tracebackhide__ = True
         simulation = Simulation(
             self.frame, home=self.home, seed=self.seed, estimator=self.estimator, params=dict(self.params),
             world=self.world, start=self.start, physics=self.physics,
@@ -110,7 +111,6 @@ def setup(
     Raises:
         OptionError, AirframeError, ParameterError: what cannot be taken.
     """
-    __tracebackhide__ = True
     values: dict[str, float] = {}
     if mission is not None:
         file = load(find(mission, defaults.folders))

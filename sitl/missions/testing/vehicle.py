@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle in a test: simulated in this process, commanded and observed by MAVLink bytes alone."""
+"""A vehicle in a test: ``sitl.client.Client`` under the names of tests, with faults, mission files and goldens."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from typing import Any
+
+from sitl.client import Position as Place
+from sitl.client import Text
 
 from .faults import Faulty
 from .golden import Golden
 from .missions import MissionFlier
-from .telemetry import Place, Text
+
+__tracebackhide__ = True
 
 __all__ = ["Copter", "Place", "Rover", "Text", "Vehicle"]
-
-TAKEOFF = 22
 
 
 class Vehicle(Golden, MissionFlier, Faulty):
@@ -19,31 +25,89 @@ class Vehicle(Golden, MissionFlier, Faulty):
     Whatever is awaited in vain raises an AssertionError that says what was seen last, when, and what the vehicle said.
     """
 
+    @property
+    def height(self) -> float:
+        """Above home [m]."""
+        return self.altitude
+
+    def change_mode(self, name: str, timeout: float = 5.0) -> None:
+        """Choose a mode, and wait until it is on."""
+        self.set_mode(name, timeout)
+
+    def wait_until(
+        self,
+        condition: Callable[[], Any],
+        timeout: float,
+        what: str = "the condition",
+        last: Callable[[], str] = lambda: "",
+        hold: float = 0.0,
+    ) -> None:
+        """``wait`` for a condition without an argument."""
+        self.wait(lambda _: condition(), timeout, what, last, hold)
+
+    # ------------------------------------------------------------------ places, whose altitude is called height here
+
+    def set_position(  # type: ignore[override]
+        self, north: float, east: float, height: float | None = None, yaw: float | None = None
+    ) -> None:
+        """In GUIDED: go to a place from home [m], at a height above home (None: its present one) and a yaw [deg]."""
+        super().set_position(north, east, height, yaw)
+
+    def wait_location(  # type: ignore[override]
+        self,
+        north: float,
+        east: float,
+        height: float | None = None,
+        accuracy: float = 1.0,
+        timeout: float = 120.0,
+        hold: float = 0.0,
+    ) -> None:
+        """Until it is at a place from home [m], along the ground and in height each within ``accuracy``."""
+        super().wait_location(north, east, height, accuracy, timeout, hold)
+
+    def fly_to(
+        self,
+        north: float,
+        east: float,
+        height: float | None = None,
+        yaw: float | None = None,
+        accuracy: float = 1.0,
+        timeout: float = 120.0,
+    ) -> None:
+        """``set_position``, and wait until it is there."""
+        self.goto(north, east, height, yaw, accuracy, timeout)
+
+    drive_to = fly_to
+
+    # ------------------------------------------------------------------ parameters, sticks
+
+    def parameter(self, name: str) -> float:
+        """Ask the vehicle for a parameter's present value."""
+        return self.params[name]
+
+    def set_parameter(self, name: str, value: float) -> None:
+        """Set a parameter, and see that the vehicle took it."""
+        self.params[name] = value
+
+    def set_parameters(self, values: Mapping[str, float] | None = None, **more: float) -> None:
+        """Set several."""
+        self.params.update(values, **more)
+
+    def parameters(self, values: Mapping[str, float] | None = None, **more: float) -> AbstractContextManager[None]:
+        """``with copter.parameters(ANGLE_MAX=2000):`` sets parameters, and sets them back when the block is left."""
+        return self.params.changed(values, **more)
+
+    def set_rc(self, channels: Mapping[int, int] | None = None, **sticks: int) -> None:
+        """Hold sticks: pulses [us] by channel, or ``roll=``, ``pitch=``, ``throttle=``, ``yaw=``, ``steering=``."""
+        self.rc(channels, **sticks)
+
 
 class Copter(Vehicle):
     """A copter."""
 
     def takeoff(self, height: float = 10.0, timeout: float = 60.0) -> None:
         """GUIDED, arm if need be, climb to a height above home [m], and wait until it is there."""
-        __tracebackhide__ = True
-        if self.mode != "GUIDED":
-            self.change_mode("GUIDED")
-        if not self.armed:
-            self.arm()
-        self.command(TAKEOFF, 0, 0, 0, 0, 0, 0, height, name="the take-off")
-        self.wait_altitude(height - max(0.5, 0.05 * height), height + 2.0, timeout)
-
-    def land(self, timeout: float = 120.0) -> None:
-        """LAND, and wait until it is disarmed."""
-        __tracebackhide__ = True
-        self.change_mode("LAND")
-        self.wait_disarmed(timeout)
-
-    def return_to_launch(self, timeout: float = 300.0) -> None:
-        """RTL, and wait until it is disarmed."""
-        __tracebackhide__ = True
-        self.change_mode("RTL")
-        self.wait_disarmed(timeout)
+        self.take_off(height, timeout)
 
 
 class Rover(Vehicle):
@@ -51,14 +115,9 @@ class Rover(Vehicle):
 
     def start(self) -> None:
         """GUIDED and armed: ready to drive."""
-        __tracebackhide__ = True
-        if self.mode != "GUIDED":
-            self.change_mode("GUIDED")
-        if not self.armed:
-            self.arm()
+        self.guided_and_armed()
 
     def stop(self, timeout: float = 30.0) -> None:
         """HOLD, and wait until it stands."""
-        __tracebackhide__ = True
-        self.change_mode("HOLD")
+        self.set_mode("HOLD")
         self.wait_groundspeed(0.0, 0.1, timeout, 1.0)

@@ -11,7 +11,7 @@ from typing import Any
 from sitl.autopilot.mission.item import MissionItem
 from sitl.simulation import Home
 
-from .log import Log, Said
+from .log import Log, LoggedMessage
 from .steps import ARM, LEFT_OUT, PASSED, QUESTIONS, SET_MODE, Found, Send, Sender, Step, Upload, item_of
 
 ANSWER_S = 3.0
@@ -28,14 +28,14 @@ FLIGHT_PARAMETERS = {
 
 @dataclass(frozen=True)
 class Script:
-    """What is to be flown."""
+    """The vehicle and the steps to fly."""
 
     log: Log
     home: Home | None
-    """Where the vehicle stood before it was armed; None: the log has no position."""
+    """Position of the vehicle before it was armed; None: the log has none."""
     steps: list[Step]
     parameters: dict[str, float]
-    """Of the vehicle, as far as they say how it is flown."""
+    """Parameters of the vehicle that affect how it flies."""
     notes: list[str]
     """What could not be taken over, in words."""
 
@@ -68,28 +68,28 @@ def extract(log: Log) -> Script:
 
 
 def _commanded(log: Log) -> Found:
-    """Steps of what others said to the vehicle."""
+    """Steps from the messages that others sent to the vehicle."""
     found = Found()
     answers: dict[int, list[tuple[float, int]]] = defaultdict(list)
-    for said in log.of_vehicle("COMMAND_ACK"):
-        answers[int(said.fields.command)].append((said.time, int(said.fields.result)))
-    heard = log.to_vehicle()
-    for at, said in enumerate(heard):
-        sender = (said.system, said.component)
-        if said.name == "MISSION_COUNT":
-            if getattr(said.fields, "mission_type", 0):
+    for message in log.of_vehicle("COMMAND_ACK"):
+        answers[int(message.fields.command)].append((message.time, int(message.fields.result)))
+    sent = log.to_vehicle()
+    for at, message in enumerate(sent):
+        sender = (message.system, message.component)
+        if message.name == "MISSION_COUNT":
+            if getattr(message.fields, "mission_type", 0):
                 _count(found, "fences and rally points")
             else:
-                _take(found, _upload(log, said, heard[at + 1 :], sender))
-        elif said.name in LEFT_OUT:
-            _count(found, LEFT_OUT[said.name])
-        elif said.name in PASSED:
-            fields: dict[str, Any] = said.fields._asdict()
-            step = Send(said.time, sender, said.name, fields)
+                _take(found, _upload(log, message, sent[at + 1 :], sender))
+        elif message.name in LEFT_OUT:
+            _count(found, LEFT_OUT[message.name])
+        elif message.name in PASSED:
+            fields: dict[str, Any] = message.fields._asdict()
+            step = Send(message.time, sender, message.name, fields)
             if step.command in QUESTIONS:
                 continue
             if step.command is not None:
-                step = Send(said.time, sender, said.name, fields, _answer(answers[step.command], said.time))
+                step = Send(message.time, sender, message.name, fields, _answer(answers[step.command], message.time))
             found.steps.append(step)
     return found
 
@@ -116,20 +116,20 @@ def _take(found: Found, upload: Upload | None) -> None:
         found.steps.append(upload)
 
 
-def _upload(log: Log, count: Said, after: list[Said], sender: Sender) -> Upload | None:
+def _upload(log: Log, count: LoggedMessage, after: list[LoggedMessage], sender: Sender) -> Upload | None:
     """The upload that a MISSION_COUNT begins, if all of it is there."""
     items: dict[int, MissionItem] = {}
     end = count.time
-    for said in after:
-        if said.time > count.time + UPLOAD_S or len(items) == count.fields.count:
+    for message in after:
+        if message.time > count.time + UPLOAD_S or len(items) == count.fields.count:
             break
-        if (said.system, said.component) != sender:
+        if (message.system, message.component) != sender:
             continue
-        if said.name == "MISSION_COUNT":
+        if message.name == "MISSION_COUNT":
             return None  # begun again
-        if said.name in ("MISSION_ITEM", "MISSION_ITEM_INT") and not getattr(said.fields, "mission_type", 0):
-            items[int(said.fields.seq)] = item_of(said)
-            end = said.time
+        if message.name in ("MISSION_ITEM", "MISSION_ITEM_INT") and not getattr(message.fields, "mission_type", 0):
+            items[int(message.fields.seq)] = item_of(message)
+            end = message.time
     if len(items) < count.fields.count:
         return None
     answers = (s for s in log.of_vehicle("MISSION_ACK") if end <= s.time <= end + ANSWER_S)
@@ -140,7 +140,8 @@ def _upload(log: Log, count: Said, after: list[Said], sender: Sender) -> Upload 
 def _observed(log: Log) -> list[Step]:
     """Steps that would explain what the vehicle says of itself."""
     steps: list[Step] = []
-    items = {int(said.fields.seq): item_of(said) for said in log.of_vehicle("MISSION_ITEM", "MISSION_ITEM_INT")}
+    messages = log.of_vehicle("MISSION_ITEM", "MISSION_ITEM_INT")
+    items = {int(message.fields.seq): item_of(message) for message in messages}
     armed = log.changes("armed")
     first = next((time for time, state in armed if state), log.duration)
     if items and sorted(items) == list(range(len(items))):
@@ -153,24 +154,25 @@ def _observed(log: Log) -> list[Step]:
             fields = {"command": ARM, "param1": 1.0}
             steps.append(Send(time, GROUND_STATION, "COMMAND_LONG", fields, 0))
     last: tuple[int, ...] = ()
-    for said in log.of_vehicle("RC_CHANNELS"):
-        sticks = tuple(int(getattr(said.fields, f"chan{k}_raw")) for k in range(1, 5))
+    for message in log.of_vehicle("RC_CHANNELS"):
+        sticks = tuple(int(getattr(message.fields, f"chan{k}_raw")) for k in range(1, 5))
         if sticks != last and all(800 <= value <= 2200 for value in sticks):
             fields = {f"chan{k}_raw": value for k, value in enumerate(sticks, 1)}
-            steps.append(Send(said.time, GROUND_STATION, "RC_CHANNELS_OVERRIDE", fields))
+            steps.append(Send(message.time, GROUND_STATION, "RC_CHANNELS_OVERRIDE", fields))
             last = sticks
     return steps
 
 
 def home_of(log: Log) -> Home | None:
-    """Where the vehicle stood when it was first armed, or else where it was first; latitude, longitude [deg], altitude
-    [m], heading [deg]."""
+    """Position of the vehicle when it was first armed, else its first one: latitude, longitude [deg], altitude [m],
+    heading
+    [deg]."""
     armed = next((time for time, state in log.changes("armed") if state), math.inf)
     home: tuple[float, float, float] | None = None
     heading = 0.0
-    for said in log.of_vehicle("GLOBAL_POSITION_INT"):
-        f = said.fields
-        if (home is not None and said.time > armed) or not (f.lat or f.lon):
+    for message in log.of_vehicle("GLOBAL_POSITION_INT"):
+        f = message.fields
+        if (home is not None and message.time > armed) or not (f.lat or f.lon):
             continue
         home = (f.lat * 1e-7, f.lon * 1e-7, f.alt * 1e-3)
         if f.hdg != 65535:
@@ -185,11 +187,11 @@ def parameters_of(log: Log) -> dict[str, float]:
     """The vehicle's own values, before anybody set them, of what says how it is flown."""
     found: dict[str, float] = {}
     prefixes = FLIGHT_PARAMETERS[log.kind]
-    for said in log.of_vehicle("PARAM_VALUE"):
-        name = said.fields.param_id.decode(errors="replace")
-        if name.startswith(prefixes) and name not in found and math.isfinite(said.fields.param_value):
-            found[name] = float(said.fields.param_value)
-    for said in log.to_vehicle():
-        if said.name == "PARAM_SET":
-            found.pop(said.fields.param_id.decode(errors="replace"), None)
+    for message in log.of_vehicle("PARAM_VALUE"):
+        name = message.fields.param_id.decode(errors="replace")
+        if name.startswith(prefixes) and name not in found and math.isfinite(message.fields.param_value):
+            found[name] = float(message.fields.param_value)
+    for message in log.to_vehicle():
+        if message.name == "PARAM_SET":
+            found.pop(message.fields.param_id.decode(errors="replace"), None)
     return found

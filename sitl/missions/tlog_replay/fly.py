@@ -7,20 +7,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from sitl.bridge.client import Client
 from sitl.bridge.dialect import FieldError, message
+from sitl.client import Endpoint
 from sitl.simulation import Simulation
 
-from ..station import STEP_US, Station, StationError
+from ..station import Station, StationError
 from .extract import ANSWER_S, Script
 from .steps import Send, Sender, Step, Upload
 
 READY_S = 120.0
 """A vehicle that is not ready by then will not be [simulated s]."""
 LANDING_S = 300.0
-"""How long a vehicle that was disarmed at the end of the log may take for it [simulated s]."""
+"""Time to land for a vehicle that was disarmed at the end of the log [simulated s]."""
 LATE_S = 60.0
-"""How much later it may reach the items of a mission [simulated s]."""
+"""Allowed delay in reaching the items of a mission [simulated s]."""
 RESULTS = ("ACCEPTED", "TEMPORARILY_REJECTED", "DENIED", "UNSUPPORTED", "FAILED", "IN_PROGRESS", "CANCELLED")
 """MAV_RESULT"""
 _HEADERS = frozenset(("target_system", "target_component"))
@@ -35,14 +35,14 @@ def result_name(result: int | None) -> str:
 
 @dataclass
 class Report:
-    """How a log was flown."""
+    """Result of flying a log."""
 
     notes: list[str] = field(default_factory=list)
-    """What could not be taken over or went otherwise without harm."""
+    """What could not be taken over, or differed without harm."""
     faults: list[str] = field(default_factory=list)
     """What the vehicle of the log did and this one refused."""
     waited: float = 0.0
-    """How long steps had to wait for this vehicle [s]."""
+    """Total time that steps waited for this vehicle [s]."""
     sent: int = 0
     """Messages sent."""
 
@@ -51,35 +51,29 @@ class _Player(Station):
     """A ground station that also is every other sender of the log."""
 
     def __init__(self, simulation: Simulation, advance: Callable[[int], object] | None, main: Sender) -> None:
-        super().__init__(simulation, advance)
-        self.client.system, self.client.component = main
-        self.clients: dict[Sender, Client] = {main: self.client}
         self.answers: dict[int, list[tuple[float, int]]] = {}
-        self.set_values: dict[str, float] = {}
+        super().__init__(simulation, advance)
+        own = self.connection.endpoint
+        own.system, own.component = main
+        self.endpoints: dict[Sender, Endpoint] = {main: own}
 
-    def of(self, sender: Sender) -> Client:
-        """The client that says what a sender said."""
-        if sender not in self.clients:
-            client = self.clients[sender] = Client(system=sender[0], component=sender[1])
-            self.simulation.bridge.add_link(client.link)
-        return self.clients[sender]
+    def of(self, sender: Sender) -> Endpoint:
+        """The endpoint that sends what a sender sent."""
+        if sender not in self.endpoints:
+            endpoint = self.endpoints[sender] = Endpoint(system=sender[0], component=sender[1])
+            self.simulation.bridge.add_link(endpoint.link)
+        return self.endpoints[sender]
 
-    def step(self) -> None:
-        super().step()
-        self.hear()
-
-    def hear(self) -> None:
-        """What came back to every sender."""
-        for client in self.clients.values():
-            for name, fields in client.receive():
+    def step(self, stop_us: int | None = None) -> None:
+        super().step(stop_us)
+        for endpoint in self.endpoints.values():
+            for name, fields in endpoint.receive():
                 self._take(name, fields)
 
     def until(self, time_us: int) -> None:
-        """Let time pass up to exactly a time; what comes meanwhile is heard when it does, to a tenth of a second."""
+        """Let time pass up to exactly a time; what comes meanwhile is taken in a tenth of a second later at most."""
         while self.simulation.time_us < time_us:
-            self._advance(min(time_us, (self.simulation.time_us // STEP_US + 1) * STEP_US))
-            self.hear()
-        self.hear()
+            self.step(time_us)
 
     def _take(self, name: str, fields: Any) -> None:
         super()._take(name, fields)
@@ -102,7 +96,7 @@ class LogFlight:
         self.station = _Player(simulation, advance, senders[0] if senders else (255, 190))
         self.report = Report(notes=list(script.notes))
         self._late_us = 0
-        """How far behind the log we are."""
+        """Delay behind the log [us]."""
         self._asked: list[tuple[float, Send]] = []
         """(time, step) of each command that was sent."""
         self._has_waited = False
@@ -144,7 +138,7 @@ class LogFlight:
 
     def _upload(self, step: Upload) -> None:
         try:
-            self.station.upload(step.items)
+            self.station.transfer(step.items)
         except StationError as error:
             if step.result in (None, 0):
                 self.report.faults.append(f"{self._at()}: {error}; the log's vehicle took it")
@@ -156,7 +150,7 @@ class LogFlight:
         kind = message(step.name)
         fields = {name: value for name, value in step.fields.items() if name not in _HEADERS}
         if "target_system" in kind.fields:
-            fields["target_system"] = self.station.target
+            fields["target_system"] = self.station.system
         if "target_component" in kind.fields:
             fields["target_component"] = int(step.fields.get("target_component", 1))
         try:
@@ -182,23 +176,23 @@ class LogFlight:
         self.station.until(end_us if until_us is None else min(end_us, until_us))
         if until_us is not None:
             return
-        wanted = {int(said.fields.seq) for said in log.of_vehicle("MISSION_ITEM_REACHED")}
-        self.station.wait(LATE_S, lambda: wanted <= {seq for _, seq in self.station.reached} or not self.station.armed)
+        wanted = {int(message.fields.seq) for message in log.of_vehicle("MISSION_ITEM_REACHED")}
+        self.station.passes(lambda: wanted <= set(self.station.reached) or not self.station.armed, LATE_S)
         armed = log.changes("armed")
         if len(armed) > 1 and not armed[-1][1] and self.station.armed:
             end = self.station.now
-            if self.station.wait(LANDING_S, lambda: not self.station.armed):
+            if self.station.passes(lambda: not self.station.armed, LANDING_S):
                 self.report.notes.append(f"disarmed {self.station.now - end:.1f} s later than the log's vehicle")
             else:
                 self.report.faults.append("still armed at the end; the log's vehicle was not")
 
     def _why(self, when: float) -> str:
-        """What the vehicle said to a command that it refused."""
+        """The vehicle's status text about a command that it refused."""
         texts = (text for t, severity, text in self.station.texts if severity <= 4 and 0.0 <= t - when <= 0.5)
         return "".join(f": {text}" for text in list(texts)[:1])
 
     def _compare(self) -> None:
-        """What the two vehicles answered, flew and reached."""
+        """Compare the answers, modes and items of the two vehicles."""
         answers = self.station.answers
         for when, step in self._asked:
             queue = answers.get(step.command or 0, [])
@@ -210,7 +204,7 @@ class LogFlight:
             text = f"{when:.1f} s: {step.title} was {result_name(step.result)} then, is {result_name(now)} now"
             (self.report.faults if step.result == 0 else self.report.notes).append(text + self._why(when))
         then = [int(said.fields.seq) for said in self.script.log.of_vehicle("MISSION_ITEM_REACHED")]
-        now_reached = [seq for _, seq in self.station.reached]
+        now_reached = self.station.reached
         if sorted(set(then)) != sorted(set(now_reached)):
             self.report.notes.append(f"items reached then {_list(then)}, now {_list(now_reached)}")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A .tlog as messages: who said what, when; and who of them is the vehicle."""
+"""A .tlog as messages with sender and time; which sender is the vehicle."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ INVALID = 8
 ARMED = 128
 """MAV_MODE_FLAG_SAFETY_ARMED"""
 GAP_S, BACK_S = 3600.0, 1.0
-"""Nothing for longer than this, or stamps that go back further: the clock of who wrote the log was set."""
+"""A longer gap, or a larger step back of the time stamps, means that the recording computer's clock was set [s]."""
 
 
-class Said(NamedTuple):
+class LoggedMessage(NamedTuple):
     """One message of the log."""
 
     time: float
-    """Since the first frame [s]."""
+    """Time since the first frame [s]."""
     system: int
     component: int
     name: str
@@ -35,8 +35,8 @@ class Log:
     """A log with its vehicle.
 
     Args:
-        path: of the .tlog.
-        system: of the vehicle, when the log has several.
+        path: path of the .tlog.
+        system: system of the vehicle, when the log has several.
 
     Raises:
         LogError: the file cannot be read, or it has no vehicle that we have (or several).
@@ -44,11 +44,11 @@ class Log:
 
     def __init__(self, path: str | Path, system: int | None = None) -> None:
         self.path = Path(path)
-        self.said, self.clock_set = _read(self.path)
-        """Messages, in order; how often the clock was set meanwhile. Their times leave these jumps out."""
+        self.messages, self.clock_set = _read(self.path)
+        """Messages in order; number of times that the clock was set. Times leave these jumps out."""
         types = Counter(
             (s.system, int(s.fields.type))
-            for s in self.said
+            for s in self.messages
             if s.name == "HEARTBEAT" and s.component == 1 and s.fields.autopilot != INVALID
         )
         found = {number: type_ for (number, type_), _ in reversed(types.most_common())}
@@ -72,34 +72,34 @@ class Log:
 
     @property
     def duration(self) -> float:
-        """From the first frame to the last [s]."""
-        return self.said[-1].time if self.said else 0.0
+        """Time from the first frame to the last [s]."""
+        return self.messages[-1].time if self.messages else 0.0
 
-    def of_vehicle(self, *names: str) -> list[Said]:
-        """What the vehicle's autopilot said under these names."""
-        return [s for s in self.said if s.system == self.system and s.component == 1 and s.name in names]
+    def of_vehicle(self, *names: str) -> list[LoggedMessage]:
+        """Messages of these names from the vehicle's autopilot."""
+        return [s for s in self.messages if s.system == self.system and s.component == 1 and s.name in names]
 
-    def to_vehicle(self) -> list[Said]:
-        """What others said to the vehicle, or to everybody."""
+    def to_vehicle(self) -> list[LoggedMessage]:
+        """Messages from others to the vehicle, or to all systems."""
         return [
             s
-            for s in self.said
+            for s in self.messages
             if (s.system != self.system or s.component != 1)  # a companion may have the vehicle's system id
             and getattr(s.fields, "target_system", 0) in (0, self.system)
         ]
 
     def changes(self, of: str) -> list[tuple[float, int]]:
-        """(time, value) whenever it changed: "mode" or "armed" of the vehicle's HEARTBEATs."""
+        """(time [s], value) at each change of "mode" or "armed" in the vehicle's HEARTBEATs."""
         found: list[tuple[float, int]] = []
-        for said in self.of_vehicle("HEARTBEAT"):
-            value = int(said.fields.custom_mode) if of == "mode" else int(bool(said.fields.base_mode & ARMED))
+        for message in self.of_vehicle("HEARTBEAT"):
+            value = int(message.fields.custom_mode) if of == "mode" else int(bool(message.fields.base_mode & ARMED))
             if not found or found[-1][1] != value:
-                found.append((said.time, value))
+                found.append((message.time, value))
         return found
 
 
-def _read(path: Path) -> tuple[list[Said], int]:
-    found: list[Said] = []
+def _read(path: Path) -> tuple[list[LoggedMessage], int]:
+    found: list[LoggedMessage] = []
     splitter = Splitter()
     begin_us: int | None = None
     time, jumps = 0.0, 0
@@ -111,9 +111,8 @@ def _read(path: Path) -> tuple[list[Said], int]:
                 begin_us, jumps = stamp_us - round(time * 1e6), jumps + 1
             for frame in splitter.feed(raw):
                 time = max((stamp_us - begin_us) * 1e-6, time)  # another link's clock may be a little behind
-                found.append(
-                    Said(time, frame.system, frame.component, frame.kind.name, frame.kind.decode(frame.payload))
-                )
+                fields = frame.kind.decode(frame.payload)
+                found.append(LoggedMessage(time, frame.system, frame.component, frame.kind.name, fields))
     except OSError as error:
         raise LogError(f"log {str(path)!r} cannot be read: {error.strerror or error}") from None
     if not found:

@@ -8,7 +8,7 @@ from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
 
-from .log import Said
+from .log import LoggedMessage
 
 ARM, SET_MODE, TAKEOFF, MISSION_START = 400, 176, 22, 300
 Sender = tuple[int, int]
@@ -41,7 +41,7 @@ class Send(Step):
 
     @property
     def title(self) -> str:
-        """In words."""
+        """Description of the step."""
         if self.name in ("COMMAND_LONG", "COMMAND_INT"):
             return f"command {self.command}"
         if self.name == "PARAM_SET":
@@ -97,18 +97,18 @@ class Found:
 
     steps: list[Step] = field(default_factory=list)
     left_out: dict[str, int] = field(default_factory=dict)
-    """In words -> how often."""
+    """Description -> number of messages."""
 
 
 def _text(value: Any) -> str:
     return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
 
 
-def item_of(said: Said) -> MissionItem:
+def item_of(message: LoggedMessage) -> MissionItem:
     """A mission item of MISSION_ITEM or MISSION_ITEM_INT."""
-    f = said.fields
+    f = message.fields
     x, y = f.x, f.y
-    if said.name == "MISSION_ITEM":
+    if message.name == "MISSION_ITEM":
         scale = 1e7 if f.frame in GLOBAL_FRAMES else 1e4
         x, y = round(x * scale), round(y * scale)
     return MissionItem(

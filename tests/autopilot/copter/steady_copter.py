@@ -11,7 +11,7 @@ import numpy as np
 from sitl.autopilot import home
 from sitl.autopilot.copter.control.update import init as init_control
 from sitl.autopilot.copter.modes.init import init as init_modes
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.vehicle.record import Copter
 
 READY_US = 60_000_000
@@ -25,7 +25,7 @@ def make() -> Any:
     ap.params.FRAME_CLASS = 1.0
     v.time_us, v.tick = READY_US, READY_US // 2500
     est = ap.estimate
-    est.q[0] = 1.0
+    est.q = est.q.replace(w=1.0)
     est.origin_set, est.origin_lat, est.origin_lon, est.origin_alt = 1, -353632620, 1491652370, 584.0
     est.attitude_ok = est.position_ok = 1
     v.sensors.gps_fix, v.sensors.mag_count, v.sensors.baro_count = 3, 1, 1
@@ -45,7 +45,7 @@ def fly(v: Any, mode: int = 4, height: float = 10.0) -> Any:
     ap = v.autopilot
     ap.arming.armed = ap.arming.auto_armed = 1
     ap.arming.landed = ap.arming.landed_maybe = 0
-    ap.estimate.pos[2] = -height
+    ap.estimate.pos = ap.estimate.pos.replace(z=-height)
     ap.control.motors.spool_state = 3
     ap.modes.number = mode
     return v
@@ -70,6 +70,7 @@ def snapshot(v: Any) -> bytes:
 def turn_to(v: Any, yaw: float) -> None:
     """Point the nose, and the target, to a heading [rad]."""
     est, target = v.autopilot.estimate, v.autopilot.control.attitude
-    est.euler[2] = target.target_euler[2] = yaw
-    est.q[0], est.q[3] = math.cos(yaw / 2), math.sin(yaw / 2)
-    target.target_q[0], target.target_q[3] = est.q[0], est.q[3]
+    target.target_euler = target.target_euler.replace(yaw=yaw)
+    est.euler = est.euler.replace(yaw=yaw)
+    est.q = est.q.replace(w=math.cos(yaw / 2), z=math.sin(yaw / 2))
+    target.target_q = target.target_q.replace(w=est.q.w, z=est.q.z)

@@ -124,7 +124,7 @@ def test_checks_can_be_switched_off(vehicle):
 
 def test_arming_moves_home_here_unless_it_is_locked(vehicle):
     ap = vehicle.autopilot
-    ap.estimate.pos[:] = (3.0, 4.0, -1.0)
+    ap.estimate.pos = (3.0, 4.0, -1.0)
     ap.home.locked = 1
     arming.arm(vehicle, BY_MAVLINK, False)
     assert list(ap.home.pos) == [0.0, 0.0, 0.0]

@@ -46,8 +46,8 @@ def test_landed_after_a_second_on_the_ground(flying):
     (
         lambda ap: setattr(ap.control.motors, "limit_throttle_lower", 0),
         lambda ap: setattr(ap.control.attitude, "mix", 0.5),
-        lambda ap: ap.estimate.vel.__setitem__(2, 1.1),
-        lambda ap: ap.estimate.acc_ned.__setitem__(2, 9.8),
+        lambda ap: setattr(ap.estimate, "vel", ap.estimate.vel.replace(z=1.1)),
+        lambda ap: setattr(ap.estimate, "acc_ned", ap.estimate.acc_ned.replace(z=9.8)),
     ),
 )
 def test_any_sign_of_flight_starts_the_second_again(flying, lift):
@@ -60,7 +60,7 @@ def test_any_sign_of_flight_starts_the_second_again(flying, lift):
 
 
 LEANS = (
-    lambda ap: ap.control.attitude.target_euler.__setitem__(0, math.radians(16.0)),
+    lambda ap: setattr(ap.control.attitude, "target_euler", (math.radians(16.0), 0.0, 0.0)),
     lambda ap: setattr(ap.control.attitude, "thrust_error_angle", math.radians(31.0)),
 )
 
@@ -142,7 +142,7 @@ def test_two_seconds_on_its_side_disarm(flying):
         lambda ap: setattr(ap.control.attitude, "thrust_error_angle", 0.5),
         lambda ap: setattr(ap.control.attitude, "cos_lean", 0.97),
         lambda ap: ap.modes.landing.acc.__setitem__(2, 3.1),
-        lambda ap: ap.estimate.vel.__setitem__(0, 11.0),
+        lambda ap: setattr(ap.estimate, "vel", ap.estimate.vel.replace(x=11.0)),
         lambda ap: setattr(ap.params, "FS_CRASH_CHECK", 0.0),
         lambda ap: setattr(ap.arming, "landed", 1),
     ),

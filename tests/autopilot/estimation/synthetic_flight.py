@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.estimation import update
 from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned

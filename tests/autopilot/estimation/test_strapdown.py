@@ -45,7 +45,7 @@ def test_bias_is_taken_off(ap) -> None:
 @pytest.mark.parametrize("name", ["gyro", "acc"])
 def test_a_broken_sample_is_replaced_by_the_last_good_one(bad: float, name: str) -> None:
     v = sf.Copter.of(sf.new(), 0)
-    v.sensors.gyro[:], v.sensors.acc[:] = (0.1, 0.2, 0.3), (0, 0, -9.8)
+    v.sensors.gyro, v.sensors.acc = (0.1, 0.2, 0.3), (0, 0, -9.8)
     ekf = v.autopilot.ekf
     strapdown.read_imu(ekf, v.sensors)
     v.sensors[name][1] = bad

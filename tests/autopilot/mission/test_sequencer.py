@@ -18,7 +18,7 @@ from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.copter.modes import auto_yaw
 from sitl.autopilot.copter.navigation import command as path_command
 from sitl.autopilot.copter.navigation import waypoint
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission import jumps
 from sitl.autopilot.mission.item import MissionItem, home_item
@@ -61,7 +61,7 @@ class Vehicle:
         TABLE.set_defaults(ap.params)
         ap.estimate.origin_set = 1
         ap.estimate.origin_lat, ap.estimate.origin_lon, ap.estimate.origin_alt = LAT, LON, ALT
-        ap.estimate.pos[2] = -10.0
+        ap.estimate.pos = ap.estimate.pos.replace(z=-10.0)
         ap.modes.number = COPTER.auto
         self.mission = Mission((home_item(LAT, LON, ALT), *items)) if items else Mission()
         self.sequencer = Sequencer(self, COPTER)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.params import docs, files
 from sitl.autopilot.params.table import Table, stored
 from sitl.core.records import as_dict

@@ -62,7 +62,7 @@ def test_not_watched_by_default_nor_while_it_moves() -> None:
 
 def test_leaning_too_far_counts_at_once() -> None:
     rover = blocked(FS_CRASH_CHECK=1.0, CRASH_ANGLE=30.0)
-    rover.ap.estimate.euler[0] = math.radians(35.0)
+    rover.ap.estimate.euler = rover.ap.estimate.euler.replace(roll=math.radians(35.0))
     rover.run(0.12)
     assert rover.ap.modes.number == HOLD
 
@@ -70,6 +70,6 @@ def test_leaning_too_far_counts_at_once() -> None:
 def test_pilots_modes_are_not_watched() -> None:
     rover = blocked(FS_CRASH_CHECK=1.0, CRASH_ANGLE=30.0)
     request(rover.v, MANUAL, 2)
-    rover.ap.estimate.euler[0] = math.radians(35.0)
+    rover.ap.estimate.euler = rover.ap.estimate.euler.replace(roll=math.radians(35.0))
     rover.run(3.0)
     assert rover.ap.modes.number == MANUAL

@@ -46,7 +46,7 @@ class FakePhysics(Vehicle):
         v.time_us += TICK_US
         v.tick += 1
         v.sensors.time_us = v.time_us
-        v.sensors.gyro[0] = 1e-6 * v.time_us
+        v.sensors.gyro = v.sensors.gyro.replace(x=1e-6 * v.time_us)
         v.sensors.mag_count += int(v.tick % 4 == 1)
         self.log.append(round(float(v.actuators.controls[0]), 6))
 

@@ -74,13 +74,6 @@ class WatchedPilot(Pilot):
         self.heard = Heard(simulation)
         super().__init__(simulation)
         for number in (1, 2, 3, 6, 10, 11, 12):  # stream groups of REQUEST_DATA_STREAM
-            self.client.send(
-                "REQUEST_DATA_STREAM",
-                target_system=1,
-                target_component=1,
-                req_stream_id=number,
-                req_message_rate=rate,
-                start_stop=1,
-            )
+            self.send("REQUEST_DATA_STREAM", req_stream_id=number, req_message_rate=rate, start_stop=1)
         for name in ("SIMSTATE", "HIGHRES_IMU", "BATTERY_STATUS", "WHEEL_DISTANCE"):
-            self.client.set_interval(name, 10.0)
+            self.set_rate(name, 10.0)

@@ -7,7 +7,6 @@ import pytest
 
 from sitl.bridge.dialect import message
 from sitl.missions import copter, rover
-from sitl.missions.pilot import TAKEOFF
 from sitl.simulation import Simulation
 from tests.bridge.hil.hil_peers import WatchedPilot
 
@@ -59,21 +58,19 @@ def test_a_copter_among_walls_with_lidar_and_a_gps_that_fails(physics) -> None:
         simulation = Simulation("erle_copter", **options)  # type: ignore[arg-type]
         pilot = WatchedPilot(simulation)
         for name in ("DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR", "OBSTACLE_DISTANCE"):
-            pilot.client.set_interval(name, 20.0)
+            pilot.set_rate(name, 20.0)
         pilot.boot()
         pilot.arm()
-        pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 1.5)
+        pilot.send_command("NAV_TAKEOFF", altitude=1.5)
         pilot.fly(6.0)
-        pilot.client.command(31011)  # not a command of this vehicle: both say so
+        pilot.send_command(31011)  # not a command of this vehicle: both say so
         pilot.stream_setpoint(6.0, 0b0000110111000111, (3.0, 2.0, 0.0))  # into a wall
-        pilot.client.send(
-            "PARAM_SET", target_system=1, target_component=1, param_id=b"SIM_GPS1_ENABLE", param_value=0, param_type=2
-        )
+        pilot.send("PARAM_SET", param_id=b"SIM_GPS1_ENABLE", param_value=0, param_type=2)
         pilot.fly(4.0)
-        pilot.client.command(21)
+        pilot.send_command("NAV_LAND")
         pilot.fly(20.0)
         flown.append(pilot)
         simulation.close()
     assert_same(*flown)
     assert {SCAN, DISTANCE, SIMSTATE} <= flown[1].heard.names()
-    assert any("hit" in text.lower() for _, text in flown[1].texts)
+    assert any("hit" in text.lower() for _, _, text in flown[1].texts)

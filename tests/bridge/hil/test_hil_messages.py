@@ -79,7 +79,7 @@ def test_gps(lat: int, lon: int, alt: int, velocity: list[int], fix: int) -> Non
     s.gps_lat, s.gps_lon, s.gps_alt, s.gps_eph, s.gps_epv = lat, lon, alt, 9999, 150
     s.gps_vel = velocity
     other = across(source)
-    assert other.v.sensors.gps_vel.tolist() == velocity
+    assert list(other.v.sensors.gps_vel) == velocity
     for name in ("count", "time_us", "fix", "satellites", "lat", "lon", "alt", "eph", "epv"):
         assert other.v.sensors["gps_" + name] == s["gps_" + name], name
 
@@ -113,7 +113,7 @@ def test_wheels(left: float, right: float) -> None:
     source = Vehicle()
     source.v.sensors.wheel_count, source.v.sensors.wheel_distance = 1, (left, right)
     other = across(source)
-    assert other.v.sensors.wheel_distance.tolist() == [left, right] and other.v.sensors.wheel_count == 1
+    assert list(other.v.sensors.wheel_distance) == [left, right] and other.v.sensors.wheel_count == 1
 
 
 @pytest.mark.parametrize("distance", [(math.nan, 0.0), (0.0, math.inf)])

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from sitl.bridge.client import Client
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
 from sitl.bridge.hil.autopilot_end import TAKEN, AutopilotEnd
@@ -21,9 +20,10 @@ from sitl.bridge.hil.numbers import PX4
 from sitl.bridge.hil.physics_end import HEARTBEAT
 from sitl.bridge.hil.sender import Sender
 from sitl.cli import main
+from sitl.client.endpoint import Endpoint
 from sitl.core.records import first_difference
 from sitl.errors import OptionError
-from sitl.missions.pilot import TAKEOFF, Pilot
+from sitl.missions.pilot import Pilot
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
@@ -50,16 +50,10 @@ class PatientPilot(WatchedPilot):
 
     lost = 0
 
-    def fly(self, seconds, until=lambda: False):  # type: ignore[no-untyped-def]
-        simulation = self.simulation
-        stop = simulation.time_us + int(seconds * 1e6)
-        while simulation.time_us < stop:
-            self.lost += go_on(simulation, min(stop, simulation.time_us + 40_000))
-            for name, fields in self.client.receive():
-                self._take(name, fields)
-            if until():
-                return True
-        return False
+    def step(self, stop_us: int | None = None) -> None:
+        later = self.simulation.time_us + 40_000
+        self.lost += go_on(self.simulation, later if stop_us is None else min(later, stop_us))
+        self.connection.receive()
 
 
 def start_run(physics: str, folder: Path) -> subprocess.Popen[str]:
@@ -82,7 +76,7 @@ def hop(simulation: Simulation) -> PatientPilot:
     pilot = PatientPilot(simulation)
     pilot.boot()
     pilot.arm()
-    pilot.client.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 3.0)
+    pilot.send_command("NAV_TAKEOFF", altitude=3.0)
     pilot.fly(5.0)
     return pilot
 
@@ -135,7 +129,7 @@ def test_a_fresh_autopilot_joins_the_world_as_it_stands(beside) -> None:
     first.close()
     second = Simulation(physics=f"hil:tcp:127.0.0.1:{server.address[1]}")
     assert second.time_us == 3_000_000
-    assert second.v.sensors.acc.tolist() == sensors["acc"].tolist()
+    assert list(second.v.sensors.acc) == sensors["acc"].tolist()
     assert second.v.sensors.abs_pressure == sensors["abs_pressure"]
     second.advance(0.5)
     second.close()
@@ -379,7 +373,7 @@ class Absent:
 
 def test_it_is_said_once_that_the_physics_has_gone_and_once_that_it_is_back(core) -> None:
     simulation = Simulation(core=core)
-    client = Client()
+    client = Endpoint()
     simulation.bridge.add_link(client.link)
     physics, patience = Absent(simulation), Patience(simulation)
     patience._standstill.wait = lambda: None  # type: ignore[method-assign]

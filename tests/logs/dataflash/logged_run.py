@@ -9,7 +9,7 @@ from typing import Any
 
 from pymavlink import DFReader
 
-from sitl.bridge.client import Client
+from sitl.client.endpoint import Endpoint
 from sitl.run import runner
 from sitl.simulation import Simulation
 
@@ -25,7 +25,7 @@ class Run:
         self.simulation = Simulation(frame, seed=3, estimator="truth", params=params)
         self.path = folder / "run.bin"
         self.logger = runner.open_dataflash(self.simulation, self.path)
-        self.client = Client()
+        self.client = Endpoint()
         self.simulation.bridge.add_link(self.client.link)
 
     def arm(self) -> None:

@@ -9,14 +9,14 @@ import pytest
 from pymavlink import DFReader
 
 from sitl.logs.dataflash import formats
-from sitl.logs.dataflash.book import EVERY_BIT, MESSAGES
-from sitl.logs.dataflash.common import HAPPENINGS
+from sitl.logs.dataflash.common import EVENT_MESSAGES
+from sitl.logs.dataflash.encoder import EVERY_BIT, MESSAGES
 from sitl.logs.dataflash.formats import Field, Message
 
 
 @pytest.mark.parametrize("kind", ["copter", "rover"])
 def test_every_message_fits_what_fmt_can_say(kind: str) -> None:
-    messages = (*HAPPENINGS, *MESSAGES[kind](EVERY_BIT, 0, True))
+    messages = (*EVENT_MESSAGES, *MESSAGES[kind](EVERY_BIT, 0, True))
     for m in messages:
         formats.check(m)
     names = [m.name for m in messages]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sitl.bridge.client import Client
+from sitl.client.endpoint import Endpoint
 from sitl.simulation import Simulation
 from tests.logs.dataflash.logged_run import Run
 
@@ -26,7 +26,7 @@ def content(answers: list) -> dict[int, bytes]:
 
 
 def test_without_a_logger_there_are_no_logs() -> None:
-    simulation, client = Simulation("erle_copter"), Client()
+    simulation, client = Simulation("erle_copter"), Endpoint()
     simulation.bridge.add_link(client.link)
     client.send("LOG_REQUEST_LIST", target_system=1, target_component=1, end=65535)
     client.send("LOG_REQUEST_DATA", target_system=1, target_component=1, id=1, count=90)

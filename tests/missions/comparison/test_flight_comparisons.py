@@ -11,7 +11,7 @@ import pytest
 from sitl.autopilot.mission.item import MissionItem
 from sitl.missions.comparison.compare import Comparison, compare, default_tolerance
 from sitl.missions.comparison.flight import Flight, of_recording, read
-from sitl.recording.entries import Kind
+from sitl.recording.entries import EntryKind
 from sitl.recording.recording import read as read_recording
 from tests.missions.comparison.compared_flights import fly_square
 
@@ -102,7 +102,7 @@ def test_a_lost_item_a_new_mode_and_a_late_text_are_named(golden: Flight) -> Non
 
 def test_a_message_of_the_client_that_is_lost_is_seen_and_located(squares: Path, golden: Flight) -> None:
     recording = read_recording(squares / "copter.rec")
-    heard = [entry for entry in recording.entries if entry.kind is Kind.HEARD]
+    heard = [entry for entry in recording.entries if entry.kind is EntryKind.RECEIVED]
     start = heard[-1]  # MISSION_START
     assert start.time_us == pytest.approx(42.6e6, abs=0.5e6)
     entries = [entry for entry in recording.entries if entry is not start]

@@ -10,7 +10,7 @@ from typing import Any
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.logs.tlog import read_tlog
-from sitl.missions.pilot import ARM, MISSION_START, SET_MODE, Pilot, upload
+from sitl.missions.pilot import Pilot, items
 from sitl.run import runner
 from sitl.simulation import Core, Simulation
 
@@ -37,19 +37,14 @@ def fly_mission(folder: Path, core: Core, system: int = 1) -> Path:
     log = runner.open_log(simulation, folder, "flight")
     pilot = Pilot(simulation)
     pilot.fly(45.0)
-    target = {"target": system}
-    send = pilot.client.send
-    pilot.client.send = lambda name, **fields: send(  # type: ignore[method-assign]
-        name, **{**fields, **({"target_system": system} if "target_system" in message(name).fields else {})}
-    )
-    pilot.client.send("PARAM_SET", param_id=b"WPNAV_SPEED", param_value=300.0, param_type=9)
-    upload(pilot, ITEMS)
-    pilot.client.command(SET_MODE, 1, 4, **target)
+    pilot.send("PARAM_SET", param_id=b"WPNAV_SPEED", param_value=300.0, param_type=9)
+    pilot.transfer(items(ITEMS))
+    pilot.send_command("DO_SET_MODE", 1, 4)
     pilot.fly(0.5)
-    pilot.client.command(ARM, 1, **target)
+    pilot.send_command("COMPONENT_ARM_DISARM", 1)
     pilot.fly(2.0)
-    pilot.client.command(SET_MODE, 1, 3, **target)
-    pilot.client.command(MISSION_START, **target)
+    pilot.send_command("DO_SET_MODE", 1, 3)
+    pilot.send_command("MISSION_START")
     pilot.fly(2.0)
     assert pilot.armed
     assert pilot.fly(90.0, lambda: not pilot.armed)

@@ -98,5 +98,5 @@ def test_a_companion_may_have_the_vehicles_system_id(tmp_path: Path) -> None:
 def test_a_clock_that_is_set_while_the_log_is_written(tmp_path: Path) -> None:
     times = [0.0, 1.0, 2.0, 700_000_000.0, 700_000_001.0, 5000.0, 5001.5, 5001.0, 5002.0]
     log = Log(write(tmp_path / "set.tlog", [(t, frame("HEARTBEAT", **BEAT)) for t in times]))
-    assert [said.time for said in log.said] == pytest.approx([0.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.5, 4.5, 5.0])
+    assert [message.time for message in log.messages] == pytest.approx([0.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.5, 4.5, 5.0])
     assert "the clock of the log was set 2 times: what it jumped is left out" in extract(log).notes

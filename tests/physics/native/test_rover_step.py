@@ -29,7 +29,7 @@ def test_wheel_encoders_count_at_their_rate(rig):
     r.step(800)
     s = r.v.sensors
     assert s.wheel_count == 100
-    assert s.wheel_distance.tolist() == approx(r.p.wheels.distance.tolist(), abs=0.035)  # up to 7 ticks ago
+    assert list(s.wheel_distance) == approx(r.p.wheels.distance.tolist(), abs=0.035)  # up to 7 ticks ago
     counts = s.wheel_distance[0] / 0.002
     assert counts == approx(round(counts), abs=1e-6)
 
@@ -39,7 +39,7 @@ def test_no_encoder_no_samples(rig):
     r.command(0.0, 0.8)
     r.step(20)
     assert r.v.sensors.wheel_count == 0
-    assert r.v.sensors.wheel_distance.tolist() == [0.0, 0.0]
+    assert list(r.v.sensors.wheel_distance) == [0.0, 0.0]
 
 
 def test_power_on_forgets_the_drive(rig):

@@ -45,16 +45,16 @@ def test_imu_saturates(rig):
     r = rig("erle_copter")
     r.p.body.specific_force = (1000.0, -1000.0, 0.0)
     imu.sample(r.p, r.v.sensors, r.v.rng)
-    assert r.v.sensors.acc[:2].tolist() == [176.0, -176.0]
+    assert r.v.sensors.acc[:2] == (176.0, -176.0)
 
 
 def test_noise_scale_zero_is_the_truth(rig):
     r = rig("erle_copter", noise_scale=0.0)
     r.step(3)
     s = r.v.sensors
-    assert s.acc.tolist() == approx([0.0, 0.0, -9.80665], abs=1e-6)
-    assert s.gyro.tolist() == [0.0, 0.0, 0.0]
-    assert s.mag.tolist() == approx(r.p.place.field, abs=1e-7)
+    assert list(s.acc) == approx([0.0, 0.0, -9.80665], abs=1e-6)
+    assert list(s.gyro) == [0.0, 0.0, 0.0]
+    assert list(s.mag) == approx(r.p.place.field, abs=1e-7)
 
 
 def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
@@ -116,7 +116,7 @@ def test_barometer_shows_the_standard_atmosphere(rig):
 def test_magnetometer_shows_heading_and_declination(rig, heading):
     r = rig(heading=heading, mag_noise=0.0)
     magnetometer.sample(r.p, r.v.sensors, r.v.rng)
-    x, y, z = r.v.sensors.mag.tolist()
+    x, y, z = list(r.v.sensors.mag)
     magnetic = math.degrees(math.atan2(-y, x)) % 360.0
     assert (heading - magnetic) % 360.0 == approx(12.8, abs=0.3)  # ArduPilot's COMPASS_DEC there: 12.80 deg
     assert math.sqrt(x * x + y * y + z * z) == approx(0.58, abs=0.01)

@@ -39,7 +39,7 @@ def test_same_seed_same_sensors_other_seed_others(rig):
     for r in (a, b, c):
         r.step(20)
     assert records.first_difference(a.fleet[0], b.fleet[0]) is None
-    assert a.v.sensors.acc.tolist() != c.v.sensors.acc.tolist()
+    assert list(a.v.sensors.acc) != list(c.v.sensors.acc)
 
 
 def test_init_again_forgets_everything_but_the_wind_setting(rig):

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("pybullet")
 
-from sitl.missions.pilot import MISSION_START, Pilot
+from sitl.missions.pilot import Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Simulation
 from tests.pilots.witness import LAND_ITEM, TAKEOFF_ITEM, WAYPOINT, Item, Witness
@@ -28,7 +28,7 @@ class Flyer(Witness):
     """Flies a copter on any physics."""
 
     def __init__(self, physics: str, frame: str, world: str | None = None) -> None:
-        self.track, self.items, self.answers, self._pulses = [], (), [], None
+        self.track, self._pulses = [], None
         Pilot.__init__(self, Simulation(frame, physics=physics, world=world, seed=2))
 
 
@@ -41,7 +41,7 @@ def square(physics: str, frame: str, world: str | None, side: float, height: flo
     assert flyer.upload(Item(TAKEOFF_ITEM, None, height), *ways, Item(LAND_ITEM, (0.0, 0.0))) == 0
     flyer.arm()
     assert flyer.set_mode(AUTO)
-    assert flyer.ask(MISSION_START, 0, 0) == 0
+    assert flyer.ask(300, 0, 0) == 0
     flyer.wait_disarmed(180.0)
     return flyer
 
@@ -49,8 +49,8 @@ def square(physics: str, frame: str, world: str | None, side: float, height: flo
 @pytest.mark.parametrize(("frame", "world", "side", "height"), MISSIONS.values(), ids=MISSIONS)
 def test_a_mission_as_on_native_physics(frame: str, world: str | None, side: float, height: float) -> None:
     bullet, native = (square(physics, frame, world, side, height) for physics in ("pybullet", "native"))
-    assert [seq for _, seq in bullet.reached] == [1, 2, 3, 4, 5]
-    assert [time for time, _ in bullet.reached] == pytest.approx([time for time, _ in native.reached], abs=0.5)
+    assert bullet.reached == [1, 2, 3, 4, 5]
+    assert [t for t, _ in bullet.telemetry.reached] == pytest.approx([t for t, _ in native.telemetry.reached], abs=0.5)
     assert bullet.now == pytest.approx(native.now, abs=1.0)
     ours, theirs = np.array(bullet.track), np.array(native.track)
     count = min(len(ours), len(theirs))

@@ -23,7 +23,7 @@ class Rover(Witness):
     """Drives a rover on Bullet."""
 
     def __init__(self, frame: str, world: str | None = None, physics: str = "pybullet") -> None:
-        self.track, self.items, self.answers, self._pulses = [], (), [], None
+        self.track, self._pulses = [], None
         Pilot.__init__(self, Simulation(frame, physics=physics, world=world, seed=3))
 
     def ready(self) -> Rover:

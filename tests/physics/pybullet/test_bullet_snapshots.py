@@ -16,7 +16,7 @@ pytest.importorskip("pybullet")
 
 from sitl import worlds
 from sitl.envs.options import EnvOptionError
-from sitl.envs.robots.autopilot import AutopilotRobot, Ready
+from sitl.envs.robots.autopilot import AutopilotRobot, EpisodeState
 from sitl.physics.engine import EngineError
 from sitl.physics.pybullet.engine import BulletEngine
 from sitl.simulation import Simulation
@@ -115,7 +115,8 @@ def test_goes_on_bit_for_bit_in_another_process(tmp_path: Path) -> None:
     (tmp_path / "state").write_bytes(engine.snapshot())
     (tmp_path / "record").write_bytes(record_of(engine))
     script = (
-        "import sys; from bullet_copters import by_dice, copter; from pathlib import Path; e = copter();"
+        "import sys; from pathlib import Path; from tests.physics.pybullet.bullet_copters import by_dice, copter;"
+        "e = copter();"
         "e.seat.fleet.view('u1')[:] = bytearray(Path('record').read_bytes());"
         "e.restore(Path('state').read_bytes()); sys.stdout.buffer.write(by_dice(e, 200, 9))"
     )
@@ -154,7 +155,7 @@ def test_a_simulation_takes_all_of_a_snapshot_or_nothing() -> None:
 
 def test_a_robot_refuses_it_by_name() -> None:
     robot = AutopilotRobot("office_erlecopter", frame="erle_copter", physics="pybullet")
-    taken = Ready(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
+    taken = EpisodeState(robot.simulation(0).snapshot(), None, (0.0, 0.0, 0.0), 0, "", 20_000)
     broken = dataclasses.replace(taken, simulation=dataclasses.replace(taken.simulation, plant=b""))
     with pytest.raises(EnvOptionError, match="cannot be restored"):
         robot.restore(0, broken)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, sign
-from ...control.pid import Blocked, PidGains, update_pid, update_pid_directional
+from ...control.pid import Blocked, Gains, basic_gains, update_pid, update_pid_directional
 from ...control.shaping import (
     Limits,
     Motion,
@@ -23,6 +23,7 @@ from ...control.shaping import (
     shape_vel_accel,
     sqrt_controller,
 )
+from ..parameters.control import Position
 from ..state import Autopilot
 from .altitude_start import (
     ACCZ_UNIT,
@@ -61,8 +62,8 @@ class AltitudeGains(NamedTuple):
     """Gains of the cascade."""
 
     pos_p: float  # [1/s]
-    vel: PidGains  # [m/s] to [m/s^2]
-    acc: PidGains  # [m/s^2] to throttle
+    vel: Gains  # [m/s] to [m/s^2]
+    acc: Gains  # [m/s^2] to throttle
 
 
 @law
@@ -191,20 +192,14 @@ def follow_reset_d(c: AltitudeState, pos: float, jump: float, count: int) -> Non
 
 
 @law
-def altitude_gains(ap: Autopilot) -> AltitudeGains:
-    """PSC_POSZ_P, PSC_VELZ_*, PSC_ACCZ_*; the integrator may take off all of the hover throttle."""
-    p = ap.params
-    vel = PidGains(
-        p.PSC_VELZ_P, p.PSC_VELZ_I, p.PSC_VELZ_D, p.PSC_VELZ_FF, 0.0,
-        p.PSC_VELZ_IMAX * 0.01, 0.0, 0.0, p.PSC_VELZ_FLTE, p.PSC_VELZ_FLTD,
+def altitude_gains(p: Position, hover: float) -> AltitudeGains:
+    """PSC_POSZ_P, PSC_VELZ_*, PSC_ACCZ_*; the integrator may take off all of the throttle that hovers."""
+    a = p.ACCZ
+    acc = Gains(
+        a.P * ACCZ_UNIT, a.I * ACCZ_UNIT, a.D * ACCZ_UNIT, a.FF * ACCZ_UNIT, a.D_FF * ACCZ_UNIT,
+        max(a.IMAX * _ACCZ_IMAX_UNIT, hover), a.PDMX * _ACCZ_IMAX_UNIT, a.FLTT, a.FLTE, a.FLTD,
     )  # fmt: skip
-    acc = PidGains(
-        p.PSC_ACCZ_P * ACCZ_UNIT, p.PSC_ACCZ_I * ACCZ_UNIT, p.PSC_ACCZ_D * ACCZ_UNIT,
-        p.PSC_ACCZ_FF * ACCZ_UNIT, p.PSC_ACCZ_D_FF * ACCZ_UNIT,
-        max(p.PSC_ACCZ_IMAX * _ACCZ_IMAX_UNIT, hover_throttle(ap)), p.PSC_ACCZ_PDMX * _ACCZ_IMAX_UNIT,
-        p.PSC_ACCZ_FLTT, p.PSC_ACCZ_FLTE, p.PSC_ACCZ_FLTD,
-    )  # fmt: skip
-    return AltitudeGains(p.PSC_POSZ_P, vel, acc)
+    return AltitudeGains(p.POSZ_P, basic_gains(p.VELZ, p.VELZ.IMAX * 0.01), acc)
 
 
 @law
@@ -215,8 +210,10 @@ def update_d(ap: Autopilot) -> None:
     motors = ap.control.motors
     if not is_active_d(ap):
         init_d(ap)
-    follow_reset_d(c, est.pos[2], est.reset_vel[2], est.reset_d_count)
+    follow_reset_d(c, est.pos.z, est.reset_vel.z, est.reset_d_count)
     c.last_tick = ap.control.tick
     blocked = Blocked(motors.limit_throttle_lower, motors.limit_throttle_upper)
-    taken_off = control_vertical(c, Motion(est.pos[2], est.vel[2], est.acc_ned[2]), blocked, altitude_gains(ap))
-    set_throttle_out(ap, hover_throttle(ap) - taken_off, True, _THROTTLE_HZ)
+    hover = hover_throttle(ap.params.MOT)
+    gains = altitude_gains(ap.params.PSC, hover)
+    taken_off = control_vertical(c, Motion(est.pos.z, est.vel.z, est.acc_ned.z), blocked, gains)
+    set_throttle_out(ap, hover - taken_off, True, _THROTTLE_HZ)

@@ -7,6 +7,7 @@ from ....core.kernels import law
 from ....core.scalars import TWO_PI, constrain, finite
 from ...control.pid import relax_integrator, reset_filter
 from ...control.shaping import inverse_sqrt_controller
+from ..parameters.control import Position
 from ..state import Autopilot
 from .motors import hover_throttle
 from .state import DT, GRAVITY
@@ -26,19 +27,18 @@ def set_max_speed_accel_d(ap: Autopilot, speed_down: float, speed_up: float, acc
     c.speed_up = c.correction_speed_up = abs(speed_up)
     c.correction_accel = abs(accel)
     c.accel_max = max(abs(accel), 0.01)
-    c.jerk_max = jerk_limit_d(ap, c.accel_max)
+    c.jerk_max = jerk_limit_d(ap.params.PSC, c.accel_max)
 
 
 @law
-def jerk_limit_d(ap: Autopilot, accel: float) -> float:
+def jerk_limit_d(p: Position, accel: float) -> float:
     """PSC_JERK_Z, or what the filters of the acceleration loop let through, if less [m/s^3]."""
-    p = ap.params
-    jerk: float = max(p.PSC_JERK_Z, 0.01)
+    jerk = max(p.JERK_Z, 0.01)
     per_hz = min(GRAVITY, accel) * TWO_PI / 5.0
-    if p.PSC_ACCZ_FLTT > 0.0:
-        jerk = min(jerk, per_hz * p.PSC_ACCZ_FLTT)
-    if p.PSC_ACCZ_FLTE > 0.0:
-        jerk = min(jerk, per_hz * p.PSC_ACCZ_FLTE)
+    if p.ACCZ.FLTT > 0.0:
+        jerk = min(jerk, per_hz * p.ACCZ.FLTT)
+    if p.ACCZ.FLTE > 0.0:
+        jerk = min(jerk, per_hz * p.ACCZ.FLTE)
     return jerk
 
 
@@ -53,22 +53,22 @@ def init_d(ap: Autopilot) -> None:
     """Start from the present altitude, climb and throttle."""
     c = ap.control.pos_d
     est = ap.estimate
-    p = ap.params
-    c.pos_desired = est.pos[2]
-    c.vel_desired = est.vel[2]
-    c.vel_target = est.vel[2]
+    gains = ap.params.PSC.ACCZ
+    c.pos_desired = est.pos.z
+    c.vel_desired = est.vel.z
+    c.vel_target = est.vel.z
     c.pos_error = 0.0
     c.limit = 0.0
     reset_filter(c.vel)
     c.vel.integrator = 0.0
-    measured = est.acc_ned[2] if finite(est.acc_ned[2]) else 0.0
+    measured = est.acc_ned.z if finite(est.acc_ned.z) else 0.0
     target = constrain(measured, -c.accel_max, c.accel_max)
     c.accel_target = target
     c.accel_desired = target
     reset_filter(c.accel)
     # What P and FF will give at once is left out, so that the throttle does not jump.
-    at_once = ACCZ_UNIT * (p.PSC_ACCZ_P * (target - measured) + p.PSC_ACCZ_FF * target)
-    c.accel.integrator = hover_throttle(ap) - ap.control.attitude.throttle_in - at_once
+    at_once = ACCZ_UNIT * (gains.P * (target - measured) + gains.FF * target)
+    c.accel.integrator = hover_throttle(ap.params.MOT) - ap.control.attitude.throttle_in - at_once
     c.reset_count = est.reset_d_count
     c.last_tick = ap.control.tick
 
@@ -88,13 +88,13 @@ def init_d_stopping_point(ap: Autopilot) -> None:
 def relax_d(ap: Autopilot, throttle: float) -> None:
     """Let the throttle decay to ``throttle`` (0 .. 1) at the present altitude (on the ground, spooling)."""
     init_d(ap)
-    relax_integrator(ap.control.pos_d.accel, hover_throttle(ap) - throttle, DT, RELAX_TIME)
+    relax_integrator(ap.control.pos_d.accel, hover_throttle(ap.params.MOT) - throttle, DT, RELAX_TIME)
 
 
 @law
 def stopping_point_d(ap: Autopilot) -> float:
     """Altitude [m, down] where the vehicle stops from its present climb or descent."""
-    kp, accel, pos = ap.params.PSC_POSZ_P, ap.control.pos_d.accel_max, ap.estimate.pos[2]
+    kp, accel, pos = ap.params.PSC.POSZ_P, ap.control.pos_d.accel_max, ap.estimate.pos.z
     if kp <= 0.0 or accel <= 0.0:
         return pos
-    return pos + constrain(inverse_sqrt_controller(ap.estimate.vel[2], kp, accel), -_STOP_UP, _STOP_DOWN)
+    return pos + constrain(inverse_sqrt_controller(ap.estimate.vel.z, kp, accel), -_STOP_UP, _STOP_DOWN)

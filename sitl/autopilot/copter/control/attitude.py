@@ -20,13 +20,12 @@ from ....core.algebra import (
     quat_from_euler,
     quat_from_rotation_vector,
     quat_norm_squared,
-    quat_of,
-    vec3_of,
 )
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
 from ....core.vectors import Euler, Quat, Vec3
 from ...control.shaping import shape_angle, shape_rate
+from ..parameters.control import Attitude
 from ..state import Autopilot
 from . import rate
 from .attitude_error import body_rates, euler_accel_limits, euler_rates, split_error, thrust_quaternion
@@ -110,13 +109,14 @@ def shape_rates(rate: Vec3, wanted: Vec3, shaping: Shaping) -> Vec3:
 @law
 def shaping_limits(ap: Autopilot) -> Shaping:
     """ATC_INPUT_TC, PILOT_Y_RATE_TC and the limits of acceleration and rate."""
-    return Shaping(ap.params.ATC_INPUT_TC, ap.params.PILOT_Y_RATE_TC, accel_max(ap), rate_max(ap))
+    p = ap.params
+    return Shaping(p.ATC.INPUT_TC, p.PILOT.Y_RATE_TC, accel_max(p.ATC), rate_max(p.ATC))
 
 
 @law
-def slew_yaw_max(ap: Autopilot) -> float:
+def slew_yaw_max(p: Attitude) -> float:
     """Fastest turn of modes that fly by themselves [rad/s]: ATC_SLEW_YAW, at most ATC_RATE_Y_MAX; 0: no limit."""
-    slew, fastest = ap.params.ATC_SLEW_YAW * CDEG, ap.params.ATC_RATE_Y_MAX * DEG
+    slew, fastest = p.SLEW_YAW * CDEG, p.RATE_Y_MAX * DEG
     return min(slew, fastest) if fastest > 0.0 and slew > 0.0 else slew
 
 
@@ -134,7 +134,7 @@ def follow_yaw_reset(ap: Autopilot) -> None:
         return
     attitude.yaw_reset_count = ap.estimate.reset_yaw_count
     if ap.control.tick > 0:
-        set_target(attitude, multiply(quat_of(ap.estimate.q), attitude.error_q))
+        set_target(attitude, multiply(ap.estimate.q, attitude.error_q))
 
 
 @law
@@ -143,7 +143,7 @@ def advance_target(ap: Autopilot) -> bool:
     follow_yaw_reset(ap)
     attitude = ap.control.attitude
     set_target(attitude, turned_by_rate(attitude.target_q, attitude.target_rate, DT))
-    return bool(ap.params.ATC_RATE_FF_ENAB != 0.0)
+    return ap.params.ATC.RATE_FF_ENAB != 0.0
 
 
 @law
@@ -157,8 +157,8 @@ def jump(attitude: AttitudeState, q: Quat, rate: Vec3) -> None:
 def correct(ap: Autopilot) -> None:
     """Body-rate targets from the difference between target and estimate."""
     attitude = ap.control.attitude
-    q, rates = quat_of(ap.estimate.q), vec3_of(ap.estimate.rates)
-    out = attitude_control(q, attitude.target_q, attitude.target_rate, rates, attitude_gains(ap))
+    q, rates = ap.estimate.q, ap.estimate.rates
+    out = attitude_control(q, attitude.target_q, attitude.target_rate, rates, attitude_gains(ap.params.ATC))
     if out.yaw_limited:
         set_target(attitude, out.target)
     attitude.rate_target = out.rate_target
@@ -202,7 +202,7 @@ def input_thrust_vector_heading(ap: Autopilot, thrust: Vec3, heading: float, hea
     attitude = ap.control.attitude
     q = thrust_quaternion(thrust, heading)
     if shaped:
-        slew = slew_yaw_max(ap)
+        slew = slew_yaw_max(ap.params.ATC)
         ahead = Vec3(0.0, 0.0, limit_turn(heading_rate, slew))
         error = split_error(multiply(conjugate(attitude.target_q), q)).error
         attitude.target_rate = shape_rotation(error, attitude.target_rate, ahead, shaping_limits(ap), slew)
@@ -219,7 +219,7 @@ def input_thrust_vector_heading_rate(ap: Autopilot, thrust: Vec3, heading_rate: 
         hold(ap, shaped)
         return
     attitude = ap.control.attitude
-    turn = limit_turn(heading_rate, slew_yaw_max(ap))
+    turn = limit_turn(heading_rate, slew_yaw_max(ap.params.ATC))
     split = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, 0.0)))
     if shaped:
         attitude.target_rate = shape_thrust_turn(split.error, attitude.target_rate, turn, shaping_limits(ap))
@@ -263,7 +263,7 @@ def input_rates(ap: Autopilot, rates: Vec3) -> None:
 def relax(ap: Autopilot) -> None:
     """Target := present attitude and rates, integrators zero: nothing pushes while the vehicle stands on the ground."""
     attitude = ap.control.attitude
-    q, rates = quat_of(ap.estimate.q), vec3_of(ap.estimate.rates)
+    q, rates = ap.estimate.q, ap.estimate.rates
     jump(attitude, q, rates)
     attitude.rate_target = rates
     attitude.error = Vec3(0.0, 0.0, 0.0)
@@ -279,7 +279,7 @@ def relax(ap: Autopilot) -> None:
 def reset_yaw_target(ap: Autopilot) -> None:
     """Heading target := present heading, without a turn."""
     attitude = ap.control.attitude
-    turn = wrap_pi(ap.estimate.euler[2] - attitude.target_euler.yaw)
+    turn = wrap_pi(ap.estimate.euler.yaw - attitude.target_euler.yaw)
     set_target(attitude, multiply(quat_from_rotation_vector(Vec3(0.0, 0.0, turn)), attitude.target_q))
     rates = euler_rates(attitude.target_euler, attitude.target_rate)
     attitude.target_rate = body_rates(attitude.target_euler, Euler(rates.roll, rates.pitch, 0.0))

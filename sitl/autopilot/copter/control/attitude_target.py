@@ -16,7 +16,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain, finite
 from ....core.vectors import Quat, Vec3
 from ...control.shaping import inverse_sqrt_controller, sqrt_controller
-from ..state import Autopilot
+from ..parameters.control import Attitude
 from .attitude_error import split_error
 from .state import DT, AttitudeState
 
@@ -49,25 +49,21 @@ class Correction(NamedTuple):
 
 
 @law
-def accel_max(ap: Autopilot) -> Vec3:
+def accel_max(p: Attitude) -> Vec3:
     """Angular acceleration limits of the shaping [rad/s^2] (ATC_ACCEL_*_MAX), 0 for none."""
-    p = ap.params
-    return Vec3(p.ATC_ACCEL_R_MAX * CDEG, p.ATC_ACCEL_P_MAX * CDEG, p.ATC_ACCEL_Y_MAX * CDEG)
+    return Vec3(p.ACCEL_R_MAX * CDEG, p.ACCEL_P_MAX * CDEG, p.ACCEL_Y_MAX * CDEG)
 
 
 @law
-def rate_max(ap: Autopilot) -> Vec3:
+def rate_max(p: Attitude) -> Vec3:
     """Limits of the body rates [rad/s] (ATC_RATE_*_MAX), 0 for none."""
-    p = ap.params
-    return Vec3(p.ATC_RATE_R_MAX * DEG, p.ATC_RATE_P_MAX * DEG, p.ATC_RATE_Y_MAX * DEG)
+    return Vec3(p.RATE_R_MAX * DEG, p.RATE_P_MAX * DEG, p.RATE_Y_MAX * DEG)
 
 
 @law
-def attitude_gains(ap: Autopilot) -> AttitudeGains:
+def attitude_gains(p: Attitude) -> AttitudeGains:
     """ATC_ANG_*_P with the limits of acceleration and rate."""
-    p = ap.params
-    angle_p = Vec3(p.ATC_ANG_RLL_P, p.ATC_ANG_PIT_P, p.ATC_ANG_YAW_P)
-    return AttitudeGains(angle_p, accel_max(ap), rate_max(ap), p.ATC_RAT_YAW_P)
+    return AttitudeGains(Vec3(p.ANG_RLL_P, p.ANG_PIT_P, p.ANG_YAW_P), accel_max(p), rate_max(p), p.RAT_YAW.P)
 
 
 @law

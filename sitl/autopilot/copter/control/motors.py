@@ -14,6 +14,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain, finite
 from ...control.pid import lowpass_gain
 from ...state import Actuators
+from ..parameters.control import Motors
 from ..state import Autopilot
 from .mixer import Demands, mix
 from .state import DT, MotorsState
@@ -51,19 +52,18 @@ class MotorCurve(NamedTuple):
 
 
 @law
-def hover_throttle(ap: Autopilot) -> float:
+def hover_throttle(p: Motors) -> float:
     """Throttle 0 .. 1 that holds the vehicle in the air (MOT_THST_HOVER, learnt in flight)."""
-    return constrain(ap.params.MOT_THST_HOVER, _HOVER_MIN, _HOVER_MAX)
+    return constrain(p.THST_HOVER, _HOVER_MIN, _HOVER_MAX)
 
 
 @law
-def learn_hover_throttle(ap: Autopilot, dt: float) -> None:
+def learn_hover_throttle(p: Motors, throttle: float, dt: float) -> None:
     """One step of learning, to be called every ``dt`` [s] while hovering level (MOT_HOVER_LEARN not 0)."""
-    throttle = ap.control.motors.throttle
-    if ap.params.MOT_HOVER_LEARN == 0.0 or throttle <= 0.0:
+    if p.HOVER_LEARN == 0.0 or throttle <= 0.0:
         return
-    hover = ap.params.MOT_THST_HOVER
-    ap.params.MOT_THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
+    hover = p.THST_HOVER
+    p.THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
 
 
 @law
@@ -196,18 +196,15 @@ def drive_test_motor(motors: MotorsState) -> None:
 
 
 @law
-def spool_times(ap: Autopilot) -> SpoolTimes:
+def spool_times(p: Motors) -> SpoolTimes:
     """MOT_SPOOL_TIME, MOT_SPOOL_TIM_DN and the spin of armed motors."""
-    p = ap.params
-    idle = p.MOT_SPIN_ARM / p.MOT_SPIN_MIN if p.MOT_SPIN_MIN > 0.0 else 0.0
-    return SpoolTimes(p.MOT_SPOOL_TIME, p.MOT_SPOOL_TIM_DN, idle)
+    return SpoolTimes(p.SPOOL_TIME, p.SPOOL_TIM_DN, p.SPIN_ARM / p.SPIN_MIN if p.SPIN_MIN > 0.0 else 0.0)
 
 
 @law
-def motor_curve(ap: Autopilot) -> MotorCurve:
+def motor_curve(p: Motors) -> MotorCurve:
     """MOT_SPIN_*, MOT_THST_EXPO, MOT_SLEW_*."""
-    p = ap.params
-    return MotorCurve(p.MOT_SPIN_MIN, p.MOT_SPIN_MAX, p.MOT_THST_EXPO, p.MOT_SLEW_UP_TIME, p.MOT_SLEW_DN_TIME)
+    return MotorCurve(p.SPIN_MIN, p.SPIN_MAX, p.THST_EXPO, p.SLEW_UP_TIME, p.SLEW_DN_TIME)
 
 
 @law
@@ -218,14 +215,14 @@ def drive_motors(ap: Autopilot, time_us: int) -> None:
         compensate(ap)
     armed = ap.arming.armed != 0
     filter_throttle(motors, armed)
-    spool(motors, armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US, spool_times(ap))
+    spool(motors, armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US, spool_times(ap.params.MOT))
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
-        headroom = ap.params.MOT_YAW_HEADROOM * 0.001
-        out = mix(motors, int(ap.params.FRAME_TYPE), compensated_demands(motors), headroom)
+        headroom = ap.params.MOT.YAW_HEADROOM * 0.001
+        out = mix(motors, int(ap.params.FRAME.TYPE), compensated_demands(motors), headroom)
         motors.throttle_out = out / motors.compensation_gain
-    command_motors(motors, motor_curve(ap))
+    command_motors(motors, motor_curve(ap.params.MOT))
     if motors.test_motor != 0:
         drive_test_motor(motors)
 
@@ -234,7 +231,7 @@ def drive_motors(ap: Autopilot, time_us: int) -> None:
 def write_actuators(motors: MotorsState, actuators: Actuators, armed: bool, pwm_min: int, pwm_max: int) -> None:
     """Pulses between ``pwm_min`` and ``pwm_max`` [us] and 0 .. 1 controls; disarmed motors get ``pwm_min`` and 0."""
     shortest, span = (pwm_min, pwm_max - pwm_min) if pwm_max > pwm_min else (1000, 1000)
-    actuators.armed = 1 if armed else 0
+    actuators.armed = armed
     for k in range(MOTORS):
         pulse = shortest + int(span * motors.actuator[k])
         actuators.pwm[k] = pulse

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ....core.algebra import dot2, finite2, horizontal, limit_length, norm2, vec3_of
+from ....core.algebra import dot2, finite2, horizontal, limit_length, norm2
 from ....core.kernels import law
 from ....core.scalars import finite
 from ....core.vectors import Vec2, Vec3
-from ...control.pid import PidGains, lowpass_gain
+from ...control.pid import Gains, basic_gains, lowpass_gain
 from ...control.shaping import (
     Limits2,
     Motion2,
@@ -26,6 +26,7 @@ from ...control.shaping import (
     shape_vel_accel_2d,
     sqrt_controller_2d,
 )
+from ..parameters.control import Position
 from ..state import Autopilot
 from .position_start import (
     accel_limit_ne,
@@ -63,7 +64,7 @@ class PositionGains(NamedTuple):
     """Gains of the cascade."""
 
     pos_p: float  # [1/s]
-    vel: PidGains  # [m/s] to [m/s^2]
+    vel: Gains  # [m/s] to [m/s^2]
 
 
 @law
@@ -145,22 +146,22 @@ def thrust_vector(c: PositionState) -> Vec3:
 
 
 @law
-def control_position(c: PositionState, pos: Vec2, gains: PositionGains) -> Vec2:
+def control_position(c: PositionState, pos: Vec2, p: float) -> Vec2:
     """Velocity [m/s] that takes the position error away; the path waits for a vehicle that cannot keep up."""
     error = c.pos_desired - pos
     if not finite2(error):
         error = Vec2(0.0, 0.0)
-    if c.correction_speed > 0.0 and gains.pos_p > 0.0:
-        error_max = inverse_sqrt_controller(c.correction_speed, gains.pos_p, c.correction_accel)
+    if c.correction_speed > 0.0 and p > 0.0:
+        error_max = inverse_sqrt_controller(c.correction_speed, p, c.correction_accel)
         if dot2(error, error) > error_max * error_max:
             error = limit_length(error, error_max)
             c.pos_desired = pos + error
     c.pos_error = error
-    return sqrt_controller_2d(error, gains.pos_p, c.correction_accel, 0.0)
+    return sqrt_controller_2d(error, p, c.correction_accel, 0.0)
 
 
 @law
-def control_velocity(c: PositionState, vel: Vec2, gains: PidGains) -> Vec2:
+def control_velocity(c: PositionState, vel: Vec2, gains: Gains) -> Vec2:
     """Acceleration [m/s^2] that the velocity PID asks for at ``vel`` [m/s]; its filters have no target's."""
     error = c.vel_target - vel
     error = Vec2(error.x if finite(error.x) else 0.0, error.y if finite(error.y) else 0.0)
@@ -186,7 +187,7 @@ def control_velocity(c: PositionState, vel: Vec2, gains: PidGains) -> Vec2:
 @law
 def control_horizontal(c: PositionState, pos: Vec2, vel: Vec2, accel_max: float, gains: PositionGains) -> None:
     """One tick of the cascade at ``pos`` [m], ``vel`` [m/s]: ``accel_target``, at most ``accel_max`` [m/s^2]."""
-    c.vel_target = control_position(c, pos, gains) + c.vel_desired
+    c.vel_target = control_position(c, pos, gains.pos_p) + c.vel_desired
     accel = control_velocity(c, vel, gains.vel) + c.accel_desired
     c.limit = Vec2(0.0, 0.0)
     if dot2(accel, accel) > accel_max * accel_max:
@@ -205,14 +206,9 @@ def follow_reset_ne(c: PositionState, pos: Vec2, jump: Vec2, count: int) -> None
 
 
 @law
-def position_gains(ap: Autopilot) -> PositionGains:
+def position_gains(p: Position) -> PositionGains:
     """PSC_POSXY_P, PSC_VELXY_*."""
-    p = ap.params
-    vel = PidGains(
-        p.PSC_VELXY_P, p.PSC_VELXY_I, p.PSC_VELXY_D, p.PSC_VELXY_FF, 0.0,
-        p.PSC_VELXY_IMAX * 0.01, 0.0, 0.0, p.PSC_VELXY_FLTE, p.PSC_VELXY_FLTD,
-    )  # fmt: skip
-    return PositionGains(p.PSC_POSXY_P, vel)
+    return PositionGains(p.POSXY_P, basic_gains(p.VELXY, p.VELXY.IMAX * 0.01))
 
 
 @law
@@ -222,7 +218,7 @@ def update_ne(ap: Autopilot) -> None:
     est = ap.estimate
     if not is_active_ne(ap):
         init_ne(ap)
-    pos, vel = horizontal(vec3_of(est.pos)), horizontal(vec3_of(est.vel))
-    follow_reset_ne(c, pos, horizontal(vec3_of(est.reset_vel)), est.reset_ne_count)
+    pos, vel = horizontal(est.pos), horizontal(est.vel)
+    follow_reset_ne(c, pos, horizontal(est.reset_vel), est.reset_ne_count)
     c.last_tick = ap.control.tick
-    control_horizontal(c, pos, vel, accel_limit_ne(ap), position_gains(ap))
+    control_horizontal(c, pos, vel, accel_limit_ne(ap), position_gains(ap.params.PSC))

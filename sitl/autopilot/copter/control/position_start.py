@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import horizontal, limit_length, norm2, turned, vec3_of
+from ....core.algebra import horizontal, limit_length, norm2, turned
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...control.shaping import inverse_sqrt_controller
+from ..parameters import Parameters
+from ..parameters.control import Attitude, Position
 from ..state import Autopilot
 from .state import DT, GRAVITY, PositionState
 from .throttle_mix import LEAN_TICKS, lean_limit
@@ -25,19 +27,18 @@ def set_max_speed_accel_ne(ap: Autopilot, speed: float, accel: float) -> None:
     c = ap.control.pos_ne
     c.speed_max = speed
     c.accel_max = max(accel, 0.01)
-    c.jerk_max = jerk_limit_ne(ap, c.accel_max)
+    c.jerk_max = jerk_limit_ne(ap.params.PSC, ap.params.ATC, c.accel_max)
     c.correction_speed = speed
     c.correction_accel = accel
 
 
 @law
-def jerk_limit_ne(ap: Autopilot, accel: float) -> float:
+def jerk_limit_ne(psc: Position, atc: Attitude, accel: float) -> float:
     """PSC_JERK_XY, or the jerk [m/s^3] that turn rates and angular accelerations of the lean allow, if less."""
-    p = ap.params
-    jerk: float = max(p.PSC_JERK_XY, 0.01)
-    if p.ATC_RATE_FF_ENAB != 0.0:
-        rate = min(p.ATC_RATE_R_MAX, p.ATC_RATE_P_MAX) * 100.0 * _CDEG
-        snap = min(p.ATC_ACCEL_R_MAX, p.ATC_ACCEL_P_MAX) * _CDEG * GRAVITY
+    jerk = max(psc.JERK_XY, 0.01)
+    if atc.RATE_FF_ENAB != 0.0:
+        rate = min(atc.RATE_R_MAX, atc.RATE_P_MAX) * 100.0 * _CDEG
+        snap = min(atc.ACCEL_R_MAX, atc.ACCEL_P_MAX) * _CDEG * GRAVITY
         if rate > 0.0:
             jerk = min(jerk, rate * GRAVITY)
         if snap > 0.0:
@@ -46,16 +47,15 @@ def jerk_limit_ne(ap: Autopilot, accel: float) -> float:
 
 
 @law
-def lean_max_ne(ap: Autopilot) -> float:
+def lean_max_ne(p: Parameters) -> float:
     """Greatest lean [rad]: PSC_ANGLE_MAX, or ANGLE_MAX where that is 0."""
-    p = ap.params
-    return float(p.PSC_ANGLE_MAX * 100.0 * _CDEG if p.PSC_ANGLE_MAX > 0.0 else p.ANGLE_MAX * _CDEG)
+    return p.PSC.ANGLE_MAX * 100.0 * _CDEG if p.PSC.ANGLE_MAX > 0.0 else p.ANGLE_MAX * _CDEG
 
 
 @law
 def renew_accel_limit(ap: Autopilot) -> float:
     """Acceleration [m/s^2] that the permitted lean gives; kept in the record."""
-    limit = GRAVITY * math.tan(min(lean_limit(ap.control.attitude), lean_max_ne(ap)))
+    limit = GRAVITY * math.tan(min(lean_limit(ap.control.attitude), lean_max_ne(ap.params)))
     ap.control.pos_ne.accel_limit = limit
     return limit
 
@@ -102,9 +102,9 @@ def init_ne(ap: Autopilot) -> None:
     est = ap.estimate
     lean = ap.control.attitude.target_euler
     if not is_active_ne(ap):
-        c.accel_target = lean_accel(lean.roll, lean.pitch, est.euler[2])
+        c.accel_target = lean_accel(lean.roll, lean.pitch, est.euler.yaw)
     c.accel_target = limit_length(c.accel_target, renew_accel_limit(ap))
-    start_from(c, horizontal(vec3_of(est.pos)), horizontal(vec3_of(est.vel)))
+    start_from(c, horizontal(est.pos), horizontal(est.vel))
     c.reset_count = est.reset_ne_count
     c.last_tick = ap.control.tick
 
@@ -128,7 +128,7 @@ def relax_ne(ap: Autopilot) -> None:
 def soften_for_landing_ne(ap: Autopilot) -> None:
     """Let the position error decay and the integrator not grow: the ground may hold the vehicle."""
     c = ap.control.pos_ne
-    c.pos_desired += DT / (DT + RELAX_TIME) * (horizontal(vec3_of(ap.estimate.pos)) - c.pos_desired)
+    c.pos_desired += DT / (DT + RELAX_TIME) * (horizontal(ap.estimate.pos) - c.pos_desired)
     c.limit = c.accel_target
 
 
@@ -145,5 +145,5 @@ def stopping_point(pos: Vec2, vel: Vec2, p: float, speed_max: float, accel_max: 
 def stopping_point_ne(ap: Autopilot) -> Vec2:
     """(north, east) [m] where the vehicle stops from its present velocity, braking within the limits."""
     c = ap.control.pos_ne
-    pos, vel = horizontal(vec3_of(ap.estimate.pos)), horizontal(vec3_of(ap.estimate.vel))
-    return stopping_point(pos, vel, ap.params.PSC_POSXY_P, c.speed_max, c.accel_max)
+    pos, vel = horizontal(ap.estimate.pos), horizontal(ap.estimate.vel)
+    return stopping_point(pos, vel, ap.params.PSC.POSXY_P, c.speed_max, c.accel_max)

@@ -43,12 +43,12 @@ def set_throttle_out(ap: Autopilot, throttle: float, angle_boost: bool, filter_h
     motors = ap.control.motors
     attitude.throttle_in = throttle
     if motors.thrust_max <= 0.0 or ap.control.tick % LEAN_TICKS == 0:
-        update_lean_max(attitude, throttle, motors.thrust_max, ap.params.ATC_ANG_LIM_TC)
-    boost = angle_boost and ap.params.ATC_ANGLE_BOOST != 0.0
+        update_lean_max(attitude, throttle, motors.thrust_max, ap.params.ATC.ANG_LIM_TC)
+    boost = angle_boost and ap.params.ATC.ANGLE_BOOST != 0.0
     motors.throttle_filter_hz = filter_hz
     motors.throttle_in = boosted(throttle, attitude.cos_lean) if boost else throttle
     average = constrain(max(motors.throttle_in, throttle), 0.0, 1.0)
-    motors.throttle_avg_max = throttle_average_max(average, hover_throttle(ap), attitude.mix)
+    motors.throttle_avg_max = throttle_average_max(average, hover_throttle(ap.params.MOT), attitude.mix)
 
 
 @law
@@ -74,20 +74,21 @@ def lean_limit(attitude: AttitudeState) -> float:
 @law
 def set_mix_min(ap: Autopilot) -> None:
     """Throttle first: landing, idle on the ground."""
-    ap.control.attitude.mix_desired = ap.params.ATC_THR_MIX_MIN
+    ap.control.attitude.mix_desired = ap.params.ATC.THR_MIX_MIN
 
 
 @law
 def set_mix_man(ap: Autopilot) -> None:
     """Throttle in the pilot's hand."""
-    ap.control.attitude.mix_desired = ap.params.ATC_THR_MIX_MAN
+    ap.control.attitude.mix_desired = ap.params.ATC.THR_MIX_MAN
 
 
 @law
 def set_mix_max(ap: Autopilot, ratio: float) -> None:
     """Attitude first; ``ratio`` 0 .. 1 between the lowest and the highest priority."""
     r = constrain(ratio, 0.0, 1.0)
-    ap.control.attitude.mix_desired = (1.0 - r) * ap.params.ATC_THR_MIX_MIN + r * ap.params.ATC_THR_MIX_MAX
+    p = ap.params.ATC
+    ap.control.attitude.mix_desired = (1.0 - r) * p.THR_MIX_MIN + r * p.THR_MIX_MAX
 
 
 @law

@@ -76,14 +76,14 @@ def compensate_voltage(motors: MotorsState, resting: float, low: float, full: fl
 @law
 def compensate(ap: Autopilot) -> None:
     """Voltage and density compensation, to be called every ``SLOW_DT``."""
-    p = ap.params
+    p = ap.params.MOT
     est = ap.estimate
     motors = ap.control.motors
     resting = resting_voltage(motors, ap.battery.voltage, ap.battery.current)
-    compensate_voltage(motors, resting, p.MOT_BAT_VOLT_MIN, p.MOT_BAT_VOLT_MAX, p.MOT_THST_EXPO)
+    compensate_voltage(motors, resting, p.BAT_VOLT_MIN, p.BAT_VOLT_MAX, p.THST_EXPO)
     gain = 1.0 / max(motors.lift_max, 0.1)
     if est.origin_set:
-        gain /= constrain(air_density_ratio(est.origin_alt - est.pos[2]), 0.5, 1.25)
+        gain /= constrain(air_density_ratio(est.origin_alt - est.pos.z), 0.5, 1.25)
     motors.compensation_gain = gain
 
 

@@ -26,24 +26,25 @@ def init(ap: Autopilot) -> None:
         control.motors.voltage_ratio = 1.0
         control.motors.lift_max = 1.0
         control.motors.compensation_gain = 1.0
-        control.attitude.mix = p.ATC_THR_MIX_MAN
-        control.attitude.mix_desired = p.ATC_THR_MIX_MAN
+        control.attitude.mix = p.ATC.THR_MIX_MAN
+        control.attitude.mix_desired = p.ATC.THR_MIX_MAN
         relax(ap)
     if control.pos_ne.speed_max <= 0.0:
-        set_max_speed_accel_ne(ap, p.WPNAV_SPEED * 0.01, p.WPNAV_ACCEL * 0.01)
+        set_max_speed_accel_ne(ap, p.WPNAV.SPEED * 0.01, p.WPNAV.ACCEL * 0.01)
     if control.pos_d.speed_up <= 0.0:
-        set_max_speed_accel_d(ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01)
+        set_max_speed_accel_d(ap, p.WPNAV.SPEED_DN * 0.01, p.WPNAV.SPEED_UP * 0.01, p.WPNAV.ACCEL_Z * 0.01)
 
 
 @law
 def drive(ap: Autopilot, actuators: Actuators, time_us: int) -> None:
     """Follow ``attitude.rate_target`` and write the actuators; ``time_us`` since boot."""
     p = ap.params
-    throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, motors.hover_throttle(ap))
-    rate.control_rates(ap)
+    throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, motors.hover_throttle(p.MOT))
+    target, rates = ap.control.attitude.rate_target, ap.estimate.rates
+    rate.control_rates(ap.control.rate, ap.control.motors, target, rates, p.ATC)
     motors.drive_motors(ap, time_us)
     armed = ap.arming.armed != 0
-    motors.write_actuators(ap.control.motors, actuators, armed, int(p.MOT_PWM_MIN), int(p.MOT_PWM_MAX))
+    motors.write_actuators(ap.control.motors, actuators, armed, int(p.MOT.PWM_MIN), int(p.MOT.PWM_MAX))
     ap.control.tick += 1
 
 

@@ -41,8 +41,8 @@ def start_vertical(v):
 def set_limits(ap):
     """Vertical limits of modes that the pilot flies."""
     p = ap.params
-    down = p.PILOT_SPEED_DN if p.PILOT_SPEED_DN > 0.0 else p.PILOT_SPEED_UP
-    altitude.set_max_speed_accel_d(ap, down * 0.01, p.PILOT_SPEED_UP * 0.01, p.PILOT_ACCEL_Z * 0.01)
+    down = p.PILOT.SPEED_DN if p.PILOT.SPEED_DN > 0.0 else p.PILOT.SPEED_UP
+    altitude.set_max_speed_accel_d(ap, down * 0.01, p.PILOT.SPEED_UP * 0.01, p.PILOT.ACCEL_Z * 0.01)
 
 
 @law
@@ -77,7 +77,7 @@ def run_vertical(v, doing, climb):
     ap = v.autopilot
     if doing == TAKING_OFF:
         if ap.modes.takeoff.user_active == 0:
-            takeoff.begin_user(v, constrain(ap.params.PILOT_TKOFF_ALT * 0.01, 0.0, 10.0))
+            takeoff.begin_user(v, constrain(ap.params.PILOT.TKOFF_ALT * 0.01, 0.0, 10.0))
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             takeoff.run_user(v, climb)
             return

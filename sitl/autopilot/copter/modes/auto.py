@@ -88,7 +88,7 @@ def face(v, kind):
     yaw = v.autopilot.modes.auto_yaw
     if kind == TAKEOFF:
         auto_yaw.set_mode(v, auto_yaw.HOLD)
-    elif yaw.mode != auto_yaw.ROI and (yaw.mode != auto_yaw.FIXED or v.autopilot.params.WP_YAW_BEHAVIOR != 0.0):
+    elif yaw.mode != auto_yaw.ROI and (yaw.mode != auto_yaw.FIXED or v.autopilot.params.WP.YAW_BEHAVIOR != 0.0):
         auto_yaw.set_default(v, 0)
 
 

@@ -39,7 +39,7 @@ def set_mode(v, mode):
 @law
 def set_default(v, rtl):
     """What WP_YAW_BEHAVIOR says; ``rtl``: on the way home."""
-    behaviour = int(v.autopilot.params.WP_YAW_BEHAVIOR)
+    behaviour = int(v.autopilot.params.WP.YAW_BEHAVIOR)
     if behaviour == 0 or (behaviour == 2 and rtl != 0):
         set_mode(v, HOLD)
     elif behaviour == 3:
@@ -67,7 +67,7 @@ def fixed(v, angle, rate, direction, relative):
             offset -= TWO_PI
         elif direction > 0 and offset < 0.0:
             offset += TWO_PI
-    most = math.radians(ap.params.ATC_SLEW_YAW * 0.01)
+    most = math.radians(ap.params.ATC.SLEW_YAW * 0.01)
     if rate > 0.0 and (rate < most or most <= 0.0):
         most = rate
     yaw.mode = FIXED

@@ -66,8 +66,8 @@ def set_waypoint_limits(v):
     """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
     ap = v.autopilot
     p = ap.params
-    position.set_max_speed_accel_ne(ap, p.WPNAV_SPEED * 0.01, p.WPNAV_ACCEL * 0.01)
-    altitude.set_max_speed_accel_d(ap, p.WPNAV_SPEED_DN * 0.01, p.WPNAV_SPEED_UP * 0.01, p.WPNAV_ACCEL_Z * 0.01)
+    position.set_max_speed_accel_ne(ap, p.WPNAV.SPEED * 0.01, p.WPNAV.ACCEL * 0.01)
+    altitude.set_max_speed_accel_d(ap, p.WPNAV.SPEED_DN * 0.01, p.WPNAV.SPEED_UP * 0.01, p.WPNAV.ACCEL_Z * 0.01)
 
 
 @law

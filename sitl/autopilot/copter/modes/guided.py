@@ -162,7 +162,7 @@ def set_attitude(v, use_attitude, qw, qx, qy, qz, p, q, r, thrust):
         target.q[0], target.q[1], target.q[2], target.q[3] = qw / norm, qx / norm, qy / norm, qz / norm
     write(target.rates, p, q, r)
     share = constrain(thrust, 0.0, 1.0)
-    target.use_thrust = 1 if (int(ap.params.GUID_OPTIONS) & _THRUST_IS_THRUST) != 0 else 0
+    target.use_thrust = 1 if (int(ap.params.GUID.OPTIONS) & _THRUST_IS_THRUST) != 0 else 0
     target.thrust = share
     if share >= 0.5:
         target.climb_rate = (share - 0.5) * 2.0 * ap.control.pos_d.speed_up

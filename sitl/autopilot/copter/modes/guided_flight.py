@@ -56,7 +56,7 @@ def start_velocity(v):
 def is_old(v):
     """Whether the set-point is older than GUID_TIMEOUT."""
     ap = v.autopilot
-    return v.time_us - ap.modes.guided.update_us > ap.params.GUID_TIMEOUT * 1e6
+    return v.time_us - ap.modes.guided.update_us > ap.params.GUID.TIMEOUT * 1e6
 
 
 @law
@@ -78,7 +78,7 @@ def run(v):
     """One tick."""
     ap = v.autopilot
     guided = ap.modes.guided
-    if (int(ap.params.GUID_OPTIONS) & _NO_PILOT_YAW) == 0:
+    if (int(ap.params.GUID.OPTIONS) & _NO_PILOT_YAW) == 0:
         auto_yaw.pilot(v)
     if guided.submode == TAKEOFF:
         takeoff.run(v)

@@ -88,7 +88,7 @@ def finish(v):
 def is_cancelled(v):
     """Whether the pilot's high throttle asks for LOITER (or ALT_HOLD) instead."""
     ap = v.autopilot
-    if (int(ap.params.PILOT_THR_BHV) & _CANCEL_BEHAVIOUR) == 0 or ap.modes.pilot.throttle <= _CANCEL_THROTTLE:
+    if (int(ap.params.PILOT.THR_BHV) & _CANCEL_BEHAVIOUR) == 0 or ap.modes.pilot.throttle <= _CANCEL_THROTTLE:
         return False
     ap.modes.wanted = (LOITER if ap.estimate.position_ok != 0 else ALT_HOLD) + 1
     ap.modes.wanted_reason = REASON_THROTTLE_LAND_ESCAPE
@@ -111,7 +111,7 @@ def descend_blind(v, pause):
     """One tick of a landing without a position: the sticks lean the vehicle."""
     ap = v.autopilot
     roll, pitch = 0.0, 0.0
-    if ap.params.LAND_REPOSITION != 0.0:
+    if ap.params.LAND.REPOSITION != 0.0:
         most = math.radians(ap.params.ANGLE_MAX * 0.01)
         roll, pitch = pilot.lean_angles(ap, most, most)
     sink(v, pause)
@@ -124,17 +124,17 @@ def sink(v, pause):
     """Descent of this tick: fast above LAND_ALT_LOW (height above home), then LAND_SPEED."""
     ap = v.autopilot
     p = ap.params
-    slow = abs(p.LAND_SPEED) * 0.01
-    low = max(p.LAND_ALT_LOW * 0.01, 1.0)
+    slow = abs(p.LAND.SPEED) * 0.01
+    low = max(p.LAND.ALT_LOW * 0.01, 1.0)
     height = float(ap.home.pos[2] - ap.estimate.pos[2])
     if pause != 0:
         altitude.land_at_rate_d(ap.control.pos_d, 0.0, False)
         return
-    fast = p.LAND_SPEED_HIGH * 0.01
+    fast = p.LAND.SPEED_HIGH * 0.01
     if fast <= 0.0:
         fast = float(ap.control.pos_d.speed_down)
     fast = max(fast, slow)
-    down = sqrt_controller(height - low, p.PSC_POSZ_P, float(ap.control.pos_d.accel_max), 0.0025)
+    down = sqrt_controller(height - low, p.PSC.POSZ_P, float(ap.control.pos_d.accel_max), 0.0025)
     rate = constrain(down, slow, fast)
     altitude.land_at_rate_d(ap.control.pos_d, rate, height < low or ap.arming.landed_maybe != 0)
 
@@ -143,9 +143,9 @@ def sink(v, pause):
 def stick_velocity(ap):
     """(north, east) [m/s] that the sticks ask for while landing; zero without LAND_REPOSITION."""
     sticks = ap.modes.pilot
-    if ap.params.LAND_REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
+    if ap.params.LAND.REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
         return Vec2(0.0, 0.0)
-    most = ap.params.WPNAV_ACCEL * 0.01 * _REPOSITION_ACCEL
+    most = ap.params.WPNAV.ACCEL * 0.01 * _REPOSITION_ACCEL
     forward, right = -float(sticks.pitch) * most, float(sticks.roll) * most
     size = math.sqrt(forward * forward + right * right)
     if size > most:

@@ -29,10 +29,10 @@ _SPEED_MIN = 0.2  # [m/s]
 def angle_max(ap):
     """Lean of a full stick [rad]: LOIT_ANG_MAX, or two thirds of the lean limit."""
     most = math.radians(ap.params.ANGLE_MAX * 0.01)
-    if ap.params.PSC_ANGLE_MAX > 0.0:
-        most = min(most, math.radians(ap.params.PSC_ANGLE_MAX))
-    if ap.params.LOIT_ANG_MAX > 0.0:
-        return min(math.radians(ap.params.LOIT_ANG_MAX), most)
+    if ap.params.PSC.ANGLE_MAX > 0.0:
+        most = min(most, math.radians(ap.params.PSC.ANGLE_MAX))
+    if ap.params.LOIT.ANG_MAX > 0.0:
+        return min(math.radians(ap.params.LOIT.ANG_MAX), most)
     return _LEAN_SHARE * most
 
 
@@ -62,7 +62,7 @@ def start(v):
 def set_limits(ap):
     """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
     p = ap.params
-    position.set_max_speed_accel_ne(ap, max(p.LOIT_SPEED * 0.01, _SPEED_MIN), p.LOIT_ACC_MAX * 0.01)
+    position.set_max_speed_accel_ne(ap, max(p.LOIT.SPEED * 0.01, _SPEED_MIN), p.LOIT.ACC_MAX * 0.01)
 
 
 @law
@@ -78,9 +78,9 @@ def read_sticks(v, roll, pitch):
     else:
         acc = position.lean_accel(roll, pitch, yaw)
         loiter.acc[0], loiter.acc[1] = acc.x, acc.y
-    tc = float(p.ATC_INPUT_TC)
+    tc = float(p.ATC.INPUT_TC)
     wanted = (roll, pitch)
-    limits = (p.ATC_ACCEL_R_MAX * _CDEG, p.ATC_ACCEL_P_MAX * _CDEG)
+    limits = (p.ATC.ACCEL_R_MAX * _CDEG, p.ATC.ACCEL_P_MAX * _CDEG)
     for k in range(2):
         error = wrap_pi(wanted[k] - loiter.predicted_euler[k])
         rate = shape_angle(error, loiter.predicted_rate[k], tc, limits[k], DT, 0.0, 0.0)
@@ -97,7 +97,7 @@ def advance(v):
     p = ap.params
     loiter = ap.modes.loiter
     ne = ap.control.pos_ne
-    most = max(p.LOIT_SPEED * 0.01, _SPEED_MIN)
+    most = max(p.LOIT.SPEED * 0.01, _SPEED_MIN)
     vn = ne.vel_desired[0] + loiter.predicted_acc[0] * DT
     ve = ne.vel_desired[1] + loiter.predicted_acc[1] * DT
     an, ae = float(loiter.acc[0]), float(loiter.acc[1])
@@ -107,10 +107,10 @@ def advance(v):
     if speed > 1e-9:
         drag = 9.80665 * math.tan(angle_max(ap)) * speed / most
         brake = 0.0
-        if v.time_us - loiter.brake_us > p.LOIT_BRK_DELAY * 1e6:
-            gain = 0.5 * p.PSC_VELXY_P
-            brake = constrain(sqrt_controller(speed, gain, p.LOIT_BRK_JERK * 0.01, DT), 0.0, p.LOIT_BRK_ACCEL * 0.01)
-        jerk = p.LOIT_BRK_JERK * 0.01 * DT
+        if v.time_us - loiter.brake_us > p.LOIT.BRK_DELAY * 1e6:
+            gain = 0.5 * p.PSC.VELXY.P
+            brake = constrain(sqrt_controller(speed, gain, p.LOIT.BRK_JERK * 0.01, DT), 0.0, p.LOIT.BRK_ACCEL * 0.01)
+        jerk = p.LOIT.BRK_JERK * 0.01 * DT
         loiter.brake_acc += constrain(brake - loiter.brake_acc, -jerk, jerk)
         slower = min(max(speed - (drag + loiter.brake_acc) * DT, 0.0), most)
         an -= vn / speed * loiter.brake_acc

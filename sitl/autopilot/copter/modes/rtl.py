@@ -33,7 +33,7 @@ def start(v, forced):
         return 1
     rtl = ap.modes.rtl
     waypoint.stop(ap)
-    speed = ap.params.RTL_SPEED * 0.01
+    speed = ap.params.RTL.SPEED * 0.01
     ap.modes.nav.speed_ne = speed if speed > 0.0 else 0.0
     ap.modes.nav.speed_up = 0.0
     ap.modes.nav.speed_down = 0.0
@@ -67,11 +67,11 @@ def build_path(v):
     rtl.return_d = home_d - return_height(
         height,
         math.hypot(ap.home.pos[0] - ap.estimate.pos[0], ap.home.pos[1] - ap.estimate.pos[1]),
-        p.RTL_ALT * 0.01,
-        p.RTL_CLIMB_MIN * 0.01,
-        p.RTL_CONE_SLOPE,
+        p.RTL.ALT * 0.01,
+        p.RTL.CLIMB_MIN * 0.01,
+        p.RTL.CONE_SLOPE,
     )
-    rtl.descent_d = home_d - p.RTL_ALT_FINAL * 0.01
+    rtl.descent_d = home_d - p.RTL.ALT_FINAL * 0.01
 
 
 @law
@@ -119,7 +119,7 @@ def run(v):
         if reached != 0:
             rtl.state = LOITER
             rtl.loiter_us = v.time_us
-    elif v.time_us - rtl.loiter_us >= ap.params.RTL_LOIT_TIME * 1000.0:
+    elif v.time_us - rtl.loiter_us >= ap.params.RTL.LOIT_TIME * 1000.0:
         begin_descent(v)
 
 
@@ -128,7 +128,7 @@ def begin_descent(v):
     """Over home: land, or go down to RTL_ALT_FINAL."""
     ap = v.autopilot
     rtl = ap.modes.rtl
-    if ap.params.RTL_ALT_FINAL > 0.0 and ap.modes.failsafe.radio == 0:
+    if ap.params.RTL.ALT_FINAL > 0.0 and ap.modes.failsafe.radio == 0:
         rtl.state = FINAL_DESCENT
         ground.set_waypoint_limits(v)
     else:

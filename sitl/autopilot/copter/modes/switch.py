@@ -21,7 +21,7 @@ def read_mode(v):
     p = v.autopilot.params
     now = moved_to(v, int(p.FLTMODE_CH))
     if now >= 0:
-        mode = chosen(now, p.FLTMODE1, p.FLTMODE2, p.FLTMODE3, p.FLTMODE4, p.FLTMODE5, p.FLTMODE6)
+        mode = chosen(now, p.FLTMODE[0], p.FLTMODE[1], p.FLTMODE[2], p.FLTMODE[3], p.FLTMODE[4], p.FLTMODE[5])
         request(v, mode, REASON_RC)
 
 
@@ -31,10 +31,10 @@ def read_rudder(v):
     ap = v.autopilot
     pilot = ap.modes.pilot
     wanted = 0
-    if ap.params.ARMING_RUDDER >= 1.0 and pilot.throttle <= 0.0 and ap.rc.receiver_ok != 0:
+    if ap.params.ARMING.RUDDER >= 1.0 and pilot.throttle <= 0.0 and ap.rc.receiver_ok != 0:
         if pilot.yaw > _FULL_STICK and ap.arming.armed == 0:
             wanted = 1
-        elif pilot.yaw < -_FULL_STICK and ap.arming.armed != 0 and ap.params.ARMING_RUDDER >= 2.0:
+        elif pilot.yaw < -_FULL_STICK and ap.arming.armed != 0 and ap.params.ARMING.RUDDER >= 2.0:
             wanted = -1
     if abs(pilot.yaw) < 0.5:
         pilot.rudder_done = 0

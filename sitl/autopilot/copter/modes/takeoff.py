@@ -67,8 +67,8 @@ def begin(v, target_d):
     takeoff = ap.modes.takeoff
     takeoff.target_d = target_d
     takeoff.complete = 0
-    takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP_NAVALT_MIN
-    takeoff.no_nav_active = 1 if ap.params.WP_NAVALT_MIN > 0.0 and ap.arming.landed != 0 else 0
+    takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP.NAVALT_MIN
+    takeoff.no_nav_active = 1 if ap.params.WP.NAVALT_MIN > 0.0 and ap.arming.landed != 0 else 0
     ground.set_waypoint_limits(v)
     altitude.init_d(ap)
     position.init_ne(ap)
@@ -82,7 +82,7 @@ def run(v):
     motors = ap.control.motors
     if ap.arming.armed == 0 or ap.arming.auto_armed == 0:
         ground.handle(v)
-        takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP_NAVALT_MIN
+        takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP.NAVALT_MIN
         return
     motors.desired_spool = ground.UNLIMITED
     if motors.spool_state != ground.IS_UNLIMITED:
@@ -125,7 +125,7 @@ def level(v):
 @law
 def ramp(ap):
     """Raise the throttle by one tick of TKOFF_SLEW_TIME, the vertical controller following. Returns it."""
-    slew = max(float(ap.params.TKOFF_SLEW_TIME), 0.1)
+    slew = max(float(ap.params.TKOFF.SLEW_TIME), 0.1)
     throttle = constrain(ap.control.attitude.throttle_in + 0.0025 / slew, 0.0, 1.0)
     throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
     altitude.init_d(ap)
@@ -135,7 +135,7 @@ def ramp(ap):
 @law
 def has_thrust(ap, throttle):
     """Nearly full throttle, or accelerating upward with half of the acceleration limit."""
-    most = min(float(ap.params.TKOFF_THR_MAX), 0.9)
+    most = min(float(ap.params.TKOFF.THR_MAX), 0.9)
     return throttle >= most or -ap.estimate.acc_ned[2] >= 0.5 * ap.control.pos_d.accel_max
 
 

@@ -32,10 +32,10 @@ def start(ap):
         nav.circle_angle = ap.estimate.euler[2] - math.pi  # at the centre: back out, looking ahead
     nav.circle_total = 0.0
     nav.circle_rate = 0.0
-    wanted = abs(math.radians(ap.params.CIRCLE_RATE))
+    wanted = abs(math.radians(ap.params.CIRCLE.RATE))
     radius = abs(nav.circle_radius)
     if radius > 0.0:
-        acceleration = CM * ap.params.WPNAV_ACCEL
+        acceleration = CM * ap.params.WPNAV.ACCEL
         top = min(speed_ne(ap), math.sqrt(0.5 * acceleration * radius)) / radius
         wanted = min(wanted, top)
         nav.circle_acc = max(acceleration / radius, SLOWEST_ACCELERATION)

@@ -23,12 +23,12 @@ def jerk_limits(params: Any) -> tuple[float, float]:
     time constant (ATC_INPUT_TC) and acceleration (ATC_ACCEL_*_MAX) limit snap, half of which is used. Jerk
     that follows half a cosine needs pi/2 of jerk/snap to rise; the same time is taken here.
     """
-    jerk = max(float(params.WPNAV_JERK), 0.1)
-    lean_rate = math.radians(min(float(params.ATC_RATE_R_MAX), float(params.ATC_RATE_P_MAX)))
+    jerk = max(float(params.WPNAV.JERK), 0.1)
+    lean_rate = math.radians(min(float(params.ATC.RATE_R_MAX), float(params.ATC.RATE_P_MAX)))
     if lean_rate > 0.0:
         jerk = min(jerk, lean_rate * GRAVITY)
-    snap = 0.5 * math.pi * jerk / max(float(params.ATC_INPUT_TC), 0.1)
-    lean_acceleration = math.radians(0.01 * min(float(params.ATC_ACCEL_R_MAX), float(params.ATC_ACCEL_P_MAX)))
+    snap = 0.5 * math.pi * jerk / max(float(params.ATC.INPUT_TC), 0.1)
+    lean_acceleration = math.radians(0.01 * min(float(params.ATC.ACCEL_R_MAX), float(params.ATC.ACCEL_P_MAX)))
     if lean_acceleration > 0.0:
         snap = min(snap, lean_acceleration * GRAVITY)
     return jerk, 0.5 * math.pi * jerk / (0.5 * snap)
@@ -41,8 +41,8 @@ class CopterPlanner(Planner):
 
     def limits(self, ap: Any, direction: Point) -> Limits:
         """Speed and acceleration of whichever axis is used up first."""
-        vertical = max(waypoint.CM * float(ap.params.WPNAV_ACCEL_Z), 0.1)
-        horizontal = max(waypoint.CM * float(ap.params.WPNAV_ACCEL), 0.1)
+        vertical = max(waypoint.CM * float(ap.params.WPNAV.ACCEL_Z), 0.1)
+        horizontal = max(waypoint.CM * float(ap.params.WPNAV.ACCEL), 0.1)
         jerk, rise = jerk_limits(ap.params)
         return Limits(
             axis_limits(direction, waypoint.speed_ne(ap), waypoint.speed_up(ap), waypoint.speed_down(ap)),

@@ -30,28 +30,28 @@ CM = 0.01
 def speed_ne(ap):
     """Horizontal speed limit along legs [m/s]."""
     nav = ap.modes.nav
-    return nav.speed_ne if nav.speed_ne > 0.0 else max(CM * ap.params.WPNAV_SPEED, 0.1)
+    return nav.speed_ne if nav.speed_ne > 0.0 else max(CM * ap.params.WPNAV.SPEED, 0.1)
 
 
 @law
 def speed_up(ap):
     """Climb speed limit along legs [m/s]."""
     nav = ap.modes.nav
-    return nav.speed_up if nav.speed_up > 0.0 else max(CM * ap.params.WPNAV_SPEED_UP, 0.1)
+    return nav.speed_up if nav.speed_up > 0.0 else max(CM * ap.params.WPNAV.SPEED_UP, 0.1)
 
 
 @law
 def speed_down(ap):
     """Descent speed limit along legs [m/s]."""
     nav = ap.modes.nav
-    return nav.speed_down if nav.speed_down > 0.0 else max(CM * ap.params.WPNAV_SPEED_DN, 0.1)
+    return nav.speed_down if nav.speed_down > 0.0 else max(CM * ap.params.WPNAV.SPEED_DN, 0.1)
 
 
 @law
 def set_limits(ap):
     """Give the position controllers the limits of legs."""
-    set_max_speed_accel_ne(ap, speed_ne(ap), CM * ap.params.WPNAV_ACCEL)
-    set_max_speed_accel_d(ap, speed_down(ap), speed_up(ap), CM * ap.params.WPNAV_ACCEL_Z)
+    set_max_speed_accel_ne(ap, speed_ne(ap), CM * ap.params.WPNAV.ACCEL)
+    set_max_speed_accel_d(ap, speed_down(ap), speed_up(ap), CM * ap.params.WPNAV.ACCEL_Z)
 
 
 @law
@@ -86,7 +86,7 @@ def stop(ap):
 @law
 def corner_accel(ap):
     """Acceleration that corners may need [m/s^2]."""
-    return CM * (ap.params.WPNAV_ACCEL_C if ap.params.WPNAV_ACCEL_C > 0.0 else 2.0 * ap.params.WPNAV_ACCEL)
+    return CM * (ap.params.WPNAV.ACCEL_C if ap.params.WPNAV.ACCEL_C > 0.0 else 2.0 * ap.params.WPNAV.ACCEL)
 
 
 @law
@@ -96,9 +96,9 @@ def advance(ap, time_us):
     if nav.request_pending != 0 or nav.current.segments < 1:
         return 0
     nav.active_us = time_us
-    path.scale_time(ap, ap.params.PSC_POSXY_P, CM * ap.params.WPNAV_ACCEL / max(ap.params.WPNAV_JERK, 0.1), DT)
+    path.scale_time(ap, ap.params.PSC.POSXY_P, CM * ap.params.WPNAV.ACCEL / max(ap.params.WPNAV.JERK, 0.1), DT)
     _scale_pause(ap)
-    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * ap.params.WPNAV_RADIUS, corner_accel(ap))
+    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * ap.params.WPNAV.RADIUS, corner_accel(ap))
     for k in range(3):
         nav.acc[k] = nav.acc[k] * nav.pause_scale * nav.pause_scale + nav.vel[k] * nav.pause_rate
         nav.vel[k] = nav.vel[k] * nav.pause_scale
@@ -122,8 +122,8 @@ def _scale_pause(ap):
     if error == 0.0 and nav.pause_rate == 0.0:
         return
     top = speed_ne(ap)
-    rate = CM * ap.params.WPNAV_ACCEL / top
-    change = max(ap.params.PSC_JERK_XY, 0.1) / top * DT
+    rate = CM * ap.params.WPNAV.ACCEL / top
+    change = max(ap.params.PSC.JERK_XY, 0.1) / top * DT
     aim = min(rate, math.sqrt(2.0 * change / DT * abs(error)))
     aim = aim if error > 0.0 else -aim
     nav.pause_rate += min(max(aim - nav.pause_rate, -change), change)
@@ -141,5 +141,5 @@ def _near_end(ap):
     for k in range(3):
         x = nav.current.origin[k] + nav.current.unit[k] * nav.current.length - ap.estimate.pos[k]
         away += x * x
-    radius = CM * ap.params.WPNAV_RADIUS
+    radius = CM * ap.params.WPNAV.RADIUS
     return 1 if away <= radius * radius else 0

@@ -1,2 +1,83 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parameters that only the copter has, or that mean something else there; one file a group."""
+"""The copter's parameters, with ArduPilot's names, defaults and order."""
+
+from __future__ import annotations
+
+from ....core.records import Floats, Records
+from ...params import parameters as shared
+from ...params.estimator import Ekf3
+from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
+from ...params.radio import RcChannel, RcMap
+from ...params.system import Arming, Log, Mavlink, Mission, StreamRates
+from ...params.table import Table
+from .control import Attitude, Motors, Position
+from .flight import Circle, Guided, Land, Legs, Loiter, Pilot, Rtl, TakeOff, Waypoints
+from .safety import Battery, Failsafes, Simulated
+
+
+class Frame(ParameterGroup):
+    """FRAME_: arrangement of the motors."""
+
+    TYPE: float = param(1, 0, 18, "", "0: plus, 1: X", INT8)
+    CLASS: float = param(0, 0, 18, "", "1: quad; 0: not chosen yet", INT8)
+
+
+class Parameters(shared.Parameters):
+    """The copter's parameters, in the order of the wire."""
+
+    ANGLE_MAX: float = param(3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16)
+    ARMING: Arming
+    ATC: Attitude
+    AUTO_OPTIONS: float = param(
+        0,
+        0,
+        255,
+        "",
+        "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
+        INT32,
+    )
+    BATT: Battery
+    CIRCLE: Circle
+    DISARM_DELAY: float = param(
+        10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8
+    )
+    EK3: Ekf3
+    FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
+    FLTMODE_CH: float = param(5, 0, 8, "", "Channel that selects the mode; 0 none", INT8)
+    FRAME: Frame
+    FS: Failsafes
+    GPS1_DELAY_MS: float
+    GUID: Guided
+    INITIAL_MODE: float
+    LAND: Land
+    LOG: Log
+    LOIT: Loiter
+    MAV: Mavlink
+    MAV1: StreamRates
+    MIS: Mission
+    MOT: Motors
+    PILOT: Pilot
+    PSC: Position
+    RC: Records[RcChannel]
+    RC_OVERRIDE_TIME: float
+    RC_FS_TIMEOUT: float = param(1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost")
+    RCMAP: RcMap
+    RTL: Rtl
+    SCHED_LOOP_RATE: float = param(
+        400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
+    )
+    SIM: Simulated
+    THR_DZ: float = param(
+        100,
+        0,
+        300,
+        "us",
+        "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
+        INT16,
+    )
+    TKOFF: TakeOff
+    WP: Waypoints
+    WPNAV: Legs
+
+
+TABLE = Table(Parameters)

@@ -14,4 +14,4 @@ def init(ap):
     """Limits of the position controller to sane starts; harmless when called again."""
     if ap.control.position.speed_max <= 0.0:
         accel = decel_max(ap)
-        position.set_limits(ap, float(ap.params.CRUISE_SPEED), accel, lat_accel_max(ap), accel)
+        position.set_limits(ap, float(ap.params.CRUISE.SPEED), accel, lat_accel_max(ap), accel)

@@ -27,13 +27,13 @@ def is_skid(ap):
 @law
 def throttle_max(ap):
     """Throttle limit 0.05 .. 1 (MOT_THR_MAX)."""
-    return constrain(float(ap.params.MOT_THR_MAX), 5.0, 100.0) * 0.01
+    return constrain(float(ap.params.MOT.THR_MAX), 5.0, 100.0) * 0.01
 
 
 @law
 def throttle_min(ap):
     """Throttle at which the motors begin to turn, 0 .. 0.2 (MOT_THR_MIN)."""
-    return constrain(float(ap.params.MOT_THR_MIN) * 0.01, 0.0, min(0.2, throttle_max(ap)))
+    return constrain(float(ap.params.MOT.THR_MIN) * 0.01, 0.0, min(0.2, throttle_max(ap)))
 
 
 @law
@@ -62,7 +62,7 @@ def set_throttle(ap, throttle):
 @law
 def slew_limited(ap, throttle):
     """``throttle`` as near as MOT_SLEWRATE lets this period come."""
-    rate = float(ap.params.MOT_SLEWRATE) * 0.01
+    rate = float(ap.params.MOT.SLEWRATE) * 0.01
     if rate <= 0.0:
         return throttle
     last = float(ap.control.motors.throttle_last)
@@ -108,10 +108,10 @@ def _slew(ap):
 def _direction_delayed(ap, motor, value):
     """``value``, or 0 for MOT_REV_DELAY after the last output in the other direction."""
     m = ap.control.motors
-    if ap.params.MOT_REV_DELAY <= 0.0 or value == 0.0:
+    if ap.params.MOT.REV_DELAY <= 0.0 or value == 0.0:
         return value
     now = now_tick(ap)
-    if value * float(m.direction[motor]) < 0.0 and (now - int(m.direction_tick[motor])) * DT < ap.params.MOT_REV_DELAY:
+    if value * float(m.direction[motor]) < 0.0 and (now - int(m.direction_tick[motor])) * DT < ap.params.MOT.REV_DELAY:
         return 0.0
     m.direction[motor] = value
     m.direction_tick[motor] = now
@@ -120,7 +120,7 @@ def _direction_delayed(ap, motor, value):
 
 @law
 def _motor_output(ap, motor, throttle):
-    curved = mixer.thrust_curve(throttle, throttle_min(ap), float(ap.params.MOT_THST_EXPO))
+    curved = mixer.thrust_curve(throttle, throttle_min(ap), float(ap.params.MOT.THST_EXPO))
     return constrain(_direction_delayed(ap, motor, curved), -1.0, 1.0)
 
 
@@ -134,7 +134,7 @@ def _car(ap, armed):
     m = ap.control.motors
     steering, throttle = float(m.steering), float(m.throttle)
     speed = float(ap.control.speed.forward) if ap.control.speed.forward_ok != 0 else 0.0
-    base = float(ap.params.MOT_SPD_SCA_BASE)
+    base = float(ap.params.MOT.SPD_SCA_BASE)
     if armed and m.scale_steering != 0:
         if 0.0 < base < abs(speed):
             steering *= base / abs(speed)
@@ -164,7 +164,7 @@ def _skid(ap, armed):
     m.out_left = 0.0
     m.out_right = 0.0
     if armed:
-        left, right = mixer.skid(m, steering, throttle, float(p.MOT_STR_THR_MIX), float(p.MOT_THST_ASYM))
+        left, right = mixer.skid(m, steering, throttle, float(p.MOT.STR_THR_MIX), float(p.MOT.THST_ASYM))
         m.out_left = _motor_output(ap, 1, left)
         m.out_right = _motor_output(ap, 2, right)
 
@@ -175,7 +175,7 @@ def _test(ap):
     m = ap.control.motors
     motor = int(m.test_motor)
     value = constrain(float(m.test_value), -1.0, 1.0)
-    curved = mixer.thrust_curve(value, throttle_min(ap), float(ap.params.MOT_THST_EXPO))
+    curved = mixer.thrust_curve(value, throttle_min(ap), float(ap.params.MOT.THST_EXPO))
     m.out_throttle = curved if motor == TEST_THROTTLE else 0.0
     m.out_steering = value if motor == TEST_STEERING else 0.0
     m.out_left = curved if motor == TEST_LEFT else 0.0

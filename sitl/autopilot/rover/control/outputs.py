@@ -40,7 +40,7 @@ def _function_pulse(ap, output, function):
         value = float(m.out_right)
     else:
         return 0
-    if ap.arming.armed == 0 and ap.params.MOT_SAFE_DISARM != 0.0:
+    if ap.arming.armed == 0 and ap.params.MOT.SAFE_DISARM != 0.0:
         return 0
     return servos.pulse(ap, output, value)
 

@@ -143,7 +143,7 @@ def _follow_reset(ap):
 def _position_loop(ap):
     """Velocity (north, east) that takes the position error away; a target too far ahead waits."""
     c = ap.control.position
-    kp = float(ap.params.PSC_POS_P)
+    kp = float(ap.params.PSC.POS_P)
     accel = min(float(c.accel_max), float(c.lat_accel_max))
     if c.jerk_max > 0.0 and kp > 0.0:
         accel = min(accel, float(c.jerk_max) / kp)
@@ -164,8 +164,8 @@ def _velocity_loop(ap):
     """Acceleration (north, east) [m/s^2] that the velocity PID asks for."""
     c = ap.control.position
     p = ap.params
-    kp, ki, kd, kff = float(p.PSC_VEL_P), float(p.PSC_VEL_I), float(p.PSC_VEL_D), float(p.PSC_VEL_FF)
-    gain_e, gain_d = lowpass_gain(float(p.PSC_VEL_FLTE), DT), lowpass_gain(float(p.PSC_VEL_FLTD), DT)
+    kp, ki, kd, kff = float(p.PSC.VEL.P), float(p.PSC.VEL.I), float(p.PSC.VEL.D), float(p.PSC.VEL.FF)
+    gain_e, gain_d = lowpass_gain(float(p.PSC.VEL.FLTE), DT), lowpass_gain(float(p.PSC.VEL.FLTD), DT)
     for k in range(2):
         error = float(c.vel_target[k]) - float(ap.estimate.vel[k])
         if c.started == 0:
@@ -178,7 +178,7 @@ def _velocity_loop(ap):
     c.started = 1
     i_n = float(c.vel_integrator[0]) + float(c.vel_error[0]) * ki * DT
     i_e = float(c.vel_integrator[1]) + float(c.vel_error[1]) * ki * DT
-    integrator = limit_length(Vec2(i_n, i_e), p.PSC_VEL_IMAX)
+    integrator = limit_length(Vec2(i_n, i_e), p.PSC.VEL.IMAX)
     i_n, i_e = integrator.x, integrator.y
     if ki == 0.0:
         i_n, i_e = 0.0, 0.0

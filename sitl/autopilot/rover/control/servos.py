@@ -19,13 +19,13 @@ def function(ap, output):
     """SERVOn_FUNCTION of output 0 .. 3; 0 of the others."""
     p = ap.params
     if output == 0:
-        return int(p.SERVO1_FUNCTION)
+        return int(p.SERVO[0].FUNCTION)
     if output == 1:
-        return int(p.SERVO2_FUNCTION)
+        return int(p.SERVO[1].FUNCTION)
     if output == 2:
-        return int(p.SERVO3_FUNCTION)
+        return int(p.SERVO[2].FUNCTION)
     if output == 3:
-        return int(p.SERVO4_FUNCTION)
+        return int(p.SERVO[3].FUNCTION)
     return NONE
 
 
@@ -34,12 +34,12 @@ def travel(ap, output):
     """(MIN, TRIM, MAX) [us] and REVERSED of output 0 .. 3."""
     p = ap.params
     if output == 0:
-        return (float(p.SERVO1_MIN), float(p.SERVO1_TRIM), float(p.SERVO1_MAX), float(p.SERVO1_REVERSED))
+        return (float(p.SERVO[0].MIN), float(p.SERVO[0].TRIM), float(p.SERVO[0].MAX), float(p.SERVO[0].REVERSED))
     if output == 1:
-        return (float(p.SERVO2_MIN), float(p.SERVO2_TRIM), float(p.SERVO2_MAX), float(p.SERVO2_REVERSED))
+        return (float(p.SERVO[1].MIN), float(p.SERVO[1].TRIM), float(p.SERVO[1].MAX), float(p.SERVO[1].REVERSED))
     if output == 2:
-        return (float(p.SERVO3_MIN), float(p.SERVO3_TRIM), float(p.SERVO3_MAX), float(p.SERVO3_REVERSED))
-    return (float(p.SERVO4_MIN), float(p.SERVO4_TRIM), float(p.SERVO4_MAX), float(p.SERVO4_REVERSED))
+        return (float(p.SERVO[2].MIN), float(p.SERVO[2].TRIM), float(p.SERVO[2].MAX), float(p.SERVO[2].REVERSED))
+    return (float(p.SERVO[3].MIN), float(p.SERVO[3].TRIM), float(p.SERVO[3].MAX), float(p.SERVO[3].REVERSED))
 
 
 @law
@@ -47,10 +47,10 @@ def is_assigned(ap, number):
     """Whether some output has this function."""
     p = ap.params
     return (
-        int(p.SERVO1_FUNCTION) == number
-        or int(p.SERVO2_FUNCTION) == number
-        or int(p.SERVO3_FUNCTION) == number
-        or int(p.SERVO4_FUNCTION) == number
+        int(p.SERVO[0].FUNCTION) == number
+        or int(p.SERVO[1].FUNCTION) == number
+        or int(p.SERVO[2].FUNCTION) == number
+        or int(p.SERVO[3].FUNCTION) == number
     )
 
 

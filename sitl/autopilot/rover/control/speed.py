@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
-from ...control.pid import PidGains, reset_filter, update_pid
+from ...control.pid import pid_gains, reset_filter, update_pid
 from . import motors
 from .forward_speed import forward_speed
 from .recent import now_tick, recent
@@ -37,19 +37,19 @@ def desired_speed(ap):
 @law
 def decel_max(ap):
     """Fastest deceleration of the desired speed [m/s^2]; 0: no limit."""
-    if ap.params.ATC_DECEL_MAX > 0.0:
-        return float(ap.params.ATC_DECEL_MAX)
-    return float(ap.params.ATC_ACCEL_MAX)
+    if ap.params.ATC.DECEL_MAX > 0.0:
+        return float(ap.params.ATC.DECEL_MAX)
+    return float(ap.params.ATC.ACCEL_MAX)
 
 
 @law
 def desired_speed_accel_limited(ap, desired):
     """``desired`` [m/s] as near as the acceleration limits let this period come; itself while the loop rests."""
     s = ap.control.speed
-    if not is_active(ap) or ap.params.ATC_ACCEL_MAX <= 0.0:
+    if not is_active(ap) or ap.params.ATC.ACCEL_MAX <= 0.0:
         return desired
     last = float(s.desired)
-    most = (decel_max(ap) if abs(desired) < abs(last) else float(ap.params.ATC_ACCEL_MAX)) * DT
+    most = (decel_max(ap) if abs(desired) < abs(last) else float(ap.params.ATC.ACCEL_MAX)) * DT
     return constrain(desired, last - most, last + most)
 
 
@@ -65,8 +65,8 @@ def stopping_distance(ap, speed):
 @law
 def speed_max(ap):
     """Speed at full throttle [m/s]: SPEED_MAX, else extrapolated from CRUISE_SPEED; at most 30."""
-    cruise = float(ap.params.CRUISE_SPEED)
-    throttle = float(ap.params.CRUISE_THROTTLE) * 0.01
+    cruise = float(ap.params.CRUISE.SPEED)
+    throttle = float(ap.params.CRUISE.THROTTLE) * 0.01
     most = cruise
     if 0.05 <= throttle <= 1.0:
         most = float(ap.params.SPEED_MAX) if ap.params.SPEED_MAX > 0.0 else cruise / throttle
@@ -76,10 +76,10 @@ def speed_max(ap):
 @law
 def cruise_throttle(ap, speed):
     """Throttle -1 .. 1 that ``speed`` [m/s] needs by CRUISE_SPEED and CRUISE_THROTTLE."""
-    cruise = float(ap.params.CRUISE_SPEED)
+    cruise = float(ap.params.CRUISE.SPEED)
     if cruise <= 0.0:
         return 0.0
-    return speed * float(ap.params.CRUISE_THROTTLE) * 0.01 / cruise
+    return speed * float(ap.params.CRUISE.THROTTLE) * 0.01 / cruise
 
 
 @law
@@ -100,14 +100,12 @@ def throttle_for_speed(v, desired):
     s.desired = desired_speed_accel_limited(ap, desired if finite(desired) else 0.0)
 
     saturated = m.limit_lower != 0 or m.limit_upper != 0 or s.limit_low != 0 or s.limit_high != 0
-    gains = PidGains(
-        p.ATC_SPEED_P, p.ATC_SPEED_I, p.ATC_SPEED_D, p.ATC_SPEED_FF, p.ATC_SPEED_D_FF,
-        p.ATC_SPEED_IMAX, p.ATC_SPEED_PDMX, p.ATC_SPEED_FLTT, p.ATC_SPEED_FLTE, p.ATC_SPEED_FLTD,
-    )  # fmt: skip
-    throttle = cruise_throttle(ap, s.desired) + update_pid(s.loop, s.desired, speed, DT, saturated, gains)
+    throttle = cruise_throttle(ap, s.desired) + update_pid(
+        s.loop, s.desired, speed, DT, saturated, pid_gains(p.ATC.SPEED)
+    )
     s.limit_low = 0
     s.limit_high = 0
-    if p.ATC_BRAKE == 0.0:
+    if p.ATC.BRAKE == 0.0:
         if s.desired >= 0.0 and throttle <= 0.0:
             throttle = 0.0
             s.limit_low = 1
@@ -125,7 +123,7 @@ def throttle_for_stop(v):
     stands = recent(ap, int(s.stop_tick), _STANDS)
     limited = desired_speed_accel_limited(ap, 0.0)
     ok, speed = forward_speed(v)
-    if ok == 0 or (limited == 0.0 and abs(speed) <= abs(float(ap.params.ATC_STOP_SPEED))):
+    if ok == 0 or (limited == 0.0 and abs(speed) <= abs(float(ap.params.ATC.STOP_SPEED))):
         stands = True
     if stands:
         s.stop_tick = now_tick(ap)

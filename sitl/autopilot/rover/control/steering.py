@@ -11,7 +11,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
-from ...control.pid import PidGains, reset_filter, update_pid
+from ...control.pid import pid_gains, reset_filter, update_pid
 from .forward_speed import yaw_rate
 from .recent import now_tick, recent
 from .state import DT, GRAVITY
@@ -24,7 +24,7 @@ _LEAST_RATE = math.radians(1.0)
 @law
 def lat_accel_max(ap):
     """Lateral acceleration that turns may need [m/s^2] (ATC_TURN_MAX_G)."""
-    return max(float(ap.params.ATC_TURN_MAX_G), 0.1) * GRAVITY
+    return max(float(ap.params.ATC.TURN_MAX_G), 0.1) * GRAVITY
 
 
 @law
@@ -45,9 +45,9 @@ def lat_accel(ap, turn_rate, speed):
 @law
 def decel_max(ap):
     """Fastest decay of the desired turn rate [rad/s^2]; 0: no limit (ATC_STR_DEC_MAX, else ATC_STR_ACC_MAX)."""
-    if ap.params.ATC_STR_DEC_MAX > 0.0:
-        return math.radians(float(ap.params.ATC_STR_DEC_MAX))
-    return math.radians(float(ap.params.ATC_STR_ACC_MAX))
+    if ap.params.ATC.STR_DEC_MAX > 0.0:
+        return math.radians(float(ap.params.ATC.STR_DEC_MAX))
+    return math.radians(float(ap.params.ATC.STR_ACC_MAX))
 
 
 @law
@@ -83,7 +83,7 @@ def _limited(s, rate, low, high):
 def _limited_acceleration(ap, rate):
     s = ap.control.steering
     last = float(s.turn_rate)
-    grow = math.radians(float(ap.params.ATC_STR_ACC_MAX))
+    grow = math.radians(float(ap.params.ATC.STR_ACC_MAX))
     slowing = rate * last < 0.0 or abs(rate) < abs(last)
     most = decel_max(ap) if slowing else grow
     if most <= 0.0:
@@ -108,7 +108,7 @@ def out_from_rate(ap, turn_rate):
 
     rate = turn_rate if finite(turn_rate) else 0.0
     rate = _limited_acceleration(ap, rate)
-    most = math.radians(float(p.ATC_STR_RAT_MAX))
+    most = math.radians(float(p.ATC.STR_RAT_MAX))
     if most > 0.0:
         rate = _limited(s, rate, -most, most)
     if ap.control.speed.forward_ok != 0:
@@ -117,18 +117,16 @@ def out_from_rate(ap, turn_rate):
         rate = _limited(s, rate, -most, most)
     s.turn_rate = rate
 
-    gains = PidGains(
-        p.ATC_STR_RAT_P, p.ATC_STR_RAT_I, p.ATC_STR_RAT_D, p.ATC_STR_RAT_FF, p.ATC_STR_RAT_D_FF,
-        p.ATC_STR_RAT_IMAX, p.ATC_STR_RAT_PDMX, p.ATC_STR_RAT_FLTT, p.ATC_STR_RAT_FLTE, p.ATC_STR_RAT_FLTD,
-    )  # fmt: skip
-    return update_pid(s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0, gains)
+    return update_pid(
+        s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0, pid_gains(p.ATC.STR_RAT)
+    )
 
 
 @law
 def turn_rate_from_heading(ap, heading, rate_max):
     """Turn rate [rad/s] towards ``heading`` [rad], able to stop there; ``rate_max`` [rad/s], 0 for none."""
     error = wrap_pi(heading - float(ap.estimate.euler[2]))
-    rate = error * float(ap.params.ATC_STR_ANG_P)
+    rate = error * float(ap.params.ATC.STR_ANG_P)
     if rate_max > 0.0:
         rate = constrain(rate, -rate_max, rate_max)
     decel = decel_max(ap)

@@ -87,7 +87,7 @@ def begin_heading(v):
     ap = v.autopilot
     nav = ap.modes.nav
     auto = ap.modes.auto
-    most = float(ap.params.WP_SPEED)
+    most = float(ap.params.WP.SPEED)
     auto.heading = wrap_pi(float(nav.heading))
     auto.speed = constrain(float(nav.heading_speed), -most, most)
     auto.heading_reached = 0
@@ -179,7 +179,7 @@ def is_guided_done(v):
     nav = ap.modes.nav
     north = float(nav.target[0]) - float(ap.estimate.pos[0])
     east = float(nav.target[1]) - float(ap.estimate.pos[1])
-    if nav.has_place != 0 and math.sqrt(north * north + east * east) <= ap.params.WP_RADIUS:
+    if nav.has_place != 0 and math.sqrt(north * north + east * east) <= ap.params.WP.RADIUS:
         return True
     return guided_drive.is_at_limit(v)
 
@@ -189,7 +189,7 @@ def finish(v):
     """The mission is complete: MIS_DONE_BEHAVE; what cannot be entered becomes a stop."""
     ap = v.autopilot
     auto = ap.modes.auto
-    wanted = ap.params.MIS_DONE_BEHAVE
+    wanted = ap.params.MIS.DONE_BEHAVE
     auto.complete = 1
     auto.submode = doing.STOP
     if wanted == LOITER_WHEN_DONE:

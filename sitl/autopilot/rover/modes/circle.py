@@ -60,17 +60,17 @@ def set_speed(v, wanted):
 def acceleration(ap):
     """Of the target along its way [m/s^2] (WP_ACCEL within ATC_ACCEL_MAX and ATC_DECEL_MAX)."""
     p = ap.params
-    most = min(float(p.ATC_ACCEL_MAX), speed.decel_max(ap))
+    most = min(float(p.ATC.ACCEL_MAX), speed.decel_max(ap))
     if most <= 0.0:
         most = DEFAULT_ACCEL
-    return min(most, float(p.WP_ACCEL)) if p.WP_ACCEL > 0.0 else most
+    return min(most, float(p.WP.ACCEL)) if p.WP.ACCEL > 0.0 else most
 
 
 @law
 def set_limits(ap):
     """Limits of the position controller for this circle."""
     accel = acceleration(ap)
-    jerk = float(ap.params.WP_JERK) if ap.params.WP_JERK > 0.0 else accel
+    jerk = float(ap.params.WP.JERK) if ap.params.WP.JERK > 0.0 else accel
     position.set_limits(ap, float(ap.modes.circle.speed), accel, lat_accel_max(ap), jerk)
 
 
@@ -84,7 +84,7 @@ def begin(v, n, e, radius, direction, angle):
     circle.centre[0], circle.centre[1] = n, e
     set_radius(v, radius)
     circle.direction = direction
-    set_speed(v, float(ap.params.CIRC_SPEED) if ap.params.CIRC_SPEED > 0.0 else float(ap.params.WP_SPEED))
+    set_speed(v, float(ap.params.CIRC.SPEED) if ap.params.CIRC.SPEED > 0.0 else float(ap.params.WP.SPEED))
     circle.angle = angle
     circle.target_speed = 0.0
     circle.total = 0.0
@@ -100,9 +100,9 @@ def begin(v, n, e, radius, direction, angle):
 def start(v):
     """Enter: around where the vehicle is, beginning ahead of its nose."""
     ap = v.autopilot
-    direction = -1.0 if ap.params.CIRC_DIR == 1.0 else 1.0
+    direction = -1.0 if ap.params.CIRC.DIR == 1.0 else 1.0
     n, e = float(ap.estimate.pos[0]), float(ap.estimate.pos[1])
-    return begin(v, n, e, float(ap.params.CIRC_RADIUS), direction, float(ap.estimate.euler[2]))
+    return begin(v, n, e, float(ap.params.CIRC.RADIUS), direction, float(ap.estimate.euler[2]))
 
 
 @law

@@ -52,7 +52,7 @@ def pilots_speed(ap, backward):
 
     ``backward``: the vehicle drives backwards on purpose.
     """
-    throttle = ap.params.CRUISE_THROTTLE
+    throttle = ap.params.CRUISE.THROTTLE
     if throttle < LEAST_CRUISE_THROTTLE or throttle > MOST_CRUISE_THROTTLE:
         return 0.0
     _, stick = pilot.steering_and_throttle(ap)

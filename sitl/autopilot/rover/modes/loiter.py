@@ -37,11 +37,11 @@ def aim(v):
     ap = v.autopilot
     p = ap.params
     loiter = ap.modes.loiter
-    wanted = min((loiter.distance - p.LOIT_RADIUS) * p.LOIT_SPEED_GAIN, float(p.WP_SPEED))
+    wanted = min((loiter.distance - p.LOIT.RADIUS) * p.LOIT.SPEED_GAIN, float(p.WP.SPEED))
     heading = math.atan2(loiter.place[1] - ap.estimate.pos[1], loiter.place[0] - ap.estimate.pos[0])
     error = wrap_pi(heading - float(ap.estimate.euler[2]))
     behind = abs(error) > 0.5 * math.pi
-    if p.LOIT_TYPE == BACKWARDS or (behind and p.LOIT_TYPE == EITHER_WAY):
+    if p.LOIT.TYPE == BACKWARDS or (behind and p.LOIT.TYPE == EITHER_WAY):
         heading = wrap_pi(heading + math.pi)
         error = wrap_pi(heading - float(ap.estimate.euler[2]))
         wanted = -wanted
@@ -58,7 +58,7 @@ def run(v):
     north = float(loiter.place[0]) - float(ap.estimate.pos[0])
     east = float(loiter.place[1]) - float(ap.estimate.pos[1])
     loiter.distance = math.sqrt(north * north + east * east)
-    if loiter.distance <= ap.params.LOIT_RADIUS:
+    if loiter.distance <= ap.params.LOIT.RADIUS:
         loiter.speed = speed.desired_speed_accel_limited(ap, 0.0)
     else:
         aim(v)

@@ -17,9 +17,9 @@ def run(v):
     """One period."""
     ap = v.autopilot
     steering, throttle = pilot.steering_and_limited_throttle(ap)
-    steering = expo(steering, ap.params.MANUAL_STR_EXPO)
+    steering = expo(steering, ap.params.MANUAL.STR_EXPO)
     motors.set_throttle(ap, throttle)
-    if (int(ap.params.MANUAL_OPTIONS) & _SCALED) != 0:
+    if (int(ap.params.MANUAL.OPTIONS) & _SCALED) != 0:
         motors.set_steering(ap, steering)
     else:
         motors.set_steering_unscaled(ap, steering)

@@ -37,7 +37,7 @@ def skip_near(ap):
     """Leave out last points where the vehicle is already (WP_RADIUS): a car would have to circle to meet them."""
     there, n, e = smart_rtl_path.peek(ap)
     at_n, at_e = waypoint.stopping_point(ap)
-    while there != 0 and ap.modes.path.points > 1 and math.hypot(n - at_n, e - at_e) <= ap.params.WP_RADIUS:
+    while there != 0 and ap.modes.path.points > 1 and math.hypot(n - at_n, e - at_e) <= ap.params.WP.RADIUS:
         smart_rtl_path.pop(ap)
         there, n, e = smart_rtl_path.peek(ap)
 

@@ -22,7 +22,7 @@ def read_mode(v):
     p = v.autopilot.params
     now = moved_to(v, int(p.MODE_CH))
     if now >= 0:
-        mode = chosen(now, p.MODE1, p.MODE2, p.MODE3, p.MODE4, p.MODE5, p.MODE6)
+        mode = chosen(now, p.MODE[0], p.MODE[1], p.MODE[2], p.MODE[3], p.MODE[4], p.MODE[5])
         request(v, mode, REASON_RC)
 
 
@@ -32,11 +32,11 @@ def read_rudder(v):
     ap = v.autopilot
     pilot = ap.modes.pilot
     wanted = 0
-    allowed = ap.params.ARMING_RUDDER >= 1.0 and allows_arming_by_stick(int(ap.modes.number))
+    allowed = ap.params.ARMING.RUDDER >= 1.0 and allows_arming_by_stick(int(ap.modes.number))
     if allowed and pilot.throttle == 0.0 and ap.rc.receiver_ok != 0 and ap.modes.failsafe.radio == 0:
         if pilot.steering > _FULL_STICK and ap.arming.armed == 0:
             wanted = 1
-        elif pilot.steering < -_FULL_STICK and ap.arming.armed != 0 and ap.params.ARMING_RUDDER >= 2.0:
+        elif pilot.steering < -_FULL_STICK and ap.arming.armed != 0 and ap.params.ARMING.RUDDER >= 2.0:
             wanted = 0 if is_moving(ap) else -1
     if wanted == 0:
         pilot.rudder_us = 0

@@ -22,7 +22,7 @@ LONGEST_DELAY = 60.0
 @law
 def is_possible(ap):
     """Whether the vehicle turns on the spot at all."""
-    return is_skid(ap) and ap.params.WP_PIVOT_ANGLE > ACCURACY
+    return is_skid(ap) and ap.params.WP.PIVOT_ANGLE > ACCURACY
 
 
 @law
@@ -48,7 +48,7 @@ def end(ap):
 @law
 def would_turn(ap, change):
     """Whether a change of direction [rad] is worth a pivot turn."""
-    return is_possible(ap) and abs(wrap_pi(change)) > math.radians(ap.params.WP_PIVOT_ANGLE)
+    return is_possible(ap) and abs(wrap_pi(change)) > math.radians(ap.params.WP.PIVOT_ANGLE)
 
 
 @law
@@ -64,7 +64,7 @@ def check(ap, time_us, heading, anyway):
         return
     if drive.pivoting != 0 and drive.pivot_us == 0 and error < math.radians(ACCURACY):
         drive.pivot_us = time_us
-    delay = min(max(float(ap.params.WP_PIVOT_DELAY), 0.0), LONGEST_DELAY)
+    delay = min(max(float(ap.params.WP.PIVOT_DELAY), 0.0), LONGEST_DELAY)
     if drive.pivot_us > 0 and time_us - drive.pivot_us >= delay * 1e6:
         end(ap)
 
@@ -72,6 +72,6 @@ def check(ap, time_us, heading, anyway):
 @law
 def turn_rate(ap, time_us, heading):
     """Turn rate [rad/s] of this period."""
-    rate = turn_rate_from_heading(ap, heading, math.radians(float(ap.params.WP_PIVOT_RATE)))
+    rate = turn_rate_from_heading(ap, heading, math.radians(float(ap.params.WP.PIVOT_RATE)))
     check(ap, time_us, heading, False)
     return rate

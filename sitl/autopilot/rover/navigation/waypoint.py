@@ -52,29 +52,29 @@ ARRIVED = 0.01
 def top_speed(ap):
     """Speed limit of the path [m/s]: WP_SPEED or what a command set, or the pilot's nudge above it."""
     nav = ap.modes.nav
-    limit = float(nav.speed_ne) if nav.speed_ne > 0.0 else float(ap.params.WP_SPEED)
+    limit = float(nav.speed_ne) if nav.speed_ne > 0.0 else float(ap.params.WP.SPEED)
     return max(limit, SLOWEST, float(nav.drive.nudge_speed))
 
 
 @law
 def accel_max(ap):
     """Acceleration and deceleration along legs [m/s^2]: WP_ACCEL within ATC_ACCEL_MAX and ATC_DECEL_MAX."""
-    most = min(float(ap.params.ATC_ACCEL_MAX), speed.decel_max(ap))
+    most = min(float(ap.params.ATC.ACCEL_MAX), speed.decel_max(ap))
     if most <= 0.0:
         most = UNLIMITED
-    return min(float(ap.params.WP_ACCEL), most) if ap.params.WP_ACCEL > 0.0 else most
+    return min(float(ap.params.WP.ACCEL), most) if ap.params.WP.ACCEL > 0.0 else most
 
 
 @law
 def jerk_max(ap):
     """[m/s^3]: WP_JERK; 0 there means as much as the acceleration."""
-    return float(ap.params.WP_JERK) if ap.params.WP_JERK > 0.0 else accel_max(ap)
+    return float(ap.params.WP.JERK) if ap.params.WP.JERK > 0.0 else accel_max(ap)
 
 
 @law
 def corner_radius(ap):
     """Corners stay this near to their waypoint [m]."""
-    return max(float(ap.params.WP_RADIUS), position.turn_radius(ap))
+    return max(float(ap.params.WP.RADIUS), position.turn_radius(ap))
 
 
 @law
@@ -294,7 +294,7 @@ def _shape(ap):
     position.input_pos(ap, float(nav.target[0]), float(nav.target[1]))
     n, e = float(nav.target[0] - c.pos_target[0]), float(nav.target[1] - c.pos_target[1])
     away = float(c.pos_error[0]) * float(c.pos_error[0]) + float(c.pos_error[1]) * float(c.pos_error[1])
-    if n * n + e * e < ARRIVED * ARRIVED and away < ap.params.WP_RADIUS * ap.params.WP_RADIUS:
+    if n * n + e * e < ARRIVED * ARRIVED and away < ap.params.WP.RADIUS * ap.params.WP.RADIUS:
         nav.reached = 1
 
 
@@ -302,11 +302,11 @@ def _shape(ap):
 def _advance(ap):
     """Move the target along the legs."""
     nav = ap.modes.nav
-    path.scale_time(ap, ap.params.PSC_POS_P, accel_max(ap) / jerk_max(ap), DT)
+    path.scale_time(ap, ap.params.PSC.POS_P, accel_max(ap) / jerk_max(ap), DT)
     done = path.move(nav, nav.time_scale * DT, corner_radius(ap), lat_accel_max(ap))
     position.set_pos_vel_accel(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
     if done != 0 and nav.reached == 0:
-        if nav.current.fast != 0 or path.distance(ap) <= ap.params.WP_RADIUS or _has_passed(ap):
+        if nav.current.fast != 0 or path.distance(ap) <= ap.params.WP.RADIUS or _has_passed(ap):
             nav.reached = 1
 
 

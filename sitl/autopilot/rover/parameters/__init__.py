@@ -1,25 +1,65 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parameters that only the rover has, or that mean something else there; one file a group.
-
-``DEFAULTS``: where the rover's default of a shared parameter differs (ArduRover 4.7).
-"""
+"""The rover's parameters, with ArduPilot's names, defaults and order."""
 
 from __future__ import annotations
 
-DEFAULTS: dict[str, float] = {
-    "EK3_VELD_M_NSE": 0.7,
-    "EK3_VELNE_M_NSE": 0.5,
-    "LOG_BITMASK": 65535,
-    "MAV1_EXTRA1": 1,
-    "MAV1_EXTRA2": 1,
-    "MAV1_EXTRA3": 1,
-    "MAV1_EXT_STAT": 1,
-    "MAV1_POSITION": 1,
-    "MAV1_RAW_CTRL": 1,
-    "MAV1_RAW_SENS": 1,
-    "MAV1_RC_CHAN": 1,
-    "MIS_TOTAL": 0,
-    "RC1_DZ": 30,
-    "RC2_DZ": 0,
-    "RC4_DZ": 30,
-}
+from ....core.records import Floats, Records
+from ...params import parameters as shared
+from ...params.estimator import Ekf3
+from ...params.parameter import INT8, INT16, INT32, group, numbered, param
+from ...params.radio import RcChannel, RcMap
+from ...params.simulation import Simulated
+from ...params.system import Arming, Log, Mavlink, StreamRates
+from ...params.table import Table
+from .control import Attitude, Motors, Position, ServoOutput
+from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
+from .safety import Battery, Failsafes
+
+
+class Parameters(shared.Parameters):
+    """The rover's parameters, in the order of the wire."""
+
+    ACRO_TURN_RATE: float = param(180.0, 0.0, 360.0, "deg/s", "Turn rate of a full steering stick")
+    ARMING: Arming
+    ATC: Attitude
+    BATT: Battery
+    CIRC: Circle
+    CRASH_ANGLE: float = param(0, 0, 60, "deg", "Lean that counts as a crash at once; 0: none does", INT8)
+    CRUISE: Cruise
+    SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
+    EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7)
+    FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
+    FS: Failsafes
+    GPS1_DELAY_MS: float
+    GUID_OPTIONS: float = param(
+        0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
+    )
+    INITIAL_MODE: float
+    LOG: Log = group(BITMASK=65535)
+    LOIT: Loiter
+    MANUAL: Manual
+    MAV: Mavlink
+    MAV1: StreamRates = group(RAW_SENS=1, EXT_STAT=1, RC_CHAN=1, RAW_CTRL=1, POSITION=1, EXTRA1=1, EXTRA2=1, EXTRA3=1)
+    MIS: Mission = group(TOTAL=0)
+    MODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
+    MODE_CH: float = param(8, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
+    MOT: Motors
+    PILOT_STEER_TYPE: float = param(
+        0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
+    )
+    PSC: Position
+    RC: Records[RcChannel] = numbered(RcChannel, 8, DZ=(30, 0, 30, 30, 0, 0, 0, 0))
+    RC_OVERRIDE_TIME: float
+    RCMAP: RcMap
+    RTL_SPEED: float = param(0.0, 0.0, 100.0, "m/s", "Speed of the way home; 0: WP_SPEED")
+    SCHED_LOOP_RATE: float = param(50, 50, 50, "Hz", "Rate of the main loop; this firmware runs at 50 Hz only", INT16)
+    SERVO: Records[ServoOutput] = numbered(ServoOutput, 4, FUNCTION=(26, 0, 70, 0))
+    SIM: Simulated
+    SIMPLE_TYPE: float = param(0, 0, 1, "", "Stick forwards: 0 the heading when armed, 1 north", INT8)
+    SRTL: SmartRtl
+    STICK_MIXING: float = param(0, 0, 1, "", "1: the steering stick adds to the autopilot's steering", INT8)
+    TURN_RADIUS: float = param(0.9, 0.0, 100.0, "m", "Turning radius at low speed and full steering")
+    WP: Legs
+
+
+TABLE = Table(Parameters)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.vectors import Vec2
 
 
 @law
@@ -22,6 +23,5 @@ def update(p, sensors, tick):
     if period == 0 or tick % period != 1:
         return
     rolled, step = p.wheels.distance, float(p.airframe.encoder_step)
-    sensors.wheel_distance[0] = _counted(float(rolled[0]), step)
-    sensors.wheel_distance[1] = _counted(float(rolled[1]), step)
+    sensors.wheel_distance = Vec2(_counted(float(rolled[0]), step), _counted(float(rolled[1]), step))
     sensors.wheel_count += 1

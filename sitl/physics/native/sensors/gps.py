@@ -12,6 +12,7 @@ import math
 from ....core.geodesy import add_offset
 from ....core.kernels import law
 from ....core.rng import normal
+from ....core.vectors import Vec3
 from ..records import GPS_RING
 
 UNKNOWN_DOP = 9999
@@ -68,9 +69,7 @@ def deliver(p, sensors, tick, time_us):
     if fix >= 3:
         sensors.gps_lat, sensors.gps_lon = int(s.gps_lat[k]), int(s.gps_lon[k])
         sensors.gps_alt = int(s.gps_alt[k])
-        sensors.gps_vel[0] = int(s.gps_vel_n[k])
-        sensors.gps_vel[1] = int(s.gps_vel_e[k])
-        sensors.gps_vel[2] = int(s.gps_vel_d[k])
+        sensors.gps_vel = Vec3(int(s.gps_vel_n[k]), int(s.gps_vel_e[k]), int(s.gps_vel_d[k]))
         sensors.gps_eph = _nearest(100.0 * float(a.gps_hdop))
         sensors.gps_epv = _nearest(100.0 * float(a.gps_vdop))
         sensors.gps_satellites = int(a.gps_satellites)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.rng import normal
+from ....core.vectors import Vec3
 
 WALK_TICKS = 40
 """The in-run biases are stepped every 0.1 s."""
@@ -20,19 +21,26 @@ def _limit(value, bound):
 
 
 @law
+def _acc(p, rng, j):
+    s = p.sensors
+    bias = float(s.acc_bias[j]) + float(s.acc_walk[j])
+    value = float(p.body.specific_force[j]) * float(s.acc_scale[j]) + bias + p.derived.acc_noise * normal(rng)
+    return _limit(value, p.airframe.acc_range)
+
+
+@law
+def _gyro(p, rng, j):
+    s = p.sensors
+    bias = float(s.gyro_bias[j]) + float(s.gyro_walk[j])
+    value = float(p.body.rates_mean[j]) * float(s.gyro_scale[j]) + bias + p.derived.gyro_noise * normal(rng)
+    return _limit(value, p.airframe.gyro_range)
+
+
+@law
 def sample(p, sensors, rng):
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
-    a, s, b, d = p.airframe, p.sensors, p.body, p.derived
-    acc_noise, gyro_noise = float(d.acc_noise), float(d.gyro_noise)
-    acc_range, gyro_range = float(a.acc_range), float(a.gyro_range)
-    for j in range(3):
-        bias = float(s.acc_bias[j]) + float(s.acc_walk[j])
-        value = float(b.specific_force[j]) * float(s.acc_scale[j]) + bias + acc_noise * normal(rng)
-        sensors.acc[j] = _limit(value, acc_range)
-    for j in range(3):
-        bias = float(s.gyro_bias[j]) + float(s.gyro_walk[j])
-        value = float(b.rates_mean[j]) * float(s.gyro_scale[j]) + bias + gyro_noise * normal(rng)
-        sensors.gyro[j] = _limit(value, gyro_range)
+    sensors.acc = Vec3(_acc(p, rng, 0), _acc(p, rng, 1), _acc(p, rng, 2))
+    sensors.gyro = Vec3(_gyro(p, rng, 0), _gyro(p, rng, 1), _gyro(p, rng, 2))
 
 
 @law

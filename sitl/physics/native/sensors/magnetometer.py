@@ -6,6 +6,7 @@ from __future__ import annotations
 from ....core.kernels import law
 from ....core.rng import normal
 from ....core.rotations import quat_rotate_inverse
+from ....core.vectors import Vec3
 
 
 @law
@@ -17,7 +18,9 @@ def sample(p, sensors, rng):
     )
     scale = float(a.noise_scale)
     noise = scale * float(a.mag_noise)
-    sensors.mag[0] = x + scale * float(a.mag_offset[0]) + noise * normal(rng)
-    sensors.mag[1] = y + scale * float(a.mag_offset[1]) + noise * normal(rng)
-    sensors.mag[2] = z + scale * float(a.mag_offset[2]) + noise * normal(rng)
+    sensors.mag = Vec3(
+        x + scale * float(a.mag_offset[0]) + noise * normal(rng),
+        y + scale * float(a.mag_offset[1]) + noise * normal(rng),
+        z + scale * float(a.mag_offset[2]) + noise * normal(rng),
+    )
     sensors.mag_count += 1

@@ -102,18 +102,18 @@ def test_nose_follows_the_desired_velocity_but_not_a_slow_one(flying):
     ap = flying.autopilot
     auto_yaw.set_mode(flying, auto_yaw.LOOK_AT_NEXT_WP)
     ap.control.pos_ne.speed_max = 10.0
-    ap.control.pos_ne.vel_desired[1] = 0.4
+    ap.control.pos_ne.vel_desired = (0.0, 0.4)
     assert auto_yaw.advance(flying, 0.0025)[0] == 0.0
-    ap.control.pos_ne.vel_desired[1] = 3.0
+    ap.control.pos_ne.vel_desired = (0.0, 3.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 2)
-    ap.control.pos_ne.vel_desired[1] = 0.0
+    ap.control.pos_ne.vel_desired = (0.0, 0.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 2)
 
 
 def test_roi_is_looked_at_from_anywhere(flying):
     guided.set_roi(flying, 10.0, 10.0, 0.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 4)
-    flying.autopilot.estimate.pos[0] = 20.0
+    flying.autopilot.estimate.pos = flying.autopilot.estimate.pos.replace(x=20.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(3 * math.pi / 4)
     guided.clear_roi(flying)
     assert flying.autopilot.modes.auto_yaw.mode == auto_yaw.LOOK_AT_NEXT_WP

@@ -169,8 +169,8 @@ def test_pause_keeps_the_target_and_a_new_set_point_ends_it(flying):
 
 def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
     ap = vehicle.autopilot
-    ap.modes.number, ap.home.pos[2] = 4, 1.5
-    ap.estimate.pos[2] = 1.5
+    ap.modes.number, ap.home.pos = 4, (0.0, 0.0, 1.5)
+    ap.estimate.pos = ap.estimate.pos.replace(z=1.5)
     assert takeoff.start(vehicle, 10.0) == takeoff.NOT_ARMED
     ap.arming.armed = 1
     assert takeoff.start(vehicle, math.nan) == takeoff.NOT_FINITE

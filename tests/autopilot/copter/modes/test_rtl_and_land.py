@@ -39,7 +39,7 @@ def test_the_way_home_is_never_below_the_vehicle(height, distance, wanted, climb
 
 def test_it_asks_for_both_legs_and_keeps_its_heading(flying):
     ap = flying.autopilot
-    ap.estimate.pos[:] = (20.0, 30.0, -10.0)
+    ap.estimate.pos = (20.0, 30.0, -10.0)
     assert set_mode.request(flying, RTL, REASON_GCS) == 0
     assert codes(flying)[0] == LEG_ENDING
     assert list(ap.modes.nav.request) == pytest.approx([20.0, 30.0, -15.0])
@@ -76,7 +76,7 @@ def descent(v, seconds=6.0):
 def test_descent(flying, height, fast, speed):
     set_mode.request(flying, LAND, REASON_GCS)
     flying.autopilot.params.LAND_SPEED_HIGH = fast
-    flying.autopilot.estimate.pos[2] = -height
+    flying.autopilot.estimate.pos = flying.autopilot.estimate.pos.replace(z=-height)
     assert descent(flying) == pytest.approx(speed, abs=0.01)
 
 
@@ -105,7 +105,7 @@ def test_it_disarms_when_landed_and_idling(flying):
 
 def test_sticks_move_the_landing_place_in_the_direction_of_the_nose(flying):
     ap = flying.autopilot
-    ap.estimate.euler[2] = math.pi / 2
+    ap.estimate.euler = ap.estimate.euler.replace(yaw=math.pi / 2)
     ap.modes.pilot.pitch = -1.0
     assert land.stick_velocity(ap) == pytest.approx((0.0, 1.25))
     ap.params.LAND_REPOSITION = 0.0

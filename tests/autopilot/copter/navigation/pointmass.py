@@ -11,11 +11,12 @@ from typing import Any
 from sitl.autopilot.copter.control import position
 from sitl.autopilot.copter.mission import COMMANDS
 from sitl.autopilot.copter.navigation import command
-from sitl.autopilot.copter.table import TABLE
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.navigation.command import check_condition, complete
 from sitl.autopilot.navigation.state import LAND, NONE, TAKEOFF
+from sitl.core.vectors import Vec2
 from sitl.vehicle.record import TICK_US, Copter
 
 ORIGIN = (-353632621, 1491652371, 584.0)
@@ -46,7 +47,7 @@ class PointMass:
         TABLE.set_defaults(ap.params)
         ap.estimate.origin_set = 1
         ap.estimate.origin_lat, ap.estimate.origin_lon, ap.estimate.origin_alt = ORIGIN
-        ap.estimate.pos[:] = pos
+        ap.estimate.pos = pos
         ap.control.attitude.lean_max = 0.6
         ap.home.is_set = 1
         ap.home.lat, ap.home.lon, ap.home.alt = ORIGIN
@@ -86,14 +87,14 @@ class PointMass:
                 position.update_ne(ap)
                 self._move()
             elif not self.stuck:
-                ap.estimate.pos[:], ap.estimate.vel[:] = nav.pos, nav.vel
+                ap.estimate.pos, ap.estimate.vel = nav.pos, nav.vel
         check_condition(ap, now, 1)
         self.note(self.sequencer.attend())
         ap.events.attention = 0
 
     def _jump_to(self, target: Any) -> None:
-        self.v.autopilot.estimate.pos[:] = target
-        self.v.autopilot.estimate.vel[:] = 0.0
+        self.v.autopilot.estimate.pos = target
+        self.v.autopilot.estimate.vel = (0.0, 0.0, 0.0)
         self.acc = [0.0, 0.0, 0.0]
 
     def _move(self) -> None:
@@ -101,8 +102,8 @@ class PointMass:
         nav, estimate = ap.modes.nav, ap.estimate
         wanted = [float(a) for a in ap.control.pos_ne.accel_target]
         # the vertical axis is followed as it is
-        estimate.pos[2], estimate.vel[2] = nav.pos[2], nav.vel[2]
         for k in range(2):
             self.acc[k] += (wanted[k] - self.acc[k]) * DT / (self.lag + DT)
-            estimate.vel[k] += self.acc[k] * DT
-            estimate.pos[k] += estimate.vel[k] * DT
+        vel = Vec2(*estimate.vel[:2]) + Vec2(*self.acc[:2]) * DT
+        pos = Vec2(*estimate.pos[:2]) + vel * DT
+        estimate.vel, estimate.pos = (*vel, nav.vel[2]), (*pos, nav.pos[2])

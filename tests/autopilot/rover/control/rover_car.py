@@ -10,21 +10,18 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.autopilot.params.table import collect
-from sitl.autopilot.rover import parameters
 from sitl.autopilot.rover.control import update
 from sitl.autopilot.rover.control.init import init
 from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control
+from sitl.autopilot.rover.parameters import TABLE, Parameters
 from sitl.autopilot.state import Actuators, Autopilot, Sensors
 from sitl.core.records import Record
-
-TABLE = collect(parameters, parameters.DEFAULTS)
 
 
 class CarAutopilot(Autopilot):
     """A firmware without modes."""
 
-    params: TABLE.record
+    params: Parameters
     control: Control
 
 
@@ -75,10 +72,10 @@ def arm(v: Any) -> Any:
 def set_motion(v: Any, heading: float, speed: float, turn_rate: float) -> None:
     """What the estimate says of a level car."""
     est = v.autopilot.estimate
-    est.euler[:] = (0.0, 0.0, heading)
-    est.q[:] = (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
-    est.vel[:] = (speed * math.cos(heading), speed * math.sin(heading), 0.0)
-    est.rates[:] = (0.0, 0.0, turn_rate)
+    est.euler = (0.0, 0.0, heading)
+    est.q = (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
+    est.vel = (speed * math.cos(heading), speed * math.sin(heading), 0.0)
+    est.rates = (0.0, 0.0, turn_rate)
 
 
 def finish(v: Any) -> None:
@@ -110,6 +107,6 @@ class Car:
             rate = curvature * self.speed
             self.heading += rate * dt
             self.speed += 10.0 * (20.0 * throttle - self.speed) / 20.0 * dt
-            est.pos[0] += self.speed * math.cos(self.heading) * dt
-            est.pos[1] += self.speed * math.sin(self.heading) * dt
+            est.pos = est.pos.replace(x=est.pos.x + self.speed * math.cos(self.heading) * dt)
+            est.pos = est.pos.replace(y=est.pos.y + self.speed * math.sin(self.heading) * dt)
         set_motion(self.v, self.heading, self.speed, curvature * self.speed)

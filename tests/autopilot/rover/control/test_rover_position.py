@@ -97,7 +97,7 @@ def test_target_follows_a_jump_of_the_estimate():
         position.input_pos(ap, 10.0, 0.0)
         follow(car)
     before = position.pos_error(ap)
-    ap.estimate.pos[0] += 5.0
+    ap.estimate.pos = ap.estimate.pos.replace(x=ap.estimate.pos.x + 5.0)
     ap.estimate.reset_ne_count += 1
     position.update(car.v)
     assert position.pos_error(ap) == pytest.approx(before, abs=0.05)

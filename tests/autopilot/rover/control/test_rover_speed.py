@@ -104,9 +104,9 @@ def test_speed_from_the_receiver_has_the_sign_of_its_course():
     v = rolling(3.0)
     v.autopilot.estimate.status_flags = 1
     v.sensors.gps_fix = 3
-    v.sensors.gps_vel[:] = (300, 400, 0)
+    v.sensors.gps_vel = (300, 400, 0)
     assert forward_speed.forward_speed(v) == (1, pytest.approx(5.0))
-    v.sensors.gps_vel[:] = (-300, -400, 0)
+    v.sensors.gps_vel = (-300, -400, 0)
     assert forward_speed.forward_speed(v) == (1, pytest.approx(-5.0))
 
 
@@ -115,7 +115,7 @@ def test_speed_from_the_wheels():
     v.autopilot.estimate.status_flags = 0
     for k in range(100):
         v.sensors.wheel_count = k + 1
-        v.sensors.wheel_distance[:] = (-0.02 * k, -0.04 * k)
+        v.sensors.wheel_distance = (-0.02 * k, -0.04 * k)
         forward_speed.sense(v)
         v.time_us += PERIOD_US
     assert forward_speed.forward_speed(v) == (1, pytest.approx(-1.5))
@@ -126,8 +126,8 @@ def test_speed_from_the_wheels():
 def test_turn_rate_about_the_vertical_of_a_leaning_body():
     v = rolling()
     ap = v.autopilot
-    ap.estimate.q[:] = (math.cos(0.25), math.sin(0.25), 0.0, 0.0)
-    ap.estimate.rates[:] = (0.0, 0.3, 0.4)
+    ap.estimate.q = (math.cos(0.25), math.sin(0.25), 0.0, 0.0)
+    ap.estimate.rates = (0.0, 0.3, 0.4)
     assert forward_speed.yaw_rate(ap) == pytest.approx(0.3 * math.sin(0.5) + 0.4 * math.cos(0.5))
 
 
@@ -137,5 +137,5 @@ def test_bad_numbers_brake(bad):
     speed.drive(v, bad)
     speed.throttle_for_speed(v, bad)
     assert math.isfinite(v.autopilot.control.speed.desired)
-    v.autopilot.estimate.vel[0] = bad
+    v.autopilot.estimate.vel = v.autopilot.estimate.vel.replace(x=bad)
     assert forward_speed.forward_speed(v) == (0, 0.0)

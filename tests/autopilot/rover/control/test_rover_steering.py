@@ -59,7 +59,7 @@ def test_first_call_starts_at_the_present_turn_rate_and_a_pause_forgets():
     v = moving(speed=2.0, turn_rate=0.5)
     run(v, 0.5, 50)
     v.autopilot.control.steering.rate.integrator = 0.3
-    v.autopilot.estimate.rates[2] = -0.4
+    v.autopilot.estimate.rates = v.autopilot.estimate.rates.replace(z=-0.4)
     for _ in range(11):
         finish(v)
     assert not steering.is_active(v.autopilot)

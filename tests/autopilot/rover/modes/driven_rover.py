@@ -18,8 +18,8 @@ from sitl.autopilot.rover.firmware import power_on
 from sitl.autopilot.rover.modes import guided
 from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
+from sitl.autopilot.rover.parameters import TABLE
 from sitl.autopilot.rover.state import Autopilot
-from sitl.autopilot.rover.table import TABLE
 from sitl.autopilot.state import Actuators, Sensors
 from sitl.core.records import Record
 
@@ -95,7 +95,7 @@ class Rover:
 
     def place(self, n: float, e: float, heading: float = 0.0, speed: float = 0.0) -> None:
         """Put the vehicle somewhere."""
-        self.ap.estimate.pos[:] = (n, e, 0.0)
+        self.ap.estimate.pos = (n, e, 0.0)
         self.heading, self.speed = heading, speed
         self._sense(0.0)
 
@@ -134,16 +134,16 @@ class Rover:
         for _ in range(8):
             self.heading += curvature * self.speed * dt
             self.speed += 10.0 * (20.0 * throttle - self.speed) / 20.0 * dt
-            est.pos[0] += self.speed * math.cos(self.heading) * dt
-            est.pos[1] += self.speed * math.sin(self.heading) * dt
+            est.pos = est.pos.replace(x=est.pos.x + self.speed * math.cos(self.heading) * dt)
+            est.pos = est.pos.replace(y=est.pos.y + self.speed * math.sin(self.heading) * dt)
         self._sense(curvature * self.speed)
 
     def _sense(self, turn_rate: float) -> None:
         est = self.ap.estimate
-        est.euler[:] = (0.0, 0.0, math.remainder(self.heading, 2.0 * math.pi))
-        est.q[:] = (math.cos(self.heading / 2), 0.0, 0.0, math.sin(self.heading / 2))
-        est.vel[:] = (self.speed * math.cos(self.heading), self.speed * math.sin(self.heading), 0.0)
-        est.rates[:] = (0.0, 0.0, turn_rate)
+        est.euler = (0.0, 0.0, math.remainder(self.heading, 2.0 * math.pi))
+        est.q = (math.cos(self.heading / 2), 0.0, 0.0, math.sin(self.heading / 2))
+        est.vel = (self.speed * math.cos(self.heading), self.speed * math.sin(self.heading), 0.0)
+        est.rates = (0.0, 0.0, turn_rate)
 
     def events(self) -> list[tuple[int, float, float]]:
         """(code, a, b) of what happened since the last call."""

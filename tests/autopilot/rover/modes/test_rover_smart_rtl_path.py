@@ -22,10 +22,10 @@ def driven(way: list[tuple[float, float]], **params: float) -> Rover:
     """A rover that was armed at the first point and has been at the others."""
     rover = Rover(**params)
     rover.place(*way[0])
-    rover.ap.estimate.pos[:2] = way[0]
+    rover.ap.estimate.pos = (*way[0], 0.0)
     srtl.set_home(rover.v)
     for n, e in way[1:]:
-        rover.ap.estimate.pos[:2] = (n, e)
+        rover.ap.estimate.pos = (n, e, 0.0)
         rover.v.time_us += 340_000
         srtl.update(rover.v, 1)
     return rover

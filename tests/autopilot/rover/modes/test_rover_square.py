@@ -40,8 +40,8 @@ class Biased(Rover):
 
     def _sense(self, turn_rate: float) -> None:
         super()._sense(turn_rate)
-        self.ap.estimate.vel[0] += RESIDUAL[0]
-        self.ap.estimate.vel[1] += RESIDUAL[1]
+        self.ap.estimate.vel = self.ap.estimate.vel.replace(x=self.ap.estimate.vel.x + RESIDUAL[0])
+        self.ap.estimate.vel = self.ap.estimate.vel.replace(y=self.ap.estimate.vel.y + RESIDUAL[1])
 
 
 def test_square_as_recorded() -> None:

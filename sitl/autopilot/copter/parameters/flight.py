@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parameters of the copter's modes: sticks, legs, take-off, return, landing."""
+
+from __future__ import annotations
+
+from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
+
+
+class Circle(ParameterGroup):
+    """CIRCLE_: circles."""
+
+    RADIUS: float = param(1000.0, 0.0, 200000.0, "cm", "Radius when a mission gives none")
+    RATE: float = param(20.0, -90.0, 90.0, "deg/s", "Greatest turn rate around the circle")
+
+
+class Guided(ParameterGroup):
+    """GUID_: GUIDED."""
+
+    OPTIONS: float = param(
+        0, 0, 1023, "", "1 armed by the transmitter, 4 ignores the yaw stick, 8 SET_ATTITUDE_TARGET has thrust", INT32
+    )
+    TIMEOUT: float = param(3.0, 0.1, 60.0, "s", "Velocity, acceleration and attitude set-points are good for so long")
+
+
+class Land(ParameterGroup):
+    """LAND_: LAND."""
+
+    SPEED: float = param(50, 10, 500, "cm/s", "Last part of the descent", INT16)
+    SPEED_HIGH: float = param(0, 0, 1000, "cm/s", "Descent above LAND_ALT_LOW; 0 as WPNAV_SPEED_DN", INT16)
+    ALT_LOW: float = param(1000, 100, 10000, "cm", "Height where the descent slows down to LAND_SPEED", INT16)
+    REPOSITION: float = param(1, 0, 1, "", "The pilot may move the landing place", INT8)
+
+
+class Loiter(ParameterGroup):
+    """LOIT_: LOITER."""
+
+    ANG_MAX: float = param(
+        0.0, 0.0, 45.0, "deg", "Greatest lean of the sticks; 0 is two thirds of PSC_ANGLE_MAX or ANGLE_MAX"
+    )
+    SPEED: float = param(1250.0, 20.0, 3500.0, "cm/s", "Greatest speed")
+    ACC_MAX: float = param(500.0, 100.0, 981.0, "cm/s/s", "Greatest acceleration of the position correction")
+    BRK_ACCEL: float = param(250.0, 25.0, 2500.0, "cm/s/s", "Greatest deceleration with sticks centred")
+    BRK_JERK: float = param(500.0, 50.0, 10000.0, "cm/s/s/s", "Jerk of the braking")
+    BRK_DELAY: float = param(1.0, 0.0, 10.0, "s", "From centring the sticks to braking")
+
+
+class Pilot(ParameterGroup):
+    """PILOT_: the pilot's sticks."""
+
+    THR_FILT: float = param(0.0, 0.0, 10.0, "Hz", "Low-pass of the throttle in STABILIZE; 0 none")
+    TKOFF_ALT: float = param(0.0, 0.0, 1000.0, "cm", "Height of a take-off by stick")
+    THR_BHV: float = param(
+        0,
+        0,
+        7,
+        "",
+        "Bits: 1 throttle stick springs to the middle, 2 high throttle cancels LAND, 4 disarms on landing",
+        INT16,
+    )
+    SPEED_UP: float = param(250, 10, 5000, "cm/s", "Climb rate at full stick", INT16)
+    SPEED_DN: float = param(0, 0, 5000, "cm/s", "Descent at full stick; 0 as PILOT_SPEED_UP", INT16)
+    ACCEL_Z: float = param(250, 10, 5000, "cm/s/s", "Vertical acceleration under the stick", INT16)
+    Y_RATE: float = param(202.5, 1.0, 360.0, "deg/s", "Turn rate at full stick")
+    Y_EXPO: float = param(0.0, -0.5, 1.0, "", "Softness of the yaw stick around the middle")
+    Y_RATE_TC: float = param(0.0, 0.0, 1.0, "s", "Time constant of the yaw stick")
+
+
+class Rtl(ParameterGroup):
+    """RTL_: RTL."""
+
+    ALT: float = param(1500, 0, 300000, "cm", "Height of the way home, above home", INT32)
+    ALT_FINAL: float = param(0, 0, 32767, "cm", "Height over home where it stays; 0 lands", INT16)
+    CLIMB_MIN: float = param(0, 0, 3000, "cm", "Least climb before the way home", INT16)
+    CONE_SLOPE: float = param(
+        3.0, 0.0, 10.0, "", "Near home it climbs no higher than distance times this; below 0.5 off"
+    )
+    SPEED: float = param(0, 0, 2000, "cm/s", "Speed of the way home; 0 as WPNAV_SPEED", INT16)
+    LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
+
+
+class TakeOff(ParameterGroup):
+    """TKOFF_: take-off."""
+
+    SLEW_TIME: float = param(2.0, 0.25, 5.0, "s", "From zero to full throttle on the ground")
+    THR_MAX: float = param(0.9, 0.0, 0.9, "", "Throttle at which it is taken to fly")
+
+
+class Waypoints(ParameterGroup):
+    """WP_: heading at waypoints, height without navigation."""
+
+    YAW_BEHAVIOR: float = param(
+        2, 0, 3, "", "Heading: 0 kept, 1 to the next waypoint, 2 the same but kept in RTL, 3 along the course", INT8
+    )
+    NAVALT_MIN: float = param(0.0, 0.0, 5.0, "m", "No leaning below this height in take-off and landing")
+
+
+class Legs(ParameterGroup):
+    """WPNAV_: flight along legs."""
+
+    SPEED: float = param(1000.0, 10.0, 10000.0, "cm/s", "Horizontal speed limit in missions")
+    RADIUS: float = param(200.0, 5.0, 1000.0, "cm", "Distance at which a waypoint is reached")
+    SPEED_UP: float = param(250.0, 10.0, 5000.0, "cm/s", "Climb speed limit in missions")
+    SPEED_DN: float = param(150.0, 10.0, 2000.0, "cm/s", "Descent speed limit in missions")
+    ACCEL: float = param(250.0, 50.0, 2000.0, "cm/s/s", "Horizontal acceleration limit in missions")
+    ACCEL_Z: float = param(100.0, 50.0, 1000.0, "cm/s/s", "Vertical acceleration limit in missions")
+    JERK: float = param(1.0, 0.1, 50.0, "m/s/s/s", "Jerk limit along legs")
+    ACCEL_C: float = param(0.0, 0.0, 2000.0, "cm/s/s", "Acceleration in corners; 0: twice WPNAV_ACCEL")

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parameters of the copter's failsafes."""
+
+from __future__ import annotations
+
+from ...params import simulation, system
+from ...params.parameter import INT8, INT16, INT32, param
+
+
+class Battery(system.Battery):
+    """BATT_: with what an empty battery does."""
+
+    FS_LOW_ACT: float = param(
+        0, 0, 7, "", "When low: 0 nothing, 1 LAND, 2 RTL, 3 4 return or land, 5 stops the motors, 7 BRAKE or LAND", INT8
+    )
+    FS_CRT_ACT: float = param(0, 0, 7, "", "When critical: as BATT_FS_LOW_ACT", INT8)
+
+
+class Failsafes(system.Failsafes):
+    """FS_: failsafes."""
+
+    GCS_ENABLE: float = param(
+        0, 0, 7, "", "Ground station lost: 0 nothing, 1 RTL, 3 4 return or land, 5 LAND, 7 BRAKE or LAND", INT8
+    )
+    GCS_TIMEOUT: float = param(5.0, 2.0, 120.0, "s", "Silence of the ground station that counts as lost")
+    THR_ENABLE: float = param(
+        1, 0, 7, "", "Radio lost: 0 nothing, 1 RTL, 3 LAND, 4 5 return or land, 7 BRAKE or LAND", INT8
+    )
+    THR_VALUE: float = param(975, 900, 1100, "us", "Throttle pulse below which the radio is lost", INT16)
+    EKF_ACTION: float = param(1, 0, 3, "", "Bad estimate: 0 report, 1 LAND, 2 ALT_HOLD, 3 LAND from any mode", INT8)
+    EKF_THRESH: float = param(
+        0.8, 0.0, 2.0, "", "Test ratio of the estimator that counts as bad; 0 switches the check off"
+    )
+    EKF_FILT: float = param(5.0, 0.0, 10.0, "Hz", "Low-pass of the test ratios")
+    CRASH_CHECK: float = param(1, 0, 1, "", "Disarm after a crash", INT8)
+    OPTIONS: float = param(
+        16, 0, 127, "", "Goes on: 1 AUTO, 4 GUIDED without radio; 2 AUTO, 16 pilot modes without GCS; 8 LAND", INT32
+    )
+
+
+class Simulated(simulation.Simulated):
+    """SIM_: with failing motors."""
+
+    ENGINE_FAIL: float = param(0, 0, 255, "", "Motors that fail: 1 motor 1, 2 motor 2, 4 motor 3, ...", INT32)
+    ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust that failing motors keep")

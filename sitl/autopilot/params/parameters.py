@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The record of parameters that every firmware has."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...core.records import Records
+from .estimator import Ekf3
+from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
+from .radio import RcChannel, RcMap
+from .simulation import Simulated
+from .system import Arming, Battery, Failsafes, Log, Mavlink, Mission, StreamRates
+
+
+class Parameters(ParameterGroup):
+    """The parameters that every firmware has. A firmware's own record names all of its own in the order of the wire.
+
+    In plain Python a parameter is also there under its full name, as an item and as an attribute:
+    ``params["ATC_RAT_RLL_P"]``, ``params.ATC_RAT_RLL_P``. Laws use the path: ``params.ATC.RAT_RLL.P``.
+    """
+
+    ARMING: Arming
+    BATT: Battery
+    EK3: Ekf3
+    FS: Failsafes
+    GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
+    INITIAL_MODE: float = param(0, 0, 127, "", "Mode after boot, until the mode channel says another", INT8)
+    LOG: Log
+    MAV: Mavlink
+    MAV1: StreamRates
+    MIS: Mission
+    RC: Records[RcChannel] = numbered(RcChannel, 8, DZ=(20, 20, 30, 20, 0, 0, 0, 0))
+    RC_OVERRIDE_TIME: float = param(
+        3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"
+    )
+    RCMAP: RcMap
+    SCHED_LOOP_RATE: float = param(
+        400.0, 0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
+    )
+    SIM: Simulated
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        for k, row in enumerate(rows(cls)):
+            if row.name not in cls.fields:
+                setattr(cls, row.name, _by_full_name(k))
+
+
+def _by_full_name(k: int) -> property:
+    def write(self: Any, value: float) -> None:
+        self._f8[k] = value
+
+    return property(lambda self: self._f8[k], write)

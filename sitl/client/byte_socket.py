@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The client's end of a socket to a vehicle. What is sent together travels together."""
+
+from __future__ import annotations
+
+import contextlib
+import select
+import socket
+
+from ..errors import LinkLostError, OptionError
+
+FORMS = (
+    '"udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there) '
+    'or "tcp:HOST:PORT" (connect to one)'
+)
+_BUFFER = 1 << 21
+
+
+class ByteSocket:
+    """A socket as ``Endpoint`` wants it; nothing blocks but ``wait``.
+
+    Args:
+        text: one of the forms.
+
+    Raises:
+        OptionError: it is none of them.
+        LinkLostError: it cannot be opened.
+    """
+
+    def __init__(self, text: str) -> None:
+        kind, _, rest = text.partition(":")
+        host, _, port = rest.rpartition(":")
+        if kind not in ("udp", "udpin", "udpout", "tcp") or not host or not port.isdigit() or not 0 < int(port) < 65536:
+            raise OptionError(f"connection {text!r} is none of {FORMS}")
+        self.name = text
+        self._stream = kind == "tcp"
+        self._peer: tuple[str, int] | None = None
+        address = (host, int(port))
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM if self._stream else socket.SOCK_DGRAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
+        try:
+            if self._stream:
+                self._socket.settimeout(5.0)
+                self._socket.connect(address)
+                from ..bridge.links.echo import refuse_echo  # here: only TCP needs it
+
+                refuse_echo(self._socket)
+                self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            elif kind == "udpout":
+                self._peer = (socket.gethostbyname(host), int(port))
+            else:
+                self._socket.bind(address)
+        except OSError as error:
+            self._socket.close()
+            raise LinkLostError(f"connection {text}: {error.strerror or error}") from None
+        self._socket.setblocking(self._stream)
+        self._unsent: list[bytes] = []
+
+    def send(self, data: bytes) -> None:
+        """Keep a frame for ``flush``."""
+        self._unsent.append(data)
+
+    def flush(self) -> bytes:
+        """Send what was kept, in one piece; returns it."""
+        data = b"".join(self._unsent)
+        self._unsent.clear()
+        self.write(data)
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Send bytes now; a datagram without a vehicle yet is lost.
+
+        Raises:
+            LinkLostError: the connection is closed.
+        """
+        if self._stream:
+            try:
+                self._socket.sendall(data)
+            except OSError as error:
+                raise LinkLostError(f"connection {self.name} is lost: {error.strerror or error}") from None
+        elif self._peer is not None and data:
+            with contextlib.suppress(OSError):  # the answer that does not come is noticed
+                self._socket.sendto(data, self._peer)
+
+    def wait(self, seconds: float) -> bool:
+        """Until something can be read, at most so long [s of wall time]. True when it can."""
+        return bool(select.select([self._socket], [], [], seconds)[0])
+
+    def receive(self) -> bytes:
+        """All bytes that are there.
+
+        Raises:
+            LinkLostError: the connection is closed.
+        """
+        parts: list[bytes] = []
+        while self.wait(0.0):
+            try:
+                data, address = self._socket.recvfrom(1 << 16)
+            except OSError:
+                if self._stream:
+                    data, address = b"", None
+                else:
+                    continue  # an earlier datagram was refused
+            if not data and self._stream:
+                if parts:
+                    break
+                raise LinkLostError(f"connection {self.name} is lost: the vehicle has closed it")
+            if not self._stream and self._peer is None:
+                self._peer = address
+            parts.append(data)
+        return b"".join(parts)
+
+    def close(self) -> None:
+        """Close the socket; may be called twice."""
+        self._socket.close()

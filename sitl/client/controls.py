@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a pilot does with any vehicle: modes, arming, places to go to, sticks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from ..bridge.services.setpoints import (
+    ACCELERATION_IGNORED,
+    BODY_OFFSET_NED,
+    LOCAL_NED,
+    POSITION_IGNORED,
+    VELOCITY_IGNORED,
+    YAW_IGNORED,
+    YAW_RATE_IGNORED,
+    YAWS_IGNORED,
+)
+from ..core.geodesy import add_offset, offset_ne
+from .errors import UnknownNameError
+from .parameters import Parameters
+from .waits import Waits
+
+__tracebackhide__ = True
+
+CUSTOM_MODE_ENABLED = 1
+"""MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
+FORCED = 21196
+"""Second parameter of arming: without checks."""
+RELATIVE_INT = 6
+"""MAV_FRAME_GLOBAL_RELATIVE_ALT_INT"""
+POSITION_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
+VELOCITY_ONLY = POSITION_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
+CHANNELS = range(1, 19)
+IGNORED = 65535
+"""RC_CHANNELS_OVERRIDE: this channel stays as it is; from channel 9 on, 0 says that."""
+STICKS = {"roll": "RCMAP_ROLL", "pitch": "RCMAP_PITCH", "throttle": "RCMAP_THROTTLE", "yaw": "RCMAP_YAW"}
+STICKS |= {"steering": "RCMAP_ROLL"}
+_VELOCITY, _STICKS = "velocity", "sticks"
+
+
+class Controls(Waits):
+    """A vehicle with a pilot."""
+
+    @property
+    def params(self) -> Parameters:
+        """Its parameters by name."""
+        return Parameters(self)
+
+    # ------------------------------------------------------------------ modes
+
+    def set_mode(self, name: str, timeout: float = 5.0) -> None:
+        """Choose a mode ("GUIDED"), and wait until it is on."""
+        number = self._mode_number(name)
+        self._stop_sending(_VELOCITY)
+        self.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, number, subject=f"mode {name}")
+        self.wait_mode(name, timeout)
+
+    def arm(self, force: bool = False) -> None:
+        """Arm; ``force``: without its checks."""
+        self.command("COMPONENT_ARM_DISARM", 1, FORCED if force else 0, subject="arming")
+        self.wait_armed(2.0)
+
+    def disarm(self, force: bool = False) -> None:
+        """Disarm; ``force``: even in the air."""
+        self.command("COMPONENT_ARM_DISARM", 0, FORCED if force else 0, subject="disarming")
+        self.wait_disarmed(2.0)
+
+    def reboot(self) -> None:
+        """Restart the autopilot where it stands; parameters and mission stay. ``wait_ready`` is what comes next."""
+        self.command("PREFLIGHT_REBOOT_SHUTDOWN", 1, subject="the reboot")
+        self.telemetry.has_position = self.telemetry.checked = False
+        self.delay(1.0)
+
+    def guided_and_armed(self) -> None:
+        """In GUIDED, and armed: what is not so yet is asked for."""
+        if self.mode != "GUIDED":
+            self.set_mode("GUIDED")
+        if not self.armed:
+            self.arm()
+
+    # ------------------------------------------------------------------ up and down
+
+    def take_off(self, altitude: float = 10.0, timeout: float = 60.0) -> None:
+        """GUIDED, arm if need be, climb to an altitude above home [m], and wait until it is there."""
+        self.guided_and_armed()
+        self.command("NAV_TAKEOFF", altitude=altitude, subject="the take-off")
+        self.wait_altitude(altitude - max(0.5, 0.05 * altitude), altitude + 2.0, timeout)
+
+    def land(self, timeout: float = 120.0) -> None:
+        """LAND, and wait until it is disarmed."""
+        self.set_mode("LAND")
+        self.wait_disarmed(timeout)
+
+    def return_to_launch(self, timeout: float = 300.0) -> None:
+        """RTL, and wait until it is disarmed."""
+        self.set_mode("RTL")
+        self.wait_disarmed(timeout)
+
+    # ------------------------------------------------------------------ places
+
+    def place_of(self, lat: float, lon: float) -> tuple[float, float]:
+        """North, east from home [m] of a latitude and longitude [deg]."""
+        home = self.home()
+        north, east = offset_ne(home[0], home[1], lat * 1e7, lon * 1e7)
+        return (float(north), float(east))
+
+    def location_of(self, north: float, east: float) -> tuple[int, int]:
+        """Latitude, longitude [degE7] of a place from home [m]."""
+        home = self.home()
+        lat, lon = add_offset(home[0], home[1], north, east)
+        return (round(lat), round(lon))
+
+    def home(self) -> tuple[int, int, float]:
+        """Latitude, longitude [degE7], altitude above mean sea level [m] of home; it is asked for when it is not known.
+
+        Raises:
+            CommandRefusedError: there is no home yet.
+        """
+        if self.telemetry.home is None:
+            self.message("HOME_POSITION")
+        assert self.telemetry.home is not None
+        return self.telemetry.home
+
+    def set_position(self, north: float, east: float, altitude: float | None = None, yaw: float | None = None) -> None:
+        """In GUIDED: go to a place from home [m], at an altitude above home (None: its present one) and a yaw [deg]."""
+        self._stop_sending(_VELOCITY)
+        lat, lon = self.location_of(north, east)
+        self.send(
+            "SET_POSITION_TARGET_GLOBAL_INT",
+            coordinate_frame=RELATIVE_INT,
+            type_mask=POSITION_ONLY & ~(YAW_IGNORED if yaw is not None else 0),
+            lat_int=lat, lon_int=lon, alt=self.telemetry.altitude if altitude is None else altitude,
+            yaw=math.radians(yaw or 0.0),
+        )  # fmt: skip
+
+    def goto(
+        self,
+        north: float,
+        east: float,
+        altitude: float | None = None,
+        yaw: float | None = None,
+        accuracy: float = 1.0,
+        timeout: float = 120.0,
+    ) -> None:
+        """``set_position``, and wait until it is there, within ``accuracy`` [m]."""
+        self.set_position(north, east, altitude, yaw)
+        self.wait_location(north, east, None if self.kind == "rover" else altitude, accuracy, timeout)
+
+    def set_velocity(
+        self,
+        north: float,
+        east: float,
+        down: float = 0.0,
+        *,
+        yaw: float | None = None,
+        yaw_rate: float | None = None,
+        body: bool = False,
+    ) -> None:
+        """In GUIDED: a velocity [m/s], sent twice a second until another order is given.
+
+        Args:
+            north, east, down: with ``body``: forward, right, down.
+            yaw: [deg]; yaw_rate: [deg/s].
+        """
+        mask = VELOCITY_ONLY
+        mask &= ~(YAW_IGNORED if yaw is not None else 0) & ~(YAW_RATE_IGNORED if yaw_rate is not None else 0)
+        self._keep_sending(_VELOCITY, "SET_POSITION_TARGET_LOCAL_NED", {
+            "coordinate_frame": BODY_OFFSET_NED if body else LOCAL_NED, "type_mask": mask,
+            "vx": north, "vy": east, "vz": down,
+            "yaw": math.radians(yaw or 0.0), "yaw_rate": math.radians(yaw_rate or 0.0),
+        })  # fmt: skip
+
+    def set_speed(self, metres_per_second: float) -> None:
+        """Along the ground, in AUTO and GUIDED (DO_CHANGE_SPEED)."""
+        self.command("DO_CHANGE_SPEED", 1, metres_per_second, -1, subject=f"speed {metres_per_second:g} m/s")
+
+    # ------------------------------------------------------------------ sticks
+
+    def rc(self, channels: Mapping[int, int] | None = None, **sticks: int) -> None:
+        """Hold sticks: pulses [us] by channel, or ``roll=``, ``pitch=``, ``throttle=``, ``yaw=``, ``steering=``.
+
+        They stay until they are set again or ``release_rc``.
+        """
+        pulses = self._pulses()
+        for name, pulse in sticks.items():
+            if name not in STICKS:
+                raise UnknownNameError(
+                    f"there is no stick {name!r}; there are {', '.join(STICKS)}, or channels by number"
+                )
+            pulses[round(self.params[STICKS[name]])] = pulse
+        pulses.update(channels or {})
+        for channel in pulses:
+            if channel not in CHANNELS:
+                raise UnknownNameError(f"there is no channel {channel}; there are 1 to 18")
+        self._send_rc(pulses)
+
+    def release_rc(self) -> None:
+        """Give all sticks back to the pilot's own transmitter."""
+        self._send_rc({channel: 0 if channel <= 8 else IGNORED - 1 for channel in self._pulses()})
+        self._stop_sending(_STICKS)
+
+    def _pulses(self) -> dict[int, int]:
+        """Those that are held, by channel."""
+        held = self._repeated.get(_STICKS, ("", {}))[1]
+        return {k: pulse for k in CHANNELS if (pulse := held.get(f"chan{k}_raw", 0)) not in (0, IGNORED)}
+
+    def _send_rc(self, pulses: Mapping[int, int]) -> None:
+        fields = {f"chan{k}_raw": pulses.get(k, IGNORED if k <= 8 else 0) for k in CHANNELS}
+        self._keep_sending(_STICKS, "RC_CHANNELS_OVERRIDE", fields)

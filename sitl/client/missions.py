@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Missions by the mission protocol: upload, start, download (https://mavlink.io/en/services/mission.html)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+from ..autopilot.mission.item import RELATIVE, MissionItem, home_item
+from ..autopilot.mission.mission import RESULT_NAMES, Mission
+from .commands import arguments, command_number, entry_name
+from .controls import Controls
+from .errors import MissionRefusedError, WaitTimeoutError
+
+__tracebackhide__ = True
+
+SILENCE_S = 1.0
+"""When nothing was asked for so long, what was sent last is sent again."""
+
+
+class Missions(Controls):
+    """A vehicle that flies missions."""
+
+    _upload: Sequence[MissionItem] = ()
+    _last_item = -1
+    """The last one that the vehicle asked for."""
+    _asked = 0
+    """How often it has asked for one."""
+    _result: int | None = None
+    """MAV_MISSION_RESULT of the upload."""
+
+    def item(
+        self, name: str, north: float | None = None, east: float | None = None, altitude: float = 0.0, **named: Any
+    ) -> MissionItem:
+        """A mission item.
+
+        Args:
+            name: of its command, "NAV_WAYPOINT".
+            north, east: its place from home [m]; None: none, or where the vehicle is then.
+            altitude: above home [m].
+            named: its other parameters, as for ``command``.
+        """
+        number = command_number(name)
+        p1, p2, p3, p4, *_ = [*arguments(number, (), named), 0.0, 0.0, 0.0, 0.0]
+        x, y = self.location_of(north, east) if north is not None and east is not None else (0, 0)
+        return MissionItem(number, RELATIVE, p1, p2, p3, p4, x, y, altitude)
+
+    def upload(self, mission: Mission | Sequence[MissionItem]) -> Mission:
+        """Upload a mission, home first; a home without a place becomes the vehicle's own.
+
+        Raises:
+            MissionRefusedError: the vehicle does not take it.
+            WaitTimeoutError: the vehicle does not answer to the end.
+        """
+        mission = mission if isinstance(mission, Mission) else Mission(tuple(mission))
+        items = mission.items
+        if items and items[0].no_place:
+            items = (home_item(*self.home()), *items[1:])
+        self.telemetry.reached.clear()
+        self.telemetry.items.clear()
+        self.transfer(items)
+        return mission
+
+    def start_mission(self) -> None:
+        """Arm if need be, AUTO, and begin with its first item."""
+        if not self.armed:
+            self.set_mode("GUIDED")
+            self.arm()
+        self.set_mode("AUTO")
+        if self.kind != "rover":
+            self.command("MISSION_START", subject="the start of the mission")
+
+    def transfer(self, items: Sequence[MissionItem]) -> None:
+        """Send items, home first, as they are, by the mission protocol.
+
+        Raises:
+            MissionRefusedError, WaitTimeoutError: as for ``upload``.
+        """
+        begin, limit_s = self.now, 10.0 + 0.2 * len(items)
+        self._upload, self._last_item, self._result = items, -1, None
+        self.send("MISSION_COUNT", count=len(items))
+        while self._result is None:
+            before = self._asked
+            if self.passes(partial(self._goes_on, before), SILENCE_S):
+                continue
+            if self.now - begin >= limit_s:
+                self.raise_error(WaitTimeoutError("MISSION_ACK", limit_s, "", begin))
+            if self._last_item < 0:
+                self.send("MISSION_COUNT", count=len(items))
+            else:
+                self._send_item(self._last_item)
+        self._upload = ()
+        if self._result:
+            name = RESULT_NAMES.get(self._result) or entry_name("MAV_MISSION_RESULT", self._result)
+            self.raise_error(MissionRefusedError(self._result, name, begin))
+
+    def _goes_on(self, asked: int) -> bool:
+        """Whether the vehicle has answered, or asked for an item, since it had asked so often."""
+        return self._result is not None or self._asked != asked
+
+    def _take(self, name: str, fields: Any) -> None:
+        super()._take(name, fields)
+        if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT") and fields.seq < len(self._upload):
+            self._last_item, self._asked = int(fields.seq), self._asked + 1
+            self._send_item(self._last_item)
+        elif name == "MISSION_ACK" and fields.mission_type == 0:
+            self._result = int(fields.type)
+
+    def _send_item(self, seq: int) -> None:
+        item = self._upload[seq]
+        self.send(
+            "MISSION_ITEM_INT", seq=seq, frame=item.frame, command=item.command, autocontinue=item.autocontinue,
+            param1=item.p1, param2=item.p2, param3=item.p3, param4=item.p4, x=item.x, y=item.y, z=item.z,
+        )  # fmt: skip

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a vehicle's telemetry said last."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+from ..core.geodesy import offset_ne
+
+ARMED = 0x80
+"""HEARTBEAT.base_mode: MAV_MODE_FLAG_SAFETY_ARMED."""
+READY_BITS = 0x10 | 0x01
+"""EKF_STATUS_REPORT: attitude, absolute position."""
+PREARM_BIT = 0x10000000
+"""SYS_STATUS: MAV_SYS_STATUS_PREARM_CHECK."""
+ON_GROUND = 1
+"""EXTENDED_SYS_STATE: MAV_LANDED_STATE_ON_GROUND."""
+
+
+class Position(NamedTuple):
+    """From home."""
+
+    north: float
+    """[m]"""
+    east: float
+    """[m]"""
+    altitude: float
+    """Above home [m]."""
+
+    @property
+    def height(self) -> float:
+        """The altitude, under the name that the pytest plugin has for it [m]."""
+        return self.altitude
+
+    def __str__(self) -> str:
+        return f"{self.north:.1f} m north, {self.east:.1f} m east, {self.altitude:.1f} m high"
+
+
+class Attitude(NamedTuple):
+    """From ATTITUDE."""
+
+    roll: float
+    """[rad]"""
+    pitch: float
+    """[rad]"""
+    yaw: float
+    """-pi .. pi [rad]"""
+
+
+NO_ATTITUDE = Attitude(math.nan, math.nan, math.nan)
+
+
+class Text(NamedTuple):
+    """A status text."""
+
+    time: float
+    """Simulated [s]."""
+    severity: int
+    """MAV_SEVERITY"""
+    text: str
+
+
+@dataclass
+class Telemetry:
+    """The last of each; NaN until it was received."""
+
+    mode_names: Mapping[int, str] = field(default_factory=dict)
+    """Of this vehicle, by their numbers."""
+    mode_number: int = -1
+    """custom_mode of HEARTBEAT; -1 before the first."""
+    armed: bool = False
+    lat: int = 0
+    """[degE7]"""
+    lon: int = 0
+    """[degE7]"""
+    alt: float = math.nan
+    """Above mean sea level [m]."""
+    altitude: float = math.nan
+    """Above home [m]."""
+    velocity: tuple[float, float, float] = (math.nan, math.nan, math.nan)
+    """North, east, down [m/s]."""
+    heading: float = math.nan
+    """[deg], 0 .. 360"""
+    attitude: Attitude = NO_ATTITUDE
+    home: tuple[int, int, float] | None = None
+    """[degE7], [degE7], [m] above mean sea level."""
+    has_position: bool = False
+    """Attitude and absolute position are known."""
+    checked: bool = False
+    """Pre-arm checks are good."""
+    voltage: float = math.nan
+    """[V]"""
+    remaining: float = math.nan
+    """Of the battery [%]."""
+    item: int = 0
+    """Mission item under way."""
+    items: list[int] = field(default_factory=list)
+    """Mission items that were under way while it was armed."""
+    parameters: dict[str, float] = field(default_factory=dict)
+    """Values by name, as they were sent last."""
+    texts: list[Text] = field(default_factory=list)
+    reached: list[tuple[float, int]] = field(default_factory=list)
+    """(time [s], mission item)"""
+    pieces: dict[int, str] = field(default_factory=dict)
+    """Beginnings of long texts."""
+
+    def copy(self) -> Telemetry:
+        """As it is now."""
+        return replace(
+            self,
+            parameters=dict(self.parameters), texts=list(self.texts), reached=list(self.reached),
+            items=list(self.items), pieces=dict(self.pieces),
+        )  # fmt: skip
+
+    @property
+    def mode(self) -> str:
+        """Flight mode; "" before the first HEARTBEAT."""
+        return "" if self.mode_number < 0 else self.mode_names.get(self.mode_number, str(self.mode_number))
+
+    @property
+    def position(self) -> Position:
+        """From home; NaN without one."""
+        if self.home is None or math.isnan(self.altitude):
+            return Position(math.nan, math.nan, self.altitude)
+        north, east = offset_ne(self.home[0], self.home[1], self.lat, self.lon)
+        return Position(float(north), float(east), self.altitude)
+
+    @property
+    def groundspeed(self) -> float:
+        """[m/s]"""
+        north, east, _ = self.velocity
+        return float((north * north + east * east) ** 0.5)
+
+    @property
+    def climb_rate(self) -> float:
+        """Upward [m/s]."""
+        return -self.velocity[2]
+
+    def take(self, time: float, name: str, m: Any) -> None:
+        """A message, received at a simulated time [s]."""
+        if name == "GLOBAL_POSITION_INT":
+            self.lat, self.lon, self.alt, self.altitude = m.lat, m.lon, m.alt * 1e-3, m.relative_alt * 1e-3
+            self.velocity = (m.vx * 0.01, m.vy * 0.01, m.vz * 0.01)
+            self.heading = m.hdg * 0.01 if m.hdg != 65535 else math.nan
+        elif name == "ATTITUDE":
+            self.attitude = Attitude(m.roll, m.pitch, m.yaw)
+        elif name == "HEARTBEAT":
+            self.mode_number, self.armed = int(m.custom_mode), bool(m.base_mode & ARMED)
+        elif name == "STATUSTEXT":
+            self._text(time, m)
+        elif name == "MISSION_ITEM_REACHED":
+            self.reached.append((time, int(m.seq)))
+        elif name == "MISSION_CURRENT":
+            self.item = int(m.seq)
+            if self.armed and self.item not in self.items[-1:]:
+                self.items.append(self.item)
+        elif name == "PARAM_VALUE":
+            self.parameters[m.param_id.decode("ascii", "replace")] = float(m.param_value)
+        elif name == "EKF_STATUS_REPORT":
+            self.has_position = m.flags & READY_BITS == READY_BITS
+        elif name == "SYS_STATUS":
+            self.checked = bool(m.onboard_control_sensors_health & PREARM_BIT)
+            self.voltage, self.remaining = m.voltage_battery * 1e-3, float(m.battery_remaining)
+        elif name == "HOME_POSITION":
+            self.home = (m.latitude, m.longitude, m.altitude * 1e-3)
+
+    def _text(self, time: float, m: Any) -> None:
+        """Texts of more than 50 bytes come in pieces."""
+        text = m.text.decode("ascii", "replace")
+        if m.id:
+            text = self.pieces.pop(m.id, "") + text if m.chunk_seq else text
+            if len(m.text) == 50:  # the last piece is shorter
+                self.pieces[m.id] = text
+                return
+        self.texts.append(Text(time, int(m.severity), text))

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Waiting for what a pilot waits for. Time-outs are simulated seconds; every one raises WaitTimeoutError."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+
+from .session import Session
+from .telemetry import ON_GROUND, Telemetry, Text
+
+__tracebackhide__ = True
+
+BOOT_S = 120.0
+"""A vehicle that is not ready by then has a fault."""
+READY = "a vehicle that is ready to arm"
+"""What ``wait_ready`` waits for, in its error."""
+
+
+def turn(degrees: float) -> float:
+    """An angle within +-180 degrees."""
+    return (degrees + 180.0) % 360.0 - 180.0
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    if math.isinf(high):
+        return f"at least {low:g} {unit}"
+    return f"at most {high:g} {unit}" if math.isinf(low) else f"{low:g} to {high:g} {unit}"
+
+
+class Waits(Session):
+    """A vehicle that can be waited for. ``hold``: so long must it stay so [s]."""
+
+    def wait_ready(self, timeout: float = BOOT_S) -> None:
+        """Until it knows where it is and its pre-arm checks are good."""
+        seen = self.telemetry
+
+        def last() -> str:
+            place = "position known" if seen.has_position else "no position"
+            return f"{place}, pre-arm checks {'good' if seen.checked else 'not good'}"
+
+        self.wait(lambda t: t.has_position and t.checked, timeout, READY, last)
+
+    def wait_mode(self, name: str, timeout: float = 30.0) -> None:
+        """Until it is in a mode."""
+        self.wait(lambda _: self.mode == name, timeout, f"mode {name}", lambda: f"mode {self.mode}")
+
+    def wait_armed(self, timeout: float = 30.0) -> None:
+        """Until it is armed."""
+        self.wait(lambda _: self.armed, timeout, f"the {self.kind} to be armed")
+
+    def wait_disarmed(self, timeout: float = 120.0) -> None:
+        """Until it is disarmed."""
+        self.wait(lambda _: not self.armed, timeout, f"the {self.kind} to be disarmed")
+
+    def wait_landed(self, timeout: float = 120.0) -> None:
+        """Until it stands on the ground (EXTENDED_SYS_STATE); a copter disarms a little later."""
+        with self.messages("EXTENDED_SYS_STATE", 5.0) as states:
+            self.wait(lambda _: states and states[-1].landed_state == ON_GROUND, timeout, f"the {self.kind} to land",
+                      lambda: f"{self.telemetry.altitude:.2f} m")  # fmt: skip
+
+    def wait_altitude(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
+        """Until its altitude above home is within ``low`` .. ``high`` [m]."""
+        self._wait_range("an altitude", "m", lambda t: t.altitude, low, high, timeout, hold)
+
+    def wait_groundspeed(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
+        """Until its speed along the ground is within ``low`` .. ``high`` [m/s]."""
+        self._wait_range("a speed", "m/s", lambda t: t.groundspeed, low, high, timeout, hold)
+
+    def wait_climb_rate(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
+        """Until it climbs with ``low`` .. ``high`` [m/s]; negative: it sinks."""
+        self._wait_range("a climb rate", "m/s", lambda t: t.climb_rate, low, high, timeout, hold)
+
+    def _wait_range(
+        self, what: str, unit: str, value: Callable[[Telemetry], float], low: float, high: float, timeout: float,
+        hold: float,
+    ) -> None:  # fmt: skip
+        self.wait(lambda t: low <= value(t) <= high, timeout, f"{what} of {_range(low, high, unit)}",
+                  lambda: f"{value(self.telemetry):.2f} {unit}", hold)  # fmt: skip
+
+    def wait_heading(self, degrees: float, accuracy: float = 5.0, timeout: float = 60.0, hold: float = 0.0) -> None:
+        """Until its nose points to ``degrees``, within ``accuracy`` [deg]."""
+        what = f"a heading of {degrees:g} within {accuracy:g} deg"
+        self.wait(
+            lambda t: abs(turn(t.heading - degrees)) <= accuracy, timeout, what, lambda: f"{self.heading:.1f} deg", hold
+        )
+
+    def wait_distance(self, metres: float, timeout: float = 120.0) -> None:
+        """Until it is as far, along the ground, from where it is now."""
+        start = self.position
+        self.wait(
+            lambda t: math.dist(t.position[:2], start[:2]) >= metres,
+            timeout,
+            f"a distance of {metres:g} m from {start.north:.1f} m north, {start.east:.1f} m east",
+            lambda: f"{math.dist(self.position[:2], start[:2]):.2f} m",
+        )
+
+    def wait_location(
+        self,
+        north: float,
+        east: float,
+        altitude: float | None = None,
+        accuracy: float = 1.0,
+        timeout: float = 120.0,
+        hold: float = 0.0,
+    ) -> None:
+        """Until it is at a place from home [m], along the ground and in altitude each within ``accuracy``."""
+
+        def away() -> float:
+            return math.dist(self.position[:2], (north, east))
+
+        def off() -> float:
+            return abs(self.telemetry.altitude - altitude) if altitude is not None else 0.0
+
+        where = f"{north:g} m north, {east:g} m east" + (f", {altitude:g} m high" if altitude is not None else "")
+
+        def last() -> str:
+            return f"{away():.2f} m away" + (f", {off():.2f} m off its altitude" if altitude is not None else "")
+
+        self.wait(
+            lambda _: away() <= accuracy and off() <= accuracy, timeout, f"{where}, within {accuracy:g} m", last, hold
+        )
+
+    def wait_waypoint(self, item: int, timeout: float = 300.0) -> None:
+        """Until a mission item was reached (MISSION_ITEM_REACHED); an item that was, at once."""
+
+        def last() -> str:
+            return f"reached {', '.join(map(str, self.reached)) or 'none'}; on the way to {self.telemetry.item}"
+
+        self.wait(lambda _: item in self.reached, timeout, f"mission item {item} to be reached", last)
+
+    def wait_current_waypoint(self, item: int, timeout: float = 300.0) -> None:
+        """Until a mission item is under way (MISSION_CURRENT)."""
+        what = f"mission item {item} to be under way"
+        self.wait(lambda t: t.item == item, timeout, what, lambda: f"item {self.telemetry.item}")
+
+    def wait_statustext(self, text: str | re.Pattern[str], timeout: float = 60.0, since: float = -1.0) -> Text:
+        """Until it sends a text: part of it, or a compiled regular expression that is found in it.
+
+        Texts are gone through in order: one that came before this call is found, too, unless it or a later one has
+        been found already, or did not come after ``since`` [simulated s].
+        """
+        found: list[Text] = []
+
+        def look() -> bool:
+            while self._texts_read < len(self.texts) and not found:
+                said = self.texts[self._texts_read]
+                self._texts_read += 1
+                matches = text in said.text if isinstance(text, str) else text.search(said.text)
+                if matches and said.time > since:
+                    found.append(said)
+            return bool(found)
+
+        first = self._texts_read
+        what = repr(text) if isinstance(text, str) else f"a text like {text.pattern!r}"
+
+        def last() -> str:
+            count = len(self.texts) - first
+            return f"{count} other texts" if count else "no text at all"
+
+        try:
+            self.wait(lambda _: look(), timeout, f"status text {what}", last)
+        finally:
+            if not found:
+                self._texts_read = first
+        return found[0]

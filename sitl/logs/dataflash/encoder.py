@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Encodes one DataFlash log: rows of samples, and the events between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import numpy as np
+
+from ...autopilot.events import EVENT_RING
+from ...autopilot.firmware import Firmware
+from ...autopilot.mission.mission import Mission
+from . import bits, copter, formats, rover
+from .common import EVENT_MESSAGES
+from .events import EDGES, HOME, ORIGIN, EventEncoder
+from .formats import Message
+from .plan import Plan
+from .samples import Samples
+
+ROWS = 1024
+"""Number of samples that are collected before they are encoded."""
+EVERY_BIT = 0x7FFFFFFF
+MESSAGES: Mapping[str, Callable[[int, int, bool], tuple[Message, ...]]] = {
+    "copter": copter.messages,
+    "rover": rover.messages,
+}
+"""Messages by the firmware's name."""
+TITLES = {"copter": ("ArduCopter", 2), "rover": ("ArduRover", 1)}
+"""Firmware -> the name that readers expect in MSG, the build type in VER."""
+VERSION = (4, 7, 0)
+"""The ArduPilot whose messages these are."""
+_RING, _NAV = "autopilot.events.", "autopilot.modes.nav."
+_PLACES = (
+    (ORIGIN, "autopilot.estimate.origin_set", "autopilot.estimate.origin_"),
+    (HOME, "autopilot.home.is_set", "autopilot.home."),
+)
+
+
+class Vehicle(Protocol):
+    """The part of the simulation's interface that a log uses."""
+
+    fleet: np.ndarray[Any, Any]
+    index: int
+    v: Any
+    firmware: Firmware
+    mission: Mission
+    before_boot_us: int
+    physics: str
+    airframe: Any
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since the start of the simulation [us]."""
+        ...
+
+
+class LogEncoder:
+    """Encodes one boot of a vehicle as the bytes of a log. Call ``begin`` first.
+
+    Args:
+        vehicle: the simulation.
+        boot_unix_us: Unix time of boot [us].
+        bitmask: LOG_BITMASK.
+        version: name and version of this program, for MSG and VER.
+    """
+
+    def __init__(self, vehicle: Vehicle, boot_unix_us: int, bitmask: int, version: str) -> None:
+        self._vehicle, self._version = vehicle, version
+        self._boot_unix_us = boot_unix_us
+        name = vehicle.firmware.name
+        self._simulated = ":" not in vehicle.physics  # elsewhere the record holds no truth
+        every = (*EVENT_MESSAGES, *MESSAGES[name](EVERY_BIT, boot_unix_us, self._simulated))
+        self._described = every
+        self._numbers = formats.number_all(every)
+        self.events = EventEncoder(self._numbers)
+        self._bits = bitmask
+        self._k = 0
+        self._notes: list[tuple[int, int, bytes]] = []
+        self._missions: list[tuple[int, Mission]] = []
+        self._mission = vehicle.mission
+        self._last_us = 0
+        self._out: list[bytes] = []
+        self._seen = int(vehicle.v.autopilot.events.count)
+        self._plan_rows()
+
+    def _plan_rows(self) -> None:
+        v = self._vehicle
+        self._samples = Samples(v.fleet, v.index, ROWS)
+        chosen = MESSAGES[v.firmware.name](self._bits, self._boot_unix_us, self._simulated)
+        self._plan = Plan(chosen, self._numbers, self._samples)
+        self._samples.want(*(edge.path for edge in EDGES), _NAV + "command_count", _NAV + "command_seq")
+        for _, is_set, place in _PLACES:
+            self._samples.want(is_set, place + "lat", place + "lon", place + "alt")
+        self._samples.begin()
+        self._take = self._samples.taker()
+        self._take(0)
+        self.periods_us = tuple(self._plan.periods_us)
+
+    # ------------------------------------------------------------------ while the vehicle moves
+
+    def row(self) -> None:
+        """Take a sample."""
+        self._k += 1
+        self._take(self._k)
+        if self._k == ROWS:
+            self.write_rows()
+
+    def note(self, time_us: int, pack: Callable[..., bytes], *arguments: Any) -> None:
+        """Add the message ``pack(time_us, *arguments)`` between the samples; times [us since boot] never go back."""
+        self._last_us = time_us = max(time_us, self._last_us)
+        data = pack(time_us, *arguments)
+        if data:
+            self._notes.append((self._k + 1, time_us, data))
+
+    def text(self, time_us: int, text: str) -> None:
+        """Add a status text (MSG); time since boot [us]."""
+        self.note(time_us, self.events.text, text)
+
+    def read_events(self) -> None:
+        """Add the events that the autopilot emitted since the last call."""
+        ring = self._vehicle.v.autopilot.events
+        count = int(ring.count)
+        for k in range(max(self._seen, count - EVENT_RING), count):
+            at = k % EVENT_RING
+            event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
+            self.note(int(ring.time_us[at]), self.events.event, *event)
+        self._seen = count
+
+    def skip_events_before(self, time_us: int) -> None:
+        """Skip events before ``time_us`` [us since boot]; later ones are still read."""
+        ring = self._vehicle.v.autopilot.events
+        count = int(ring.count)
+        self._seen = count
+        while self._seen > max(0, count - EVENT_RING) and ring.time_us[(self._seen - 1) % EVENT_RING] >= time_us:
+            self._seen -= 1
+
+    def mission_changed(self, time_us: int) -> None:
+        """Add all items of the mission; time since boot [us]."""
+        self._missions.append((self._k, self._mission))
+        self._mission = self._vehicle.mission
+        if self._bits & bits.COMMANDS:
+            self.note(time_us, self.events.mission, self._mission.items)
+
+    @property
+    def mission(self) -> Mission:
+        """The mission that was logged last."""
+        return self._mission
+
+    def parameter(self, time_us: int, name: str) -> None:
+        """Add a parameter that was set; time since boot [us]."""
+        self.note(time_us, self.events.parameters, [self._parameter(name)])
+
+    def set_bitmask(self, bitmask: int) -> None:
+        """Log by another LOG_BITMASK from now on."""
+        if bitmask != self._bits:
+            self.write_rows()
+            self._bits = bitmask
+            self._plan_rows()
+
+    # ------------------------------------------------------------------ bytes
+
+    def take_bytes(self) -> bytes:
+        """The bytes encoded since the last call."""
+        self.write_rows()
+        data = b"".join(self._out)
+        self._out.clear()
+        return data
+
+    @property
+    def pending(self) -> int:
+        """Number of encoded chunks that ``take_bytes`` has not returned yet."""
+        return len(self._out)
+
+    def begin(self, time_us: int) -> None:
+        """Encode the head of the log: formats, parameters, version, mode, mission, places; time since boot [us]."""
+        v, pack = self._vehicle, self.events
+        self._last_us = time_us
+        title, build = TITLES[v.firmware.name]
+        described = f"{title} V{'.'.join(map(str, VERSION))}-dev ({self._version})"
+        version = (0, 0, *VERSION, 0, 0, described.encode()[:64], 0, build, 0, 0, 0)
+        modes = v.v.autopilot.modes
+        self._out += [
+            formats.head(self._described, self._numbers, time_us),
+            pack.parameters(time_us, [self._parameter(p.name) for p in v.firmware.table]),
+            pack.pack("VER", time_us, 3, *version[1:]),
+            pack.text(time_us, described),
+            pack.text(time_us, f"Airframe: {v.airframe.name}"),
+            pack.pack("MODE", time_us, int(modes.number), int(modes.number), int(modes.reason)),
+            pack.mission(time_us, v.mission.items),
+        ]
+        for kind, is_set, place in _PLACES:
+            if self._samples.column(is_set)[0]:
+                self._out.append(self._place(0, kind, place, time_us))
+
+    def write_rows(self) -> None:
+        """Encode the samples and messages so far."""
+        n = self._k
+        if not n and not self._notes:
+            return
+        self._edges(n)
+        self._out.append(self._plan.write(n, self._notes))
+        self._notes.clear()
+        self._missions.clear()
+        self._samples.rows[0] = self._samples.rows[n]
+        self._k = 0
+
+    def _edges(self, n: int) -> None:
+        """Messages that follow from changes in the samples: EV, ORGN, MISE."""
+        column, pack = self._samples.column, self.events.pack
+        times = column("time_us")
+        for edge in EDGES:
+            x = column(edge.path)[: n + 1]
+            for k in np.flatnonzero(x[1:] != x[:-1]).tolist():
+                number = edge.up if x[k + 1] > x[k] else edge.down
+                if number:
+                    time_us = int(times[k + 1])
+                    self._notes.append((k + 1, time_us, pack("EV", time_us, number)))
+        for kind, is_set, place in _PLACES:
+            moved = np.zeros(n, bool)
+            for name in ("lat", "lon", "alt"):
+                x = column(place + name)[: n + 1]
+                moved |= x[1:] != x[:-1]
+            for k in np.flatnonzero(moved & (column(is_set)[1 : n + 1] != 0)).tolist():
+                time_us = int(times[k + 1])
+                self._notes.append((k + 1, time_us, self._place(k + 1, kind, place, time_us)))
+        count, seq = column(_NAV + "command_count")[: n + 1], column(_NAV + "command_seq")
+        for k in np.flatnonzero(count[1:] != count[:-1]).tolist():
+            self._command_started(k + 1, int(seq[k + 1]), int(times[k + 1]))
+
+    def _command_started(self, row: int, seq: int, time_us: int) -> None:
+        """MISE: a navigation command starts."""
+        mission = next((mission for until, mission in self._missions if row <= until), self._mission)
+        item = mission.get(seq)
+        if item is not None and seq > 0 and self._bits & bits.COMMANDS:
+            data = self.events.command("MISE", time_us, len(mission), seq, item)
+            self._notes.append((row, time_us, data))
+
+    def _place(self, row: int, kind: int, place: str, time_us: int) -> bytes:
+        numbers = (float(self._samples.column(place + name)[row]) for name in ("lat", "lon", "alt"))
+        return self.events.origin(time_us, kind, *numbers)
+
+    def _parameter(self, name: str) -> tuple[str, float, float]:
+        return name, float(self._vehicle.v.autopilot.params[name]), self._vehicle.firmware.table[name].default
+
+    def _checks(self) -> int:
+        return int(self._vehicle.v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Event messages of a log: modes, arming, errors, texts, parameters, the mission.
+
+Numbers of EV and ERR: https://ardupilot.org/copter/docs/logmessages.html#ev
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from struct import Struct
+from typing import Any, NamedTuple
+
+from ...autopilot import events as core
+from ...autopilot import failsafe_checks as failsafes
+from ...autopilot.mission.item import MissionItem
+from .common import EVENT_MESSAGES
+from .formats import HEAD, TYPES
+
+EV_ARMED, EV_DISARMED, EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED, EV_LOST_GPS = 10, 11, 15, 17, 18, 19
+EV_SET_HOME, EV_NOT_LANDED, EV_ALT_RESET, EV_YAW_RESET = 25, 28, 60, 62
+_RADIO, _BATTERY, _GCS, _MODE, _CRASH, _EKF = 5, 6, 8, 10, 12, 17
+_FAILSAFES = {
+    failsafes.RADIO: _RADIO,
+    failsafes.GCS: _GCS,
+    failsafes.BATTERY_LOW: _BATTERY,
+    failsafes.BATTERY_CRITICAL: _BATTERY,
+    failsafes.EKF: _EKF,
+}
+"""Failsafe -> subsystem of ERR."""
+ORIGIN, HOME = 0, 1
+"""Type of ORGN."""
+
+
+class Edge(NamedTuple):
+    """A field of the vehicle's record; a change of its value is logged as an EV message."""
+
+    path: str
+    up: int
+    """EV number when the value grows; 0: none."""
+    down: int = 0
+
+
+EDGES = (
+    Edge("autopilot.arming.auto_armed", EV_AUTO_ARMED),
+    Edge("autopilot.arming.landed_maybe", EV_LAND_MAYBE),
+    Edge("autopilot.arming.landed", EV_LANDED, EV_NOT_LANDED),
+    Edge("autopilot.home.is_set", EV_SET_HOME),
+    Edge("autopilot.estimate.reset_d_count", EV_ALT_RESET),
+    Edge("autopilot.estimate.reset_yaw_count", EV_YAW_RESET),
+)
+
+
+class EventEncoder:
+    """Encodes the messages of EVENT_MESSAGES.
+
+    Args:
+        numbers: message name -> message number in this log.
+    """
+
+    def __init__(self, numbers: dict[str, int]) -> None:
+        self._packers: dict[str, tuple[Callable[..., bytes], int]] = {}
+        for m in EVENT_MESSAGES:
+            layout: Struct = m.packer
+            self._packers[m.name] = (layout.pack, numbers[m.name])
+
+    def pack(self, name: str, time_us: int, *fields: Any) -> bytes:
+        """One message; texts as bytes."""
+        pack, number = self._packers[name]
+        return pack(*HEAD, number, time_us, *fields)
+
+    def event(self, time_us: int, code: int, a: float, b: float, checks: int) -> bytes:
+        """Messages for an event of the autopilot; empty for events that are not logged.
+
+        Args:
+            time_us: simulated time since boot [us].
+            code: number of the event.
+            a, b: its arguments.
+            checks: bits of ARMING_CHECK.
+        """
+        if code == core.MODE_CHANGED:
+            return self.pack("MODE", time_us, int(a) & 255, int(a) & 255, int(b) & 255)
+        if code == core.ARMED:
+            armed = self.pack("ARM", time_us, 1, checks & 0xFFFFFFFF, 0, int(a) & 255)
+            return armed + self.pack("EV", time_us, EV_ARMED)
+        if code == core.DISARMED:
+            disarmed = self.pack("ARM", time_us, 0, checks & 0xFFFFFFFF, 0, int(a) & 255)
+            return disarmed + self.pack("EV", time_us, EV_DISARMED)
+        if code == core.FAILSAFE and int(a) in _FAILSAFES:
+            return self.pack("ERR", time_us, _FAILSAFES[int(a)], int(b) & 255)
+        if code == core.MODE_REFUSED:
+            return self.pack("ERR", time_us, _MODE, int(a) & 255)
+        if code in (core.CRASH_DISARM, core.CRASH_HOLD):
+            return self.pack("ERR", time_us, _CRASH, 1)
+        if code == core.EKF_STOPPED_GPS:
+            return self.pack("EV", time_us, EV_LOST_GPS)
+        return b""
+
+    def text(self, time_us: int, text: str) -> bytes:
+        """MSG: the first 64 bytes."""
+        return self.pack("MSG", time_us, text.encode("ascii", "replace")[:64])
+
+    def command(self, name: str, time_us: int, total: int, seq: int, item: MissionItem) -> bytes:
+        """CMD or MISE."""
+        numbers = (total, seq, item.command & 0xFFFF, item.p1, item.p2, item.p3, item.p4)
+        return self.pack(name, time_us, *numbers, item.x, item.y, item.z, item.frame & 255)
+
+    def mission(self, time_us: int, items: Sequence[MissionItem]) -> bytes:
+        """CMD: all items."""
+        return b"".join(self.command("CMD", time_us, len(items), k, item) for k, item in enumerate(items))
+
+    def origin(self, time_us: int, kind: int, lat: float, lon: float, alt: float) -> bytes:
+        """ORGN: degE7, m."""
+        return self.pack("ORGN", time_us, kind, int(lat), int(lon), round(alt * TYPES["e"][2]))
+
+    def parameters(self, time_us: int, values: Iterable[tuple[str, float, float]]) -> bytes:
+        """PARM of (name, value, default) each."""
+        return b"".join(self.pack("PARM", time_us, name.encode(), value, default) for name, value, default in values)
