@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ....core.kernels import law, unit
+from ....core.records import Records
 from ...state import Actuators
-from ..state import Autopilot
+from ..state import Autopilot, Vehicle
 from . import motors, rate, throttle_mix
 from .altitude import set_max_speed_accel_d
 from .attitude import relax
@@ -49,7 +48,7 @@ def drive(ap: Autopilot, actuators: Actuators, time_us: int) -> None:
 
 
 @unit
-def update(fleet: Any, i: int) -> None:
+def update(fleet: Records[Vehicle], i: int) -> None:
     """The same for vehicle ``i``."""
     v = fleet[i]
     drive(v.autopilot, v.actuators, v.time_us)
