@@ -9,8 +9,8 @@ from typing import Any
 from ...navigation.leg import Limits, axis_limits
 from ...navigation.planner import Planner, Point
 from ...navigation.state import LOITER_TURNS, TAKEOFF
-from ..control.altitude import stopping_point_d
-from ..control.position import stopping_point_ne
+from ..control.altitude_start import stopping_point_d
+from ..control.position_start import stopping_point_ne
 from . import waypoint
 
 GRAVITY = 9.80665

@@ -79,7 +79,7 @@ def test_thrust_stays_as_the_battery_empties(ap):
     ap.params.MOT_BAT_VOLT_MAX, ap.params.MOT_BAT_VOLT_MIN = 12.8, 9.6
     ap.battery.voltage = 11.0
     for _ in range(100):
-        thrust_curve.compensate(ap)
+        thrust_curve.compensate(ap.control.motors, ap.battery, ap.estimate, ap.params.MOT)
     m = ap.control.motors
     demand = 0.3
     command = thrust_curve.command_from_thrust(
@@ -91,7 +91,7 @@ def test_thrust_stays_as_the_battery_empties(ap):
 
 def test_compensation_is_off_by_default(ap):
     ap.battery.voltage = 11.0
-    thrust_curve.compensate(ap)
+    thrust_curve.compensate(ap.control.motors, ap.battery, ap.estimate, ap.params.MOT)
     assert ap.control.motors.compensation_gain == 1.0
 
 
@@ -136,13 +136,13 @@ def test_upside_down_throttle_is_cut(ap):
 
 
 def test_priority_rises_quickly_and_falls_slowly(ap):
-    throttle_mix.set_mix_max(ap, 1.0)
+    throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, 1.0)
     ticks = 0
     while ap.control.attitude.mix < 0.5:
         throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, 0.35)
         ticks += 1
     assert ticks * DT == pytest.approx(0.2, abs=0.01)
-    throttle_mix.set_mix_min(ap)
+    throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
     ap.control.motors.throttle_out = ap.control.motors.throttle = 0.35
     throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, 0.35)
     assert ap.control.attitude.mix == pytest.approx(0.5 - 0.5 * DT)
