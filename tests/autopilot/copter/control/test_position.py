@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.control.pid import Gains
+from sitl.autopilot.control.pid import Blocked, Gains
 from sitl.autopilot.control.shaping import Motion, Motion2
 from sitl.autopilot.copter.control import altitude, altitude_start, position, position_ned, position_start
 from sitl.autopilot.copter.control.motors import hover_throttle
-from sitl.autopilot.copter.control.state import DT, GRAVITY, PositionState
+from sitl.autopilot.copter.control.state import DT, GRAVITY, AltitudeState, PositionState
 from sitl.core.algebra import dot2, norm2, quat_from_euler, rotate, with_down
 from sitl.core.vectors import Euler, Vec2, Vec3
 
@@ -248,3 +248,32 @@ def test_acceleration_stays_within_the_lean_and_says_where_it_is_used_up(north, 
     assert norm2(c.accel_target) <= 3.0 * (1 + 1e-9)
     assert (norm2(c.limit) > 0.0) == (2.0 * math.hypot(north, east) > 3.0)
     assert dot2(c.accel_target, Vec2(north, east)) <= 0.0
+
+
+ALTITUDE = altitude.AltitudeGains(
+    1.0,
+    Gains(5.0, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 5.0, 5.0),
+    Gains(0.05, 0.0, 0.0, 0.0, 0.0, 0.8, 0.0, 0.0, 20.0, 0.0),
+)
+
+
+@given(st.floats(-20.0, 20.0), st.floats(-3.0, 3.0))
+def test_throttle_is_taken_off_above_the_path_and_added_below(pos, vel):
+    c = AltitudeState()
+    off = altitude.control_vertical(c, Motion(pos, vel, 0.0), Blocked(False, False), ALTITUDE)
+    assert off == pytest.approx(-0.05 * 5.0 * (pos + vel), abs=1e-9)
+    assert c.pos_error == -pos and c.vel_target == -pos and c.limit == 0.0
+
+
+@pytest.mark.parametrize(("blocked", "limit"), [(Blocked(True, False), 1.0), (Blocked(False, True), -1.0)])
+def test_the_path_learns_in_which_direction_thrust_is_used_up(blocked, limit):
+    c = AltitudeState()
+    altitude.control_vertical(c, Motion(0.0, 0.0, 0.0), blocked, ALTITUDE)
+    assert c.limit == limit
+
+
+@given(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
+def test_a_vehicle_stops_ahead_of_where_it_is(north, east):
+    stop = position_start.stopping_point(Vec2(1.0, 2.0), Vec2(north, east), 1.0, 5.0, 2.5) - Vec2(1.0, 2.0)
+    assert north * stop.y == pytest.approx(east * stop.x, abs=1e-9) and dot2(stop, Vec2(north, east)) >= 0.0
+    assert norm2(stop) <= 0.5 * 2.5 + 25.0 / 5.0 + 1e-9
