@@ -8,8 +8,8 @@ from typing import Any
 
 from ..engine import Seat
 from ..native.copter.ground import upright
-from ..native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from ..native.obstacles import HIT_PAUSE_US
+from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from . import copter_aircraft, memory
 from .copter_aircraft import GOES
 from .craft import Craft

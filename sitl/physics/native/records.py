@@ -17,6 +17,11 @@ from ...core.vectors import Quat, Vec3
 from ...vehicles.figures.common import Figures
 from ...worlds.geometry import SOLID_FIGURES
 
+GROUND_AIRBORNE = 0
+GROUND_STANDING = 1
+GROUND_LYING = 2
+"""Tipped over: it stays as it fell, whatever the rotors do."""
+
 
 class Derived(Record):
     """What follows from the figures (``prepare``), so that a tick needs no exp: what all vehicles have."""

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ...core.algebra import euler_of
 from ...core.geodesy import add_offset
 from ...core.vectors import Euler, Vec3
-from .copter.state import GROUND_AIRBORNE
+from .records import GROUND_AIRBORNE
 
 
 class Truth(NamedTuple):

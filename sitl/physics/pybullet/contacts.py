@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..native.copter.ground import upright
-from ..native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from ..native.obstacles import report_hit
+from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from .worlds import Surfaces
 
 CLEAR = 0.01

@@ -17,8 +17,8 @@ from ...core.vectors import Quat, Vec3
 from ...worlds.contact import clearance
 from ..engine import Array, Engine, EngineError, Seat
 from ..native.body import GRAVITY
-from ..native.copter.state import GROUND_AIRBORNE, GROUND_STANDING
 from ..native.obstacles import settle
+from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
 from ..record import offset
 from . import lidar, state, urdf
 from .contacts import CLEAR, Row, report

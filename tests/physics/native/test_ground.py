@@ -6,7 +6,7 @@ from pytest import approx
 
 from sitl.core.algebra import euler_of, quat_from_euler
 from sitl.core.vectors import Euler
-from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 
 
 @pytest.mark.parametrize("frame", ["ardupilot_quad", "erle_copter"])

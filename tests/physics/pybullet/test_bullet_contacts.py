@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("pybullet")
 
-from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_STANDING
+from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_STANDING
 from sitl.physics.pybullet.contacts import report
 from sitl.physics.pybullet.worlds import Surfaces
 from sitl.worlds import Box, Start, World

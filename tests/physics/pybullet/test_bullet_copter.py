@@ -12,8 +12,8 @@ pytest.importorskip("pybullet")
 
 from sitl import vehicles
 from sitl.physics.engine import EngineError
-from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from sitl.physics.native.copter.step import move
+from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from sitl.physics.pybullet.engine import BulletEngine
 from tests.physics.pybullet.bullet_copters import by_dice, copter, hover, put, record_of, run
 

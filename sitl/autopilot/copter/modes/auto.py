@@ -12,7 +12,7 @@ from ...arming_checks import BY_MISSION_EXIT
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
 from .. import arming
-from ..control import altitude, position
+from ..control import altitude, altitude_start, position, position_start
 from ..navigation import command, waypoint
 from . import auto_yaw, ground, land, rtl, takeoff
 from .numbers import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
@@ -48,10 +48,10 @@ def enter(v, forced):
         auto_yaw.set_mode(v, auto_yaw.HOLD)
     auto_yaw.set_default(v, 0)
     ground.set_waypoint_limits(v)
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     return ACCEPTED
 
 
@@ -127,8 +127,8 @@ def run(v):
         if command.follows_path(kind) != 0:
             command.run(ap, v.time_us)
         else:
-            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+            position.brake_ne(ap.control.pos_ne)
+            altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
         ground.fly(v)
     check_condition(ap, v.time_us, 1 if auto_yaw.reached(v) else 0)
 

@@ -12,9 +12,10 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
-from ...control.shaping import shape_angle, sqrt_controller
+from ....core.vectors import Vec2
+from ...control.shaping import Motion2, shape_angle, sqrt_controller
 from .. import pilot
-from ..control import attitude, position
+from ..control import attitude, position, position_start
 from . import alt_hold
 
 DT = 0.0025
@@ -41,14 +42,14 @@ def start(v):
     ap = v.autopilot
     loiter = ap.modes.loiter
     set_limits(ap)
-    active = position.is_active_ne(ap)
+    active = position_start.is_active_ne(ap.control)
     if not active:
-        position.init_ne(ap)
+        position_start.init_ne(ap)
     target = ap.control.attitude.target_euler
     loiter.predicted_euler[0] = target[0]
     loiter.predicted_euler[1] = target[1]
-    n, e = lean_to_accel(float(target[0]), float(target[1]), float(ap.estimate.euler[2]))
-    loiter.predicted_acc[0], loiter.predicted_acc[1] = n, e
+    acc = position_start.lean_accel(target.roll, target.pitch, ap.estimate.euler[2])
+    loiter.predicted_acc[0], loiter.predicted_acc[1] = acc.x, acc.y
     loiter.predicted_rate[0] = 0.0
     loiter.predicted_rate[1] = 0.0
     loiter.brake_acc = 0.0
@@ -61,13 +62,7 @@ def start(v):
 def set_limits(ap):
     """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
     p = ap.params
-    position.set_max_speed_accel_ne(ap, max(p.LOIT.SPEED * 0.01, _SPEED_MIN), p.LOIT.ACC_MAX * 0.01)
-
-
-@law
-def lean_to_accel(roll, pitch, yaw):
-    """(north, east) [m/s^2] of level flight at that lean [rad]."""
-    return position.lean_accel(roll, pitch, yaw)
+    position_start.set_max_speed_accel_ne(ap, max(p.LOIT.SPEED * 0.01, _SPEED_MIN), p.LOIT.ACC_MAX * 0.01)
 
 
 @law
@@ -81,18 +76,18 @@ def read_sticks(v, roll, pitch):
         loiter.acc[0] = 0.0
         loiter.acc[1] = 0.0
     else:
-        loiter.acc[0], loiter.acc[1] = lean_to_accel(roll, pitch, yaw)
+        acc = position_start.lean_accel(roll, pitch, yaw)
+        loiter.acc[0], loiter.acc[1] = acc.x, acc.y
     tc = float(p.ATC.INPUT_TC)
     wanted = (roll, pitch)
     limits = (p.ATC.ACCEL_R_MAX * _CDEG, p.ATC.ACCEL_P_MAX * _CDEG)
     for k in range(2):
         error = wrap_pi(wanted[k] - loiter.predicted_euler[k])
-        rate = shape_angle(error, tc, limits[k], float(loiter.predicted_rate[k]), 0.0, 0.0, DT)
+        rate = shape_angle(error, loiter.predicted_rate[k], tc, limits[k], DT, 0.0, 0.0)
         loiter.predicted_rate[k] = rate
         loiter.predicted_euler[k] = loiter.predicted_euler[k] + rate * DT
-    loiter.predicted_acc[0], loiter.predicted_acc[1] = lean_to_accel(
-        float(loiter.predicted_euler[0]), float(loiter.predicted_euler[1]), yaw
-    )
+    predicted = position_start.lean_accel(loiter.predicted_euler[0], loiter.predicted_euler[1], yaw)
+    loiter.predicted_acc[0], loiter.predicted_acc[1] = predicted.x, predicted.y
 
 
 @law
@@ -122,7 +117,8 @@ def advance(v):
         ae -= ve / speed * loiter.brake_acc
         vn *= slower / speed
         ve *= slower / speed
-    position.set_pos_vel_accel_ne(ap, ne.pos_desired[0] + vn * DT, ne.pos_desired[1] + ve * DT, vn, ve, an, ae)
+    vel = Vec2(vn, ve)
+    position.set_pos_vel_accel_ne(ne, Motion2(ne.pos_desired + vel * DT, vel, Vec2(an, ae)))
 
 
 @law
@@ -140,15 +136,16 @@ def run(v):
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
         attitude.reset_yaw_target(ap)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
         ap.modes.loiter.brake_acc = 0.0
         position.update_ne(ap)
         attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, float(ap.modes.pilot.yaw_rate))
     else:
         if ap.arming.landed_maybe != 0:
-            position.soften_for_landing_ne(ap)
+            position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
         advance(v)
         position.update_ne(ap)
-        tx, ty, tz = position.thrust_vector(ap)
-        attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, float(ap.modes.pilot.yaw_rate))
+        attitude.input_thrust_vector_heading_rate(
+            ap, position.thrust_vector(ap.control.pos_ne), ap.modes.pilot.yaw_rate
+        )
     alt_hold.run_vertical(v, doing, climb)

@@ -6,8 +6,10 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.vectors import Vec2
+from ...control.shaping import Motion
 from ...navigation import path
-from ..control import altitude, position
+from ..control import altitude, altitude_start, position, position_start
 from ..navigation import waypoint
 from . import auto_yaw, ground, land
 
@@ -36,17 +38,19 @@ def start(v, forced):
     ap.modes.nav.speed_up = 0.0
     ap.modes.nav.speed_down = 0.0
     ground.set_waypoint_limits(v)
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     build_path(v)
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(v, auto_yaw.HOLD)
-    n, e = position.stopping_point_ne(ap)
+    stop = position_start.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
-        path.request_legs(ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d))
+        path.request_legs(
+            ap, v.time_us, stop.x, stop.y, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d)
+        )
     return 0
 
 
@@ -101,8 +105,8 @@ def run(v):
         return
     reached = 0
     if ap.modes.nav.request_pending != 0:
-        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        position.brake_ne(ap.control.pos_ne)
+        altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
     else:
         reached = waypoint.advance(ap, v.time_us)
     ground.fly(v)
@@ -149,9 +153,8 @@ def run_descent(v):
     """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
     ap = v.autopilot
     rtl = ap.modes.rtl
-    vn, ve = land.stick_velocity(ap)
-    position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)
-    altitude.input_pos_vel_accel_d(ap, float(rtl.descent_d), 0.0, 0.0)
+    position.input_vel_accel_ne(ap.control.pos_ne, land.stick_velocity(ap), Vec2(0.0, 0.0))
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(rtl.descent_d, 0.0, 0.0))
     ground.fly(v)
 
 

@@ -15,9 +15,9 @@ from ....core.kernels import law
 from ....core.vectors import Quat, Vec3
 from ....vehicles.figures.copter import Legs
 from ..body import GRAVITY, small_rotation
-from ..records import Body
+from ..records import GROUND_LYING, GROUND_STANDING, Body
 from ..tick import TICK_S
-from .state import GROUND_LYING, GROUND_STANDING, Ground
+from .state import Ground
 
 _LEVEL = 1e-5
 """Lean [rad] below which a standing vehicle is at rest."""

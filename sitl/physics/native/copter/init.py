@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from ....vehicles import CopterAirframe
 from ..power_on import Home, clear, place, wake
-from ..records import Vehicle
+from ..records import GROUND_STANDING, Vehicle
 from .prepare import prepare
-from .state import GROUND_STANDING, Physics
+from .state import Physics
 
 
 def init(v: Vehicle[Physics], airframe: CopterAirframe, home: Home, seed: int) -> None:

@@ -34,12 +34,6 @@ class Rotors(Record):
     power: float  # taken from the battery by all [W]
 
 
-GROUND_AIRBORNE = 0
-GROUND_STANDING = 1
-GROUND_LYING = 2
-"""Tipped over: it stays as it fell, whatever the rotors do."""
-
-
 class Ground(Record):
     """Contact of the legs with the ground."""
 

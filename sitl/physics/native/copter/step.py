@@ -9,12 +9,12 @@ from ....core.records import Records
 from ....core.vectors import Vec3
 from .. import battery, obstacles, wind
 from ..body import GRAVITY, Inertia, Wrench, fly
-from ..records import Vehicle
+from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
 from ..sensors.sense import sense
 from ..tick import TICK_US
 from . import rotors
 from .ground import absorb, lifts_off, rest, touch
-from .state import GROUND_AIRBORNE, GROUND_STANDING, Physics
+from .state import Physics
 from .wrench import act
 
 
