@@ -307,7 +307,7 @@ class Simulation:
         self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
         self.firmware.power_on(self.v)
         self.kind.apply_sim_parameters(self.v)
-        self.v.autopilot.ekf.use_external = int(self.estimator == "truth")
+        self.v.autopilot.ekf.use_external = self.estimator == "truth"
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""

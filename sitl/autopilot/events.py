@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..core.kernels import law
+from ..core.records import Floats, Ints, Record, array
 
 EVENT_RING = 64
 
@@ -38,10 +39,21 @@ COMMAND_ARRIVED = 27  # rover: the navigation command under way is at its place,
 HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
 
 
+class Events(Record):
+    """A ring of what happened, for the shell."""
+
+    count: int  # events so far; event k is at k % EVENT_RING
+    attention: bool  # the core returns to the shell at the end of this tick
+    time_us: Ints = array(EVENT_RING, stored="i8")
+    code: Ints = array(EVENT_RING, stored="i8")
+    a: Floats = array(EVENT_RING)
+    b: Floats = array(EVENT_RING)
+
+
 @law
-def emit(events, time_us, code, a, b):
+def emit(events: Events, time_us: int, code: int, a: float, b: float) -> None:
     """Append an event; the oldest is overwritten when the shell did not fetch it in time."""
-    k = int(events.count) % EVENT_RING
+    k = events.count % EVENT_RING
     events.time_us[k] = time_us
     events.code[k] = code
     events.a[k] = a
@@ -50,7 +62,7 @@ def emit(events, time_us, code, a, b):
 
 
 @law
-def emit_and_return(events, time_us, code, a, b):
+def emit_and_return(events: Events, time_us: int, code: int, a: float, b: float) -> None:
     """Append an event that needs Python: the core returns to the shell at the end of this tick."""
     emit(events, time_us, code, a, b)
-    events.attention = 1
+    events.attention = True

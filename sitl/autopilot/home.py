@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
+from ..core.algebra import with_down
 from ..core.geodesy import add_offset, offset_ne
 from ..core.kernels import law
-from ..core.vectors import Vec3
 
 
 @law
@@ -36,11 +36,11 @@ def set_place(v, lat, lon, alt, lock):
         return 0
     if lat < -900000000 or lat > 900000000 or lon < -1800000000 or lon > 1800000000:
         return 0
-    n, e = offset_ne(int(est.origin_lat), int(est.origin_lon), lat, lon)
+    place = offset_ne(est.origin_lat, est.origin_lon, lat, lon)
     ap.home.lat = lat
     ap.home.lon = lon
     ap.home.alt = alt
-    ap.home.pos = Vec3(n, e, est.origin_alt - alt)
+    ap.home.pos = with_down(place, est.origin_alt - alt)
     ap.home.is_set = 1
     ap.home.locked = 1 if lock != 0 else 0
     return 1

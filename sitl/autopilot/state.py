@@ -7,14 +7,12 @@ HIL_ACTUATOR_CONTROLS carry, at that precision (https://mavlink.io/en/messages/c
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Protocol
 
 from ..core.records import Float32, Floats, Int32, Ints, Record, Stored, array
 from ..core.vectors import Euler, Quat, Vec2, Vec3
-from .arming_state import Arming
 from .estimation.state import Ekf
-from .events import EVENT_RING
-from .failsafe_state import Failsafe
+from .events import Events
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
@@ -141,15 +139,35 @@ class BatteryState(Record):
     remaining_pct: float
 
 
-class Events(Record):
-    """A ring of what happened, for the shell."""
+class Arming(Record):
+    """Whether the motors are armed, and what the landing and crash detectors know."""
 
-    count: int  # events so far; event k is at k % EVENT_RING
-    attention: bool  # the core returns to the shell at the end of this tick
-    time_us: Ints = array(EVENT_RING, stored="i8")
-    code: Ints = array(EVENT_RING, stored="i8")  # sitl.autopilot.events
-    a: Floats = array(EVENT_RING)
-    b: Floats = array(EVENT_RING)
+    armed: bool
+    armed_us: int  # when last armed
+    auto_armed: bool  # throttle raised or take-off commanded since arming
+    landed: bool
+    landed_maybe: bool
+    landed_ticks: int
+    idle_us: int  # armed on the ground with throttle down, for DISARM_DELAY
+    crash_ticks: int
+    prearm_ok: bool  # SYS_STATUS health bit MAV_SYS_STATUS_PREARM_CHECK
+
+
+class Failsafe(Record):
+    """What the failsafes watch and which of them are on."""
+
+    gcs_us: int  # last heartbeat of the ground station; 0 none so far (written by the bridge)
+    gcs: bool  # failsafe is on
+    radio: bool
+    radio_count: int  # consecutive frames with a throttle below FS_THR_VALUE
+    battery: int  # 0 none, 1 low, 2 critical
+    battery_low_us: int  # since when below the low limit; 0 not
+    battery_critical_us: int
+    ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
+    ekf_count: int  # tenths of a second of bad variance
+    ekf_vel: float  # filtered variances
+    ekf_pos: float
+    ekf_mag: float
 
 
 class Modes(Record):
@@ -186,3 +204,23 @@ class Autopilot(Record):
     control: Control
     events: Events
     inertial: InertialRing
+
+
+class Vehicle(Protocol):
+    """What the autopilot sees of the vehicle that it flies: time, sensors, and what it writes."""
+
+    @property
+    def time_us(self) -> int:
+        """Since boot [us]; only physics advances it."""
+
+    @property
+    def sensors(self) -> Sensors:
+        """Border: written by physics."""
+
+    @property
+    def actuators(self) -> Actuators:
+        """Border: written by the autopilot."""
+
+    @property
+    def autopilot(self) -> Autopilot:
+        """The firmware."""

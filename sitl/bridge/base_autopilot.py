@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..autopilot import events, home
-from ..autopilot.estimation import origin
+from ..autopilot.estimation import aiding
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
@@ -95,7 +95,7 @@ class BaseAutopilot:
         return bool(home.set_place(self._v, lat, lon, alt, 1))
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
-        return int(origin.set_origin(self._v.autopilot, lat, lon, alt)) == 1
+        return aiding.set_origin(self._v.autopilot, lat, lon, alt)
 
     def parameter_changed(self, name: str) -> None:
         changed = getattr(self._vehicle, "parameter_changed", None)

@@ -8,8 +8,11 @@ are taken in the order of the components.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from .kernels import law
+from .records import Floats
+from .scalars import constrain
 from .vectors import Euler, Quat, Vec2, Vec3
 
 IDENTITY = Quat(1.0, 0.0, 0.0, 0.0)
@@ -39,6 +42,30 @@ def norm(v: Vec3) -> float:
 def by_component(a: Vec3, b: Vec3) -> Vec3:
     """Product of each component with the other's."""
     return Vec3(a.x * b.x, a.y * b.y, a.z * b.z)
+
+
+@law
+def limit_components(v: Vec3, limit: float) -> Vec3:
+    """Each component limited to [-limit, limit]."""
+    return Vec3(constrain(v.x, -limit, limit), constrain(v.y, -limit, limit), constrain(v.z, -limit, limit))
+
+
+@law
+def vector_at(numbers: Floats, first: int) -> Vec3:
+    """Three numbers of an array, from ``first`` on."""
+    return Vec3(numbers[first], numbers[first + 1], numbers[first + 2])
+
+
+@law
+def row_vector(rows: Floats, k: int) -> Vec3:
+    """Row ``k`` of an array of three columns."""
+    return Vec3(rows[k, 0], rows[k, 1], rows[k, 2])
+
+
+@law
+def set_row_vector(rows: Floats, k: int, v: Vec3) -> None:
+    """Write row ``k`` of an array of three columns."""
+    rows[k, 0], rows[k, 1], rows[k, 2] = v.x, v.y, v.z
 
 
 @law
@@ -181,3 +208,34 @@ def euler_of(q: Quat) -> Euler:
         math.asin(s),
         math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)),
     )
+
+
+class Matrix3(NamedTuple):
+    """A matrix of three rows."""
+
+    x: Vec3
+    y: Vec3
+    z: Vec3
+
+
+@law
+def rotation_matrix(q: Quat) -> Matrix3:
+    """The matrix that turns from body into NED, as the unit quaternion ``q`` does."""
+    w, x, y, z = q.w, q.x, q.y, q.z
+    return Matrix3(
+        Vec3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        Vec3(2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        Vec3(2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
+@law
+def scaled(m: Matrix3, k: float) -> Matrix3:
+    """``k`` times a matrix."""
+    return Matrix3(m.x * k, m.y * k, m.z * k)
+
+
+@law
+def apply(m: Matrix3, v: Vec3) -> Vec3:
+    """Matrix times vector."""
+    return Vec3(dot(m.x, v), dot(m.y, v), dot(m.z, v))

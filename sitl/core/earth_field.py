@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from .kernels import law
+from .vectors import Vec3
 
 DEGREE = 8
 _G = np.array(
@@ -48,8 +49,8 @@ _GAUSS_PER_NT = 1e-5
 
 
 @law
-def field_ned(lat_deg, lon_deg):
-    """(north, east, down) [gauss] at sea level, at a geodetic latitude and longitude [deg]."""
+def field_ned(lat_deg: float, lon_deg: float) -> Vec3:
+    """Field NED [gauss] at sea level, at a geodetic latitude and longitude [deg]."""
     lat = math.radians(min(max(lat_deg, -89.999), 89.999))
     lon = math.radians(lon_deg)
     # geodetic to geocentric: colatitude theta, radius r, and the tilt psi between the two verticals
@@ -80,7 +81,7 @@ def field_ned(lat_deg, lon_deg):
                 south -= scale * (g * cos_m + h * sin_m) * d1
                 east += scale * m * (g * sin_m - h * cos_m) * p1 / s
     north_c, down_c = -south, -radial  # geocentric
-    return (
+    return Vec3(
         north_c * math.cos(psi) + down_c * math.sin(psi),
         east,
         down_c * math.cos(psi) - north_c * math.sin(psi),

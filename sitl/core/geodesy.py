@@ -8,21 +8,30 @@ Longitude is scaled by the cosine of the mean latitude of the two points; 1e-7 d
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from .kernels import law
+from .vectors import Vec2
 
 METRES_PER_DEGE7 = 0.011131884502145034
 _RAD_PER_DEGE7 = math.pi / 180.0 * 1e-7
 
 
+class Place(NamedTuple):
+    """A point on the globe."""
+
+    lat: float  # [degE7]
+    lon: float  # [degE7]
+
+
 @law
-def longitude_scale(lat_e7):
+def longitude_scale(lat_e7: float) -> float:
     """Cosine of a latitude [degE7], at least 0.01."""
     return max(math.cos(lat_e7 * _RAD_PER_DEGE7), 0.01)
 
 
 @law
-def wrap_longitude(lon_e7):
+def wrap_longitude(lon_e7: float) -> float:
     """Longitude [degE7] wrapped to +-180 degrees."""
     if lon_e7 > 1800000000:
         return lon_e7 - 3600000000
@@ -32,16 +41,16 @@ def wrap_longitude(lon_e7):
 
 
 @law
-def offset_ne(lat0_e7, lon0_e7, lat_e7, lon_e7):
-    """(north, east) [m] from point 0 to the other, both [degE7] as int or float."""
+def offset_ne(lat0_e7: float, lon0_e7: float, lat_e7: float, lon_e7: float) -> Vec2:
+    """North and east [m] from point 0 to the other, both [degE7] as int or float."""
     dlat = lat_e7 - lat0_e7
     dlon = wrap_longitude(lon_e7 - lon0_e7)
-    return (dlat * METRES_PER_DEGE7, dlon * METRES_PER_DEGE7 * longitude_scale(0.5 * (lat0_e7 + lat_e7)))
+    return Vec2(dlat * METRES_PER_DEGE7, dlon * METRES_PER_DEGE7 * longitude_scale(0.5 * (lat0_e7 + lat_e7)))
 
 
 @law
-def add_offset(lat0_e7, lon0_e7, north, east):
-    """(lat, lon) [degE7, float] of the point (north, east) [m] away from point 0."""
+def add_offset(lat0_e7: float, lon0_e7: float, north: float, east: float) -> Place:
+    """The point (north, east) [m] away from point 0."""
     lat = lat0_e7 + north / METRES_PER_DEGE7
     lon = lon0_e7 + east / (METRES_PER_DEGE7 * longitude_scale(0.5 * (lat0_e7 + lat)))
-    return (lat, wrap_longitude(lon))
+    return Place(lat, wrap_longitude(lon))

@@ -149,14 +149,18 @@ def _template(base: type, key: Any) -> None:
     infer_global(key)(type(f"{base.__name__}_{key.__name__}", (base,), {}))
 
 
-for _key, _name in ((operator.add, "fadd"), (operator.sub, "fsub")):
+_SUMS = ((operator.add, "fadd"), (operator.iadd, "fadd"), (operator.sub, "fsub"), (operator.isub, "fsub"))
+for _key, _name in _SUMS:
     _template(_SameKinds, _key)
     lower_builtin(_key, VectorType, VectorType)(_by_component(_name))
 _template(_Multiply, operator.mul)
-lower_builtin(operator.mul, VectorType, types.Number)(_by_number("fmul", False))
 lower_builtin(operator.mul, types.Number, VectorType)(_by_number("fmul", True))
-_template(_KindAndNumber, operator.truediv)
-lower_builtin(operator.truediv, VectorType, types.Number)(_by_number("fdiv", False))
+for _key in (operator.imul, operator.truediv, operator.itruediv):
+    _template(_KindAndNumber, _key)
+for _key, _name in (
+    (operator.mul, "fmul"), (operator.imul, "fmul"), (operator.truediv, "fdiv"), (operator.itruediv, "fdiv")
+):  # fmt: skip
+    lower_builtin(_key, VectorType, types.Number)(_by_number(_name, False))
 _template(_Negate, operator.neg)
 
 

@@ -37,7 +37,7 @@ def compare(ours: Any, theirs: Any) -> int:
         elif isinstance(a, tuple) and not isinstance(a, Value):
             count += sum(compare(one, other) for one, other in zip(a, b, strict=True))
         else:
-            assert np.array_equal(a, b), name
+            assert np.array_equal(a, b != 0 if isinstance(a, bool) else b), name
             assert isinstance(a, float | int | np.ndarray | Value), name
             count += 1
     return count
@@ -73,7 +73,7 @@ def test_whole_records_are_copied() -> None:
     ours["autopilot"].home = Copter.of(fleet, 1).autopilot.home
     assert not fleet[0]["physics"].tobytes().strip(b"\0")
     assert fleet[0]["autopilot"]["home"] == fleet[1]["autopilot"]["home"]
-    assert as_dict(ours.autopilot.home) == as_dict(fleet[1]["autopilot"]["home"])
+    assert as_dict(ours.autopilot.home) == as_dict(Copter.of(fleet, 1).autopilot.home)
     with pytest.raises((TypeError, ValueError)):
         ours.physics = np.zeros((), [("a", "f8")])
 

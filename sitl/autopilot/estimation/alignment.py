@@ -9,12 +9,14 @@ RUN        all sensors; a restart in flight (lost health) begins again at TILT w
 
 from __future__ import annotations
 
+from ...core.algebra import ZERO, horizontal, normalise, quat_from_euler, quat_norm_squared, with_down
 from ...core.kernels import law
-from ...core.rotations import quat_from_euler
+from ...core.vectors import Vec2, Vec3
 from .. import events
 from . import covariance
-from .state import RING, THETA, N
-from .strapdown import set_attitude, tilt_from_acc
+from .magnetometer import clear_samples
+from .state import RING, THETA, Ekf, N
+from .strapdown import tilt_from_acc, within
 
 CALIBRATE, TILT, YAW, RUN = 0, 1, 2, 3
 
@@ -31,107 +33,111 @@ GIVE_UP_US = 30_000_000
 TILT_VARIANCE = 3.05e-4
 """Tilt is aligned when the variances about north and east together are below this [rad^2]: 1 degree."""
 _SMOOTH = 0.05  # gain of a 3.4 Hz low-pass at 400 Hz
+_FAR = 1e7  # [m]: no position held
 
 
 @law
-def _restart_window(ekf):
+def _restart_window(ekf: Ekf) -> None:
     ekf.still_ticks = 0
-    for k in range(3):
-        ekf.gyro_sum[k] = 0.0
-        ekf.acc_sum[k] = 0.0
-        ekf.gyro_low[k] = ekf.gyro_smooth[k]
-        ekf.gyro_high[k] = ekf.gyro_smooth[k]
+    ekf.gyro_sum = ZERO
+    ekf.acc_sum = ZERO
+    ekf.gyro_low = ekf.gyro_smooth
+    ekf.gyro_high = ekf.gyro_smooth
 
 
 @law
-def calibrate(ekf, now_us):
-    """One tick of the window; returns 1 when calibration is complete."""
-    if ekf.started == 0:
-        ekf.started = 1
-        ekf.start_us = now_us
-    if ekf.bad_imu > 0:
-        return 0
-    if now_us - ekf.start_us < WARM_UP_US:
-        for k in range(3):
-            ekf.gyro_smooth[k] = ekf.good_gyro[k]
-        _restart_window(ekf)
-        return 0
-    still = True
-    for k in range(3):
-        ekf.gyro_smooth[k] += _SMOOTH * (ekf.good_gyro[k] - ekf.gyro_smooth[k])
-        ekf.gyro_low[k] = min(ekf.gyro_low[k], ekf.gyro_smooth[k])
-        ekf.gyro_high[k] = max(ekf.gyro_high[k], ekf.gyro_smooth[k])
-        ekf.gyro_sum[k] += ekf.good_gyro[k]
-        ekf.acc_sum[k] += ekf.good_acc[k]
-        if ekf.gyro_high[k] - ekf.gyro_low[k] > STILL_SPREAD or abs(ekf.gyro_smooth[k]) > MAX_STILL_RATE:
-            still = False
+def _add_sample(ekf: Ekf) -> bool:
+    """Add the sensors' last good sample to the window; whether the vehicle has kept still in it."""
+    smooth = ekf.gyro_smooth + _SMOOTH * (ekf.good_gyro - ekf.gyro_smooth)
+    low, high = ekf.gyro_low, ekf.gyro_high
+    ekf.gyro_smooth = smooth
+    ekf.gyro_low = Vec3(min(low.x, smooth.x), min(low.y, smooth.y), min(low.z, smooth.z))
+    ekf.gyro_high = Vec3(max(high.x, smooth.x), max(high.y, smooth.y), max(high.z, smooth.z))
+    ekf.gyro_sum += ekf.good_gyro
+    ekf.acc_sum += ekf.good_acc
     ekf.still_ticks += 1
-    if not still and now_us - ekf.start_us < GIVE_UP_US:
-        _restart_window(ekf)
-        return 0
-    if ekf.still_ticks < WINDOW_TICKS or ekf.baro_n == 0:
-        return 0
-    for k in range(3):
-        ekf.gyro_bias[k] = ekf.gyro_sum[k] / ekf.still_ticks if still else 0.0
-        ekf.good_acc[k] = ekf.acc_sum[k] / ekf.still_ticks
-    return 1
+    return within(ekf.gyro_high - ekf.gyro_low, STILL_SPREAD) and within(smooth, MAX_STILL_RATE)
 
 
 @law
-def initialise(ekf, now_us):
+def calibrate(ekf: Ekf) -> bool:
+    """One tick of the window; whether calibration is complete."""
+    if not ekf.started:
+        ekf.started = True
+        ekf.start_us = ekf.now_us
+    if ekf.bad_imu > 0:
+        return False
+    if ekf.now_us - ekf.start_us < WARM_UP_US:
+        ekf.gyro_smooth = ekf.good_gyro
+        _restart_window(ekf)
+        return False
+    still = _add_sample(ekf)
+    if not still and ekf.now_us - ekf.start_us < GIVE_UP_US:
+        _restart_window(ekf)
+        return False
+    if ekf.still_ticks < WINDOW_TICKS or ekf.baro_n == 0:
+        return False
+    ekf.gyro_bias = ekf.gyro_sum / ekf.still_ticks if still else ZERO
+    ekf.good_acc = ekf.acc_sum / ekf.still_ticks
+    return True
+
+
+@law
+def initialise(ekf: Ekf) -> None:
     """Start the filter at rest at the position held, tilt from the specific force in ``good_acc``."""
-    roll, pitch = tilt_from_acc(ekf.good_acc[0], ekf.good_acc[1], ekf.good_acc[2])
-    w, x, y, z = quat_from_euler(roll, pitch, 0.0)
-    set_attitude(ekf, w, x, y, z)
-    for k in range(3):
-        ekf.vel[k] = 0.0
-        ekf.acc_bias[k] = 0.0
-        ekf.mag_bias[k] = 0.0
-        ekf.lag_vel[k] = 0.0
-        ekf.lag_pos[k] = 0.0
-        ekf.last_gyro[k] = 0.0
-        ekf.step_dv[k] = 0.0
-        ekf.mag_sum[k] = 0.0
-    ekf.pos[0], ekf.pos[1] = ekf.hold_pos[0], ekf.hold_pos[1]
+    ekf.q = normalise(quat_from_euler(tilt_from_acc(ekf.good_acc)))
+    ekf.pos = with_down(ekf.hold_pos, ekf.pos.z)
+    ekf.vel = ZERO
+    ekf.acc_bias = ZERO
+    ekf.mag_bias = ZERO
+    ekf.lag_vel = ZERO
+    ekf.lag_pos = ZERO
+    ekf.last_gyro = ZERO
     for i in range(N):
         ekf.dx[i] = 0.0
-    covariance.start(ekf)
-    ekf.step_ticks = 0
-    ekf.step_dt = 0.0
-    ekf.mag_n = 0
+    covariance.start(ekf.P)
+    begin_step(ekf)
+    clear_samples(ekf)
     ekf.ring_count = 0
     for n in range(RING):
-        ekf.ring_us[n] = now_us
+        ekf.ring_us[n] = ekf.now_us
     ekf.phase = TILT
-    ekf.init_us = now_us
-    ekf.tilt_aligned = 0
-    ekf.yaw_aligned = 0
-    ekf.gps_in_use = 0
-    ekf.baro_fused_us = now_us
-    ekf.mag_fused_us = now_us
+    ekf.init_us = ekf.now_us
+    ekf.tilt_aligned = False
+    ekf.yaw_aligned = False
+    ekf.gps_in_use = False
+    ekf.baro_fused_us = ekf.now_us
+    ekf.mag_fused_us = ekf.now_us
 
 
 @law
-def check_tilt(ekf, ap_events, now_us):
+def begin_step(ekf: Ekf) -> None:
+    """Begin the sums over the ticks of a filter step."""
+    ekf.step_ticks = 0
+    ekf.step_dt = 0.0
+    ekf.step_dv = ZERO
+
+
+@law
+def check_tilt(ekf: Ekf, log: events.Events) -> None:
     """TILT to YAW when the tilt variance has fallen."""
     if ekf.P[THETA, THETA] + ekf.P[THETA + 1, THETA + 1] < TILT_VARIANCE:
-        ekf.tilt_aligned = 1
+        ekf.tilt_aligned = True
         ekf.phase = YAW
-        ekf.mag_n = 0
-        for k in range(3):
-            ekf.mag_sum[k] = 0.0
-        events.emit(ap_events, now_us, events.EKF_TILT_ALIGNED, 0.0, 0.0)
+        clear_samples(ekf)
+        events.emit(log, ekf.now_us, events.EKF_TILT_ALIGNED, 0.0, 0.0)
 
 
 @law
-def healthy(ekf):
+def _size(v: Vec3) -> float:
+    return abs(v.x) + abs(v.y) + abs(v.z)
+
+
+@law
+def is_healthy(ekf: Ekf) -> bool:
     """Whether the nominal state and the variances are finite."""
-    total = 0.0
-    for k in range(4):
-        total += abs(ekf.q[k])
-    for k in range(3):
-        total += abs(ekf.vel[k]) + abs(ekf.pos[k])
-        total += abs(ekf.gyro_bias[k]) + abs(ekf.acc_bias[k]) + abs(ekf.mag_bias[k])
+    total = quat_norm_squared(ekf.q) + _size(ekf.vel) + _size(ekf.pos)
+    total += _size(ekf.gyro_bias) + _size(ekf.acc_bias) + _size(ekf.mag_bias)
     for k in range(N):
         if not ekf.P[k, k] >= 0.0:
             return False
@@ -140,14 +146,12 @@ def healthy(ekf):
 
 
 @law
-def restart(ekf, now_us):
+def restart(ekf: Ekf) -> None:
     """Begin anew after lost health, without calibration: the vehicle may be flying."""
     ekf.resets += 1
-    for k in range(3):
-        ekf.gyro_bias[k] = 0.0
-    for k in range(2):
-        if not abs(ekf.hold_pos[k]) < 1e7:
-            ekf.hold_pos[k] = 0.0
-    ekf.pos[2] = 0.0
-    initialise(ekf, now_us)
-    ekf.baro_fused_us = now_us - 60_000_000  # the height is not known: take the barometer's
+    ekf.gyro_bias = ZERO
+    held = ekf.hold_pos
+    ekf.hold_pos = Vec2(held.x if abs(held.x) < _FAR else 0.0, held.y if abs(held.y) < _FAR else 0.0)
+    ekf.pos = with_down(horizontal(ekf.pos), 0.0)
+    initialise(ekf)
+    ekf.baro_fused_us = ekf.now_us - 60_000_000  # the height is not known: take the barometer's

@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
 from ...core.vectors import Vec3
+from ..params.estimator import Ekf3
+from ..state import Estimate, Sensors
 from . import noise
 from .covariance import clear
-from .fusion import NIS_BAROMETER, clear_row, correct, gate_ratio, innovate
+from .fusion import NIS_BAROMETER, correct, gate_ratio, innovate_position
 from .history import shift
-from .state import POS, VEL
+from .state import POS, VEL, Ekf
 
 FUSE_SAMPLES = 5
 """Samples averaged into one measurement (10 Hz from 50 Hz)."""
@@ -22,78 +25,72 @@ _EXPONENT = 0.190263  # R L / g
 
 
 @law
-def standard_altitude(pressure):
+def standard_altitude(pressure: float) -> float:
     """Altitude [m] in the ISA standard atmosphere (ISO 2533) of a pressure [hPa]."""
     return _TEMPERATURE_BY_LAPSE * (1.0 - math.exp(_EXPONENT * math.log(pressure / 1013.25)))
 
 
 @law
-def read(ekf, sensors, now_us):
+def read(ekf: Ekf, sensors: Sensors) -> None:
     """Add a new sample to the sum; one that makes no sense is passed over."""
-    if int(sensors.baro_count) == ekf.baro_seen:
+    if sensors.baro_count == ekf.baro_seen:
         return
-    ekf.baro_seen = int(sensors.baro_count)
-    pressure = float(sensors.abs_pressure)
+    ekf.baro_seen = sensors.baro_count
+    pressure = sensors.abs_pressure
     if 100.0 < pressure < 1200.0:
         ekf.baro_sum += standard_altitude(pressure)
-        ekf.baro_us_sum += now_us
+        ekf.baro_us_sum += ekf.now_us
         ekf.baro_n += 1
-        ekf.baro_us = now_us
+        ekf.baro_us = ekf.now_us
 
 
 @law
-def _empty(ekf):
+def _empty(ekf: Ekf) -> None:
     ekf.baro_sum = 0.0
     ekf.baro_us_sum = 0
     ekf.baro_n = 0
 
 
 @law
-def set_ground(ekf):
-    """Let the mean since boot be pos[2] = 0."""
+def set_ground(ekf: Ekf) -> None:
+    """Let the mean since boot be the height zero."""
     ekf.baro_ground = ekf.baro_sum / ekf.baro_n
     _empty(ekf)
-    ekf.pos[2] = 0.0
+    ekf.pos = with_down(horizontal(ekf.pos), 0.0)
 
 
 @law
-def fuse(ap, now_us):
-    """Fuse the mean of the samples when there are enough; returns 1 when something was fused."""
-    ekf, params = ap.ekf, ap.params
+def fuse(ekf: Ekf, estimate: Estimate, params: Ekf3) -> bool:
+    """Fuse the mean of the samples when there are enough; whether something was fused."""
     if ekf.baro_n < FUSE_SAMPLES:
-        return 0
+        return False
     down = ekf.baro_ground - ekf.baro_sum / ekf.baro_n
-    sigma = noise.HEIGHT * params.EK3.ALT_M_NSE
+    sigma = noise.HEIGHT * params.ALT_M_NSE
     variance = sigma * sigma / ekf.baro_n
-    age = 1e-6 * (now_us - ekf.baro_us_sum / ekf.baro_n)
+    age = 1e-6 * (ekf.now_us - ekf.baro_us_sum / ekf.baro_n)
     _empty(ekf)
-    clear_row(ekf)
-    ekf.h[POS + 2] = 1.0
-    ekf.h[VEL + 2] = -age
-    residual = down - (ekf.pos[2] - age * ekf.vel[2])
-    innovation, s = innovate(ekf, residual, variance)
-    ratio = gate_ratio(innovation * innovation, s, params.EK3.ALT_M_NSE, params.EK3.HGT_I_GATE)
-    ap.estimate.variance_hgt = math.sqrt(ratio)
+    innovation = innovate_position(ekf, 2, age, down - (ekf.pos.z - age * ekf.vel.z), variance)
+    squared = innovation.value * innovation.value
+    ratio = gate_ratio(squared, innovation.variance, params.ALT_M_NSE, params.HGT_I_GATE)
+    estimate.variance_hgt = math.sqrt(ratio)
     if ratio < 1.0:
-        correct(ekf, innovation, s, NIS_BAROMETER)
-        ekf.baro_fused_us = now_us
-        return 1
-    if now_us - ekf.baro_fused_us > TIMEOUT_US:
-        reset_height(ap, down, variance)
-        ekf.baro_fused_us = now_us
-    return 0
+        correct(ekf, innovation, NIS_BAROMETER)
+        ekf.baro_fused_us = ekf.now_us
+        return True
+    if ekf.now_us - ekf.baro_fused_us > TIMEOUT_US:
+        reset_height(ekf, estimate, down, variance)
+        ekf.baro_fused_us = ekf.now_us
+    return False
 
 
 @law
-def reset_height(ap, down, variance):
-    """Jump to a height (pos[2] [m]); its variance [m^2]."""
-    ekf, estimate = ap.ekf, ap.estimate
-    jump = down - ekf.pos[2]
-    clear(ekf, POS + 2, 1, variance)
-    clear(ekf, VEL + 2, 1, 1.0)
-    ekf.pos[2] = down
-    ekf.lag_pos[2] = 0.0
-    shift(ekf, 2, jump, 0.0)
-    estimate.reset_pos = Vec3(estimate.reset_pos.x, estimate.reset_pos.y, down - estimate.pos.z)
-    estimate.reset_vel = Vec3(estimate.reset_vel.x, estimate.reset_vel.y, 0.0)
+def reset_height(ekf: Ekf, estimate: Estimate, down: float, variance: float) -> None:
+    """Jump to a position down of the origin [m] of the given variance [m^2]."""
+    clear(ekf.P, POS + 2, 1, variance)
+    clear(ekf.P, VEL + 2, 1, 1.0)
+    shift(ekf, Vec3(0.0, 0.0, down - ekf.pos.z), Vec3(0.0, 0.0, 0.0))
+    ekf.pos = with_down(horizontal(ekf.pos), down)
+    ekf.lag_pos = with_down(horizontal(ekf.lag_pos), 0.0)
+    estimate.reset_pos = with_down(horizontal(estimate.reset_pos), down - estimate.pos.z)
+    estimate.reset_vel = with_down(horizontal(estimate.reset_vel), 0.0)
     estimate.reset_d_count += 1

@@ -3,34 +3,46 @@
 
 Scalars of one step are fused one after the other into ``dx``; each innovation is reduced by what ``dx``
 explains already. ``inject`` then moves the nominal state, and with it the past states kept for delayed
-measurements: a correction (dp, dv) made now means dp - dv * age for a position of that age.
+measurements.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+from ...core.algebra import limit_components, multiply, normalise, quat_from_rotation_vector, vector_at
 from ...core.kernels import law
-from ...core.rotations import quat_from_rotation_vector, quat_multiply
-from ...core.scalars import constrain
-from .state import BA, BG, BM, POS, RING, THETA, VEL, N
-from .strapdown import set_attitude
+from .history import correct_past
+from .state import BA, BG, BM, POS, THETA, VEL, Ekf, N
 
 MAX_GYRO_BIAS = 0.2  # [rad/s]
 MAX_MAG_BIAS = 0.1  # [gauss]
 NIS_GPS_POSITION, NIS_GPS_VELOCITY, NIS_BAROMETER, NIS_MAGNETOMETER = 0, 1, 2, 3
+NO_NIS = -1
+
+
+class Innovation(NamedTuple):
+    """What a measurement shows that the filter did not expect."""
+
+    value: float  # measured minus predicted
+    variance: float  # of that
 
 
 @law
-def clear_row(ekf):
+def clear_row(ekf: Ekf) -> None:
     """Begin a measurement row ``h``: the caller then sets the entries that are not zero."""
     for i in range(N):
         ekf.h[i] = 0.0
 
 
 @law
-def innovate(ekf, residual, variance):
-    """(innovation, its variance) of a measurement with row ``h``; leaves P h' in ``ph``.
+def innovate(ekf: Ekf, residual: float, variance: float) -> Innovation:
+    """Innovation of a measurement with row ``h``; leaves P h' in ``ph``.
 
-    ``residual``: measured minus predicted before this step's fusions; ``variance``: of the measurement.
+    Args:
+        ekf: the filter.
+        residual: measured minus predicted before this step's fusions.
+        variance: of the measurement.
     """
     P, h, ph = ekf.P, ekf.h, ekf.ph
     for i in range(N):
@@ -45,11 +57,28 @@ def innovate(ekf, residual, variance):
     s = variance
     for k in range(N):
         s += h[k] * ph[k]
-    return (innovation, s)
+    return Innovation(innovation, s)
 
 
 @law
-def gate_ratio(squares, variances, nominal, gate):
+def innovate_state(ekf: Ekf, k: int, residual: float, variance: float) -> Innovation:
+    """Innovation of a direct measurement of error state ``k``."""
+    clear_row(ekf)
+    ekf.h[k] = 1.0
+    return innovate(ekf, residual, variance)
+
+
+@law
+def innovate_position(ekf: Ekf, axis: int, age: float, residual: float, variance: float) -> Innovation:
+    """Innovation of the position north (0), east (1) or down (2) [m] ``age`` [s] ago: dp(t - d) = dp(t) - d dv(t)."""
+    clear_row(ekf)
+    ekf.h[POS + axis] = 1.0
+    ekf.h[VEL + axis] = -age
+    return innovate(ekf, residual, variance)
+
+
+@law
+def gate_ratio(squares: float, variances: float, nominal: float, gate: float) -> float:
     """Squared innovation by squared gate; below 1 the measurement is taken. EKF_STATUS_REPORT has its root.
 
     ``nominal``: the EK3_*_M_NSE parameter as it stands, ``gate``: EK3_*_I_GATE. As in ArduPilot the gate is
@@ -61,49 +90,39 @@ def gate_ratio(squares, variances, nominal, gate):
 
 
 @law
-def correct(ekf, innovation, s, kind):
-    """Fuse the measurement that ``innovate`` looked at; ``kind``: NIS_* or -1."""
+def correct(ekf: Ekf, innovation: Innovation, kind: int) -> None:
+    """Fuse the measurement that ``innovate`` looked at; ``kind``: NIS_* or NO_NIS."""
     P, ph = ekf.P, ekf.ph
-    inverse = 1.0 / s
+    inverse = 1.0 / innovation.variance
     for i in range(N):
         gain = ph[i] * inverse
-        ekf.dx[i] += gain * innovation
+        ekf.dx[i] += gain * innovation.value
         for j in range(N):
             P[i, j] -= gain * ph[j]
     if kind >= 0:
-        ekf.nis_sum[kind] += innovation * innovation * inverse
+        ekf.nis_sum[kind] += innovation.value * innovation.value * inverse
         ekf.nis_count[kind] += 1
 
 
 @law
-def fuse_state(ekf, k, residual, variance):
+def fuse_state(ekf: Ekf, k: int, residual: float, variance: float) -> None:
     """Fuse a direct measurement of error state ``k`` without a gate."""
-    clear_row(ekf)
-    ekf.h[k] = 1.0
-    innovation, s = innovate(ekf, residual, variance)
-    correct(ekf, innovation, s, -1)
+    correct(ekf, innovate_state(ekf, k, residual, variance), NO_NIS)
 
 
 @law
-def inject(ekf, acc_bias_limit, now_us):
-    """Move ``dx`` into the nominal state, the output lag and the past states."""
+def inject(ekf: Ekf, acc_bias_max: float) -> None:
+    """Move ``dx`` into the nominal state, the output lag and the past states; ``acc_bias_max`` [m/s^2]."""
     dx = ekf.dx
-    w, x, y, z = quat_from_rotation_vector(dx[THETA], dx[THETA + 1], dx[THETA + 2])
-    w, x, y, z = quat_multiply(w, x, y, z, ekf.q[0], ekf.q[1], ekf.q[2], ekf.q[3])
-    set_attitude(ekf, w, x, y, z)
-    for k in range(3):
-        dv, dp = dx[VEL + k], dx[POS + k]
-        ekf.vel[k] += dv
-        ekf.pos[k] += dp
-        ekf.lag_vel[k] -= dv
-        ekf.lag_pos[k] -= dp
-        ekf.gyro_bias[k] = constrain(ekf.gyro_bias[k] + dx[BG + k], -MAX_GYRO_BIAS, MAX_GYRO_BIAS)
-        ekf.acc_bias[k] = constrain(ekf.acc_bias[k] + dx[BA + k], -acc_bias_limit, acc_bias_limit)
-        ekf.mag_bias[k] = constrain(ekf.mag_bias[k] + dx[BM + k], -MAX_MAG_BIAS, MAX_MAG_BIAS)
-    for n in range(RING):
-        age = 1e-6 * (now_us - ekf.ring_us[n])
-        for k in range(3):
-            ekf.ring_vel[n, k] += dx[VEL + k]
-            ekf.ring_pos[n, k] += dx[POS + k] - age * dx[VEL + k]
+    dv, dp = vector_at(dx, VEL), vector_at(dx, POS)
+    ekf.q = normalise(multiply(quat_from_rotation_vector(vector_at(dx, THETA)), ekf.q))
+    ekf.vel += dv
+    ekf.pos += dp
+    ekf.lag_vel -= dv
+    ekf.lag_pos -= dp
+    ekf.gyro_bias = limit_components(ekf.gyro_bias + vector_at(dx, BG), MAX_GYRO_BIAS)
+    ekf.acc_bias = limit_components(ekf.acc_bias + vector_at(dx, BA), acc_bias_max)
+    ekf.mag_bias = limit_components(ekf.mag_bias + vector_at(dx, BM), MAX_MAG_BIAS)
+    correct_past(ekf, dp, dv)
     for i in range(N):
         dx[i] = 0.0

@@ -13,15 +13,18 @@ from __future__ import annotations
 
 import math
 
-from ...core.geodesy import offset_ne
+from ...core.algebra import horizontal
 from ...core.kernels import law
+from ...core.vectors import Vec2, Vec3
+from ..params.estimator import Ekf3
+from ..state import Autopilot, Estimate, Sensors
 from . import noise
-from .aiding import reset_to_fix, start_using, stop_using
-from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, clear_row, correct, gate_ratio, innovate
-from .history import slot_at
+from .aiding import fix_ne, place_origin, reset_to_fix, start_using, stop_using
+from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
+from .history import past_at
 from .magnetometer import learn_field
-from .origin import place_origin
-from .state import BG, POS, VEL
+from .state import BG, VEL, Ekf
+from .strapdown import within
 
 DEFAULT_DELAY_US = 120_000
 """Age of a fix from a u-blox M8 or later [us]."""
@@ -31,6 +34,8 @@ RETURN_FIXES = 5
 """Good fixes in a row before GPS is used again after a loss."""
 MIN_SATELLITES = 6
 MAX_HDOP = 250.0  # times 100
+MAX_SPEED = 29_999.0
+"""Velocities above this are nonsense [cm/s]."""
 LEARNED_VARIANCE = 3.6e-7
 """Variance of the yaw gyro's bias below which it is known: (0.034 deg/s)^2 [(rad/s)^2]."""
 LEARNED_HOLD_US = 23_300_000
@@ -48,152 +53,156 @@ SILENCE_US = 2_000_000
 
 
 @law
-def read(ekf, sensors, now_us):
+def read(ekf: Ekf, sensors: Sensors) -> None:
     """Note when a message arrived."""
-    if int(sensors.gps_count) != ekf.gps_seen:
-        ekf.gps_seen = int(sensors.gps_count)
-        ekf.gps_arrival_us = now_us
-        ekf.gps_new = 1
+    if sensors.gps_count != ekf.gps_seen:
+        ekf.gps_seen = sensors.gps_count
+        ekf.gps_arrival_us = ekf.now_us
+        ekf.gps_new = True
 
 
 @law
-def sane(sensors):
+def is_sane(sensors: Sensors) -> bool:
     """Whether the message is a 3D fix with figures that make sense."""
-    if int(sensors.gps_fix) < 3:
+    lat, lon, alt = sensors.gps_lat, sensors.gps_lon, sensors.gps_alt
+    if sensors.gps_fix < 3 or abs(lat) > 900000000 or abs(lon) > 1800000000 or (lat == 0 and lon == 0):
         return False
-    lat, lon, alt = int(sensors.gps_lat), int(sensors.gps_lon), int(sensors.gps_alt)
-    if abs(lat) > 900000000 or abs(lon) > 1800000000 or (lat == 0 and lon == 0):
-        return False
-    if alt < -1000000 or alt > 50000000:
-        return False
-    limit = 30000  # [cm/s]
-    return (
-        abs(int(sensors.gps_vel[0])) < limit
-        and abs(int(sensors.gps_vel[1])) < limit
-        and abs(int(sensors.gps_vel[2])) < limit
-    )
+    return -1000000 <= alt <= 50000000 and within(sensors.gps_vel, MAX_SPEED)
 
 
 @law
-def quality(params, sensors):
+def has_quality(sensors: Sensors, params: Ekf3) -> bool:
     """Whether a sane fix passes the checks that EK3_GPS_CHECK asks for."""
-    mask, scale = int(params.EK3.GPS_CHECK), 0.01 * params.EK3.CHECK_SCALE
-    if mask & 1 and int(sensors.gps_satellites) < MIN_SATELLITES:
+    mask = int(params.GPS_CHECK)
+    if mask & 1 and sensors.gps_satellites < MIN_SATELLITES:
         return False
-    return not (mask & 2 and (int(sensors.gps_eph) <= 0 or int(sensors.gps_eph) > MAX_HDOP * scale))
+    return not (mask & 2 and (sensors.gps_eph <= 0 or sensors.gps_eph > MAX_HDOP * (0.01 * params.CHECK_SCALE)))
 
 
 @law
-def _fuse_velocity(ap, sensors, a, b, share, now_us):
-    """Fuse the fix's velocity against the past velocity; returns 1 when it passed the gate."""
-    ekf, params = ap.ekf, ap.params
-    ne, d = noise.GPS_VELOCITY_NE * params.EK3.VELNE_M_NSE, noise.GPS_VELOCITY_D * params.EK3.VELD_M_NSE
-    # the first pass looks, the second fuses
-    squares, variances = 0.0, 0.0
-    for go in range(2):
-        for k in range(3):
-            past = ekf.ring_vel[a, k] + share * (ekf.ring_vel[b, k] - ekf.ring_vel[a, k])
-            clear_row(ekf)
-            ekf.h[VEL + k] = 1.0
-            variance = d * d if k == 2 else ne * ne
-            innovation, s = innovate(ekf, 0.01 * int(sensors.gps_vel[k]) - past, variance)
-            if go == 1:
-                correct(ekf, innovation, s, NIS_GPS_VELOCITY)
-            else:
-                squares += innovation * innovation
-                variances += s
-        if go == 0:
-            n, v = params.EK3.VELNE_M_NSE, params.EK3.VELD_M_NSE
-            nominal = math.sqrt(2.0 * n * n + v * v)
-            ratio = gate_ratio(squares, variances, nominal, params.EK3.VEL_I_GATE)
-            ap.estimate.variance_vel = math.sqrt(ratio)
-            if ratio >= 1.0:
-                return 0
-    ekf.gps_vel_fused_us = now_us
-    return 1
-
-
-@law
-def _fuse_position(ap, sensors, a, b, share, age, now_us):
-    """Fuse the fix's horizontal position against the past position; returns 1 when it passed the gate."""
-    ekf, params, estimate = ap.ekf, ap.params, ap.estimate
-    sigma = noise.GPS_POSITION * params.EK3.POSNE_M_NSE
-    n, e = offset_ne(estimate.origin_lat, estimate.origin_lon, int(sensors.gps_lat), int(sensors.gps_lon))
-    squares, variances = 0.0, 0.0
-    for go in range(2):
-        for k in range(2):
-            past = ekf.ring_pos[a, k] + share * (ekf.ring_pos[b, k] - ekf.ring_pos[a, k])
-            clear_row(ekf)
-            ekf.h[POS + k] = 1.0
-            ekf.h[VEL + k] = -age
-            innovation, s = innovate(ekf, (n if k == 0 else e) - past, sigma * sigma)
-            if go == 1:
-                correct(ekf, innovation, s, NIS_GPS_POSITION)
-            else:
-                squares += innovation * innovation
-                variances += s
-        if go == 0:
-            nominal = math.sqrt(2.0) * params.EK3.POSNE_M_NSE
-            ratio = gate_ratio(squares, variances, nominal, params.EK3.POS_I_GATE)
-            estimate.variance_pos = math.sqrt(ratio)
-            if ratio >= 1.0:
-                return 0
-    ekf.gps_pos_fused_us = now_us
-    return 1
-
-
-@law
-def fuse(ap, sensors, now_us):
-    """Look at the GPS message; returns 1 when something was fused."""
-    ekf, params, estimate = ap.ekf, ap.params, ap.estimate
-    if ekf.gps_in_use != 0 and now_us - max(ekf.gps_pos_fused_us, ekf.gps_vel_fused_us) > STOP_TIMEOUT_US:
-        stop_using(ap, now_us)
-    if ekf.gps_new == 0:
-        return 0
-    ekf.gps_new = 0
-    if not sane(sensors):
+def count_fix(ekf: Ekf, sensors: Sensors, params: Ekf3) -> bool:
+    """Count the fixes in a row and how long they have been good; whether this one makes sense."""
+    sane = is_sane(sensors)
+    if not sane or ekf.now_us - ekf.gps_us > SILENCE_US:
         ekf.gps_good_us = 0
         ekf.gps_fixes = 0
-        return 0
-    if now_us - ekf.gps_us > SILENCE_US:
-        ekf.gps_good_us = 0
-        ekf.gps_fixes = 0
-    ekf.gps_us = now_us
+    if not sane:
+        return False
+    ekf.gps_us = ekf.now_us
     ekf.gps_fixes += 1
-    alt = 0.001 * int(sensors.gps_alt)
+    alt = 0.001 * sensors.gps_alt
     if ekf.gps_fixes == 1 or ekf.gps_alt_filter != ekf.gps_alt_filter:  # the first, or after a filter step gone bad
-        ekf.gps_alt_filter = alt + ekf.pos[2]
-    ekf.gps_alt_filter += 0.1 * (alt + ekf.pos[2] - ekf.gps_alt_filter)
-    if not quality(params, sensors):
+        ekf.gps_alt_filter = alt + ekf.pos.z
+    ekf.gps_alt_filter += 0.1 * (alt + ekf.pos.z - ekf.gps_alt_filter)
+    if not has_quality(sensors, params):
         ekf.gps_good_us = 0
     elif ekf.gps_good_us == 0:
-        ekf.gps_good_us = now_us
-    if ekf.field_known == 0 and ekf.yaw_aligned != 0:
-        learn_field(ap, int(sensors.gps_lat), int(sensors.gps_lon))
-    held = ekf.gps_good_us != 0 and now_us - ekf.gps_good_us >= CHECKS_HOLD_US
-    if held and estimate.origin_set == 0 and ekf.yaw_aligned != 0:
-        place_origin(ap, int(sensors.gps_lat), int(sensors.gps_lon), ekf.gps_alt_filter, now_us)
+        ekf.gps_good_us = ekf.now_us
+    return True
 
-    delay_us = DEFAULT_DELAY_US if params.GPS1_DELAY_MS == 0 else int(1000 * params.GPS1_DELAY_MS)
-    when_us = ekf.gps_arrival_us - delay_us
-    age = 1e-6 * (now_us - when_us)
-    if ekf.bias_learned == 0 and ekf.yaw_aligned != 0:
-        if not ekf.P[BG + 2, BG + 2] < LEARNED_VARIANCE:
-            ekf.bias_unknown_us = now_us
-        known_us = now_us - ekf.bias_unknown_us
-        ekf.bias_learned = 1 if known_us > LEARNED_HOLD_US or now_us - ekf.init_us > LEARNED_US else 0
-    if ekf.gps_in_use == 0:
-        # the first time the checks must have held for long; after a loss a few good fixes are enough
-        again = ekf.gps_used_before != 0 and ekf.gps_good_us != 0 and ekf.gps_fixes >= RETURN_FIXES
-        if (held or again) and estimate.origin_set != 0 and ekf.bias_learned != 0 and ekf.yaw_aligned != 0:
-            start_using(ap, sensors, age, now_us)
-        return 0
-    a, b, share = slot_at(ekf, when_us)
-    velocity = _fuse_velocity(ap, sensors, a, b, share, now_us)
-    position = _fuse_position(ap, sensors, a, b, share, age, now_us)
-    ekf.gps_glitch = 1 - position
-    if now_us - ekf.gps_pos_fused_us > GLITCH_TIMEOUT_US and ekf.gps_good_us != 0:
-        reset_to_fix(ap, sensors, age)
-        ekf.gps_pos_fused_us = now_us
-        ekf.gps_glitch = 0
-    return 1 if velocity + position > 0 else 0
+
+@law
+def learn_bias(ekf: Ekf) -> None:
+    """Note when the yaw gyro's bias has been known for long enough."""
+    if ekf.bias_learned or not ekf.yaw_aligned:
+        return
+    if not ekf.P[BG + 2, BG + 2] < LEARNED_VARIANCE:
+        ekf.bias_unknown_us = ekf.now_us
+    ekf.bias_learned = ekf.now_us - ekf.bias_unknown_us > LEARNED_HOLD_US or ekf.now_us - ekf.init_us > LEARNED_US
+
+
+@law
+def has_held(ekf: Ekf) -> bool:
+    """Whether fixes have been good for long enough for the first use."""
+    return ekf.gps_good_us != 0 and ekf.now_us - ekf.gps_good_us >= CHECKS_HOLD_US
+
+
+@law
+def may_start(ekf: Ekf, origin_set: bool) -> bool:
+    """Whether GPS may be used: the first time after long checks, after a loss with a few good fixes."""
+    again = ekf.gps_used_before and ekf.gps_good_us != 0 and ekf.gps_fixes >= RETURN_FIXES
+    return (has_held(ekf) or again) and origin_set and ekf.bias_learned and ekf.yaw_aligned
+
+
+@law
+def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3) -> float:
+    """Fuse measured minus past velocity [m/s]; the ratio to the gate: it is not fused from 1 on."""
+    sigma_ne, sigma_d = noise.GPS_VELOCITY_NE * params.VELNE_M_NSE, noise.GPS_VELOCITY_D * params.VELD_M_NSE
+    ne, d = sigma_ne * sigma_ne, sigma_d * sigma_d
+    north = innovate_state(ekf, VEL, residual.x, ne)
+    east = innovate_state(ekf, VEL + 1, residual.y, ne)
+    down = innovate_state(ekf, VEL + 2, residual.z, d)
+    squares = north.value * north.value + east.value * east.value + down.value * down.value
+    variances = north.variance + east.variance + down.variance
+    n, v = params.VELNE_M_NSE, params.VELD_M_NSE
+    ratio = gate_ratio(squares, variances, math.sqrt(2.0 * n * n + v * v), params.VEL_I_GATE)
+    if not ratio >= 1.0:
+        correct(ekf, innovate_state(ekf, VEL, residual.x, ne), NIS_GPS_VELOCITY)
+        correct(ekf, innovate_state(ekf, VEL + 1, residual.y, ne), NIS_GPS_VELOCITY)
+        correct(ekf, innovate_state(ekf, VEL + 2, residual.z, d), NIS_GPS_VELOCITY)
+        ekf.gps_vel_fused_us = ekf.now_us
+    return ratio
+
+
+@law
+def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
+    """Fuse measured minus past position [m] of ``age`` [s]; the ratio to the gate: it is not fused from 1 on."""
+    sigma = noise.GPS_POSITION * params.POSNE_M_NSE
+    variance = sigma * sigma
+    north = innovate_position(ekf, 0, age, residual.x, variance)
+    east = innovate_position(ekf, 1, age, residual.y, variance)
+    squares = north.value * north.value + east.value * east.value
+    nominal = math.sqrt(2.0) * params.POSNE_M_NSE
+    ratio = gate_ratio(squares, north.variance + east.variance, nominal, params.POS_I_GATE)
+    if not ratio >= 1.0:
+        correct(ekf, innovate_position(ekf, 0, age, residual.x, variance), NIS_GPS_POSITION)
+        correct(ekf, innovate_position(ekf, 1, age, residual.y, variance), NIS_GPS_POSITION)
+        ekf.gps_pos_fused_us = ekf.now_us
+    return ratio
+
+
+@law
+def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_us: int) -> bool:
+    """Fuse velocity and position of a fix taken at ``when_us``; whether one of them passed its gate."""
+    age = 1e-6 * (ekf.now_us - when_us)
+    past = past_at(ekf, when_us)
+    velocity = fuse_velocity(ekf, 0.01 * sensors.gps_vel - past.vel, params)
+    estimate.variance_vel = math.sqrt(velocity)
+    position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
+    estimate.variance_pos = math.sqrt(position)
+    ekf.gps_glitch = position >= 1.0
+    if ekf.now_us - ekf.gps_pos_fused_us > GLITCH_TIMEOUT_US and ekf.gps_good_us != 0:
+        reset_to_fix(ekf, estimate, sensors, age)
+        ekf.gps_pos_fused_us = ekf.now_us
+        ekf.gps_glitch = False
+    return not (velocity >= 1.0 and position >= 1.0)
+
+
+@law
+def delay_us(delay_ms: float) -> int:
+    """Age of a fix when it arrives [us], of GPS1_DELAY_MS."""
+    return DEFAULT_DELAY_US if delay_ms == 0 else int(1000 * delay_ms)
+
+
+@law
+def fuse(ap: Autopilot, sensors: Sensors) -> bool:
+    """Look at the GPS message; whether something was fused."""
+    ekf, estimate = ap.ekf, ap.estimate
+    if ekf.gps_in_use and ekf.now_us - max(ekf.gps_pos_fused_us, ekf.gps_vel_fused_us) > STOP_TIMEOUT_US:
+        stop_using(ap)
+    if not ekf.gps_new:
+        return False
+    ekf.gps_new = False
+    if not count_fix(ekf, sensors, ap.params.EK3):
+        return False
+    if not ekf.field_known and ekf.yaw_aligned:
+        learn_field(ekf, estimate, sensors.gps_lat, sensors.gps_lon)
+    if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
+        place_origin(ap, sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter)
+    learn_bias(ekf)
+    when_us = ekf.gps_arrival_us - delay_us(ap.params.GPS1_DELAY_MS)
+    if ekf.gps_in_use:
+        return fuse_fix(ekf, estimate, sensors, ap.params.EK3, when_us)
+    if may_start(ekf, estimate.origin_set):
+        start_using(ap, sensors, 1e-6 * (ekf.now_us - when_us))
+    return False

@@ -10,6 +10,7 @@ frame).
 from __future__ import annotations
 
 from ...core.records import Floats, Ints, Record, array
+from ...core.vectors import Quat, Vec2, Vec3
 
 N = 18
 THETA, VEL, POS, BG, BA, BM = 0, 3, 6, 9, 12, 15
@@ -20,49 +21,49 @@ RING = 32
 class Ekf(Record):
     """The extended Kalman filter."""
 
-    use_external: int  # not 0: somebody else writes the estimate; the filter stands still
+    use_external: bool  # somebody else writes the estimate; the filter stands still
     phase: int  # alignment.py: CALIBRATE, TILT, YAW, RUN
     resets: int  # times the filter lost its health and began anew
     # nominal state
-    q: Floats = array(4)  # body to NED
-    vel: Floats = array(3)  # [m/s]
-    pos: Floats = array(3)  # [m]
-    gyro_bias: Floats = array(3)  # [rad/s]
-    acc_bias: Floats = array(3)  # [m/s^2]
-    mag_bias: Floats = array(3)  # [gauss]
+    q: Quat  # body to NED
+    vel: Vec3  # [m/s]
+    pos: Vec3  # [m]
+    gyro_bias: Vec3  # [rad/s]
+    acc_bias: Vec3  # [m/s^2]
+    mag_bias: Vec3  # [gauss]
     P: Floats = array(N, N)  # covariance of the error state
     dx: Floats = array(N)  # error found by the fusions of this step, not yet put into the nominal state
     h: Floats = array(N)  # measurement row, scratch of one fusion
     ph: Floats = array(N)  # P times the transposed measurement row, scratch of one fusion
     # output: corrections reach the estimate with a time constant, so that controllers see no steps
-    lag_vel: Floats = array(3)  # [m/s]
-    lag_pos: Floats = array(3)  # [m]
+    lag_vel: Vec3  # [m/s]
+    lag_pos: Vec3  # [m]
     # inertial sensors
-    good_gyro: Floats = array(3)  # last sample that made sense [rad/s]
-    good_acc: Floats = array(3)  # [m/s^2]
+    good_gyro: Vec3  # last sample that made sense [rad/s]
+    good_acc: Vec3  # [m/s^2]
     bad_imu: int  # bad samples in a row
-    last_gyro: Floats = array(3)  # bias-free rates of the tick before [rad/s], for coning
-    last_acc_ned: Floats = array(3)  # acceleration of the tick before [m/s^2]
+    last_gyro: Vec3  # bias-free rates of the tick before [rad/s], for coning
+    last_acc_ned: Vec3  # acceleration of the tick before [m/s^2]
     step_ticks: int  # ticks since the last filter step
     step_dt: float  # time since the last filter step [s]
-    step_dv: Floats = array(3)  # specific force summed since the last filter step, NED [m/s]
+    step_dv: Vec3  # specific force summed since the last filter step, NED [m/s]
     # alignment
     now_us: int  # time of the present tick
-    started: int
+    started: bool
     start_us: int  # when calibration began
     init_us: int  # when the filter was initialised
     still_ticks: int  # samples in the sums below
-    gyro_sum: Floats = array(3)
-    gyro_smooth: Floats = array(3)  # low-passed [rad/s]
-    gyro_low: Floats = array(3)  # its extremes in the window
-    gyro_high: Floats = array(3)
-    acc_sum: Floats = array(3)
-    tilt_aligned: int
-    yaw_aligned: int
-    yaw_in_flight: int  # yaw checked again after take-off
+    gyro_sum: Vec3  # [rad/s]
+    gyro_smooth: Vec3  # low-passed [rad/s]
+    gyro_low: Vec3  # its extremes in the window
+    gyro_high: Vec3  # [rad/s]
+    acc_sum: Vec3  # [m/s^2]
+    tilt_aligned: bool
+    yaw_aligned: bool
+    yaw_in_flight: bool  # yaw checked again after take-off
     bias_unknown_us: int  # last time that the variance of the yaw gyro's bias was large
-    bias_learned: int  # gyro bias known well enough to trust yaw over minutes
-    ground_d: float  # pos[2] when last on the ground, disarmed [m]
+    bias_learned: bool  # gyro bias known well enough to trust yaw over minutes
+    ground_d: float  # position down when last on the ground, disarmed [m]
     # history for delayed measurements
     ring_count: int
     ring_us: Ints = array(RING, stored="i8")
@@ -73,33 +74,33 @@ class Ekf(Record):
     baro_n: int  # samples in the sum
     baro_us_sum: int  # of their times
     baro_sum: float  # altitude in the standard atmosphere [m]
-    baro_ground: float  # altitude in the standard atmosphere of pos[2] = 0 [m]
+    baro_ground: float  # altitude in the standard atmosphere of the height zero [m]
     baro_us: int  # last good sample
     baro_fused_us: int
     # magnetometer
     mag_seen: int
     mag_n: int
-    mag_sum: Floats = array(3)  # field turned to NED [gauss]
+    mag_sum: Vec3  # field turned to NED [gauss]
     mag_us: int
     mag_fused_us: int
-    earth_field: Floats = array(3)  # NED [gauss]
+    earth_field: Vec3  # NED [gauss]
     declination: float  # [rad], east positive
-    field_known: int  # from the model of the earth's field, at the first GPS fix
+    field_known: bool  # from the model of the earth's field, at the first GPS fix
     # GPS
     gps_seen: int
-    gps_new: int  # a message waits for the next filter step
+    gps_new: bool  # a message waits for the next filter step
     gps_arrival_us: int
     gps_us: int  # last sane 3D fix arrived
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
     gps_alt_filter: float  # mean altitude while on the ground [m]
-    gps_in_use: int
-    gps_used_before: int
-    gps_glitch: int  # last fix was beyond the gates
+    gps_in_use: bool
+    gps_used_before: bool
+    gps_glitch: bool  # last fix was beyond the gates
     gps_pos_fused_us: int
     gps_vel_fused_us: int
     hold_us: int  # last zero-velocity or held-position fusion
-    hold_pos: Floats = array(2)  # NE position held [m]
+    hold_pos: Vec2  # NE position held [m]
     # consistency: normalised innovation squared, sums and counts since the filter started
     nis_sum: Floats = array(4)  # GPS position, GPS velocity, barometer, magnetometer
     nis_count: Ints = array(4, stored="i8")

@@ -9,15 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.estimation import fusion, history
-from sitl.autopilot.estimation.state import POS, THETA, VEL, N
-from tests.autopilot.estimation import synthetic_flight as sf
+from sitl.autopilot.estimation.state import POS, THETA, VEL, Ekf, N
+from sitl.core.algebra import IDENTITY, ZERO
+from sitl.core.vectors import Vec3
 
 
 @given(st.integers(0, 10000))
 @settings(max_examples=20, deadline=None)
 def test_two_scalars_one_after_the_other_are_the_joint_update(seed: int) -> None:
     r = np.random.default_rng(seed)
-    ekf = sf.Copter.of(sf.new(), 0).autopilot.ekf
+    ekf = Ekf()
     a = r.normal(size=(N, N))
     P = a @ a.T
     ekf.P[:] = P
@@ -26,8 +27,7 @@ def test_two_scalars_one_after_the_other_are_the_joint_update(seed: int) -> None
     for k in range(2):
         fusion.clear_row(ekf)
         ekf.h[:] = H[k]
-        innovation, s = fusion.innovate(ekf, z[k], R[k, k])
-        fusion.correct(ekf, innovation, s, fusion.NIS_BAROMETER)
+        fusion.correct(ekf, fusion.innovate(ekf, z[k], R[k, k]), fusion.NIS_BAROMETER)
     S = H @ P @ H.T + R
     K = P @ H.T @ np.linalg.inv(S)
     assert np.allclose(ekf.dx, K @ z)
@@ -37,35 +37,33 @@ def test_two_scalars_one_after_the_other_are_the_joint_update(seed: int) -> None
     assert ekf.nis_count[fusion.NIS_BAROMETER] == 2
 
 
-def test_injection_moves_state_past_and_keeps_the_output_steady(ap) -> None:
-    ekf = ap.ekf
-    ekf.q[0] = 1.0
-    ekf.pos[:] = (1.0, 2.0, 3.0)
+def test_injection_moves_state_past_and_keeps_the_output_steady() -> None:
+    ekf = Ekf()
+    ekf.q, ekf.pos = IDENTITY, Vec3(1.0, 2.0, 3.0)
     for k in range(5):
-        history.keep(ekf, 100_000 * k)
-    before = ekf.ring_pos[:5].copy()
+        ekf.now_us = 100_000 * k
+        history.keep(ekf)
+    before = np.array(ekf.ring_pos[:5])
     ekf.dx[THETA + 2] = 0.1
     ekf.dx[VEL] = 0.5
     ekf.dx[POS] = 2.0
-    fusion.inject(ekf, 1.0, 400_000)
+    fusion.inject(ekf, 1.0)
     assert ekf.q == pytest.approx([np.cos(0.05), 0, 0, np.sin(0.05)])
-    assert ekf.pos[0] == 3.0 and ekf.vel[0] == 0.5
-    assert ekf.pos[0] + ekf.lag_pos[0] == 1.0 and ekf.vel[0] + ekf.lag_vel[0] == 0.0
+    assert ekf.pos.x == 3.0 and ekf.vel.x == 0.5
+    assert ekf.pos + ekf.lag_pos == (1.0, 2.0, 3.0) and ekf.vel + ekf.lag_vel == ZERO
     assert ekf.ring_pos[:5, 0] - before[:, 0] == pytest.approx([2 - 0.5 * age for age in (0.4, 0.3, 0.2, 0.1, 0)])
     assert not np.any(ekf.dx)
 
 
-def test_past_states_are_found_between_their_times(ap) -> None:
-    ekf = ap.ekf
+def test_past_states_are_found_between_their_times() -> None:
+    ekf = Ekf()
     for k in range(50):  # more than the ring holds
-        ekf.pos[0] = k
-        history.keep(ekf, 12_500 * k)
-    a, b, share = history.slot_at(ekf, 12_500 * 40 + 2_500)
-    assert ekf.ring_pos[a, 0] + share * (ekf.ring_pos[b, 0] - ekf.ring_pos[a, 0]) == pytest.approx(40.2)
-    a, b, share = history.slot_at(ekf, 0)  # older than the ring: the oldest
-    assert ekf.ring_pos[a, 0] == 50 - len(ekf.ring_us) and share == 0.0
-    a, b, share = history.slot_at(ekf, 10**9)  # newer than the newest
-    assert ekf.ring_pos[a, 0] == 49
+        ekf.now_us, ekf.pos, ekf.vel = 12_500 * k, Vec3(k, 0.0, 0.0), Vec3(0.0, 2 * k, 0.0)
+        history.keep(ekf)
+    past = history.past_at(ekf, 12_500 * 40 + 2_500)
+    assert past.pos == pytest.approx((40.2, 0.0, 0.0)) and past.vel == pytest.approx((0.0, 80.4, 0.0))
+    assert history.past_at(ekf, 0).pos.x == 50 - len(ekf.ring_us)  # older than the ring: the oldest
+    assert history.past_at(ekf, 10**9).pos.x == 49  # newer than the newest
 
 
 def test_a_gate_is_in_hundredths_of_the_parameters_deviation() -> None:

@@ -7,16 +7,25 @@ import math
 
 import pytest
 
-from sitl.autopilot.estimation import barometer, gps, magnetometer, origin
-from tests.autopilot.estimation import synthetic_flight as sf
+from sitl.autopilot.estimation import aiding, barometer, gps, magnetometer
+from sitl.autopilot.estimation.state import Ekf
+from sitl.autopilot.params.estimator import Ekf3
+from sitl.autopilot.state import Sensors
+from sitl.core.algebra import IDENTITY
 
 
-def _vehicle():
-    v = sf.Copter.of(sf.new(), 0)
-    s = v.sensors
+def _fix() -> Sensors:
+    s = Sensors()
     s.gps_fix, s.gps_satellites, s.gps_eph = 3, 10, 121
     s.gps_lat, s.gps_lon, s.gps_alt = -353632620, 1491652370, 584000
-    return v
+    return s
+
+
+def _checks(bits: int) -> Ekf3:
+    """Parameters that ask for some of the checks, with the usual limits."""
+    params = Ekf3()
+    params.GPS_CHECK, params.CHECK_SCALE = bits, 100.0
+    return params
 
 
 @pytest.mark.parametrize(("altitude", "hpa"), [(0.0, 1013.25), (1000.0, 898.746), (5000.0, 540.199)])
@@ -26,24 +35,23 @@ def test_standard_atmosphere(altitude: float, hpa: float) -> None:
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), 0.0, -5.0, 99.0, 1300.0])
 def test_broken_pressure_is_passed_over(bad: float) -> None:
-    v = _vehicle()
-    v.sensors.baro_count, v.sensors.abs_pressure = 1, bad
-    barometer.read(v.autopilot.ekf, v.sensors, 1000)
-    assert v.autopilot.ekf.baro_n == 0
+    ekf, sensors = Ekf(), Sensors()
+    sensors.baro_count, sensors.abs_pressure = 1, bad
+    barometer.read(ekf, sensors)
+    assert ekf.baro_n == 0 and ekf.baro_seen == 1
 
 
 @pytest.mark.parametrize("bad", [(float("nan"), 0.2, 0.3), (0.2, float("inf"), 0), (0, 0, 0), (5.0, 0, 0)])
 def test_broken_field_is_passed_over(bad) -> None:
-    v = _vehicle()
-    v.sensors.mag_count, v.sensors.mag = 1, bad
-    magnetometer.read(v.autopilot.ekf, v.sensors, 1000)
-    assert v.autopilot.ekf.mag_n == 0
+    ekf, sensors = Ekf(), Sensors()
+    sensors.mag_count, sensors.mag = 1, bad
+    magnetometer.read(ekf, sensors)
+    assert ekf.mag_n == 0 and ekf.mag_seen == 1
 
 
 def test_a_good_fix_is_sane_and_passes() -> None:
-    v = _vehicle()
-    assert gps.sane(v.sensors)
-    assert gps.quality(v.autopilot.params, v.sensors)
+    assert gps.is_sane(_fix())
+    assert gps.has_quality(_fix(), _checks(31))
 
 
 @pytest.mark.parametrize(
@@ -58,35 +66,32 @@ def test_a_good_fix_is_sane_and_passes() -> None:
     ],
 )
 def test_a_fix_with_figures_that_make_no_sense_is_refused(name: str, value) -> None:
-    v = _vehicle()
-    v.sensors[name] = value
-    assert not gps.sane(v.sensors)
+    sensors = _fix()
+    sensors[name] = value
+    assert not gps.is_sane(sensors)
 
 
 @pytest.mark.parametrize(("name", "value"), [("gps_satellites", 5), ("gps_eph", 300), ("gps_eph", 0)])
 def test_quality_checks_can_be_switched_off(name: str, value: int) -> None:
-    v = _vehicle()
-    v.sensors[name] = value
-    assert not gps.quality(v.autopilot.params, v.sensors)
-    v.autopilot.params.EK3_GPS_CHECK = 0
-    assert gps.quality(v.autopilot.params, v.sensors)
+    sensors = _fix()
+    sensors[name] = value
+    assert not gps.has_quality(sensors, _checks(31))
+    assert gps.has_quality(sensors, _checks(0))
 
 
-def test_origin_is_set_once() -> None:
-    ap = _vehicle().autopilot
-    assert origin.set_origin(ap, 910000000, 0, 0.0) == 0
-    assert origin.set_origin(ap, -353632620, 1491652370, float("nan")) == 0
-    assert origin.set_origin(ap, -353632620, 1491652370, 584.0) == 1
-    assert origin.set_origin(ap, 0, 0, 0.0) == 0
+def test_origin_is_set_once(ap) -> None:
+    assert not aiding.set_origin(ap, 910000000, 0, 0.0)
+    assert not aiding.set_origin(ap, -353632620, 1491652370, float("nan"))
+    assert aiding.set_origin(ap, -353632620, 1491652370, 584.0)
+    assert not aiding.set_origin(ap, 0, 0, 0.0)
     e = ap.estimate
     assert (e.origin_set, e.origin_lat, e.origin_lon, e.origin_alt) == (1, -353632620, 1491652370, 584.0)
     assert math.degrees(ap.ekf.declination) == pytest.approx(12.7, abs=0.3)
 
 
 def test_yaw_turns_by_the_declination_learnt(ap) -> None:
-    ap.ekf.q[0] = 1.0
-    ap.ekf.yaw_aligned = 1
-    origin.place_origin(ap, -353632620, 1491652370, 584.0, 0)
-    assert 2 * math.atan2(ap.ekf.q[3], ap.ekf.q[0]) == pytest.approx(ap.ekf.declination)
+    ap.ekf.q, ap.ekf.yaw_aligned = IDENTITY, True
+    aiding.place_origin(ap, -353632620, 1491652370, 584.0)
+    assert 2 * math.atan2(ap.ekf.q.z, ap.ekf.q.w) == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw_count == 1
