@@ -11,7 +11,16 @@ from ...core.vectors import Vec3
 from ..events import COMMAND_ARRIVED, COMMAND_COMPLETE, emit, emit_and_return
 from ..state import Autopilot
 from .path import distance
-from .state import CONDITION_DELAY, CONDITION_DISTANCE, CONDITION_NONE, CONDITION_YAW, DO_COMMAND, NAV_COMMAND, NONE, Nav
+from .state import (
+    CONDITION_DELAY,
+    CONDITION_DISTANCE,
+    CONDITION_NONE,
+    CONDITION_YAW,
+    DO_COMMAND,
+    NAV_COMMAND,
+    NONE,
+    Nav,
+)
 
 
 def give(nav: Nav, kind: int, seq: int) -> None:
