@@ -20,7 +20,7 @@ class Autopilot(shared.Autopilot):
 
 
 class Vehicle(shared.Vehicle, Protocol):
-    """What the firmware sees of the copter."""
+    """What the firmware sees of the copter that it flies."""
 
     @property
     def autopilot(self) -> Autopilot:

@@ -60,11 +60,11 @@ class RoverCommands(Commands[Vehicle]):
 
     def enter(self, v: Vehicle) -> None:
         """The parameters' speed, forwards, no legs."""
-        waypoint.start(v)
+        waypoint.start(v.autopilot)
 
     def reset(self, v: Vehicle) -> None:
         """Forget the legs."""
-        waypoint.stop(v)
+        waypoint.stop(v.autopilot)
 
     def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way; without a place it is where the vehicle is."""

@@ -58,8 +58,7 @@ def fly(v):
     ap = v.autopilot
     position.update_ne(ap)
     altitude.update_d(ap)
-    tx, ty, tz = position.thrust_vector(ap)
-    auto_yaw.apply(v, tx, ty, tz)
+    auto_yaw.apply(v, position.thrust_vector(ap.control.pos_ne))
 
 
 @law

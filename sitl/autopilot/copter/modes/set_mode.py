@@ -37,7 +37,7 @@ def refusal(v, number):
         return ACCEPTED
     manual_now = has_manual_throttle(int(ap.modes.number))
     if ap.arming.landed != 0 and has_manual_throttle(number) and not manual_now:
-        if stabilize.throttle(ap) > 0.5 * hover_throttle(ap):
+        if stabilize.throttle(ap) > 0.5 * hover_throttle(ap.params.MOT):
             return THROTTLE_TOO_HIGH
     if requires_position(number) and ap.estimate.position_ok == 0:
         return REQUIRES_POSITION
