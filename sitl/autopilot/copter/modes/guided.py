@@ -12,7 +12,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ..control import altitude, position
+from ..control import altitude_start, position_start
 from . import auto_yaw, guided_flight
 from .guided_state import (
     ACCEL,
@@ -223,11 +223,11 @@ def change_speed(v, kind, speed):
     ne = ap.control.pos_ne
     d = ap.control.pos_d
     if kind == HORIZONTAL:
-        position.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
+        position_start.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
     elif kind == CLIMB:
-        altitude.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
+        altitude_start.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
     elif kind == DESCENT:
-        altitude.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
+        altitude_start.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
     else:
         return OUT_OF_RANGE
     return OK

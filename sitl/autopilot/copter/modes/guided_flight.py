@@ -15,7 +15,7 @@ from ....core.rotations import quat_from_euler, quat_to_euler
 from ....core.scalars import constrain
 from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, emit
-from ..control import altitude, attitude, position, position_ned, throttle_mix
+from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from . import auto_yaw, ground, takeoff
 from .guided_state import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
 
@@ -163,7 +163,7 @@ def run_angle(v):
         attitude.relax(ap)
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             ground.set_landed(v, 0)
-            altitude.init_d(ap)
+            altitude_start.init_d(ap)
         return
     if guided.use_attitude != 0:
         attitude.input_quaternion(ap, quat_of(guided.q), vec3_of(guided.rates))
@@ -194,7 +194,7 @@ def level_off(v):
         guided.rates[k] = 0.0
     if guided.use_thrust != 0:
         guided.use_thrust = 0
-        altitude.init_d(ap)
+        altitude_start.init_d(ap)
     guided.climb_rate = 0.0
 
 
