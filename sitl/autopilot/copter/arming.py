@@ -8,12 +8,13 @@ from typing import Any
 from ...core.kernels import law
 from .. import home
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
-from ..events import ARMED, ARMING_REFUSED, DISARMED, emit, emit_and_return
-from .arming_checks import MANDATORY, check, check_now, mode_allows
+from ..events import ARMED, ARMING_REFUSED, emit
+from .arming_checks import MANDATORY, check, check_now
 from .control.motors import ARMING_DELAY_US
-from .modes.numbers import has_manual_throttle
+from .modes import ground
+from .modes.table import has_manual_throttle
 
-__all__ = ["TEXTS", "arm", "check", "disarm", "mode_allows", "texts", "try_arm"]
+__all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
 
 
 @law
@@ -68,17 +69,7 @@ def disarm(v, method, force):
         return 1
     if force == 0 and not may_disarm(v, method):
         return 0
-    ap.arming.armed = 0
-    ap.arming.auto_armed = 0
-    ap.arming.landed = 1
-    ap.arming.landed_maybe = 1
-    ap.arming.landed_ticks = 0
-    ap.arming.crash_ticks = 0
-    ap.modes.arming_delay = 0
-    ap.modes.takeoff.user_active = 0
-    ap.modes.auto.started = 0
-    ap.control.motors.desired_spool = 0
-    emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
+    ground.disarm(v, method)
     return 1
 
 

@@ -28,26 +28,10 @@ from ..arming_checks import (
 )
 from ..radio import stick_channel
 from . import pilot
-from .modes.numbers import AUTO, BRAKE, GUIDED, LAND, RTL, has_manual_throttle, requires_position
+from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
 
 MANDATORY = NEED_POSITION | NEED_ALTITUDE
 """What forcing does not skip."""
-
-_ARM_ONLY = 1  # AUTO_OPTIONS and GUID_OPTIONS: arming in AUTO; arming by transmitter in GUIDED
-
-
-@law
-def mode_allows(v, method):
-    """Whether the present mode may be armed by ``method``."""
-    ap = v.autopilot
-    mode = ap.modes.number
-    if mode in (RTL, LAND, BRAKE):
-        return False
-    if mode == AUTO:
-        return (int(ap.params.AUTO_OPTIONS) & _ARM_ONLY) != 0
-    if mode == GUIDED:
-        return method != BY_RUDDER or (int(ap.params.GUID.OPTIONS) & _ARM_ONLY) != 0
-    return True
 
 
 @law
@@ -105,11 +89,11 @@ def arm_checks(v, method):
     ap = v.autopilot
     failed = 0
     mode = int(ap.modes.number)
-    if not mode_allows(v, method):
+    if not may_arm(mode, v, method):
         failed |= MODE
     if method == BY_RUDDER and ap.params.ARMING.RUDDER < 1.0:
         failed |= RUDDER_DISABLED
-    if method != BY_MAVLINK or (mode != GUIDED and mode != AUTO):
+    if method != BY_MAVLINK or not arms_at_any_throttle(mode):
         if has_manual_throttle(mode):
             if ap.modes.pilot.throttle > 0.0:
                 failed |= THROTTLE_HIGH

@@ -8,7 +8,8 @@ import math
 from ...core.kernels import law
 from ..arming_checks import BY_CRASH
 from ..events import CRASH_DISARM, emit
-from . import arming, landing
+from . import landing
+from .modes import ground
 
 TRIGGER_TICKS = 800
 """2 s."""
@@ -44,7 +45,7 @@ def update(v):
     if ap.arming.crash_ticks >= TRIGGER_TICKS:
         error = math.degrees(ap.control.attitude.thrust_error_angle)
         emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(v))
-        arming.disarm(v, BY_CRASH, 1)
+        ground.disarm(v, BY_CRASH)
 
 
 def text(angle_error_deg: float, acceleration: float) -> str:

@@ -6,8 +6,14 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
 from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, tell, text
+from ..modes import (
+    ACCEPTED,
+    REASON_BATTERY_FAILSAFE,
+    REASON_EKF_FAILSAFE,
+    REASON_GCS_FAILSAFE,
+    REASON_RADIO_FAILSAFE,
+)
 from ..radio import stick_channel
-from . import arming
 from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
@@ -21,19 +27,11 @@ from .failsafe_actions import (
     radio_action,
 )
 from .modes import ground, set_mode
-from .modes.numbers import (
-    ACCEPTED,
-    ALT_HOLD,
-    AUTO,
-    GUIDED,
-    LAND,
-    REASON_BATTERY_FAILSAFE,
-    REASON_EKF_FAILSAFE,
-    REASON_GCS_FAILSAFE,
-    REASON_RADIO_FAILSAFE,
-    is_autopilot,
-    requires_position,
-)
+from .modes.alt_hold import ALT_HOLD
+from .modes.auto import AUTO
+from .modes.guided import GUIDED
+from .modes.land import LAND
+from .modes.table import is_autonomous, requires_position
 
 __all__ = ["DO_BRAKE", "DO_LAND", "DO_RTL", "DO_STOP", "NOTHING", "act", "terminate", "text"]
 
@@ -95,7 +93,7 @@ def update_gcs(v):
         options = int(ap.params.FS.OPTIONS)
         mode = int(ap.modes.number)
         goes_on = mode == AUTO and (options & _GCS_AUTO) != 0
-        goes_on = goes_on or (not is_autopilot(mode) and (options & _GCS_PILOT) != 0)
+        goes_on = goes_on or (not is_autonomous(mode) and (options & _GCS_PILOT) != 0)
         if not goes_on or ap.arming.landed != 0:
             act(v, gcs_action(int(ap.params.FS.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
     elif not lost and fs.gcs != 0:
@@ -162,5 +160,5 @@ def start_ekf(v):
 @law
 def terminate(v):
     """MAV_CMD_DO_FLIGHTTERMINATION: stop the motors."""
-    arming.disarm(v, BY_TERMINATION, 1)
+    ground.disarm(v, BY_TERMINATION)
     ground.set_landed(v, 1)

@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from . import arming
-from .modes import set_mode
-from .modes.numbers import ACCEPTED, BRAKE, LAND, RTL, STABILIZE
+from ..modes import ACCEPTED
+from .modes import ground, set_mode
+from .modes.brake import BRAKE
+from .modes.land import LAND
+from .modes.rtl import RTL
+from .modes.table import has_manual_throttle
 
 # What a failsafe does
 NOTHING = 0
@@ -61,7 +64,7 @@ def battery_action(choice):
 def is_idle(v):
     """Whether disarming is safe: landed, or the pilot's own throttle is closed."""
     ap = v.autopilot
-    if ap.modes.number == STABILIZE:
+    if has_manual_throttle(ap.modes.number):
         return ap.modes.pilot.throttle_zero != 0
     return ap.arming.landed != 0
 
@@ -80,7 +83,7 @@ def act(v, action, reason, method):
     if action == NOTHING or ap.arming.armed == 0:
         return
     if is_idle(v) or action == DO_STOP:
-        arming.disarm(v, method, 1)
+        ground.disarm(v, method)
         return
     mode = ap.modes.number
     if mode == LAND and (int(ap.params.FS.OPTIONS) & CONTINUE_LANDING) != 0:

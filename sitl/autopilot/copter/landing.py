@@ -15,8 +15,7 @@ from ...core.kernels import law
 from ..events import LANDED, emit
 from .control import throttle_mix
 from .control.motors import hover_throttle
-from .modes import auto, ground, guided_state, rtl
-from .modes.numbers import ALT_HOLD, AUTO, GUIDED, LAND, LOITER, RTL, has_manual_throttle
+from .modes import ground, table
 
 TRIGGER_TICKS = 400
 """1 s."""
@@ -34,26 +33,10 @@ _STOPPED = 0.1  # [m/s]
 
 
 @law
-def is_landing(v):
-    """Whether the mode is on its way to the ground."""
-    mode = v.autopilot.modes.number
-    if mode == LAND:
-        return True
-    if mode == RTL:
-        return rtl.is_landing(v)
-    return mode == AUTO and auto.is_landing(v)
-
-
-@law
 def is_taking_off(v):
     """Whether the mode raises the throttle from the ground by itself and tells when it flies."""
     ap = v.autopilot
-    mode = ap.modes.number
-    if ap.modes.takeoff.user_active != 0:
-        return True
-    if mode == GUIDED:
-        return ap.modes.guided.submode == guided_state.TAKEOFF and ap.modes.takeoff.complete == 0
-    return mode == AUTO and auto.is_taking_off(v)
+    return ap.modes.takeoff.user_active != 0 or table.is_taking_off(ap.modes.number, v)
 
 
 @law
@@ -79,7 +62,7 @@ def update(v):
     landing = ap.modes.landing
     for k in range(3):
         landing.acc[k] += _FILTER * (ap.estimate.acc_ned[k] - landing.acc[k])
-    landing.landing = 1 if is_landing(v) else 0
+    landing.landing = 1 if table.is_landing(ap.modes.number, v) else 0
     if arming.armed == 0:
         arming.landed = 1
         arming.landed_maybe = 1
@@ -106,7 +89,7 @@ def is_meant_to_land(ap):
     """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
     if ap.modes.landing.landing != 0:
         return True
-    if ap.modes.number != LOITER and ap.modes.number != ALT_HOLD:
+    if not table.has_climb_stick(ap.modes.number):
         return False
     stopped = ap.control.motors.limit_throttle_lower != 0 and abs(ap.estimate.vel[2]) < _STOPPED
     return ap.modes.pilot.throttle_zero != 0 and stopped
@@ -132,7 +115,7 @@ def update_mix(v):
     ap = v.autopilot
     if ap.arming.armed == 0 or ap.arming.landed != 0:
         throttle_mix.set_mix_min(ap)
-    elif has_manual_throttle(int(ap.modes.number)):
+    elif table.has_manual_throttle(ap.modes.number):
         if ap.modes.pilot.throttle <= 0.0:
             throttle_mix.set_mix_min(ap)
         else:

@@ -16,7 +16,7 @@ from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
 from .modes import auto, auto_yaw
-from .modes.numbers import AUTO
+from .modes.auto import AUTO
 from .navigation import waypoint
 from .navigation.planner import PLANNER
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
-from .arming import disarm
 from .control.motors import MOTORS
+from .modes import ground
 
 LONGEST_S = 600.0
 
@@ -74,4 +74,4 @@ def update(v):
     if v.time_us >= motors.test_until_us or ap.arming.landed == 0 or ap.arming.armed == 0:
         motors.test_motor = 0
         emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
-        disarm(v, BY_MOTOR_TEST, 1)
+        ground.disarm(v, BY_MOTOR_TEST)

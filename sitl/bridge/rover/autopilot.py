@@ -18,7 +18,8 @@ from ..base_autopilot import INFO, BaseAutopilot
 class RoverAutopilot(BaseAutopilot):
     """The rover firmware's laws, called on the vehicle's record. Backward speeds are negative."""
 
-    _arming, _failsafe, _set_mode, _numbers = arming, failsafe, set_mode, numbers
+    _arming, _failsafe, _set_mode = arming, failsafe, set_mode
+    _auto = numbers.AUTO
 
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.GUIDED_REACHED:

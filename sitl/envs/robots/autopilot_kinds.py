@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from sitl.autopilot.copter.modes import numbers as copter
+from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
+from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.autopilot.rover.modes import numbers as rover
 from sitl.vehicles import Airframe
 
@@ -67,8 +68,8 @@ FAR = 10_000.0
 
 COPTER_KIND = Kind(
     setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
-    modes={"rc": copter.ALT_HOLD, "velocity": copter.GUIDED, "position": copter.GUIDED, "attitude": copter.GUIDED},
-    guided=copter.GUIDED,
+    modes={"rc": ALT_HOLD, "velocity": GUIDED, "position": GUIDED, "attitude": GUIDED},
+    guided=GUIDED,
     encode=COPTER,
     tick=0.0025,
     crash_range=0.2,

@@ -11,6 +11,9 @@ from .. import pilot
 from ..control import altitude, attitude
 from ..control.throttle_mix import lean_limit
 from . import ground, takeoff
+from .mode import CopterMode
+
+ALT_HOLD = 2
 
 # What the vertical part is doing
 STOPPED = 0
@@ -102,3 +105,13 @@ def run(v):
     roll, pitch = pilot.lean_angles(ap, most, min(most, lean_limit(ap)))
     attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
     run_vertical(v, doing, climb)
+
+
+MODE = CopterMode(
+    number=ALT_HOLD,
+    name="ALT_HOLD",
+    start=start,
+    run=run,
+    standard_mode=4,
+    climb_stick=True,
+)

@@ -9,16 +9,19 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
+from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
-from .. import arming
 from ..control import altitude, position
 from ..navigation import command, waypoint
 from . import auto_yaw, ground, land, rtl, takeoff
-from .numbers import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from .mode import CopterMode
 
-_TAKE_OFF_ALONE = 2
-"""AUTO_OPTIONS: takes off without a raised throttle."""
+AUTO = 3
+
+# AUTO_OPTIONS
+_ARM = 1
+_TAKE_OFF_ALONE = 2  # without a raised throttle
 _NO_PILOT_YAW = 128
 
 # LAND: on the way to the place, then going down
@@ -27,10 +30,10 @@ DESCENDING = 1
 
 
 @law
-def enter(v, forced):
-    """Enter; needs a mission, on the ground one that begins with a take-off, unless ``forced`` (disarmed)."""
+def start(v):
+    """Enter; armed it needs a mission, on the ground one that begins with a take-off."""
     ap = v.autopilot
-    if forced == 0:
+    if ap.arming.armed:
         if ap.modes.mission_count < 2:
             return INIT_FAILED
         if ap.arming.landed != 0 and ap.modes.mission_takes_off == 0:
@@ -56,7 +59,13 @@ def enter(v, forced):
 
 
 @law
-def start(v):
+def may_arm(v, method):
+    """Whether it may be armed: when AUTO_OPTIONS says so."""
+    return (int(v.autopilot.params.AUTO_OPTIONS) & _ARM) != 0
+
+
+@law
+def start_mission(v):
     """MAV_CMD_MISSION_START: a take-off at the beginning need not wait for a raised throttle."""
     v.autopilot.modes.auto.started = 1
     if v.autopilot.arming.armed != 0:
@@ -77,7 +86,7 @@ def begin(v):
     if auto.submode == TAKEOFF:
         takeoff.begin(v, float(nav.target[2]))
     elif auto.submode == RTL:
-        rtl.start(v, 1)
+        rtl.begin(v)
     elif auto.submode == LAND and nav.has_place == 0:
         begin_descent(v)
 
@@ -121,7 +130,7 @@ def run(v):
     elif ground.is_grounded(v):
         ground.handle(v)
         if ap.arming.armed != 0 and ap.arming.landed != 0 and nav.mission_state == COMPLETE:
-            arming.disarm(v, BY_MISSION_EXIT, 0)
+            ground.disarm(v, BY_MISSION_EXIT)
     else:
         ap.control.motors.desired_spool = ground.UNLIMITED
         if command.follows_path(kind) != 0:
@@ -178,3 +187,18 @@ def is_landing(v):
 def is_taking_off(v):
     """Whether a take-off command is not done yet."""
     return v.autopilot.modes.auto.submode == TAKEOFF and v.autopilot.modes.takeoff.complete == 0
+
+
+MODE = CopterMode(
+    number=AUTO,
+    name="AUTO",
+    start=start,
+    run=run,
+    standard_mode=6,
+    needs_position=True,
+    autonomous=True,
+    arms_at_any_throttle=True,
+    may_arm=may_arm,
+    is_landing=is_landing,
+    is_taking_off=is_taking_off,
+)

@@ -8,6 +8,9 @@ import math
 from ....core.kernels import law
 from ..control import altitude, attitude, position
 from . import ground
+from .mode import CopterMode, never_arms
+
+BRAKE = 17
 
 DECELERATION = 7.5
 """[m/s^2] (ArduPilot's)."""
@@ -41,3 +44,14 @@ def run(v):
         altitude.update_d(ap)
         tx, ty, tz = position.thrust_vector(ap)
         attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, 0.0)
+
+
+MODE = CopterMode(
+    number=BRAKE,
+    name="BRAKE",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    may_arm=never_arms,
+)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
+from ...events import DISARMED, emit_and_return
 from ..control import altitude, attitude, position
 from . import auto_yaw
 
@@ -38,6 +39,26 @@ def set_landed(v, landed):
 
 
 @law
+def disarm(v, method):
+    """Disarm, without asking whether that is safe; ``method``: who (BY_*)."""
+    ap = v.autopilot
+    arming = ap.arming
+    if not arming.armed:
+        return
+    arming.armed = False
+    arming.auto_armed = False
+    arming.landed = True
+    arming.landed_maybe = True
+    arming.landed_ticks = 0
+    arming.crash_ticks = 0
+    ap.modes.arming_delay = 0
+    ap.modes.takeoff.user_active = 0
+    ap.modes.auto.started = 0
+    ap.control.motors.desired_spool = SHUT_DOWN
+    emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
+
+
+@law
 def handle(v):
     """One tick on the ground: motors idle, controllers follow the vehicle, throttle decays to zero."""
     ap = v.autopilot
@@ -60,6 +81,16 @@ def fly(v):
     altitude.update_d(ap)
     tx, ty, tz = position.thrust_vector(ap)
     auto_yaw.apply(v, tx, ty, tz)
+
+
+@law
+def hold(v):
+    """One tick of a stop: brake and stay, with the heading of auto_yaw."""
+    ap = v.autopilot
+    ap.control.motors.desired_spool = UNLIMITED
+    position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+    altitude.input_vel_accel_d(ap, 0.0, 0.0)
+    fly(v)
 
 
 @law

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Set-points of GUIDED, as the MAVLink services write them.
+"""GUIDED: flies the set-points of a companion computer or ground station.
 
-Every law returns OK, or says why it left the record as it was (``guided_state``). Yaw arguments everywhere:
-``use_yaw`` with ``yaw`` [rad], ``use_rate`` with ``yaw_rate`` [rad/s], ``relative`` != 0 when ``yaw``
-counts from the present heading; without either the heading follows WP_YAW_BEHAVIOR.
+Set-points are written by the laws of ``guided_setpoints``. Velocity, acceleration and attitude set-points older than
+GUID_TIMEOUT stop the vehicle: velocity and acceleration become zero, the attitude level at constant height.
 """
 
 from __future__ import annotations
@@ -11,250 +10,246 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.rotations import quat_from_euler, quat_to_euler
 from ....core.scalars import constrain
-from ..control import altitude, position
-from . import auto_yaw, guided_flight
-from .guided_state import (
-    ACCEL,
-    ANGLE,
-    LARGEST,
-    NOT_FINITE,
-    NOT_IN_GUIDED,
-    OK,
-    OUT_OF_RANGE,
-    POS_VEL_ACCEL,
-    POSITION,
-    VELOCITY_ACCEL,
+from ...arming_checks import BY_RUDDER
+from ...events import GUIDED_TIMEOUT, emit
+from ..control import altitude, attitude, position, position_ned, throttle_mix
+from . import auto_yaw, ground, takeoff
+from .mode import CopterMode
+
+GUIDED = 4
+
+# What it is doing (``modes.guided.submode``)
+TAKEOFF = 0
+POSITION = 1
+POS_VEL_ACCEL = 2
+VELOCITY_ACCEL = 3
+ACCEL = 4
+ANGLE = 5
+
+DT = 0.0025
+# GUID_OPTIONS
+_ARM_BY_STICK = 1
+_NO_PILOT_YAW = 4  # the yaw stick is ignored
+
+
+@law
+def start(v):
+    """Enter: come to a stop and hold. Returns 0."""
+    auto_yaw.set_default(v, 0)
+    start_velocity(v)
+    return 0
+
+
+@law
+def start_submode(v, submode):
+    """Change what kind of set-point is flown, from the present motion."""
+    guided = v.autopilot.modes.guided
+    guided.submode = submode
+    guided.paused = 0
+    guided.timed_out = 0
+    for k in range(3):
+        guided.vel[k] = 0.0
+        guided.acc[k] = 0.0
+    ground.start_position_control(v)
+
+
+@law
+def start_velocity(v):
+    """Fly velocity set-points, beginning with a stop."""
+    start_submode(v, VELOCITY_ACCEL)
+    v.autopilot.modes.guided.update_us = v.time_us
+
+
+@law
+def is_old(v):
+    """Whether the set-point is older than GUID_TIMEOUT."""
+    ap = v.autopilot
+    return v.time_us - ap.modes.guided.update_us > ap.params.GUID.TIMEOUT * 1e6
+
+
+@law
+def is_stale(v):
+    """Whether the set-point, of a kind that times out, is too old; tells the shell once."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if not is_old(v):
+        guided.timed_out = 0
+        return False
+    if guided.timed_out == 0:
+        guided.timed_out = 1
+        emit(ap.events, v.time_us, GUIDED_TIMEOUT, float(guided.submode), 0.0)
+    return True
+
+
+@law
+def run(v):
+    """One tick."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if (int(ap.params.GUID.OPTIONS) & _NO_PILOT_YAW) == 0:
+        auto_yaw.pilot(v)
+    if guided.submode == TAKEOFF:
+        takeoff.run(v)
+    elif guided.submode == ANGLE:
+        run_angle(v)
+    elif ground.is_grounded(v):
+        ground.handle(v)
+    else:
+        ap.control.motors.desired_spool = ground.UNLIMITED
+        if guided.paused != 0:
+            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        elif guided.submode == POSITION:
+            run_position(v)
+        else:
+            run_motion(v)
+        ground.fly(v)
+
+
+@law
+def run_position(v):
+    """Fly to a point and stay; the speed limits keep a climbing path straight."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if is_old(v):
+        auto_yaw.stop_turning(v)
+    position_ned.input_pos_ned(ap, float(guided.pos[0]), float(guided.pos[1]), float(guided.pos[2]))
+
+
+@law
+def run_motion(v):
+    """Fly velocity, acceleration, or position with both; the set-point moves on between messages."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if is_stale(v):
+        for k in range(3):
+            guided.vel[k] = 0.0
+            guided.acc[k] = 0.0
+        auto_yaw.stop_turning(v)
+        if guided.submode == ACCEL:
+            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+            return
+    an, ae, ad = float(guided.acc[0]), float(guided.acc[1]), float(guided.acc[2])
+    if guided.submode == ACCEL:
+        position.input_accel_ne(ap, an, ae)
+        altitude.input_vel_accel_d(ap, float(ap.control.pos_d.vel_desired), ad)
+        return
+    for k in range(3):
+        guided.pos[k] += (guided.vel[k] + 0.5 * guided.acc[k] * DT) * DT
+        guided.vel[k] += guided.acc[k] * DT
+    vn, ve, vd = float(guided.vel[0]), float(guided.vel[1]), float(guided.vel[2])
+    if guided.submode == POS_VEL_ACCEL:
+        position.input_pos_vel_accel_ne(ap, guided.pos[0], guided.pos[1], vn, ve, an, ae)
+        altitude.input_pos_vel_accel_d(ap, guided.pos[2], vd, ad)
+    else:
+        position.input_vel_accel_ne(ap, vn, ve, an, ae)
+        altitude.input_vel_accel_d(ap, vd, ad)
+
+
+@law
+def run_angle(v):
+    """Fly SET_ATTITUDE_TARGET: attitude or rates with a climb rate or a thrust."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    climb = 0.0
+    if guided.use_thrust == 0:
+        climb = constrain(float(guided.climb_rate), -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
+    if is_stale(v):
+        climb = 0.0
+        level_off(v)
+    wants_up = guided.thrust > 0.0 if guided.use_thrust != 0 else climb > 0.0
+    if ap.arming.armed != 0 and wants_up:
+        ap.arming.auto_armed = 1
+    if ap.arming.armed == 0 or ap.arming.auto_armed == 0 or (ap.arming.landed != 0 and not wants_up):
+        ground.handle(v)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    if ap.arming.landed != 0:
+        throttle_mix.set_throttle_out(ap, 0.0, 0, 0.0)
+        attitude.relax(ap)
+        if ap.control.motors.spool_state == ground.IS_UNLIMITED:
+            ground.set_landed(v, 0)
+            altitude.init_d(ap)
+        return
+    p, q, r = float(guided.rates[0]), float(guided.rates[1]), float(guided.rates[2])
+    if guided.use_attitude != 0:
+        w, x, y, z = float(guided.q[0]), float(guided.q[1]), float(guided.q[2]), float(guided.q[3])
+        attitude.input_quaternion(ap, w, x, y, z, p, q, r)
+    else:
+        attitude.input_rates(ap, p, q, r)
+    if guided.use_thrust != 0:
+        throttle_mix.set_throttle_out(ap, float(guided.thrust), 1, 0.0)
+    else:
+        altitude.input_vel_accel_d(ap, -climb, 0.0)
+        altitude.update_d(ap)
+
+
+@law
+def level_off(v):
+    """Replace a stale attitude by level flight at constant height, heading kept."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if guided.use_attitude != 0:
+        _roll, _pitch, yaw = quat_to_euler(
+            float(guided.q[0]), float(guided.q[1]), float(guided.q[2]), float(guided.q[3])
+        )
+    else:
+        yaw = float(ap.control.attitude.target_euler[2])
+    w, x, y, z = quat_from_euler(0.0, 0.0, yaw)
+    guided.q[0], guided.q[1], guided.q[2], guided.q[3] = w, x, y, z
+    guided.use_attitude = 1
+    for k in range(3):
+        guided.rates[k] = 0.0
+    if guided.use_thrust != 0:
+        guided.use_thrust = 0
+        altitude.init_d(ap)
+    guided.climb_rate = 0.0
+
+
+@law
+def distance(v):
+    """Horizontal distance to the target position [m]; 0 when the set-point has none."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if guided.submode != POSITION and guided.submode != POS_VEL_ACCEL:
+        return 0.0
+    return math.hypot(guided.pos[0] - ap.estimate.pos[0], guided.pos[1] - ap.estimate.pos[1])
+
+
+@law
+def take_off(v, target_d):
+    """Climb to ``target_d`` (NED [m]) before the first set-point."""
+    guided = v.autopilot.modes.guided
+    guided.submode = TAKEOFF
+    guided.paused = 0
+    auto_yaw.set_mode(v, auto_yaw.HOLD)
+    takeoff.begin(v, target_d)
+
+
+@law
+def is_taking_off(v):
+    """Whether a take-off is not done yet."""
+    modes = v.autopilot.modes
+    return modes.guided.submode == TAKEOFF and modes.takeoff.complete == 0
+
+
+@law
+def may_arm(v, method):
+    """Whether it may be armed: by stick when GUID_OPTIONS says so."""
+    return method != BY_RUDDER or (int(v.autopilot.params.GUID.OPTIONS) & _ARM_BY_STICK) != 0
+
+
+MODE = CopterMode(
+    number=GUIDED,
+    name="GUIDED",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    arms_at_any_throttle=True,
+    may_arm=may_arm,
+    is_taking_off=is_taking_off,
 )
-from .numbers import AUTO, GUIDED, RTL
-
-_THRUST_IS_THRUST = 8
-"""GUID_OPTIONS: thrust of SET_ATTITUDE_TARGET is thrust, not climb rate."""
-
-HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
-"""Kinds of speed that change_speed knows."""
-
-
-@law
-def is_finite3(x, y, z):
-    """Whether all of them are usable numbers: neither NaN nor infinite nor absurdly large."""
-    return abs(x) <= LARGEST and abs(y) <= LARGEST and abs(z) <= LARGEST
-
-
-@law
-def refusal(v, x, y, z, yaw, yaw_rate):
-    """OK, or why a set-point with these numbers is not taken."""
-    if not (is_finite3(x, y, z) and is_finite3(yaw, yaw_rate, 0.0)):
-        return NOT_FINITE
-    if v.autopilot.modes.number != GUIDED:
-        return NOT_IN_GUIDED
-    return OK
-
-
-@law
-def set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Heading that goes with a set-point."""
-    if use_yaw != 0 and relative != 0:
-        auto_yaw.fixed(v, yaw, 0.0, 0, 1)
-    elif use_yaw != 0:
-        auto_yaw.angle_rate(v, yaw, yaw_rate if use_rate != 0 else 0.0)
-    elif use_rate != 0:
-        auto_yaw.turn_rate(v, yaw_rate)
-    else:
-        auto_yaw.set_default(v, 0)
-
-
-@law
-def begin(v, submode):
-    """Prepare for a set-point of this kind and note when it came."""
-    modes = v.autopilot.modes
-    if modes.guided.submode != submode:
-        guided_flight.start_submode(v, submode)
-    modes.guided.paused = 0
-    modes.guided.update_us = v.time_us
-
-
-@law
-def write(target, x, y, z):
-    """Three numbers into a vector of the record."""
-    target[0], target[1], target[2] = x, y, z
-
-
-@law
-def set_position(v, n, e, d, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly to a point, NED [m] from the origin, and stay."""
-    code = refusal(v, n, e, d, yaw, yaw_rate)
-    if code == OK:
-        begin(v, POSITION)
-        write(v.autopilot.modes.guided.pos, n, e, d)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_velocity(v, vn, ve, vd, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly a velocity, NED [m/s]."""
-    return set_velocity_accel(v, vn, ve, vd, 0.0, 0.0, 0.0, use_yaw, yaw, use_rate, yaw_rate, relative)
-
-
-@law
-def set_velocity_accel(v, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly a velocity [m/s] that changes with an acceleration [m/s^2], NED."""
-    code = refusal(v, vn, ve, vd, yaw, yaw_rate)
-    if code == OK and not is_finite3(an, ae, ad):
-        code = NOT_FINITE
-    if code == OK:
-        begin(v, VELOCITY_ACCEL)
-        write(v.autopilot.modes.guided.vel, vn, ve, vd)
-        write(v.autopilot.modes.guided.acc, an, ae, ad)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_accel(v, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly an acceleration, NED [m/s^2]."""
-    code = refusal(v, an, ae, ad, yaw, yaw_rate)
-    if code == OK:
-        begin(v, ACCEL)
-        write(v.autopilot.modes.guided.acc, an, ae, ad)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_pos_vel_accel(v, n, e, d, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Follow a point (NED [m]) that moves with a velocity [m/s] and an acceleration [m/s^2]."""
-    code = refusal(v, n, e, d, yaw, yaw_rate)
-    if code == OK and not (is_finite3(vn, ve, vd) and is_finite3(an, ae, ad)):
-        code = NOT_FINITE
-    if code == OK:
-        begin(v, POS_VEL_ACCEL)
-        write(v.autopilot.modes.guided.pos, n, e, d)
-        write(v.autopilot.modes.guided.vel, vn, ve, vd)
-        write(v.autopilot.modes.guided.acc, an, ae, ad)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_attitude(v, use_attitude, qw, qx, qy, qz, p, q, r, thrust):
-    """Fly an attitude (quaternion body to NED) turning with body rates p, q, r [rad/s], or the rates alone.
-
-    ``thrust`` 0 .. 1 is a climb rate around 0.5 (0: WPNAV_SPEED_DN down, 1: WPNAV_SPEED_UP up), or with
-    GUID_OPTIONS bit 8 the thrust.
-    """
-    ap = v.autopilot
-    code = refusal(v, p, q, r, thrust, 0.0)
-    norm = 1.0
-    if code == OK and use_attitude != 0:
-        norm = math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-        if norm != norm:
-            code = NOT_FINITE
-        elif norm < 0.5 or norm > 2.0:
-            code = OUT_OF_RANGE
-    if code != OK:
-        return code
-    begin(v, ANGLE)
-    target = ap.modes.guided
-    target.use_attitude = 1 if use_attitude != 0 else 0
-    if use_attitude != 0:
-        target.q[0], target.q[1], target.q[2], target.q[3] = qw / norm, qx / norm, qy / norm, qz / norm
-    write(target.rates, p, q, r)
-    share = constrain(thrust, 0.0, 1.0)
-    target.use_thrust = 1 if (int(ap.params.GUID.OPTIONS) & _THRUST_IS_THRUST) != 0 else 0
-    target.thrust = share
-    if share >= 0.5:
-        target.climb_rate = (share - 0.5) * 2.0 * ap.control.pos_d.speed_up
-    else:
-        target.climb_rate = (share - 0.5) * 2.0 * ap.control.pos_d.speed_down
-    return code
-
-
-@law
-def stop(v):
-    """Come to a stop and hold (velocity zero). OK, or NOT_IN_GUIDED."""
-    if v.autopilot.modes.number != GUIDED:
-        return NOT_IN_GUIDED
-    return set_velocity(v, 0.0, 0.0, 0.0, 0, 0.0, 0, 0.0, 0)
-
-
-@law
-def condition_yaw(v, angle, rate, direction, relative):
-    """MAV_CMD_CONDITION_YAW in GUIDED and AUTO: angle [rad], rate [rad/s], direction -1, 0, 1."""
-    if not is_finite3(angle, rate, 0.0):
-        return NOT_FINITE
-    mode = v.autopilot.modes.number
-    if mode != GUIDED and mode != AUTO:
-        return NOT_IN_GUIDED
-    if rate < 0.0:
-        return OUT_OF_RANGE
-    auto_yaw.fixed(v, angle, rate, direction, relative)
-    return OK
-
-
-@law
-def set_roi(v, n, e, d):
-    """Keep the nose on a point, NED [m]."""
-    if not is_finite3(n, e, d):
-        return NOT_FINITE
-    auto_yaw.look_at(v, n, e, d)
-    return OK
-
-
-@law
-def clear_roi(v):
-    """Give the heading back to WP_YAW_BEHAVIOR."""
-    if v.autopilot.modes.auto_yaw.mode == auto_yaw.ROI:
-        auto_yaw.set_default(v, 1 if v.autopilot.modes.number == RTL else 0)
-    return OK
-
-
-@law
-def change_speed(v, kind, speed):
-    """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode or the
-    kind of set-point changes.
-    """
-    if not is_finite3(speed, 0.0, 0.0):
-        return NOT_FINITE
-    if speed <= 0.0:
-        return OUT_OF_RANGE
-    ap = v.autopilot
-    ne = ap.control.pos_ne
-    d = ap.control.pos_d
-    if kind == HORIZONTAL:
-        position.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
-    elif kind == CLIMB:
-        altitude.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
-    elif kind == DESCENT:
-        altitude.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
-    else:
-        return OUT_OF_RANGE
-    return OK
-
-
-@law
-def pause(v):
-    """MAV_CMD_DO_PAUSE_CONTINUE 0 in GUIDED and AUTO: stop and hold. OK or NOT_IN_GUIDED."""
-    modes = v.autopilot.modes
-    if modes.number == GUIDED:
-        modes.guided.paused = 1
-        return OK
-    if modes.number == AUTO:
-        modes.nav.paused = 1
-        return OK
-    return NOT_IN_GUIDED
-
-
-@law
-def resume(v):
-    """MAV_CMD_DO_PAUSE_CONTINUE 1: go on."""
-    modes = v.autopilot.modes
-    if modes.number == GUIDED:
-        if modes.guided.paused != 0:
-            modes.guided.paused = 0
-        return OK
-    if modes.number == AUTO:
-        modes.nav.paused = 0
-        return OK
-    return NOT_IN_GUIDED

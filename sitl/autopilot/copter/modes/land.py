@@ -12,10 +12,15 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
-from .. import arming, pilot
+from ...modes import REASON_THROTTLE_LAND_ESCAPE
+from .. import pilot
 from ..control import altitude, attitude, position
 from . import auto_yaw, ground
-from .numbers import ALT_HOLD, LOITER, REASON_THROTTLE_LAND_ESCAPE
+from .alt_hold import ALT_HOLD
+from .loiter import LOITER
+from .mode import CopterMode, never_arms, yes
+
+LAND = 9
 
 PAUSE_US = 4_000_000
 """A landing that a failsafe began waits so long, for the pilot to notice."""
@@ -80,7 +85,7 @@ def finish(v):
     """Disarm when landed and the motors have come down to idle."""
     ap = v.autopilot
     if ap.arming.landed != 0 and ap.control.motors.spool_state == ground.IS_GROUND_IDLE:
-        arming.disarm(v, BY_LANDING, 0)
+        ground.disarm(v, BY_LANDING)
 
 
 @law
@@ -154,3 +159,16 @@ def stick_velocity(ap):
     yaw = float(ap.estimate.euler[2])
     c, s = math.cos(yaw), math.sin(yaw)
     return (forward * c - right * s, forward * s + right * c)
+
+
+MODE = CopterMode(
+    number=LAND,
+    name="LAND",
+    start=start,
+    run=run,
+    standard_mode=7,
+    uses_position=True,
+    autonomous=True,
+    may_arm=never_arms,
+    is_landing=yes,
+)

@@ -16,6 +16,9 @@ from ...control.shaping import shape_angle, sqrt_controller
 from .. import pilot
 from ..control import attitude, position
 from . import alt_hold
+from .mode import CopterMode
+
+LOITER = 5
 
 DT = 0.0025
 _CDEG = math.pi / 18000.0
@@ -152,3 +155,14 @@ def run(v):
         tx, ty, tz = position.thrust_vector(ap)
         attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, float(ap.modes.pilot.yaw_rate))
     alt_hold.run_vertical(v, doing, climb)
+
+
+MODE = CopterMode(
+    number=LOITER,
+    name="LOITER",
+    start=start,
+    run=run,
+    standard_mode=1,
+    climb_stick=True,
+    needs_position=True,
+)

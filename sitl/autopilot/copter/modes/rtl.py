@@ -6,10 +6,14 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ..control import altitude, position
 from ..navigation import waypoint
 from . import auto_yaw, ground, land
+from .mode import CopterMode, never_arms
+
+RTL = 6
 
 # States
 CLIMB = 1
@@ -24,11 +28,18 @@ _LEAST_SLOPE = 0.5
 
 
 @law
-def start(v, forced):
-    """Enter; needs a home unless ``forced``. Returns 0, or 1 when it cannot."""
+def start(v):
+    """Enter; armed it needs a home."""
+    if v.autopilot.arming.armed and not v.autopilot.home.is_set:
+        return INIT_FAILED
+    begin(v)
+    return ACCEPTED
+
+
+@law
+def begin(v):
+    """Prepare the way home from the present motion."""
     ap = v.autopilot
-    if ap.home.is_set == 0 and forced == 0:
-        return 1
     rtl = ap.modes.rtl
     waypoint.stop(ap)
     speed = ap.params.RTL.SPEED * 0.01
@@ -47,7 +58,6 @@ def start(v, forced):
     n, e = position.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
         path.request_legs(ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d))
-    return 0
 
 
 @law
@@ -159,3 +169,16 @@ def run_descent(v):
 def is_landing(v):
     """Whether the descent to the ground has begun."""
     return v.autopilot.modes.rtl.state == LANDING
+
+
+MODE = CopterMode(
+    number=RTL,
+    name="RTL",
+    start=start,
+    run=run,
+    standard_mode=5,
+    needs_position=True,
+    autonomous=True,
+    may_arm=never_arms,
+    is_landing=is_landing,
+)

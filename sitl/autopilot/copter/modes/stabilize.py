@@ -10,12 +10,9 @@ from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
 from . import ground
+from .mode import CopterMode
 
-
-@law
-def start(v):
-    """Enter. Returns 0."""
-    return 0
+STABILIZE = 0
 
 
 @law
@@ -46,3 +43,11 @@ def run(v):
     roll, pitch = pilot.lean_angles(ap, most, most)
     attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
     throttle_mix.set_throttle_out(ap, wanted, 1, ap.params.PILOT.THR_FILT)
+
+
+MODE = CopterMode(
+    number=STABILIZE,
+    name="STABILIZE",
+    run=run,
+    manual_throttle=True,
+)

@@ -6,8 +6,8 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...arming_checks import BY_RUDDER
 from ...mode_switch import chosen, moved_to
+from ...modes import REASON_RC
 from .. import arming
-from .numbers import REASON_RC
 from .set_mode import request
 
 RUDDER_US = 2_000_000

@@ -11,52 +11,12 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...events import TAKEOFF_COMPLETE, emit
 from ..control import altitude, attitude, position, throttle_mix
-from . import auto_yaw, ground, guided_state
-from .numbers import ALT_HOLD, GUIDED, LOITER
-
-# Answers of start()
-OK = 0
-NOT_ARMED = 1
-ALREADY_FLYING = 2
-WRONG_MODE = 3
-TOO_LOW = 4
-NOT_FINITE = 5
+from . import ground
 
 _LIFT_SPEED = 0.1
 """Part of the climb speed limit that shows that the vehicle has left the ground."""
 _DONE_SPEED = 0.1
 """Part of the climb speed limit below which, next to its end, the take-off is done."""
-
-
-@law
-def start(v, altitude_m):
-    """User's take-off (MAV_CMD_NAV_TAKEOFF) to ``altitude_m`` [m] above home. Returns OK or why not."""
-    ap = v.autopilot
-    mode = ap.modes.number
-    if not abs(altitude_m) <= guided_state.LARGEST:
-        return NOT_FINITE
-    if ap.arming.armed == 0:
-        return NOT_ARMED
-    climbs = mode == GUIDED and ap.modes.guided.submode == guided_state.TAKEOFF and ap.modes.takeoff.complete == 0
-    if ap.arming.landed == 0 and not climbs:
-        return ALREADY_FLYING
-    if mode != GUIDED and mode != LOITER and mode != ALT_HOLD:
-        return WRONG_MODE
-    target_d = float(ap.home.pos[2]) - altitude_m
-    if target_d >= ap.estimate.pos[2]:
-        return TOO_LOW
-    if ap.arming.landed == 0:  # repeated in the climb: a client that missed the acknowledgement
-        ap.modes.takeoff.target_d = target_d
-        return OK
-    if mode == GUIDED:
-        ap.modes.guided.submode = guided_state.TAKEOFF
-        ap.modes.guided.paused = 0
-        auto_yaw.set_mode(v, auto_yaw.HOLD)
-        begin(v, target_d)
-    else:
-        begin_user(v, altitude_m)
-    ap.arming.auto_armed = 1
-    return OK
 
 
 @law

@@ -5,29 +5,32 @@ from __future__ import annotations
 
 from ....core.kernels import law, unit
 from ... import battery, home
+from ...modes import REASON_INITIALISED
 from ...radio import RC_TICKS
 from .. import arming, crash, failsafe, landing, motor_test, pilot
 from ..control.motors import hover_throttle, learn_hover_throttle
-from . import (
-    alt_hold,
-    auto,
-    brake,
-    ground,
-    guided_flight,
-    land,
-    loiter,
-    rtl,
-    set_mode,
-    stabilize,
-    switch,
-)
-from .numbers import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, has_manual_throttle
+from . import ground, set_mode, switch, table
+from .stabilize import STABILIZE
 
 _TENTH = 40  # ticks
 _QUARTER = 100
 _LEARN_TICKS = 4
 _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
+
+
+@law
+def init(v):
+    """At boot, on a record of zeros with parameters set: on the ground, disarmed, in INITIAL_MODE."""
+    ap = v.autopilot
+    number = int(ap.params.INITIAL_MODE)
+    ap.modes.number = number if table.is_known(number) else STABILIZE
+    ap.modes.previous = ap.modes.number
+    ap.modes.reason = REASON_INITIALISED
+    ap.arming.landed = 1
+    ap.arming.landed_maybe = 1
+    ap.battery.remaining_pct = -1.0
+    pilot.init(v)
 
 
 @unit
@@ -75,23 +78,7 @@ def check_slowly(v):
 def run_mode(v):
     """The mode's own tick, then the change that it may have asked for."""
     ap = v.autopilot
-    number = ap.modes.number
-    if number == GUIDED:
-        guided_flight.run(v)
-    elif number == AUTO:
-        auto.run(v)
-    elif number == LOITER:
-        loiter.run(v)
-    elif number == ALT_HOLD:
-        alt_hold.run(v)
-    elif number == RTL:
-        rtl.run(v)
-    elif number == LAND:
-        land.run(v)
-    elif number == BRAKE:
-        brake.run(v)
-    else:
-        stabilize.run(v)
+    table.run(ap.modes.number, v)
     if ap.modes.wanted != 0:
         wanted = int(ap.modes.wanted) - 1
         ap.modes.wanted = 0
@@ -104,7 +91,7 @@ def run_mode(v):
 def learn_hover(v):
     """While hovering level in a mode that holds height: the throttle of this moment is the hover throttle."""
     ap = v.autopilot
-    if ap.arming.armed == 0 or ap.arming.landed != 0 or has_manual_throttle(int(ap.modes.number)):
+    if ap.arming.armed == 0 or ap.arming.landed != 0 or table.has_manual_throttle(ap.modes.number):
         return
     if abs(ap.control.pos_d.vel_desired) > 0.01 or abs(ap.estimate.vel[2]) >= _LEARN_SPEED:
         return

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.modes import auto_yaw, guided
+from sitl.autopilot.copter.modes import auto_yaw, commands
 from sitl.core.scalars import wrap_pi
 from tests.autopilot.copter.steady_copter import fly, make, turn_to
 
@@ -46,19 +46,19 @@ def turned(v, start, seconds=20.0):
 )
 def test_fixed_angle_goes_the_way_asked_for(flying, start, angle, direction, relative, total):
     turn_to(flying, start * DEG)
-    assert guided.condition_yaw(flying, angle * DEG, 0.0, direction, relative) == 0
+    assert commands.condition_yaw(flying, angle * DEG, 0.0, direction, relative) == 0
     assert turned(flying, start * DEG)[0] == pytest.approx(total, abs=1e-6)
 
 
 @pytest.mark.parametrize(("rate", "seconds"), ((30.0, 3.0), (0.0, 1.5), (500.0, 1.5)))
 def test_turn_rate_is_the_one_asked_for_up_to_the_slew_limit(flying, rate, seconds):
-    guided.condition_yaw(flying, 90.0 * DEG, rate * DEG, 1, 0)
+    commands.condition_yaw(flying, 90.0 * DEG, rate * DEG, 1, 0)
     assert turned(flying, 0.0)[1] == pytest.approx(seconds, abs=0.01)
 
 
 def test_without_a_slew_limit_it_turns_at_once(flying):
     flying.autopilot.params.ATC_SLEW_YAW = 0.0
-    guided.condition_yaw(flying, 90.0 * DEG, 0.0, 1, 0)
+    commands.condition_yaw(flying, 90.0 * DEG, 0.0, 1, 0)
     assert turned(flying, 0.0, 1.0)[0] == pytest.approx(90.0)
 
 
@@ -66,7 +66,7 @@ def test_without_a_slew_limit_it_turns_at_once(flying):
 def test_absolute_turns_end_at_the_angle_within_one_circle(angle, start, direction):
     v = fly(make())
     turn_to(v, start)
-    guided.condition_yaw(v, angle, 0.0, direction, 0)
+    commands.condition_yaw(v, angle, 0.0, direction, 0)
     offset = float(v.autopilot.modes.auto_yaw.offset)
     assert abs(offset) <= 2.0 * math.pi
     assert abs(wrap_pi(start + offset - angle)) < 1e-6
@@ -74,10 +74,10 @@ def test_absolute_turns_end_at_the_angle_within_one_circle(angle, start, directi
 
 
 def test_condition_yaw_refuses_what_it_cannot_do(flying):
-    assert guided.condition_yaw(flying, math.nan, 0.0, 1, 0) == 1
-    assert guided.condition_yaw(flying, 1.0, -1.0, 1, 0) == 3
+    assert commands.condition_yaw(flying, math.nan, 0.0, 1, 0) == 1
+    assert commands.condition_yaw(flying, 1.0, -1.0, 1, 0) == 3
     flying.autopilot.modes.number = 5
-    assert guided.condition_yaw(flying, 1.0, 0.0, 1, 0) == 2
+    assert commands.condition_yaw(flying, 1.0, 0.0, 1, 0) == 2
 
 
 @pytest.mark.parametrize(
@@ -111,11 +111,11 @@ def test_nose_follows_the_desired_velocity_but_not_a_slow_one(flying):
 
 
 def test_roi_is_looked_at_from_anywhere(flying):
-    guided.set_roi(flying, 10.0, 10.0, 0.0)
+    commands.set_roi(flying, 10.0, 10.0, 0.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 4)
     flying.autopilot.estimate.pos = flying.autopilot.estimate.pos.replace(x=20.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(3 * math.pi / 4)
-    guided.clear_roi(flying)
+    commands.clear_roi(flying)
     assert flying.autopilot.modes.auto_yaw.mode == auto_yaw.LOOK_AT_NEXT_WP
 
 

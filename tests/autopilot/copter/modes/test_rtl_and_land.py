@@ -10,8 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.modes import land, rtl, set_mode
-from sitl.autopilot.copter.modes.numbers import LAND, LOITER, REASON_GCS, RTL
+from sitl.autopilot.copter.modes.land import LAND
+from sitl.autopilot.copter.modes.loiter import LOITER
+from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.events import DISARMED, LEG_ENDING
+from sitl.autopilot.modes import REASON_GCS
 from tests.autopilot.copter.steady_copter import codes, wait
 
 
