@@ -20,7 +20,7 @@ mypy know the fields::
 
 Numbers, booleans, vectors, quaternions and Euler angles read and write as values; arrays and nested records are
 references to the record's memory. A subclass goes on with the fields of its base, whose places it keeps; those of
-several bases follow each other.
+several bases follow each other, where a field of two of them is at its place in the later one.
 """
 
 from __future__ import annotations
@@ -216,9 +216,10 @@ class Record(metaclass=_RecordMeta):
             for name, hint in get_type_hints(cls, include_extras=True).items()
             if not name.startswith("_") and get_origin(hint) is not ClassVar and name not in ("dtype", "fields")
         }
-        inherited_fields = {
-            name: field for base in cls.__bases__ for name, field in getattr(base, "fields", {}).items()
-        }
+        inherited_fields: dict[str, Field] = {}
+        for base in cls.__bases__:
+            fields = getattr(base, "fields", {})
+            inherited_fields = {n: f for n, f in inherited_fields.items() if n not in fields} | fields
         order = [name for name in inherited_fields if cls.keeps_places or name not in own]
         declared = []
         for name in dict.fromkeys((*order, *(name for name in own if name in hints))):

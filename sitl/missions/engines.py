@@ -20,6 +20,7 @@ from sitl.errors import SitlError
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
+from sitl.vehicles.figures.copter import Figures as CopterFigures
 
 from . import copter
 from .figures import shown
@@ -45,8 +46,9 @@ class Witness(Pilot):
         super().note()
         v = self.simulation.v
         body, battery, controls = v.physics.body, v.physics.battery, v.actuators.controls
-        if self.simulation.kind.name == "copter":
-            output = float(np.mean(controls[: int(v.physics.airframe.rotor_count)]))  # type: ignore[attr-defined]
+        figures = v.physics.airframe
+        if isinstance(figures, CopterFigures):
+            output = float(np.mean(controls[: figures.rotor_count]))
         else:
             output = float(controls[2])
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0

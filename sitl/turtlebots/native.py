@@ -132,7 +132,7 @@ class Turtlebots:
         self.commands[index] = math.nan
 
     def set_figure(self, index: int, name: str, value: float) -> None:
-        """Replace a figure of one robot (``sitl.vehicles.turtlebot.FIGURES``).
+        """Replace a figure of one robot (``sitl.vehicles.turtlebot.Figures``).
 
         Raises:
             AirframeError: no such figure, or a value outside its limits.

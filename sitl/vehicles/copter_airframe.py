@@ -11,7 +11,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from .airframe import Airframe, AirframeError
-from .figures.copter import FIGURES, FIGURES_RECORD, HUBS, MODEL, ROTORS_MAX
+from .figures.copter import MODEL, ROTORS_MAX, Figures, Hubs
+from .figures.figure import figures
 
 CCW, CW = 1.0, -1.0
 """Sense of rotation seen from above."""
@@ -35,8 +36,8 @@ class CopterAirframe(Airframe):
     """A multicopter: ``figures.copter``, and rotors in the order of the motor outputs."""
 
     kind: ClassVar[str] = "copter"
-    known = tuple(figure for figure in FIGURES if figure not in HUBS)
-    dtype = FIGURES_RECORD.dtype
+    known = tuple(figure for figure in figures(Figures) if figure.name not in Hubs.fields)
+    dtype = Figures.dtype
     model = MODEL
 
     rotors: tuple[Rotor, ...]

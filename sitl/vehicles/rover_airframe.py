@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from .airframe import Airframe
-from .figures.rover import FIGURES, FIGURES_RECORD, MODEL
+from .figures.figure import figures
+from .figures.rover import MODEL, Figures
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,6 +16,6 @@ class RoverAirframe(Airframe):
     """A rover: ``figures.rover``."""
 
     kind: ClassVar[str] = "rover"
-    known = FIGURES
-    dtype = FIGURES_RECORD.dtype
+    known = figures(Figures)
+    dtype = Figures.dtype
     model = MODEL

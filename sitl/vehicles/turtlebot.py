@@ -11,25 +11,27 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ..core.records import Record
 from .airframe import Airframe
-from .figures.figure import Figure, figures_record
+from .figures.figure import figure, figures
 
-FIGURES = (
-    Figure("wheel_radius", "m", "that the drive turns speeds into wheel rates with", 1e-3, 1.0),
-    Figure("wheel_radius_left", "m", "true one", 1e-3, 1.0),
-    Figure("wheel_radius_right", "m", "true one", 1e-3, 1.0),
-    Figure("wheel_separation", "m", "between the wheels", 1e-2, 10.0),
-    Figure("wheel_speed_max", "m/s", "greatest speed of a rim, forward and backward", 0.0, 100.0),
-    Figure("command_timeout", "s", "after which the wheels stand unless another command came", 0.0),
-    Figure("radius", "m", "of the cylinder that touches walls", 1e-3, 10.0),
-    Figure("bottom", "m", "height of its underside above the floor", 0.0, 10.0),
-    Figure("top", "m", "height of its top above the floor", 0.0, 10.0),
-    Figure("lidar_ahead", "m", "lidar ahead of the axle", -1.0, 1.0, 0.0),
-    Figure("lidar_height", "m", "lidar above the floor", 0.0, 10.0),
-    Figure("range_max", "m", "greatest reading of the lidar; what is farther is inf", 1e-3, 1e4),
-    Figure("range_noise", "m", "standard deviation of a reading", 0.0, 10.0, 0.0),
-)
-FIGURES_RECORD = figures_record(FIGURES)
+
+class Figures(Record):
+    """What a Turtlebot is."""
+
+    wheel_radius: float = figure("m", "that the drive turns speeds into wheel rates with", 0.001, 1.0)
+    wheel_radius_left: float = figure("m", "true one", 0.001, 1.0)
+    wheel_radius_right: float = figure("m", "true one", 0.001, 1.0)
+    wheel_separation: float = figure("m", "between the wheels", 0.01, 10.0)
+    wheel_speed_max: float = figure("m/s", "greatest speed of a rim, forward and backward", 0.0, 100.0)
+    command_timeout: float = figure("s", "after which the wheels stand unless another command came", 0.0)
+    radius: float = figure("m", "of the cylinder that touches walls", 0.001, 10.0)
+    bottom: float = figure("m", "height of its underside above the floor", 0.0, 10.0)
+    top: float = figure("m", "height of its top above the floor", 0.0, 10.0)
+    lidar_ahead: float = figure("m", "lidar ahead of the axle", -1.0, 1.0, 0.0)
+    lidar_height: float = figure("m", "lidar above the floor", 0.0, 10.0)
+    range_max: float = figure("m", "greatest reading of the lidar; what is farther is inf", 0.001, 10000.0)
+    range_noise: float = figure("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,8 +39,8 @@ class TurtlebotAirframe(Airframe):
     """A robot on two driven wheels with a planar lidar and no autopilot."""
 
     kind: ClassVar[str] = "turtlebot"
-    known = FIGURES
-    dtype = FIGURES_RECORD.dtype
+    known = figures(Figures)
+    dtype = Figures.dtype
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from sitl import vehicles
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError, ardupilot_quad
-from sitl.vehicles.figures.copter import FIGURES_RECORD
+from sitl.vehicles.figures.copter import Figures
 
 
 @pytest.mark.parametrize("name", vehicles.names("copter"))
@@ -16,7 +16,7 @@ def test_airframes_are_complete_and_their_parameters_accepted(name):
     airframe = vehicles.load(name)
     assert airframe.name == name
     record = airframe.record()
-    assert record.dtype == FIGURES_RECORD.dtype
+    assert record.dtype == Figures.dtype
     assert record["mass"] == airframe.figures["mass"]
     assert record["rotor_count"] == 4
     assert sum(record["rotor_direction"]) == 0.0

@@ -5,7 +5,7 @@ from sitl import vehicles
 from sitl.autopilot.rover.parameters import TABLE
 from sitl.vehicle.record import Copter
 from sitl.vehicles import AirframeError
-from sitl.vehicles.figures.rover import FIGURES_RECORD
+from sitl.vehicles.figures.rover import Figures
 
 
 @pytest.mark.parametrize("name", vehicles.names("rover"))
@@ -13,7 +13,7 @@ def test_rovers_are_complete_and_their_parameters_accepted(name):
     airframe = vehicles.load(name)
     assert (airframe.name, airframe.kind) == (name, "rover")
     record = airframe.record()
-    assert record.dtype == FIGURES_RECORD.dtype
+    assert record.dtype == Figures.dtype
     assert record["speed_max"] == airframe.figures["speed_max"]
     for parameter, value in airframe.parameters.items():
         assert parameter in TABLE

@@ -36,12 +36,12 @@ def lidar_distance(robot: Any) -> float:
     if isinstance(robot, Turtlebot):
         x, y, z, yaw = robot.pose[0].tolist()
         figures = robot.robots.views[0].figures
-        ahead = float(figures.lidar_ahead)  # type: ignore[attr-defined]
-        place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
+        ahead = figures.lidar_ahead
+        place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + figures.lidar_height)
         north, east, down = to_ned(*place)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
         v = robot.simulation(0).v
-        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at.tolist()  # type: ignore[attr-defined]
+        body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
         heading = quat_to_euler(*body.q.tolist())[2]
         c, s = math.cos(heading), math.sin(heading)
         north, east, down = body.pos.tolist()

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from sitl.physics.native.turtlebot.state import TICK_S
 from sitl.turtlebots.native import Turtlebots, ticks_in
 from sitl.vehicles.figures.figure import Figure
-from sitl.vehicles.turtlebot import AIRFRAME, FIGURES, LIDAR, Lidar, TurtlebotAirframe
+from sitl.vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
 from sitl.worlds import World, planar
 
 from ..actions import Action, Continuous, Discrete
@@ -44,7 +44,7 @@ class Turtlebot:
     """The Kobuki's command time-out: see docs/environments.md."""
     crash_range = 0.2
     setpoints: tuple[Setpoint, ...] = (DRIVE,)
-    figures: Mapping[str, Figure] = {figure.name: figure for figure in FIGURES}
+    figures: Mapping[str, Figure] = {figure.name: figure for figure in TurtlebotAirframe.known}
     digit_when_inf = 6
 
     def __init__(

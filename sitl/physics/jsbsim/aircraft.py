@@ -80,7 +80,7 @@ def planet() -> str:
 
 def mass_balance(a: Any) -> str:
     """Mass and inertia of a vehicle's figures."""
-    named = zip(("ixx", "iyy", "izz"), a.inertia.tolist(), strict=True)
+    named = zip(("ixx", "iyy", "izz"), a.inertia, strict=True)
     moments = "".join(f'<{name} unit="SLUG*FT2">{value / SLUG_FOOT2!r}</{name}>' for name, value in named)
     weight = float(a.mass) / SLUG * POUNDS_BY_SLUG
     origin = place(0.0, 0.0, 0.0).replace("<location", '<location name="CG"')

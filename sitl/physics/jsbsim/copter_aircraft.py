@@ -99,14 +99,14 @@ def _aerodynamics(a: Any, dt: float) -> str:
         "air/half-density", product("atmosphere/rho-slugs_ft3", 0.5 * SLUG_BY_FOOT3)
     )
     out += _momentum_hubs(a) if flow else _speed_squared_hubs(a)
-    damping = [-float(a.angular_damping) * inertia for inertia in a.inertia.tolist()]
+    damping = [-float(a.angular_damping) * inertia for inertia in a.inertia]
     spins = [float(a.rotor_direction[k]) for k in range(int(a.rotor_count))]
     lag = float(a.time_constant_up) > 0.0 or float(a.time_constant_down) > 0.0
     inertia = float(a.rotor_inertia)
     # A counter-clockwise rotor's momentum points up: the sum is (0, 0, -h).
     momentum = "" if flow else product(_each(a, lambda k: product(f"rotor/speed{k + 1}", spins[k])), inertia)
     spin_up = _each(a, lambda k: product(f"rotor/change{k + 1}", spins[k], inertia / dt)) if lag else ""
-    drag = [_drag(float(area), f"air/{axis}") for axis, area in zip("uvw", a.drag_area.tolist(), strict=True)]
+    drag = [_drag(float(area), f"air/{axis}") for axis, area in zip("uvw", a.drag_area, strict=True)]
     forces = (
         total(_each(a, lambda k: f"rotor/drag-x{k + 1}"), drag[0]),
         total(_each(a, lambda k: f"rotor/drag-y{k + 1}"), drag[1]),

@@ -30,7 +30,7 @@ def fly(p, fx, fy, fz, mx, my, mz):
     """Move the free body on by a substep under a force and a torque in its own frame; adds to rates_mean."""
     b, inertia, inverse = p.body, p.airframe.inertia, p.derived.inverse_inertia
     dt = float(p.derived.dt)
-    ix, iy, iz = float(inertia[0]), float(inertia[1]), float(inertia[2])
+    ix, iy, iz = inertia.x, inertia.y, inertia.z
     jx, jy, jz = float(inverse[0]), float(inverse[1]), float(inverse[2])
     wx, wy, wz = float(b.rates[0]), float(b.rates[1]), float(b.rates[2])
     half = 0.5 * dt

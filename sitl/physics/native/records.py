@@ -9,6 +9,7 @@ Only physics and the shell read them; the autopilot sees ``sensors``.
 from __future__ import annotations
 
 from ...core.records import Floats, Ints, Record, array
+from ...vehicles.figures.common import Figures
 from .obstacles import Obstacles
 
 
@@ -118,10 +119,6 @@ class Place(Record):
     lon: int  # [degE7]
     alt: float  # above mean sea level [m]
     field: Floats = array(3)  # geomagnetic field NED [gauss]
-
-
-class Figures(Record):
-    """The airframe's figures (``sitl.vehicles.figures``)."""
 
 
 class Physics(Record):

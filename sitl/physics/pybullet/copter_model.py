@@ -62,7 +62,7 @@ def model(figures: Any) -> CopterModel:
     feet = footing(hubs, float(figures.contact_radius))
     height = leg_length(feet, float(figures.tip_angle))
     mass = float(figures.mass)
-    inertia = (float(figures.inertia[0]), float(figures.inertia[1]), float(figures.inertia[2]))
+    inertia = (figures.inertia.x, figures.inertia.y, figures.inertia.z)
     body = link(
         "body", mass, inertia, _outline(figures, height), _looks(figures, hubs, height), friction=_OUTLINE_FRICTION
     )

@@ -130,7 +130,7 @@ def build(client: Client, a: Any, floor: float) -> Model:
     chassis = mass - sum(masses)
     height = (mass * plan.height - sum(masses) * plan.radius) / chassis
     parts = Parts(p)
-    inertia = [float(a.inertia[j]) for j in range(3)]
+    inertia = list(a.inertia)
     least = [LEAST_INERTIA * i for i in inertia]
     wheel = p.createCollisionShape(p.GEOM_SPHERE, radius=plan.radius, physicsClientId=id_)
     rim = p.createVisualShape(

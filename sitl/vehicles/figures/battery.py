@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
-from .figure import Figure
+from ...core.records import Record
+from .figure import figure
 
-BATTERY = (
-    Figure("battery_voltage_full", "V", "open circuit, full", 1.0, 1000.0),
-    Figure("battery_capacity", "Ah", "0: an ideal source of battery_voltage_full", default=0.0),
-    Figure("battery_resistance", "ohm", "inner resistance", default=0.0),
-    Figure("avionics_current", "A", "drawn by everything but the motors", default=0.0),
-)
+
+class Battery(Record):
+    """The battery, and what draws on it besides the motors."""
+
+    battery_voltage_full: float = figure("V", "open circuit, full", 1.0, 1000.0)
+    battery_capacity: float = figure("Ah", "0: an ideal source of battery_voltage_full", default=0.0)
+    battery_resistance: float = figure("ohm", "inner resistance", default=0.0)
+    avionics_current: float = figure("A", "drawn by everything but the motors", default=0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One figure of a vehicle as data, and the record type of many."""
+"""One figure of a vehicle as data, and its declaration as a field of a record."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from ...core.records import Record, array
+from ...core.records import Record, array, noted
 
 
 class Figure(NamedTuple):
@@ -29,10 +29,22 @@ class Figure(NamedTuple):
     """Values of the kind's model figure that need it; empty: all do."""
 
 
-def figures_record(figures: Sequence[Figure]) -> type[Record]:
-    """A record with one field for each figure, under its name."""
-    members: dict[str, Any] = {"__annotations__": {f.name: int if f.whole else float for f in figures}}
-    for figure in figures:
-        if figure.length > 1:
-            members[figure.name] = array(figure.length, stored="i8" if figure.whole else "f8")
-    return type("Figures", (Record,), members)
+def figure(
+    unit: str, meaning: str, low: float = 0.0, high: float = math.inf, default: float | Sequence[float] | None = None,
+    *, models: tuple[int, ...] = (), count: int = 0,
+) -> Any:  # fmt: skip
+    """Declares a figure as a field of a record: ``mass: float = figure("kg", "everything included", 1e-3, 1e4)``.
+
+    Args:
+        unit, meaning, low, high, default, models: as of ``Figure``.
+        count: ``speeds: Floats = figure(..., count=8)`` declares an array.
+    """
+    return noted(Figure("", unit, meaning, low, high, default, models=models), array(count) if count else None)
+
+
+def figures(record: type[Record]) -> tuple[Figure, ...]:
+    """All figures that a record declares, in its order."""
+    return tuple(
+        field.note._replace(name=name, length=field.shape[0] if field.shape else 1, whole=field.value is int)
+        for name, field in record.fields.items()
+    )

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import math
 
-from .battery import BATTERY
-from .body import BODY, OUTLINE
-from .figure import Figure, figures_record
-from .ranging import RANGING
-from .sensors import SENSORS
+from ...core.records import Record
+from . import common
+from .battery import Battery
+from .body import Body, Outline
+from .figure import figure
+from .ranging import Ranging
+from .sensors import Sensors
 
 STEERING_FRONT_WHEELS = 0
 """Steering model: a bicycle, whose rear axle runs on a circle of wheelbase / tan(angle)."""
@@ -26,42 +28,61 @@ _SKID = (STEERING_SKID,)
 MODEL = "steering_model"
 """The figure that says which of the others are needed."""
 
-DRIVE = (
-    Figure("control_full", "", "actuator control that gives full steering and full throttle", 0.01, 1.0),
-    Figure("speed_max", "m/s", "rolling speed of a free wheel at full throttle", 1e-3, 100.0),
-    Figure("time_constant", "s", "first-order lag of the wheel speed, 0 none", default=0.0),
-    Figure("drive_accel", "m/s^2", "strongest acceleration and braking that the motors give, 0 unlimited", default=0.0),
-    Figure("rolling_resistance", "", "resisting force by weight", 0.0, 1.0, 0.0),
-    Figure("efficiency", "", "share of the battery's power that drives; 0: only power_full is drawn", 0.0, 1.0),
-    Figure("power_full", "W", "drawn at full throttle whatever the load", default=0.0),
-)
 
-TYRES = (
-    Figure("grip", "", "friction of the tyres: greatest force by weight, along and across together", 0.01, 1e4),
-    Figure("driven_load", "", "share of the weight on the driven wheels", 0.01, 1.0, 1.0),
-)
+class Drive(Record):
+    """Motors."""
 
-STEERING = (
-    Figure(MODEL, "", "STEERING_FRONT_WHEELS 0, STEERING_TURNING_CIRCLE 1 or STEERING_SKID 2", 0, 2, whole=True),
-    Figure("rear_axle", "m", "from the driven axle that does not steer forward to the origin", -10.0, 10.0, 0.0),
-    Figure("wheelbase", "m", "between the axles", 0.01, 20.0, models=_CAR),
-    Figure("front_load", "", "share of the weight on the front axle", 0.01, 0.99, models=_CAR),
-    Figure("track", "m", "between the left and the right driven wheel", 0.01, 20.0),
-    Figure("steering_angle", "rad", "of the front wheels at full steering", 0.01, math.radians(80.0), models=_ANGLED),
-    Figure("steering_rate", "rad/s", "fastest turn of the front wheels, 0 unlimited", default=0.0),
-    Figure("turning_diameter", "m", "of the circle at full steering", 0.01, 1000.0, models=_CIRCLE),
-    Figure("track_slip", "", "track that the yaw rate follows by the true one: wheels scrub", 1.0, 10.0, models=_SKID),
-)
+    control_full: float = figure("", "actuator control that gives full steering and full throttle", 0.01, 1.0)
+    speed_max: float = figure("m/s", "rolling speed of a free wheel at full throttle", 0.001, 100.0)
+    time_constant: float = figure("s", "first-order lag of the wheel speed, 0 none", default=0.0)
+    drive_accel: float = figure(
+        "m/s^2", "strongest acceleration and braking that the motors give, 0 unlimited", default=0.0
+    )
+    rolling_resistance: float = figure("", "resisting force by weight", 0.0, 1.0, 0.0)
+    efficiency: float = figure("", "share of the battery's power that drives; 0: only power_full is drawn", 0.0, 1.0)
+    power_full: float = figure("W", "drawn at full throttle whatever the load", default=0.0)
 
-CHASSIS = (  # for engines that build the vehicle of parts; native physics has no use for them
-    Figure("wheel_radius", "m", "of the wheels, 0: a sixth of the wheelbase", default=0.0),
-    Figure("centre_height", "m", "of the centre of mass over the floor, 0: one and a half wheel radii", default=0.0),
-)
 
-ENCODERS = (
-    Figure("encoder_rate", "Hz", "samples a second of the wheel encoders, 0 none", 0.0, 200.0, 0.0),
-    Figure("encoder_step", "m", "travel of the rim a count, 0 continuous", default=0.0),
-)
+class Tyres(Record):
+    """Grip."""
 
-FIGURES = (*BODY, *DRIVE, *TYRES, *STEERING, *CHASSIS, *BATTERY, *SENSORS, *ENCODERS, *OUTLINE, *RANGING)
-FIGURES_RECORD = figures_record(FIGURES)
+    grip: float = figure("", "friction of the tyres: greatest force by weight, along and across together", 0.01, 1e4)
+    driven_load: float = figure("", "share of the weight on the driven wheels", 0.01, 1.0, 1.0)
+
+
+class Steering(Record):
+    """Steering and wheels."""
+
+    steering_model: int = figure("", "STEERING_FRONT_WHEELS 0, STEERING_TURNING_CIRCLE 1 or STEERING_SKID 2", 0, 2)
+    rear_axle: float = figure("m", "from the driven axle that does not steer forward to the origin", -10.0, 10.0, 0.0)
+    wheelbase: float = figure("m", "between the axles", 0.01, 20.0, models=_CAR)
+    front_load: float = figure("", "share of the weight on the front axle", 0.01, 0.99, models=_CAR)
+    track: float = figure("m", "between the left and the right driven wheel", 0.01, 20.0)
+    steering_angle: float = figure(
+        "rad", "of the front wheels at full steering", 0.01, math.radians(80.0), models=_ANGLED
+    )
+    steering_rate: float = figure("rad/s", "fastest turn of the front wheels, 0 unlimited", default=0.0)
+    turning_diameter: float = figure("m", "of the circle at full steering", 0.01, 1000.0, models=_CIRCLE)
+    track_slip: float = figure(
+        "", "track that the yaw rate follows by the true one: wheels scrub", 1.0, 10.0, models=_SKID
+    )
+
+
+class Chassis(Record):
+    """For engines that build the vehicle of parts; native physics has no use for them."""
+
+    wheel_radius: float = figure("m", "of the wheels, 0: a sixth of the wheelbase", default=0.0)
+    centre_height: float = figure(
+        "m", "of the centre of mass over the floor, 0: one and a half wheel radii", default=0.0
+    )
+
+
+class Encoders(Record):
+    """Wheel encoders."""
+
+    encoder_rate: float = figure("Hz", "samples a second of the wheel encoders, 0 none", 0.0, 200.0, 0.0)
+    encoder_step: float = figure("m", "travel of the rim a count, 0 continuous", default=0.0)
+
+
+class Figures(common.Figures, Body, Drive, Tyres, Steering, Chassis, Battery, Sensors, Encoders, Outline, Ranging):
+    """All figures of a ground vehicle."""

@@ -97,12 +97,6 @@ def test_the_documentation_page_has_every_parameter(table: Table) -> None:
     assert all(f"| {p.name} |" in page for p in table)
 
 
-def test_a_name_that_is_there_twice_is_refused() -> None:
-    parameter = TABLE["RTL_ALT"]
-    with pytest.raises(ValueError, match="RTL_ALT"):
-        Table((parameter, parameter))
-
-
 WIRE = {"2": "int8", "4": "int16", "6": "int32", "9": "float"}
 
 

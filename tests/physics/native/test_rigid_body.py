@@ -50,7 +50,7 @@ def test_free_body_keeps_its_energy_and_is_second_order(rig):
         for _ in range(100 * substeps):
             fly(r.p, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         inertia = r.p.airframe.inertia
-        return np.array([*r.p.body.rates, *r.p.body.q]), float(np.sum(inertia * r.p.body.rates**2))
+        return np.array([*r.p.body.rates, *r.p.body.q]), float(np.sum(np.array(inertia) * r.p.body.rates**2))
 
     exact, energy = tumble(16)
     coarse, coarse_energy = tumble(1)

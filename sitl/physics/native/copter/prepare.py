@@ -15,8 +15,8 @@ def prepare(p):
     dt = TICK_S / max(int(a.substeps), 1)
     d.dt = dt
     d.inverse_mass = 1.0 / float(a.mass)
-    for j in range(3):
-        d.inverse_inertia[j] = 1.0 / float(a.inertia[j])
+    d.inverse_inertia[0], d.inverse_inertia[1] = 1.0 / a.inertia.x, 1.0 / a.inertia.y
+    d.inverse_inertia[2] = 1.0 / a.inertia.z
     d.control_scale = 1.0 / (float(a.control_max) - float(a.control_min))
     d.command_step = float(a.command_slew) * TICK_S
     d.decay_up = decay(float(a.time_constant_up), dt)

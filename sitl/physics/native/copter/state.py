@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.records import Float32, Floats, Record, array
-from ....vehicles.figures.copter import FIGURES_RECORD, ROTORS_MAX
+from ....vehicles.figures.copter import ROTORS_MAX, Figures
 from .. import records as shared
 
 
@@ -52,7 +52,7 @@ class Ground(Record):
 class Physics(shared.Physics):
     """The physics of a copter."""
 
-    airframe: FIGURES_RECORD  # type: ignore[valid-type]
+    airframe: Figures
     derived: Derived
     ground: Ground
     rotors: Rotors

@@ -30,11 +30,11 @@ def wrench(p):
     else:
         fx, fy, fz, mx, my, mz = speed_squared_wrench(p, vx, vy, roll_rate, pitch_rate, yaw_rate)
     half = 0.5 * float(p.air.density)
-    fx -= half * float(a.drag_area[0]) * vx * abs(vx)
-    fy -= half * float(a.drag_area[1]) * vy * abs(vy)
-    fz -= half * float(a.drag_area[2]) * vz * abs(vz)
+    fx -= half * a.drag_area.x * vx * abs(vx)
+    fy -= half * a.drag_area.y * vy * abs(vy)
+    fz -= half * a.drag_area.z * vz * abs(vz)
     damping = float(a.angular_damping)
-    mx -= damping * float(a.inertia[0]) * roll_rate
-    my -= damping * float(a.inertia[1]) * pitch_rate
-    mz += spin_up - damping * float(a.inertia[2]) * yaw_rate
+    mx -= damping * a.inertia.x * roll_rate
+    my -= damping * a.inertia.y * pitch_rate
+    mz += spin_up - damping * a.inertia.z * yaw_rate
     return (fx, fy, fz, mx, my, mz)

@@ -35,7 +35,7 @@ def yaw_acceleration(a):
         torque = 0.5 * force * float(a.track)
     else:
         return 0.0
-    return torque / float(a.inertia[2])
+    return torque / a.inertia.z
 
 
 @law

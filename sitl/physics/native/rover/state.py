@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.records import Floats, Record, array
-from ....vehicles.figures.rover import FIGURES_RECORD
+from ....vehicles.figures.rover import Figures
 from .. import records as shared
 
 
@@ -39,6 +39,6 @@ class Wheels(Record):
 class Physics(shared.Physics):
     """The physics of a rover."""
 
-    airframe: FIGURES_RECORD  # type: ignore[valid-type]
+    airframe: Figures
     derived: Derived
     wheels: Wheels

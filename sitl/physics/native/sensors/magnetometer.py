@@ -19,8 +19,8 @@ def sample(p, sensors, rng):
     scale = float(a.noise_scale)
     noise = scale * float(a.mag_noise)
     sensors.mag = Vec3(
-        x + scale * float(a.mag_offset[0]) + noise * normal(rng),
-        y + scale * float(a.mag_offset[1]) + noise * normal(rng),
-        z + scale * float(a.mag_offset[2]) + noise * normal(rng),
+        x + scale * a.mag_offset.x + noise * normal(rng),
+        y + scale * a.mag_offset.y + noise * normal(rng),
+        z + scale * a.mag_offset.z + noise * normal(rng),
     )
     sensors.mag_count += 1

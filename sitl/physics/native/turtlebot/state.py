@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.records import Record
 from ....core.rng import Rng
-from ....vehicles.turtlebot import FIGURES_RECORD
+from ....vehicles.turtlebot import Figures
 
 TICK_US = 10_000
 """Physics step [us], as the original's."""
@@ -37,7 +37,7 @@ class Turtlebot(Record):
     """A whole Turtlebot."""
 
     time_us: int  # since it was placed
-    figures: FIGURES_RECORD  # type: ignore[valid-type]
+    figures: Figures
     command: Command
     body: Body
     rng: Rng
