@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.vectors import Vec2
+from ...control.shaping import Motion
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ..control import altitude, position
@@ -55,9 +57,11 @@ def begin(v):
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(v, auto_yaw.HOLD)
-    n, e = position.stopping_point_ne(ap)
+    stop = position.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
-        path.request_legs(ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d))
+        path.request_legs(
+            ap, v.time_us, stop.x, stop.y, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d)
+        )
 
 
 @law
@@ -111,8 +115,8 @@ def run(v):
         return
     reached = 0
     if ap.modes.nav.request_pending != 0:
-        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        position.brake_ne(ap.control.pos_ne)
+        altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
     else:
         reached = waypoint.advance(ap, v.time_us)
     ground.fly(v)
@@ -159,9 +163,8 @@ def run_descent(v):
     """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
     ap = v.autopilot
     rtl = ap.modes.rtl
-    vn, ve = land.stick_velocity(ap)
-    position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)
-    altitude.input_pos_vel_accel_d(ap, float(rtl.descent_d), 0.0, 0.0)
+    position.input_vel_accel_ne(ap.control.pos_ne, land.stick_velocity(ap), Vec2(0.0, 0.0))
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(rtl.descent_d, 0.0, 0.0))
     ground.fly(v)
 
 

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal, vec3_of
 from ....core.kernels import law
+from ...control.shaping import Motion, Motion2
 from ..control.altitude import set_pos_vel_accel_d
 from ..control.position import set_pos_vel_accel_ne
 from .waypoint import CM, DT, speed_ne
@@ -69,6 +71,7 @@ def advance(ap):
     nav.acc[0] = -c * rate * rate - s * acc / DT
     nav.acc[1] = -s * rate * rate + c * acc / DT
     nav.acc[2] = 0.0
-    set_pos_vel_accel_ne(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
-    set_pos_vel_accel_d(ap, nav.pos[2], 0.0, 0.0)
+    pos, vel, acc = vec3_of(nav.pos), vec3_of(nav.vel), vec3_of(nav.acc)
+    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
+    set_pos_vel_accel_d(ap.control.pos_d, Motion(pos.z, 0.0, 0.0))
     return abs(nav.circle_total) / (2.0 * math.pi)

@@ -54,8 +54,8 @@ class CopterPlanner(Planner):
     def stopping_point(self, ap: Any) -> Point:
         """Where the controllers would bring it to rest."""
         waypoint.set_limits(ap)
-        n, e = stopping_point_ne(ap)
-        return (float(n), float(e), float(stopping_point_d(ap)))
+        stop = stopping_point_ne(ap)
+        return (stop.x, stop.y, stopping_point_d(ap))
 
     def origin_of_next(self, ap: Any, time_us: int) -> tuple[Point, bool]:
         """A circle under way is left from where the vehicle is; a take-off ends at its height."""

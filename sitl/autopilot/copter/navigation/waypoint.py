@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal, vec3_of
 from ....core.kernels import law
+from ...control.shaping import Motion, Motion2
 from ...navigation import path
 from ..control.altitude import init_d_stopping_point, set_max_speed_accel_d, set_pos_vel_accel_d
 from ..control.position import init_ne_stopping_point, set_max_speed_accel_ne, set_pos_vel_accel_ne
@@ -100,8 +102,9 @@ def advance(ap, time_us):
     for k in range(3):
         nav.acc[k] = nav.acc[k] * nav.pause_scale * nav.pause_scale + nav.vel[k] * nav.pause_rate
         nav.vel[k] = nav.vel[k] * nav.pause_scale
-    set_pos_vel_accel_ne(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
-    set_pos_vel_accel_d(ap, nav.pos[2], nav.vel[2], nav.acc[2])
+    pos, vel, acc = vec3_of(nav.pos), vec3_of(nav.vel), vec3_of(nav.acc)
+    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
+    set_pos_vel_accel_d(ap.control.pos_d, Motion(pos.z, vel.z, acc.z))
     if done != 0 and nav.reached == 0:
         if nav.current.fast != 0 or _near_end(ap) != 0:
             nav.reached = 1

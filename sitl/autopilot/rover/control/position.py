@@ -12,13 +12,16 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import limit_length, vec2_of
 from ....core.kernels import law
 from ....core.scalars import finite
+from ....core.vectors import Vec2
 from ...control.pid import lowpass_gain
 from ...control.shaping import (
+    Limits2,
+    Motion2,
     advance_2d,
     inverse_sqrt_controller,
-    limit_length,
     shape_pos_vel_accel_2d,
     sqrt_controller_2d,
 )
@@ -93,20 +96,17 @@ def input_pos_vel_accel(ap, pn, pe, vn, ve, an, ae):
     if not (finite(pn + pe) and finite(vn + ve) and finite(an + ae)):
         return
     c = ap.control.position
-    tn, te, un, ue = advance_2d(
-        float(c.pos_target[0]), float(c.pos_target[1]), float(c.vel_desired[0]), float(c.vel_desired[1]),
-        float(c.accel_desired[0]), float(c.accel_desired[1]), DT, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-    )  # fmt: skip
-    c.pos_target[0], c.pos_target[1] = tn, te
-    c.vel_desired[0], c.vel_desired[1] = un, ue
+    now = Motion2(vec2_of(c.pos_target), vec2_of(c.vel_desired), vec2_of(c.accel_desired))
+    free = Vec2(0.0, 0.0)
+    now = advance_2d(now, DT, free, free, free)
+    c.pos_target[0], c.pos_target[1] = now.pos.x, now.pos.y
+    c.vel_desired[0], c.vel_desired[1] = now.vel.x, now.vel.y
     accel = min(float(c.accel_max), float(c.lat_accel_max))
     if accel <= 0.0 or c.jerk_max <= 0.0:
         return
-    bn, be = shape_pos_vel_accel_2d(
-        pn, pe, vn, ve, an, ae, tn, te, un, ue, float(c.accel_desired[0]), float(c.accel_desired[1]),
-        float(c.speed_max), accel, float(c.jerk_max), DT, 0,
-    )  # fmt: skip
-    c.accel_desired[0], c.accel_desired[1] = bn, be
+    target = Motion2(Vec2(pn, pe), Vec2(vn, ve), Vec2(an, ae))
+    shaped = shape_pos_vel_accel_2d(target, now, Limits2(c.speed_max, accel, c.jerk_max), DT)
+    c.accel_desired[0], c.accel_desired[1] = shaped.x, shaped.y
 
 
 @law
@@ -152,10 +152,11 @@ def _position_loop(ap):
     if c.speed_max > 0.0 and kp > 0.0:
         most = inverse_sqrt_controller(float(c.speed_max), kp, accel)
         if en * en + ee * ee > most * most:
-            en, ee = limit_length(en, ee, most)
+            limited = limit_length(Vec2(en, ee), most)
+            en, ee = limited.x, limited.y
             c.pos_target[0], c.pos_target[1] = n + en, e + ee
     c.pos_error[0], c.pos_error[1] = en, ee
-    return sqrt_controller_2d(en, ee, kp, accel, 0.0)
+    return sqrt_controller_2d(Vec2(en, ee), kp, accel, 0.0)
 
 
 @law
@@ -177,7 +178,8 @@ def _velocity_loop(ap):
     c.started = 1
     i_n = float(c.vel_integrator[0]) + float(c.vel_error[0]) * ki * DT
     i_e = float(c.vel_integrator[1]) + float(c.vel_error[1]) * ki * DT
-    i_n, i_e = limit_length(i_n, i_e, float(p.PSC.VEL.IMAX))
+    integrator = limit_length(Vec2(i_n, i_e), p.PSC.VEL.IMAX)
+    i_n, i_e = integrator.x, integrator.y
     if ki == 0.0:
         i_n, i_e = 0.0, 0.0
     c.vel_integrator[0], c.vel_integrator[1] = i_n, i_e
@@ -229,8 +231,8 @@ def update(v):
         c.vel_integrator[1] = 0.0
     c.last_tick = now_tick(ap)
 
-    vn, ve = _position_loop(ap)
-    vn, ve = limit_length(vn + float(c.vel_desired[0]), ve + float(c.vel_desired[1]), float(c.speed_max))
+    vel = limit_length(_position_loop(ap) + vec2_of(c.vel_desired), c.speed_max)
+    vn, ve = vel.x, vel.y
     c.vel_target[0], c.vel_target[1] = vn, ve
     an, ae = _velocity_loop(ap)
     an, ae = an + float(c.accel_desired[0]), ae + float(c.accel_desired[1])

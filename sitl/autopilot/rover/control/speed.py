@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
-from ...control.pid import reset_filter, update_saturating
+from ...control.pid import pid_gains, reset_filter, update_pid
 from . import motors
 from .forward_speed import forward_speed
 from .recent import now_tick, recent
@@ -100,11 +100,9 @@ def throttle_for_speed(v, desired):
     s.desired = desired_speed_accel_limited(ap, desired if finite(desired) else 0.0)
 
     saturated = m.limit_lower != 0 or m.limit_upper != 0 or s.limit_low != 0 or s.limit_high != 0
-    throttle = cruise_throttle(ap, float(s.desired)) + update_saturating(
-        s.loop, float(s.desired), speed, DT, saturated,
-        p.ATC.SPEED.P, p.ATC.SPEED.I, p.ATC.SPEED.D, p.ATC.SPEED.FF, p.ATC.SPEED.D_FF,
-        p.ATC.SPEED.IMAX, p.ATC.SPEED.PDMX, p.ATC.SPEED.FLTT, p.ATC.SPEED.FLTE, p.ATC.SPEED.FLTD,
-    )  # fmt: skip
+    throttle = cruise_throttle(ap, s.desired) + update_pid(
+        s.loop, s.desired, speed, DT, saturated, pid_gains(p.ATC.SPEED)
+    )
     s.limit_low = 0
     s.limit_high = 0
     if p.ATC.BRAKE == 0.0:

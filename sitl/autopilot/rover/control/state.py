@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ....core.records import Floats, Ints, Record, array
 from ... import state as shared
-from ...control.pid_state import Pid
+from ...control.pid import Pid
 
 DT = 0.02
 """Period of every law in this room [s]: ArduRover's loop of 50 Hz."""

@@ -11,7 +11,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
-from ...control.pid import reset_filter, update_saturating
+from ...control.pid import pid_gains, reset_filter, update_pid
 from .forward_speed import yaw_rate
 from .recent import now_tick, recent
 from .state import DT, GRAVITY
@@ -117,11 +117,9 @@ def out_from_rate(ap, turn_rate):
         rate = _limited(s, rate, -most, most)
     s.turn_rate = rate
 
-    return update_saturating(
-        s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0,
-        p.ATC.STR_RAT.P, p.ATC.STR_RAT.I, p.ATC.STR_RAT.D, p.ATC.STR_RAT.FF, p.ATC.STR_RAT.D_FF,
-        p.ATC.STR_RAT.IMAX, p.ATC.STR_RAT.PDMX, p.ATC.STR_RAT.FLTT, p.ATC.STR_RAT.FLTE, p.ATC.STR_RAT.FLTD,
-    )  # fmt: skip
+    return update_pid(
+        s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0, pid_gains(p.ATC.STR_RAT)
+    )
 
 
 @law
