@@ -39,7 +39,7 @@ def estimate_checks(v):
     """Failed checks of GPS and estimate, as far as the mode needs them; the first of them."""
     ap = v.autopilot
     mode = int(ap.modes.number)
-    if not requires_position(mode) and not requires_velocity(mode, is_skid(ap)):
+    if not requires_position(mode) and not requires_velocity(mode, is_skid(ap.params)):
         return 0
     if v.sensors.gps_fix < 3 and wants(v, CHECK_GPS):
         return GPS_FIX
@@ -59,8 +59,8 @@ def equipment_checks(v):
             failed |= RC_MISSING
         elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
-    drives = servos.is_assigned(ap, servos.STEERING) or servos.is_assigned(ap, servos.THROTTLE)
-    if not drives and not is_skid(ap):
+    drives = servos.is_assigned(ap.params, servos.STEERING) or servos.is_assigned(ap.params, servos.THROTTLE)
+    if not drives and not is_skid(ap.params):
         failed |= NO_OUTPUTS
     if p.WP.SPEED <= 0.0 and wants(v, CHECK_PARAMETERS):
         failed |= WAYPOINT_SPEED

@@ -11,7 +11,8 @@ from ...core.kernels import law
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from .arming import disarm, try_arm
-from .control.motors import TEST_RIGHT, TEST_THROTTLE, is_skid
+from .control.motors import is_skid
+from .control.state import TEST_RIGHT, TEST_THROTTLE
 
 """Method of arming and disarming (ArduPilot's number)."""
 LONGEST_S = 30.0
@@ -39,7 +40,7 @@ def start(v, motor, throttle, pulse, seconds):
     """
     ap = v.autopilot
     motors = ap.control.motors
-    if motor < TEST_THROTTLE or motor > TEST_RIGHT or is_skid(ap) != (motor > 2):
+    if motor < TEST_THROTTLE or motor > TEST_RIGHT or is_skid(ap.params) != (motor > 2):
         return BAD_MOTOR
     if not -1.0 <= throttle <= 1.0 or (pulse != 0 and not LEAST_PULSE <= pulse <= LARGEST_PULSE):
         return BAD_THROTTLE

@@ -89,12 +89,12 @@ def _is_turned(ap, asked, given):
 def steering_and_limited_throttle(ap):
     """(steering, throttle) within what a skid-steered vehicle has for both, and within MOT_SLEWRATE."""
     steering, throttle = steering_and_throttle(ap)
-    if motors.is_skid(ap):
+    if motors.is_skid(ap.params):
         both = abs(steering) + abs(throttle)
         if both > 1.0:
             steering /= both
             throttle /= both
-    limited = motors.slew_limited(ap, throttle)
+    limited = motors.slew_limited(throttle, ap.control.motors.throttle_last, ap.params.MOT.SLEWRATE)
     if _is_turned(ap, throttle, limited):
         steering = -steering
     return (steering, limited)
@@ -104,8 +104,8 @@ def steering_and_limited_throttle(ap):
 def steering_and_speed(ap):
     """(steering, speed [m/s] within the acceleration limits)."""
     steering, throttle = steering_and_throttle(ap)
-    asked = throttle * speed.speed_max(ap)
-    limited = speed.desired_speed_accel_limited(ap, asked)
+    asked = throttle * speed.speed_max(ap.params)
+    limited = speed.accel_limited(ap.control, asked, ap.params.ATC)
     if _is_turned(ap, asked, limited):
         steering = -steering
     return (steering, limited)
@@ -121,7 +121,7 @@ def heading_and_speed(ap):
     if int(ap.params.PILOT_STEER_TYPE) == TWO_PADDLES:
         steering, throttle = 0.5 * (steering - throttle), 0.5 * (steering + throttle)
     pushed = min(math.sqrt(steering * steering + throttle * throttle), 1.0)
-    return (wrap_2pi(math.atan2(steering, throttle)), pushed * speed.speed_max(ap))
+    return (wrap_2pi(math.atan2(steering, throttle)), pushed * speed.speed_max(ap.params))
 
 
 @law

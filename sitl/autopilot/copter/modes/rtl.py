@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import with_down
 from ....core.kernels import law
-from ....core.vectors import Vec2
+from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
@@ -59,9 +60,7 @@ def begin(v):
     auto_yaw.set_mode(v, auto_yaw.HOLD)
     stop = position.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
-        path.request_legs(
-            ap, v.time_us, stop.x, stop.y, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d)
-        )
+        path.request_legs(ap, v.time_us, with_down(stop, rtl.return_d), Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
 
 
 @law
@@ -124,7 +123,7 @@ def run(v):
         if reached != 0:
             rtl.state = RETURN
             auto_yaw.set_default(v, 1)
-            path.request_leg(ap, v.time_us, float(rtl.home[0]), float(rtl.home[1]), float(rtl.return_d))
+            path.request_leg(ap, v.time_us, Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
     elif rtl.state == RETURN:
         if reached != 0:
             rtl.state = LOITER

@@ -8,6 +8,7 @@ import math
 from ....core.kernels import law
 from .. import pilot
 from ..control import motors, speed
+from ..control.forward_speed import sense
 from . import drive
 
 
@@ -15,8 +16,8 @@ from . import drive
 def run(v):
     """One period."""
     ap = v.autopilot
-    known, _ = speed.forward_speed(v)
-    if known == 0:
+    known, _ = sense(v)
+    if not known:
         steering, throttle = pilot.steering_and_limited_throttle(ap)
         motors.set_throttle(ap, throttle)
     else:

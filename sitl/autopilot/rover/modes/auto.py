@@ -31,7 +31,7 @@ def start(v):
     if ap.modes.mission_count < 2:
         return NO_MISSION
     auto = ap.modes.auto
-    waypoint.start(v)
+    waypoint.start(ap)
     ap.modes.guided.limit_us = 0
     ap.modes.guided.limit_distance = 0.0
     auto.command = int(ap.modes.nav.command_count)
@@ -49,7 +49,7 @@ def begin(v):
     auto = ap.modes.auto
     auto.command = int(nav.command_count)
     auto.complete = 0
-    nav.completed = 0
+    nav.completed = False
     nav.since_us = 0
     kind = nav.command_kind
     auto.submode = doing.STOP
@@ -118,15 +118,15 @@ def run(v):
         run_heading(v)
     else:
         speed.stop(v)
-    if nav.completed == 0 and is_done(v):
+    if not nav.completed and is_done(v):
         command.complete(ap, v.time_us)
-    command.check_condition(ap, v.time_us, 1)
+    command.check_condition(ap, v.time_us, True)
 
 
 @law
 def run_path(v):
     """One period towards a waypoint. There, waiting, a car stands: it would have to circle to hold the very point."""
-    if waypoint.reached(v.autopilot) != 0 and not waypoint.is_fast(v.autopilot):
+    if waypoint.reached(v.autopilot) and not waypoint.is_fast(v.autopilot):
         speed.stop(v)
     else:
         drive.along_path(v)
@@ -155,7 +155,7 @@ def is_done(v):
     if kind == kinds.NONE:
         return False
     if kind == kinds.WAYPOINT or kind == kinds.LOITER_TIME or kind == kinds.LOITER_UNLIMITED:
-        if nav.since_us == 0 and waypoint.reached(ap) != 0:
+        if nav.since_us == 0 and waypoint.reached(ap):
             command.arrive(ap, v.time_us)
         return kind != kinds.LOITER_UNLIMITED and nav.since_us != 0 and (v.time_us - nav.since_us) * 1e-6 >= nav.delay
     if kind == kinds.DELAY:
@@ -164,7 +164,7 @@ def is_done(v):
     if submode == doing.CIRCLE:
         return circle.turns(ap) >= nav.turns
     if submode == doing.RTL:
-        return waypoint.reached(ap) != 0
+        return waypoint.reached(ap)
     if submode == doing.GUIDED:
         return is_guided_done(v)
     if submode == doing.HEADING_AND_SPEED:
@@ -179,7 +179,7 @@ def is_guided_done(v):
     nav = ap.modes.nav
     north = float(nav.target[0]) - float(ap.estimate.pos[0])
     east = float(nav.target[1]) - float(ap.estimate.pos[1])
-    if nav.has_place != 0 and math.sqrt(north * north + east * east) <= ap.params.WP.RADIUS:
+    if nav.has_place and math.sqrt(north * north + east * east) <= ap.params.WP.RADIUS:
         return True
     return guided_drive.is_at_limit(v)
 

@@ -11,6 +11,8 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
+from ....core.vectors import Vec2
+from ...control.shaping import Motion2
 from ...events import CIRCLE_ADAPTED, emit
 from ..control import position, speed
 from ..control.state import DT
@@ -50,7 +52,7 @@ def set_speed(v, wanted):
     """Speed [m/s] around the circle, within what the lateral acceleration allows."""
     ap = v.autopilot
     circle = ap.modes.circle
-    most = math.sqrt(lat_accel_max(ap) * float(circle.radius))
+    most = math.sqrt(lat_accel_max(ap.params.ATC) * float(circle.radius))
     circle.speed = min(wanted, most)
     if wanted > most:
         emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(SPEED_LIMITED), most)
@@ -60,7 +62,7 @@ def set_speed(v, wanted):
 def acceleration(ap):
     """Of the target along its way [m/s^2] (WP_ACCEL within ATC_ACCEL_MAX and ATC_DECEL_MAX)."""
     p = ap.params
-    most = min(float(p.ATC.ACCEL_MAX), speed.decel_max(ap))
+    most = min(float(p.ATC.ACCEL_MAX), speed.decel_max(p.ATC))
     if most <= 0.0:
         most = DEFAULT_ACCEL
     return min(most, float(p.WP.ACCEL)) if p.WP.ACCEL > 0.0 else most
@@ -71,7 +73,7 @@ def set_limits(ap):
     """Limits of the position controller for this circle."""
     accel = acceleration(ap)
     jerk = float(ap.params.WP.JERK) if ap.params.WP.JERK > 0.0 else accel
-    position.set_limits(ap, float(ap.modes.circle.speed), accel, lat_accel_max(ap), jerk)
+    position.set_limits(ap.control.position, float(ap.modes.circle.speed), accel, lat_accel_max(ap.params.ATC), jerk)
 
 
 @law
@@ -91,7 +93,7 @@ def begin(v, n, e, radius, direction, angle):
     circle.at_edge = 0
     circle.waiting = 0
     set_limits(ap)
-    position.init(ap)
+    position.init(ap.control.position, ap.estimate)
     place_target(ap)
     return ACCEPTED
 
@@ -164,15 +166,9 @@ def advance(ap):
     along_n, along_e = -out_e * circle.direction, out_n * circle.direction
     size = float(circle.target_speed)
     inward, along = size * size / circle.radius, change / DT
-    position.set_pos_vel_accel(
-        ap,
-        float(circle.target[0]),
-        float(circle.target[1]),
-        along_n * size,
-        along_e * size,
-        along_n * along - out_n * inward,
-        along_e * along - out_e * inward,
-    )
+    vel = Vec2(along_n * size, along_e * size)
+    acc = Vec2(along_n * along - out_n * inward, along_e * along - out_e * inward)
+    position.set_pos_vel_accel(ap.control.position, Motion2(Vec2(circle.target[0], circle.target[1]), vel, acc))
 
 
 @law
@@ -184,7 +180,7 @@ def follow(v):
     if circle.at_edge == 0:
         if away <= near:
             circle.at_edge = 1
-        position.input_pos(ap, float(circle.target[0]), float(circle.target[1]))
+        position.input_pos(ap.control.position, Vec2(circle.target[0], circle.target[1]))
     elif away > 2.0 * near and circle.waiting == 0:
         circle.speed *= SLOWER
         circle.waiting = 1
@@ -203,7 +199,7 @@ def run(v):
         speed.stop(v)
         return
     follow(v)
-    position.update(v)
+    position.follow_target(ap)
     drive.turn(v, float(ap.control.position.desired_turn_rate))
     speed.drive(v, float(ap.control.position.desired_speed))
 

@@ -35,14 +35,14 @@ def turn(v, rate):
 @law
 def to_heading(v, heading):
     """Turn towards ``heading`` [rad]."""
-    steer(v, steering.out_from_heading(v.autopilot, heading, 0.0))
+    steer(v, steering.out_from_heading(v.autopilot, heading))
 
 
 @law
 def accelerate_sideways(v, accel):
     """Turn with a lateral acceleration [m/s^2] to the right, within ATC_TURN_MAX_G."""
     ap = v.autopilot
-    most = steering.lat_accel_max(ap)
+    most = steering.lat_accel_max(ap.params.ATC)
     steer(v, steering.out_from_lat_accel(ap, constrain(accel, -most, most)))
 
 
@@ -56,7 +56,7 @@ def pilots_speed(ap, backward):
     if throttle < LEAST_CRUISE_THROTTLE or throttle > MOST_CRUISE_THROTTLE:
         return 0.0
     _, stick = pilot.steering_and_throttle(ap)
-    asked = stick * speed.speed_max(ap)
+    asked = stick * speed.speed_max(ap.params)
     return min(asked, 0.0) if backward else max(asked, 0.0)
 
 
@@ -73,7 +73,7 @@ def along_path(v):
     """One period along the path of ``navigation.waypoint``: it says how fast and how to turn."""
     ap = v.autopilot
     path = ap.modes.nav.drive
-    waypoint.set_nudge_speed(ap, abs(pilots_speed(ap, path.reversed != 0)))
-    waypoint.update(v)
+    waypoint.set_nudge_speed(ap, abs(pilots_speed(ap, path.reversed)))
+    waypoint.follow(v)
     speed.drive(v, float(path.desired_speed))
     turn(v, float(path.desired_turn_rate))

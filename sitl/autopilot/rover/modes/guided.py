@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
+from ....core.vectors import Vec2
 from ..navigation import waypoint
 from .auto_state import is_guided
 from .guided_state import (
@@ -68,9 +69,9 @@ def set_position(v, n, e):
         return code
     ap = v.autopilot
     if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0:
-        waypoint.set_destination(v, n, e)
+        waypoint.set_destination(ap, v.time_us, Vec2(n, e))
     else:
-        waypoint.set_destination_shaped(v, n, e)
+        waypoint.set_destination_shaped(ap, v.time_us, Vec2(n, e))
     begin(v, POSITION)
     ap.modes.guided.pos[0] = n
     ap.modes.guided.pos[1] = e

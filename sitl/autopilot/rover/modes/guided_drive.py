@@ -24,7 +24,7 @@ TIMEOUT_US = 3_000_000
 def start(v):
     """Enter: stops until a set-point comes."""
     guided = v.autopilot.modes.guided
-    waypoint.start(v)
+    waypoint.start(v.autopilot)
     guided.submode = STOP
     guided.has_target = 0
     guided.reached_told = 1
@@ -44,7 +44,7 @@ def check_age(v):
 def run_position(v):
     """One period of a position target."""
     ap = v.autopilot
-    if waypoint.reached(ap) == 0:
+    if not waypoint.reached(ap):
         drive.along_path(v)
         return
     if ap.modes.guided.reached_told == 0:

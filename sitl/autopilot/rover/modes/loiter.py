@@ -8,6 +8,7 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ..control import speed
+from ..control.forward_speed import sense
 from ..navigation import waypoint
 from . import drive
 from .numbers import ACCEPTED, INIT_FAILED
@@ -23,9 +24,9 @@ def start(v):
     if ap.estimate.origin_set == 0:
         return INIT_FAILED
     loiter = ap.modes.loiter
-    loiter.place[0], loiter.place[1] = waypoint.stopping_point(ap)
-    known, forward = speed.forward_speed(v)
-    loiter.speed = forward if known != 0 else 0.0
+    place = waypoint.stopping_point(ap)
+    loiter.place[0], loiter.place[1] = place.x, place.y
+    loiter.speed = sense(v).speed
     loiter.heading = ap.estimate.euler[2]
     loiter.distance = 0.0
     return ACCEPTED
@@ -59,7 +60,7 @@ def run(v):
     east = float(loiter.place[1]) - float(ap.estimate.pos[1])
     loiter.distance = math.sqrt(north * north + east * east)
     if loiter.distance <= ap.params.LOIT.RADIUS:
-        loiter.speed = speed.desired_speed_accel_limited(ap, 0.0)
+        loiter.speed = speed.accel_limited(ap.control, 0.0, ap.params.ATC)
     else:
         aim(v)
     drive.to_heading(v, float(loiter.heading))

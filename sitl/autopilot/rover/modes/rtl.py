@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ....core.algebra import horizontal
 from ....core.kernels import law
 from ...events import DESTINATION_REACHED, emit
 from ..control import speed
@@ -17,10 +18,10 @@ def start(v):
     ap = v.autopilot
     if ap.home.is_set == 0:
         return INIT_FAILED
-    waypoint.start(v)
+    waypoint.start(ap)
     if ap.params.RTL_SPEED > 0.0:
         waypoint.set_speed(ap, float(ap.params.RTL_SPEED))
-    waypoint.set_destination(v, float(ap.home.pos[0]), float(ap.home.pos[1]))
+    waypoint.set_destination(ap, v.time_us, horizontal(ap.home.pos))
     ap.modes.rtl.told = 0
     return ACCEPTED
 
@@ -29,7 +30,7 @@ def start(v):
 def run(v):
     """One period."""
     ap = v.autopilot
-    if waypoint.reached(ap) == 0:
+    if not waypoint.reached(ap):
         drive.along_path(v)
         return
     if ap.modes.rtl.told == 0:

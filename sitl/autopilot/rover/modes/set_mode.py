@@ -35,7 +35,7 @@ def refusal(v, number):
     good = ap.estimate.position_ok != 0 and ap.modes.failsafe.ekf == 0
     if requires_position(number) and not good:
         return REQUIRES_POSITION
-    if requires_velocity(number, is_skid(ap)) and not good and ap.control.speed.forward_ok == 0:
+    if requires_velocity(number, is_skid(ap.params)) and not good and not ap.control.speed.forward_ok:
         return REQUIRES_POSITION
     return ACCEPTED
 
@@ -78,7 +78,7 @@ def request(v, number, reason):
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
-    waypoint.set_reversed(ap, 0)
+    waypoint.set_reversed(ap, False)
     modes.previous = int(modes.number)
     modes.number = number
     modes.reason = reason

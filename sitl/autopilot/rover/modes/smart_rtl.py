@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.vectors import Vec2
 from ...events import DESTINATION_REACHED, emit
 from .. import smart_rtl_path
 from ..control import speed
@@ -25,7 +26,7 @@ def start(v):
     ap = v.autopilot
     if ap.estimate.origin_set == 0 or ap.modes.path.active == 0:
         return INIT_FAILED
-    waypoint.start(v)
+    waypoint.start(ap)
     if ap.params.RTL_SPEED > 0.0:
         waypoint.set_speed(ap, float(ap.params.RTL_SPEED))
     ap.modes.smart_rtl.state = CLEAN_UP
@@ -36,8 +37,8 @@ def start(v):
 def skip_near(ap):
     """Leave out last points where the vehicle is already (WP_RADIUS): a car would have to circle to meet them."""
     there, n, e = smart_rtl_path.peek(ap)
-    at_n, at_e = waypoint.stopping_point(ap)
-    while there != 0 and ap.modes.path.points > 1 and math.hypot(n - at_n, e - at_e) <= ap.params.WP.RADIUS:
+    at = waypoint.stopping_point(ap)
+    while there != 0 and ap.modes.path.points > 1 and math.hypot(n - at.x, e - at.y) <= ap.params.WP.RADIUS:
         smart_rtl_path.pop(ap)
         there, n, e = smart_rtl_path.peek(ap)
 
@@ -53,9 +54,9 @@ def load(v):
         return
     more, next_n, next_e = smart_rtl_path.peek(ap)
     if more != 0:
-        waypoint.set_destinations(v, n, e, next_n, next_e)
+        waypoint.set_destinations(ap, v.time_us, Vec2(n, e), Vec2(next_n, next_e))
     else:
-        waypoint.set_destination(v, n, e)
+        waypoint.set_destination(ap, v.time_us, Vec2(n, e))
 
 
 @law
@@ -68,7 +69,7 @@ def run(v):
         skip_near(ap)
         state.state = FOLLOW
         load(v)
-    elif state.state == FOLLOW and waypoint.reached(ap) != 0:
+    elif state.state == FOLLOW and waypoint.reached(ap):
         load(v)
     if state.state == FOLLOW:
         drive.along_path(v)

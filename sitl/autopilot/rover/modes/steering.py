@@ -13,6 +13,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from .. import pilot
 from ..control import motors, speed
+from ..control.forward_speed import sense
 from ..control.steering import lat_accel_max
 from . import drive
 
@@ -23,7 +24,7 @@ LEAST_RADIUS = 0.1  # [m]
 @law
 def full_stick_accel(ap, forward):
     """Lateral acceleration [m/s^2] of a full stick at a speed [m/s]."""
-    most = max(lat_accel_max(ap), LEAST_ACCEL)
+    most = max(lat_accel_max(ap.params.ATC), LEAST_ACCEL)
     return constrain(forward * forward / max(float(ap.params.TURN_RADIUS), LEAST_RADIUS), LEAST_ACCEL, most)
 
 
@@ -31,13 +32,13 @@ def full_stick_accel(ap, forward):
 def run(v):
     """One period; without a known speed the motors rest."""
     ap = v.autopilot
-    known, forward = speed.forward_speed(v)
-    if known == 0:
+    known, forward = sense(v)
+    if not known:
         motors.set_throttle(ap, 0.0)
         motors.set_steering(ap, 0.0)
         return
     stick, wanted = pilot.steering_and_speed(ap)
-    if wanted == 0.0 and motors.is_skid(ap):
+    if wanted == 0.0 and motors.is_skid(ap.params):
         drive.turn(v, stick * math.radians(ap.params.ACRO_TURN_RATE))
     else:
         accel = full_stick_accel(ap, forward) * stick
