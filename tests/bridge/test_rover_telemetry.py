@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sitl.autopilot.rover.modes import auto_state, guided_state
+from sitl.core.vectors import Vec3
 from tests.bridge.fakes import HOME, Bench
 
 MANUAL, HOLD, AUTO, RTL, GUIDED, INITIALISING = 0, 4, 10, 11, 15, 16
@@ -87,9 +88,9 @@ def driving(rover_bench: Bench) -> Bench:
     """At (3, 4) m, on the way to (3, 24) m, with the target of the moment at (8, 9) m."""
     rover_bench.vehicle.locate()
     ap = rover_bench.vehicle.v.autopilot
-    ap.estimate.pos, ap.modes.nav.target[:] = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
+    ap.estimate.pos, ap.modes.nav.target = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
     ap.modes.loiter.place[:], ap.modes.circle.target[:] = (13.0, 4.0), (-7.0, 4.0)
-    ap.modes.nav.drive.crosstrack, ap.control.position.pos_target[:] = -1.5, (8.0, 9.0)
+    ap.modes.nav.drive.crosstrack, ap.control.position.pos_target = -1.5, (8.0, 9.0)
     return rover_bench
 
 
@@ -135,7 +136,7 @@ def test_no_number_of_the_record_stops_telemetry(rover_bench: Bench, value: floa
     v = rover_bench.vehicle.v
     for mode in (AUTO, RTL, GUIDED, 5, 9, 12):
         v.autopilot.modes.number, v.autopilot.estimate.origin_set = mode, 1
-        v.autopilot.estimate.pos = value
+        v.autopilot.estimate.pos = Vec3(value, value, value)
         v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_state.POSITION, value
         v.autopilot.control.motors.throttle = v.autopilot.control.motors.out_throttle = value
         for number in rover_bench.bridge.telemetry:

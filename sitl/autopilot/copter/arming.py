@@ -34,7 +34,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
         emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
         return failed
     if not ap.home.locked:
-        home.set_here(v)
+        home.set_here(ap.home, ap.estimate)
     arming.armed = True
     arming.armed_us = v.time_us
     arming.auto_armed = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, tell, text
+from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report, text
 from ..modes import (
     ACCEPTED,
     REASON_BATTERY_FAILSAFE,
@@ -13,7 +13,7 @@ from ..modes import (
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
 )
-from ..radio import stick_channel
+from ..radio import THROTTLE, stick_pulse
 from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
@@ -51,20 +51,20 @@ def watch_radio(v: Vehicle) -> None:
     ap = v.autopilot
     fs = ap.modes.failsafe
     enable = int(ap.params.FS.THR_ENABLE)
-    pulse = ap.rc.channels[stick_channel(ap.params, 2) - 1]
+    pulse = stick_pulse(ap.rc, ap.params.RCMAP, THROTTLE)
     fitted = ap.rc.receiver_us > 0 or ap.rc.has_receiver
     bad = enable > 0 and fitted and (not ap.rc.receiver_ok or pulse < ap.params.FS.THR_VALUE)
     if bad and not fs.radio:
         fs.radio_count += 1
         if fs.radio_count >= RADIO_FRAMES:
             fs.radio = True
-            tell(v, RADIO, 1)
+            report(ap.events, v.time_us, RADIO, True)
             start_radio(v, radio_action(enable))
     elif not bad and fs.radio:
         fs.radio_count -= 1
         if fs.radio_count <= 0:
             fs.radio = False
-            tell(v, RADIO, 0)
+            report(ap.events, v.time_us, RADIO, False)
     elif not bad:
         fs.radio_count = 0
 
@@ -87,10 +87,10 @@ def watch_gcs(v: Vehicle) -> None:
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    lost = is_gcs_lost(v)
+    lost = is_gcs_lost(fs, v.time_us, ap.params.FS)
     if lost and not fs.gcs:
         fs.gcs = True
-        tell(v, GCS, 1)
+        report(ap.events, v.time_us, GCS, True)
         options = int(ap.params.FS.OPTIONS)
         mode = ap.modes.number
         goes_on = mode == AUTO and (options & _GCS_AUTO) != 0
@@ -99,14 +99,14 @@ def watch_gcs(v: Vehicle) -> None:
             act(v, gcs_action(int(ap.params.FS.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
     elif not lost and fs.gcs:
         fs.gcs = False
-        tell(v, GCS, 0)
+        report(ap.events, v.time_us, GCS, False)
 
 
 @law
 def watch_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
     p = v.autopilot.params
-    level = battery_fell_to(v)
+    level = battery_fell_to(v.autopilot, v.time_us)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
@@ -121,7 +121,7 @@ def watch_estimate(v: Vehicle) -> None:
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    bad = is_estimate_bad(v, ap.params.FS.EKF_FILT)
+    bad = is_estimate_bad(fs, ap.estimate, ap.params.FS.EKF_THRESH, ap.params.FS.EKF_FILT)
     if ap.params.FS.EKF_THRESH <= 0.0 or not ap.arming.armed or not ap.estimate.origin_set:
         fs.ekf_count = 0
         fs.ekf = 0
@@ -135,7 +135,7 @@ def watch_estimate(v: Vehicle) -> None:
         fs.ekf_count -= 1
         if fs.ekf_count == 0 and fs.ekf != 0:
             if fs.ekf == EKF_ACTED:
-                tell(v, EKF, 0)
+                report(ap.events, v.time_us, EKF, False)
             fs.ekf = 0
 
 
@@ -148,7 +148,7 @@ def start_ekf(v: Vehicle) -> None:
     if mode != LAND and (action == 0 or (not requires_position(mode) and action != 3)):
         return
     ap.modes.failsafe.ekf = EKF_ACTED
-    tell(v, EKF, 1)
+    report(ap.events, v.time_us, EKF, True)
     if mode == LAND:
         ap.modes.land.with_position = False
         return

@@ -116,16 +116,16 @@ def set_priority(v: Vehicle) -> None:
     """Attitude first in the air, throttle first on and near the ground."""
     ap = v.autopilot
     if not ap.arming.armed or ap.arming.landed:
-        throttle_mix.set_mix_min(ap)
+        throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
     elif table.has_manual_throttle(ap.modes.number):
         if ap.modes.pilot.throttle <= 0.0:
-            throttle_mix.set_mix_min(ap)
+            throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
         else:
-            throttle_mix.set_mix_man(ap)
+            throttle_mix.set_mix_man(ap.control.attitude, ap.params.ATC)
     else:
         path = ap.control.pos_d
         busy = leans_far(ap.control.attitude) or path.vel_desired <= 0.0 or acceleration(ap.modes) > ACCEL_MOVING
         if busy and not is_meant_to_land(ap):
-            throttle_mix.set_mix_max(ap, path.control_ratio)
+            throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, path.control_ratio)
         else:
-            throttle_mix.set_mix_min(ap)
+            throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)

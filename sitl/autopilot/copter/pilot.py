@@ -10,7 +10,19 @@ from ...core.algebra import norm2
 from ...core.kernels import law
 from ...core.scalars import constrain
 from ...core.vectors import Vec2
-from ..radio import FRAME_S, RECEIVER_PULSES, calibration, centred_channel, expo, ranged, receive, stick_channel
+from ..radio import (
+    FRAME_S,
+    PITCH,
+    RECEIVER_PULSES,
+    ROLL,
+    THROTTLE,
+    YAW,
+    expo,
+    ranged,
+    receive,
+    stick_channel,
+    stick_position,
+)
 from .modes.state import PilotState
 from .parameters.flight import Pilot
 from .state import Autopilot, Vehicle
@@ -47,7 +59,8 @@ def has_receiver(ap: Autopilot) -> bool:
 @law
 def read(v: Vehicle) -> None:
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
-    receive(v, _THROTTLE_LOW, v.autopilot.params.RC_FS_TIMEOUT)
+    ap = v.autopilot
+    receive(ap.rc, v.sensors, ap.params, v.time_us, _THROTTLE_LOW, ap.params.RC_FS_TIMEOUT)
     read_sticks(v)
 
 
@@ -57,12 +70,11 @@ def read_sticks(v: Vehicle) -> None:
     ap = v.autopilot
     pilot = ap.modes.pilot
     if has_receiver(ap):
-        pilot.roll = centred_channel(ap, 0)
-        pilot.pitch = centred_channel(ap, 1)
-        pilot.yaw = centred_channel(ap, 3)
-        channel = stick_channel(ap.params, 2)
-        low, _trim, high, reverse, dead = calibration(ap.params, channel)
-        pilot.throttle = ranged(ap.rc.channels[channel - 1], low, high, reverse, dead)
+        pilot.roll = stick_position(ap.rc, ap.params, ROLL)
+        pilot.pitch = stick_position(ap.rc, ap.params, PITCH)
+        pilot.yaw = stick_position(ap.rc, ap.params, YAW)
+        channel = stick_channel(ap.params.RCMAP, THROTTLE)
+        pilot.throttle = ranged(ap.rc.channels[channel], ap.params.RC[channel])
     else:
         pilot.roll = 0.0
         pilot.pitch = 0.0

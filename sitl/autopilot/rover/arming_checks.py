@@ -25,7 +25,7 @@ from ..arming_checks import (
     sensor_checks,
     wants,
 )
-from ..radio import stick_channel
+from ..radio import THROTTLE, stick_pulse
 from .control import servos
 from .control.motors import is_skid
 from .modes.numbers import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
@@ -41,7 +41,7 @@ def estimate_checks(v):
     mode = int(ap.modes.number)
     if not requires_position(mode) and not requires_velocity(mode, is_skid(ap.params)):
         return 0
-    if v.sensors.gps_fix < 3 and wants(v, CHECK_GPS):
+    if v.sensors.gps_fix < 3 and wants(ap.params.ARMING, CHECK_GPS):
         return GPS_FIX
     if ap.estimate.position_ok == 0:
         return AHRS_TYPE
@@ -53,16 +53,16 @@ def equipment_checks(v):
     """Failed checks of radio, battery and outputs."""
     ap = v.autopilot
     p = ap.params
-    failed = battery_checks(v)
-    if p.FS.THR_ENABLE > 0.0 and wants(v, CHECK_RC):
+    failed = battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         if ap.rc.receiver_ok == 0:
             failed |= RC_MISSING
-        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
+        elif stick_pulse(ap.rc, p.RCMAP, THROTTLE) < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
     drives = servos.is_assigned(ap.params, servos.STEERING) or servos.is_assigned(ap.params, servos.THROTTLE)
     if not drives and not is_skid(ap.params):
         failed |= NO_OUTPUTS
-    if p.WP.SPEED <= 0.0 and wants(v, CHECK_PARAMETERS):
+    if p.WP.SPEED <= 0.0 and wants(p.ARMING, CHECK_PARAMETERS):
         failed |= WAYPOINT_SPEED
     return failed
 
@@ -70,17 +70,19 @@ def equipment_checks(v):
 @law
 def check(v):
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
-    if v.autopilot.params.ARMING.CHECK == 0.0:
-        return sensor_checks(v) & NOT_INITIALISED
-    mode = 0 if allows_arming(int(v.autopilot.modes.number)) else MODE
-    return sensor_checks(v) | estimate_checks(v) | equipment_checks(v) | mode
+    ap = v.autopilot
+    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, ap.params.ARMING)
+    if ap.params.ARMING.CHECK == 0.0:
+        return sensors & NOT_INITIALISED
+    mode = 0 if allows_arming(int(ap.modes.number)) else MODE
+    return sensors | estimate_checks(v) | equipment_checks(v) | mode
 
 
 @law
 def stick_checks(v, method):
     """Sticks that are not centred; by stick the steering cannot be."""
     ap = v.autopilot
-    if ap.rc.receiver_ok == 0 or not wants(v, CHECK_RC):
+    if ap.rc.receiver_ok == 0 or not wants(ap.params.ARMING, CHECK_RC):
         return 0
     failed = 0
     if ap.modes.pilot.throttle != 0.0:

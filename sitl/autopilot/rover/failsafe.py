@@ -9,8 +9,8 @@ from __future__ import annotations
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, tell
-from ..radio import stick_channel
+from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report
+from ..radio import THROTTLE, stick_pulse
 from . import motor_test
 from .failsafe_actions import act
 from .modes import set_mode
@@ -57,7 +57,7 @@ def update_radio(v):
     """After each frame of the receiver."""
     ap = v.autopilot
     p = ap.params
-    pulse = ap.rc.channels[stick_channel(p, 2) - 1]
+    pulse = stick_pulse(ap.rc, p.RCMAP, THROTTLE)
     heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver != 0
     bad = p.FS.THR_ENABLE > 0.0 and heard and (ap.rc.receiver_ok == 0 or pulse < p.FS.THR_VALUE)
     ap.modes.failsafe.radio = 1 if bad else 0
@@ -67,7 +67,7 @@ def update_radio(v):
 @law
 def update_gcs(v):
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
-    lost = is_gcs_lost(v)
+    lost = is_gcs_lost(v.autopilot.modes.failsafe, v.time_us, v.autopilot.params.FS)
     v.autopilot.modes.failsafe.gcs = 1 if lost else 0
     watch(v, BIT_GCS, lost)
 
@@ -88,7 +88,7 @@ def watch(v, bit, bad):
     if before == 0 and links.bad != 0:
         links.since_us = v.time_us
     if links.acted != 0 and links.bad == 0:
-        tell(v, kind_of(bit), 0)
+        report(v.autopilot.events, v.time_us, kind_of(bit), False)
     links.acted = int(links.acted) & int(links.bad)
     if links.acted != 0 or not bad or v.time_us - links.since_us <= ap.params.FS.TIMEOUT * 1e6:
         return
@@ -104,12 +104,12 @@ def begin(v, bit):
     """FS_ACTION, unless the mission may go on."""
     ap = v.autopilot
     p = ap.params
-    tell(v, kind_of(bit), 1)
+    report(v.autopilot.events, v.time_us, kind_of(bit), True)
     for k in range(18):
         ap.rc.override[k] = 0
     enabled = p.FS.THR_ENABLE if bit == BIT_RADIO else p.FS.GCS_ENABLE
     if ap.modes.number == AUTO and enabled == _ENABLED_BUT_IN_AUTO:
-        tell(v, CONTINUES, 1)
+        report(v.autopilot.events, v.time_us, CONTINUES, True)
     else:
         act(v, int(p.FS.ACTION), REASON_FAILSAFE, BY_BATTERY_FAILSAFE)
 
@@ -118,7 +118,7 @@ def begin(v, bit):
 def update_battery(v):
     """Ten times a second: act on a battery that has become low or critical."""
     p = v.autopilot.params
-    level = battery_fell_to(v)
+    level = battery_fell_to(v.autopilot, v.time_us)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, choice, REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
@@ -134,7 +134,7 @@ def update_ekf(v):
     fs = ap.modes.failsafe
     if ap.estimate.origin_set == 0:
         return
-    bad = is_estimate_bad(v, 0.0)
+    bad = is_estimate_bad(ap.modes.failsafe, ap.estimate, ap.params.FS.EKF_THRESH, 0.0)
     if ap.params.FS.EKF_THRESH <= 0.0 or ap.arming.armed == 0:
         fs.ekf_count = 0
         clear_ekf(v)
@@ -147,7 +147,7 @@ def update_ekf(v):
         fs.ekf_count += 1
         if fs.ekf_count >= EKF_COUNT and fs.ekf == 0:
             fs.ekf = 1
-            tell(v, VARIANCE, 1)
+            report(v.autopilot.events, v.time_us, VARIANCE, True)
             begin_ekf(v)
     elif not bad and fs.ekf_count > 0:
         fs.ekf_count -= 1
@@ -161,7 +161,7 @@ def clear_ekf(v):
     fs = v.autopilot.modes.failsafe
     if fs.ekf != 0:
         fs.ekf = 0
-        tell(v, EKF, 0)
+        report(v.autopilot.events, v.time_us, EKF, False)
 
 
 @law
@@ -173,4 +173,4 @@ def begin_ekf(v):
         return
     if action != EKF_REPORT:
         set_mode.request(v, HOLD, REASON_EKF_FAILSAFE)
-    tell(v, EKF, 1)
+    report(v.autopilot.events, v.time_us, EKF, True)

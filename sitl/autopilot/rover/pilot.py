@@ -10,14 +10,13 @@ import math
 
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_2pi
-from ..radio import calibration, centred, centred_channel, receive, stick_channel
+from ..radio import ROLL, THROTTLE, centred, receive, stick_channel, stick_position
 from .control import motors, speed
 
 RECEIVER_TIMEOUT_S = 0.5
 """Silence of the receiver that counts as lost (ArduRover's)."""
 THROTTLE_AT_REST = 1500
 """[us]"""
-_STEERING_AXIS, _THROTTLE_AXIS = 0, 2
 _MIXING_RANGE = 500.0  # [us]
 
 # PILOT_STEER_TYPE
@@ -36,24 +35,21 @@ def init(v):
 @law
 def read(v):
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
-    receive(v, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
     ap = v.autopilot
+    receive(ap.rc, v.sensors, ap.params, v.time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
     sticks = ap.modes.pilot
-    sticks.steering = centred_channel(ap, _STEERING_AXIS)
-    sticks.throttle = centred_channel(ap, _THROTTLE_AXIS)
-    sticks.left = paddle(ap, _STEERING_AXIS)
-    sticks.right = paddle(ap, _THROTTLE_AXIS)
+    sticks.steering = stick_position(ap.rc, ap.params, ROLL)
+    sticks.throttle = stick_position(ap.rc, ap.params, THROTTLE)
+    sticks.left = paddle(ap, ROLL)
+    sticks.right = paddle(ap, THROTTLE)
 
 
 @law
 def paddle(ap, axis):
     """-1 .. 1 of a stick without dead zone."""
-    channel = stick_channel(ap.params, axis)
-    pulse = int(ap.rc.channels[channel - 1])
-    if pulse == 0:
-        return 0.0
-    low, trim, high, reverse, _dead = calibration(ap.params, channel)
-    return centred(pulse, low, trim, high, reverse, 0.0)
+    channel = stick_channel(ap.params.RCMAP, axis)
+    pulse = ap.rc.channels[channel]
+    return centred(pulse, ap.params.RC[channel], 0.0) if pulse != 0 else 0.0
 
 
 @law
@@ -129,7 +125,6 @@ def mixed(ap, demand):
     """``demand`` -1 .. 1 and the steering stick; the further the stick is out, the less of ``demand`` is left."""
     if is_lost(ap):
         return demand
-    channel = stick_channel(ap.params, _STEERING_AXIS)
-    _low, trim, _high, _reverse, _dead = calibration(ap.params, channel)
-    out = min(abs(float(ap.rc.channels[channel - 1]) - trim), _MIXING_RANGE)
+    channel = stick_channel(ap.params.RCMAP, ROLL)
+    out = min(abs(ap.rc.channels[channel] - ap.params.RC[channel].TRIM), _MIXING_RANGE)
     return constrain(demand * (1.0 - out / _MIXING_RANGE) + float(ap.modes.pilot.steering), -1.0, 1.0)

@@ -9,7 +9,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...modes import ACCEPTED
 from .. import pilot
-from ..control import altitude, attitude
+from ..control import altitude, altitude_start, attitude
 from ..control.throttle_mix import lean_limit
 from ..state import Autopilot, Vehicle
 from . import ground, takeoff
@@ -36,8 +36,8 @@ def start(v: Vehicle) -> int:
 def start_vertical(ap: Autopilot) -> None:
     """Limits of the throttle stick: PILOT_SPEED_UP, PILOT_SPEED_DN, PILOT_ACCEL_Z."""
     set_limits(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     ap.modes.takeoff.user_active = False
 
 
@@ -45,7 +45,7 @@ def start_vertical(ap: Autopilot) -> None:
 def set_limits(ap: Autopilot) -> None:
     """Vertical limits of modes that the pilot flies."""
     p = ap.params.PILOT
-    altitude.set_max_speed_accel_d(ap, pilot.speed_down(p), p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
+    altitude_start.set_max_speed_accel_d(ap, pilot.speed_down(p), p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
 
 
 @law
@@ -82,11 +82,11 @@ def run_vertical(ap: Autopilot, doing: int, climb: float) -> None:
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             takeoff.run_user(ap, climb)
             return
-        altitude.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap, 0.0)
     elif doing == FLYING:
         altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
     else:
-        altitude.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap, 0.0)
     altitude.update_d(ap)
 
 

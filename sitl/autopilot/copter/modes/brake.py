@@ -7,7 +7,7 @@ import math
 
 from ....core.kernels import law
 from ...modes import ACCEPTED
-from ..control import altitude, attitude, position
+from ..control import altitude, altitude_start, attitude, position, position_start
 from ..state import Vehicle
 from . import ground
 from .mode import CopterMode, never_arms
@@ -25,10 +25,10 @@ def start(v: Vehicle) -> int:
     """Enter."""
     ap = v.autopilot
     vel = ap.estimate.vel
-    position.set_max_speed_accel_ne(ap, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION)
-    position.init_ne(ap)
-    altitude.set_max_speed_accel_d(ap, max(SPEED_D, vel.z), max(SPEED_D, -vel.z), DECELERATION)
-    altitude.init_d(ap)
+    position_start.set_max_speed_accel_ne(ap, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION)
+    position_start.init_ne(ap)
+    altitude_start.set_max_speed_accel_d(ap, max(SPEED_D, vel.z), max(SPEED_D, -vel.z), DECELERATION)
+    altitude_start.init_d(ap)
     return ACCEPTED
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.vectors import Vec3
-from ..control import altitude, position
+from ..control import altitude_start, position_start
 from ..state import Autopilot
 from . import auto_yaw, guided, takeoff
 from .auto import AUTO
@@ -110,11 +110,11 @@ def change_speed(ap: Autopilot, kind: int, speed: float) -> int:
         return OUT_OF_RANGE
     path = ap.control.pos_d
     if kind == HORIZONTAL:
-        position.set_max_speed_accel_ne(ap, speed, ap.control.pos_ne.accel_max)
+        position_start.set_max_speed_accel_ne(ap, speed, ap.control.pos_ne.accel_max)
     elif kind == CLIMB:
-        altitude.set_max_speed_accel_d(ap, path.speed_down, speed, path.accel_max)
+        altitude_start.set_max_speed_accel_d(ap, path.speed_down, speed, path.accel_max)
     elif kind == DESCENT:
-        altitude.set_max_speed_accel_d(ap, speed, path.speed_up, path.accel_max)
+        altitude_start.set_max_speed_accel_d(ap, speed, path.speed_up, path.accel_max)
     else:
         return OUT_OF_RANGE
     return OK

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...events import DISARMED, emit_and_return
 from ...state import Arming
-from ..control import altitude, attitude, position
+from ..control import altitude, altitude_start, attitude, position, position_start
 from ..state import Autopilot, Vehicle
 from . import auto_yaw
 
@@ -59,9 +59,9 @@ def rest(ap: Autopilot) -> None:
     motors.desired_spool = GROUND_IDLE if ap.arming.armed else SHUT_DOWN
     if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
         attitude.reset_yaw_target(ap)
-    position.relax_ne(ap)
+    position_start.relax_ne(ap)
     position.update_ne(ap)
-    altitude.relax_d(ap, 0.0)
+    altitude_start.relax_d(ap, 0.0)
     altitude.update_d(ap)
     attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, 0.0)
 
@@ -93,22 +93,22 @@ def hold(ap: Autopilot) -> None:
 def set_waypoint_limits(ap: Autopilot) -> None:
     """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
     p = ap.params.WPNAV
-    position.set_max_speed_accel_ne(ap, p.SPEED * 0.01, p.ACCEL * 0.01)
-    altitude.set_max_speed_accel_d(ap, p.SPEED_DN * 0.01, p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
+    position_start.set_max_speed_accel_ne(ap, p.SPEED * 0.01, p.ACCEL * 0.01)
+    altitude_start.set_max_speed_accel_d(ap, p.SPEED_DN * 0.01, p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
 
 
 @law
 def start_position_control(ap: Autopilot) -> None:
     """Take over position control from whatever flew before, without a jump."""
     set_waypoint_limits(ap)
-    position.init_ne(ap)
-    altitude.init_d(ap)
+    position_start.init_ne(ap)
+    altitude_start.init_d(ap)
 
 
 @law
 def continue_position_control(ap: Autopilot) -> None:
     """Go on with position control, which starts anew only where the mode before did not have it."""
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)

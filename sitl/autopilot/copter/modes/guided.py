@@ -15,7 +15,7 @@ from ...arming_checks import BY_RUDDER
 from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, emit
 from ...modes import ACCEPTED
-from ..control import altitude, attitude, position, position_ned, throttle_mix
+from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from ..control.state import DT
 from ..state import Autopilot, Vehicle
 from . import auto_yaw, ground, takeoff
@@ -198,7 +198,7 @@ def leave_ground(ap: Autopilot) -> None:
     attitude.relax(ap)
     if ap.control.motors.spool_state == ground.IS_UNLIMITED:
         ground.set_landed(ap.arming, False)
-        altitude.init_d(ap)
+        altitude_start.init_d(ap)
 
 
 @law
@@ -211,7 +211,7 @@ def level_off(ap: Autopilot) -> None:
     guided.rates = ZERO
     if guided.use_thrust:
         guided.use_thrust = False
-        altitude.init_d(ap)
+        altitude_start.init_d(ap)
     guided.climb_rate = 0.0
 
 

@@ -16,7 +16,7 @@ from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
 from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE
 from .. import pilot
-from ..control import altitude, attitude, position
+from ..control import altitude, attitude, position, position_start
 from ..control.state import DT, AltitudeState
 from ..parameters.flight import Land
 from ..state import Autopilot, Vehicle
@@ -100,7 +100,7 @@ def descend(ap: Autopilot, pause: bool) -> None:
     """One tick of a landing with position control; the sticks move the landing place (LAND_REPOSITION)."""
     vel = stick_velocity(ap)
     if ap.arming.landed_maybe:
-        position.soften_for_landing_ne(ap)
+        position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
     position.input_vel_accel_ne(ap.control.pos_ne, vel, ZERO2)
     sink(ap, pause)
     ground.fly(ap)

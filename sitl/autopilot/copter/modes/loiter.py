@@ -18,7 +18,7 @@ from ....core.vectors import Vec2
 from ...control.shaping import Motion2, shape_angle, sqrt_controller
 from ...modes import ACCEPTED
 from .. import pilot
-from ..control import attitude, position
+from ..control import attitude, position, position_start
 from ..control.state import DT, GRAVITY
 from ..parameters import Parameters
 from ..parameters.control import Attitude
@@ -74,11 +74,11 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     loiter = ap.modes.loiter
     set_limits(ap)
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
     target = ap.control.attitude.target_euler
     loiter.predicted_euler = Vec2(target.roll, target.pitch)
-    loiter.predicted_acc = position.lean_accel(target.roll, target.pitch, ap.estimate.euler.yaw)
+    loiter.predicted_acc = position_start.lean_accel(target.roll, target.pitch, ap.estimate.euler.yaw)
     loiter.predicted_rate = ZERO2
     loiter.brake_acc = 0.0
     loiter.brake_us = v.time_us
@@ -90,13 +90,15 @@ def start(v: Vehicle) -> int:
 def set_limits(ap: Autopilot) -> None:
     """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
     p = ap.params.LOIT
-    position.set_max_speed_accel_ne(ap, max(p.SPEED * 0.01, _SPEED_MIN), p.ACC_MAX * 0.01)
+    position_start.set_max_speed_accel_ne(ap, max(p.SPEED * 0.01, _SPEED_MIN), p.ACC_MAX * 0.01)
 
 
 @law
 def predict_accel(loiter: LoiterState, lean: pilot.Lean, yaw: float, p: Attitude) -> None:
     """Accelerations that the sticks (``lean``) ask for, and that a vehicle which follows them would have."""
-    loiter.acc = ZERO2 if lean.roll == 0.0 and lean.pitch == 0.0 else position.lean_accel(lean.roll, lean.pitch, yaw)
+    loiter.acc = (
+        ZERO2 if lean.roll == 0.0 and lean.pitch == 0.0 else position_start.lean_accel(lean.roll, lean.pitch, yaw)
+    )
     now, rate = loiter.predicted_euler, loiter.predicted_rate
     rate = Vec2(
         shape_angle(wrap_pi(lean.roll - now.x), rate.x, p.INPUT_TC, p.ACCEL_R_MAX * _CDEG, DT, 0.0, 0.0),
@@ -104,7 +106,7 @@ def predict_accel(loiter: LoiterState, lean: pilot.Lean, yaw: float, p: Attitude
     )
     loiter.predicted_rate = rate
     loiter.predicted_euler += rate * DT
-    loiter.predicted_acc = position.lean_accel(loiter.predicted_euler.x, loiter.predicted_euler.y, yaw)
+    loiter.predicted_acc = position_start.lean_accel(loiter.predicted_euler.x, loiter.predicted_euler.y, yaw)
 
 
 @law
@@ -155,13 +157,13 @@ def run(v: Vehicle) -> None:
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
         attitude.reset_yaw_target(ap)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
         ap.modes.loiter.brake_acc = 0.0
         position.update_ne(ap)
         attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, yaw_rate)
     else:
         if ap.arming.landed_maybe:
-            position.soften_for_landing_ne(ap)
+            position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
         advance(v)
         position.update_ne(ap)
         attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), yaw_rate)

@@ -10,7 +10,7 @@ from ....core.kernels import law
 from ...control.shaping import Motion
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
-from ..control import altitude, position
+from ..control import altitude, position, position_start
 from ..navigation import waypoint
 from ..parameters.flight import Rtl
 from ..state import Autopilot, Vehicle
@@ -55,7 +55,7 @@ def begin(v: Vehicle) -> None:
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(ap, auto_yaw.HOLD)
-    above = with_down(position.stopping_point_ne(ap), rtl.return_d)
+    above = with_down(position_start.stopping_point_ne(ap), rtl.return_d)
     if ap.arming.armed and not ap.arming.landed:
         path.request_legs(ap, v.time_us, above, with_down(rtl.home, rtl.return_d))
 

@@ -11,7 +11,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...control.shaping import Motion
 from ...events import TAKEOFF_COMPLETE, emit
-from ..control import altitude, attitude, position, throttle_mix
+from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
 from ..control.state import DT, AltitudeState
 from ..state import Autopilot, Vehicle
 from . import ground
@@ -31,8 +31,8 @@ def begin(ap: Autopilot, target_d: float) -> None:
     takeoff.no_nav_d = ap.estimate.pos.z - ap.params.WP.NAVALT_MIN
     takeoff.no_nav_active = ap.params.WP.NAVALT_MIN > 0.0 and ap.arming.landed
     ground.set_waypoint_limits(ap)
-    altitude.init_d(ap)
-    position.init_ne(ap)
+    altitude_start.init_d(ap)
+    position_start.init_ne(ap)
 
 
 @law
@@ -59,9 +59,9 @@ def run(v: Vehicle) -> None:
 @law
 def spool_up(ap: Autopilot) -> None:
     """One tick while the motors spool up."""
-    position.relax_ne(ap)
+    position_start.relax_ne(ap)
     position.update_ne(ap)
-    altitude.relax_d(ap, 0.0)
+    altitude_start.relax_d(ap, 0.0)
     altitude.update_d(ap)
     attitude.reset_yaw_target(ap)
     keep_heading(ap)
@@ -70,7 +70,7 @@ def spool_up(ap: Autopilot) -> None:
 @law
 def lift_off(ap: Autopilot) -> None:
     """One tick of raising the throttle on the ground."""
-    position.relax_ne(ap)
+    position_start.relax_ne(ap)
     position.update_ne(ap)
     throttle = raise_throttle(ap)
     keep_heading(ap)
@@ -86,7 +86,7 @@ def climb(ap: Autopilot) -> None:
     if takeoff.no_nav_active:
         if ap.estimate.pos.z <= takeoff.no_nav_d:
             takeoff.no_nav_active = False
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
     else:
         position.brake_ne(ap.control.pos_ne)
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.target_d, 0.0, 0.0))
@@ -105,7 +105,7 @@ def raise_throttle(ap: Autopilot) -> float:
     slew_time = max(ap.params.TKOFF.SLEW_TIME, 0.1)
     throttle = constrain(ap.control.attitude.throttle_in + DT / slew_time, 0.0, 1.0)
     throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
-    altitude.init_d(ap)
+    altitude_start.init_d(ap)
     return throttle
 
 
@@ -131,7 +131,7 @@ def begin_user(ap: Autopilot, height: float) -> None:
     takeoff.user_active = True
     takeoff.user_start_d = ap.estimate.pos.z
     takeoff.user_alt = height
-    altitude.init_d(ap)
+    altitude_start.init_d(ap)
 
 
 @law
@@ -152,7 +152,7 @@ def run_user(ap: Autopilot, climb: float) -> None:
         fast = -ap.estimate.vel.z >= constrain(climb, 0.1 * top, 0.5 * top)
         if has_thrust(ap, throttle) or fast or (rise > 0.0 and risen > 0.5 * rise):
             ground.set_landed(ap.arming, False)
-            altitude.init_d(ap)
+            altitude_start.init_d(ap)
         return
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.user_start_d - rise, -climb, 0.0))
     altitude.update_d(ap)

@@ -46,7 +46,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     if tick % _TENTH == 4:
         check_slowly(v)
     if tick % _QUARTER == 12:
-        home.update(v)
+        home.set_first(v.autopilot.home, v.autopilot.estimate)
         arming.run_prearm_checks(v)
     arming.follow_throttle(v)
     run_mode(v)
@@ -70,7 +70,7 @@ def read_transmitter(v: Vehicle) -> None:
 @law
 def check_slowly(v: Vehicle) -> None:
     """Ten times a second."""
-    battery.update(v)
+    battery.monitor(v.autopilot.battery, v.sensors, v.autopilot.params.BATT)
     failsafe.watch_gcs(v)
     failsafe.watch_battery(v)
     failsafe.watch_estimate(v)

@@ -51,7 +51,8 @@ def read_transmitter(v):
 @law
 def check_slowly(v):
     """Ten times a second."""
-    battery.update(v)
+    ap = v.autopilot
+    battery.monitor(ap.battery, v.sensors, ap.params.BATT)
     failsafe.update_gcs(v)
     failsafe.update_battery(v)
     failsafe.update_ekf(v)
@@ -63,12 +64,12 @@ def follow_home(v):
     """Once a second: home is set with the first position; disarmed it moves with the vehicle, unless locked."""
     ap = v.autopilot
     if ap.home.is_set == 0:
-        home.update(v)
+        home.set_first(ap.home, ap.estimate)
     elif ap.arming.armed == 0 and ap.home.locked == 0 and ap.estimate.position_ok != 0:
         north = ap.estimate.pos[0] - ap.home.pos[0]
         east = ap.estimate.pos[1] - ap.home.pos[1]
         if north * north + east * east >= HOME_MOVES * HOME_MOVES:
-            home.set_here(v)
+            home.set_here(ap.home, ap.estimate)
 
 
 @law

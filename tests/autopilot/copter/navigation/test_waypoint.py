@@ -24,6 +24,7 @@ from sitl.autopilot.navigation import path as paths
 from sitl.autopilot.navigation.leg import LegError, Limits, plan
 from sitl.autopilot.navigation.planner import end
 from sitl.core.geodesy import add_offset
+from sitl.core.vectors import Vec3
 from tests.autopilot.copter.navigation.pointmass import DT, ORIGIN, PointMass
 
 
@@ -150,7 +151,7 @@ def test_leg_for_the_core() -> None:
     path(p, 1.0)
     ap = p.v.autopilot
     waypoint.stop(ap.modes.nav)
-    paths.request_legs(ap, int(p.v.time_us), 0.0, 0.0, -15.0, 30.0, 0.0, -15.0)
+    paths.request_legs(ap, p.v.time_us, Vec3(0.0, 0.0, -15.0), Vec3(30.0, 0.0, -15.0))
     assert ap.events.attention == 1
     assert waypoint.advance(ap, int(p.v.time_us)) == 0
     p.sequencer.attend()
@@ -184,10 +185,10 @@ def test_odd_lengths(far: float) -> None:
     """Legs of no length and huge ones neither fail nor stand still."""
     p = vehicle(item(1.0, 0.0), follow=False)
     ap = p.v.autopilot
-    PLANNER.begin(ap, int(p.v.time_us), (far, 0.0, -10.0))
+    PLANNER.begin(ap, p.v.time_us, Vec3(far, 0.0, -10.0))
     assert math.isfinite(ap.modes.nav.current.duration)
     with pytest.raises(LegError):
-        PLANNER.begin(ap, int(p.v.time_us), (math.nan, 0.0, -10.0))
+        PLANNER.begin(ap, p.v.time_us, Vec3(math.nan, 0.0, -10.0))
 
 
 @pytest.mark.slow
