@@ -74,9 +74,9 @@ class Mode(Generic[V]):
 
     @property
     def description(self) -> str:
-        """What the first paragraph of its file says of it."""
+        """What its file says of it behind its name; empty when that begins otherwise."""
         text = " ".join((sys.modules[self.run.__module__].__doc__ or "").split("\n\n")[0].split())
-        return text.removeprefix(f"{self.name}: ").rstrip(".")
+        return text.removeprefix(f"{self.name}: ").rstrip(".") if text.startswith(f"{self.name}: ") else ""
 
 
 def numbers(modes: Sequence[M], flag: str) -> tuple[int, ...]:
