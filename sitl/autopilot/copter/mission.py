@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, whole_seconds
 from ..mission.item import MissionItem
 from ..mission.notes import INFO, Note, Text
-from ..mission.place import Point, down, point
-from ..mission.under_way import write, write_none
+from ..mission.place import down, point
+from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
@@ -19,6 +19,8 @@ from .modes import auto, auto_yaw
 from .modes.auto import AUTO
 from .navigation import waypoint
 from .navigation.planner import PLANNER
+from .navigation.state import CopterNav
+from .state import Autopilot, Vehicle
 
 EDGE = 3.0
 """A vehicle this near to the circle starts it where it is [m]."""
@@ -53,26 +55,26 @@ LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME)
 
 
-class CopterCommands(Commands):
+class CopterCommands(Commands[Vehicle]):
     """Take-off, legs, circles, return and landing; heading and region of interest."""
 
     auto = AUTO
     taken = frozenset((*KINDS, *OTHERS))
     planner = PLANNER
 
-    def enter(self, v: Any) -> None:
+    def enter(self, v: Vehicle) -> None:
         """Speeds are the parameters' again."""
         nav = v.autopilot.modes.nav
         nav.speed_ne = nav.speed_up = nav.speed_down = 0.0
         waypoint.stop(v.autopilot)
 
-    def reset(self, v: Any) -> None:
+    def reset(self, v: Vehicle) -> None:
         """Forget the legs."""
         waypoint.stop(v.autopilot)
 
-    def give(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way."""
-        ap, time_us = v.autopilot, int(v.time_us)
+        ap, time_us = v.autopilot, v.time_us
         nav = ap.modes.nav
         kind = KINDS[item.command]
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
@@ -85,15 +87,13 @@ class CopterCommands(Commands):
         elif kind == kinds.LOITER_TURNS:
             _circle(ap, time_us, item, here)
         elif kind == kinds.LAND and not item.no_place:
-            north, east, _ = point(ap, item, here)
-            PLANNER.begin(ap, time_us, (north, east, here[2]))  # at the present height
+            PLANNER.begin(ap, time_us, point(ap, item, here).replace(z=here.z))  # at the present height
         else:
             _end_path(nav)
-            height = down(ap, item) if kind == kinds.TAKEOFF else here[2]
-            nav.target[0], nav.target[1], nav.target[2] = here[0], here[1], height
-        write(nav, kind, seq)
+            nav.target = here.replace(z=down(ap, item)) if kind == kinds.TAKEOFF else here
+        command.give(nav, kind, seq)
         nav.circle_running = 0
-        nav.has_place = 0 if item.no_place else 1
+        nav.has_place = not item.no_place
         if kind in (kinds.WAYPOINT, kinds.LOITER_TIME):
             nav.delay = whole_seconds(item)
         elif kind == kinds.DELAY:
@@ -102,7 +102,7 @@ class CopterCommands(Commands):
             nav.turns = max(item.p1, 0.0)
         return []
 
-    def look_ahead(self, v: Any, item: MissionItem | None) -> None:
+    def look_ahead(self, v: Vehicle, item: MissionItem | None) -> None:
         """Plan the leg to the following command when the vehicle flies through without a stop.
 
         The current one must be a waypoint without delay, the next one a leg to a place.
@@ -115,23 +115,23 @@ class CopterCommands(Commands):
         corner = end(nav.current)
         PLANNER.look_ahead(ap, point(ap, item, corner) if item is not None and through else None)
 
-    def completed(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def completed(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Some say so."""
         return [Text(INFO, f"Reached command #{seq}")] if item.command in SAYS_REACHED else []
 
-    def finish(self, v: Any) -> list[Note]:
+    def finish(self, v: Vehicle) -> list[Note]:
         """AUTO disarms on the ground and stays where it would come to rest in the air."""
-        ap, time_us = v.autopilot, int(v.time_us)
+        ap, time_us = v.autopilot, v.time_us
         nav = ap.modes.nav
-        if ap.arming.landed != 0:
-            write_none(nav)
+        if ap.arming.landed:
+            command.give_none(nav)
         else:
             PLANNER.begin(ap, time_us, PLANNER.origin_of_next(ap, time_us)[0])
-            write(nav, kinds.LOITER_UNLIMITED, int(nav.command_seq))
+            command.give(nav, kinds.LOITER_UNLIMITED, nav.command_seq)
         nav.circle_running = 0
         return []
 
-    def run(self, v: Any, item: MissionItem) -> list[Note]:
+    def run(self, v: Vehicle, item: MissionItem) -> list[Note]:
         """Speeds and where to look; the rest is common."""
         ap = v.autopilot
         if item.command == commands.DO_CHANGE_SPEED:
@@ -146,7 +146,7 @@ class CopterCommands(Commands):
             auto_yaw.set_default(v, 0)
         return super().run(v, item)
 
-    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+    def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
         """Limits of the legs from now on, until AUTO is left."""
         if not is_speed(speed):
             return False
@@ -161,46 +161,44 @@ class CopterCommands(Commands):
         return True
 
 
-def set_roi(v: Any, item: MissionItem) -> None:
+def set_roi(v: Vehicle, item: MissionItem) -> None:
     """Keep the nose on a place; a place of zeros ends that."""
     if item.no_place and item.z == 0.0:
         auto_yaw.set_default(v, 0)
         return
-    here = tuple(float(x) for x in v.autopilot.estimate.pos)
-    auto_yaw.look_at(v, *point(v.autopilot, item, here))  # type: ignore[arg-type]
+    auto_yaw.look_at(v, *point(v.autopilot, item, v.autopilot.estimate.pos))
 
 
-def _circle(ap: Any, time_us: int, item: MissionItem, here: Point) -> None:
+def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:
     """The leg to the nearest point of the circle, none when it is near."""
     nav = ap.modes.nav
     centre = point(ap, item, here)
-    radius = item.p3 if item.p3 != 0.0 else 0.01 * float(ap.params.CIRCLE.RADIUS)
+    radius = item.p3 if item.p3 != 0.0 else 0.01 * ap.params.CIRCLE.RADIUS
     radius = min(max(radius, -WIDEST), WIDEST)
-    n, e = float(ap.estimate.pos[0]) - centre[0], float(ap.estimate.pos[1]) - centre[1]
+    n, e = ap.estimate.pos.x - centre.x, ap.estimate.pos.y - centre.y
     away = math.hypot(n, e)
     if away < 0.01:  # from the centre straight back, so that it looks ahead
-        yaw = float(ap.estimate.euler[2]) + math.pi
+        yaw = ap.estimate.euler.yaw + math.pi
         n, e, away = math.cos(yaw), math.sin(yaw), 1.0
         distance = abs(radius)
     else:
         distance = abs(away - abs(radius))
-    edge = (centre[0] + n / away * abs(radius), centre[1] + e / away * abs(radius), centre[2])
-    if max(distance, abs(centre[2] - here[2])) > EDGE:
+    edge = Vec3(centre.x + n / away * abs(radius), centre.y + e / away * abs(radius), centre.z)
+    if max(distance, abs(centre.z - here.z)) > EDGE:
         PLANNER.begin(ap, time_us, edge)
     else:
         PLANNER.begin(ap, time_us, here)
-        nav.reached = 1
+        nav.reached = True
     nav.circle_radius = radius
-    for k in range(3):
-        nav.circle_centre[k] = centre[k]
-        nav.target[k] = centre[k]
+    nav.circle_centre[:] = centre
+    nav.target = centre
 
 
 COMMANDS = CopterCommands()
 
 
-def _end_path(nav: Any) -> None:
+def _end_path(nav: CopterNav) -> None:
     """Forget the legs: the next one starts where the vehicle would come to rest."""
     clear_legs(nav)
-    nav.reached = nav.fresh = 0
+    nav.reached = nav.fresh = False
     nav.active_us = 0

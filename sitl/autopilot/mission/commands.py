@@ -5,62 +5,65 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from ..navigation.planner import Planner
 from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
+from ..state import Vehicle
 from . import item as commands
 from .item import MissionItem
 from .notes import Note
 from .place import set_home
 
+V = TypeVar("V", bound=Vehicle)
 
-class Commands(ABC):
-    """The commands of a firmware's missions. All state is in the record view ``v`` of the vehicle."""
+
+class Commands(ABC, Generic[V]):
+    """The commands of a firmware's missions. All state is in the record ``v`` of the vehicle."""
 
     auto: int
     """Number of the mode that runs missions."""
     taken: frozenset[int]
     """MAV_CMDs that missions may hold."""
-    planner: Planner
+    planner: Planner[Any]
     """Plans the legs of missions and of modes."""
     goes_on_disarmed = False
     """Disarming in AUTO leaves the mission where it is; else, and in other modes, it goes back to its start."""
 
     @abstractmethod
-    def enter(self, v: Any) -> None:
+    def enter(self, v: V) -> None:
         """AUTO was entered: limits that an earlier mission set and its legs are forgotten."""
 
     @abstractmethod
-    def reset(self, v: Any) -> None:
+    def reset(self, v: V) -> None:
         """The mission starts again from its first item: legs are forgotten."""
 
     @abstractmethod
-    def give(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def give(self, v: V, seq: int, item: MissionItem) -> list[Note]:
         """Make a navigation command the one under way (``navigation.state``: ``command_*``), with the legs it needs."""
 
     @abstractmethod
-    def look_ahead(self, v: Any, item: MissionItem | None) -> None:
+    def look_ahead(self, v: V, item: MissionItem | None) -> None:
         """The navigation command after the one under way, None at the end: plan a leg that is joined without a stop."""
 
-    def arrived(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def arrived(self, v: V, seq: int, item: MissionItem) -> list[Note]:
         """The command under way has come to its place and waits there (COMMAND_ARRIVED)."""
         return []
 
-    def completed(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def completed(self, v: V, seq: int, item: MissionItem) -> list[Note]:
         """The command under way is done."""
         return []
 
     @abstractmethod
-    def finish(self, v: Any) -> list[Note]:
+    def finish(self, v: V) -> list[Note]:
         """The mission has come to its end."""
 
-    def run(self, v: Any, item: MissionItem) -> list[Note]:
+    def run(self, v: V, item: MissionItem) -> list[Note]:
         """Run a do-command, or start a condition: then ``nav.condition_kind`` is not zero until it is met."""
         nav = v.autopilot.modes.nav
         if item.command == commands.CONDITION_DELAY:
             nav.condition_kind = CONDITION_DELAY
-            nav.condition_until_us = int(v.time_us) + round(min(max(item.p1, 0.0), 1e9) * 1e6)
+            nav.condition_until_us = v.time_us + round(min(max(item.p1, 0.0), 1e9) * 1e6)
         elif item.command == commands.CONDITION_DISTANCE:
             nav.condition_kind = CONDITION_DISTANCE
             nav.condition_distance = item.p1
@@ -69,7 +72,7 @@ class Commands(ABC):
         return []
 
     @abstractmethod
-    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+    def change_speed(self, v: V, kind: int, speed: float) -> bool:
         """DO_CHANGE_SPEED (SPEED_TYPE, m/s); whether it was taken."""
 
 

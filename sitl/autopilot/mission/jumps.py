@@ -7,8 +7,8 @@ How often each jump was run is kept in the record, so that a snapshot of the veh
 from __future__ import annotations
 
 from collections.abc import MutableMapping
-from typing import Any
 
+from ..navigation.state import Nav
 from .item import DO_JUMP
 from .mission import Mission
 
@@ -19,12 +19,12 @@ there is no next item.
 FOREVER = -1
 
 
-def runs(nav: Any) -> dict[int, int]:
+def runs(nav: Nav) -> dict[int, int]:
     """How often each jump was run, by its number."""
     return {int(seq): int(nav.jump_runs[k]) for k, seq in enumerate(nav.jump_item) if seq != 0}
 
 
-def keep(nav: Any, counts: MutableMapping[int, int]) -> None:
+def keep(nav: Nav, counts: MutableMapping[int, int]) -> None:
     """Write the counts to the record;
     jumps beyond the room there is count as run out (as in ``following``).
     """

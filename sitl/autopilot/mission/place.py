@@ -3,36 +3,31 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...core.geodesy import add_offset, offset_ne
 from ...core.vectors import Vec3
+from ..state import Autopilot
 from .item import RELATIVE_FRAMES, TERRAIN_FRAMES, MissionItem
 
-Point = tuple[float, float, float]
 
-
-def down(ap: Any, item: MissionItem) -> float:
+def down(ap: Autopilot, item: MissionItem) -> float:
     """Down coordinate of an item's altitude [m].
 
     Altitudes above terrain count from home's height: the ground is flat here.
     """
     if item.frame in RELATIVE_FRAMES or item.frame in TERRAIN_FRAMES:
-        return float(ap.home.pos[2]) - item.z
-    return float(ap.estimate.origin_alt) - item.z
+        return ap.home.pos.z - item.z
+    return ap.estimate.origin_alt - item.z
 
 
-def point(ap: Any, item: MissionItem, default: Point) -> Point:
-    """Place of an item; latitude and longitude zero, or altitude zero,
-    take the default's (as ArduPilot does).
-    """
-    north, east = default[0], default[1]
+def point(ap: Autopilot, item: MissionItem, default: Vec3) -> Vec3:
+    """Place of an item; latitude and longitude zero, or altitude zero, take the default's (as ArduPilot does)."""
+    north, east = default.x, default.y
     if not item.no_place:
-        north, east = offset_ne(int(ap.estimate.origin_lat), int(ap.estimate.origin_lon), item.x, item.y)
-    return (float(north), float(east), default[2] if item.z == 0.0 else down(ap, item))
+        north, east = offset_ne(ap.estimate.origin_lat, ap.estimate.origin_lon, item.x, item.y)
+    return Vec3(north, east, default.z if item.z == 0.0 else down(ap, item))
 
 
-def set_home(ap: Any, item: MissionItem) -> None:
+def set_home(ap: Autopilot, item: MissionItem) -> None:
     """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no place), else to the item's place."""
     home, estimate = ap.home, ap.estimate
     if estimate.origin_set == 0:

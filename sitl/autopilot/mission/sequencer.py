@@ -9,7 +9,7 @@ ArduPilot's missions
 (https://ardupilot.org/copter/docs/common-planning-a-mission-with-waypoints-and-events.html).
 
 All run state is in the vehicle's record (``nav.mission_*``, ``nav.jump_*``): a sequencer holds nothing but
-the mission. Every method takes the vehicle's record view ``v`` and returns what the outside should be told.
+the mission. Every method takes the vehicle's record ``v`` and returns what the outside should be told.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 from .. import events
+from ..navigation.command import give_none
 from ..navigation.state import (
     COMPLETE,
     CONDITION_NONE,
@@ -26,26 +27,30 @@ from ..navigation.state import (
     RUNNING,
     SPEED_REQUEST,
     STOPPED,
+    Nav,
 )
+from ..state import Vehicle
 from . import jumps
 from .commands import Commands
 from .item import NAV_TAKEOFF, MissionItem
 from .mission import Mission
 from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
-from .under_way import write_none
 
 
 class Holder(Protocol):
     """What has the vehicle and keeps its mission (and puts both into snapshots)."""
 
-    v: Any
+    @property
+    def v(self) -> Vehicle:
+        """The vehicle's record."""
+
     mission: Mission
 
 
 class Sequencer:
     """Runs one vehicle's mission with the commands of its firmware."""
 
-    def __init__(self, holder: Holder, commands: Commands) -> None:
+    def __init__(self, holder: Holder, commands: Commands[Any]) -> None:
         self._holder = holder
         self.commands = commands
         self._publish(holder.v)
@@ -61,29 +66,29 @@ class Sequencer:
         v = self._holder.v
         ring, nav = v.autopilot.events, v.autopilot.modes.nav
         notes: list[Note] = []
-        nav.mission_events = max(int(nav.mission_events), int(ring.count) - events.EVENT_RING)
+        nav.mission_events = max(nav.mission_events, ring.count - events.EVENT_RING)
         while nav.mission_events < ring.count:
-            k = int(nav.mission_events) % events.EVENT_RING
+            k = nav.mission_events % events.EVENT_RING
             nav.mission_events += 1
             notes += self.on_event(v, int(ring.code[k]), float(ring.a[k]), float(ring.b[k]))
         return notes
 
-    def _publish(self, v: Any) -> None:
+    def _publish(self, v: Vehicle) -> None:
         """Tell the core what the mission is."""
         ap, mission = v.autopilot, self.mission
         ap.params.MIS.TOTAL = float(len(mission))
         ap.modes.mission_count = len(mission)
         first = mission.get(jumps.next_nav(mission, 1, {}, JUMPS))
-        ap.modes.mission_takes_off = 1 if first is not None and first.command == NAV_TAKEOFF else 0
+        ap.modes.mission_takes_off = first is not None and first.command == NAV_TAKEOFF
 
-    def set_mission(self, v: Any, mission: Mission) -> list[Note]:
+    def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
         """Take a new mission. One under way goes on: with its present command, from the start if that has changed.
 
         Raises:
             MissionError: it holds a command that this firmware does not take.
         """
         nav = v.autopilot.modes.nav
-        seq = int(nav.command_seq)
+        seq = nav.command_seq
         before = self.mission.get(seq)
         self._holder.mission = Mission.of(mission.items, self.commands.taken)
         self._publish(v)
@@ -101,11 +106,11 @@ class Sequencer:
         self._set_current(nav, 0, notes)
         return notes
 
-    def may_clear(self, v: Any) -> bool:
+    def may_clear(self, v: Vehicle) -> bool:
         """Whether MISSION_CLEAR_ALL is taken: not while the mission runs."""
-        return bool(v.autopilot.modes.nav.mission_state != RUNNING)
+        return v.autopilot.modes.nav.mission_state != RUNNING
 
-    def start(self, v: Any) -> list[Note]:
+    def start(self, v: Vehicle) -> list[Note]:
         """AUTO was entered: start the mission, or go on where it was (MIS_RESTART, MISSION_SET_CURRENT).
 
         Before the estimator has an origin no place means anything: then it waits for that.
@@ -113,19 +118,19 @@ class Sequencer:
         ap = v.autopilot
         nav = ap.modes.nav
         notes: list[Note] = []
-        if not self.mission.present or ap.estimate.origin_set == 0:
+        if not self.mission.present or not ap.estimate.origin_set:
             return notes
-        restart = ap.params.MIS.RESTART == 1 and nav.mission_resume == 0
+        restart = ap.params.MIS.RESTART == 1 and not nav.mission_resume
         if restart or nav.mission_state == COMPLETE or nav.mission_current == 0:
             jumps.keep(nav, {})
             nav.mission_current = 0
-        nav.mission_resume = 0
+        nav.mission_resume = False
         self.commands.enter(v)
         held_back = nav.mission_do_next != 0 and nav.mission_current != 0
-        self._run_from(v, int(nav.mission_do) if held_back else max(int(nav.mission_current), 1), notes)
+        self._run_from(v, nav.mission_do if held_back else max(nav.mission_current, 1), notes)
         return notes
 
-    def stop(self, v: Any) -> list[Note]:
+    def stop(self, v: Vehicle) -> list[Note]:
         """AUTO was left: the mission stops and can be resumed.
 
         Legs and speeds are the new mode's: it may be using them.
@@ -134,23 +139,23 @@ class Sequencer:
         if nav.mission_state == RUNNING:
             nav.mission_state = STOPPED
         nav.condition_kind = CONDITION_NONE
-        write_none(nav)
+        give_none(nav)
         return []
 
-    def reset(self, v: Any) -> list[Note]:
+    def reset(self, v: Vehicle) -> list[Note]:
         """Back to the first item, as at disarming; a running mission starts again."""
         nav = v.autopilot.modes.nav
         notes: list[Note] = []
         jumps.keep(nav, {})
         if nav.mission_state == RUNNING and self.mission.present:
-            write_none(nav)
+            give_none(nav)
             self.commands.reset(v)
             self._run_from(v, 1, notes)
         else:
             self._set_current(nav, 0, notes)
         return notes
 
-    def set_current(self, v: Any, seq: int) -> tuple[bool, list[Note]]:
+    def set_current(self, v: Vehicle, seq: int) -> tuple[bool, list[Note]]:
         """MISSION_SET_CURRENT: (whether there is such an item, notes).
 
         0 is the mission's start; in AUTO it goes there at once.
@@ -165,15 +170,15 @@ class Sequencer:
             self._run_from(v, max(seq, 1), notes)
         else:
             nav.mission_state = STOPPED
-            nav.mission_resume, nav.mission_do_next = 1, 0
+            nav.mission_resume, nav.mission_do_next = True, 0
             self._set_current(nav, max(seq, 1), notes)
         return (True, notes)
 
-    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+    def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
         """DO_CHANGE_SPEED from outside while the mission runs: legs under way go on with the new limit."""
         return v.autopilot.modes.nav.mission_state == RUNNING and self.commands.change_speed(v, kind, speed)
 
-    def on_event(self, v: Any, code: int, a: float, b: float) -> list[Note]:
+    def on_event(self, v: Vehicle, code: int, a: float, b: float) -> list[Note]:
         """What an event of the core means for the mission."""
         nav = v.autopilot.modes.nav
         running = nav.mission_state == RUNNING
@@ -184,7 +189,7 @@ class Sequencer:
         if code == events.COMMAND_ARRIVED and running:
             return self._arrived(v) if int(b) == nav.command_count else []
         if code == events.LEG_ENDING and a == LEG_REQUEST:
-            self.commands.planner.serve(v.autopilot, int(v.time_us))
+            self.commands.planner.serve(v.autopilot, v.time_us)
         elif code == events.LEG_ENDING and a == SPEED_REQUEST:
             self.commands.planner.change_speed(v.autopilot)
         elif code == events.MODE_CHANGED:
@@ -203,21 +208,21 @@ class Sequencer:
 
     # --- inside
 
-    def _set_current(self, nav: Any, seq: int, notes: list[Note]) -> None:
+    def _set_current(self, nav: Nav, seq: int, notes: list[Note]) -> None:
         if nav.mission_current != seq:
             nav.mission_current = seq
             notes.append(CurrentChanged(seq))
 
-    def _run_from(self, v: Any, seq: int, notes: list[Note]) -> None:
+    def _run_from(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         """Run the mission from item ``seq``: do-commands that come first, then the navigation command."""
         nav = v.autopilot.modes.nav
         nav.mission_state = RUNNING
         self._advance(v, seq, notes)
 
-    def _complete(self, v: Any) -> list[Note]:
+    def _complete(self, v: Vehicle) -> list[Note]:
         """The navigation command under way is done."""
         nav = v.autopilot.modes.nav
-        seq = int(nav.command_seq)
+        seq = nav.command_seq
         item = self.mission.get(seq)
         nav.mission_reached = seq
         notes: list[Note] = [ItemReached(seq)]
@@ -226,13 +231,13 @@ class Sequencer:
         self._advance(v, seq + 1, notes)
         return notes
 
-    def _arrived(self, v: Any) -> list[Note]:
+    def _arrived(self, v: Vehicle) -> list[Note]:
         """The navigation command under way has come to its place."""
-        seq = int(v.autopilot.modes.nav.command_seq)
+        seq = v.autopilot.modes.nav.command_seq
         item = self.mission.get(seq)
         return [] if item is None else self.commands.arrived(v, seq, item)
 
-    def _advance(self, v: Any, seq: int, notes: list[Note]) -> None:
+    def _advance(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         """Go on to the next navigation command from ``seq`` on, and run the first do-command on the way to it;
         the mission is complete when there is none.
         """
@@ -259,7 +264,7 @@ class Sequencer:
         nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
         notes += self.commands.finish(v)
 
-    def _give(self, v: Any, seq: int, notes: list[Note]) -> None:
+    def _give(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         """Begin navigation command ``seq``, and run the other do-commands before it."""
         nav = v.autopilot.modes.nav
         item = self.mission.items[seq]
@@ -270,17 +275,17 @@ class Sequencer:
         if nav.mission_do_next != 0 and nav.condition_kind == CONDITION_NONE:
             self._run_do(v, notes)
 
-    def _look_ahead(self, v: Any) -> None:
+    def _look_ahead(self, v: Vehicle) -> None:
         """Plan the leg after the current one."""
         nav = v.autopilot.modes.nav
-        seq = jumps.next_nav(self.mission, int(nav.command_seq) + 1, jumps.runs(nav), JUMPS)
+        seq = jumps.next_nav(self.mission, nav.command_seq + 1, jumps.runs(nav), JUMPS)
         self.commands.look_ahead(v, self.mission.get(seq))
 
-    def _run_do(self, v: Any, notes: list[Note]) -> None:
+    def _run_do(self, v: Vehicle, notes: list[Note]) -> None:
         """Run do-commands up to the next navigation command or a condition."""
         nav = v.autopilot.modes.nav
         counts = jumps.runs(nav)  # a copy: jumps were counted on the way to the navigation command
-        seq = int(nav.mission_do_next)
+        seq = nav.mission_do_next
         for _ in range(len(self.mission) + jumps.LONGEST):
             seq = jumps.following(self.mission, seq, counts, JUMPS)
             item = self.mission.get(seq)
@@ -293,7 +298,7 @@ class Sequencer:
                 return
         nav.mission_do_next = 0
 
-    def _do(self, v: Any, seq: int, notes: list[Note]) -> None:
+    def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
         v.autopilot.modes.nav.mission_do = seq
@@ -301,7 +306,7 @@ class Sequencer:
         if v.autopilot.modes.nav.condition_kind == CONDITION_NONE:
             notes.append(ItemReached(seq))
 
-    def _condition_met(self, v: Any, seq: int) -> list[Note]:
+    def _condition_met(self, v: Vehicle, seq: int) -> list[Note]:
         nav = v.autopilot.modes.nav
         if seq != nav.mission_do or nav.mission_do_next == 0:
             return []

@@ -1,16 +1,43 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""When a navigation command, or the condition before do-commands, is done: the shell is told once."""
+"""The navigation command under way: given by the shell, begun by AUTO when ``nav.command_count`` changes.
+
+When it, or the condition before do-commands, is done, the shell is told once.
+"""
 
 from __future__ import annotations
 
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from ..events import COMMAND_ARRIVED, COMMAND_COMPLETE, emit, emit_and_return
+from ..state import Autopilot
 from .path import distance
-from .state import CONDITION_DELAY, CONDITION_DISTANCE, CONDITION_NONE, CONDITION_YAW, DO_COMMAND, NAV_COMMAND
+from .state import (
+    CONDITION_DELAY,
+    CONDITION_DISTANCE,
+    CONDITION_NONE,
+    CONDITION_YAW,
+    DO_COMMAND,
+    NAV_COMMAND,
+    NONE,
+    Nav,
+)
+
+
+def give(nav: Nav, kind: int, seq: int) -> None:
+    """Command ``kind`` of ``state``, item ``seq`` of the mission, is under way; its other fields start from zero."""
+    nav.command_kind, nav.command_seq = kind, seq
+    nav.command_count += 1
+    nav.completed, nav.since_us = False, 0
+    nav.has_place, nav.delay, nav.turns = False, 0.0, 0.0
+
+
+def give_none(nav: Nav) -> None:
+    """No command is under way."""
+    give(nav, NONE, 0)
 
 
 @law
-def arrive(ap, time_us):
+def arrive(ap: Autopilot, time_us: int) -> None:
     """The command under way has come to its place, where it may wait: ``nav.since_us`` counts from now."""
     nav = ap.modes.nav
     nav.since_us = time_us
@@ -18,31 +45,32 @@ def arrive(ap, time_us):
 
 
 @law
-def complete(ap, time_us):
+def complete(ap: Autopilot, time_us: int) -> None:
     """Tell the shell, once, that the navigation command is done."""
     nav = ap.modes.nav
-    if nav.completed == 0:
-        nav.completed = 1
+    if not nav.completed:
+        nav.completed = True
         emit_and_return(ap.events, time_us, COMMAND_COMPLETE, NAV_COMMAND, float(nav.command_count))
 
 
 @law
-def check_condition(ap, time_us, yaw_reached):
+def is_condition_met(nav: Nav, time_us: int, pos: Vec3, yaw_reached: bool) -> bool:
+    """Whether the condition that holds back do-commands is met; ``pos`` NED [m]."""
+    kind = nav.condition_kind
+    if kind == CONDITION_DELAY:
+        return time_us >= nav.condition_until_us
+    if kind == CONDITION_DISTANCE:
+        return distance(nav, pos) < nav.condition_distance
+    return kind == CONDITION_YAW and yaw_reached
+
+
+@law
+def check_condition(ap: Autopilot, time_us: int, yaw_reached: bool) -> None:
     """Tell the shell, once, that the condition which holds back do-commands is met; AUTO calls it every tick.
 
-    ``yaw_reached`` is 1 when the turn of CONDITION_YAW is done.
+    ``yaw_reached``: the turn of CONDITION_YAW is done.
     """
     nav = ap.modes.nav
-    kind = nav.condition_kind
-    if kind == CONDITION_NONE:
-        return
-    met = False
-    if kind == CONDITION_DELAY:
-        met = time_us >= nav.condition_until_us
-    elif kind == CONDITION_DISTANCE:
-        met = distance(ap) < nav.condition_distance
-    elif kind == CONDITION_YAW:
-        met = yaw_reached != 0
-    if met:
+    if is_condition_met(nav, time_us, ap.estimate.pos, yaw_reached):
         nav.condition_kind = CONDITION_NONE
         emit_and_return(ap.events, time_us, COMMAND_COMPLETE, DO_COMMAND, float(nav.mission_do))

@@ -10,13 +10,14 @@ seconds. All pulses of such a leg are alike, so the distance and the speeds at t
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import ruckig
 
+from ...core.vectors import Vec3
 from ...errors import SitlError
-from .state import SEGMENTS
+from .state import SEGMENTS, Leg
 
 SHORTEST = 1e-4
 """A leg shorter than this [m] has no length."""
@@ -57,9 +58,7 @@ def bounded(limits: Limits) -> Limits:
 
 
 class Segment(NamedTuple):
-    """A polynomial piece from time ``t``: distance, speed, acceleration, jerk at its start,
-    and its constant snap.
-    """
+    """A polynomial piece from time ``t``: distance, speed, acceleration, jerk at its start, and its constant snap."""
 
     t: float
     p: float
@@ -96,7 +95,7 @@ def pulse_duration(length: float, limits: Limits) -> float:
     the length (four pulses).
     """
 
-    def solve(reached: Any, wanted: float) -> float:
+    def solve(reached: Callable[[float], float], wanted: float) -> float:
         low, high = 0.0, 1.0
         while reached(high) < wanted:
             high *= 2.0
@@ -257,23 +256,20 @@ def _profile(phases: Sequence[tuple[float, float, float]], length: float, v0: fl
     return Profile(tuple(segments), t, min(turn_in, turn_out), turn_out)
 
 
-def axis_limits(direction: Sequence[float], horizontal: float, up: float, down: float) -> float:
-    """Greatest magnitude of a vector along ``direction`` (unit,
-    NED) within a horizontal and two vertical limits.
-    """
-    ne = math.hypot(direction[0], direction[1])
-    d = abs(direction[2])
-    vertical = up if direction[2] < 0.0 else down
+def axis_limits(direction: Vec3, horizontal: float, up: float, down: float) -> float:
+    """Greatest length of a vector along ``direction`` (unit vector NED) within a horizontal and two vertical limits."""
+    ne = math.hypot(direction.x, direction.y)
+    d = abs(direction.z)
+    vertical = up if direction.z < 0.0 else down
     return min(horizontal / ne if ne > 1e-9 else math.inf, vertical / d if d > 1e-9 else math.inf)
 
 
-def write(leg: Any, profile: Profile, origin: Sequence[float], direction: Sequence[float], length: float) -> None:
+def write(leg: Leg, profile: Profile, origin: Vec3, direction: Vec3, length: float) -> None:
     """Put a profile into a leg record, at its start and not started."""
-    leg.segments = len(profile.segments)
-    leg.started = leg.k = leg.fast = 0
+    leg.segments, leg.k = len(profile.segments), 0
+    leg.started = leg.fast = False
     leg.elapsed, leg.duration = 0.0, profile.duration
     leg.turn_in, leg.turn_out, leg.length = profile.turn_in, profile.turn_out, length
-    for k in range(3):
-        leg.origin[k], leg.unit[k] = origin[k], direction[k]
+    leg.origin, leg.unit = origin, direction
     for k, segment in enumerate(profile.segments):
         leg.t[k], leg.p[k], leg.v[k], leg.a[k], leg.j[k], leg.s[k] = segment

@@ -13,14 +13,17 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import dot, dot2, horizontal, norm
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from ..events import LEG_ENDING, emit_and_return
-from .profile import clear, evaluate, finished, remaining, step
-from .state import LEG_REQUEST
+from ..state import Autopilot
+from .profile import Motion, clear, evaluate, finished, remaining, step
+from .state import LEG_REQUEST, Leg, Nav
 
 
 @law
-def clear_legs(nav):
+def clear_legs(nav: Nav) -> None:
     """Forget all legs."""
     clear(nav.previous)
     clear(nav.current)
@@ -28,142 +31,125 @@ def clear_legs(nav):
 
 
 @law
-def stop(nav):
+def stop(nav: Nav) -> None:
     """Forget all legs and what was asked for."""
     clear_legs(nav)
     nav.request_pending = 0
     nav.active_us = 0
-    nav.reached = 0
+    nav.reached = False
 
 
 @law
-def request_leg(ap, time_us, n, e, d):
+def request_leg(ap: Autopilot, time_us: int, target: Vec3) -> None:
     """Ask the shell for a leg to a point, NED [m]: it is there, begun, on the next tick, and ``request_pending`` 0."""
     nav = ap.modes.nav
-    nav.request[0] = n
-    nav.request[1] = e
-    nav.request[2] = d
+    nav.request = target
     nav.request_pending = 1
     emit_and_return(ap.events, time_us, LEG_ENDING, LEG_REQUEST, 0.0)
 
 
 @law
-def request_legs(ap, time_us, n, e, d, n2, e2, d2):
-    """Ask for a leg to a point and one from there to a second point, joined without a stop, NED [m].
+def request_legs(ap: Autopilot, time_us: int, target: Vec3, following: Vec3) -> None:
+    """Ask for a leg to a point and one from there to the following point, joined without a stop, NED [m].
 
-    ``request_leg`` to the second point when the first is reached takes the second leg over.
+    ``request_leg`` to the following point when the first is reached takes the second leg over.
     """
-    nav = ap.modes.nav
-    request_leg(ap, time_us, n, e, d)
-    nav.request_next[0] = n2
-    nav.request_next[1] = e2
-    nav.request_next[2] = d2
-    nav.request_pending = 2
+    request_leg(ap, time_us, target)
+    ap.modes.nav.request_next = following
+    ap.modes.nav.request_pending = 2
 
 
 @law
-def distance(ap):
-    """Horizontal distance from the vehicle to the destination [m]."""
-    nav = ap.modes.nav
-    return math.hypot(nav.target[0] - ap.estimate.pos[0], nav.target[1] - ap.estimate.pos[1])
+def distance(nav: Nav, pos: Vec3) -> float:
+    """Horizontal distance from ``pos`` to the destination, both NED [m]."""
+    return math.hypot(nav.target.x - pos.x, nav.target.y - pos.y)
 
 
 @law
-def bearing(ap):
-    """Bearing from the vehicle to the destination [rad]."""
-    nav = ap.modes.nav
-    return math.atan2(nav.target[1] - ap.estimate.pos[1], nav.target[0] - ap.estimate.pos[0])
+def bearing(nav: Nav, pos: Vec3) -> float:
+    """Bearing from ``pos``, NED [m], to the destination [rad]."""
+    return math.atan2(nav.target.y - pos.y, nav.target.x - pos.x)
 
 
 @law
-def scale_time(ap, gain, constant, dt):
-    """Path time runs as fast as the vehicle can follow.
+def feasible_time_scale(nav: Nav, pos: Vec3, vel: Vec3, pos_p: float) -> float:
+    """How fast path time may run, 0 .. 1, for a vehicle at ``pos`` [m] with ``vel`` [m/s], NED.
 
-    That is its speed along the path plus what closes the gap (``gain`` of the position loop [1/s]), over the
-    target's speed. 5 % more is allowed; the rate follows with the time ``constant`` [s], at least ``dt``: ArduPilot
-    takes acceleration over jerk.
+    That is the vehicle's speed along the path plus what closes the gap (``pos_p``: gain of the position loop [1/s]),
+    over the target's speed. 5 % more is allowed.
     """
-    nav = ap.modes.nav
-    speed = math.sqrt(nav.vel[0] * nav.vel[0] + nav.vel[1] * nav.vel[1] + nav.vel[2] * nav.vel[2])
-    wanted = 1.0
-    if speed > 1e-6:
-        lag = 0.0
-        flown = 0.0
-        for k in range(3):
-            lag += (nav.pos[k] - ap.estimate.pos[k]) * nav.vel[k]
-            flown += ap.estimate.vel[k] * nav.vel[k]
-        wanted = 0.05 + (flown - gain * lag) / (speed * speed)
-        wanted = min(max(wanted, 0.0), 1.0)
-    nav.time_scale += (wanted - nav.time_scale) * dt / max(constant, dt)
+    speed = norm(nav.vel)
+    if not speed > 1e-6:
+        return 1.0
+    lag = dot(nav.pos - pos, nav.vel)
+    flown = dot(vel, nav.vel)
+    return min(max(0.05 + (flown - pos_p * lag) / (speed * speed), 0.0), 1.0)
 
 
 @law
-def move(nav, dt, radius, corner):
-    """Move path time on by ``dt`` and sum the legs into ``nav.pos``, ``vel``, ``acc``; 1 when the current leg is over.
+def scale_time(nav: Nav, feasible: float, time_constant: float, dt: float) -> None:
+    """Path time runs as fast as is ``feasible``; its rate follows with a time constant [s], at least ``dt``.
 
-    Corners stay within ``radius`` [m] of their waypoint and ``corner`` [m/s^2].
+    ArduPilot takes acceleration over jerk.
     """
-    for k in range(3):
-        nav.pos[k] = nav.current.origin[k]
-        nav.vel[k] = 0.0
-        nav.acc[k] = 0.0
+    nav.time_scale += (feasible - nav.time_scale) * dt / max(time_constant, dt)
+
+
+@law
+def move(nav: Nav, dt: float, radius: float, accel_max: float) -> bool:
+    """Move path time on by ``dt`` and sum the legs into ``nav.pos``, ``vel``, ``acc``; whether the current one is over.
+
+    Corners stay within ``radius`` [m] of their waypoint and ``accel_max`` [m/s^2].
+    """
+    nav.pos = nav.current.origin
+    nav.vel = Vec3(0.0, 0.0, 0.0)
+    nav.acc = Vec3(0.0, 0.0, 0.0)
     if nav.previous.segments > 0:
         step(nav.previous, dt)
-        p, v, a = evaluate(nav.previous, nav.previous.elapsed)
-        _add(nav, nav.previous, p - nav.previous.length, v, a)
+        along = evaluate(nav.previous, nav.previous.elapsed)
+        add_motion(nav, nav.previous.unit, Motion(along.pos - nav.previous.length, along.vel, along.acc))
         if finished(nav.previous):
             nav.previous.segments = 0
-    nav.current.started = 1
+    nav.current.started = True
     step(nav.current, dt)
-    p, v, a = evaluate(nav.current, nav.current.elapsed)
-    _add(nav, nav.current, p, v, a)
-    done = 1 if finished(nav.current) else 0
-    if nav.current.fast != 0 and nav.next.segments > 0:
-        if nav.next.started == 0 and _may_turn(nav, v, radius, corner) != 0:
-            nav.next.started = 1
-        if nav.next.started != 0:
+    along = evaluate(nav.current, nav.current.elapsed)
+    add_motion(nav, nav.current.unit, along)
+    done = finished(nav.current)
+    if nav.current.fast and nav.next.segments > 0:
+        if not nav.next.started:
+            nav.next.started = may_turn(nav.current, nav.next, along.vel, radius, accel_max)
+        if nav.next.started:
             step(nav.next, dt)
-            p, v, a = evaluate(nav.next, nav.next.elapsed)
-            _add(nav, nav.next, p, v, a)
-            if nav.next.elapsed >= remaining(nav.current):
-                done = 1
+            add_motion(nav, nav.next.unit, evaluate(nav.next, nav.next.elapsed))
+            done = done or nav.next.elapsed >= remaining(nav.current)
     return done
 
 
 @law
-def _add(nav, leg, p, v, a):
-    """Add a motion along a leg to the target."""
-    for k in range(3):
-        nav.pos[k] += leg.unit[k] * p
-        nav.vel[k] += leg.unit[k] * v
-        nav.acc[k] += leg.unit[k] * a
+def add_motion(nav: Nav, direction: Vec3, along: Motion) -> None:
+    """Add a motion along a leg to the target's."""
+    nav.pos += direction * along.pos
+    nav.vel += direction * along.vel
+    nav.acc += direction * along.acc
 
 
 @law
-def _may_turn(nav, speed, radius, corner):
-    """1 when the next leg may start: the middle of the turn is close to the waypoint, slow and gentle enough."""
-    left = remaining(nav.current)
-    elapsed = nav.current.elapsed
-    if elapsed < nav.current.turn_out - nav.next.turn_in or elapsed < 0.5 * nav.current.duration:
-        return 0
-    if left > 0.5 * nav.next.duration:
-        return 0
-    p, v, a = evaluate(nav.current, elapsed + 0.5 * left)
-    p -= nav.current.length
-    q, w, b = evaluate(nav.next, 0.5 * left)
-    _, met, _ = evaluate(nav.next, left)
-    away = 0.0
-    turn_speed = 0.0
-    turn_acc = 0.0
-    for k in range(3):
-        x = nav.current.unit[k] * p + nav.next.unit[k] * q
-        away += x * x
-        if k < 2:
-            x = nav.current.unit[k] * v + nav.next.unit[k] * w
-            turn_speed += x * x
-            x = nav.current.unit[k] * a + nav.next.unit[k] * b
-            turn_acc += x * x
-    slowest = min(speed, met)
-    if away < radius * radius and turn_speed <= slowest * slowest + 1e-9 and turn_acc < corner * corner:
-        return 1
-    return 0
+def may_turn(current: Leg, following: Leg, speed: float, radius: float, accel_max: float) -> bool:
+    """Whether the following leg may start at ``speed`` [m/s] along the current one.
+
+    The middle of the turn must be within ``radius`` [m] of the waypoint, slow, and within ``accel_max`` [m/s^2].
+    """
+    left = remaining(current)
+    elapsed = current.elapsed
+    if elapsed < current.turn_out - following.turn_in or elapsed < 0.5 * current.duration:
+        return False
+    if left > 0.5 * following.duration:
+        return False
+    before = evaluate(current, elapsed + 0.5 * left)
+    after = evaluate(following, 0.5 * left)
+    away = current.unit * (before.pos - current.length) + following.unit * after.pos
+    vel = horizontal(current.unit * before.vel + following.unit * after.vel)
+    acc = horizontal(current.unit * before.acc + following.unit * after.acc)
+    slowest = min(speed, evaluate(following, left).vel)
+    near = dot(away, away) < radius * radius
+    return near and dot2(vel, vel) <= slowest * slowest + 1e-9 and dot2(acc, acc) < accel_max * accel_max

@@ -9,10 +9,11 @@ seconds as said.
 from __future__ import annotations
 
 from ...core.records import Floats, Ints, Record, array
+from ...core.vectors import Vec3
 
 # Kinds of navigation command (``command_kind``)
 NONE = 0
-TAKEOFF = 1  # climb to target[2]
+TAKEOFF = 1  # climb to target.z
 WAYPOINT = 2  # fly the leg to target, wait delay
 LOITER_UNLIMITED = 3  # fly the leg to target, stay
 LOITER_TURNS = 4  # circles: radius, turns
@@ -49,17 +50,17 @@ class Leg(Record):
     """A planned leg: a straight line that is flown with limited speed, acceleration and jerk."""
 
     segments: int  # 0: no leg; the last one is the state at and after the end
-    started: int
+    started: bool
     k: int  # segment at ``elapsed``
     elapsed: float  # path time since its start [s]
     duration: float  # [s]
     turn_in: float  # when the acceleration from its start is over [s]
     turn_out: float  # when the deceleration to its end begins [s]
     length: float  # [m]
-    origin: Floats = array(3)  # NED [m]
-    unit: Floats = array(3)  # direction, unit vector NED; zero for a leg of no length
+    origin: Vec3  # NED [m]
+    unit: Vec3  # direction, unit vector NED; zero for a leg of no length
     top_speed: float  # limit along this direction [m/s]
-    fast: int  # goes through its end into the next leg without a stop
+    fast: bool  # goes through its end into the next leg without a stop
     # distance along the leg as polynomials of the time since the segment's start:
     # p + v t + a t^2/2 + j t^3/6 + s t^4/24
     t: Floats = array(SEGMENTS)  # start of the segment [s]
@@ -77,27 +78,27 @@ class Nav(Record):
     command_kind: int
     command_count: int  # one more for each command given: a change tells the mode to begin it
     command_seq: int  # its number in the mission; 0 none
-    target: Floats = array(3)  # NED [m]
-    has_place: int  # LAND, LOITER: target was given
+    target: Vec3  # NED [m]
+    has_place: bool  # LAND, LOITER: target was given
     delay: float  # [s]
     turns: float
     circle_radius: float  # LOITER_TURNS: < 0 counter-clockwise [m]
-    completed: int  # COMMAND_COMPLETE was sent for this command
+    completed: bool  # COMMAND_COMPLETE was sent for this command
     since_us: int  # when it arrived (start of the delay); 0 not yet
     # waypoint follower
     previous: Leg  # still decelerating beyond the corner
     current: Leg
     next: Leg
     active_us: int  # last time flown along legs
-    fresh: int  # the current leg starts from a standstill: controllers start anew
-    joined: int  # the current leg goes on from the one before without a stop
-    reached: int  # the end of the current leg
+    fresh: bool  # the current leg starts from a standstill: controllers start anew
+    joined: bool  # the current leg goes on from the one before without a stop
+    reached: bool  # the end of the current leg
     time_scale: float  # 0 .. 1: path time slows down for a vehicle that lags
-    pos: Floats = array(3)  # point on the path, NED [m]
-    vel: Floats = array(3)  # [m/s]
-    acc: Floats = array(3)  # [m/s^2]
-    request: Floats = array(3)  # the core asks for a leg to here, NED [m]
-    request_next: Floats = array(3)  # and then to here, without a stop, when request_pending is 2 [m]
+    pos: Vec3  # point on the path, NED [m]
+    vel: Vec3  # [m/s]
+    acc: Vec3  # [m/s^2]
+    request: Vec3  # the core asks for a leg to here, NED [m]
+    request_next: Vec3  # and then to here, without a stop, when request_pending is 2 [m]
     request_pending: int  # legs asked for: 0, 1 or 2
     speed_ne: float  # horizontal speed limit that a command set [m/s]; 0 none: the parameter's
     # do-commands
@@ -110,7 +111,7 @@ class Nav(Record):
     mission_reached: int  # last navigation command completed
     mission_do: int  # do-command waiting or last run
     mission_do_next: int  # where to look for the following do-command; 0 all done
-    mission_resume: int  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
+    mission_resume: bool  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
     mission_events: int  # events that the sequencer has seen
     jump_item: Ints = array(JUMPS, stored="i8")  # DO_JUMP items run so far ...
     jump_runs: Ints = array(JUMPS, stored="i8")  # ... and how often

@@ -4,21 +4,22 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, whole_seconds
 from ..mission.item import MissionItem
 from ..mission.notes import INFO, NOTICE, WARNING, Note, Text
 from ..mission.place import point
-from ..mission.under_way import write, write_none
+from ..navigation import command
 from ..navigation import state as kinds
-from ..navigation.planner import Point, end
+from ..navigation.planner import end
 from .modes import change_speed, guided
 from .modes.guided_state import OK
 from .modes.numbers import AUTO
 from .navigation import waypoint
 from .navigation.planner import PLANNER
+from .state import Vehicle
 
 WIDEST = 2550.0
 """Greatest radius of circles that ArduPilot's mission storage holds [m]."""
@@ -49,7 +50,7 @@ OTHERS = (
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 
 
-class RoverCommands(Commands):
+class RoverCommands(Commands[Vehicle]):
     """Legs, circles, return, guided driving and turns to a heading; reverse."""
 
     auto = AUTO
@@ -57,43 +58,42 @@ class RoverCommands(Commands):
     planner = PLANNER
     goes_on_disarmed = True
 
-    def enter(self, v: Any) -> None:
+    def enter(self, v: Vehicle) -> None:
         """The parameters' speed, forwards, no legs."""
         waypoint.start(v)
 
-    def reset(self, v: Any) -> None:
+    def reset(self, v: Vehicle) -> None:
         """Forget the legs."""
         waypoint.stop(v)
 
-    def give(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way; without a place it is where the vehicle is."""
         ap = v.autopilot
         nav = ap.modes.nav
         kind = KINDS[item.command]
         if kind == kinds.GUIDED and not item.p1 > 0.0:
             kind = kinds.PASSED_OVER  # it would end guided driving, which has ended
-        here = (float(ap.estimate.pos[0]), float(ap.estimate.pos[1]), 0.0)
-        place = _flat(point(ap, item, here))
+        place = flat(point(ap, item, flat(ap.estimate.pos)))
         if kind in LEGS:
-            PLANNER.begin(ap, int(v.time_us), place)
+            PLANNER.begin(ap, v.time_us, place)
         elif kind in (kinds.LOITER_TURNS, kinds.GUIDED):
-            nav.target[0], nav.target[1], nav.target[2] = place
-        write(nav, kind, seq)
-        nav.has_place = 0 if item.no_place else 1
+            nav.target = place
+        command.give(nav, kind, seq)
+        nav.has_place = not item.no_place
         if kind in LEGS:
             nav.delay = 0.0 if kind == kinds.LOITER_UNLIMITED else whole_seconds(item)
         elif kind == kinds.LOITER_TURNS:
             nav.turns = max(item.p1, 0.0)
             nav.circle_radius = min(max(item.p3, -WIDEST), WIDEST)
         elif kind == kinds.YAW_SPEED:
-            nav.heading = math.radians(item.p1) + (float(ap.estimate.euler[2]) if item.p3 > 0.0 else 0.0)
+            nav.heading = math.radians(item.p1) + (ap.estimate.euler.yaw if item.p3 > 0.0 else 0.0)
             nav.heading_speed = item.p2
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)
             return [Text(INFO, f"Delaying {int(nav.delay)} sec")]
         return []
 
-    def look_ahead(self, v: Any, item: MissionItem | None) -> None:
+    def look_ahead(self, v: Vehicle, item: MissionItem | None) -> None:
         """Plan the leg to the following place when the current command is a waypoint without delay."""
         ap = v.autopilot
         nav = ap.modes.nav
@@ -101,40 +101,40 @@ class RoverCommands(Commands):
             return
         through = item is not None and KINDS[item.command] in (*LEGS, kinds.LOITER_TURNS)
         corner = end(nav.current)
-        PLANNER.look_ahead(ap, _flat(point(ap, item, corner)) if item is not None and through else None)
+        PLANNER.look_ahead(ap, flat(point(ap, item, corner)) if item is not None and through else None)
 
-    def arrived(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def arrived(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Said at once, with the time that it waits."""
         wait = int(v.autopilot.modes.nav.delay)
         return [Text(INFO, f"Reached waypoint #{seq}" + (f". Loiter for {wait} seconds" if wait > 0 else ""))]
 
-    def completed(self, v: Any, seq: int, item: MissionItem) -> list[Note]:
+    def completed(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Only the end of a stay is said."""
         return [Text(WARNING, "Finished active loiter")] if item.command == commands.NAV_LOITER_TIME else []
 
-    def finish(self, v: Any) -> list[Note]:
+    def finish(self, v: Vehicle) -> list[Note]:
         """AUTO does what MIS_DONE_BEHAVE says."""
-        write_none(v.autopilot.modes.nav)
+        command.give_none(v.autopilot.modes.nav)
         return [Text(NOTICE, "Mission Complete")]
 
-    def run(self, v: Any, item: MissionItem) -> list[Note]:
+    def run(self, v: Vehicle, item: MissionItem) -> list[Note]:
         """Speed, reverse and guided limits; the rest is common."""
         if item.command == commands.DO_CHANGE_SPEED and self.change_speed(v, int(item.p1), item.p2):
             return [Text(INFO, f"speed: {item.p2:.1f} m/s")]
         if item.command == commands.DO_SET_REVERSE:
-            waypoint.set_reversed(v.autopilot, 1 if item.p1 == 1.0 else 0)
+            waypoint.set_reversed(v.autopilot, item.p1 == 1.0)
         elif item.command == commands.DO_GUIDED_LIMITS:
             guided.set_limits(v, max(item.p1, 0.0), max(item.p4, 0.0))
         return super().run(v, item)
 
-    def change_speed(self, v: Any, kind: int, speed: float) -> bool:
+    def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
         """Of what AUTO is doing; all kinds of speed are the same."""
         return is_speed(speed) and int(change_speed.change_speed(v, speed)) == OK
 
 
-def _flat(place: Point) -> Point:
-    """A rover's paths lie in the plane."""
-    return (place[0], place[1], 0.0)
+def flat(place: Vec3) -> Vec3:
+    """The point of the plane in which a rover's paths lie, NED [m]."""
+    return Vec3(place.x, place.y, 0.0)
 
 
 COMMANDS = RoverCommands()

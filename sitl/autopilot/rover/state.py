@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from .. import state as shared
 from .control.state import Control
 from .modes.state import Modes
@@ -15,3 +17,11 @@ class Autopilot(shared.Autopilot):
     params: Parameters
     modes: Modes
     control: Control
+
+
+class Vehicle(shared.Vehicle, Protocol):
+    """What the firmware sees of the rover."""
+
+    @property
+    def autopilot(self) -> Autopilot:
+        """The firmware."""

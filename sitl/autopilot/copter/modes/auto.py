@@ -139,7 +139,7 @@ def run(v):
             position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
             altitude.input_vel_accel_d(ap, 0.0, 0.0)
         ground.fly(v)
-    check_condition(ap, v.time_us, 1 if auto_yaw.reached(v) else 0)
+    check_condition(ap, v.time_us, auto_yaw.reached(v))
 
 
 @law

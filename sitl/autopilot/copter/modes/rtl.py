@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.vectors import Vec3
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ..control import altitude, position
@@ -57,7 +58,7 @@ def begin(v):
     auto_yaw.set_mode(v, auto_yaw.HOLD)
     n, e = position.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
-        path.request_legs(ap, v.time_us, n, e, float(rtl.return_d), rtl.home[0], rtl.home[1], float(rtl.return_d))
+        path.request_legs(ap, v.time_us, Vec3(n, e, rtl.return_d), Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
 
 
 @law
@@ -120,7 +121,7 @@ def run(v):
         if reached != 0:
             rtl.state = RETURN
             auto_yaw.set_default(v, 1)
-            path.request_leg(ap, v.time_us, float(rtl.home[0]), float(rtl.home[1]), float(rtl.return_d))
+            path.request_leg(ap, v.time_us, Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
     elif rtl.state == RETURN:
         if reached != 0:
             rtl.state = LOITER

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ....core.vectors import Vec3
 from ..control.altitude import set_pos_vel_accel_d
 from ..control.position import set_pos_vel_accel_ne
 from .waypoint import CM, DT, speed_ne
@@ -60,15 +61,9 @@ def advance(ap):
     c = radius * math.cos(nav.circle_angle)
     s = radius * math.sin(nav.circle_angle)
     rate = nav.circle_rate
-    nav.pos[0] = nav.circle_centre[0] + c
-    nav.pos[1] = nav.circle_centre[1] + s
-    nav.pos[2] = nav.circle_centre[2]
-    nav.vel[0] = -s * rate
-    nav.vel[1] = c * rate
-    nav.vel[2] = 0.0
-    nav.acc[0] = -c * rate * rate - s * acc / DT
-    nav.acc[1] = -s * rate * rate + c * acc / DT
-    nav.acc[2] = 0.0
+    nav.pos = Vec3(nav.circle_centre[0] + c, nav.circle_centre[1] + s, nav.circle_centre[2])
+    nav.vel = Vec3(-s * rate, c * rate, 0.0)
+    nav.acc = Vec3(-c * rate * rate - s * acc / DT, -s * rate * rate + c * acc / DT, 0.0)
     set_pos_vel_accel_ne(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
     set_pos_vel_accel_d(ap, nav.pos[2], 0.0, 0.0)
     return abs(nav.circle_total) / (2.0 * math.pi)

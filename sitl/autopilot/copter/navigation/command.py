@@ -23,7 +23,7 @@ def follows_path(kind):
 def begin(ap, time_us):
     """Begin the command that the shell has written."""
     nav = ap.modes.nav
-    nav.completed = 0
+    nav.completed = False
     nav.since_us = 0
     nav.circle_running = 0
     waypoint.start(ap, time_us)
@@ -37,7 +37,7 @@ def run(ap, time_us):
     """
     nav = ap.modes.nav
     kind = nav.command_kind
-    if kind == LOITER_TURNS and (nav.circle_running != 0 or nav.reached != 0):
+    if kind == LOITER_TURNS and (nav.circle_running != 0 or nav.reached):
         if nav.circle_running == 0:
             circle.start(ap)
         nav.active_us = time_us

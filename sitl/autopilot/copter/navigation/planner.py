@@ -4,45 +4,47 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from ....core.vectors import Vec3
 from ...navigation.leg import Limits, axis_limits
-from ...navigation.planner import Planner, Point
+from ...navigation.planner import Planner
 from ...navigation.state import LOITER_TURNS, TAKEOFF
 from ..control.altitude import stopping_point_d
 from ..control.position import stopping_point_ne
+from ..parameters import Parameters
+from ..state import Autopilot
 from . import waypoint
 
 GRAVITY = 9.80665
 
 
-def jerk_limits(params: Any) -> tuple[float, float]:
+def jerk_limits(params: Parameters) -> tuple[float, float]:
     """(jerk [m/s^3], rise [s]) of legs.
 
     Leaning makes horizontal acceleration, so the lean rate limits jerk (ATC_RATE_*_MAX) and the lean rate's
     time constant (ATC_INPUT_TC) and acceleration (ATC_ACCEL_*_MAX) limit snap, half of which is used. Jerk
     that follows half a cosine needs pi/2 of jerk/snap to rise; the same time is taken here.
     """
-    jerk = max(float(params.WPNAV.JERK), 0.1)
-    lean_rate = math.radians(min(float(params.ATC.RATE_R_MAX), float(params.ATC.RATE_P_MAX)))
+    jerk = max(params.WPNAV.JERK, 0.1)
+    lean_rate = math.radians(min(params.ATC.RATE_R_MAX, params.ATC.RATE_P_MAX))
     if lean_rate > 0.0:
         jerk = min(jerk, lean_rate * GRAVITY)
-    snap = 0.5 * math.pi * jerk / max(float(params.ATC.INPUT_TC), 0.1)
-    lean_acceleration = math.radians(0.01 * min(float(params.ATC.ACCEL_R_MAX), float(params.ATC.ACCEL_P_MAX)))
+    snap = 0.5 * math.pi * jerk / max(params.ATC.INPUT_TC, 0.1)
+    lean_acceleration = math.radians(0.01 * min(params.ATC.ACCEL_R_MAX, params.ATC.ACCEL_P_MAX))
     if lean_acceleration > 0.0:
         snap = min(snap, lean_acceleration * GRAVITY)
     return jerk, 0.5 * math.pi * jerk / (0.5 * snap)
 
 
-class CopterPlanner(Planner):
+class CopterPlanner(Planner[Autopilot]):
     """Plans a copter's legs."""
 
     active_us = 200_000
 
-    def limits(self, ap: Any, direction: Point) -> Limits:
+    def limits(self, ap: Autopilot, direction: Vec3) -> Limits:
         """Speed and acceleration of whichever axis is used up first."""
-        vertical = max(waypoint.CM * float(ap.params.WPNAV.ACCEL_Z), 0.1)
-        horizontal = max(waypoint.CM * float(ap.params.WPNAV.ACCEL), 0.1)
+        vertical = max(waypoint.CM * ap.params.WPNAV.ACCEL_Z, 0.1)
+        horizontal = max(waypoint.CM * ap.params.WPNAV.ACCEL, 0.1)
         jerk, rise = jerk_limits(ap.params)
         return Limits(
             axis_limits(direction, waypoint.speed_ne(ap), waypoint.speed_up(ap), waypoint.speed_down(ap)),
@@ -51,24 +53,24 @@ class CopterPlanner(Planner):
             rise,
         )
 
-    def stopping_point(self, ap: Any) -> Point:
+    def stopping_point(self, ap: Autopilot) -> Vec3:
         """Where the controllers would bring it to rest."""
         waypoint.set_limits(ap)
         n, e = stopping_point_ne(ap)
-        return (float(n), float(e), float(stopping_point_d(ap)))
+        return Vec3(n, e, stopping_point_d(ap))
 
-    def origin_of_next(self, ap: Any, time_us: int) -> tuple[Point, bool]:
+    def origin_of_next(self, ap: Autopilot, time_us: int) -> tuple[Vec3, bool]:
         """A circle under way is left from where the vehicle is; a take-off ends at its height."""
         nav = ap.modes.nav
         circling = nav.command_kind == LOITER_TURNS and nav.circle_running != 0
         if self.continues(ap, time_us) and not circling:
             return super().origin_of_next(ap, time_us)
-        n, e, d = self.stopping_point(ap)
-        if nav.command_kind == TAKEOFF and nav.completed != 0:
-            d = float(nav.target[2])
-        return (n, e, d), False
+        rest = self.stopping_point(ap)
+        if nav.command_kind == TAKEOFF and nav.completed:
+            rest = rest.replace(z=nav.target.z)
+        return rest, False
 
-    def start(self, ap: Any, time_us: int) -> None:
+    def start(self, ap: Autopilot, time_us: int) -> None:
         """Hand the legs to the follower."""
         waypoint.start(ap, time_us)
 

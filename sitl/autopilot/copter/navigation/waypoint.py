@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import dot
 from ....core.kernels import law
+from ....core.vectors import Vec3
 from ...navigation import path
 from ..control.altitude import init_d_stopping_point, set_max_speed_accel_d, set_pos_vel_accel_d
 from ..control.position import init_ne_stopping_point, set_max_speed_accel_ne, set_pos_vel_accel_ne
@@ -60,17 +62,16 @@ def start(ap, time_us):
     """
     nav = ap.modes.nav
     set_limits(ap)
-    if nav.fresh != 0:
-        nav.fresh = 0
+    if nav.fresh:
+        nav.fresh = False
         init_ne_stopping_point(ap)
         init_d_stopping_point(ap)
         nav.time_scale = 1.0
         nav.pause_scale = 1.0
         nav.pause_rate = 0.0
-        for k in range(3):
-            nav.pos[k] = nav.current.origin[k]
-            nav.vel[k] = 0.0
-            nav.acc[k] = 0.0
+        nav.pos = nav.current.origin
+        nav.vel = Vec3(0.0, 0.0, 0.0)
+        nav.acc = Vec3(0.0, 0.0, 0.0)
     nav.active_us = time_us
 
 
@@ -94,17 +95,17 @@ def advance(ap, time_us):
     if nav.request_pending != 0 or nav.current.segments < 1:
         return 0
     nav.active_us = time_us
-    path.scale_time(ap, ap.params.PSC.POSXY_P, CM * ap.params.WPNAV.ACCEL / max(ap.params.WPNAV.JERK, 0.1), DT)
+    feasible = path.feasible_time_scale(nav, ap.estimate.pos, ap.estimate.vel, ap.params.PSC.POSXY_P)
+    path.scale_time(nav, feasible, CM * ap.params.WPNAV.ACCEL / max(ap.params.WPNAV.JERK, 0.1), DT)
     _scale_pause(ap)
     done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * ap.params.WPNAV.RADIUS, corner_accel(ap))
-    for k in range(3):
-        nav.acc[k] = nav.acc[k] * nav.pause_scale * nav.pause_scale + nav.vel[k] * nav.pause_rate
-        nav.vel[k] = nav.vel[k] * nav.pause_scale
+    nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate
+    nav.vel = nav.vel * nav.pause_scale
     set_pos_vel_accel_ne(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
     set_pos_vel_accel_d(ap, nav.pos[2], nav.vel[2], nav.acc[2])
-    if done != 0 and nav.reached == 0:
-        if nav.current.fast != 0 or _near_end(ap) != 0:
-            nav.reached = 1
+    if done and not nav.reached:
+        if nav.current.fast or _near_end(ap) != 0:
+            nav.reached = True
     return int(nav.reached)
 
 
@@ -134,9 +135,6 @@ def _scale_pause(ap):
 def _near_end(ap):
     """1 when the vehicle is within WPNAV_RADIUS of the end of the current leg."""
     nav = ap.modes.nav
-    away = 0.0
-    for k in range(3):
-        x = nav.current.origin[k] + nav.current.unit[k] * nav.current.length - ap.estimate.pos[k]
-        away += x * x
+    away = nav.current.origin + nav.current.unit * nav.current.length - ap.estimate.pos
     radius = CM * ap.params.WPNAV.RADIUS
-    return 1 if away <= radius * radius else 0
+    return 1 if dot(away, away) <= radius * radius else 0

@@ -8,83 +8,87 @@ heading; the wheel encoders' mean (ArduPilot feeds those to its filter instead).
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.algebra import dot2, horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import finite
+from ....core.vectors import Quat, Vec2, Vec3
 from ...control.pid import lowpass_gain
 from ...estimation.status import VELOCITY_HORIZ
+from ...state import Estimate, Sensors
+from ..state import Vehicle
+from .state import SpeedState
 
 FIX_3D = 3
-_WHEEL_HZ = 10.0  # low-pass of the encoders' speed
-_WHEEL_TIMEOUT_US = 500_000
+WHEEL_HZ = 10.0
+"""Low-pass of the encoders' speed."""
+WHEEL_TIMEOUT_US = 500_000
+
+
+class ForwardSpeed(NamedTuple):
+    """Speed along the nose."""
+
+    known: bool
+    speed: float  # backward negative [m/s]
 
 
 @law
-def _sense_wheels(v):
-    s = v.autopilot.control.speed
-    sensors = v.sensors
-    count = int(sensors.wheel_count)
-    now = int(v.time_us)
-    if count != s.wheel_count:
-        distance = 0.5 * (float(sensors.wheel_distance[0]) + float(sensors.wheel_distance[1]))
-        dt = float(now - int(s.wheel_us)) * 1e-6
+def sense_wheels(s: SpeedState, sensors: Sensors, now_us: int) -> None:
+    """Speed of the wheels from the distance that they rolled since the last sample."""
+    if sensors.wheel_count != s.wheel_count:
+        distance = 0.5 * (sensors.wheel_distance.x + sensors.wheel_distance.y)
+        dt = float(now_us - s.wheel_us) * 1e-6
         if s.wheel_count == 0 or dt <= 0.0 or dt > 0.5:
-            s.wheel_ok = 0
+            s.wheel_ok = False
             s.wheel = 0.0
         else:
-            speed = (distance - float(s.wheel_distance)) / dt
-            gain = lowpass_gain(_WHEEL_HZ, dt) if s.wheel_ok != 0 else 1.0
-            s.wheel += gain * (speed - float(s.wheel))
-            s.wheel_ok = 1
-        s.wheel_count = count
-        s.wheel_us = now
+            speed = (distance - s.wheel_distance) / dt
+            gain = lowpass_gain(WHEEL_HZ, dt) if s.wheel_ok else 1.0
+            s.wheel += gain * (speed - s.wheel)
+            s.wheel_ok = True
+        s.wheel_count = sensors.wheel_count
+        s.wheel_us = now_us
         s.wheel_distance = distance
-    elif now - int(s.wheel_us) > _WHEEL_TIMEOUT_US:
-        s.wheel_ok = 0
+    elif now_us - s.wheel_us > WHEEL_TIMEOUT_US:
+        s.wheel_ok = False
 
 
 @law
-def sense(v):
+def signed_ground_speed(vel: Vec2, nose: Vec2) -> float:
+    """Length of a velocity [m/s], negative when it points away from the nose (a unit vector), both NE."""
+    speed = norm2(vel)
+    return -speed if dot2(vel, nose) < 0.0 else speed
+
+
+@law
+def estimate_forward_speed(s: SpeedState, estimate: Estimate, sensors: Sensors) -> ForwardSpeed:
+    """Speed along the nose from the first source that knows it."""
+    heading = estimate.euler.yaw
+    nose = Vec2(math.cos(heading), math.sin(heading))
+    known, speed = s.wheel_ok, s.wheel
+    if estimate.status_flags & VELOCITY_HORIZ != 0:
+        known, speed = True, dot2(horizontal(estimate.vel), nose)
+    elif sensors.gps_fix >= FIX_3D:
+        known, speed = True, signed_ground_speed(horizontal(sensors.gps_vel) * 0.01, nose)
+    if known and finite(speed):
+        return ForwardSpeed(True, speed)
+    return ForwardSpeed(False, 0.0)
+
+
+@law
+def sense(v: Vehicle) -> ForwardSpeed:
     """Renew ``control.speed.forward``; the first thing of a period, before any steering or speed law."""
-    ap = v.autopilot
-    s = ap.control.speed
-    est = ap.estimate
-    heading = float(est.euler[2])
-    cosine, sine = math.cos(heading), math.sin(heading)
-    _sense_wheels(v)
-    ok = 0
-    speed = 0.0
-    if int(est.status_flags) & VELOCITY_HORIZ != 0:
-        ok = 1
-        speed = float(est.vel[0]) * cosine + float(est.vel[1]) * sine
-    elif int(v.sensors.gps_fix) >= FIX_3D:
-        ok = 1
-        north, east = float(v.sensors.gps_vel[0]) * 0.01, float(v.sensors.gps_vel[1]) * 0.01
-        speed = math.sqrt(north * north + east * east)
-        if north * cosine + east * sine < 0.0:
-            speed = -speed
-    elif s.wheel_ok != 0:
-        ok = 1
-        speed = float(s.wheel)
-    if not finite(speed):
-        ok = 0
-        speed = 0.0
-    s.forward_ok = ok
-    s.forward = speed
+    s = v.autopilot.control.speed
+    sense_wheels(s, v.sensors, v.time_us)
+    forward = estimate_forward_speed(s, v.autopilot.estimate, v.sensors)
+    s.forward_ok = forward.known
+    s.forward = forward.speed
+    return forward
 
 
 @law
-def forward_speed(v):
-    """(known 0 or 1, speed along the nose [m/s])."""
-    sense(v)
-    return (int(v.autopilot.control.speed.forward_ok), float(v.autopilot.control.speed.forward))
-
-
-@law
-def yaw_rate(ap):
-    """Turn rate about the vertical [rad/s], right positive: the body rates' part along world z."""
-    q = ap.estimate.q
-    w, x, y, z = float(q[0]), float(q[1]), float(q[2]), float(q[3])
-    r = ap.estimate.rates
-    down = w * w - x * x - y * y + z * z
-    return 2.0 * (x * z - w * y) * float(r[0]) + 2.0 * (y * z + w * x) * float(r[1]) + down * float(r[2])
+def yaw_rate(q: Quat, rates: Vec3) -> float:
+    """Turn rate about the vertical [rad/s], right positive: the part of body ``rates`` along world z."""
+    down = q.w * q.w - q.x * q.x - q.y * q.y + q.z * q.z
+    return 2.0 * (q.x * q.z - q.w * q.y) * rates.x + 2.0 * (q.y * q.z + q.w * q.x) * rates.y + down * rates.z

@@ -10,193 +10,189 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
+from ..parameters import Parameters
+from ..parameters.control import Motors
+from ..state import Autopilot
 from . import mixer, servos
-from .recent import now_tick
-from .state import DT
-
-TEST_THROTTLE, TEST_STEERING, TEST_LEFT, TEST_RIGHT = 1, 2, 3, 4
-"""MOTOR_TEST_ORDER of ArduRover's motor test."""
+from .state import DT, TEST_LEFT, TEST_RIGHT, TEST_STEERING, TEST_THROTTLE, Control, MotorsState, current_tick
 
 
 @law
-def is_skid(ap):
+def is_skid(params: Parameters) -> bool:
     """Whether the vehicle steers with its left and right motors."""
-    return servos.is_assigned(ap, servos.LEFT) and servos.is_assigned(ap, servos.RIGHT)
+    return servos.is_assigned(params, servos.LEFT) and servos.is_assigned(params, servos.RIGHT)
 
 
 @law
-def throttle_max(ap):
+def throttle_max(params: Motors) -> float:
     """Throttle limit 0.05 .. 1 (MOT_THR_MAX)."""
-    return constrain(float(ap.params.MOT.THR_MAX), 5.0, 100.0) * 0.01
+    return constrain(params.THR_MAX, 5.0, 100.0) * 0.01
 
 
 @law
-def throttle_min(ap):
+def throttle_min(params: Motors) -> float:
     """Throttle at which the motors begin to turn, 0 .. 0.2 (MOT_THR_MIN)."""
-    return constrain(float(ap.params.MOT.THR_MIN) * 0.01, 0.0, min(0.2, throttle_max(ap)))
+    return constrain(params.THR_MIN * 0.01, 0.0, min(0.2, throttle_max(params)))
 
 
 @law
-def set_steering(ap, steering):
+def set_steering(ap: Autopilot, steering: float) -> None:
     """Steering demand of a control loop: shrunk with speed, mirrored while the vehicle rolls backwards."""
     ap.control.motors.steering = steering if finite(steering) else 0.0
-    ap.control.motors.scale_steering = 1
+    ap.control.motors.scale_steering = True
 
 
 @law
-def set_steering_unscaled(ap, steering):
+def set_steering_unscaled(ap: Autopilot, steering: float) -> None:
     """Steering of a pilot's or client's hand, not shrunk; mirrored while the throttle pulls backwards."""
     set_steering(ap, steering)
-    ap.control.motors.scale_steering = 0
+    ap.control.motors.scale_steering = False
 
 
 @law
-def set_throttle(ap, throttle):
+def set_throttle(ap: Autopilot, throttle: float) -> None:
     """Throttle demand -1 .. 1; none while disarmed."""
-    if ap.arming.armed == 0:
-        return
-    most = throttle_max(ap)
-    ap.control.motors.throttle = constrain(throttle, -most, most) if finite(throttle) else 0.0
+    if ap.arming.armed:
+        limit = throttle_max(ap.params.MOT)
+        ap.control.motors.throttle = constrain(throttle, -limit, limit) if finite(throttle) else 0.0
 
 
 @law
-def slew_limited(ap, throttle):
-    """``throttle`` as near as MOT_SLEWRATE lets this period come."""
-    rate = float(ap.params.MOT.SLEWRATE) * 0.01
+def slew_limited(throttle: float, last: float, slew_rate: float) -> float:
+    """``throttle`` as near as a slew rate [%/s] lets it come from the last period's; 0: no limit."""
+    rate = slew_rate * 0.01
     if rate <= 0.0:
         return throttle
-    last = float(ap.control.motors.throttle_last)
     return constrain(throttle, last - rate * DT, last + rate * DT)
 
 
 @law
-def is_moving(ap):
+def is_moving(ap: Autopilot) -> bool:
     """Whether a demand turns the motors (ArduPilot's active())."""
     m = ap.control.motors
-    if ap.arming.armed == 0:
-        return False
-    return m.throttle != 0.0 or (is_skid(ap) and m.steering != 0.0)
+    return ap.arming.armed and (m.throttle != 0.0 or (is_skid(ap.params) and m.steering != 0.0))
 
 
 @law
-def _set_limits(m, armed, steering, throttle, most):
+def flag_limits(m: MotorsState, armed: bool, steering: float, throttle: float, throttle_limit: float) -> None:
     """Flags of what the demands themselves use up."""
     if not armed or steering <= -1.0:
-        m.limit_left = 1
+        m.limit_left = True
     if not armed or steering >= 1.0:
-        m.limit_right = 1
-    if not armed or throttle <= -most:
-        m.limit_lower = 1
-    if not armed or throttle >= most:
-        m.limit_upper = 1
+        m.limit_right = True
+    if not armed or throttle <= -throttle_limit:
+        m.limit_lower = True
+    if not armed or throttle >= throttle_limit:
+        m.limit_upper = True
 
 
 @law
-def _slew(ap):
-    m = ap.control.motors
-    wanted = float(m.throttle)
-    limited = slew_limited(ap, wanted)
-    if limited < wanted:
-        m.limit_upper = 1
-    elif limited > wanted:
-        m.limit_lower = 1
+def slew_throttle(m: MotorsState, slew_rate: float) -> None:
+    """Move the throttle no faster than a slew rate [%/s]."""
+    limited = slew_limited(m.throttle, m.throttle_last, slew_rate)
+    if limited < m.throttle:
+        m.limit_upper = True
+    elif limited > m.throttle:
+        m.limit_lower = True
     m.throttle = limited
     m.throttle_last = limited
 
 
 @law
-def _direction_delayed(ap, motor, value):
-    """``value``, or 0 for MOT_REV_DELAY after the last output in the other direction."""
-    m = ap.control.motors
-    if ap.params.MOT.REV_DELAY <= 0.0 or value == 0.0:
+def delay_reversal(m: MotorsState, motor: int, value: float, tick: int, delay: float) -> float:
+    """``value``, or 0 for ``delay`` [s] after the last output of the motor in the other direction."""
+    if delay <= 0.0 or value == 0.0:
         return value
-    now = now_tick(ap)
-    if value * float(m.direction[motor]) < 0.0 and (now - int(m.direction_tick[motor])) * DT < ap.params.MOT.REV_DELAY:
+    if value * m.direction[motor] < 0.0 and (tick - m.direction_tick[motor]) * DT < delay:
         return 0.0
     m.direction[motor] = value
-    m.direction_tick[motor] = now
+    m.direction_tick[motor] = tick
     return value
 
 
 @law
-def _motor_output(ap, motor, throttle):
-    curved = mixer.thrust_curve(throttle, throttle_min(ap), float(ap.params.MOT.THST_EXPO))
-    return constrain(_direction_delayed(ap, motor, curved), -1.0, 1.0)
+def motor_output(control: Control, motor: int, throttle: float, params: Motors) -> float:
+    """Output -1 .. 1 of motor 0 .. 2 for a throttle."""
+    curved = mixer.thrust_curve(throttle, throttle_min(params), params.THST_EXPO)
+    return constrain(
+        delay_reversal(control.motors, motor, curved, current_tick(control), params.REV_DELAY), -1.0, 1.0
+    )
 
 
 @law
-def _car(ap, armed):
-    """Steering and throttle of a car. Wheels steer even while disarmed.
+def scaled_steering(m: MotorsState, speed: float, base: float) -> float:
+    """Steering of a loop at ``speed`` [m/s].
 
-    At speed the same steering angle turns faster, so steering shrinks with MOT_SPD_SCA_BASE over the speed. Below that
-    speed the loop must not learn: both flags are set.
+    At speed the same steering angle turns faster, so steering shrinks with ``base`` (MOT_SPD_SCA_BASE [m/s]) over the
+    speed. Below that speed the loop must not learn: both flags are set.
     """
-    m = ap.control.motors
-    steering, throttle = float(m.steering), float(m.throttle)
-    speed = float(ap.control.speed.forward) if ap.control.speed.forward_ok != 0 else 0.0
-    base = float(ap.params.MOT.SPD_SCA_BASE)
-    if armed and m.scale_steering != 0:
-        if 0.0 < base < abs(speed):
-            steering *= base / abs(speed)
-        else:
-            m.limit_left = 1
-            m.limit_right = 1
-        if speed < 0.0:
-            steering = -steering
+    steering = m.steering
+    if 0.0 < base < abs(speed):
+        steering *= base / abs(speed)
+    else:
+        m.limit_left = True
+        m.limit_right = True
+    return -steering if speed < 0.0 else steering
+
+
+@law
+def drive_car(control: Control, armed: bool, params: Motors) -> None:
+    """Steering and throttle of a car. Wheels steer even while disarmed."""
+    m = control.motors
+    steering, throttle = m.steering, m.throttle
+    if armed and m.scale_steering:
+        speed = control.speed.forward if control.speed.forward_ok else 0.0
+        steering = scaled_steering(m, speed, params.SPD_SCA_BASE)
     elif armed and throttle < 0.0:
         steering = -steering
-    _set_limits(m, armed, steering, throttle, throttle_max(ap))
+    flag_limits(m, armed, steering, throttle, throttle_max(params))
     m.out_steering = constrain(steering, -1.0, 1.0)
-    m.out_throttle = _motor_output(ap, 0, throttle) if armed else 0.0
+    m.out_throttle = motor_output(control, 0, throttle, params) if armed else 0.0
     m.out_left = 0.0
     m.out_right = 0.0
 
 
 @law
-def _skid(ap, armed):
+def drive_skid(control: Control, armed: bool, params: Motors) -> None:
     """Left and right of a skid-steered vehicle."""
-    m = ap.control.motors
-    p = ap.params
-    steering, throttle = float(m.steering), float(m.throttle)
-    _set_limits(m, armed, steering, throttle, throttle_max(ap))
-    m.out_steering = constrain(steering, -1.0, 1.0)
-    m.out_throttle = throttle
+    m = control.motors
+    flag_limits(m, armed, m.steering, m.throttle, throttle_max(params))
+    m.out_steering = constrain(m.steering, -1.0, 1.0)
+    m.out_throttle = m.throttle
     m.out_left = 0.0
     m.out_right = 0.0
     if armed:
-        left, right = mixer.skid(m, steering, throttle, float(p.MOT.STR_THR_MIX), float(p.MOT.THST_ASYM))
-        m.out_left = _motor_output(ap, 1, left)
-        m.out_right = _motor_output(ap, 2, right)
+        sides = mixer.mix_skid(m, m.steering, m.throttle, params.STR_THR_MIX, params.THST_ASYM)
+        m.out_left = motor_output(control, 1, sides.left, params)
+        m.out_right = motor_output(control, 2, sides.right, params)
 
 
 @law
-def _test(ap):
+def run_motor_test(m: MotorsState, params: Motors) -> None:
     """Motor test: the motor in question alone."""
-    m = ap.control.motors
-    motor = int(m.test_motor)
-    value = constrain(float(m.test_value), -1.0, 1.0)
-    curved = mixer.thrust_curve(value, throttle_min(ap), float(ap.params.MOT.THST_EXPO))
-    m.out_throttle = curved if motor == TEST_THROTTLE else 0.0
-    m.out_steering = value if motor == TEST_STEERING else 0.0
-    m.out_left = curved if motor == TEST_LEFT else 0.0
-    m.out_right = curved if motor == TEST_RIGHT else 0.0
+    value = constrain(m.test_value, -1.0, 1.0)
+    curved = mixer.thrust_curve(value, throttle_min(params), params.THST_EXPO)
+    m.out_throttle = curved if m.test_motor == TEST_THROTTLE else 0.0
+    m.out_steering = value if m.test_motor == TEST_STEERING else 0.0
+    m.out_left = curved if m.test_motor == TEST_LEFT else 0.0
+    m.out_right = curved if m.test_motor == TEST_RIGHT else 0.0
 
 
 @law
-def update(ap):
+def drive_motors(ap: Autopilot) -> None:
     """One period, from the demands to ``motors.out_*`` and the limit flags."""
     m = ap.control.motors
-    armed = ap.arming.armed != 0
+    armed = ap.arming.armed
     if not armed:
         m.throttle = 0.0
-    m.limit_left = 0
-    m.limit_right = 0
-    m.limit_lower = 0
-    m.limit_upper = 0
-    _slew(ap)
+    m.limit_left = False
+    m.limit_right = False
+    m.limit_lower = False
+    m.limit_upper = False
+    slew_throttle(m, ap.params.MOT.SLEWRATE)
     if m.test_motor != 0:
-        _test(ap)
-    elif is_skid(ap):
-        _skid(ap, armed)
+        run_motor_test(m, ap.params.MOT)
+    elif is_skid(ap.params):
+        drive_skid(ap.control, armed, ap.params.MOT)
     else:
-        _car(ap, armed)
+        drive_car(ap.control, armed, ap.params.MOT)

@@ -1,50 +1,57 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Position: target -> velocity -> acceleration -> desired speed and turn rate (PSC_POS_P, PSC_VEL_*, TURN_RADIUS).
 
-NED metres from the estimator's origin. A mode calls ``init`` once, then one ``input_*`` or ``set_*`` law and ``update``
-every period; it reads ``desired_speed``, ``desired_turn_rate`` (or ``desired_lat_accel``) and hands them to ``speed``
-and ``steering``. The acceleration wanted across the nose becomes a turn, what is wanted along it a speed. A car cannot
-turn on the spot: while it is slower than its tightest turn allows, it keeps moving at that speed, or at the target's if
-that is less. Targets that are not finite are not taken over.
+North and east in metres from the estimator's origin. A mode calls ``init`` once, then one ``input_*`` or ``set_*`` law
+and ``follow_target`` every period; it reads ``desired_speed``, ``desired_turn_rate`` (or ``desired_lat_accel``) and
+hands them to ``speed`` and ``steering``. The acceleration wanted across the nose becomes a turn, what is wanted along
+it a speed. A car cannot turn on the spot: while it is slower than its tightest turn allows, it keeps moving at that
+speed, or at the target's if that is less. Targets that are not finite are not taken over.
 """
 
 from __future__ import annotations
 
 import math
 
+from ....core.algebra import ZERO2, cross2, dot2, finite2, horizontal, limit_length, norm2
 from ....core.kernels import law
-from ....core.scalars import finite
-from ...control.pid import lowpass_gain
+from ....core.vectors import Vec2
+from ...control.pid import Gains, basic_gains, lowpass_gain
 from ...control.shaping import (
+    Limits2,
+    Motion2,
     advance_2d,
     inverse_sqrt_controller,
-    limit_length,
     shape_pos_vel_accel_2d,
     sqrt_controller_2d,
 )
+from ...state import Estimate
+from ..parameters import Parameters
+from ..state import Autopilot
 from .motors import is_skid
-from .recent import now_tick, recent
-from .speed import desired_speed_accel_limited
-from .state import DT
+from .speed import accel_limited
+from .state import DT, Control, PositionState, current_tick, is_recent
 from .steering import lat_accel_max, turn_rate_from_lat_accel
 
-_TIMEOUT = 5  # periods: 0.1 s, ArduPilot's
-_BACK = 0.3  # least speed of a way back that counts as one [m/s]; of slow vehicles a share of their speed
-_BACK_SHARE = 0.5
-_STANDING = 1e-9  # speed that has a direction only [m/s]
-_ASIDE = 0.01  # lateral acceleration that leaves the line of a way straight back [m/s^2]
+TIMEOUT = 5
+"""Periods after which a controller that did not run starts afresh: 0.1 s, ArduPilot's."""
+SPEED_BACK_MIN = 0.3
+"""Least speed of a way back that counts as one [m/s]; of slow vehicles this fraction of their speed:"""
+SPEED_BACK_RATIO = 0.5
+STANDING = 1e-9
+"""Speed that has a direction only [m/s]."""
+LAT_ACCEL_ASIDE = 0.01
+"""Lateral acceleration that leaves the line of a way straight back [m/s^2]."""
 
 
 @law
-def is_active(ap):
-    """Whether ``update`` ran in the last 0.1 s."""
-    return recent(ap, int(ap.control.position.last_tick), _TIMEOUT)
+def is_active(control: Control) -> bool:
+    """Whether ``follow_target`` ran in the last 0.1 s."""
+    return is_recent(control, control.position.last_tick, TIMEOUT)
 
 
 @law
-def set_limits(ap, speed_max, accel_max, lat_accel_max, jerk_max):
+def set_limits(c: PositionState, speed_max: float, accel_max: float, lat_accel_max: float, jerk_max: float) -> None:
     """Limits of the correction and of shaped targets [m/s, m/s^2, m/s^2, m/s^3]."""
-    c = ap.control.position
     c.speed_max = max(speed_max, 0.0)
     c.accel_max = max(accel_max, 0.0)
     c.lat_accel_max = max(lat_accel_max, 0.0)
@@ -52,198 +59,165 @@ def set_limits(ap, speed_max, accel_max, lat_accel_max, jerk_max):
 
 
 @law
-def set_reversed(ap, backward):
-    """Drive backwards (1) or forwards (0); ``init`` sets forwards."""
-    ap.control.position.reversed = backward
+def init(c: PositionState, estimate: Estimate) -> bool:
+    """Targets to where the vehicle is and how it moves, forwards; False without a position estimate."""
+    if not estimate.position_ok:
+        return False
+    c.pos_target = horizontal(estimate.pos)
+    c.vel_desired = horizontal(estimate.vel)
+    c.accel_desired = horizontal(estimate.acc_ned)
+    c.pos_error = ZERO2
+    c.vel_target = ZERO2
+    c.accel_target = ZERO2
+    c.reversed = False
+    c.reset_count = estimate.reset_ne_count
+    return True
 
 
 @law
-def init(ap):
-    """Targets to where the vehicle is and how it moves; 1, or 0 without a position estimate."""
-    est = ap.estimate
-    c = ap.control.position
-    if est.position_ok == 0:
-        return 0
-    for k in range(2):
-        c.pos_target[k] = est.pos[k]
-        c.vel_desired[k] = est.vel[k]
-        c.accel_desired[k] = est.acc_ned[k]
-        c.pos_error[k] = 0.0
-        c.vel_target[k] = 0.0
-        c.accel_target[k] = 0.0
-    c.reversed = 0
-    c.reset_count = est.reset_ne_count
-    return 1
+def finite_motion(target: Motion2) -> bool:
+    """Whether all numbers are finite."""
+    return finite2(target.pos) and finite2(target.vel) and finite2(target.acc)
 
 
 @law
-def set_pos_vel_accel(ap, pn, pe, vn, ve, an, ae):
-    """Follow a path that is already smooth: position [m], velocity [m/s], acceleration [m/s^2]."""
-    if not (finite(pn + pe) and finite(vn + ve) and finite(an + ae)):
+def set_pos_vel_accel(c: PositionState, target: Motion2) -> None:
+    """Follow a path that is already smooth."""
+    if finite_motion(target):
+        c.pos_target = target.pos
+        c.vel_desired = target.vel
+        c.accel_desired = target.acc
+
+
+@law
+def input_pos_vel_accel(c: PositionState, target: Motion2) -> None:
+    """Pull the target, shaped, towards a moving point."""
+    if not finite_motion(target):
         return
-    c = ap.control.position
-    c.pos_target[0], c.pos_target[1] = pn, pe
-    c.vel_desired[0], c.vel_desired[1] = vn, ve
-    c.accel_desired[0], c.accel_desired[1] = an, ae
+    now = advance_2d(Motion2(c.pos_target, c.vel_desired, c.accel_desired), DT, ZERO2, ZERO2, ZERO2)
+    c.pos_target = now.pos
+    c.vel_desired = now.vel
+    accel_max = min(c.accel_max, c.lat_accel_max)
+    if accel_max > 0.0 and c.jerk_max > 0.0:
+        c.accel_desired = shape_pos_vel_accel_2d(target, now, Limits2(c.speed_max, accel_max, c.jerk_max), DT)
 
 
 @law
-def input_pos_vel_accel(ap, pn, pe, vn, ve, an, ae):
-    """Pull the target, shaped, towards a point at (pn, pe) that moves with (vn, ve) and (an, ae)."""
-    if not (finite(pn + pe) and finite(vn + ve) and finite(an + ae)):
-        return
-    c = ap.control.position
-    tn, te, un, ue = advance_2d(
-        float(c.pos_target[0]), float(c.pos_target[1]), float(c.vel_desired[0]), float(c.vel_desired[1]),
-        float(c.accel_desired[0]), float(c.accel_desired[1]), DT, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-    )  # fmt: skip
-    c.pos_target[0], c.pos_target[1] = tn, te
-    c.vel_desired[0], c.vel_desired[1] = un, ue
-    accel = min(float(c.accel_max), float(c.lat_accel_max))
-    if accel <= 0.0 or c.jerk_max <= 0.0:
-        return
-    bn, be = shape_pos_vel_accel_2d(
-        pn, pe, vn, ve, an, ae, tn, te, un, ue, float(c.accel_desired[0]), float(c.accel_desired[1]),
-        float(c.speed_max), accel, float(c.jerk_max), DT, 0,
-    )  # fmt: skip
-    c.accel_desired[0], c.accel_desired[1] = bn, be
+def input_pos(c: PositionState, pos: Vec2) -> None:
+    """The same towards a point that stands [m]."""
+    input_pos_vel_accel(c, Motion2(pos, ZERO2, ZERO2))
 
 
 @law
-def input_pos(ap, pn, pe):
-    """The same towards a point that stands."""
-    input_pos_vel_accel(ap, pn, pe, 0.0, 0.0, 0.0, 0.0)
-
-
-@law
-def pos_error(ap):
-    """(north, east) from the vehicle to the target [m]; zero when the controller rests."""
-    c = ap.control.position
-    if not is_active(ap) or ap.estimate.position_ok == 0:
-        return (0.0, 0.0)
-    return (
-        float(c.pos_target[0]) - float(ap.estimate.pos[0]),
-        float(c.pos_target[1]) - float(ap.estimate.pos[1]),
-    )
-
-
-@law
-def _follow_reset(ap):
+def follow_reset(c: PositionState, estimate: Estimate) -> None:
     """When the estimate jumps, the target jumps with it."""
-    c = ap.control.position
-    if c.reset_count == ap.estimate.reset_ne_count:
-        return
-    c.reset_count = ap.estimate.reset_ne_count
-    for k in range(2):
-        c.pos_target[k] = float(ap.estimate.pos[k]) + float(c.pos_error[k])
-        c.vel_desired[k] = float(ap.estimate.vel[k]) + float(c.vel_error[k])
+    if c.reset_count != estimate.reset_ne_count:
+        c.reset_count = estimate.reset_ne_count
+        c.pos_target = horizontal(estimate.pos) + c.pos_error
+        c.vel_desired = horizontal(estimate.vel) + c.vel_error
 
 
 @law
-def _position_loop(ap):
-    """Velocity (north, east) that takes the position error away; a target too far ahead waits."""
-    c = ap.control.position
-    kp = float(ap.params.PSC.POS_P)
-    accel = min(float(c.accel_max), float(c.lat_accel_max))
-    if c.jerk_max > 0.0 and kp > 0.0:
-        accel = min(accel, float(c.jerk_max) / kp)
-    n, e = float(ap.estimate.pos[0]), float(ap.estimate.pos[1])
-    en, ee = float(c.pos_target[0]) - n, float(c.pos_target[1]) - e
-    if c.speed_max > 0.0 and kp > 0.0:
-        most = inverse_sqrt_controller(float(c.speed_max), kp, accel)
-        if en * en + ee * ee > most * most:
-            en, ee = limit_length(en, ee, most)
-            c.pos_target[0], c.pos_target[1] = n + en, e + ee
-    c.pos_error[0], c.pos_error[1] = en, ee
-    return sqrt_controller_2d(en, ee, kp, accel, 0.0)
+def control_position(c: PositionState, pos: Vec2, pos_p: float) -> Vec2:
+    """Velocity [m/s] that takes the position error away (``pos_p`` [1/s]); a target too far ahead waits."""
+    accel_max = min(c.accel_max, c.lat_accel_max)
+    if c.jerk_max > 0.0 and pos_p > 0.0:
+        accel_max = min(accel_max, c.jerk_max / pos_p)
+    error = c.pos_target - pos
+    if c.speed_max > 0.0 and pos_p > 0.0:
+        error_max = inverse_sqrt_controller(c.speed_max, pos_p, accel_max)
+        if dot2(error, error) > error_max * error_max:
+            error = limit_length(error, error_max)
+            c.pos_target = pos + error
+    c.pos_error = error
+    return sqrt_controller_2d(error, pos_p, accel_max, 0.0)
 
 
 @law
-def _velocity_loop(ap):
-    """Acceleration (north, east) [m/s^2] that the velocity PID asks for."""
-    c = ap.control.position
-    p = ap.params
-    kp, ki, kd, kff = float(p.PSC.VEL.P), float(p.PSC.VEL.I), float(p.PSC.VEL.D), float(p.PSC.VEL.FF)
-    gain_e, gain_d = lowpass_gain(float(p.PSC.VEL.FLTE), DT), lowpass_gain(float(p.PSC.VEL.FLTD), DT)
-    for k in range(2):
-        error = float(c.vel_target[k]) - float(ap.estimate.vel[k])
-        if c.started == 0:
-            c.vel_error[k] = error
-            c.vel_derivative[k] = 0.0
-        else:
-            last = float(c.vel_error[k])
-            c.vel_error[k] = last + gain_e * (error - last)
-            c.vel_derivative[k] += gain_d * ((float(c.vel_error[k]) - last) / DT - float(c.vel_derivative[k]))
-    c.started = 1
-    i_n = float(c.vel_integrator[0]) + float(c.vel_error[0]) * ki * DT
-    i_e = float(c.vel_integrator[1]) + float(c.vel_error[1]) * ki * DT
-    i_n, i_e = limit_length(i_n, i_e, float(p.PSC.VEL.IMAX))
-    if ki == 0.0:
-        i_n, i_e = 0.0, 0.0
-    c.vel_integrator[0], c.vel_integrator[1] = i_n, i_e
-    return (
-        kp * float(c.vel_error[0]) + i_n + kd * float(c.vel_derivative[0]) + kff * float(c.vel_target[0]),
-        kp * float(c.vel_error[1]) + i_e + kd * float(c.vel_derivative[1]) + kff * float(c.vel_target[1]),
-    )
+def control_velocity(c: PositionState, vel: Vec2, gains: Gains) -> Vec2:
+    """Acceleration [m/s^2] that the velocity PID asks for at ``vel`` [m/s]."""
+    error = c.vel_target - vel
+    if c.started:
+        last = c.vel_error
+        c.vel_error = last + lowpass_gain(gains.error_hz, DT) * (error - last)
+        derivative = (c.vel_error - last) / DT
+        c.vel_derivative += lowpass_gain(gains.derivative_hz, DT) * (derivative - c.vel_derivative)
+    else:
+        c.started = True
+        c.vel_error = error
+        c.vel_derivative = ZERO2
+    integrator = limit_length(c.vel_integrator + c.vel_error * gains.i * DT, gains.i_max)
+    c.vel_integrator = integrator if gains.i != 0.0 else ZERO2
+    return gains.p * c.vel_error + c.vel_integrator + gains.d * c.vel_derivative + gains.ff * c.vel_target
 
 
 @law
-def turn_radius(ap):
+def turn_radius(params: Parameters) -> float:
     """Radius of the tightest turn [m]: TURN_RADIUS, 0 for a skid-steered vehicle."""
-    return 0.0 if is_skid(ap) else max(float(ap.params.TURN_RADIUS), 0.0)
+    return 0.0 if is_skid(params) else max(params.TURN_RADIUS, 0.0)
 
 
 @law
-def _brake(ap):
-    c = ap.control.position
-    c.desired_speed = desired_speed_accel_limited(ap, 0.0)
+def speed_along(c: PositionState, along: float, size: float, slowest: float) -> float:
+    """Speed along the nose [m/s]: ``along``, what is wanted there, but no less than the tightest turn needs.
+
+    ``size``: length of the wanted velocity; ``slowest``: least speed of a turn [m/s].
+    """
+    least = min(size, slowest)
+    return min(-least, along) if c.reversed else max(least, along)
+
+
+@law
+def lateral_or_aside(c: PositionState, along: float, size: float, lateral: float) -> float:
+    """``lateral`` acceleration [m/s^2]; where the way leads straight back, nothing would turn a car: then to the right.
+
+    ``along``: of the wanted velocity of ``size`` along the nose [m/s].
+    """
+    away = along > 0.0 if c.reversed else along < 0.0
+    if away and size > min(SPEED_BACK_MIN, SPEED_BACK_RATIO * c.speed_max) and abs(lateral) < LAT_ACCEL_ASIDE:
+        return LAT_ACCEL_ASIDE
+    return lateral
+
+
+@law
+def drive_towards(control: Control, heading: float, params: Parameters) -> None:
+    """From the wanted velocity and acceleration to the outputs of a vehicle with its nose at ``heading`` [rad]."""
+    c = control.position
+    nose = Vec2(math.cos(heading), math.sin(heading))
+    along = dot2(c.vel_target, nose)
+    size = norm2(c.vel_target)
+    slowest = math.sqrt(0.5 * lat_accel_max(params.ATC) * turn_radius(params))
+    c.desired_speed = accel_limited(control, speed_along(c, along, size, slowest), params.ATC)
+    c.desired_lat_accel = lateral_or_aside(c, along, size, cross2(nose, c.accel_target))
+    speed = c.desired_speed
+    if speed == 0.0 and c.reversed:
+        speed = -STANDING  # towards where it is about to go
+    c.desired_turn_rate = turn_rate_from_lat_accel(c.desired_lat_accel, speed)
+
+
+@law
+def brake(control: Control, params: Parameters) -> None:
+    """Outputs that slow down straight on."""
+    c = control.position
+    c.desired_speed = accel_limited(control, 0.0, params.ATC)
     c.desired_turn_rate = 0.0
     c.desired_lat_accel = 0.0
 
 
 @law
-def _aside(c, along, size, lateral):
-    """``lateral`` acceleration [m/s^2]; where the way leads straight back, nothing would turn a car: then to the right.
-
-    ``along``: of the wanted velocity of ``size`` along the nose [m/s].
-    """
-    away = along > 0.0 if c.reversed != 0 else along < 0.0
-    if away and size > min(_BACK, _BACK_SHARE * float(c.speed_max)) and abs(lateral) < _ASIDE:
-        return _ASIDE
-    return lateral
-
-
-@law
-def update(v):
+def follow_target(ap: Autopilot) -> None:
     """One period of the cascade. Disarmed or without a position the outputs brake."""
-    ap = v.autopilot
-    est = ap.estimate
     c = ap.control.position
-    if ap.arming.armed == 0 or est.position_ok == 0 or not finite(est.pos[0] + est.pos[1] + est.vel[0] + est.vel[1]):
-        _brake(ap)
+    psc = ap.params.PSC
+    pos, vel = horizontal(ap.estimate.pos), horizontal(ap.estimate.vel)
+    if not (ap.arming.armed and ap.estimate.position_ok and finite2(pos) and finite2(vel)):
+        brake(ap.control, ap.params)
         return
-    _follow_reset(ap)
-    if not is_active(ap):
-        c.started = 0
-        c.vel_integrator[0] = 0.0
-        c.vel_integrator[1] = 0.0
-    c.last_tick = now_tick(ap)
-
-    vn, ve = _position_loop(ap)
-    vn, ve = limit_length(vn + float(c.vel_desired[0]), ve + float(c.vel_desired[1]), float(c.speed_max))
-    c.vel_target[0], c.vel_target[1] = vn, ve
-    an, ae = _velocity_loop(ap)
-    an, ae = an + float(c.accel_desired[0]), ae + float(c.accel_desired[1])
-    c.accel_target[0], c.accel_target[1] = an, ae
-
-    cosine, sine = math.cos(float(est.euler[2])), math.sin(float(est.euler[2]))
-    along = vn * cosine + ve * sine
-    size = math.sqrt(vn * vn + ve * ve)
-    least = min(size, math.sqrt(0.5 * lat_accel_max(ap) * turn_radius(ap)))
-    wanted = min(-least, along) if c.reversed != 0 else max(least, along)
-    c.desired_speed = desired_speed_accel_limited(ap, wanted)
-    c.desired_lat_accel = _aside(c, along, size, ae * cosine - an * sine)
-    speed = float(c.desired_speed)
-    if speed == 0.0 and c.reversed != 0:
-        speed = -_STANDING  # towards where it is about to go
-    c.desired_turn_rate = turn_rate_from_lat_accel(float(c.desired_lat_accel), speed)
+    follow_reset(c, ap.estimate)
+    if not is_active(ap.control):
+        c.started = False
+        c.vel_integrator = ZERO2
+    c.last_tick = current_tick(ap.control)
+    c.vel_target = limit_length(control_position(c, pos, psc.POS_P) + c.vel_desired, c.speed_max)
+    c.accel_target = control_velocity(c, vel, basic_gains(psc.VEL, psc.VEL.IMAX)) + c.accel_desired
+    drive_towards(ap.control, ap.estimate.euler.yaw, ap.params)

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Outputs: which function each drives (SERVOn_FUNCTION) and its pulse (SERVOn_MIN, _MAX, _TRIM, _REVERSED).
 
-Outputs 1 .. 4 have parameters, the others are free for DO_SET_SERVO, as is an output whose function is 0.
+Outputs 1 .. 4 have parameters, the others are free for DO_SET_SERVO, as is an output whose function is 0. The last step
+of a period turns what ``motors`` made of the demands into pulses on the outputs that have a function.
 """
 
 from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
+from ...state import Actuators
+from ..parameters import Parameters
+from ..parameters.control import ServoOutput
+from ..state import Autopilot
+from .state import TEST_LEFT, TEST_RIGHT, TEST_STEERING, TEST_THROTTLE, MotorsState
 
 OUTPUTS = 4
 CHANNELS = 16
@@ -15,59 +21,33 @@ NONE, PASS_THROUGH, STEERING, RECEIVER_1, RECEIVER_16, THROTTLE, LEFT, RIGHT = 0
 
 
 @law
-def function(ap, output):
+def function_of(params: Parameters, output: int) -> int:
     """SERVOn_FUNCTION of output 0 .. 3; 0 of the others."""
-    p = ap.params
-    if output == 0:
-        return int(p.SERVO[0].FUNCTION)
-    if output == 1:
-        return int(p.SERVO[1].FUNCTION)
-    if output == 2:
-        return int(p.SERVO[2].FUNCTION)
-    if output == 3:
-        return int(p.SERVO[3].FUNCTION)
-    return NONE
+    return int(params.SERVO[output].FUNCTION) if 0 <= output < OUTPUTS else NONE
 
 
 @law
-def travel(ap, output):
-    """(MIN, TRIM, MAX) [us] and REVERSED of output 0 .. 3."""
-    p = ap.params
-    if output == 0:
-        return (float(p.SERVO[0].MIN), float(p.SERVO[0].TRIM), float(p.SERVO[0].MAX), float(p.SERVO[0].REVERSED))
-    if output == 1:
-        return (float(p.SERVO[1].MIN), float(p.SERVO[1].TRIM), float(p.SERVO[1].MAX), float(p.SERVO[1].REVERSED))
-    if output == 2:
-        return (float(p.SERVO[2].MIN), float(p.SERVO[2].TRIM), float(p.SERVO[2].MAX), float(p.SERVO[2].REVERSED))
-    return (float(p.SERVO[3].MIN), float(p.SERVO[3].TRIM), float(p.SERVO[3].MAX), float(p.SERVO[3].REVERSED))
-
-
-@law
-def is_assigned(ap, number):
+def is_assigned(params: Parameters, number: int) -> bool:
     """Whether some output has this function."""
-    p = ap.params
-    return (
-        int(p.SERVO[0].FUNCTION) == number
-        or int(p.SERVO[1].FUNCTION) == number
-        or int(p.SERVO[2].FUNCTION) == number
-        or int(p.SERVO[3].FUNCTION) == number
-    )
+    for output in range(OUTPUTS):
+        if function_of(params, output) == number:
+            return True
+    return False
 
 
 @law
-def pulse(ap, output, value):
+def pulse(servo: ServoOutput, value: float) -> int:
     """Pulse [us] for -1 .. 1 of the travel; the part beside TRIM is cut to whole microseconds, as ArduPilot cuts it."""
-    least, trim, most, is_reversed = travel(ap, output)
     value = constrain(value, -1.0, 1.0) if finite(value) else 0.0
-    if is_reversed != 0.0:
+    if servo.REVERSED != 0.0:
         value = -value
     if value > 0.0:
-        return int(trim) + int(value * (most - trim))
-    return int(trim) - int(-value * (trim - least))
+        return int(servo.TRIM) + int(value * (servo.MAX - servo.TRIM))
+    return int(servo.TRIM) - int(-value * (servo.TRIM - servo.MIN))
 
 
 @law
-def write(actuators, output, width):
+def write(actuators: Actuators, output: int, width: int) -> None:
     """A pulse [us] (0: none) and the control -1 .. 1 that it is."""
     actuators.pwm[output] = width
     if width == 0:
@@ -77,9 +57,68 @@ def write(actuators, output, width):
 
 
 @law
-def set_servo(v, output, width):
-    """DO_SET_SERVO: a pulse [us] on output 0 .. 15; 0 when a function has that output."""
-    if output < 0 or output >= CHANNELS or function(v.autopilot, output) != NONE:
+def set_servo(params: Parameters, actuators: Actuators, output: int, width: int) -> bool:
+    """DO_SET_SERVO: a pulse [us] on output 0 .. 15; whether it is free: a function may have it."""
+    if output < 0 or output >= CHANNELS or function_of(params, output) != NONE:
+        return False
+    write(actuators, output, width)
+    return True
+
+
+@law
+def is_tested(motor: int, function: int) -> bool:
+    """Whether the motor test (TEST_*) drives this function."""
+    return (
+        (motor == TEST_THROTTLE and function == THROTTLE)
+        or (motor == TEST_STEERING and function == STEERING)
+        or (motor == TEST_LEFT and function == LEFT)
+        or (motor == TEST_RIGHT and function == RIGHT)
+    )
+
+
+@law
+def drives(function: int) -> bool:
+    """Whether the function is a motor's."""
+    return function == THROTTLE or function == LEFT or function == RIGHT
+
+
+@law
+def function_value(m: MotorsState, function: int) -> float:
+    """-1 .. 1 of the travel of steering or a motor."""
+    if function == STEERING:
+        return m.out_steering
+    if function == THROTTLE:
+        return m.out_throttle
+    return m.out_left if function == LEFT else m.out_right
+
+
+@law
+def function_pulse(ap: Autopilot, output: int, function: int) -> int:
+    """Pulse [us] of an output with a function; 0 for none."""
+    m = ap.control.motors
+    if function == PASS_THROUGH:
+        return ap.rc.channels[output]
+    if RECEIVER_1 <= function <= RECEIVER_16:
+        return ap.rc.channels[function - RECEIVER_1]
+    if m.test_pulse != 0 and is_tested(m.test_motor, function):
+        return m.test_pulse
+    if function != STEERING and not drives(function):
         return 0
-    write(v.actuators, output, width)
-    return 1
+    if drives(function) and not ap.arming.armed and ap.params.MOT.SAFE_DISARM != 0.0:
+        return 0
+    return pulse(ap.params.SERVO[output], function_value(m, function))
+
+
+@law
+def write_actuators(ap: Autopilot, actuators: Actuators) -> None:
+    """Pulses of the outputs that have a function; one that loses its function falls silent."""
+    m = ap.control.motors
+    for k in range(OUTPUTS):
+        function = function_of(ap.params, k)
+        if function > NONE:
+            write(actuators, k, function_pulse(ap, k, function))
+            m.driven[k] = 1
+        elif m.driven[k] != 0:
+            write(actuators, k, 0)
+            m.driven[k] = 0
+    actuators.armed = ap.arming.armed

@@ -8,159 +8,151 @@ corrects the rest. Backward speeds are negative.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
-from ...control.pid import reset_filter, update_saturating
+from ...control.pid import pid_gains, reset_filter, update_pid
+from ..parameters import Parameters
+from ..parameters.control import Attitude
+from ..parameters.driving import Cruise
+from ..state import Vehicle
 from . import motors
-from .forward_speed import forward_speed
-from .recent import now_tick, recent
-from .state import DT
+from .forward_speed import ForwardSpeed, sense
+from .state import DT, Control, SpeedState, current_tick, is_recent
 
-_TIMEOUT = 10  # periods: 0.2 s, ArduPilot's
-MIN_DECEL = 0.01
+TIMEOUT = 10
+"""Periods after which a loop that did not run starts afresh: 0.2 s, ArduPilot's."""
+DECEL_MIN = 0.01
 """Floor of the deceleration that a stop is planned with [m/s^2], whatever parameters say."""
-_STANDS = 14  # periods: what stood less than 0.3 s ago still stands
+STANDING = 14
+"""Periods: what stood less than 0.3 s ago still stands."""
+
+
+class Stop(NamedTuple):
+    """One period of a controlled stop."""
+
+    throttle: float  # demand
+    stands: bool
 
 
 @law
-def is_active(ap):
+def is_active(control: Control) -> bool:
     """Whether the speed loop ran in the last 0.2 s."""
-    return recent(ap, int(ap.control.speed.last_tick), _TIMEOUT)
+    return is_recent(control, control.speed.last_tick, TIMEOUT)
 
 
 @law
-def desired_speed(ap):
-    """What the speed loop follows [m/s], for telemetry; 0 when it does not run."""
-    return float(ap.control.speed.desired) if is_active(ap) else 0.0
-
-
-@law
-def decel_max(ap):
+def decel_max(params: Attitude) -> float:
     """Fastest deceleration of the desired speed [m/s^2]; 0: no limit."""
-    if ap.params.ATC.DECEL_MAX > 0.0:
-        return float(ap.params.ATC.DECEL_MAX)
-    return float(ap.params.ATC.ACCEL_MAX)
+    return params.DECEL_MAX if params.DECEL_MAX > 0.0 else params.ACCEL_MAX
 
 
 @law
-def desired_speed_accel_limited(ap, desired):
+def accel_limited(control: Control, desired: float, params: Attitude) -> float:
     """``desired`` [m/s] as near as the acceleration limits let this period come; itself while the loop rests."""
-    s = ap.control.speed
-    if not is_active(ap) or ap.params.ATC.ACCEL_MAX <= 0.0:
+    if not is_active(control) or params.ACCEL_MAX <= 0.0:
         return desired
-    last = float(s.desired)
-    most = (decel_max(ap) if abs(desired) < abs(last) else float(ap.params.ATC.ACCEL_MAX)) * DT
-    return constrain(desired, last - most, last + most)
+    last = control.speed.desired
+    change = (decel_max(params) if abs(desired) < abs(last) else params.ACCEL_MAX) * DT
+    return constrain(desired, last - change, last + change)
 
 
 @law
-def stopping_distance(ap, speed):
+def stopping_distance(speed: float, params: Attitude) -> float:
     """Distance [m] in which ``speed`` [m/s] can be taken away; 0 without a limit of deceleration."""
-    decel = decel_max(ap)
+    decel = decel_max(params)
     if decel <= 0.0:
         return 0.0
-    return 0.5 * speed * speed / max(decel, MIN_DECEL)
+    return 0.5 * speed * speed / max(decel, DECEL_MIN)
 
 
 @law
-def speed_max(ap):
+def speed_max(params: Parameters) -> float:
     """Speed at full throttle [m/s]: SPEED_MAX, else extrapolated from CRUISE_SPEED; at most 30."""
-    cruise = float(ap.params.CRUISE.SPEED)
-    throttle = float(ap.params.CRUISE.THROTTLE) * 0.01
-    most = cruise
+    fastest = params.CRUISE.SPEED
+    throttle = params.CRUISE.THROTTLE * 0.01
     if 0.05 <= throttle <= 1.0:
-        most = float(ap.params.SPEED_MAX) if ap.params.SPEED_MAX > 0.0 else cruise / throttle
-    return constrain(most, 0.0, 30.0)
+        fastest = params.SPEED_MAX if params.SPEED_MAX > 0.0 else fastest / throttle
+    return constrain(fastest, 0.0, 30.0)
 
 
 @law
-def cruise_throttle(ap, speed):
+def cruise_throttle(speed: float, params: Cruise) -> float:
     """Throttle -1 .. 1 that ``speed`` [m/s] needs by CRUISE_SPEED and CRUISE_THROTTLE."""
-    cruise = float(ap.params.CRUISE.SPEED)
-    if cruise <= 0.0:
+    if params.SPEED <= 0.0:
         return 0.0
-    return speed * float(ap.params.CRUISE.THROTTLE) * 0.01 / cruise
+    return speed * params.THROTTLE * 0.01 / params.SPEED
 
 
 @law
-def throttle_for_speed(v, desired):
-    """Throttle demand for a speed [m/s]; 0 while the speed is not known."""
-    ap = v.autopilot
-    p = ap.params
-    s = ap.control.speed
-    m = ap.control.motors
-    ok, speed = forward_speed(v)
-    if ok == 0:
+def without_brake(s: SpeedState, throttle: float) -> float:
+    """``throttle`` that does not work against the motion (ATC_BRAKE 0); the flags say what was taken away."""
+    if s.desired >= 0.0 and throttle <= 0.0:
+        s.limit_low = True
         return 0.0
-    if not is_active(ap):
-        reset_filter(s.loop)
-        s.loop.integrator = 0.0
-        s.desired = speed
-    s.last_tick = now_tick(ap)
-    s.desired = desired_speed_accel_limited(ap, desired if finite(desired) else 0.0)
-
-    saturated = m.limit_lower != 0 or m.limit_upper != 0 or s.limit_low != 0 or s.limit_high != 0
-    throttle = cruise_throttle(ap, float(s.desired)) + update_saturating(
-        s.loop, float(s.desired), speed, DT, saturated,
-        p.ATC.SPEED.P, p.ATC.SPEED.I, p.ATC.SPEED.D, p.ATC.SPEED.FF, p.ATC.SPEED.D_FF,
-        p.ATC.SPEED.IMAX, p.ATC.SPEED.PDMX, p.ATC.SPEED.FLTT, p.ATC.SPEED.FLTE, p.ATC.SPEED.FLTD,
-    )  # fmt: skip
-    s.limit_low = 0
-    s.limit_high = 0
-    if p.ATC.BRAKE == 0.0:
-        if s.desired >= 0.0 and throttle <= 0.0:
-            throttle = 0.0
-            s.limit_low = 1
-        elif s.desired <= 0.0 and throttle >= 0.0:
-            throttle = 0.0
-            s.limit_high = 1
+    if s.desired <= 0.0 and throttle >= 0.0:
+        s.limit_high = True
+        return 0.0
     return throttle
 
 
 @law
-def throttle_for_stop(v):
-    """(throttle demand, stands 0 or 1) of a controlled stop; throttle 0 once standing (ATC_STOP_SPEED)."""
-    ap = v.autopilot
-    s = ap.control.speed
-    stands = recent(ap, int(s.stop_tick), _STANDS)
-    limited = desired_speed_accel_limited(ap, 0.0)
-    ok, speed = forward_speed(v)
-    if ok == 0 or (limited == 0.0 and abs(speed) <= abs(float(ap.params.ATC.STOP_SPEED))):
-        stands = True
-    if stands:
-        s.stop_tick = now_tick(ap)
+def control_speed(control: Control, desired: float, forward: ForwardSpeed, params: Parameters) -> float:
+    """Throttle demand for a speed [m/s]; 0 while the present speed is not known."""
+    s = control.speed
+    m = control.motors
+    if not forward.known:
+        return 0.0
+    if not is_active(control):
+        reset_filter(s.loop)
+        s.loop.integrator = 0.0
+        s.desired = forward.speed
+    s.last_tick = current_tick(control)
+    s.desired = accel_limited(control, desired if finite(desired) else 0.0, params.ATC)
+    saturated = m.limit_lower or m.limit_upper or s.limit_low or s.limit_high
+    correction = update_pid(s.loop, s.desired, forward.speed, DT, saturated, pid_gains(params.ATC.SPEED))
+    throttle = cruise_throttle(s.desired, params.CRUISE) + correction
+    s.limit_low = False
+    s.limit_high = False
+    return without_brake(s, throttle) if params.ATC.BRAKE == 0.0 else throttle
+
+
+@law
+def control_stop(control: Control, forward: ForwardSpeed, params: Parameters) -> Stop:
+    """Throttle demand of a controlled stop, 0 once standing (ATC_STOP_SPEED)."""
+    s = control.speed
+    limited = accel_limited(control, 0.0, params.ATC)
+    slow = limited == 0.0 and abs(forward.speed) <= abs(params.ATC.STOP_SPEED)
+    if is_recent(control, s.stop_tick, STANDING) or not forward.known or slow:
+        s.stop_tick = current_tick(control)
         s.last_tick = s.stop_tick
         reset_filter(s.loop)
         s.loop.integrator = 0.0
         s.desired = 0.0
-        return (0.0, 1)
+        return Stop(0.0, True)
     s.stop_tick = 0
-    return (throttle_for_speed(v, limited), 0)
+    return Stop(control_speed(control, limited, forward, params), False)
 
 
 @law
-def drive(v, desired):
+def drive(v: Vehicle, desired: float) -> None:
     """Drive at ``desired`` [m/s] this period; 0 makes a controlled stop."""
     ap = v.autopilot
-    limited = desired_speed_accel_limited(ap, desired if finite(desired) else 0.0)
+    forward = sense(v)
+    limited = accel_limited(ap.control, desired if finite(desired) else 0.0, ap.params.ATC)
     if limited == 0.0:
-        throttle, _ = throttle_for_stop(v)
+        throttle = control_stop(ap.control, forward, ap.params).throttle
     else:
-        throttle = throttle_for_speed(v, limited)
+        throttle = control_speed(ap.control, limited, forward, ap.params)
     motors.set_throttle(ap, throttle)
 
 
 @law
-def stop(v):
-    """Stop with straight wheels; 1 once standing."""
+def stop(v: Vehicle) -> bool:
+    """Stop with straight wheels; whether it stands."""
     ap = v.autopilot
-    throttle, stands = throttle_for_stop(v)
-    motors.set_throttle(ap, throttle)
+    out = control_stop(ap.control, sense(v), ap.params)
+    motors.set_throttle(ap, out.throttle)
     motors.set_steering(ap, 0.0)
-    return stands
-
-
-@law
-def relax(ap):
-    """Forget the trim of the speed loop."""
-    ap.control.speed.loop.integrator = 0.0
+    return out.stands

@@ -11,153 +11,132 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
-from ...control.pid import reset_filter, update_saturating
+from ...control.pid import pid_gains, reset_filter, update_pid
+from ..parameters.control import Attitude
+from ..state import Autopilot
 from .forward_speed import yaw_rate
-from .recent import now_tick, recent
-from .state import DT, GRAVITY
+from .state import DT, GRAVITY, Control, SteeringState, current_tick, is_recent
 
-_TIMEOUT = 10  # periods: 0.2 s, ArduPilot's
-_SLOWEST = 1.0  # below it turns are computed as if this fast [m/s]: steady steering at the start
-_LEAST_RATE = math.radians(1.0)
+TIMEOUT = 10
+"""Periods after which a loop that did not run starts afresh: 0.2 s, ArduPilot's."""
+SPEED_MIN = 1.0
+"""Below it turns are computed as if this fast [m/s]: steady steering at the start."""
+TURN_RATE_MIN = math.radians(1.0)
+"""The lateral acceleration never limits turns below this rate [rad/s]."""
 
 
 @law
-def lat_accel_max(ap):
+def lat_accel_max(params: Attitude) -> float:
     """Lateral acceleration that turns may need [m/s^2] (ATC_TURN_MAX_G)."""
-    return max(float(ap.params.ATC.TURN_MAX_G), 0.1) * GRAVITY
+    return max(params.TURN_MAX_G, 0.1) * GRAVITY
 
 
 @law
-def turn_rate_from_lat_accel(lat_accel, speed):
+def turn_rate_from_lat_accel(lat_accel: float, speed: float) -> float:
     """Turn rate [rad/s] that gives a lateral acceleration [m/s^2] at ``speed`` [m/s], backward negative."""
     if speed < 0.0:
-        return lat_accel / min(speed, -_SLOWEST)
-    return lat_accel / max(speed, _SLOWEST)
+        return lat_accel / min(speed, -SPEED_MIN)
+    return lat_accel / max(speed, SPEED_MIN)
 
 
 @law
-def lat_accel(ap, turn_rate, speed):
-    """Lateral acceleration [m/s^2] of a turn, within ATC_TURN_MAX_G."""
-    most = lat_accel_max(ap)
-    return constrain(turn_rate * speed, -most, most)
-
-
-@law
-def decel_max(ap):
+def turn_decel_max(params: Attitude) -> float:
     """Fastest decay of the desired turn rate [rad/s^2]; 0: no limit (ATC_STR_DEC_MAX, else ATC_STR_ACC_MAX)."""
-    if ap.params.ATC.STR_DEC_MAX > 0.0:
-        return math.radians(float(ap.params.ATC.STR_DEC_MAX))
-    return math.radians(float(ap.params.ATC.STR_ACC_MAX))
+    return math.radians(params.STR_DEC_MAX if params.STR_DEC_MAX > 0.0 else params.STR_ACC_MAX)
 
 
 @law
-def is_active(ap):
+def is_active(control: Control) -> bool:
     """Whether a steering law ran in the last 0.2 s."""
-    return recent(ap, int(ap.control.steering.last_tick), _TIMEOUT)
+    return is_recent(control, control.steering.last_tick, TIMEOUT)
 
 
 @law
-def desired_turn_rate(ap):
-    """What the turn-rate loop follows [rad/s], for telemetry; 0 when it does not run."""
-    return float(ap.control.steering.turn_rate) if is_active(ap) else 0.0
-
-
-@law
-def desired_lat_accel(ap):
-    """Last lateral acceleration asked for [m/s^2], for telemetry; 0 when none was lately."""
-    s = ap.control.steering
-    return float(s.lat_accel) if recent(ap, int(s.lat_accel_tick), _TIMEOUT) else 0.0
-
-
-@law
-def _limited(s, rate, low, high):
+def limited(s: SteeringState, rate: float, low: float, high: float) -> float:
     """``rate`` within its limits; at one, the flag says which way no more can be had."""
     if rate <= low:
-        s.limit_left = 1
+        s.limit_left = True
     if rate >= high:
-        s.limit_right = 1
+        s.limit_right = True
     return constrain(rate, low, high)
 
 
 @law
-def _limited_acceleration(ap, rate):
-    s = ap.control.steering
-    last = float(s.turn_rate)
-    grow = math.radians(float(ap.params.ATC.STR_ACC_MAX))
+def limited_acceleration(s: SteeringState, rate: float, params: Attitude) -> float:
+    """``rate`` [rad/s] as near as the limits of its growth and decay let it come in this period."""
+    last = s.turn_rate
     slowing = rate * last < 0.0 or abs(rate) < abs(last)
-    most = decel_max(ap) if slowing else grow
-    if most <= 0.0:
+    change = turn_decel_max(params) if slowing else math.radians(params.STR_ACC_MAX)
+    if change <= 0.0:
         return rate
-    return _limited(s, rate, last - most * DT, last + most * DT)
+    return limited(s, rate, last - change * DT, last + change * DT)
 
 
 @law
-def out_from_rate(ap, turn_rate):
-    """Steering demand for a turn rate [rad/s]. Limits in this order: acceleration, rate, lateral acceleration."""
-    p = ap.params
-    s = ap.control.steering
-    motors = ap.control.motors
-    measured = yaw_rate(ap)
-    if not is_active(ap):
-        reset_filter(s.rate)
-        s.rate.integrator = 0.0
-        s.turn_rate = measured if finite(measured) else 0.0
-    s.last_tick = now_tick(ap)
-    s.limit_left = motors.limit_left
-    s.limit_right = motors.limit_right
-
-    rate = turn_rate if finite(turn_rate) else 0.0
-    rate = _limited_acceleration(ap, rate)
-    most = math.radians(float(p.ATC.STR_RAT_MAX))
-    if most > 0.0:
-        rate = _limited(s, rate, -most, most)
-    if ap.control.speed.forward_ok != 0:
-        most = turn_rate_from_lat_accel(lat_accel_max(ap), abs(float(ap.control.speed.forward)))
-        most = max(most, _LEAST_RATE)
-        rate = _limited(s, rate, -most, most)
-    s.turn_rate = rate
-
-    return update_saturating(
-        s.rate, rate, measured, DT, motors.limit_left != 0 or motors.limit_right != 0,
-        p.ATC.STR_RAT.P, p.ATC.STR_RAT.I, p.ATC.STR_RAT.D, p.ATC.STR_RAT.FF, p.ATC.STR_RAT.D_FF,
-        p.ATC.STR_RAT.IMAX, p.ATC.STR_RAT.PDMX, p.ATC.STR_RAT.FLTT, p.ATC.STR_RAT.FLTE, p.ATC.STR_RAT.FLTD,
-    )  # fmt: skip
-
-
-@law
-def turn_rate_from_heading(ap, heading, rate_max):
-    """Turn rate [rad/s] towards ``heading`` [rad], able to stop there; ``rate_max`` [rad/s], 0 for none."""
-    error = wrap_pi(heading - float(ap.estimate.euler[2]))
-    rate = error * float(ap.params.ATC.STR_ANG_P)
+def limited_turn_rate(control: Control, wanted: float, params: Attitude) -> float:
+    """``wanted`` [rad/s] within its limits, in this order: acceleration, rate, lateral acceleration."""
+    s = control.steering
+    rate = limited_acceleration(s, wanted if finite(wanted) else 0.0, params)
+    rate_max = math.radians(params.STR_RAT_MAX)
     if rate_max > 0.0:
-        rate = constrain(rate, -rate_max, rate_max)
-    decel = decel_max(ap)
-    if decel > 0.0:
-        most = math.sqrt(2.0 * abs(error) * decel)
-        rate = constrain(rate, -most, most)
+        rate = limited(s, rate, -rate_max, rate_max)
+    if control.speed.forward_ok:
+        rate_max = turn_rate_from_lat_accel(lat_accel_max(params), abs(control.speed.forward))
+        rate_max = max(rate_max, TURN_RATE_MIN)
+        rate = limited(s, rate, -rate_max, rate_max)
     return rate
 
 
 @law
-def out_from_heading(ap, heading, rate_max):
-    """Steering demand towards ``heading`` [rad]; ``rate_max`` [rad/s], 0 for ATC_STR_RAT_MAX."""
-    if not finite(heading):
-        return out_from_rate(ap, 0.0)
-    return out_from_rate(ap, turn_rate_from_heading(ap, heading, rate_max))
+def control_turn_rate(control: Control, turn_rate: float, measured: float, params: Attitude) -> float:
+    """Steering demand for a turn rate at the measured one, both [rad/s]."""
+    s = control.steering
+    motors = control.motors
+    if not is_active(control):
+        reset_filter(s.rate)
+        s.rate.integrator = 0.0
+        s.turn_rate = measured if finite(measured) else 0.0
+    s.last_tick = current_tick(control)
+    s.limit_left = motors.limit_left
+    s.limit_right = motors.limit_right
+    s.turn_rate = limited_turn_rate(control, turn_rate, params)
+    saturated = motors.limit_left or motors.limit_right
+    return update_pid(s.rate, s.turn_rate, measured, DT, saturated, pid_gains(params.STR_RAT))
 
 
 @law
-def out_from_lat_accel(ap, accel):
+def turn_rate_from_heading(error: float, rate_max: float, params: Attitude) -> float:
+    """Turn rate [rad/s] that takes a heading error [rad] away, able to stop there; ``rate_max`` [rad/s], 0 for none."""
+    rate = error * params.STR_ANG_P
+    if rate_max > 0.0:
+        rate = constrain(rate, -rate_max, rate_max)
+    decel = turn_decel_max(params)
+    if decel > 0.0:
+        stoppable = math.sqrt(2.0 * abs(error) * decel)
+        rate = constrain(rate, -stoppable, stoppable)
+    return rate
+
+
+@law
+def out_from_rate(ap: Autopilot, turn_rate: float) -> float:
+    """Steering demand for a turn rate [rad/s]."""
+    measured = yaw_rate(ap.estimate.q, ap.estimate.rates)
+    return control_turn_rate(ap.control, turn_rate, measured, ap.params.ATC)
+
+
+@law
+def out_from_heading(ap: Autopilot, heading: float) -> float:
+    """Steering demand towards ``heading`` [rad]."""
+    error = wrap_pi(heading - ap.estimate.euler.yaw)
+    return out_from_rate(ap, turn_rate_from_heading(error, 0.0, ap.params.ATC) if finite(heading) else 0.0)
+
+
+@law
+def out_from_lat_accel(ap: Autopilot, accel: float) -> float:
     """Steering demand for a lateral acceleration [m/s^2] to the right; 0 while the speed is not known."""
     s = ap.control.steering
-    s.lat_accel_tick = now_tick(ap)
+    s.lat_accel_tick = current_tick(ap.control)
     s.lat_accel = accel if finite(accel) else 0.0
-    if ap.control.speed.forward_ok == 0:
+    if not ap.control.speed.forward_ok:
         return 0.0
-    return out_from_rate(ap, turn_rate_from_lat_accel(float(s.lat_accel), float(ap.control.speed.forward)))
-
-
-@law
-def relax(ap):
-    """Forget the trim of the turn-rate loop."""
-    ap.control.steering.rate.integrator = 0.0
+    return out_from_rate(ap, turn_rate_from_lat_accel(s.lat_accel, ap.control.speed.forward))

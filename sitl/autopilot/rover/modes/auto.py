@@ -120,7 +120,7 @@ def run(v):
         speed.stop(v)
     if nav.completed == 0 and is_done(v):
         command.complete(ap, v.time_us)
-    command.check_condition(ap, v.time_us, 1)
+    command.check_condition(ap, v.time_us, True)
 
 
 @law

@@ -11,67 +11,59 @@ import math
 from ....core.kernels import law
 from ....core.scalars import wrap_pi
 from ..control.motors import is_skid
-from ..control.steering import turn_rate_from_heading
+from ..parameters import Parameters
+from .state import DriveState
 
 ACCURACY = 5.0
 """The turn is over this near to the wanted heading [deg]; WP_PIVOT_ANGLE up to it means no pivot turns."""
-LONGEST_DELAY = 60.0
+DELAY_MAX = 60.0
 """[s]"""
 
 
 @law
-def is_possible(ap):
+def is_possible(params: Parameters) -> bool:
     """Whether the vehicle turns on the spot at all."""
-    return is_skid(ap) and ap.params.WP.PIVOT_ANGLE > ACCURACY
+    return is_skid(params) and params.WP.PIVOT_ANGLE > ACCURACY
 
 
 @law
-def is_active(ap):
+def is_active(drive: DriveState, params: Parameters) -> bool:
     """Whether such a turn is under way."""
-    return ap.modes.nav.drive.pivoting != 0 and is_skid(ap)
+    return drive.pivoting and is_skid(params)
 
 
 @law
-def begin(ap):
+def begin(drive: DriveState) -> None:
     """Turn from now on."""
-    ap.modes.nav.drive.pivoting = 1
-    ap.modes.nav.drive.pivot_us = 0
+    drive.pivoting = True
+    drive.pivot_us = 0
 
 
 @law
-def end(ap):
+def end(drive: DriveState) -> None:
     """No turn is under way."""
-    ap.modes.nav.drive.pivoting = 0
-    ap.modes.nav.drive.pivot_us = 0
+    drive.pivoting = False
+    drive.pivot_us = 0
 
 
 @law
-def would_turn(ap, change):
+def would_turn(change: float, params: Parameters) -> bool:
     """Whether a change of direction [rad] is worth a pivot turn."""
-    return is_possible(ap) and abs(wrap_pi(change)) > math.radians(ap.params.WP.PIVOT_ANGLE)
+    return is_possible(params) and abs(wrap_pi(change)) > math.radians(params.WP.PIVOT_ANGLE)
 
 
 @law
-def check(ap, time_us, heading, anyway):
-    """Begin the turn to ``heading`` [rad] when it is far away (or ``anyway``), end it when that is reached."""
-    drive = ap.modes.nav.drive
-    if not is_possible(ap):
-        drive.pivoting = 0
+def check(drive: DriveState, time_us: int, change: float, anyway: bool, params: Parameters) -> None:
+    """Begin the turn when the heading must ``change`` [rad] much (or ``anyway``), end it when it points there."""
+    if not is_possible(params):
+        drive.pivoting = False
         return
-    error = abs(wrap_pi(heading - float(ap.estimate.euler[2])))
-    if anyway or would_turn(ap, error):
-        begin(ap)
+    error = abs(wrap_pi(change))
+    if anyway or would_turn(error, params):
+        begin(drive)
         return
-    if drive.pivoting != 0 and drive.pivot_us == 0 and error < math.radians(ACCURACY):
+    if drive.pivoting and drive.pivot_us == 0 and error < math.radians(ACCURACY):
         drive.pivot_us = time_us
-    delay = min(max(float(ap.params.WP.PIVOT_DELAY), 0.0), LONGEST_DELAY)
+    delay = min(max(params.WP.PIVOT_DELAY, 0.0), DELAY_MAX)
     if drive.pivot_us > 0 and time_us - drive.pivot_us >= delay * 1e6:
-        end(ap)
-
-
-@law
-def turn_rate(ap, time_us, heading):
-    """Turn rate [rad/s] of this period."""
-    rate = turn_rate_from_heading(ap, heading, math.radians(float(ap.params.WP.PIVOT_RATE)))
-    check(ap, time_us, heading, False)
-    return rate
+        end(drive)

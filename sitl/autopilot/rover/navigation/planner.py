@@ -4,61 +4,60 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from ....core.algebra import with_down
+from ....core.vectors import Vec3
 from ...navigation.leg import Limits
-from ...navigation.planner import Planner, Point
+from ...navigation.planner import Planner
+from ..state import Autopilot
 from . import pivot, waypoint
 
 SNAP = 15.0
 """Greatest snap along legs [m/s^4] (ArduRover's)."""
 
 
-class RoverPlanner(Planner):
+class RoverPlanner(Planner[Autopilot]):
     """Plans a rover's legs."""
 
     active_us = waypoint.ACTIVE_US
 
-    def limits(self, ap: Any, direction: Point) -> Limits:
+    def limits(self, ap: Autopilot, direction: Vec3) -> Limits:
         """The position controller's.
 
         Jerk that follows half a cosine needs pi/2 of jerk/snap to rise; the same time is taken here.
         """
-        jerk = float(waypoint.jerk_max(ap))
-        return Limits(
-            float(ap.control.position.speed_max), float(waypoint.accel_max(ap)), jerk, 0.5 * math.pi * jerk / SNAP
-        )
+        jerk = waypoint.jerk_max(ap.params)
+        acceleration = waypoint.accel_max(ap.params)
+        return Limits(ap.control.position.speed_max, acceleration, jerk, 0.5 * math.pi * jerk / SNAP)
 
-    def stopping_point(self, ap: Any) -> Point:
+    def stopping_point(self, ap: Autopilot) -> Vec3:
         """Where it would come to rest."""
-        n, e = waypoint.stopping_point(ap)
-        return (float(n), float(e), 0.0)
+        return with_down(waypoint.stopping_point(ap), 0.0)
 
-    def may_join(self, ap: Any, corner: Point, target: Point) -> bool:
+    def may_join(self, ap: Autopilot, corner: Vec3, target: Vec3) -> bool:
         """Not when it would turn on the spot there."""
-        nav = ap.modes.nav
-        before = math.atan2(corner[1] - float(nav.drive.origin[1]), corner[0] - float(nav.drive.origin[0]))
-        after = math.atan2(target[1] - corner[1], target[0] - corner[0])
-        turns = bool(pivot.would_turn(ap, after - before))
-        nav.drive.pivot_next = int(turns)
-        return not turns
+        drive = ap.modes.nav.drive
+        before = math.atan2(corner.y - drive.origin.y, corner.x - drive.origin.x)
+        after = math.atan2(target.y - corner.y, target.x - corner.x)
+        drive.pivot_next = pivot.would_turn(after - before, ap.params)
+        return not drive.pivot_next
 
-    def begin(self, ap: Any, time_us: int, target: Point) -> None:
+    def begin(self, ap: Autopilot, time_us: int, target: Vec3) -> None:
         """With today's limits."""
         waypoint.set_limits(ap)
         super().begin(ap, time_us, target)
-        if ap.modes.nav.joined != 0 and ap.modes.nav.current.top_speed != ap.control.position.speed_max:
+        if ap.modes.nav.joined and ap.modes.nav.current.top_speed != ap.control.position.speed_max:
             self.change_speed(ap)  # it was planned ahead, before the mission changed the speed
         waypoint.begin_leg(ap, time_us)
 
-    def look_ahead(self, ap: Any, target: Point | None) -> None:
+    def look_ahead(self, ap: Autopilot, target: Vec3 | None) -> None:
         """Forget what was known of the next corner."""
-        if ap.modes.nav.next.started == 0:
-            ap.modes.nav.drive.pivot_next = 0
+        if not ap.modes.nav.next.started:
+            ap.modes.nav.drive.pivot_next = False
         super().look_ahead(ap, target)
 
-    def start(self, ap: Any, time_us: int) -> None:
-        """Nothing more to do: ``update`` follows the legs."""
+    def start(self, ap: Autopilot, time_us: int) -> None:
+        """Nothing more to do: ``follow`` moves along the legs."""
 
 
 PLANNER = RoverPlanner()

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ....core.records import Floats, Record, array
+from ....core.records import Record
+from ....core.vectors import Vec2
 from ...navigation.state import Nav
 
 
@@ -15,14 +16,14 @@ class DriveState(Record):
     desired_turn_rate: float  # right positive [rad/s]
     desired_lat_accel: float  # to the right [m/s^2]
     crosstrack: float  # from the line between the waypoints, negative to its right [m]
-    origin: Floats = array(2)  # where that line begins, NE [m]
-    reversed: int  # drives backwards (DO_SET_REVERSE)
-    shaped: int  # the target is shaped towards the destination, without planned legs
+    origin: Vec2  # where that line begins, NE [m]
+    reversed: bool  # drives backwards (DO_SET_REVERSE)
+    shaped: bool  # the target is shaped towards the destination, without planned legs
     nudge_speed: float  # speed limit that the pilot's stick asks for [m/s]; below the other it says nothing
     speed_us: int  # when the speed limit last changed
-    pivoting: int  # turns on the spot towards the destination
+    pivoting: bool  # turns on the spot towards the destination
     pivot_us: int  # when it looked there (start of WP_PIVOT_DELAY); 0 not yet
-    pivot_next: int  # it will at the end of the current leg
+    pivot_next: bool  # it will at the end of the current leg
 
 
 class RoverNav(Nav):
