@@ -28,39 +28,39 @@ from ..arming_checks import (
 from ..radio import stick_channel
 from .control import servos
 from .control.motors import is_skid
-from .modes.numbers import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
+from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
+from .state import Vehicle
 
 CHECK_PARAMETERS = 32
 """ARMING_CHECK"""
 
 
 @law
-def estimate_checks(v):
+def estimate_checks(v: Vehicle) -> int:
     """Failed checks of GPS and estimate, as far as the mode needs them; the first of them."""
     ap = v.autopilot
-    mode = int(ap.modes.number)
-    if not requires_position(mode) and not requires_velocity(mode, is_skid(ap)):
+    mode = ap.modes.number
+    if not requires_position(mode) and not requires_velocity(mode, is_skid(ap.params)):
         return 0
     if v.sensors.gps_fix < 3 and wants(v, CHECK_GPS):
         return GPS_FIX
-    if ap.estimate.position_ok == 0:
+    if not ap.estimate.position_ok:
         return AHRS_TYPE
     return EKF_FAILSAFE if ap.modes.failsafe.ekf != 0 else 0
 
 
 @law
-def equipment_checks(v):
+def equipment_checks(v: Vehicle) -> int:
     """Failed checks of radio, battery and outputs."""
     ap = v.autopilot
     p = ap.params
     failed = battery_checks(v)
     if p.FS.THR_ENABLE > 0.0 and wants(v, CHECK_RC):
-        if ap.rc.receiver_ok == 0:
+        if not ap.rc.receiver_ok:
             failed |= RC_MISSING
         elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
-    drives = servos.is_assigned(ap, servos.STEERING) or servos.is_assigned(ap, servos.THROTTLE)
-    if not drives and not is_skid(ap):
+    if not (servos.is_assigned(p, servos.STEERING) or servos.is_assigned(p, servos.THROTTLE) or is_skid(p)):
         failed |= NO_OUTPUTS
     if p.WP.SPEED <= 0.0 and wants(v, CHECK_PARAMETERS):
         failed |= WAYPOINT_SPEED
@@ -68,19 +68,19 @@ def equipment_checks(v):
 
 
 @law
-def check(v):
+def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     if v.autopilot.params.ARMING.CHECK == 0.0:
         return sensor_checks(v) & NOT_INITIALISED
-    mode = 0 if allows_arming(int(v.autopilot.modes.number)) else MODE
+    mode = 0 if allows_arming(v.autopilot.modes.number) else MODE
     return sensor_checks(v) | estimate_checks(v) | equipment_checks(v) | mode
 
 
 @law
-def stick_checks(v, method):
+def stick_checks(v: Vehicle, method: int) -> int:
     """Sticks that are not centred; by stick the steering cannot be."""
     ap = v.autopilot
-    if ap.rc.receiver_ok == 0 or not wants(v, CHECK_RC):
+    if not ap.rc.receiver_ok or not wants(v, CHECK_RC):
         return 0
     failed = 0
     if ap.modes.pilot.throttle != 0.0:
@@ -91,13 +91,13 @@ def stick_checks(v, method):
 
 
 @law
-def check_now(v, method):
+def check_now(v: Vehicle, method: int) -> int:
     """All failed checks of arming at this moment by ``method``."""
     ap = v.autopilot
     failed = check(v) | stick_checks(v, method)
     if method == BY_RUDDER:
         if ap.params.ARMING.RUDDER < 1.0:
             failed |= RUDDER_DISABLED
-        if not allows_arming_by_stick(int(ap.modes.number)):
+        if not allows_arming_by_stick(ap.modes.number):
             failed |= MODE_BY_RUDDER
     return failed
