@@ -8,7 +8,7 @@ from typing import Any
 from ...core.kernels import law
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
-from .control.init import init as init_control
+from .control.update import init as init_control
 from .control.update import update as control
 from .mission import COMMANDS
 from .modes.table import NAMES

@@ -50,7 +50,7 @@ def acceleration(v):
 def leans_far(ap):
     """(a lean over 15 degrees is asked for, the lean is off by more than 30 degrees)"""
     target = ap.control.attitude.target_euler
-    asked = target[0] * target[0] + target[1] * target[1] > LEAN_REQUEST_MAX * LEAN_REQUEST_MAX
+    asked = target.roll * target.roll + target.pitch * target.pitch > LEAN_REQUEST_MAX * LEAN_REQUEST_MAX
     return (asked, ap.control.attitude.thrust_error_angle > LEAN_ERROR_MAX)
 
 
@@ -70,7 +70,7 @@ def update(v):
         return
     if arming.landed != 0:
         motors = ap.control.motors
-        pushes = motors.throttle > 0.5 * hover_throttle(ap) and motors.spool_state == ground.IS_UNLIMITED
+        pushes = motors.throttle > 0.5 * hover_throttle(ap.params.MOT) and motors.spool_state == ground.IS_UNLIMITED
         if pushes and not is_taking_off(v):
             ground.set_landed(v, 0)
         return
@@ -91,7 +91,7 @@ def is_meant_to_land(ap):
         return True
     if not table.has_climb_stick(ap.modes.number):
         return False
-    stopped = ap.control.motors.limit_throttle_lower != 0 and abs(ap.estimate.vel[2]) < _STOPPED
+    stopped = ap.control.motors.limit_throttle_lower and abs(ap.estimate.vel[2]) < _STOPPED
     return ap.modes.pilot.throttle_zero != 0 and stopped
 
 
@@ -99,7 +99,7 @@ def is_meant_to_land(ap):
 def is_at_rest(v):
     """Whether everything in this tick speaks for the ground."""
     ap = v.autopilot
-    if ap.control.motors.limit_throttle_lower == 0:
+    if not ap.control.motors.limit_throttle_lower:
         return False
     if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC.THR_MIX_MIN:
         return False

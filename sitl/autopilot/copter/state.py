@@ -20,7 +20,7 @@ class Autopilot(shared.Autopilot):
 
 
 class Vehicle(shared.Vehicle, Protocol):
-    """What the copter firmware sees of the vehicle that it flies."""
+    """What the firmware sees of the copter that it flies."""
 
     @property
     def autopilot(self) -> Autopilot:

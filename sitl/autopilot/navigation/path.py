@@ -16,9 +16,10 @@ import math
 from ...core.algebra import dot, dot2, horizontal, norm
 from ...core.kernels import law
 from ...core.vectors import Vec3
+from ..control.shaping import Motion
 from ..events import LEG_ENDING, emit_and_return
 from ..state import Autopilot
-from .profile import Motion, clear, evaluate, finished, remaining, step
+from .profile import clear, evaluate, finished, remaining, step
 from .state import LEG_REQUEST, Leg, Nav
 
 

@@ -3,18 +3,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from ...core.kernels import law
+from ..control.shaping import Motion
 from .state import Leg
-
-
-class Motion(NamedTuple):
-    """Of a point along a leg."""
-
-    pos: float  # distance from its start [m]
-    vel: float  # [m/s]
-    acc: float  # [m/s^2]
 
 
 @law

@@ -20,7 +20,7 @@ class Autopilot(shared.Autopilot):
 
 
 class Vehicle(shared.Vehicle, Protocol):
-    """What the firmware sees of the rover."""
+    """What the firmware sees of the rover that it drives."""
 
     @property
     def autopilot(self) -> Autopilot:

@@ -34,7 +34,7 @@ class RoverAutopilot(BaseAutopilot):
 
     def set_servo(self, number: int, pulse: int) -> bool:
         """Outputs without a function (SERVOn_FUNCTION 0) are free."""
-        return bool(servos.set_servo(self._v, number - 1, pulse))
+        return bool(servos.set_servo(self._v.autopilot.params, self._v.actuators, number - 1, pulse))
 
     # ------------------------------------------------------------------ GUIDED
 
@@ -65,7 +65,7 @@ class RoverAutopilot(BaseAutopilot):
 
     def set_reversed(self, backward: bool) -> None:
         """Drive paths backwards, until the mode changes."""
-        waypoint.set_reversed(self._v.autopilot, int(backward))
+        waypoint.set_reversed(self._v.autopilot, backward)
 
     # ------------------------------------------------------------------ home
 

@@ -4,27 +4,34 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.control.pid import lowpass_gain, relax_integrator, update_directional, update_saturating
+from sitl.autopilot.control.pid import (
+    Blocked,
+    Gains,
+    Pid,
+    lowpass_gain,
+    relax_integrator,
+    update_pid,
+    update_pid_directional,
+)
+from sitl.core.records import as_dict
 
 DT = 0.0025
 
 
 def fresh(integrator=0.0):
-    return SimpleNamespace(
-        started=0, target=0.0, error=0.0, derivative=0.0, target_derivative=0.0, integrator=integrator
-    )
+    pid = Pid()
+    pid.integrator = integrator
+    return pid
 
 
 def saturating(pid, target, measurement, saturated=False, kp=0.0, ki=0.0, kd=0.0, imax=0.5, hz_error=0.0, pd_max=0.0):
-    return update_saturating(
-        pid, target, measurement, DT, saturated, kp, ki, kd, 0.0, 0.0, imax, pd_max, 0.0, hz_error, 0.0
-    )
+    gains = Gains(kp, ki, kd, 0.0, 0.0, imax, pd_max, 0.0, hz_error, 0.0)
+    return update_pid(pid, target, measurement, DT, saturated, gains)
 
 
 def test_proportional_only():
@@ -60,7 +67,8 @@ def test_integrator_stays_within_imax():
 @pytest.mark.parametrize(("error", "blocked"), [(1.0, True), (-1.0, False)])
 def test_directional_limit_blocks_one_direction(error, blocked):
     pid = fresh()
-    update_directional(pid, error, 0.0, DT, False, True, 0.0, 1.0, 0.0, 0.0, 9.0, 0.0, 0.0)
+    gains = Gains(0.0, 1.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0)
+    update_pid_directional(pid, error, 0.0, DT, Blocked(False, True), gains)
     assert (pid.integrator == 0.0) is blocked
 
 
@@ -68,10 +76,10 @@ def test_directional_limit_blocks_one_direction(error, blocked):
 def test_bad_numbers_give_zero_and_leave_no_trace(bad):
     pid = fresh(0.1)
     saturating(pid, 1.0, 0.0, kp=1.0, ki=1.0)
-    before = dict(vars(pid))
+    before = as_dict(pid)
     assert saturating(pid, bad, 0.0, kp=1.0, ki=1.0) == 0.0
     assert saturating(pid, 0.0, bad, kp=1.0, ki=1.0) == 0.0
-    assert vars(pid) == before
+    assert as_dict(pid) == before
 
 
 def test_pd_limit():

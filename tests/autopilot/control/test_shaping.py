@@ -10,6 +10,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.control.shaping import (
+    Limits,
+    Limits2,
+    Motion,
+    Motion2,
     advance,
     advance_2d,
     inverse_sqrt_controller,
@@ -23,8 +27,11 @@ from sitl.autopilot.control.shaping import (
     sqrt_controller,
     sqrt_controller_2d,
 )
+from sitl.core.algebra import norm2
+from sitl.core.vectors import Vec2, Vec3
 
 DT = 0.0025
+REST = Vec2(0.0, 0.0)
 gains = st.floats(0.1, 10.0)
 limits = st.floats(0.1, 20.0)
 errors = st.floats(-100.0, 100.0)
@@ -60,13 +67,13 @@ def test_one_period_never_passes_the_goal(error, p, limit):
 @given(errors, errors, gains, limits)
 def test_two_dimensions_agree_with_one_along_the_error(ex, ey, p, limit):
     size = math.hypot(ex, ey)
-    rx, ry = sqrt_controller_2d(ex, ey, p, limit, 0.0)
-    assert math.hypot(rx, ry) == pytest.approx(abs(sqrt_controller(size, p, limit, 0.0)), rel=1e-9, abs=1e-12)
+    rate = sqrt_controller_2d(Vec2(ex, ey), p, limit, 0.0)
+    assert norm2(rate) == pytest.approx(abs(sqrt_controller(size, p, limit, 0.0)), rel=1e-9, abs=1e-12)
 
 
 @given(errors, errors, errors, errors, limits)
 def test_limit_accel_keeps_the_limit_and_what_lies_across(vx, vy, ax, ay, most):
-    bx, by = limit_accel(vx, vy, ax, ay, most)
+    bx, by = limit_accel(Vec2(vx, vy), Vec2(ax, ay), most)
     assert math.hypot(bx, by) <= max(most, 0.0) * (1 + 1e-9)
     across = vx * ay - vy * ax
     if math.hypot(vx, vy) > 1e-3 and abs(across) < most * math.hypot(vx, vy):
@@ -76,56 +83,57 @@ def test_limit_accel_keeps_the_limit_and_what_lies_across(vx, vy, ax, ay, most):
 @given(st.floats(-50.0, 50.0), st.floats(1.0, 10.0), st.floats(0.5, 5.0), st.floats(1.0, 20.0))
 @settings(max_examples=15, deadline=None)
 def test_position_shaping_keeps_its_limits_and_hardly_overshoots(goal, v_max, a_max, jerk):
-    p = v = a = 0.0
+    now = Motion(0.0, 0.0, 0.0)
+    limits = Limits(-v_max, v_max, -a_max, a_max, jerk)
     end = 0.0
     for _ in range(int(80 / 0.01)):
         dt = 0.01
-        p, v = advance(p, v, a, dt, 0.0, 0.0, 0.0)
-        new = shape_pos_vel_accel(goal, 0.0, 0.0, p, v, a, -v_max, v_max, -a_max, a_max, jerk, dt, 0)
-        assert abs(new - a) <= jerk * dt * (1 + 1e-9)
+        now = advance(now, dt, 0.0, 0.0, 0.0)
+        new = shape_pos_vel_accel(Motion(goal, 0.0, 0.0), now, limits, dt)
+        assert abs(new - now.acc) <= jerk * dt * (1 + 1e-9)
         assert abs(new) <= a_max * (1 + 1e-9)
-        a = new
-        assert abs(v) <= v_max * 1.01 + 0.5 * jerk * dt
-        end = max(end, math.copysign(1.0, goal) * (p - goal))
-    assert p == pytest.approx(goal, abs=0.02)
-    assert abs(v) < 0.02
+        now = now._replace(acc=new)
+        assert abs(now.vel) <= v_max * 1.01 + 0.5 * jerk * dt
+        end = max(end, math.copysign(1.0, goal) * (now.pos - goal))
+    assert now.pos == pytest.approx(goal, abs=0.02)
+    assert abs(now.vel) < 0.02
     assert end <= 0.045 * abs(goal) + 0.02
 
 
 @given(st.floats(-30, 30), st.floats(-30, 30), st.floats(-3, 3), st.floats(-3, 3))
 @settings(max_examples=10, deadline=None)
 def test_horizontal_shaping_reaches_a_point_from_any_motion(gx, gy, vx, vy):
-    px = py = ax = ay = 0.0
+    now, goal, limits = Motion2(REST, Vec2(vx, vy), REST), Vec2(gx, gy), Limits2(5.0, 2.5, 5.0)
     dt = 0.01
     for _ in range(4000):
-        px, py, vx, vy = advance_2d(px, py, vx, vy, ax, ay, dt, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        nx, ny = shape_pos_vel_accel_2d(gx, gy, 0.0, 0.0, 0.0, 0.0, px, py, vx, vy, ax, ay, 5.0, 2.5, 5.0, dt, 0)
-        assert math.hypot(nx - ax, ny - ay) <= 5.0 * dt * (1 + 1e-9)
-        ax, ay = nx, ny
-        assert math.hypot(ax, ay) <= 2.5 * (1 + 1e-9)
-    assert math.hypot(px - gx, py - gy) < 0.02
-    assert math.hypot(vx, vy) < 0.02
+        now = advance_2d(now, dt, REST, REST, REST)
+        new = shape_pos_vel_accel_2d(Motion2(goal, REST, REST), now, limits, dt)
+        assert norm2(new - now.acc) <= 5.0 * dt * (1 + 1e-9)
+        now = now._replace(acc=new)
+        assert norm2(new) <= 2.5 * (1 + 1e-9)
+    assert norm2(now.pos - goal) < 0.02
+    assert norm2(now.vel) < 0.02
 
 
 @given(st.floats(-60, 60), st.floats(-60, 60), st.floats(-10, 10), st.floats(-10, 10))
 @example(0.0, 20.0, 10.0, 0.0)  # the goal lies where a circle at full speed has its centre
 @settings(max_examples=10, deadline=None)
 def test_braking_first_reaches_a_point_from_any_motion(gx, gy, vx, vy):
-    px = py = ax = ay = 0.0
-    dt, v_max, a_max, jerk = 0.02, 10.0, 2.5, 5.0
+    now, goal, limits = Motion2(REST, Vec2(vx, vy), REST), Vec2(gx, gy), Limits2(10.0, 2.5, 5.0)
     for _ in range(4000):
-        px, py, vx, vy = advance_2d(px, py, vx, vy, ax, ay, dt, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        ax, ay = shape_pos_vel_accel_2d(gx, gy, 0.0, 0.0, 0.0, 0.0, px, py, vx, vy, ax, ay, v_max, a_max, jerk, dt, 0)
-        assert math.hypot(ax, ay) <= a_max * (1 + 1e-9)
-    assert math.hypot(px - gx, py - gy) < 0.05
-    assert math.hypot(vx, vy) < 0.05
+        now = advance_2d(now, 0.02, REST, REST, REST)
+        now = now._replace(acc=shape_pos_vel_accel_2d(Motion2(goal, REST, REST), now, limits, 0.02))
+        assert norm2(now.acc) <= limits.acc_max * (1 + 1e-9)
+    assert norm2(now.pos - goal) < 0.05
+    assert norm2(now.vel) < 0.05
 
 
 def test_velocity_shaping_uses_the_limit_of_its_direction():
+    limits = Limits(0.0, 0.0, -1.0, 3.0, 5.0)
     up = down = 0.0
     for _ in range(400):
-        up = shape_vel_accel(100.0, 0.0, 0.0, up, -1.0, 3.0, 5.0, DT, 0)
-        down = shape_vel_accel(-100.0, 0.0, 0.0, down, -1.0, 3.0, 5.0, DT, 0)
+        up = shape_vel_accel(100.0, 0.0, Motion(0.0, 0.0, up), limits, DT)
+        down = shape_vel_accel(-100.0, 0.0, Motion(0.0, 0.0, down), limits, DT)
     assert (up, down) == (pytest.approx(3.0), pytest.approx(-1.0))
 
 
@@ -134,9 +142,10 @@ def test_without_jerk_limit_acceleration_jumps():
 
 
 def test_target_waits_where_the_actuator_is_used_up():
-    assert advance(0.0, 1.0, 1.0, DT, 1.0, 1.0, 1.0) == (0.0, 1.0)
-    p, v = advance(0.0, 1.0, 1.0, DT, -1.0, 1.0, 1.0)
-    assert p > 0.0 and v > 1.0
+    now = Motion(0.0, 1.0, 1.0)
+    assert advance(now, DT, 1.0, 1.0, 1.0) == now
+    moved = advance(now, DT, -1.0, 1.0, 1.0)
+    assert moved.pos > 0.0 and moved.vel > 1.0
 
 
 @given(st.floats(-3.0, 3.0))
@@ -144,7 +153,7 @@ def test_target_waits_where_the_actuator_is_used_up():
 def test_angle_shaping_stops_at_the_angle(goal):
     angle = rate = 0.0
     for _ in range(1600):
-        new = shape_angle(goal - angle, 0.15, 19.2, rate, 0.0, 0.0, DT)
+        new = shape_angle(goal - angle, rate, 0.15, 19.2, DT, 0.0, 0.0)
         assert abs(new - rate) <= 19.2 * DT * (1 + 1e-9)
         rate = new
         angle += rate * DT
@@ -157,6 +166,6 @@ def test_kinematic_limit_touches_one_limit_and_passes_none(x, y, z):
     if n < 1e-3:
         return
     x, y, z = x / n, y / n, z / n
-    k = kinematic_limit(x, y, z, 5.0, 2.0, 1.0)
+    k = kinematic_limit(Vec3(x, y, z), 5.0, 2.0, 1.0)
     ratios = (k * math.hypot(x, y) / 5.0, k * z / 1.0, -k * z / 2.0)
     assert max(ratios) == pytest.approx(1.0)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sitl.autopilot import home
-from sitl.autopilot.copter.control.init import init as init_control
+from sitl.autopilot.copter.control.update import init as init_control
 from sitl.autopilot.copter.modes.update import init as init_modes
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.vehicle.record import Copter
@@ -70,7 +70,7 @@ def snapshot(v: Any) -> bytes:
 def turn_to(v: Any, yaw: float) -> None:
     """Point the nose, and the target, to a heading [rad]."""
     est, target = v.autopilot.estimate, v.autopilot.control.attitude
-    target.target_euler[2] = yaw
+    target.target_euler = target.target_euler.replace(yaw=yaw)
     est.euler = est.euler.replace(yaw=yaw)
     est.q = est.q.replace(w=math.cos(yaw / 2), z=math.sin(yaw / 2))
-    target.target_q[0], target.target_q[3] = est.q[0], est.q[3]
+    target.target_q = target.target_q.replace(w=est.q.w, z=est.q.z)

@@ -60,7 +60,7 @@ def test_any_sign_of_flight_starts_the_second_again(flying, lift):
 
 
 LEANS = (
-    lambda ap: ap.control.attitude.target_euler.__setitem__(0, math.radians(16.0)),
+    lambda ap: setattr(ap.control.attitude, "target_euler", (math.radians(16.0), 0.0, 0.0)),
     lambda ap: setattr(ap.control.attitude, "thrust_error_angle", math.radians(31.0)),
 )
 

@@ -9,35 +9,43 @@ is 0.1 of throttle for 1 m/s^2. A mode calls one ``input_*`` (or ``set_pos_vel_a
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, sign
-from ...control.pid import update_directional, update_saturating
-from ...control.shaping import advance, inverse_sqrt_controller, shape_pos_vel_accel, shape_vel_accel, sqrt_controller
+from ...control.pid import Blocked, Gains, basic_gains, update_pid, update_pid_directional
+from ...control.shaping import (
+    Limits,
+    Motion,
+    advance,
+    inverse_sqrt_controller,
+    shape_pos_vel_accel,
+    shape_vel_accel,
+    sqrt_controller,
+)
+from ..parameters.control import Position
+from ..state import Autopilot
 from .altitude_start import (
     ACCZ_UNIT,
     init_d,
-    init_d_no_descent,
     init_d_stopping_point,
     is_active_d,
     relax_d,
-    set_correction_speed_accel_d,
     set_max_speed_accel_d,
     stopping_point_d,
 )
 from .motors import hover_throttle
-from .state import DT
+from .state import DT, AltitudeState
 from .throttle_mix import set_throttle_out
 
 __all__ = [
     "init_d",
-    "init_d_no_descent",
     "init_d_stopping_point",
     "input_pos_vel_accel_d",
     "input_vel_accel_d",
     "is_active_d",
     "land_at_rate_d",
     "relax_d",
-    "set_correction_speed_accel_d",
     "set_max_speed_accel_d",
     "set_pos_vel_accel_d",
     "stopping_point_d",
@@ -50,149 +58,162 @@ _FALL_ACCEL_MAX = 7.5  # downward acceleration is kept below gravity [m/s^2]
 _OVERSPEED_GAIN = 2.0
 
 
+class AltitudeGains(NamedTuple):
+    """Gains of the cascade."""
+
+    pos_p: float  # [1/s]
+    vel: Gains  # [m/s] to [m/s^2]
+    acc: Gains  # [m/s^2] to throttle
+
+
 @law
-def overspeed_gain(ap):
+def overspeed_gain(c: AltitudeState) -> float:
     """How much faster the shaping may brake while it is above its speed limits; 1 below them."""
-    c = ap.control.pos_d
-    v = float(c.vel_desired)
+    v = c.vel_desired
     if v > c.speed_down and c.speed_down > 0.0:
-        return _OVERSPEED_GAIN * v / float(c.speed_down)
+        return _OVERSPEED_GAIN * v / c.speed_down
     if v < -c.speed_up and c.speed_up > 0.0:
-        return -_OVERSPEED_GAIN * v / float(c.speed_up)
+        return -_OVERSPEED_GAIN * v / c.speed_up
     return 1.0
 
 
 @law
-def advance_d(ap):
+def shaping_limits_d(c: AltitudeState, speed_up: float, speed_down: float) -> Limits:
+    """Limits of the shaping with these speeds [m/s], both positive."""
+    gain = overspeed_gain(c)
+    up = c.accel_max * gain
+    return Limits(-speed_up, speed_down, -up, min(up, _FALL_ACCEL_MAX), c.jerk_max * gain)
+
+
+@law
+def desired_motion_d(c: AltitudeState) -> Motion:
+    """The desired path of this tick."""
+    return Motion(c.pos_desired, c.vel_desired, c.accel_desired)
+
+
+@law
+def advance_d(c: AltitudeState) -> None:
     """Move the desired path on by one tick."""
-    c = ap.control.pos_d
-    p, v = advance(
-        float(c.pos_desired), float(c.vel_desired), float(c.accel_desired), DT,
-        sign(float(c.limit)), float(c.pos_error), float(c.vel.error),
-    )  # fmt: skip
-    c.pos_desired = p
-    c.vel_desired = v
+    moved = advance(desired_motion_d(c), DT, sign(c.limit), c.pos_error, c.vel.error)
+    c.pos_desired = moved.pos
+    c.vel_desired = moved.vel
 
 
 @law
-def shape_pos_d(ap, p, v, a, speed_up, speed_down):
+def shape_pos_d(c: AltitudeState, target: Motion, speed_up: float, speed_down: float) -> None:
     """New desired acceleration towards a moving altitude."""
-    c = ap.control.pos_d
-    gain = overspeed_gain(ap)
-    up = float(c.accel_max) * gain
-    c.accel_desired = shape_pos_vel_accel(
-        p, v, a, float(c.pos_desired), float(c.vel_desired), float(c.accel_desired),
-        -speed_up, speed_down, -up, min(up, _FALL_ACCEL_MAX), float(c.jerk_max) * gain, DT, 0,
-    )  # fmt: skip
+    c.accel_desired = shape_pos_vel_accel(target, desired_motion_d(c), shaping_limits_d(c, speed_up, speed_down), DT)
 
 
 @law
-def input_pos_vel_accel_d(ap, p, v, a):
-    """Follow an altitude ``p`` [m] that moves with ``v`` [m/s] and ``a`` [m/s^2], shaped."""
-    c = ap.control.pos_d
-    if not (finite(p) and finite(v) and finite(a)):
-        input_vel_accel_d(ap, 0.0, 0.0)
-        return
-    advance_d(ap)
-    shape_pos_d(ap, p, v, a, float(c.speed_up), float(c.speed_down))
+def input_pos_vel_accel_d(c: AltitudeState, target: Motion) -> None:
+    """Follow a moving altitude [m, m/s, m/s^2], shaped."""
+    if finite(target.pos) and finite(target.vel) and finite(target.acc):
+        advance_d(c)
+        shape_pos_d(c, target, c.speed_up, c.speed_down)
+    else:
+        input_vel_accel_d(c, 0.0, 0.0)
 
 
 @law
-def input_vel_accel_d(ap, v, a):
-    """Move at ``v`` [m/s, down positive], which changes with ``a`` [m/s^2], shaped."""
-    c = ap.control.pos_d
-    if not (finite(v) and finite(a)):
-        v, a = 0.0, 0.0
-    gain = overspeed_gain(ap)
-    up = float(c.accel_max) * gain
-    advance_d(ap)
-    c.accel_desired = shape_vel_accel(
-        v, a, float(c.vel_desired), float(c.accel_desired),
-        -up, min(up, _FALL_ACCEL_MAX), float(c.jerk_max) * gain, DT, 0,
-    )  # fmt: skip
+def input_vel_accel_d(c: AltitudeState, vel: float, acc: float) -> None:
+    """Move at ``vel`` [m/s], which changes with ``acc`` [m/s^2], shaped."""
+    if not (finite(vel) and finite(acc)):
+        vel, acc = 0.0, 0.0
+    limits = shaping_limits_d(c, 0.0, 0.0)
+    advance_d(c)
+    c.accel_desired = shape_vel_accel(vel, acc, desired_motion_d(c), limits, DT)
 
 
 @law
-def land_at_rate_d(ap, v_down, ignore_descent_limit):
-    """Descend at ``v_down`` [m/s]; with ``ignore_descent_limit`` != 0 the target goes on although throttle is
-    at its least.
-    """
-    c = ap.control.pos_d
-    if ignore_descent_limit != 0:
-        c.limit = min(float(c.limit), 0.0)
-    input_vel_accel_d(ap, v_down, 0.0)
+def land_at_rate_d(c: AltitudeState, vel: float, ignore_descent_limit: bool) -> None:
+    """Descend at ``vel`` [m/s]; the target may be told to go on although throttle is at its least."""
+    if ignore_descent_limit:
+        c.limit = min(c.limit, 0.0)
+    input_vel_accel_d(c, vel, 0.0)
 
 
 @law
-def set_pos_vel_accel_d(ap, p, v, a):
+def set_pos_vel_accel_d(c: AltitudeState, target: Motion) -> None:
     """Desired path given outright, for trajectories that are already smooth."""
-    if not (finite(p) and finite(v) and finite(a)):
-        input_vel_accel_d(ap, 0.0, 0.0)
-        return
-    c = ap.control.pos_d
-    c.pos_desired = p
-    c.vel_desired = v
-    c.accel_desired = a
+    if finite(target.pos) and finite(target.vel) and finite(target.acc):
+        c.pos_desired = target.pos
+        c.vel_desired = target.vel
+        c.accel_desired = target.acc
+    else:
+        input_vel_accel_d(c, 0.0, 0.0)
 
 
 @law
-def _follow_reset_d(ap):
-    """When the estimate jumps, the path jumps with it."""
-    c = ap.control.pos_d
-    if c.reset_count == ap.estimate.reset_d_count:
-        return
-    c.reset_count = ap.estimate.reset_d_count
-    c.pos_desired = float(ap.estimate.pos[2]) + float(c.pos_error)
-    c.vel_desired += ap.estimate.reset_vel[2]
+def control_altitude(c: AltitudeState, pos: float, p: float) -> float:
+    """Velocity [m/s] that takes the error of altitude away; the path waits for a vehicle that cannot keep up."""
+    error = c.pos_desired - pos
+    if not finite(error):
+        error = 0.0
+    accel = c.correction_accel
+    if p > 0.0:
+        limited = error
+        if c.correction_speed_down > 0.0:
+            limited = min(limited, inverse_sqrt_controller(c.correction_speed_down, p, accel))
+        if c.correction_speed_up > 0.0:
+            limited = max(limited, -inverse_sqrt_controller(c.correction_speed_up, p, accel))
+        if limited != error:
+            error = limited
+            c.pos_desired = pos + error
+    c.pos_error = error
+    return sqrt_controller(error, p, accel, 0.0)
 
 
 @law
-def update_d(ap):
+def control_vertical(c: AltitudeState, now: Motion, blocked: Blocked, gains: AltitudeGains) -> float:
+    """One tick of the cascade for the measured motion: throttle to be taken off that of hovering.
+
+    ``blocked``: throttle is at its greatest (up), or at its least (down: nothing more to take off).
+    """
+    c.vel_target = control_altitude(c, now.pos, gains.pos_p) + c.vel_desired
+    # More throttle is less acceleration downward.
+    accel = update_pid_directional(c.vel, c.vel_target, now.vel, DT, Blocked(blocked.up, blocked.down), gains.vel)
+    c.accel_target = c.accel_desired + accel
+    taken_off = update_pid(c.accel, c.accel_target, now.acc, DT, blocked.down or blocked.up, gains.acc)
+    if c.speed_down > 0.0:
+        ratio = c.vel.error / c.speed_down
+        c.control_ratio = constrain(c.control_ratio + 0.1 * DT * (0.5 + ratio), 0.0, 2.0)
+    c.limit = -1.0 if blocked.up else (1.0 if blocked.down else 0.0)
+    return taken_off
+
+
+@law
+def follow_reset_d(c: AltitudeState, pos: float, jump: float, count: int) -> None:
+    """When the estimate jumps to ``pos``, its velocity by ``jump``, the path jumps with it; ``count``: of the jumps."""
+    if c.reset_count != count:
+        c.reset_count = count
+        c.pos_desired = pos + c.pos_error
+        c.vel_desired += jump
+
+
+@law
+def altitude_gains(p: Position, hover: float) -> AltitudeGains:
+    """PSC_POSZ_P, PSC_VELZ_*, PSC_ACCZ_*; the integrator may take off all of the throttle that hovers."""
+    a = p.ACCZ
+    acc = Gains(
+        a.P * ACCZ_UNIT, a.I * ACCZ_UNIT, a.D * ACCZ_UNIT, a.FF * ACCZ_UNIT, a.D_FF * ACCZ_UNIT,
+        max(a.IMAX * _ACCZ_IMAX_UNIT, hover), a.PDMX * _ACCZ_IMAX_UNIT, a.FLTT, a.FLTE, a.FLTD,
+    )  # fmt: skip
+    return AltitudeGains(p.POSZ_P, basic_gains(p.VELZ, p.VELZ.IMAX * 0.01), acc)
+
+
+@law
+def update_d(ap: Autopilot) -> None:
     """One tick of the cascade; sets the throttle."""
     c = ap.control.pos_d
-    p = ap.params
     est = ap.estimate
     motors = ap.control.motors
     if not is_active_d(ap):
         init_d(ap)
-    _follow_reset_d(ap)
+    follow_reset_d(c, est.pos.z, est.reset_vel.z, est.reset_d_count)
     c.last_tick = ap.control.tick
-    at_least, at_most = motors.limit_throttle_lower != 0, motors.limit_throttle_upper != 0
-
-    kp = float(p.PSC.POSZ_P)
-    accel = float(c.correction_accel)
-    error = float(c.pos_desired) - float(est.pos[2])
-    if not finite(error):
-        error = 0.0
-    if kp > 0.0:
-        limited = error
-        if c.correction_speed_down > 0.0:
-            limited = min(limited, inverse_sqrt_controller(float(c.correction_speed_down), kp, accel))
-        if c.correction_speed_up > 0.0:
-            limited = max(limited, -inverse_sqrt_controller(float(c.correction_speed_up), kp, accel))
-        if limited != error:
-            error = limited
-            c.pos_desired = float(est.pos[2]) + error
-    c.pos_error = error
-    c.vel_target = sqrt_controller(error, kp, accel, 0.0) + float(c.vel_desired)
-
-    c.accel_target = float(c.accel_desired) + update_directional(
-        c.vel, float(c.vel_target), float(est.vel[2]), DT, at_most, at_least,
-        float(p.PSC.VELZ.P), float(p.PSC.VELZ.I), float(p.PSC.VELZ.D), float(p.PSC.VELZ.FF),
-        float(p.PSC.VELZ.IMAX) * 0.01, float(p.PSC.VELZ.FLTE), float(p.PSC.VELZ.FLTD),
-    )  # fmt: skip
-
-    hover = hover_throttle(ap)
-    throttle = hover - update_saturating(
-        c.accel, float(c.accel_target), float(est.acc_ned[2]), DT, at_least or at_most,
-        float(p.PSC.ACCZ.P) * ACCZ_UNIT, float(p.PSC.ACCZ.I) * ACCZ_UNIT, float(p.PSC.ACCZ.D) * ACCZ_UNIT,
-        float(p.PSC.ACCZ.FF) * ACCZ_UNIT, float(p.PSC.ACCZ.D_FF) * ACCZ_UNIT,
-        max(float(p.PSC.ACCZ.IMAX) * _ACCZ_IMAX_UNIT, hover), float(p.PSC.ACCZ.PDMX) * _ACCZ_IMAX_UNIT,
-        float(p.PSC.ACCZ.FLTT), float(p.PSC.ACCZ.FLTE), float(p.PSC.ACCZ.FLTD),
-    )  # fmt: skip
-    set_throttle_out(ap, throttle, 1, _THROTTLE_HZ)
-
-    if c.speed_down > 0.0:
-        ratio = float(c.vel.error) / float(c.speed_down)
-        c.control_ratio = constrain(float(c.control_ratio) + 0.1 * DT * (0.5 + ratio), 0.0, 2.0)
-    c.limit = -1.0 if at_most else (1.0 if at_least else 0.0)
+    blocked = Blocked(motors.limit_throttle_lower, motors.limit_throttle_upper)
+    hover = hover_throttle(ap.params.MOT)
+    gains = altitude_gains(ap.params.PSC, hover)
+    taken_off = control_vertical(c, Motion(est.pos.z, est.vel.z, est.acc_ned.z), blocked, gains)
+    set_throttle_out(ap, hover - taken_off, True, _THROTTLE_HZ)

@@ -1,278 +1,285 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Attitude: from what modes ask for to body-rate targets.
 
-Two steps each tick. *Shaping* (here) moves the target attitude, with limited angular acceleration
-(ATC_ACCEL_*_MAX) and an exponential end (ATC_INPUT_TC), towards what was asked; its angular velocity is fed
-forward (ATC_RATE_FF_ENAB). *Correction* (``attitude_target.correct``) turns the body to the target. Each
-``input_*`` law makes both steps and is called once a tick. What is asked in numbers that are not finite is
-ignored: the target comes to rest where it is.
+Two steps each tick. *Shaping* moves the target attitude, with limited angular acceleration (ATC_ACCEL_*_MAX) and an
+exponential end (ATC_INPUT_TC), towards what was asked; its angular velocity is fed forward (ATC_RATE_FF_ENAB).
+*Correction* (``attitude_target.attitude_control``) turns the body to the target. Each ``input_*`` law makes both steps
+and is called once a tick. What is asked in numbers that are not finite is ignored: the target comes to
+rest where it is.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.algebra import (
+    conjugate,
+    finite_vector,
+    multiply,
+    quat_from_euler,
+    quat_from_rotation_vector,
+    quat_norm_squared,
+)
 from ....core.kernels import law
-from ....core.rotations import quat_from_euler, quat_from_rotation_vector, quat_multiply
 from ....core.scalars import constrain, finite, wrap_pi
+from ....core.vectors import Euler, Quat, Vec3
 from ...control.shaping import shape_angle, shape_rate
+from ..parameters.control import Attitude
+from ..state import Autopilot
 from . import rate
 from .attitude_error import body_rates, euler_accel_limits, euler_rates, split_error, thrust_quaternion
 from .attitude_target import (
+    CDEG,
+    DEG,
     accel_max,
-    advance_target,
-    correct,
-    follow_yaw_reset,
+    attitude_control,
+    attitude_gains,
+    cos_lean,
     limit_rates,
+    rate_max,
     set_target,
-    set_target_rate,
-    slew_yaw_max,
+    turned_by_rate,
 )
-from .state import DT
-from .throttle_mix import lean_limit, set_mix_man, set_mix_max, set_mix_min, set_throttle_out
+from .state import DT, AttitudeState
 
-__all__ = [
-    "input_euler_roll_pitch_yaw",
-    "input_euler_roll_pitch_yaw_rate",
-    "input_quaternion",
-    "input_rates",
-    "input_thrust_vector_heading",
-    "input_thrust_vector_heading_rate",
-    "lean_limit",
-    "relax",
-    "reset_yaw_target",
-    "set_mix_man",
-    "set_mix_max",
-    "set_mix_min",
-    "set_throttle_out",
-    "slew_yaw_max",
-]
+
+class Shaping(NamedTuple):
+    """How the target attitude may move."""
+
+    time_constant: float  # of the exponential end [s]
+    yaw_time_constant: float  # of turn rates [s]
+    accel_max: Vec3  # [rad/s^2]; 0: no limit
+    rate_max: Vec3  # [rad/s]; 0: no limit
 
 
 @law
-def _begin(ap):
-    """What every input starts with; returns whether targets are shaped (ATC_RATE_FF_ENAB)."""
+def shape_euler(target: Euler, rate: Vec3, roll: float, pitch: float, yaw_rate: float, shaping: Shaping) -> Vec3:
+    """Body rates [rad/s] of a target that turns at ``rate``, towards a roll, a pitch [rad] and a turn rate."""
+    accel = euler_accel_limits(target, shaping.accel_max)
+    rates = euler_rates(target, rate)
+    tau = shaping.time_constant
+    shaped = Euler(
+        shape_angle(wrap_pi(roll - target.roll), rates.roll, tau, accel.roll, DT, 0.0, 0.0),
+        shape_angle(wrap_pi(pitch - target.pitch), rates.pitch, tau, accel.pitch, DT, 0.0, 0.0),
+        shape_rate(rates.yaw, yaw_rate, accel.yaw, shaping.yaw_time_constant, DT),
+    )
+    return limit_rates(body_rates(target, shaped), shaping.rate_max)
+
+
+@law
+def shape_rotation(error: Vec3, rate: Vec3, rate_ahead: Vec3, shaping: Shaping, yaw_rate_max: float) -> Vec3:
+    """Rates [rad/s] of a target towards an attitude ``error`` [rad] away that itself turns at ``rate_ahead``.
+
+    ``yaw_rate_max`` [rad/s] replaces the limit of yaw; 0: it does not.
+    """
+    tau, accel = shaping.time_constant, shaping.accel_max
+    shaped = Vec3(
+        shape_angle(error.x, rate.x, tau, accel.x, DT, rate_ahead.x, 0.0),
+        shape_angle(error.y, rate.y, tau, accel.y, DT, rate_ahead.y, 0.0),
+        shape_angle(error.z, rate.z, tau, accel.z, DT, rate_ahead.z, yaw_rate_max),
+    )
+    limit = shaping.rate_max
+    return limit_rates(shaped, Vec3(limit.x, limit.y, yaw_rate_max if yaw_rate_max > 0.0 else limit.z))
+
+
+@law
+def shape_thrust_turn(error: Vec3, rate: Vec3, yaw_rate: float, shaping: Shaping) -> Vec3:
+    """Rates [rad/s] of a target whose thrust is ``error`` [rad] away (x, y) while it turns at ``yaw_rate``."""
+    tau, accel = shaping.time_constant, shaping.accel_max
+    shaped = Vec3(
+        shape_angle(error.x, rate.x, tau, accel.x, DT, 0.0, 0.0),
+        shape_angle(error.y, rate.y, tau, accel.y, DT, 0.0, 0.0),
+        shape_rate(rate.z, yaw_rate, accel.z, shaping.yaw_time_constant, DT),
+    )
+    return limit_rates(shaped, shaping.rate_max)
+
+
+@law
+def shape_rates(rate: Vec3, wanted: Vec3, shaping: Shaping) -> Vec3:
+    """Rates [rad/s] of a target that turns at ``rate``, towards the rates ``wanted``."""
+    accel = shaping.accel_max
+    return Vec3(
+        shape_rate(rate.x, wanted.x, accel.x, 0.0, DT),
+        shape_rate(rate.y, wanted.y, accel.y, 0.0, DT),
+        shape_rate(rate.z, wanted.z, accel.z, shaping.yaw_time_constant, DT),
+    )
+
+
+@law
+def shaping_limits(ap: Autopilot) -> Shaping:
+    """ATC_INPUT_TC, PILOT_Y_RATE_TC and the limits of acceleration and rate."""
+    p = ap.params
+    return Shaping(p.ATC.INPUT_TC, p.PILOT.Y_RATE_TC, accel_max(p.ATC), rate_max(p.ATC))
+
+
+@law
+def slew_yaw_max(p: Attitude) -> float:
+    """Fastest turn of modes that fly by themselves [rad/s]: ATC_SLEW_YAW, at most ATC_RATE_Y_MAX; 0: no limit."""
+    slew, fastest = p.SLEW_YAW * CDEG, p.RATE_Y_MAX * DEG
+    return min(slew, fastest) if fastest > 0.0 and slew > 0.0 else slew
+
+
+@law
+def limit_turn(rate: float, rate_max: float) -> float:
+    """``rate`` within plus and minus ``rate_max``; 0: no limit."""
+    return constrain(rate, -rate_max, rate_max) if rate_max > 0.0 else rate
+
+
+@law
+def follow_yaw_reset(ap: Autopilot) -> None:
+    """When the estimate's heading jumps, the target jumps with it: the vehicle does not turn."""
+    attitude = ap.control.attitude
+    if attitude.yaw_reset_count == ap.estimate.reset_yaw_count:
+        return
+    attitude.yaw_reset_count = ap.estimate.reset_yaw_count
+    if ap.control.tick > 0:
+        set_target(attitude, multiply(ap.estimate.q, attitude.error_q))
+
+
+@law
+def advance_target(ap: Autopilot) -> bool:
+    """What every input starts with: the target turns on. Returns whether it is shaped (ATC_RATE_FF_ENAB)."""
     follow_yaw_reset(ap)
-    advance_target(ap)
+    attitude = ap.control.attitude
+    set_target(attitude, turned_by_rate(attitude.target_q, attitude.target_rate, DT))
     return ap.params.ATC.RATE_FF_ENAB != 0.0
 
 
 @law
-def _shape_euler(ap, roll, pitch, yaw, yaw_rate, use_yaw, yaw_slew):
-    """Shape towards Euler angles: heading ``yaw`` when ``use_yaw`` != 0, else a turn at ``yaw_rate``."""
-    a = ap.control.attitude
-    tau = float(ap.params.ATC.INPUT_TC)
-    r, p, y = float(a.target_euler[0]), float(a.target_euler[1]), float(a.target_euler[2])
-    ax, ay, az = accel_max(ap)
-    ax, ay, az = euler_accel_limits(r, p, ax, ay, az)
-    er, ep, ey = euler_rates(r, p, float(a.target_rate[0]), float(a.target_rate[1]), float(a.target_rate[2]))
-    er = shape_angle(wrap_pi(roll - r), tau, ax, er, 0.0, 0.0, DT)
-    ep = shape_angle(wrap_pi(pitch - p), tau, ay, ep, 0.0, 0.0, DT)
-    if use_yaw != 0:
-        ey = shape_angle(wrap_pi(yaw - y), tau, az, ey, 0.0, 0.0, DT)
-        if yaw_slew > 0.0:
-            ey = constrain(ey, -yaw_slew, yaw_slew)
-    else:
-        ey = shape_rate(ey, yaw_rate, az, float(ap.params.PILOT.Y_RATE_TC), DT)
-    wx, wy, wz = body_rates(r, p, er, ep, ey)
-    wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
-    set_target_rate(ap, wx, wy, wz)
+def jump(attitude: AttitudeState, q: Quat, rate: Vec3) -> None:
+    """Replace the target and its angular velocity [rad/s]."""
+    set_target(attitude, q)
+    attitude.target_rate = rate
 
 
 @law
-def _jump_euler(ap, roll, pitch, yaw):
-    w, x, y, z = quat_from_euler(roll, pitch, yaw)
-    set_target(ap, w, x, y, z)
-    set_target_rate(ap, 0.0, 0.0, 0.0)
+def correct(ap: Autopilot) -> None:
+    """Body-rate targets from the difference between target and estimate."""
+    attitude = ap.control.attitude
+    q, rates = ap.estimate.q, ap.estimate.rates
+    out = attitude_control(q, attitude.target_q, attitude.target_rate, rates, attitude_gains(ap.params.ATC))
+    if out.yaw_limited:
+        set_target(attitude, out.target)
+    attitude.rate_target = out.rate_target
+    attitude.error = out.error
+    attitude.error_q = out.error_q
+    attitude.thrust_error_angle = out.thrust_error_angle
+    attitude.cos_lean = cos_lean(q)
 
 
 @law
-def input_euler_roll_pitch_yaw_rate(ap, roll, pitch, yaw_rate):
-    """Lean to ``roll``, ``pitch`` [rad] while turning at ``yaw_rate`` [rad/s]."""
-    shaped = _begin(ap)
-    euler = ap.control.attitude.target_euler
-    if not (finite(roll) and finite(pitch) and finite(yaw_rate)):
-        roll, pitch, yaw_rate = float(euler[0]), float(euler[1]), 0.0
-    if shaped:
-        _shape_euler(ap, roll, pitch, 0.0, yaw_rate, 0, 0.0)
-    else:
-        _jump_euler(ap, roll, pitch, float(euler[2]) + yaw_rate * DT)
-    correct(ap)
-
-
-@law
-def input_euler_roll_pitch_yaw(ap, roll, pitch, yaw, slew_yaw):
-    """Lean to ``roll``, ``pitch`` and turn to ``yaw`` [rad]; ``slew_yaw`` != 0 keeps the turn below
-    ATC_SLEW_YAW.
-    """
-    shaped = _begin(ap)
-    euler = ap.control.attitude.target_euler
-    if not (finite(roll) and finite(pitch) and finite(yaw)):
-        roll, pitch, yaw = float(euler[0]), float(euler[1]), float(euler[2])
-    slew = slew_yaw_max(ap) if slew_yaw != 0 else 0.0
-    if shaped:
-        _shape_euler(ap, roll, pitch, yaw, 0.0, 1, slew)
-    else:
-        turn = wrap_pi(yaw - float(euler[2]))
-        if slew > 0.0:
-            turn = constrain(turn, -slew * DT, slew * DT)
-        _jump_euler(ap, roll, pitch, float(euler[2]) + turn)
-    correct(ap)
-
-
-@law
-def _target_error(ap, w, x, y, z):
-    """Rotation from the target to the attitude (w, x, y, z), target frame."""
-    q = ap.control.attitude.target_q
-    return quat_multiply(float(q[0]), -float(q[1]), -float(q[2]), -float(q[3]), w, x, y, z)
-
-
-@law
-def _shape_rotation(ap, rx, ry, rz, p, q, r, yaw_max):
-    """Shape towards an attitude that is (rx, ry, rz) [rad] away and itself turns at (p, q, r) [rad/s]."""
-    a = ap.control.attitude
-    tau = float(ap.params.ATC.INPUT_TC)
-    ax, ay, az = accel_max(ap)
-    wx = shape_angle(rx, tau, ax, float(a.target_rate[0]), p, 0.0, DT)
-    wy = shape_angle(ry, tau, ay, float(a.target_rate[1]), q, 0.0, DT)
-    wz = shape_angle(rz, tau, az, float(a.target_rate[2]), r, yaw_max, DT)
-    wx, wy, wz = limit_rates(ap, wx, wy, wz, yaw_max)
-    set_target_rate(ap, wx, wy, wz)
-
-
-@law
-def input_thrust_vector_heading(ap, tx, ty, tz, heading, heading_rate):
-    """Point thrust along the NED vector (tx, ty, tz) and the nose to ``heading`` [rad], which moves at
-    ``heading_rate``.
-    """
-    shaped = _begin(ap)
-    if not (finite(tx) and finite(ty) and finite(tz) and finite(heading) and finite(heading_rate)):
-        _hold(ap, shaped)
-        return
-    most = slew_yaw_max(ap)
-    if most > 0.0:
-        heading_rate = constrain(heading_rate, -most, most)
-    w, x, y, z = thrust_quaternion(tx, ty, tz, heading)
-    if shaped:
-        w, x, y, z = _target_error(ap, w, x, y, z)
-        rx, ry, rz, _angle, _w, _x, _y = split_error(w, x, y, z)
-        _shape_rotation(ap, rx, ry, rz, 0.0, 0.0, heading_rate, most)
-    else:
-        set_target(ap, w, x, y, z)
-        set_target_rate(ap, 0.0, 0.0, 0.0)
-    correct(ap)
-
-
-@law
-def input_thrust_vector_heading_rate(ap, tx, ty, tz, heading_rate):
-    """Point thrust along the NED vector (tx, ty, tz) while turning about it at ``heading_rate`` [rad/s]."""
-    shaped = _begin(ap)
-    if not (finite(tx) and finite(ty) and finite(tz) and finite(heading_rate)):
-        _hold(ap, shaped)
-        return
-    most = slew_yaw_max(ap)
-    if most > 0.0:
-        heading_rate = constrain(heading_rate, -most, most)
-    a = ap.control.attitude
-    w, x, y, z = thrust_quaternion(tx, ty, tz, 0.0)
-    w, x, y, z = _target_error(ap, w, x, y, z)
-    rx, ry, _rz, _angle, hw, hx, hy = split_error(w, x, y, z)
-    if shaped:
-        tau = float(ap.params.ATC.INPUT_TC)
-        ax, ay, az = accel_max(ap)
-        wx = shape_angle(rx, tau, ax, float(a.target_rate[0]), 0.0, 0.0, DT)
-        wy = shape_angle(ry, tau, ay, float(a.target_rate[1]), 0.0, 0.0, DT)
-        wz = shape_rate(float(a.target_rate[2]), heading_rate, az, float(ap.params.PILOT.Y_RATE_TC), DT)
-        wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
-        set_target_rate(ap, wx, wy, wz)
-    else:
-        q = a.target_q
-        w, x, y, z = quat_multiply(float(q[0]), float(q[1]), float(q[2]), float(q[3]), hw, hx, hy, 0.0)
-        w, x, y, z = quat_multiply(w, x, y, z, 1.0, 0.0, 0.0, 0.5 * heading_rate * DT)
-        set_target(ap, w, x, y, z)
-        set_target_rate(ap, 0.0, 0.0, 0.0)
-    correct(ap)
-
-
-@law
-def input_quaternion(ap, qw, qx, qy, qz, p, q, r):
-    """Turn to the attitude (qw, qx, qy, qz) (body to NED), which itself turns at body rates (p, q, r)
-    [rad/s].
-    """
-    shaped = _begin(ap)
-    n2 = qw * qw + qx * qx + qy * qy + qz * qz
-    if not (finite(n2) and finite(p) and finite(q) and finite(r)) or n2 < 1e-6:
-        _hold(ap, shaped)
-        return
-    if shaped:
-        n = math.sqrt(n2)
-        w, x, y, z = _target_error(ap, qw / n, qx / n, qy / n, qz / n)
-        rx, ry, rz, _angle, _w, _x, _y = split_error(w, x, y, z)
-        _shape_rotation(ap, rx, ry, rz, p, q, r, 0.0)
-    else:
-        set_target(ap, qw, qx, qy, qz)
-        set_target_rate(ap, p, q, r)
-    correct(ap)
-
-
-@law
-def input_rates(ap, p, q, r):
-    """Turn at body rates (p, q, r) [rad/s]; the attitude reached on the way is held."""
-    shaped = _begin(ap)
-    if not (finite(p) and finite(q) and finite(r)):
-        p, q, r = 0.0, 0.0, 0.0
-    a = ap.control.attitude
-    if shaped:
-        ax, ay, az = accel_max(ap)
-        p = shape_rate(float(a.target_rate[0]), p, ax, 0.0, DT)
-        q = shape_rate(float(a.target_rate[1]), q, ay, 0.0, DT)
-        r = shape_rate(float(a.target_rate[2]), r, az, float(ap.params.PILOT.Y_RATE_TC), DT)
-    p, q, r = limit_rates(ap, p, q, r, 0.0)
-    set_target_rate(ap, p, q, r)
-    correct(ap)
-
-
-@law
-def _hold(ap, shaped):
+def hold(ap: Autopilot, shaped: bool) -> None:
     """Bring the target to rest where it is."""
-    if shaped:
-        _shape_rotation(ap, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    else:
-        set_target_rate(ap, 0.0, 0.0, 0.0)
+    attitude = ap.control.attitude
+    rest = Vec3(0.0, 0.0, 0.0)
+    attitude.target_rate = shape_rotation(rest, attitude.target_rate, rest, shaping_limits(ap), 0.0) if shaped else rest
     correct(ap)
 
 
 @law
-def relax(ap):
-    """Target := present attitude and rates, integrators zero: nothing pushes while the vehicle stands on the
-    ground.
-    """
-    a = ap.control.attitude
-    est = ap.estimate
-    set_target(ap, float(est.q[0]), float(est.q[1]), float(est.q[2]), float(est.q[3]))
-    set_target_rate(ap, float(est.rates[0]), float(est.rates[1]), float(est.rates[2]))
-    for k in range(3):
-        a.rate_target[k] = float(est.rates[k])
-        a.error[k] = 0.0
-        a.error_q[k + 1] = 0.0
-    a.error_q[0] = 1.0
-    a.thrust_error_angle = 0.0
-    a.cos_lean = 1.0 - 2.0 * (float(est.q[1]) * float(est.q[1]) + float(est.q[2]) * float(est.q[2]))
-    a.yaw_reset_count = est.reset_yaw_count
-    rate.reset_filters(ap)
-    rate.reset_integrators(ap)
+def input_euler_roll_pitch_yaw_rate(ap: Autopilot, roll: float, pitch: float, yaw_rate: float) -> None:
+    """Lean to ``roll``, ``pitch`` [rad] while turning at ``yaw_rate`` [rad/s]."""
+    shaped = advance_target(ap)
+    attitude = ap.control.attitude
+    euler = attitude.target_euler
+    if not (finite(roll) and finite(pitch) and finite(yaw_rate)):
+        roll, pitch, yaw_rate = euler.roll, euler.pitch, 0.0
+    if shaped:
+        attitude.target_rate = shape_euler(euler, attitude.target_rate, roll, pitch, yaw_rate, shaping_limits(ap))
+    else:
+        jump(attitude, quat_from_euler(Euler(roll, pitch, euler.yaw + yaw_rate * DT)), Vec3(0.0, 0.0, 0.0))
+    correct(ap)
 
 
 @law
-def reset_yaw_target(ap):
+def input_thrust_vector_heading(ap: Autopilot, thrust: Vec3, heading: float, heading_rate: float) -> None:
+    """Point thrust along an NED vector and the nose to ``heading`` [rad], which moves at ``heading_rate`` [rad/s]."""
+    shaped = advance_target(ap)
+    if not (finite_vector(thrust) and finite(heading) and finite(heading_rate)):
+        hold(ap, shaped)
+        return
+    attitude = ap.control.attitude
+    q = thrust_quaternion(thrust, heading)
+    if shaped:
+        slew = slew_yaw_max(ap.params.ATC)
+        ahead = Vec3(0.0, 0.0, limit_turn(heading_rate, slew))
+        error = split_error(multiply(conjugate(attitude.target_q), q)).error
+        attitude.target_rate = shape_rotation(error, attitude.target_rate, ahead, shaping_limits(ap), slew)
+    else:
+        jump(attitude, q, Vec3(0.0, 0.0, 0.0))
+    correct(ap)
+
+
+@law
+def input_thrust_vector_heading_rate(ap: Autopilot, thrust: Vec3, heading_rate: float) -> None:
+    """Point thrust along an NED vector while turning about it at ``heading_rate`` [rad/s]."""
+    shaped = advance_target(ap)
+    if not (finite_vector(thrust) and finite(heading_rate)):
+        hold(ap, shaped)
+        return
+    attitude = ap.control.attitude
+    turn = limit_turn(heading_rate, slew_yaw_max(ap.params.ATC))
+    split = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, 0.0)))
+    if shaped:
+        attitude.target_rate = shape_thrust_turn(split.error, attitude.target_rate, turn, shaping_limits(ap))
+    else:
+        q = multiply(attitude.target_q, split.thrust_turn)
+        jump(attitude, multiply(q, Quat(1.0, 0.0, 0.0, 0.5 * turn * DT)), Vec3(0.0, 0.0, 0.0))
+    correct(ap)
+
+
+@law
+def input_quaternion(ap: Autopilot, q: Quat, rates: Vec3) -> None:
+    """Turn to attitude ``q`` (body to NED), which itself turns at body rates ``rates`` [rad/s]."""
+    shaped = advance_target(ap)
+    n2 = quat_norm_squared(q)
+    if not (finite(n2) and finite_vector(rates)) or n2 < 1e-6:
+        hold(ap, shaped)
+        return
+    attitude = ap.control.attitude
+    if shaped:
+        error = split_error(multiply(conjugate(attitude.target_q), q / math.sqrt(n2))).error
+        attitude.target_rate = shape_rotation(error, attitude.target_rate, rates, shaping_limits(ap), 0.0)
+    else:
+        jump(attitude, q, rates)
+    correct(ap)
+
+
+@law
+def input_rates(ap: Autopilot, rates: Vec3) -> None:
+    """Turn at body rates [rad/s]; the attitude reached on the way is held."""
+    shaped = advance_target(ap)
+    attitude = ap.control.attitude
+    wanted = rates if finite_vector(rates) else Vec3(0.0, 0.0, 0.0)
+    shaping = shaping_limits(ap)
+    if shaped:
+        wanted = shape_rates(attitude.target_rate, wanted, shaping)
+    attitude.target_rate = limit_rates(wanted, shaping.rate_max)
+    correct(ap)
+
+
+@law
+def relax(ap: Autopilot) -> None:
+    """Target := present attitude and rates, integrators zero: nothing pushes while the vehicle stands on the ground."""
+    attitude = ap.control.attitude
+    q, rates = ap.estimate.q, ap.estimate.rates
+    jump(attitude, q, rates)
+    attitude.rate_target = rates
+    attitude.error = Vec3(0.0, 0.0, 0.0)
+    attitude.error_q = Quat(1.0, 0.0, 0.0, 0.0)
+    attitude.thrust_error_angle = 0.0
+    attitude.cos_lean = cos_lean(q)
+    attitude.yaw_reset_count = ap.estimate.reset_yaw_count
+    rate.reset_filters(ap.control.rate)
+    rate.reset_integrators(ap.control.rate)
+
+
+@law
+def reset_yaw_target(ap: Autopilot) -> None:
     """Heading target := present heading, without a turn."""
-    a = ap.control.attitude
-    q = a.target_q
-    turn = wrap_pi(float(ap.estimate.euler[2]) - float(a.target_euler[2]))
-    w, x, y, z = quat_from_rotation_vector(0.0, 0.0, turn)
-    w, x, y, z = quat_multiply(w, x, y, z, float(q[0]), float(q[1]), float(q[2]), float(q[3]))
-    set_target(ap, w, x, y, z)
-    r, p = float(a.target_euler[0]), float(a.target_euler[1])
-    er, ep, _ey = euler_rates(r, p, float(a.target_rate[0]), float(a.target_rate[1]), float(a.target_rate[2]))
-    wx, wy, wz = body_rates(r, p, er, ep, 0.0)
-    set_target_rate(ap, wx, wy, wz)
+    attitude = ap.control.attitude
+    turn = wrap_pi(ap.estimate.euler.yaw - attitude.target_euler.yaw)
+    set_target(attitude, multiply(quat_from_rotation_vector(Vec3(0.0, 0.0, turn)), attitude.target_q))
+    rates = euler_rates(attitude.target_euler, attitude.target_rate)
+    attitude.target_rate = body_rates(attitude.target_euler, Euler(rates.roll, rates.pitch, 0.0))

@@ -4,17 +4,25 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.algebra import multiply, norm
 from ....core.kernels import law
-from ....core.rotations import quat_multiply
 from ....core.scalars import constrain
+from ....core.vectors import Euler, Quat, Vec3
+
+
+class SplitError(NamedTuple):
+    """A rotation as a turn of the thrust axis about a horizontal body axis, after a turn about the thrust axis."""
+
+    error: Vec3  # turn of the thrust about x and y, turn of the heading about z [rad]
+    thrust_angle: float  # of the thrust turn [rad]
+    thrust_turn: Quat  # the thrust turn alone
 
 
 @law
-def angle_per_half_sine(s, c):
-    """Angle / sin(angle / 2) for s = sin(angle / 2) >= 0 and c = cos(angle / 2) >= 0; a series while it is
-    small.
-    """
+def angle_per_half_sine(s: float, c: float) -> float:
+    """Angle / sin(angle / 2) for s = sin(angle / 2) >= 0, c = cos(angle / 2) >= 0; a series while it is small."""
     s2 = s * s
     if s2 < 0.01:
         return 2.0 + s2 * (1.0 / 3.0 + s2 * (0.15 + s2 * (5.0 / 56.0)))
@@ -22,74 +30,69 @@ def angle_per_half_sine(s, c):
 
 
 @law
-def split_error(w, x, y, z):
-    """Rotation (w, x, y, z) as a turn of the thrust axis about a horizontal body axis, after a turn about it.
-
-    Returns the error (about x, about y, heading) [rad], the angle of the thrust turn [rad] and its
-    quaternion's (w, x, y); z is zero. When thrust must turn by 180 degrees heading has no meaning and its
-    error is zero.
-    """
-    n = math.sqrt(w * w + z * z)
+def split_error(q: Quat) -> SplitError:
+    """Thrust and heading parts of a rotation. When thrust turns by 180 degrees heading has no meaning: no error."""
+    n = math.sqrt(q.w * q.w + q.z * q.z)
     if n < 1e-9:
-        s = math.sqrt(x * x + y * y)
+        s = math.sqrt(q.x * q.x + q.y * q.y)
         k = math.pi / s if s > 0.0 else 0.0
-        return (k * x, k * y, 0.0, math.pi, 0.0, x, y)
-    cw, cz = w / n, z / n
-    tx, ty = x * cw - y * cz, x * cz + y * cw
+        return SplitError(Vec3(k * q.x, k * q.y, 0.0), math.pi, Quat(0.0, q.x, q.y, 0.0))
+    cw, cz = q.w / n, q.z / n
+    tx, ty = q.x * cw - q.y * cz, q.x * cz + q.y * cw
     s = math.sqrt(tx * tx + ty * ty)
     k = angle_per_half_sine(s, n)
     if cw < 0.0:
         cw, cz = -cw, -cz
     heading = angle_per_half_sine(abs(cz), cw) * cz
-    return (k * tx, k * ty, heading, k * s, n, tx, ty)
+    return SplitError(Vec3(k * tx, k * ty, heading), k * s, Quat(n, tx, ty, 0.0))
 
 
 @law
-def thrust_quaternion(x, y, z, heading):
-    """Attitude whose thrust (body -z) points along the NED vector (x, y, z), with ``heading`` [rad] about it.
+def thrust_quaternion(thrust: Vec3, heading: float) -> Quat:
+    """Attitude whose thrust (body -z) points along the NED vector ``thrust``, with ``heading`` [rad] about it.
 
     The shortest turn from upright is followed by a turn about the body's z axis. A zero vector means upright.
     """
-    n = math.sqrt(x * x + y * y + z * z)
-    if n < 1e-9:
-        x, y, z, n = 0.0, 0.0, -1.0, 1.0
-    x, y, z = x / n, y / n, z / n
+    n = norm(thrust)
+    u = thrust / n if n >= 1e-9 else Vec3(0.0, 0.0, -1.0)
     # Half-way quaternion between up (0, 0, -1) and the vector: (1 + cos, axis * sin), to be normalised.
-    w = 1.0 - z
-    m = math.sqrt(w * w + x * x + y * y)
-    c, s = math.cos(0.5 * heading), math.sin(0.5 * heading)
+    w = 1.0 - u.z
+    m = math.sqrt(w * w + u.x * u.x + u.y * u.y)
+    turn = Quat(math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading))
     if m < 1e-6:
-        return quat_multiply(0.0, 1.0, 0.0, 0.0, c, 0.0, 0.0, s)
-    return quat_multiply(w / m, y / m, -x / m, 0.0, c, 0.0, 0.0, s)
+        return multiply(Quat(0.0, 1.0, 0.0, 0.0), turn)
+    return multiply(Quat(w / m, u.y / m, -u.x / m, 0.0), turn)
 
 
 @law
-def body_rates(roll, pitch, roll_rate, pitch_rate, yaw_rate):
-    """(p, q, r) [rad/s] at Euler angles that change with the given rates."""
-    sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
-    return (
-        roll_rate - sp * yaw_rate,
-        cr * pitch_rate + sr * cp * yaw_rate,
-        cr * cp * yaw_rate - sr * pitch_rate,
+def body_rates(euler: Euler, rates: Euler) -> Vec3:
+    """Body rates [rad/s] at Euler angles that change with ``rates`` [rad/s]."""
+    sr, cr, sp, cp = math.sin(euler.roll), math.cos(euler.roll), math.sin(euler.pitch), math.cos(euler.pitch)
+    return Vec3(
+        rates.roll - sp * rates.yaw,
+        cr * rates.pitch + sr * cp * rates.yaw,
+        cr * cp * rates.yaw - sr * rates.pitch,
     )
 
 
 @law
-def euler_rates(roll, pitch, p, q, r):
-    """Rates of the Euler angles [rad/s]; within 1 degree of vertical they are those of 1 degree off."""
-    sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
+def euler_rates(euler: Euler, rates: Vec3) -> Euler:
+    """Rates of the Euler angles [rad/s] at body rates; within 1 degree of vertical they are those of 1 degree off."""
+    sr, cr, sp, cp = math.sin(euler.roll), math.cos(euler.roll), math.sin(euler.pitch), math.cos(euler.pitch)
     cp = max(cp, 0.0175)
-    yaw_rate = (sr * q + cr * r) / cp
-    return (p + sp * yaw_rate, cr * q - sr * r, yaw_rate)
+    yaw_rate = (sr * rates.y + cr * rates.z) / cp
+    return Euler(rates.x + sp * yaw_rate, cr * rates.y - sr * rates.z, yaw_rate)
 
 
 @law
-def euler_accel_limits(roll, pitch, ax, ay, az):
-    """Accelerations of the Euler angles [rad/s^2] that keep the body's below (ax, ay, az); 0 in one switches
-    it off.
-    """
-    if ax <= 0.0 or ay <= 0.0 or az <= 0.0:
-        return (ax, ay, az)
-    sr, cr = constrain(abs(math.sin(roll)), 0.1, 1.0), constrain(abs(math.cos(roll)), 0.1, 1.0)
-    sp, cp = constrain(abs(math.sin(pitch)), 0.1, 1.0), constrain(abs(math.cos(pitch)), 0.1, 1.0)
-    return (ax, min(ay / cr, az / sr), min(min(ax / sp, ay / (sr * cp)), az / (cr * cp)))
+def euler_accel_limits(euler: Euler, limit: Vec3) -> Euler:
+    """Accelerations of the Euler angles [rad/s^2] that keep the body's below ``limit``; 0 in one switches it off."""
+    if limit.x <= 0.0 or limit.y <= 0.0 or limit.z <= 0.0:
+        return Euler(limit.x, limit.y, limit.z)
+    sr, cr = constrain(abs(math.sin(euler.roll)), 0.1, 1.0), constrain(abs(math.cos(euler.roll)), 0.1, 1.0)
+    sp, cp = constrain(abs(math.sin(euler.pitch)), 0.1, 1.0), constrain(abs(math.cos(euler.pitch)), 0.1, 1.0)
+    return Euler(
+        limit.x,
+        min(limit.y / cr, limit.z / sr),
+        min(min(limit.x / sp, limit.y / (sr * cp)), limit.z / (cr * cp)),
+    )

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The target attitude and the correction towards it: square-root controllers, thrust axis first, heading
-after.
+"""The target attitude and the correction towards it: square-root controllers, thrust axis first, heading after.
 
 The split of an error into thrust and heading is tilt-twist decomposition; see Brescianini, Hehn, D'Andrea,
 "Nonlinear quadrocopter attitude control", ETH Zurich, 2013. Heading's error is kept small enough not to take
@@ -10,13 +9,16 @@ the motors from roll and pitch.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.algebra import conjugate, dot, euler_of, multiply, quat_norm_squared, rotate
 from ....core.kernels import law
-from ....core.rotations import quat_multiply, quat_rotate, quat_to_euler
 from ....core.scalars import constrain, finite
+from ....core.vectors import Quat, Vec3
 from ...control.shaping import inverse_sqrt_controller, sqrt_controller
+from ..parameters.control import Attitude
 from .attitude_error import split_error
-from .state import DT
+from .state import DT, AttitudeState
 
 CDEG = math.radians(0.01)
 DEG = math.radians(1.0)
@@ -26,150 +28,127 @@ _RP_ACCEL = (math.radians(40.0), math.radians(720.0))  # bounds of half of ATC_A
 _YAW_ACCEL = (math.radians(10.0), math.radians(120.0))
 
 
-@law
-def accel_max(ap):
-    """Angular acceleration limits of the shaping [rad/s^2], 0 for none."""
-    p = ap.params
-    return (float(p.ATC.ACCEL_R_MAX) * CDEG, float(p.ATC.ACCEL_P_MAX) * CDEG, float(p.ATC.ACCEL_Y_MAX) * CDEG)
+class AttitudeGains(NamedTuple):
+    """Gains and limits of the correction: roll, pitch, yaw."""
+
+    angle_p: Vec3  # [1/s]
+    accel_max: Vec3  # [rad/s^2]; 0: no limit
+    rate_max: Vec3  # [rad/s]; 0: no limit
+    rate_yaw_p: float  # of the rate loop: says which yaw error the motors can work off; 0: any
+
+
+class Correction(NamedTuple):
+    """What turns the body to its target."""
+
+    rate_target: Vec3  # body rates [rad/s]
+    error: Vec3  # turn of the thrust about x and y, of the heading about z [rad]
+    error_q: Quat  # target frame to body frame
+    thrust_error_angle: float  # between the thrust axis and its target [rad]
+    target: Quat  # target frame to NED, moved when the yaw error was limited
+    yaw_limited: bool
 
 
 @law
-def limit_rates(ap, p, q, r, yaw_max):
-    """Rates within ATC_RATE_*_MAX (roll and pitch on an ellipse) and ``yaw_max`` [rad/s]; 0 is no limit."""
-    roll = float(ap.params.ATC.RATE_R_MAX) * DEG
-    pitch = float(ap.params.ATC.RATE_P_MAX) * DEG
-    yaw = float(ap.params.ATC.RATE_Y_MAX) * DEG
-    if roll > 0.0 and pitch > 0.0:
-        n = math.sqrt(p * p / (roll * roll) + q * q / (pitch * pitch))
+def accel_max(p: Attitude) -> Vec3:
+    """Angular acceleration limits of the shaping [rad/s^2] (ATC_ACCEL_*_MAX), 0 for none."""
+    return Vec3(p.ACCEL_R_MAX * CDEG, p.ACCEL_P_MAX * CDEG, p.ACCEL_Y_MAX * CDEG)
+
+
+@law
+def rate_max(p: Attitude) -> Vec3:
+    """Limits of the body rates [rad/s] (ATC_RATE_*_MAX), 0 for none."""
+    return Vec3(p.RATE_R_MAX * DEG, p.RATE_P_MAX * DEG, p.RATE_Y_MAX * DEG)
+
+
+@law
+def attitude_gains(p: Attitude) -> AttitudeGains:
+    """ATC_ANG_*_P with the limits of acceleration and rate."""
+    return AttitudeGains(Vec3(p.ANG_RLL_P, p.ANG_PIT_P, p.ANG_YAW_P), accel_max(p), rate_max(p), p.RAT_YAW.P)
+
+
+@law
+def limit_rates(rates: Vec3, limit: Vec3) -> Vec3:
+    """Body rates within ``limit`` [rad/s], roll and pitch on an ellipse; 0 is no limit."""
+    p, q, r = rates.x, rates.y, rates.z
+    if limit.x > 0.0 and limit.y > 0.0:
+        n = math.sqrt(p * p / (limit.x * limit.x) + q * q / (limit.y * limit.y))
         if n > 1.0:
             p, q = p / n, q / n
-    elif roll > 0.0:
-        p = constrain(p, -roll, roll)
-    elif pitch > 0.0:
-        q = constrain(q, -pitch, pitch)
-    if yaw_max > 0.0 and (yaw <= 0.0 or yaw_max < yaw):
-        yaw = yaw_max
-    if yaw > 0.0:
-        r = constrain(r, -yaw, yaw)
-    return (p, q, r)
+    elif limit.x > 0.0:
+        p = constrain(p, -limit.x, limit.x)
+    elif limit.y > 0.0:
+        q = constrain(q, -limit.y, limit.y)
+    if limit.z > 0.0:
+        r = constrain(r, -limit.z, limit.z)
+    return Vec3(p, q, r)
 
 
 @law
-def slew_yaw_max(ap):
-    """Fastest turn of modes that fly by themselves [rad/s]: ATC_SLEW_YAW, at most ATC_RATE_Y_MAX; 0 is no
-    limit.
-    """
-    slew = float(ap.params.ATC.SLEW_YAW) * CDEG
-    most = float(ap.params.ATC.RATE_Y_MAX) * DEG
-    return min(slew, most) if most > 0.0 and slew > 0.0 else slew
-
-
-@law
-def set_target(ap, w, x, y, z):
+def set_target(attitude: AttitudeState, q: Quat) -> None:
     """Replace the target attitude (normalised; one that is not a number becomes the identity)."""
-    n2 = w * w + x * x + y * y + z * z
-    if finite(n2) and n2 > 1e-12:
-        k = 1.0 / math.sqrt(n2)
-        w, x, y, z = w * k, x * k, y * k, z * k
-    else:
-        w, x, y, z = 1.0, 0.0, 0.0, 0.0
-    q = ap.control.attitude.target_q
-    q[0], q[1], q[2], q[3] = w, x, y, z
-    euler = ap.control.attitude.target_euler
-    euler[0], euler[1], euler[2] = quat_to_euler(w, x, y, z)
+    n2 = quat_norm_squared(q)
+    target = q * (1.0 / math.sqrt(n2)) if finite(n2) and n2 > 1e-12 else Quat(1.0, 0.0, 0.0, 0.0)
+    attitude.target_q = target
+    attitude.target_euler = euler_of(target)
 
 
 @law
-def set_target_rate(ap, p, q, r):
-    """Replace the angular velocity of the target [rad/s, target frame]."""
-    rates = ap.control.attitude.target_rate
-    rates[0], rates[1], rates[2] = p, q, r
-
-
-@law
-def advance_target(ap):
-    """Turn the target by its angular velocity for one tick (by series: the angle is small)."""
-    a = ap.control.attitude
-    hx = 0.5 * DT * float(a.target_rate[0])
-    hy = 0.5 * DT * float(a.target_rate[1])
-    hz = 0.5 * DT * float(a.target_rate[2])
-    h2 = hx * hx + hy * hy + hz * hz
+def turned_by_rate(q: Quat, rate: Vec3, dt: float) -> Quat:
+    """``q`` after turning at ``rate`` [rad/s, its own frame] for ``dt`` [s], by series: the angle is small."""
+    half = rate * (0.5 * dt)
+    h2 = dot(half, half)
     s = 1.0 - h2 / 6.0 + h2 * h2 / 120.0
-    q = a.target_q
-    w, x, y, z = quat_multiply(
-        float(q[0]), float(q[1]), float(q[2]), float(q[3]),
-        1.0 - 0.5 * h2 + h2 * h2 / 24.0, s * hx, s * hy, s * hz,
-    )  # fmt: skip
-    set_target(ap, w, x, y, z)
+    return multiply(q, Quat(1.0 - 0.5 * h2 + h2 * h2 / 24.0, s * half.x, s * half.y, s * half.z))
 
 
 @law
-def correct(ap):
-    """Body-rate targets from the difference between target and estimate, plus the target's own angular
-    velocity.
-    """
-    a = ap.control.attitude
-    est = ap.estimate
-    p = ap.params
-    bw, bx, by, bz = float(est.q[0]), float(est.q[1]), float(est.q[2]), float(est.q[3])
-    ew, ex, ey, ez = quat_multiply(
-        bw, -bx, -by, -bz,
-        float(a.target_q[0]), float(a.target_q[1]), float(a.target_q[2]), float(a.target_q[3]),
-    )  # fmt: skip
-    rx, ry, rz, angle, tw, tx, ty = split_error(ew, ex, ey, ez)
-
-    accel_r, accel_p, accel_y = accel_max(ap)
-    accel_yaw = constrain(0.5 * accel_y, _YAW_ACCEL[0], _YAW_ACCEL[1])
-    yaw_p = float(p.ATC.ANG_YAW_P)
-    if p.ATC.RAT_YAW.P > 0.0 and yaw_p > 0.0:
-        most = min(inverse_sqrt_controller(1.0 / float(p.ATC.RAT_YAW.P), yaw_p, accel_yaw), _YAW_ERROR_MAX)
-        if abs(rz) > most:
-            # The heading cannot follow: the target waits for it, with thrust where it was asked to be.
-            rz = constrain(rz, -most, most)
-            cz, sz = math.cos(0.5 * rz), math.sin(0.5 * rz)
-            ew, ex, ey, ez = quat_multiply(tw, tx, ty, 0.0, cz, 0.0, 0.0, sz)
-            w, x, y, z = quat_multiply(bw, bx, by, bz, ew, ex, ey, ez)
-            set_target(ap, w, x, y, z)
-
-    wx = _corrected(rx, float(p.ATC.ANG_RLL_P), accel_r)
-    wy = _corrected(ry, float(p.ATC.ANG_PIT_P), accel_p)
-    wz = sqrt_controller(rz, yaw_p, accel_yaw if accel_y > 0.0 else 0.0, DT)
-    wx, wy, wz = limit_rates(ap, wx, wy, wz, 0.0)
-
-    fx, fy, fz = quat_rotate(ew, ex, ey, ez, float(a.target_rate[0]), float(a.target_rate[1]), float(a.target_rate[2]))
-    if angle > 2.0 * _ERROR_FREE:
-        wz = float(est.rates[2])
-    elif angle > _ERROR_FREE:
-        k = 2.0 - angle / _ERROR_FREE
-        wx, wy = wx + k * fx, wy + k * fy
-        wz = float(est.rates[2]) * (1.0 - k) + (wz + fz) * k
-    else:
-        wx, wy, wz = wx + fx, wy + fy, wz + fz
-    a.rate_target[0], a.rate_target[1], a.rate_target[2] = wx, wy, wz
-    a.error[0], a.error[1], a.error[2] = rx, ry, rz
-    a.error_q[0], a.error_q[1], a.error_q[2], a.error_q[3] = ew, ex, ey, ez
-    a.thrust_error_angle = angle
-    a.cos_lean = 1.0 - 2.0 * (bx * bx + by * by)
-
-
-@law
-def _corrected(error, p, accel):
+def correction_rate(error: float, p: float, accel: float) -> float:
+    """Roll or pitch rate [rad/s] that takes away ``error`` [rad] within half of ``accel`` [rad/s^2]; 0: no limit."""
     if accel <= 0.0:
         return error * p
     return sqrt_controller(error, p, constrain(0.5 * accel, _RP_ACCEL[0], _RP_ACCEL[1]), DT)
 
 
 @law
-def follow_yaw_reset(ap):
-    """When the estimate's heading jumps, the target jumps with it: the vehicle does not turn."""
-    a = ap.control.attitude
-    if a.yaw_reset_count == ap.estimate.reset_yaw_count:
-        return
-    a.yaw_reset_count = ap.estimate.reset_yaw_count
-    if not ap.control.tick > 0:
-        return
-    b, e = ap.estimate.q, a.error_q
-    w, x, y, z = quat_multiply(
-        float(b[0]), float(b[1]), float(b[2]), float(b[3]), float(e[0]), float(e[1]), float(e[2]), float(e[3])
+def attitude_control(q: Quat, target: Quat, target_rate: Vec3, body_rates: Vec3, gains: AttitudeGains) -> Correction:
+    """Body rates that turn attitude ``q`` to ``target`` (both body to NED), which itself turns at ``target_rate``.
+
+    Rates are in [rad/s], ``target_rate`` in the target's frame. A heading that cannot follow holds the target back,
+    with thrust where it was asked to be.
+    """
+    error_q = multiply(conjugate(q), target)
+    split = split_error(error_q)
+    error, angle = split.error, split.thrust_angle
+    accel_yaw = constrain(0.5 * gains.accel_max.z, _YAW_ACCEL[0], _YAW_ACCEL[1])
+    yaw_limited = False
+    if gains.rate_yaw_p > 0.0 and gains.angle_p.z > 0.0:
+        yaw_max = min(inverse_sqrt_controller(1.0 / gains.rate_yaw_p, gains.angle_p.z, accel_yaw), _YAW_ERROR_MAX)
+        if abs(error.z) > yaw_max:
+            yaw_limited = True
+            error = Vec3(error.x, error.y, constrain(error.z, -yaw_max, yaw_max))
+            turn = Quat(math.cos(0.5 * error.z), 0.0, 0.0, math.sin(0.5 * error.z))
+            error_q = multiply(split.thrust_turn, turn)
+            target = multiply(q, error_q)
+
+    wanted = Vec3(
+        correction_rate(error.x, gains.angle_p.x, gains.accel_max.x),
+        correction_rate(error.y, gains.angle_p.y, gains.accel_max.y),
+        sqrt_controller(error.z, gains.angle_p.z, accel_yaw if gains.accel_max.z > 0.0 else 0.0, DT),
     )
-    set_target(ap, w, x, y, z)
+    rate = limit_rates(wanted, gains.rate_max)
+    ahead = rotate(error_q, target_rate)
+    if angle > 2.0 * _ERROR_FREE:
+        rate = Vec3(rate.x, rate.y, body_rates.z)
+    elif angle > _ERROR_FREE:
+        k = 2.0 - angle / _ERROR_FREE
+        yaw = body_rates.z * (1.0 - k) + (rate.z + ahead.z) * k
+        rate = Vec3(rate.x + k * ahead.x, rate.y + k * ahead.y, yaw)
+    else:
+        rate = rate + ahead
+    return Correction(rate, error, error_q, angle, target, yaw_limited)
+
+
+@law
+def cos_lean(q: Quat) -> float:
+    """Cosine of the lean of attitude ``q``."""
+    return 1.0 - 2.0 * (q.x * q.x + q.y * q.y)

@@ -8,12 +8,17 @@ with the throttle limited to ``thrust_max``, which ramps over MOT_SPOOL_TIME.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
 from ...control.pid import lowpass_gain
-from .mixer import mix
-from .state import DT
-from .thrust_curve import SLOW_DT, command_from_thrust, update_slow
+from ...state import Actuators
+from ..parameters.control import Motors
+from ..state import Autopilot
+from .mixer import Demands, mix
+from .state import DT, MotorsState
+from .thrust_curve import SLOW_DT, command_from_thrust, compensate
 
 # desired_spool
 DESIRED_SHUT_DOWN, DESIRED_GROUND_IDLE, DESIRED_THROTTLE_UNLIMITED = 0, 1, 2
@@ -28,24 +33,41 @@ _HOVER_TIME = 10.0  # time constant of hover-throttle learning [s]
 _HOVER_MIN, _HOVER_MAX = 0.125, 0.6875  # range in which a hover throttle is believed
 
 
+class SpoolTimes(NamedTuple):
+    """How the motors spool."""
+
+    up: float  # over the whole range [s]
+    down: float  # [s]; 0: as up
+    idle_ratio: float  # spin of armed motors on the ground: MOT_SPIN_ARM over MOT_SPIN_MIN
+
+
+class MotorCurve(NamedTuple):
+    """From thrust to command."""
+
+    spin_min: float  # command range of the motors 0 .. 1
+    spin_max: float
+    expo: float  # of the thrust curve
+    slew_up: float  # time for the whole range [s]; 0: at once
+    slew_down: float
+
+
 @law
-def hover_throttle(ap):
+def hover_throttle(p: Motors) -> float:
     """Throttle 0 .. 1 that holds the vehicle in the air (MOT_THST_HOVER, learnt in flight)."""
-    return constrain(float(ap.params.MOT.THST_HOVER), _HOVER_MIN, _HOVER_MAX)
+    return constrain(p.THST_HOVER, _HOVER_MIN, _HOVER_MAX)
 
 
 @law
-def learn_hover_throttle(ap, dt):
-    """One step of learning, to be called every ``dt`` while hovering level (MOT_HOVER_LEARN not 0)."""
-    throttle = float(ap.control.motors.throttle)
-    if ap.params.MOT.HOVER_LEARN == 0.0 or throttle <= 0.0:
+def learn_hover_throttle(p: Motors, throttle: float, dt: float) -> None:
+    """One step of learning, to be called every ``dt`` [s] while hovering level (MOT_HOVER_LEARN not 0)."""
+    if p.HOVER_LEARN == 0.0 or throttle <= 0.0:
         return
-    hover = float(ap.params.MOT.THST_HOVER)
-    ap.params.MOT.THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
+    hover = p.THST_HOVER
+    p.THST_HOVER = constrain(hover + dt / (dt + _HOVER_TIME) * (throttle - hover), _HOVER_MIN, _HOVER_MAX)
 
 
 @law
-def set_limits(motors, value):
+def set_limits(motors: MotorsState, value: bool) -> None:
     """All limit flags at once."""
     motors.limit_roll = value
     motors.limit_pitch = value
@@ -55,34 +77,33 @@ def set_limits(motors, value):
 
 
 @law
-def spool(motors, enabled, spool_time, spool_time_down, idle_ratio):
-    """One tick of the spool state machine; ``idle_ratio`` is MOT_SPIN_ARM over MOT_SPIN_MIN, times in
-    seconds.
+def spool(motors: MotorsState, enabled: bool, times: SpoolTimes) -> None:
+    """One tick of the spool state machine.
 
     ``enabled`` is false while disarmed and during the arming delay: then the motors stand.
     """
     if not enabled:
         motors.desired_spool = DESIRED_SHUT_DOWN
         motors.spool_state = SHUT_DOWN
-    up = DT / max(spool_time, 0.05)
-    down = DT / max(spool_time_down, 0.05) if spool_time_down > 0.0 else up
-    state = int(motors.spool_state)
-    desired = int(motors.desired_spool)
+    up = DT / max(times.up, 0.05)
+    down = DT / max(times.down, 0.05) if times.down > 0.0 else up
+    state = motors.spool_state
+    desired = motors.desired_spool
     if state == SHUT_DOWN:
-        set_limits(motors, 1)
+        set_limits(motors, True)
         motors.spin_up_ratio = 0.0
         motors.thrust_max = 0.0
         if desired != DESIRED_SHUT_DOWN:
             motors.spool_state = GROUND_IDLE
     elif state == GROUND_IDLE:
-        set_limits(motors, 1)
-        ratio = float(motors.spin_up_ratio)
+        set_limits(motors, True)
+        ratio = motors.spin_up_ratio
         if desired == DESIRED_SHUT_DOWN:
             ratio = max(ratio - down, 0.0)
             if ratio <= 0.0:
                 motors.spool_state = SHUT_DOWN
         elif desired == DESIRED_GROUND_IDLE:
-            ratio += constrain(idle_ratio - ratio, -down, up)
+            ratio += constrain(times.idle_ratio - ratio, -down, up)
         else:
             ratio = min(ratio + up, 1.0)
             if ratio >= 1.0:
@@ -90,45 +111,44 @@ def spool(motors, enabled, spool_time, spool_time_down, idle_ratio):
         motors.spin_up_ratio = ratio
         motors.thrust_max = 0.0
     elif state == SPOOLING_UP:
-        set_limits(motors, 0)
+        set_limits(motors, False)
         motors.spin_up_ratio = 1.0
         if desired != DESIRED_THROTTLE_UNLIMITED:
             motors.spool_state = SPOOLING_DOWN
             return
         motors.thrust_max += up
-        if motors.thrust_max >= min(float(motors.throttle), 1.0):
+        if motors.thrust_max >= min(motors.throttle, 1.0):
             motors.thrust_max = 1.0
             motors.spool_state = THROTTLE_UNLIMITED
     elif state == THROTTLE_UNLIMITED:
-        set_limits(motors, 0)
+        set_limits(motors, False)
         motors.spin_up_ratio = 1.0
         motors.thrust_max = 1.0
         if desired != DESIRED_THROTTLE_UNLIMITED:
             motors.spool_state = SPOOLING_DOWN
     else:
-        set_limits(motors, 0)
+        set_limits(motors, False)
         motors.spin_up_ratio = 1.0
         if desired == DESIRED_THROTTLE_UNLIMITED:
             motors.spool_state = SPOOLING_UP
             return
-        motors.thrust_max = max(float(motors.thrust_max) - down, 0.0)
+        motors.thrust_max = max(motors.thrust_max - down, 0.0)
         if motors.thrust_max <= 0.0:
             motors.spool_state = GROUND_IDLE
 
 
 @law
-def filter_throttle(motors, armed):
+def filter_throttle(motors: MotorsState, armed: bool) -> None:
     """Low-pass of the throttle demand at ``throttle_filter_hz``."""
     if not armed:
         motors.throttle = 0.0
         return
-    old = float(motors.throttle)
-    new = old + lowpass_gain(float(motors.throttle_filter_hz), DT) * (float(motors.throttle_in) - old)
+    new = motors.throttle + lowpass_gain(motors.throttle_filter_hz, DT) * (motors.throttle_in - motors.throttle)
     motors.throttle = constrain(new, 0.0, 1.0)
 
 
 @law
-def slew(old, new, time_up, time_down):
+def slew(old: float, new: float, time_up: float, time_down: float) -> float:
     """Command limited to full range within MOT_SLEW_UP_TIME / MOT_SLEW_DN_TIME [s] (0: unlimited)."""
     if time_up > 0.0:
         new = min(new, old + DT / time_up)
@@ -138,76 +158,81 @@ def slew(old, new, time_up, time_down):
 
 
 @law
-def command_motors(ap):
+def command_motors(motors: MotorsState, curve: MotorCurve) -> None:
     """``motors.actuator`` from the spool state and the mixer's thrusts."""
-    p = ap.params
-    motors = ap.control.motors
-    state = int(motors.spool_state)
-    spin_min = float(p.MOT.SPIN_MIN)
-    span = float(p.MOT.SPIN_MAX) - spin_min
+    state = motors.spool_state
+    span = curve.spin_max - curve.spin_min
     for k in range(MOTORS):
         if state == SHUT_DOWN:
             motors.actuator[k] = 0.0
             continue
-        wanted = float(motors.spin_up_ratio) * spin_min
+        wanted = motors.spin_up_ratio * curve.spin_min
         if state != GROUND_IDLE:
-            thrust = float(motors.thrust[k])
-            if not finite(thrust):
-                thrust = 0.0
-            wanted = spin_min + span * command_from_thrust(
-                thrust, float(p.MOT.THST_EXPO), float(motors.lift_max), float(motors.voltage_ratio)
-            )
-        motors.actuator[k] = slew(
-            float(motors.actuator[k]), wanted, float(p.MOT.SLEW_UP_TIME), float(p.MOT.SLEW_DN_TIME)
-        )
+            thrust = motors.thrust[k] if finite(motors.thrust[k]) else 0.0
+            command = command_from_thrust(thrust, curve.expo, motors.lift_max, motors.voltage_ratio)
+            wanted = curve.spin_min + span * command
+        motors.actuator[k] = slew(motors.actuator[k], wanted, curve.slew_up, curve.slew_down)
 
 
 @law
-def update(ap, time_us):
+def compensated_demands(motors: MotorsState) -> Demands:
+    """Demands of the controllers, for the thrust that this voltage and this air leave."""
+    gain = motors.compensation_gain
+    return Demands(
+        motors.roll * gain,
+        motors.pitch * gain,
+        motors.yaw * gain,
+        motors.throttle * gain,
+        motors.throttle_avg_max * gain,
+        min(motors.thrust_max * gain, 1.0),
+    )
+
+
+@law
+def drive_test_motor(motors: MotorsState) -> None:
+    """The motor under test turns, the others stand."""
+    for k in range(MOTORS):
+        motors.actuator[k] = motors.test_actuator if k + 1 == motors.test_motor else 0.0
+
+
+@law
+def spool_times(p: Motors) -> SpoolTimes:
+    """MOT_SPOOL_TIME, MOT_SPOOL_TIM_DN and the spin of armed motors."""
+    return SpoolTimes(p.SPOOL_TIME, p.SPOOL_TIM_DN, p.SPIN_ARM / p.SPIN_MIN if p.SPIN_MIN > 0.0 else 0.0)
+
+
+@law
+def motor_curve(p: Motors) -> MotorCurve:
+    """MOT_SPIN_*, MOT_THST_EXPO, MOT_SLEW_*."""
+    return MotorCurve(p.SPIN_MIN, p.SPIN_MAX, p.THST_EXPO, p.SLEW_UP_TIME, p.SLEW_DN_TIME)
+
+
+@law
+def drive_motors(ap: Autopilot, time_us: int) -> None:
     """Everything between the demands of the controllers and ``motors.actuator``; ``time_us`` since boot."""
-    p = ap.params
     motors = ap.control.motors
-    if int(ap.control.tick) % _SLOW_TICKS == 0:
-        update_slow(ap)
+    if ap.control.tick % _SLOW_TICKS == 0:
+        compensate(ap)
     armed = ap.arming.armed != 0
     filter_throttle(motors, armed)
-    spin_min = float(p.MOT.SPIN_MIN)
-    idle = float(p.MOT.SPIN_ARM) / spin_min if spin_min > 0.0 else 0.0
-    enabled = armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US
-    spool(motors, enabled, float(p.MOT.SPOOL_TIME), float(p.MOT.SPOOL_TIM_DN), idle)
+    spool(motors, armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US, spool_times(ap.params.MOT))
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
-        gain = float(motors.compensation_gain)
-        out = mix(
-            motors,
-            int(p.FRAME.TYPE),
-            float(motors.roll) * gain,
-            float(motors.pitch) * gain,
-            float(motors.yaw) * gain,
-            float(motors.throttle) * gain,
-            float(motors.throttle_avg_max) * gain,
-            min(float(motors.thrust_max) * gain, 1.0),
-            float(p.MOT.YAW_HEADROOM) * 0.001,
-        )
-        motors.throttle_out = out / gain
-    command_motors(ap)
+        headroom = ap.params.MOT.YAW_HEADROOM * 0.001
+        out = mix(motors, int(ap.params.FRAME.TYPE), compensated_demands(motors), headroom)
+        motors.throttle_out = out / motors.compensation_gain
+    command_motors(motors, motor_curve(ap.params.MOT))
     if motors.test_motor != 0:
-        for k in range(MOTORS):
-            motors.actuator[k] = float(motors.test_actuator) if k + 1 == motors.test_motor else 0.0
+        drive_test_motor(motors)
 
 
 @law
-def write_actuators(ap, actuators):
-    """Pulses [us] and 0 .. 1 controls of the border; disarmed motors get MOT_PWM_MIN and zero."""
-    least = int(ap.params.MOT.PWM_MIN)
-    span = int(ap.params.MOT.PWM_MAX) - least
-    if span <= 0:
-        least = 1000
-        span = 1000
-    armed = ap.arming.armed != 0
-    actuators.armed = 1 if armed else 0
+def write_actuators(motors: MotorsState, actuators: Actuators, armed: bool, pwm_min: int, pwm_max: int) -> None:
+    """Pulses between ``pwm_min`` and ``pwm_max`` [us] and 0 .. 1 controls; disarmed motors get ``pwm_min`` and 0."""
+    shortest, span = (pwm_min, pwm_max - pwm_min) if pwm_max > pwm_min else (1000, 1000)
+    actuators.armed = armed
     for k in range(MOTORS):
-        pulse = least + int(span * float(ap.control.motors.actuator[k]))
+        pulse = shortest + int(span * motors.actuator[k])
         actuators.pwm[k] = pulse
         actuators.controls[k] = constrain((pulse - 1000) * 0.001, 0.0, 1.0) if armed else 0.0

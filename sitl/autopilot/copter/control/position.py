@@ -1,238 +1,224 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Horizontal position: shaped path -> position P -> velocity PID -> lean (PSC_POSXY_P, PSC_VELXY_*,
-PSC_JERK_XY).
+"""Horizontal position: shaped path -> position P -> velocity PID -> lean (PSC_POSXY_P, PSC_VELXY_*, PSC_JERK_XY).
 
-NED metres from the estimator's origin. A mode calls one ``input_*`` (or ``set_pos_vel_accel_ne``) law and
-then ``update_ne`` every tick. The desired path waits where the lean is used up, and the velocity integrator
-does not grow in that direction. Inputs that are not finite are ignored: the vehicle brakes instead.
+North and east in metres from the estimator's origin. A mode calls one ``input_*`` (or ``set_pos_vel_accel_ne``) law and
+then ``update_ne`` every tick. The desired path waits where the lean is used up, and the velocity integrator does not
+grow in that direction. Inputs that are not finite are ignored: the vehicle brakes instead.
 """
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
+from ....core.algebra import dot2, finite2, horizontal, limit_length, norm2
 from ....core.kernels import law
 from ....core.scalars import finite
-from ...control.pid import lowpass_gain
+from ....core.vectors import Vec2, Vec3
+from ...control.pid import Gains, basic_gains, lowpass_gain
 from ...control.shaping import (
+    Limits2,
+    Motion2,
     advance_2d,
     inverse_sqrt_controller,
     limit_accel,
-    limit_length,
     shape_accel_2d,
     shape_pos_vel_accel_2d,
     shape_vel_accel_2d,
     sqrt_controller_2d,
 )
+from ..parameters.control import Position
+from ..state import Autopilot
 from .position_start import (
     accel_limit_ne,
     init_ne,
     init_ne_stopping_point,
     is_active_ne,
     lean_accel,
-    lean_max_ne,
     relax_ne,
-    set_correction_speed_accel_ne,
     set_max_speed_accel_ne,
     soften_for_landing_ne,
-    stop_pos_ne,
-    stop_vel_ne,
     stopping_point_ne,
 )
-from .state import DT, GRAVITY
+from .state import DT, GRAVITY, PositionState
 
 __all__ = [
-    "accel_limit_ne",
     "init_ne",
     "init_ne_stopping_point",
+    "brake_ne",
     "input_accel_ne",
     "input_pos_vel_accel_ne",
     "input_vel_accel_ne",
     "is_active_ne",
     "lean_accel",
-    "lean_max_ne",
-    "lean_targets",
     "relax_ne",
-    "set_correction_speed_accel_ne",
     "set_max_speed_accel_ne",
     "set_pos_vel_accel_ne",
     "soften_for_landing_ne",
-    "stop_pos_ne",
-    "stop_vel_ne",
     "stopping_point_ne",
     "thrust_vector",
     "update_ne",
 ]
 
 
+class PositionGains(NamedTuple):
+    """Gains of the cascade."""
+
+    pos_p: float  # [1/s]
+    vel: Gains  # [m/s] to [m/s^2]
+
+
 @law
-def advance_ne(ap):
+def finite_motion(target: Motion2) -> bool:
+    """Whether all numbers are finite."""
+    return finite2(target.pos) and finite2(target.vel) and finite2(target.acc)
+
+
+@law
+def desired_motion_ne(c: PositionState) -> Motion2:
+    """The desired path of this tick."""
+    return Motion2(c.pos_desired, c.vel_desired, c.accel_desired)
+
+
+@law
+def advance_ne(c: PositionState) -> None:
     """Move the desired path on by one tick."""
-    c = ap.control.pos_ne
-    pn, pe, vn, ve = advance_2d(
-        float(c.pos_desired[0]), float(c.pos_desired[1]), float(c.vel_desired[0]), float(c.vel_desired[1]),
-        float(c.accel_desired[0]), float(c.accel_desired[1]), DT, float(c.limit[0]), float(c.limit[1]),
-        float(c.pos_error[0]), float(c.pos_error[1]), float(c.vel_error[0]), float(c.vel_error[1]),
-    )  # fmt: skip
-    c.pos_desired[0], c.pos_desired[1] = pn, pe
-    c.vel_desired[0], c.vel_desired[1] = vn, ve
+    moved = advance_2d(desired_motion_ne(c), DT, c.limit, c.pos_error, c.vel_error)
+    c.pos_desired = moved.pos
+    c.vel_desired = moved.vel
 
 
 @law
-def shape_pos_ne(ap, px, py, vx, vy, ax, ay, speed_max, limit_total):
+def shape_pos_ne(c: PositionState, target: Motion2, speed_max: float) -> None:
     """New desired acceleration towards a moving point; the path itself is moved by ``advance_ne``."""
-    c = ap.control.pos_ne
-    an, ae = shape_pos_vel_accel_2d(
-        px, py, vx, vy, ax, ay,
-        float(c.pos_desired[0]), float(c.pos_desired[1]), float(c.vel_desired[0]), float(c.vel_desired[1]),
-        float(c.accel_desired[0]), float(c.accel_desired[1]),
-        speed_max, float(c.accel_max), float(c.jerk_max), DT, limit_total,
-    )  # fmt: skip
-    c.accel_desired[0], c.accel_desired[1] = an, ae
+    limits = Limits2(speed_max, c.accel_max, c.jerk_max)
+    c.accel_desired = shape_pos_vel_accel_2d(target, desired_motion_ne(c), limits, DT)
 
 
 @law
-def input_pos_vel_accel_ne(ap, px, py, vx, vy, ax, ay):
-    """Follow a point at (px, py) [m] that moves with (vx, vy) [m/s] and (ax, ay) [m/s^2], shaped."""
-    if not (finite(px + py) and finite(vx + vy) and finite(ax + ay)):
-        input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        return
-    advance_ne(ap)
-    shape_pos_ne(ap, px, py, vx, vy, ax, ay, float(ap.control.pos_ne.speed_max), 0)
+def input_pos_vel_accel_ne(c: PositionState, target: Motion2) -> None:
+    """Follow a moving point, shaped."""
+    if finite_motion(target):
+        advance_ne(c)
+        shape_pos_ne(c, target, c.speed_max)
+    else:
+        brake_ne(c)
 
 
 @law
-def input_vel_accel_ne(ap, vx, vy, ax, ay):
-    """Fly at (vx, vy) [m/s], which changes with (ax, ay) [m/s^2], shaped."""
-    c = ap.control.pos_ne
-    if not (finite(vx + vy) and finite(ax + ay)):
-        vx, vy, ax, ay = 0.0, 0.0, 0.0, 0.0
-    advance_ne(ap)
-    an, ae = shape_vel_accel_2d(
-        vx, vy, ax, ay, float(c.vel_desired[0]), float(c.vel_desired[1]),
-        float(c.accel_desired[0]), float(c.accel_desired[1]), float(c.accel_max), float(c.jerk_max), DT, 0,
-    )  # fmt: skip
-    c.accel_desired[0], c.accel_desired[1] = an, ae
+def input_vel_accel_ne(c: PositionState, vel: Vec2, acc: Vec2) -> None:
+    """Fly at ``vel`` [m/s], which changes with ``acc`` [m/s^2], shaped."""
+    if not (finite2(vel) and finite2(acc)):
+        vel, acc = Vec2(0.0, 0.0), Vec2(0.0, 0.0)
+    advance_ne(c)
+    limits = Limits2(0.0, c.accel_max, c.jerk_max)
+    c.accel_desired = shape_vel_accel_2d(vel, acc, desired_motion_ne(c), limits, DT)
 
 
 @law
-def input_accel_ne(ap, ax, ay):
-    """Accelerate with (ax, ay) [m/s^2], jerk-limited."""
-    c = ap.control.pos_ne
-    if not finite(ax + ay):
-        ax, ay = 0.0, 0.0
-    advance_ne(ap)
-    an, ae = shape_accel_2d(ax, ay, float(c.accel_desired[0]), float(c.accel_desired[1]), float(c.jerk_max), DT)
-    c.accel_desired[0], c.accel_desired[1] = an, ae
+def brake_ne(c: PositionState) -> None:
+    """Come to a stop, shaped."""
+    input_vel_accel_ne(c, Vec2(0.0, 0.0), Vec2(0.0, 0.0))
 
 
 @law
-def set_pos_vel_accel_ne(ap, px, py, vx, vy, ax, ay):
+def input_accel_ne(c: PositionState, acc: Vec2) -> None:
+    """Accelerate with ``acc`` [m/s^2], jerk-limited."""
+    advance_ne(c)
+    wanted = acc if finite2(acc) else Vec2(0.0, 0.0)
+    c.accel_desired = shape_accel_2d(wanted, c.accel_desired, c.jerk_max, DT)
+
+
+@law
+def set_pos_vel_accel_ne(c: PositionState, target: Motion2) -> None:
     """Desired path given outright, for trajectories that are already smooth."""
-    if not (finite(px + py) and finite(vx + vy) and finite(ax + ay)):
-        input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        return
-    c = ap.control.pos_ne
-    c.pos_desired[0], c.pos_desired[1] = px, py
-    c.vel_desired[0], c.vel_desired[1] = vx, vy
-    c.accel_desired[0], c.accel_desired[1] = ax, ay
+    if finite_motion(target):
+        c.pos_desired = target.pos
+        c.vel_desired = target.vel
+        c.accel_desired = target.acc
+    else:
+        brake_ne(c)
 
 
 @law
-def thrust_vector(ap):
-    """NED direction of thrust (not normalised) [m/s^2] that gives the horizontal acceleration in level
-    flight.
-    """
-    c = ap.control.pos_ne
-    return (float(c.accel_target[0]), float(c.accel_target[1]), -GRAVITY)
+def thrust_vector(c: PositionState) -> Vec3:
+    """NED direction of thrust (not normalised) [m/s^2] that gives the horizontal acceleration in level flight."""
+    return Vec3(c.accel_target.x, c.accel_target.y, -GRAVITY)
 
 
 @law
-def _follow_reset_ne(ap):
-    """When the estimate jumps, the path jumps with it."""
-    c = ap.control.pos_ne
-    if c.reset_count == ap.estimate.reset_ne_count:
-        return
-    c.reset_count = ap.estimate.reset_ne_count
-    for k in range(2):
-        c.pos_desired[k] = float(ap.estimate.pos[k]) + float(c.pos_error[k])
-        c.vel_desired[k] += ap.estimate.reset_vel[k]
+def control_position(c: PositionState, pos: Vec2, p: float) -> Vec2:
+    """Velocity [m/s] that takes the position error away; the path waits for a vehicle that cannot keep up."""
+    error = c.pos_desired - pos
+    if not finite2(error):
+        error = Vec2(0.0, 0.0)
+    if c.correction_speed > 0.0 and p > 0.0:
+        error_max = inverse_sqrt_controller(c.correction_speed, p, c.correction_accel)
+        if dot2(error, error) > error_max * error_max:
+            error = limit_length(error, error_max)
+            c.pos_desired = pos + error
+    c.pos_error = error
+    return sqrt_controller_2d(error, p, c.correction_accel, 0.0)
 
 
 @law
-def _velocity_loop(ap):
-    """Acceleration (north, east) [m/s^2] that the velocity PID asks for."""
-    c = ap.control.pos_ne
-    p = ap.params
-    kp, ki, kd, kff = float(p.PSC.VELXY.P), float(p.PSC.VELXY.I), float(p.PSC.VELXY.D), float(p.PSC.VELXY.FF)
-    gain_e, gain_d = lowpass_gain(float(p.PSC.VELXY.FLTE), DT), lowpass_gain(float(p.PSC.VELXY.FLTD), DT)
-    for k in range(2):
-        error = float(c.vel_target[k]) - float(ap.estimate.vel[k])
-        if not finite(error):
-            error = 0.0
-        if c.started == 0:
-            c.vel_error[k] = error
-            c.vel_derivative[k] = 0.0
-        else:
-            last = float(c.vel_error[k])
-            c.vel_error[k] = last + gain_e * (error - last)
-            c.vel_derivative[k] += gain_d * ((float(c.vel_error[k]) - last) / DT - float(c.vel_derivative[k]))
-    c.started = 1
-    i_n, i_e = float(c.vel_integrator[0]), float(c.vel_integrator[1])
-    step_n, step_e = float(c.vel_error[0]) * ki * DT, float(c.vel_error[1]) * ki * DT
-    new_n, new_e = i_n + step_n, i_e + step_e
-    if step_n * float(c.limit[0]) + step_e * float(c.limit[1]) > 0.0:
+def control_velocity(c: PositionState, vel: Vec2, gains: Gains) -> Vec2:
+    """Acceleration [m/s^2] that the velocity PID asks for at ``vel`` [m/s]; its filters have no target's."""
+    error = c.vel_target - vel
+    error = Vec2(error.x if finite(error.x) else 0.0, error.y if finite(error.y) else 0.0)
+    if c.started:
+        filtered = c.vel_error + lowpass_gain(gains.error_hz, DT) * (error - c.vel_error)
+        derivative = (filtered - c.vel_error) / DT
+        c.vel_derivative += lowpass_gain(gains.derivative_hz, DT) * (derivative - c.vel_derivative)
+        c.vel_error = filtered
+    else:
+        c.started = True
+        c.vel_error = error
+        c.vel_derivative = Vec2(0.0, 0.0)
+    step = c.vel_error * gains.i * DT
+    integrator = c.vel_integrator + step
+    if dot2(step, c.limit) > 0.0:
         # Into the limit: the integrator may turn but not grow.
-        new_n, new_e = limit_length(new_n, new_e, math.sqrt(i_n * i_n + i_e * i_e))
-    new_n, new_e = limit_length(new_n, new_e, float(p.PSC.VELXY.IMAX) * 0.01)
-    if ki == 0.0:
-        new_n, new_e = 0.0, 0.0
-    c.vel_integrator[0], c.vel_integrator[1] = new_n, new_e
-    return (
-        kp * float(c.vel_error[0]) + new_n + kd * float(c.vel_derivative[0]) + kff * float(c.vel_target[0]),
-        kp * float(c.vel_error[1]) + new_e + kd * float(c.vel_derivative[1]) + kff * float(c.vel_target[1]),
-    )
+        integrator = limit_length(integrator, norm2(c.vel_integrator))
+    integrator = limit_length(integrator, gains.i_max)
+    c.vel_integrator = integrator if gains.i != 0.0 else Vec2(0.0, 0.0)
+    return gains.p * c.vel_error + c.vel_integrator + gains.d * c.vel_derivative + gains.ff * c.vel_target
 
 
 @law
-def update_ne(ap):
-    """One tick of the cascade: ``accel_target`` comes out (see ``thrust_vector`` and ``lean_targets``)."""
+def control_horizontal(c: PositionState, pos: Vec2, vel: Vec2, accel_max: float, gains: PositionGains) -> None:
+    """One tick of the cascade at ``pos`` [m], ``vel`` [m/s]: ``accel_target``, at most ``accel_max`` [m/s^2]."""
+    c.vel_target = control_position(c, pos, gains.pos_p) + c.vel_desired
+    accel = control_velocity(c, vel, gains.vel) + c.accel_desired
+    c.limit = Vec2(0.0, 0.0)
+    if dot2(accel, accel) > accel_max * accel_max:
+        c.limit = accel
+        accel = limit_accel(c.vel_desired, accel, accel_max)
+    c.accel_target = accel
+
+
+@law
+def follow_reset_ne(c: PositionState, pos: Vec2, jump: Vec2, count: int) -> None:
+    """When the estimate jumps to ``pos``, its velocity by ``jump``, the path jumps with it; ``count``: of the jumps."""
+    if c.reset_count != count:
+        c.reset_count = count
+        c.pos_desired = pos + c.pos_error
+        c.vel_desired += jump
+
+
+@law
+def position_gains(p: Position) -> PositionGains:
+    """PSC_POSXY_P, PSC_VELXY_*."""
+    return PositionGains(p.POSXY_P, basic_gains(p.VELXY, p.VELXY.IMAX * 0.01))
+
+
+@law
+def update_ne(ap: Autopilot) -> None:
+    """One tick of the cascade: ``accel_target`` comes out (see ``thrust_vector``)."""
     c = ap.control.pos_ne
     est = ap.estimate
     if not is_active_ne(ap):
         init_ne(ap)
-    _follow_reset_ne(ap)
+    pos, vel = horizontal(est.pos), horizontal(est.vel)
+    follow_reset_ne(c, pos, horizontal(est.reset_vel), est.reset_ne_count)
     c.last_tick = ap.control.tick
-
-    kp = float(ap.params.PSC.POSXY_P)
-    accel = float(c.correction_accel)
-    en, ee = float(c.pos_desired[0]) - float(est.pos[0]), float(c.pos_desired[1]) - float(est.pos[1])
-    if not finite(en + ee):
-        en, ee = 0.0, 0.0
-    if c.correction_speed > 0.0 and kp > 0.0:
-        most = inverse_sqrt_controller(float(c.correction_speed), kp, accel)
-        if en * en + ee * ee > most * most:
-            # The path waits for a vehicle that cannot keep up.
-            en, ee = limit_length(en, ee, most)
-            c.pos_desired[0], c.pos_desired[1] = float(est.pos[0]) + en, float(est.pos[1]) + ee
-    c.pos_error[0], c.pos_error[1] = en, ee
-    vn, ve = sqrt_controller_2d(en, ee, kp, accel, 0.0)
-    c.vel_target[0], c.vel_target[1] = vn + float(c.vel_desired[0]), ve + float(c.vel_desired[1])
-
-    an, ae = _velocity_loop(ap)
-    an, ae = an + float(c.accel_desired[0]), ae + float(c.accel_desired[1])
-    most = accel_limit_ne(ap)
-    c.limit[0], c.limit[1] = 0.0, 0.0
-    if an * an + ae * ae > most * most:
-        c.limit[0], c.limit[1] = an, ae
-        an, ae = limit_accel(float(c.vel_desired[0]), float(c.vel_desired[1]), an, ae, most)
-    c.accel_target[0], c.accel_target[1] = an, ae
-
-
-@law
-def lean_targets(ap):
-    """(roll, pitch) [rad] of the present heading that give ``accel_target`` in level flight."""
-    an, ae = float(ap.control.pos_ne.accel_target[0]), float(ap.control.pos_ne.accel_target[1])
-    s, c = math.sin(float(ap.estimate.euler[2])), math.cos(float(ap.estimate.euler[2]))
-    pitch = -math.atan((an * c + ae * s) / GRAVITY)
-    return (math.atan((ae * c - an * s) * math.cos(pitch) / GRAVITY), pitch)
+    control_horizontal(c, pos, vel, accel_limit_ne(ap), position_gains(ap.params.PSC))

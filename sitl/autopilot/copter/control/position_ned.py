@@ -5,30 +5,32 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import finite_vector, horizontal, norm, with_down
 from ....core.kernels import law
-from ....core.scalars import finite
-from ...control.shaping import kinematic_limit
+from ....core.vectors import Vec2, Vec3
+from ...control.shaping import Motion, Motion2, kinematic_limit
 from .altitude import advance_d, input_vel_accel_d, shape_pos_d
-from .position import advance_ne, input_vel_accel_ne, shape_pos_ne
+from .position import advance_ne, brake_ne, shape_pos_ne
+from .state import AltitudeState, PositionState
 
 
 @law
-def input_pos_ned(ap, pn, pe, pd):
-    """Go to the point (pn, pe, pd) [m] in a straight line: speed limits of both cascades hold along it."""
-    if not finite(pn + pe + pd):
-        input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        input_vel_accel_d(ap, 0.0, 0.0)
+def input_pos_ned(ne: PositionState, d: AltitudeState, target: Vec3) -> None:
+    """Go to a point, NED [m], in a straight line: speed limits of both cascades hold along it."""
+    if not finite_vector(target):
+        brake_ne(ne)
+        input_vel_accel_d(d, 0.0, 0.0)
         return
-    advance_ne(ap)
-    advance_d(ap)
-    ne, d = ap.control.pos_ne, ap.control.pos_d
-    dn, de, dd = pn - float(ne.pos_desired[0]), pe - float(ne.pos_desired[1]), pd - float(d.pos_desired)
-    length = math.sqrt(dn * dn + de * de + dd * dd)
+    advance_ne(ne)
+    advance_d(d)
+    way = target - with_down(ne.pos_desired, d.pos_desired)
+    length = norm(way)
     speed_ne, speed_d = 0.0, 0.0
     if length > 1e-9:
-        dn, de, dd = dn / length, de / length, dd / length
-        most = kinematic_limit(dn, de, dd, float(ne.speed_max), float(d.speed_up), float(d.speed_down))
-        speed_ne = most * math.sqrt(dn * dn + de * de)
-        speed_d = most * abs(dd)
-    shape_pos_ne(ap, pn, pe, 0.0, 0.0, 0.0, 0.0, speed_ne, 0)
-    shape_pos_d(ap, pd, 0.0, 0.0, speed_d, speed_d)
+        unit = way / length
+        speed = kinematic_limit(unit, ne.speed_max, d.speed_up, d.speed_down)
+        speed_ne = speed * math.sqrt(unit.x * unit.x + unit.y * unit.y)
+        speed_d = speed * abs(unit.z)
+    rest = Vec2(0.0, 0.0)
+    shape_pos_ne(ne, Motion2(horizontal(target), rest, rest), speed_ne)
+    shape_pos_d(d, Motion(target.z, 0.0, 0.0), speed_d, speed_d)

@@ -5,10 +5,15 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal, limit_length, norm2, turned
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ...control.shaping import inverse_sqrt_controller, limit_length
-from .state import DT, GRAVITY
+from ....core.vectors import Vec2
+from ...control.shaping import inverse_sqrt_controller
+from ..parameters import Parameters
+from ..parameters.control import Attitude, Position
+from ..state import Autopilot
+from .state import DT, GRAVITY, PositionState
 from .throttle_mix import LEAN_TICKS, lean_limit
 
 RELAX_TIME = 0.16
@@ -17,154 +22,128 @@ _CDEG = math.radians(0.01)
 
 
 @law
-def set_max_speed_accel_ne(ap, speed, accel):
-    """Limits of the shaping [m/s, m/s^2], and of the correction too; jerk is PSC_JERK_XY or what the airframe
-    can.
-    """
+def set_max_speed_accel_ne(ap: Autopilot, speed: float, accel: float) -> None:
+    """Limits of the shaping and of the correction [m/s, m/s^2]; jerk is PSC_JERK_XY or what the airframe can."""
     c = ap.control.pos_ne
-    p = ap.params
     c.speed_max = speed
     c.accel_max = max(accel, 0.01)
-    jerk = max(float(p.PSC.JERK_XY), 0.01)
-    if p.ATC.RATE_FF_ENAB != 0.0:
-        rate = min(float(p.ATC.RATE_R_MAX), float(p.ATC.RATE_P_MAX)) * 100.0 * _CDEG
-        snap = min(float(p.ATC.ACCEL_R_MAX), float(p.ATC.ACCEL_P_MAX)) * _CDEG * GRAVITY
+    c.jerk_max = jerk_limit_ne(ap.params.PSC, ap.params.ATC, c.accel_max)
+    c.correction_speed = speed
+    c.correction_accel = accel
+
+
+@law
+def jerk_limit_ne(psc: Position, atc: Attitude, accel: float) -> float:
+    """PSC_JERK_XY, or the jerk [m/s^3] that turn rates and angular accelerations of the lean allow, if less."""
+    jerk = max(psc.JERK_XY, 0.01)
+    if atc.RATE_FF_ENAB != 0.0:
+        rate = min(atc.RATE_R_MAX, atc.RATE_P_MAX) * 100.0 * _CDEG
+        snap = min(atc.ACCEL_R_MAX, atc.ACCEL_P_MAX) * _CDEG * GRAVITY
         if rate > 0.0:
             jerk = min(jerk, rate * GRAVITY)
         if snap > 0.0:
-            jerk = min(jerk, 0.5 * math.sqrt(float(c.accel_max) * snap))
-    c.jerk_max = jerk
-    set_correction_speed_accel_ne(ap, speed, accel)
+            jerk = min(jerk, 0.5 * math.sqrt(accel * snap))
+    return jerk
 
 
 @law
-def set_correction_speed_accel_ne(ap, speed, accel):
-    """Limits of what the position loop adds to the shaped velocity [m/s, m/s^2]; 0 for none."""
-    ap.control.pos_ne.correction_speed = speed
-    ap.control.pos_ne.correction_accel = accel
-
-
-@law
-def lean_max_ne(ap):
+def lean_max_ne(p: Parameters) -> float:
     """Greatest lean [rad]: PSC_ANGLE_MAX, or ANGLE_MAX where that is 0."""
-    if ap.params.PSC.ANGLE_MAX > 0.0:
-        return float(ap.params.PSC.ANGLE_MAX) * 100.0 * _CDEG
-    return float(ap.params.ANGLE_MAX) * _CDEG
+    return p.PSC.ANGLE_MAX * 100.0 * _CDEG if p.PSC.ANGLE_MAX > 0.0 else p.ANGLE_MAX * _CDEG
 
 
 @law
-def renew_accel_limit(ap):
+def renew_accel_limit(ap: Autopilot) -> float:
     """Acceleration [m/s^2] that the permitted lean gives; kept in the record."""
-    limit = GRAVITY * math.tan(min(lean_limit(ap), lean_max_ne(ap)))
+    limit = GRAVITY * math.tan(min(lean_limit(ap.control.attitude), lean_max_ne(ap.params)))
     ap.control.pos_ne.accel_limit = limit
     return limit
 
 
 @law
-def accel_limit_ne(ap):
+def accel_limit_ne(ap: Autopilot) -> float:
     """The same, renewed every few ticks."""
     if ap.control.tick % LEAN_TICKS == 0:
         return renew_accel_limit(ap)
-    return float(ap.control.pos_ne.accel_limit)
+    return ap.control.pos_ne.accel_limit
 
 
 @law
-def is_active_ne(ap):
+def is_active_ne(ap: Autopilot) -> bool:
     """Whether ``update_ne`` ran in this tick or the one before."""
     return ap.control.tick > 0 and ap.control.tick - ap.control.pos_ne.last_tick <= 1
 
 
 @law
-def lean_accel(roll, pitch, yaw):
-    """Horizontal acceleration (north, east) [m/s^2] of level flight at a lean."""
+def lean_accel(roll: float, pitch: float, yaw: float) -> Vec2:
+    """Horizontal acceleration (north, east) [m/s^2] of level flight at a lean [rad]."""
     forward = -GRAVITY * math.tan(constrain(pitch, -1.4, 1.4))
     right = GRAVITY * math.tan(constrain(roll, -1.4, 1.4)) / math.cos(constrain(pitch, -1.4, 1.4))
-    s, c = math.sin(yaw), math.cos(yaw)
-    return (forward * c - right * s, forward * s + right * c)
+    return turned(Vec2(forward, right), yaw)
 
 
 @law
-def init_ne(ap):
-    """Start from the present position and velocity; the integrator takes over the present lean."""
+def start_from(c: PositionState, pos: Vec2, vel: Vec2) -> None:
+    """Desired path at ``pos`` [m], ``vel`` [m/s]; the integrator takes over the present acceleration."""
+    c.pos_desired = pos
+    c.vel_desired = vel
+    c.vel_target = vel
+    c.accel_desired = Vec2(0.0, 0.0)
+    c.pos_error = Vec2(0.0, 0.0)
+    c.vel_integrator = c.accel_target
+    c.limit = Vec2(0.0, 0.0)
+    c.started = False
+
+
+@law
+def init_ne(ap: Autopilot) -> None:
+    """Start from the present position, velocity and lean."""
     c = ap.control.pos_ne
     est = ap.estimate
-    euler = ap.control.attitude.target_euler
+    lean = ap.control.attitude.target_euler
     if not is_active_ne(ap):
-        an, ae = lean_accel(float(euler[0]), float(euler[1]), float(est.euler[2]))
-        c.accel_target[0], c.accel_target[1] = an, ae
-    an, ae = limit_length(float(c.accel_target[0]), float(c.accel_target[1]), renew_accel_limit(ap))
-    c.accel_target[0], c.accel_target[1] = an, ae
-    for k in range(2):
-        c.pos_desired[k] = est.pos[k]
-        c.vel_desired[k] = est.vel[k]
-        c.vel_target[k] = est.vel[k]
-        c.accel_desired[k] = 0.0
-        c.pos_error[k] = 0.0
-        c.vel_integrator[k] = c.accel_target[k]
-        c.limit[k] = 0.0
-    c.started = 0
+        c.accel_target = lean_accel(lean.roll, lean.pitch, est.euler.yaw)
+    c.accel_target = limit_length(c.accel_target, renew_accel_limit(ap))
+    start_from(c, horizontal(est.pos), horizontal(est.vel))
     c.reset_count = est.reset_ne_count
     c.last_tick = ap.control.tick
 
 
 @law
-def init_ne_stopping_point(ap):
+def init_ne_stopping_point(ap: Autopilot) -> None:
     """Start from where the vehicle can stop."""
     init_ne(ap)
-    n, e = stopping_point_ne(ap)
-    c = ap.control.pos_ne
-    c.pos_desired[0], c.pos_desired[1] = n, e
-    c.vel_desired[0], c.vel_desired[1] = 0.0, 0.0
+    ap.control.pos_ne.pos_desired = stopping_point_ne(ap)
+    ap.control.pos_ne.vel_desired = Vec2(0.0, 0.0)
 
 
 @law
-def relax_ne(ap):
+def relax_ne(ap: Autopilot) -> None:
     """Let the lean decay to zero at the present position (on the ground, spooling)."""
-    c = ap.control.pos_ne
-    keep = 1.0 - DT / (DT + RELAX_TIME)
-    c.accel_target[0] *= keep
-    c.accel_target[1] *= keep
+    ap.control.pos_ne.accel_target *= 1.0 - DT / (DT + RELAX_TIME)
     init_ne(ap)
 
 
 @law
-def soften_for_landing_ne(ap):
+def soften_for_landing_ne(ap: Autopilot) -> None:
     """Let the position error decay and the integrator not grow: the ground may hold the vehicle."""
     c = ap.control.pos_ne
-    k = DT / (DT + RELAX_TIME)
-    for j in range(2):
-        c.pos_desired[j] += k * (float(ap.estimate.pos[j]) - float(c.pos_desired[j]))
-        c.limit[j] = c.accel_target[j]
+    c.pos_desired += DT / (DT + RELAX_TIME) * (horizontal(ap.estimate.pos) - c.pos_desired)
+    c.limit = c.accel_target
 
 
 @law
-def stop_pos_ne(ap):
-    """Give up the position target: only velocity is controlled."""
-    c = ap.control.pos_ne
-    c.pos_desired[0] = ap.estimate.pos[0]
-    c.pos_desired[1] = ap.estimate.pos[1]
+def stopping_point(pos: Vec2, vel: Vec2, p: float, speed_max: float, accel_max: float) -> Vec2:
+    """Where a vehicle at ``pos`` [m], ``vel`` [m/s] stops that brakes as a position gain ``p`` [1/s] asks."""
+    speed = norm2(vel)
+    if not speed > 1e-6:
+        return pos
+    return pos + vel * (inverse_sqrt_controller(min(speed, speed_max), p, accel_max) / speed)
 
 
 @law
-def stop_vel_ne(ap):
-    """Give up position and velocity targets: only acceleration is controlled."""
-    c = ap.control.pos_ne
-    stop_pos_ne(ap)
-    for k in range(2):
-        c.vel_desired[k] = ap.estimate.vel[k]
-        c.vel_integrator[k] = 0.0
-    c.started = 0
-
-
-@law
-def stopping_point_ne(ap):
+def stopping_point_ne(ap: Autopilot) -> Vec2:
     """(north, east) [m] where the vehicle stops from its present velocity, braking within the limits."""
     c = ap.control.pos_ne
-    n, e = float(ap.estimate.pos[0]), float(ap.estimate.pos[1])
-    vn, ve = float(ap.estimate.vel[0]), float(ap.estimate.vel[1])
-    speed = math.sqrt(vn * vn + ve * ve)
-    if not speed > 1e-6:
-        return (n, e)
-    distance = inverse_sqrt_controller(min(speed, float(c.speed_max)), float(ap.params.PSC.POSXY_P), float(c.accel_max))
-    k = distance / speed
-    return (n + vn * k, e + ve * k)
+    pos, vel = horizontal(ap.estimate.pos), horizontal(ap.estimate.vel)
+    return stopping_point(pos, vel, ap.params.PSC.POSXY_P, c.speed_max, c.accel_max)

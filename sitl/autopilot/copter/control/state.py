@@ -9,8 +9,9 @@ the rest.
 from __future__ import annotations
 
 from ....core.records import Floats, Record, array
+from ....core.vectors import Euler, Quat, Vec2, Vec3
 from ... import state as shared
-from ...control.pid_state import Pid
+from ...control.pid import Pid
 
 DT = 0.0025
 """Period of every law in this room [s]: one autopilot tick."""
@@ -21,12 +22,12 @@ GRAVITY = 9.80665
 class AttitudeState(Record):
     """Attitude control: the shaped target and the correction towards it."""
 
-    target_q: Floats = array(4)  # target frame to NED
-    target_euler: Floats = array(3)  # of target_q
-    target_rate: Floats = array(3)  # angular velocity of the target, target frame [rad/s]
-    rate_target: Floats = array(3)  # what the rate loop follows, body frame [rad/s]
-    error_q: Floats = array(4)  # target frame to body frame: kept when the estimate's heading jumps
-    error: Floats = array(3)  # rotation about x, y that turns the thrust, then about z the heading [rad]
+    target_q: Quat  # target frame to NED
+    target_euler: Euler  # of target_q
+    target_rate: Vec3  # angular velocity of the target, target frame [rad/s]
+    rate_target: Vec3  # what the rate loop follows, body frame [rad/s]
+    error_q: Quat  # target frame to body frame: kept when the estimate's heading jumps
+    error: Vec3  # rotation about x, y that turns the thrust, then about z the heading [rad]
     thrust_error_angle: float  # between the thrust axis and its target [rad]
     cos_lean: float  # cosine of the body's lean
     throttle_in: float  # last throttle asked for, before the angle boost
@@ -54,38 +55,38 @@ class PositionState(Record):
     jerk_max: float  # [m/s^3]
     correction_speed: float  # most that the position loop adds [m/s]
     correction_accel: float  # [m/s^2]
-    pos_desired: Floats = array(2)  # the shaped path
-    vel_desired: Floats = array(2)
-    accel_desired: Floats = array(2)
-    pos_error: Floats = array(2)  # pos_desired minus position, limited
-    vel_target: Floats = array(2)  # vel_desired plus the position loop's correction
-    accel_target: Floats = array(2)  # accel_desired plus the velocity loop's correction, lean limited
-    limit: Floats = array(2)  # direction in which the lean is used up; zero when it is not
-    started: int  # velocity loop: 0 = the filters take the next input as it is
-    vel_error: Floats = array(2)  # filtered
-    vel_derivative: Floats = array(2)  # of the error, filtered [m/s^2]
-    vel_integrator: Floats = array(2)  # [m/s^2]
+    pos_desired: Vec2  # the shaped path [m]
+    vel_desired: Vec2  # [m/s]
+    accel_desired: Vec2  # [m/s^2]
+    pos_error: Vec2  # pos_desired minus position, limited [m]
+    vel_target: Vec2  # vel_desired plus the position loop's correction [m/s]
+    accel_target: Vec2  # accel_desired plus the velocity loop's correction, lean limited [m/s^2]
+    limit: Vec2  # direction in which the lean is used up; zero when it is not
+    started: bool  # velocity loop; false: its filters take the next input as it is
+    vel_error: Vec2  # filtered [m/s]
+    vel_derivative: Vec2  # of the error, filtered [m/s^2]
+    vel_integrator: Vec2  # [m/s^2]
     accel_limit: float  # acceleration that the permitted lean gives [m/s^2], renewed every few ticks
 
 
 class AltitudeState(Record):
     """Vertical position control, down positive."""
 
-    last_tick: int
-    reset_count: int
+    last_tick: int  # control.tick of the last update
+    reset_count: int  # estimate.reset_d_count already followed
     speed_down: float  # limits, both positive [m/s]
     speed_up: float
     accel_max: float  # [m/s^2]
     jerk_max: float  # [m/s^3]
-    correction_speed_down: float
+    correction_speed_down: float  # most that the position loop adds, positive [m/s]
     correction_speed_up: float
-    correction_accel: float
-    pos_desired: float  # down
-    vel_desired: float
-    accel_desired: float
-    pos_error: float
-    vel_target: float
-    accel_target: float
+    correction_accel: float  # [m/s^2]
+    pos_desired: float  # the shaped path [m]
+    vel_desired: float  # [m/s]
+    accel_desired: float  # [m/s^2]
+    pos_error: float  # pos_desired minus position, limited [m]
+    vel_target: float  # vel_desired plus the position loop's correction [m/s]
+    accel_target: float  # accel_desired plus the velocity loop's correction [m/s^2]
     limit: float  # direction in which thrust is used up: -1 no more, 1 no less, 0 free
     vel: Pid
     accel: Pid  # output is throttle taken off hover (down is positive)
@@ -107,11 +108,11 @@ class MotorsState(Record):
     throttle: float  # filtered demand
     throttle_avg_max: float  # how far the mixer may raise the throttle for attitude
     throttle_out: float  # what the mixer gave
-    limit_roll: int
-    limit_pitch: int
-    limit_yaw: int
-    limit_throttle_lower: int
-    limit_throttle_upper: int
+    limit_roll: bool
+    limit_pitch: bool
+    limit_yaw: bool
+    limit_throttle_lower: bool
+    limit_throttle_upper: bool
     thrust: Floats = array(4)  # of each motor 0 .. 1, compensated
     actuator: Floats = array(4)  # of each motor 0 .. 1 of the PWM range
     voltage_ratio: float  # resting voltage over MOT_BAT_VOLT_MAX, filtered; 1 when not compensated
@@ -120,7 +121,7 @@ class MotorsState(Record):
     resistance: float  # of the battery, estimated [ohm]
     voltage_slow: float  # [V]
     current_slow: float  # [A]
-    current_most: float  # highest seen [A]
+    current_max: float  # highest seen [A]
     voltage_reference: float  # highest voltage seen [V]
     current_reference: float  # at that moment [A]
     test_motor: int  # motor test: 1 .. 4, 0 none

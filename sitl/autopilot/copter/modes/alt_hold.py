@@ -86,7 +86,7 @@ def run_vertical(v, doing, climb):
             return
         altitude.relax_d(ap, 0.0)
     elif doing == FLYING:
-        altitude.input_vel_accel_d(ap, -climb, 0.0)
+        altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
     else:
         altitude.relax_d(ap, 0.0)
     altitude.update_d(ap)
@@ -102,7 +102,7 @@ def run(v):
     if doing in (STOPPED, LANDED_IDLE):
         attitude.reset_yaw_target(ap)
     most = math.radians(ap.params.ANGLE_MAX * 0.01)
-    roll, pitch = pilot.lean_angles(ap, most, min(most, lean_limit(ap)))
+    roll, pitch = pilot.lean_angles(ap, most, min(most, lean_limit(ap.control.attitude)))
     attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
     run_vertical(v, doing, climb)
 

@@ -136,8 +136,8 @@ def run(v):
         if command.follows_path(kind) != 0:
             command.run(ap, v.time_us)
         else:
-            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+            position.brake_ne(ap.control.pos_ne)
+            altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
         ground.fly(v)
     check_condition(ap, v.time_us, auto_yaw.reached(v))
 

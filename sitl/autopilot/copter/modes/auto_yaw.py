@@ -177,11 +177,11 @@ def pilot(v):
 
 
 @law
-def apply(v, tx, ty, tz):
-    """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
+def apply(v, thrust):
+    """Send the thrust direction (NED vector) with this mode's heading to the attitude controller."""
     ap = v.autopilot
     heading, rate, absolute = advance(v, 0.0025)
     if absolute != 0:
-        attitude.input_thrust_vector_heading(ap, tx, ty, tz, heading, rate)
+        attitude.input_thrust_vector_heading(ap, thrust, heading, rate)
     else:
-        attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, rate)
+        attitude.input_thrust_vector_heading_rate(ap, thrust, rate)

@@ -38,12 +38,11 @@ def run(v):
         ground.handle(v)
     else:
         ap.control.motors.desired_spool = ground.UNLIMITED
-        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        position.brake_ne(ap.control.pos_ne)
+        altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
         position.update_ne(ap)
         altitude.update_d(ap)
-        tx, ty, tz = position.thrust_vector(ap)
-        attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, 0.0)
+        attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
 
 
 MODE = CopterMode(

@@ -79,8 +79,7 @@ def fly(v):
     ap = v.autopilot
     position.update_ne(ap)
     altitude.update_d(ap)
-    tx, ty, tz = position.thrust_vector(ap)
-    auto_yaw.apply(v, tx, ty, tz)
+    auto_yaw.apply(v, position.thrust_vector(ap.control.pos_ne))
 
 
 @law
@@ -88,8 +87,8 @@ def hold(v):
     """One tick of a stop: brake and stay, with the heading of auto_yaw."""
     ap = v.autopilot
     ap.control.motors.desired_spool = UNLIMITED
-    position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-    altitude.input_vel_accel_d(ap, 0.0, 0.0)
+    position.brake_ne(ap.control.pos_ne)
+    altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
     fly(v)
 
 

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal, quat_of, vec3_of
 from ....core.kernels import law
 from ....core.rotations import quat_from_euler, quat_to_euler
 from ....core.scalars import constrain
 from ...arming_checks import BY_RUDDER
+from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, emit
 from ..control import altitude, attitude, position, position_ned, throttle_mix
 from . import auto_yaw, ground, takeoff
@@ -99,8 +101,8 @@ def run(v):
     else:
         ap.control.motors.desired_spool = ground.UNLIMITED
         if guided.paused != 0:
-            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+            position.brake_ne(ap.control.pos_ne)
+            altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
         elif guided.submode == POSITION:
             run_position(v)
         else:
@@ -115,7 +117,7 @@ def run_position(v):
     guided = ap.modes.guided
     if is_old(v):
         auto_yaw.stop_turning(v)
-    position_ned.input_pos_ned(ap, float(guided.pos[0]), float(guided.pos[1]), float(guided.pos[2]))
+    position_ned.input_pos_ned(ap.control.pos_ne, ap.control.pos_d, vec3_of(guided.pos))
 
 
 @law
@@ -129,24 +131,25 @@ def run_motion(v):
             guided.acc[k] = 0.0
         auto_yaw.stop_turning(v)
         if guided.submode == ACCEL:
-            position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-            altitude.input_vel_accel_d(ap, 0.0, 0.0)
+            position.brake_ne(ap.control.pos_ne)
+            altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
             return
-    an, ae, ad = float(guided.acc[0]), float(guided.acc[1]), float(guided.acc[2])
+    acc = vec3_of(guided.acc)
     if guided.submode == ACCEL:
-        position.input_accel_ne(ap, an, ae)
-        altitude.input_vel_accel_d(ap, float(ap.control.pos_d.vel_desired), ad)
+        position.input_accel_ne(ap.control.pos_ne, horizontal(acc))
+        altitude.input_vel_accel_d(ap.control.pos_d, ap.control.pos_d.vel_desired, acc.z)
         return
     for k in range(3):
         guided.pos[k] += (guided.vel[k] + 0.5 * guided.acc[k] * DT) * DT
         guided.vel[k] += guided.acc[k] * DT
-    vn, ve, vd = float(guided.vel[0]), float(guided.vel[1]), float(guided.vel[2])
+    vel = vec3_of(guided.vel)
     if guided.submode == POS_VEL_ACCEL:
-        position.input_pos_vel_accel_ne(ap, guided.pos[0], guided.pos[1], vn, ve, an, ae)
-        altitude.input_pos_vel_accel_d(ap, guided.pos[2], vd, ad)
+        pos = vec3_of(guided.pos)
+        position.input_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
+        altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(pos.z, vel.z, acc.z))
     else:
-        position.input_vel_accel_ne(ap, vn, ve, an, ae)
-        altitude.input_vel_accel_d(ap, vd, ad)
+        position.input_vel_accel_ne(ap.control.pos_ne, horizontal(vel), horizontal(acc))
+        altitude.input_vel_accel_d(ap.control.pos_d, vel.z, acc.z)
 
 
 @law
@@ -168,22 +171,20 @@ def run_angle(v):
         return
     ap.control.motors.desired_spool = ground.UNLIMITED
     if ap.arming.landed != 0:
-        throttle_mix.set_throttle_out(ap, 0.0, 0, 0.0)
+        throttle_mix.set_throttle_out(ap, 0.0, False, 0.0)
         attitude.relax(ap)
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             ground.set_landed(v, 0)
             altitude.init_d(ap)
         return
-    p, q, r = float(guided.rates[0]), float(guided.rates[1]), float(guided.rates[2])
     if guided.use_attitude != 0:
-        w, x, y, z = float(guided.q[0]), float(guided.q[1]), float(guided.q[2]), float(guided.q[3])
-        attitude.input_quaternion(ap, w, x, y, z, p, q, r)
+        attitude.input_quaternion(ap, quat_of(guided.q), vec3_of(guided.rates))
     else:
-        attitude.input_rates(ap, p, q, r)
+        attitude.input_rates(ap, vec3_of(guided.rates))
     if guided.use_thrust != 0:
-        throttle_mix.set_throttle_out(ap, float(guided.thrust), 1, 0.0)
+        throttle_mix.set_throttle_out(ap, guided.thrust, True, 0.0)
     else:
-        altitude.input_vel_accel_d(ap, -climb, 0.0)
+        altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
         altitude.update_d(ap)
 
 

@@ -10,6 +10,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain
+from ....core.vectors import Vec2
 from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
 from ...modes import REASON_THROTTLE_LAND_ESCAPE
@@ -103,10 +104,9 @@ def is_cancelled(v):
 def descend(v, pause):
     """One tick of a landing with position control; the sticks move the landing place (LAND_REPOSITION)."""
     ap = v.autopilot
-    vn, ve = stick_velocity(ap)
     if ap.arming.landed_maybe != 0:
         position.soften_for_landing_ne(ap)
-    position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)
+    position.input_vel_accel_ne(ap.control.pos_ne, stick_velocity(ap), Vec2(0.0, 0.0))
     sink(v, pause)
     ground.fly(v)
 
@@ -133,7 +133,7 @@ def sink(v, pause):
     low = max(p.LAND.ALT_LOW * 0.01, 1.0)
     height = float(ap.home.pos[2] - ap.estimate.pos[2])
     if pause != 0:
-        altitude.land_at_rate_d(ap, 0.0, 0)
+        altitude.land_at_rate_d(ap.control.pos_d, 0.0, False)
         return
     fast = p.LAND.SPEED_HIGH * 0.01
     if fast <= 0.0:
@@ -141,7 +141,7 @@ def sink(v, pause):
     fast = max(fast, slow)
     down = sqrt_controller(height - low, p.PSC.POSZ_P, float(ap.control.pos_d.accel_max), 0.0025)
     rate = constrain(down, slow, fast)
-    altitude.land_at_rate_d(ap, rate, 1 if height < low or ap.arming.landed_maybe != 0 else 0)
+    altitude.land_at_rate_d(ap.control.pos_d, rate, height < low or ap.arming.landed_maybe != 0)
 
 
 @law
@@ -149,7 +149,7 @@ def stick_velocity(ap):
     """(north, east) [m/s] that the sticks ask for while landing; zero without LAND_REPOSITION."""
     sticks = ap.modes.pilot
     if ap.params.LAND.REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
-        return (0.0, 0.0)
+        return Vec2(0.0, 0.0)
     most = ap.params.WPNAV.ACCEL * 0.01 * _REPOSITION_ACCEL
     forward, right = -float(sticks.pitch) * most, float(sticks.roll) * most
     size = math.sqrt(forward * forward + right * right)
@@ -158,7 +158,7 @@ def stick_velocity(ap):
         right *= most / size
     yaw = float(ap.estimate.euler[2])
     c, s = math.cos(yaw), math.sin(yaw)
-    return (forward * c - right * s, forward * s + right * c)
+    return Vec2(forward * c - right * s, forward * s + right * c)
 
 
 MODE = CopterMode(

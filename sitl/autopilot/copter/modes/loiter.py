@@ -12,7 +12,8 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
-from ...control.shaping import shape_angle, sqrt_controller
+from ....core.vectors import Vec2
+from ...control.shaping import Motion2, shape_angle, sqrt_controller
 from .. import pilot
 from ..control import attitude, position
 from . import alt_hold
@@ -50,8 +51,8 @@ def start(v):
     target = ap.control.attitude.target_euler
     loiter.predicted_euler[0] = target[0]
     loiter.predicted_euler[1] = target[1]
-    n, e = lean_to_accel(float(target[0]), float(target[1]), float(ap.estimate.euler[2]))
-    loiter.predicted_acc[0], loiter.predicted_acc[1] = n, e
+    acc = position.lean_accel(target.roll, target.pitch, ap.estimate.euler[2])
+    loiter.predicted_acc[0], loiter.predicted_acc[1] = acc.x, acc.y
     loiter.predicted_rate[0] = 0.0
     loiter.predicted_rate[1] = 0.0
     loiter.brake_acc = 0.0
@@ -68,12 +69,6 @@ def set_limits(ap):
 
 
 @law
-def lean_to_accel(roll, pitch, yaw):
-    """(north, east) [m/s^2] of level flight at that lean [rad]."""
-    return position.lean_accel(roll, pitch, yaw)
-
-
-@law
 def read_sticks(v, roll, pitch):
     """Accelerations that the sticks ask for, and that a vehicle which follows them would have."""
     ap = v.autopilot
@@ -84,18 +79,18 @@ def read_sticks(v, roll, pitch):
         loiter.acc[0] = 0.0
         loiter.acc[1] = 0.0
     else:
-        loiter.acc[0], loiter.acc[1] = lean_to_accel(roll, pitch, yaw)
+        acc = position.lean_accel(roll, pitch, yaw)
+        loiter.acc[0], loiter.acc[1] = acc.x, acc.y
     tc = float(p.ATC.INPUT_TC)
     wanted = (roll, pitch)
     limits = (p.ATC.ACCEL_R_MAX * _CDEG, p.ATC.ACCEL_P_MAX * _CDEG)
     for k in range(2):
         error = wrap_pi(wanted[k] - loiter.predicted_euler[k])
-        rate = shape_angle(error, tc, limits[k], float(loiter.predicted_rate[k]), 0.0, 0.0, DT)
+        rate = shape_angle(error, loiter.predicted_rate[k], tc, limits[k], DT, 0.0, 0.0)
         loiter.predicted_rate[k] = rate
         loiter.predicted_euler[k] = loiter.predicted_euler[k] + rate * DT
-    loiter.predicted_acc[0], loiter.predicted_acc[1] = lean_to_accel(
-        float(loiter.predicted_euler[0]), float(loiter.predicted_euler[1]), yaw
-    )
+    predicted = position.lean_accel(loiter.predicted_euler[0], loiter.predicted_euler[1], yaw)
+    loiter.predicted_acc[0], loiter.predicted_acc[1] = predicted.x, predicted.y
 
 
 @law
@@ -125,7 +120,8 @@ def advance(v):
         ae -= ve / speed * loiter.brake_acc
         vn *= slower / speed
         ve *= slower / speed
-    position.set_pos_vel_accel_ne(ap, ne.pos_desired[0] + vn * DT, ne.pos_desired[1] + ve * DT, vn, ve, an, ae)
+    vel = Vec2(vn, ve)
+    position.set_pos_vel_accel_ne(ne, Motion2(ne.pos_desired + vel * DT, vel, Vec2(an, ae)))
 
 
 @law
@@ -152,8 +148,9 @@ def run(v):
             position.soften_for_landing_ne(ap)
         advance(v)
         position.update_ne(ap)
-        tx, ty, tz = position.thrust_vector(ap)
-        attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, float(ap.modes.pilot.yaw_rate))
+        attitude.input_thrust_vector_heading_rate(
+            ap, position.thrust_vector(ap.control.pos_ne), ap.modes.pilot.yaw_rate
+        )
     alt_hold.run_vertical(v, doing, climb)
 
 

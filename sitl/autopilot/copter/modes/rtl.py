@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import with_down
 from ....core.kernels import law
-from ....core.vectors import Vec3
+from ....core.vectors import Vec2, Vec3
+from ...control.shaping import Motion
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ..control import altitude, position
@@ -56,9 +58,9 @@ def begin(v):
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(v, auto_yaw.HOLD)
-    n, e = position.stopping_point_ne(ap)
+    stop = position.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
-        path.request_legs(ap, v.time_us, Vec3(n, e, rtl.return_d), Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
+        path.request_legs(ap, v.time_us, with_down(stop, rtl.return_d), Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
 
 
 @law
@@ -112,8 +114,8 @@ def run(v):
         return
     reached = 0
     if ap.modes.nav.request_pending != 0:
-        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-        altitude.input_vel_accel_d(ap, 0.0, 0.0)
+        position.brake_ne(ap.control.pos_ne)
+        altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
     else:
         reached = waypoint.advance(ap, v.time_us)
     ground.fly(v)
@@ -160,9 +162,8 @@ def run_descent(v):
     """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
     ap = v.autopilot
     rtl = ap.modes.rtl
-    vn, ve = land.stick_velocity(ap)
-    position.input_vel_accel_ne(ap, vn, ve, 0.0, 0.0)
-    altitude.input_pos_vel_accel_d(ap, float(rtl.descent_d), 0.0, 0.0)
+    position.input_vel_accel_ne(ap.control.pos_ne, land.stick_velocity(ap), Vec2(0.0, 0.0))
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(rtl.descent_d, 0.0, 0.0))
     ground.fly(v)
 
 

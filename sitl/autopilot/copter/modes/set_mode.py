@@ -39,7 +39,7 @@ def refusal(v: Vehicle, number: int) -> int:
         return ACCEPTED
     manual_now = has_manual_throttle(ap.modes.number)
     if ap.arming.landed and has_manual_throttle(number) and not manual_now:
-        if stabilize.throttle(ap) > 0.5 * hover_throttle(ap):
+        if stabilize.throttle(ap) > 0.5 * hover_throttle(ap.params.MOT):
             return THROTTLE_TOO_HIGH
     if requires_position(number) and not ap.estimate.position_ok:
         return REQUIRES_POSITION

@@ -18,7 +18,7 @@ STABILIZE = 0
 @law
 def throttle(ap):
     """Motor throttle 0 .. 1 that the stick asks for."""
-    return pilot.throttle_out(float(ap.modes.pilot.throttle_filtered), hover_throttle(ap))
+    return pilot.throttle_out(float(ap.modes.pilot.throttle_filtered), hover_throttle(ap.params.MOT))
 
 
 @law
@@ -42,7 +42,7 @@ def run(v):
     most = math.radians(ap.params.ANGLE_MAX * 0.01)
     roll, pitch = pilot.lean_angles(ap, most, most)
     attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
-    throttle_mix.set_throttle_out(ap, wanted, 1, ap.params.PILOT.THR_FILT)
+    throttle_mix.set_throttle_out(ap, wanted, True, ap.params.PILOT.THR_FILT)
 
 
 MODE = CopterMode(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain
+from ...control.shaping import Motion
 from ...events import TAKEOFF_COMPLETE, emit
 from ..control import altitude, attitude, position, throttle_mix
 from . import ground
@@ -66,8 +67,8 @@ def run(v):
             takeoff.no_nav_active = 0
         position.relax_ne(ap)
     else:
-        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
-    altitude.input_pos_vel_accel_d(ap, takeoff.target_d, 0.0, 0.0)
+        position.brake_ne(ap.control.pos_ne)
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.target_d, 0.0, 0.0))
     ground.fly(v)
     if takeoff.complete == 0 and is_done(ap):
         takeoff.complete = 1
@@ -78,8 +79,7 @@ def run(v):
 def level(v):
     """Thrust as the position controller says, nose as it is."""
     ap = v.autopilot
-    tx, ty, tz = position.thrust_vector(ap)
-    attitude.input_thrust_vector_heading_rate(ap, tx, ty, tz, 0.0)
+    attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
 
 
 @law
@@ -87,7 +87,7 @@ def ramp(ap):
     """Raise the throttle by one tick of TKOFF_SLEW_TIME, the vertical controller following. Returns it."""
     slew = max(float(ap.params.TKOFF.SLEW_TIME), 0.1)
     throttle = constrain(ap.control.attitude.throttle_in + 0.0025 / slew, 0.0, 1.0)
-    throttle_mix.set_throttle_out(ap, throttle, 1, 0.0)
+    throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
     altitude.init_d(ap)
     return throttle
 
@@ -141,7 +141,7 @@ def run_user(v, climb):
             ground.set_landed(v, 0)
             altitude.init_d(ap)
         return
-    altitude.input_pos_vel_accel_d(ap, takeoff.user_start_d - rise, -climb, 0.0)
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.user_start_d - rise, -climb, 0.0))
     altitude.update_d(ap)
     if climb < 0.0 or rise * 0.999 <= takeoff.user_start_d - ap.control.pos_d.pos_desired:
         takeoff.user_active = 0

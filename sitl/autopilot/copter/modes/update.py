@@ -97,6 +97,6 @@ def learn_hover(v):
         return
     if ap.control.attitude.cos_lean < _LEARN_COS_LEAN or ap.control.motors.throttle <= 0.0:
         return
-    if landing.is_taking_off(v) or hover_throttle(ap) <= 0.0:
+    if landing.is_taking_off(v) or hover_throttle(ap.params.MOT) <= 0.0:
         return
-    learn_hover_throttle(ap, _LEARN_TICKS * 0.0025)
+    learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, _LEARN_TICKS * 0.0025)

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal
 from ....core.kernels import law
 from ....core.vectors import Vec3
+from ...control.shaping import Motion, Motion2
 from ..control.altitude import set_pos_vel_accel_d
 from ..control.position import set_pos_vel_accel_ne
 from .waypoint import CM, DT, speed_ne
@@ -64,6 +66,6 @@ def advance(ap):
     nav.pos = Vec3(nav.circle_centre[0] + c, nav.circle_centre[1] + s, nav.circle_centre[2])
     nav.vel = Vec3(-s * rate, c * rate, 0.0)
     nav.acc = Vec3(-c * rate * rate - s * acc / DT, -s * rate * rate + c * acc / DT, 0.0)
-    set_pos_vel_accel_ne(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
-    set_pos_vel_accel_d(ap, nav.pos[2], 0.0, 0.0)
+    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
+    set_pos_vel_accel_d(ap.control.pos_d, Motion(nav.pos.z, 0.0, 0.0))
     return abs(nav.circle_total) / (2.0 * math.pi)

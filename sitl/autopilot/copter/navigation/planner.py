@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import with_down
 from ....core.vectors import Vec3
 from ...navigation.leg import Limits, axis_limits
 from ...navigation.planner import Planner
@@ -56,8 +57,7 @@ class CopterPlanner(Planner[Autopilot]):
     def stopping_point(self, ap: Autopilot) -> Vec3:
         """Where the controllers would bring it to rest."""
         waypoint.set_limits(ap)
-        n, e = stopping_point_ne(ap)
-        return Vec3(n, e, stopping_point_d(ap))
+        return with_down(stopping_point_ne(ap), stopping_point_d(ap))
 
     def origin_of_next(self, ap: Autopilot, time_us: int) -> tuple[Vec3, bool]:
         """A circle under way is left from where the vehicle is; a take-off ends at its height."""

@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import dot
+from ....core.algebra import dot, horizontal
 from ....core.kernels import law
 from ....core.vectors import Vec3
+from ...control.shaping import Motion, Motion2
 from ...navigation import path
 from ..control.altitude import init_d_stopping_point, set_max_speed_accel_d, set_pos_vel_accel_d
 from ..control.position import init_ne_stopping_point, set_max_speed_accel_ne, set_pos_vel_accel_ne
@@ -101,8 +102,8 @@ def advance(ap, time_us):
     done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * ap.params.WPNAV.RADIUS, corner_accel(ap))
     nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate
     nav.vel = nav.vel * nav.pause_scale
-    set_pos_vel_accel_ne(ap, nav.pos[0], nav.pos[1], nav.vel[0], nav.vel[1], nav.acc[0], nav.acc[1])
-    set_pos_vel_accel_d(ap, nav.pos[2], nav.vel[2], nav.acc[2])
+    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
+    set_pos_vel_accel_d(ap.control.pos_d, Motion(nav.pos.z, nav.vel.z, nav.acc.z))
     if done and not nav.reached:
         if nav.current.fast or _near_end(ap) != 0:
             nav.reached = True

@@ -84,7 +84,7 @@ def mix_skid(motors: MotorsState, steering: float, throttle: float, mix: float, 
 
 @law
 def thrust_curve(throttle: float, throttle_min: float, expo: float) -> float:
-    """Command for a wanted throttle: begins at ``throttle_min`` (MOT_THR_MIN), undoes a curve ``expo`` (MOT_THST_EXPO)."""
+    """Command for a wanted throttle: begins at ``throttle_min`` (MOT_THR_MIN), undoes the curve MOT_THST_EXPO."""
     if throttle == 0.0:
         return 0.0
     direction = sign(throttle)

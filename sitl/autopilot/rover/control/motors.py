@@ -114,9 +114,7 @@ def delay_reversal(m: MotorsState, motor: int, value: float, tick: int, delay: f
 def motor_output(control: Control, motor: int, throttle: float, params: Motors) -> float:
     """Output -1 .. 1 of motor 0 .. 2 for a throttle."""
     curved = mixer.thrust_curve(throttle, throttle_min(params), params.THST_EXPO)
-    return constrain(
-        delay_reversal(control.motors, motor, curved, current_tick(control), params.REV_DELAY), -1.0, 1.0
-    )
+    return constrain(delay_reversal(control.motors, motor, curved, current_tick(control), params.REV_DELAY), -1.0, 1.0)
 
 
 @law

@@ -29,10 +29,10 @@ def function_of(params: Parameters, output: int) -> int:
 @law
 def is_assigned(params: Parameters, number: int) -> bool:
     """Whether some output has this function."""
+    assigned = False
     for output in range(OUTPUTS):
-        if function_of(params, output) == number:
-            return True
-    return False
+        assigned = assigned or function_of(params, output) == number
+    return assigned
 
 
 @law
@@ -79,7 +79,7 @@ def is_tested(motor: int, function: int) -> bool:
 @law
 def drives(function: int) -> bool:
     """Whether the function is a motor's."""
-    return function == THROTTLE or function == LEFT or function == RIGHT
+    return function in (THROTTLE, LEFT, RIGHT)
 
 
 @law

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from sitl.autopilot.copter.control import motors, rate, throttle_mix
-from sitl.autopilot.copter.control.init import init
+from sitl.autopilot.copter.control import motors, throttle_mix
+from sitl.autopilot.copter.control.update import drive, init
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
 from sitl.autopilot.state import Actuators
-from sitl.core.rotations import quat_from_rotation_vector, quat_multiply, quat_normalise, quat_to_euler
+from sitl.core.algebra import euler_of, multiply, normalise, quat_from_rotation_vector
+from sitl.core.vectors import Quat
 
 
 def make_autopilot() -> Any:
@@ -37,22 +38,18 @@ def arm(ap: Any, throttle: float = 0.35) -> None:
     ap.control.motors.desired_spool = motors.DESIRED_THROTTLE_UNLIMITED
     ap.control.motors.spool_state = motors.THROTTLE_UNLIMITED
     ap.control.motors.thrust_max = 1.0
-    throttle_mix.set_throttle_out(ap, throttle, 1, 0.0)
+    throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
 
 
 def output(ap: Any, actuators: Any) -> None:
     """What ``control.update`` does after the modes, on records that are not inside a vehicle."""
-    throttle_mix.update_mix(ap)
-    rate.update(ap)
-    motors.update(ap, 0)
-    motors.write_actuators(ap, actuators)
-    ap.control.tick += 1
+    drive(ap, actuators, 0)
 
 
-def set_attitude(ap: Any, w: float, x: float, y: float, z: float) -> None:
+def set_attitude(ap: Any, q: Quat) -> None:
     """Put an attitude into the estimate."""
-    ap.estimate.q = quat_normalise(w, x, y, z)
-    ap.estimate.euler = quat_to_euler(*ap.estimate.q)
+    ap.estimate.q = normalise(q)
+    ap.estimate.euler = euler_of(ap.estimate.q)
 
 
 def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120.0, 50.0)) -> None:
@@ -62,5 +59,4 @@ def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120
     est, m = ap.estimate, ap.control.motors
     demands = [min(max(float(demand), -1.0), 1.0) for demand in (m.roll, m.pitch, m.yaw)]
     est.rates = [r + (a * d - 0.3 * r) * dt for r, a, d in zip(est.rates, authority, demands, strict=True)]
-    q = quat_multiply(*est.q, *quat_from_rotation_vector(*(float(r) * dt for r in est.rates)))
-    set_attitude(ap, *q)
+    set_attitude(ap, multiply(est.q, quat_from_rotation_vector(est.rates * dt)))

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.control.mixer import PLUS, X, factors, mix
+from sitl.autopilot.copter.control.mixer import PLUS, Demands, X, factors, mix
+from sitl.autopilot.copter.control.state import MotorsState
 
 demand = st.floats(-1.0, 1.0)
 unit = st.floats(0.0, 1.0)
@@ -18,9 +17,9 @@ FLAGS = ("limit_roll", "limit_pitch", "limit_yaw", "limit_throttle_lower", "limi
 
 
 def run(frame_type, roll, pitch, yaw, throttle, avg_max=None, throttle_max=1.0, headroom=0.2):
-    motors = SimpleNamespace(thrust=[0.0] * 4, **dict.fromkeys(FLAGS, 0))
+    motors = MotorsState()
     avg = throttle if avg_max is None else avg_max
-    out = mix(motors, frame_type, roll, pitch, yaw, throttle, avg, throttle_max, headroom)
+    out = mix(motors, frame_type, Demands(roll, pitch, yaw, throttle, avg, throttle_max), headroom)
     return motors, out
 
 

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.control import attitude, motors, throttle_mix, thrust_curve
-from sitl.autopilot.copter.control.state import DT
+from sitl.autopilot.copter.control import motors, throttle_mix, thrust_curve
+from sitl.autopilot.copter.control.state import DT, MotorsState
+from sitl.autopilot.copter.control.update import drive
 from tests.autopilot.copter.control.level_autopilot import arm, output
 
 
@@ -25,7 +26,7 @@ def run_until(ap, actuators, state, most=2000):
 
 def test_disarmed_motors_get_the_shortest_pulse(ap, actuators):
     ap.control.motors.desired_spool = 2
-    attitude.set_throttle_out(ap, 0.5, 1, 0.0)
+    throttle_mix.set_throttle_out(ap, 0.5, True, 0.0)
     output(ap, actuators)
     assert list(actuators.pwm[:4]) == [1000] * 4
     assert not any(actuators.controls)
@@ -39,7 +40,7 @@ def test_spool_up_takes_spool_time_to_idle_and_follows_the_throttle(ap, actuator
     ticks = run_until(ap, actuators, motors.SPOOLING_UP)
     assert ticks * DT == pytest.approx(0.5, abs=0.01)
     assert actuators.pwm[0] == pytest.approx(1150, abs=1)
-    attitude.set_throttle_out(ap, 0.4, 1, 0.0)
+    throttle_mix.set_throttle_out(ap, 0.4, True, 0.0)
     ticks = run_until(ap, actuators, motors.THROTTLE_UNLIMITED)
     assert ticks * DT == pytest.approx(0.4 * 0.5, abs=0.01)
     ap.control.motors.desired_spool = motors.DESIRED_SHUT_DOWN
@@ -51,8 +52,7 @@ def test_armed_motors_idle_at_spin_arm_after_the_arming_delay(ap, actuators):
     ap.arming.armed = 1
     for time_us in range(0, 4_000_000, 2500):
         ap.control.motors.desired_spool = motors.DESIRED_GROUND_IDLE
-        motors.update(ap, time_us)
-        motors.write_actuators(ap, actuators)
+        drive(ap, actuators, time_us)
         if time_us == 1_990_000:
             assert actuators.pwm[0] == 1000
     assert actuators.pwm[0] == pytest.approx(1100, abs=1)
@@ -79,7 +79,7 @@ def test_thrust_stays_as_the_battery_empties(ap):
     ap.params.MOT_BAT_VOLT_MAX, ap.params.MOT_BAT_VOLT_MIN = 12.8, 9.6
     ap.battery.voltage = 11.0
     for _ in range(100):
-        thrust_curve.update_slow(ap)
+        thrust_curve.compensate(ap)
     m = ap.control.motors
     demand = 0.3
     command = thrust_curve.command_from_thrust(
@@ -91,12 +91,12 @@ def test_thrust_stays_as_the_battery_empties(ap):
 
 def test_compensation_is_off_by_default(ap):
     ap.battery.voltage = 11.0
-    thrust_curve.update_slow(ap)
+    thrust_curve.compensate(ap)
     assert ap.control.motors.compensation_gain == 1.0
 
 
-def test_resistance_is_learnt_from_steps_of_current(ap):
-    m = ap.control.motors
+def test_resistance_is_learnt_from_steps_of_current():
+    m = MotorsState()
     voltage = 0.0
     for k in range(400):
         current = 10.0 + 10.0 * (k // 20 % 2)
@@ -113,25 +113,25 @@ def test_air_is_thinner_up_high():
 def test_hover_throttle_is_learnt(ap):
     ap.control.motors.throttle = 0.5
     for _ in range(5000):
-        motors.learn_hover_throttle(ap, 0.01)
-    assert motors.hover_throttle(ap) == pytest.approx(0.5, abs=2e-3)
+        motors.learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, 0.01)
+    assert motors.hover_throttle(ap.params.MOT) == pytest.approx(0.5, abs=2e-3)
     ap.params.MOT_HOVER_LEARN = 0.0
     ap.control.motors.throttle = 0.2
-    motors.learn_hover_throttle(ap, 0.01)
-    assert motors.hover_throttle(ap) == pytest.approx(0.5, abs=2e-3)
+    motors.learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, 0.01)
+    assert motors.hover_throttle(ap.params.MOT) == pytest.approx(0.5, abs=2e-3)
 
 
 def test_angle_boost_keeps_the_lift(ap):
     ap.control.attitude.cos_lean = math.cos(0.5)
-    throttle_mix.set_throttle_out(ap, 0.3, 1, 0.0)
+    throttle_mix.set_throttle_out(ap, 0.3, True, 0.0)
     assert ap.control.motors.throttle_in * math.cos(0.5) == pytest.approx(0.3)
-    throttle_mix.set_throttle_out(ap, 0.3, 0, 0.0)
+    throttle_mix.set_throttle_out(ap, 0.3, False, 0.0)
     assert ap.control.motors.throttle_in == 0.3
 
 
 def test_upside_down_throttle_is_cut(ap):
     ap.control.attitude.cos_lean = -0.5
-    throttle_mix.set_throttle_out(ap, 0.6, 1, 0.0)
+    throttle_mix.set_throttle_out(ap, 0.6, True, 0.0)
     assert ap.control.motors.throttle_in == 0.0
 
 
@@ -139,12 +139,12 @@ def test_priority_rises_quickly_and_falls_slowly(ap):
     throttle_mix.set_mix_max(ap, 1.0)
     ticks = 0
     while ap.control.attitude.mix < 0.5:
-        throttle_mix.update_mix(ap)
+        throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, 0.35)
         ticks += 1
     assert ticks * DT == pytest.approx(0.2, abs=0.01)
     throttle_mix.set_mix_min(ap)
     ap.control.motors.throttle_out = ap.control.motors.throttle = 0.35
-    throttle_mix.update_mix(ap)
+    throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, 0.35)
     assert ap.control.attitude.mix == pytest.approx(0.5 - 0.5 * DT)
 
 

@@ -8,12 +8,23 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from sitl.autopilot.control.pid import Gains
+from sitl.autopilot.control.shaping import Motion, Motion2
 from sitl.autopilot.copter.control import altitude, position, position_ned
 from sitl.autopilot.copter.control.motors import hover_throttle
-from sitl.autopilot.copter.control.state import DT, GRAVITY
+from sitl.autopilot.copter.control.state import DT, GRAVITY, PositionState
+from sitl.core.algebra import dot2, norm2, quat_from_euler, rotate, with_down
+from sitl.core.vectors import Euler, Vec2, Vec3
 
+REST = Vec2(0.0, 0.0)
 LAG = 0.12  # of lean and of thrust [s]
+
+
+def standing(north, east):
+    return Motion2(Vec2(north, east), REST, REST)
 
 
 def spooled(ap):
@@ -22,7 +33,7 @@ def spooled(ap):
     ap.control.attitude.lean_max = 1.2
     position.set_max_speed_accel_ne(ap, 10.0, 2.5)
     altitude.set_max_speed_accel_d(ap, 1.5, 2.5, 1.0)
-    ap.control.attitude.throttle_in = hover_throttle(ap)
+    ap.control.attitude.throttle_in = hover_throttle(ap.params.MOT)
     position.init_ne(ap)
     altitude.init_d(ap)
     return ap
@@ -30,13 +41,11 @@ def spooled(ap):
 
 def move_ne(ap, acc, wind=(0.0, 0.0)):
     """One tick of a mass whose acceleration follows the target with a lag."""
-    for k in range(2):
-        acc[k] += (float(ap.control.pos_ne.accel_target[k]) - acc[k]) * DT / LAG
-        a = acc[k] + wind[k]
-        pos, vel = list(ap.estimate.pos), list(ap.estimate.vel)
-        pos[k] += vel[k] * DT + 0.5 * a * DT * DT
-        vel[k] += a * DT
-        ap.estimate.pos, ap.estimate.vel = tuple(pos), tuple(vel)
+    est = ap.estimate
+    acc[0] += (ap.control.pos_ne.accel_target - acc[0]) * (DT / LAG)
+    a = with_down(acc[0] + Vec2(*wind), 0.0)
+    est.pos += est.vel.replace(z=0.0) * DT + 0.5 * a * DT * DT
+    est.vel += a * DT
     ap.control.tick += 1
 
 
@@ -44,7 +53,7 @@ def move_d(ap, thrust):
     """One tick of a mass under a thrust that follows the throttle with a lag; returns the thrust over the
     weight.
     """
-    wanted = float(ap.control.motors.throttle_in) / hover_throttle(ap)
+    wanted = float(ap.control.motors.throttle_in) / hover_throttle(ap.params.MOT)
     thrust += (min(max(wanted, 0.0), 2.5) - thrust) * DT / LAG
     a = GRAVITY * (1.0 - thrust)
     ap.estimate.acc_ned = ap.estimate.acc_ned.replace(z=a)
@@ -56,9 +65,9 @@ def move_d(ap, thrust):
 
 def test_step_of_20_m(ap):
     spooled(ap)
-    acc, half, most, far = [0.0, 0.0], 0.0, 0.0, 0.0
+    acc, half, most, far = [Vec2(0.0, 0.0)], 0.0, 0.0, 0.0
     for k in range(4000):
-        position.input_pos_vel_accel_ne(ap, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(20.0, 0.0))
         position.update_ne(ap)
         move_ne(ap, acc)
         if half == 0.0 and ap.estimate.pos[0] >= 10.0:
@@ -74,14 +83,14 @@ def test_step_of_20_m(ap):
 
 def test_velocity_step_and_stop(ap):
     spooled(ap)
-    acc = [0.0, 0.0]
+    acc = [Vec2(0.0, 0.0)]
     for _ in range(1600):
-        position.input_vel_accel_ne(ap, 0.0, 3.0, 0.0, 0.0)
+        position.input_vel_accel_ne(ap.control.pos_ne, Vec2(0.0, 3.0), REST)
         position.update_ne(ap)
         move_ne(ap, acc)
     assert ap.estimate.vel[1] == pytest.approx(3.0, abs=0.1)
     for _ in range(1600):
-        position.input_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0)
+        position.brake_ne(ap.control.pos_ne)
         position.update_ne(ap)
         move_ne(ap, acc)
     assert abs(ap.estimate.vel[1]) < 0.1
@@ -89,9 +98,9 @@ def test_velocity_step_and_stop(ap):
 
 def test_integrator_carries_steady_wind(ap):
     spooled(ap)
-    acc = [0.0, 0.0]
+    acc = [Vec2(0.0, 0.0)]
     for _ in range(4800):
-        position.input_pos_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(0.0, 0.0))
         position.update_ne(ap)
         move_ne(ap, acc, wind=(1.0, 0.0))
     assert ap.estimate.pos[0] == pytest.approx(0.0, abs=0.15)
@@ -101,9 +110,9 @@ def test_integrator_carries_steady_wind(ap):
 def test_storm_does_not_wind_up_the_integrator(ap):
     spooled(ap)
     ap.params.ANGLE_MAX = 1000.0
-    acc = [0.0, 0.0]
+    acc = [Vec2(0.0, 0.0)]
     for _ in range(1600):
-        position.input_pos_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(0.0, 0.0))
         position.update_ne(ap)
         move_ne(ap, acc, wind=(4.0, 0.0))
     most = GRAVITY * math.tan(math.radians(10.0))
@@ -116,7 +125,7 @@ def test_climb_of_10_m_keeps_the_speed_limit(ap):
     spooled(ap)
     thrust, fastest, highest = 1.0, 0.0, 0.0
     for _ in range(4000):
-        altitude.input_pos_vel_accel_d(ap, -10.0, 0.0, 0.0)
+        altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(-10.0, 0.0, 0.0))
         altitude.update_d(ap)
         thrust = move_d(ap, thrust)
         fastest = max(fastest, -float(ap.estimate.vel[2]))
@@ -130,7 +139,7 @@ def test_landing_descends_at_the_rate(ap):
     spooled(ap)
     thrust = 1.0
     for _ in range(1600):
-        altitude.land_at_rate_d(ap, 0.5, 1)
+        altitude.land_at_rate_d(ap.control.pos_d, 0.5, True)
         altitude.update_d(ap)
         thrust = move_d(ap, thrust)
     assert ap.estimate.vel[2] == pytest.approx(0.5, abs=0.02)
@@ -155,7 +164,7 @@ def test_relaxed_throttle_decays(ap):
 
 def test_jump_of_the_estimate_moves_the_path_with_it(ap):
     spooled(ap)
-    position.input_pos_vel_accel_ne(ap, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(0.0, 0.0))
     position.update_ne(ap)
     before = tuple(ap.control.pos_ne.accel_target)
     ap.control.tick += 1
@@ -178,44 +187,64 @@ def test_stopping_point_is_ahead_and_bounded(ap):
     assert math.hypot(n, e) == pytest.approx(0.5 * 2.5 + 25.0 / 5.0)
     assert altitude.stopping_point_d(ap) == -3.0
     ap.estimate.vel = (0.0, 0.0, 0.0)
-    assert position.stopping_point_ne(ap) == (0.0, 0.0)
+    assert position.stopping_point_ne(ap) == Vec2(0.0, 0.0)
 
 
-def test_lean_targets_give_the_acceleration(ap):
-    spooled(ap)
-    ap.estimate.euler = ap.estimate.euler.replace(yaw=0.7)
-    ap.control.pos_ne.accel_target[:] = (1.0, -2.0)
-    roll, pitch = position.lean_targets(ap)
-    assert position.lean_accel(roll, pitch, 0.7) == pytest.approx((1.0, -2.0))
+@given(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2), st.floats(-3.0, 3.0))
+def test_acceleration_of_a_lean_is_that_of_its_thrust(roll, pitch, yaw):
+    thrust = rotate(quat_from_euler(Euler(roll, pitch, yaw)), Vec3(0.0, 0.0, -1.0))
+    level = thrust * (GRAVITY / -thrust.z)
+    assert position.lean_accel(roll, pitch, yaw) == pytest.approx((level.x, level.y), rel=1e-9, abs=1e-9)
 
 
 def test_straight_line_to_a_point_keeps_all_limits(ap):
     spooled(ap)
     for _ in range(1200):
-        position_ned.input_pos_ned(ap, 30.0, 0.0, -30.0)
+        position_ned.input_pos_ned(ap.control.pos_ne, ap.control.pos_d, Vec3(30.0, 0.0, -30.0))
         ap.estimate.pos = (*ap.control.pos_ne.pos_desired, ap.control.pos_d.pos_desired)
         assert -ap.control.pos_d.vel_desired <= 2.5 * 1.02
         assert ap.control.pos_ne.vel_desired[0] <= 2.5 * 1.02  # 45 degrees: as fast as it may climb
     assert ap.control.pos_ne.vel_desired[0] == pytest.approx(-ap.control.pos_d.vel_desired, abs=0.3)
 
 
+TARGETS = [
+    (lambda ne, d, x: position.input_pos_vel_accel_ne(ne, Motion2(Vec2(*x[:2]), Vec2(*x[2:4]), Vec2(*x[4:]))), 6),
+    (lambda ne, d, x: position.set_pos_vel_accel_ne(ne, Motion2(Vec2(*x[:2]), Vec2(*x[2:4]), Vec2(*x[4:]))), 6),
+    (lambda ne, d, x: position.input_vel_accel_ne(ne, Vec2(*x[:2]), Vec2(*x[2:])), 4),
+    (lambda ne, d, x: position.input_accel_ne(ne, Vec2(*x)), 2),
+    (lambda ne, d, x: altitude.input_pos_vel_accel_d(d, Motion(*x)), 3),
+    (lambda ne, d, x: altitude.set_pos_vel_accel_d(d, Motion(*x)), 3),
+    (lambda ne, d, x: altitude.input_vel_accel_d(d, *x), 2),
+    (lambda ne, d, x: position_ned.input_pos_ned(ne, d, Vec3(*x)), 3),
+]
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
-def test_bad_targets_brake(ap, bad):
+@pytest.mark.parametrize(("give", "count"), TARGETS)
+def test_bad_targets_brake(ap, bad, give, count):
     spooled(ap)
-    for law, count in (
-        (position.input_pos_vel_accel_ne, 6),
-        (position.set_pos_vel_accel_ne, 6),
-        (position.input_vel_accel_ne, 4),
-        (position.input_accel_ne, 2),
-        (altitude.input_pos_vel_accel_d, 3),
-        (altitude.set_pos_vel_accel_d, 3),
-        (altitude.input_vel_accel_d, 2),
-        (position_ned.input_pos_ned, 3),
-    ):
-        for k in range(count):
-            law(ap, *(bad if j == k else 0.0 for j in range(count)))
-            position.update_ne(ap)
-            altitude.update_d(ap)
-            ap.control.tick += 1
-            assert all(math.isfinite(x) for x in position.thrust_vector(ap))
-            assert math.isfinite(ap.control.motors.throttle_in)
+    for k in range(count):
+        give(ap.control.pos_ne, ap.control.pos_d, [bad if j == k else 0.0 for j in range(count)])
+        position.update_ne(ap)
+        altitude.update_d(ap)
+        ap.control.tick += 1
+        assert all(math.isfinite(x) for x in position.thrust_vector(ap.control.pos_ne))
+        assert math.isfinite(ap.control.motors.throttle_in)
+
+
+def test_the_path_waits_for_a_vehicle_that_cannot_keep_up():
+    c = PositionState()
+    c.pos_desired, c.correction_speed, c.correction_accel = Vec2(100.0, 0.0), 5.0, 2.5
+    vel = position.control_position(c, Vec2(0.0, 0.0), 1.0)
+    assert vel == pytest.approx((5.0, 0.0))
+    assert c.pos_desired == c.pos_error and 0.0 < c.pos_desired.x < 100.0
+
+
+@given(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
+def test_acceleration_stays_within_the_lean_and_says_where_it_is_used_up(north, east):
+    c = PositionState()
+    gains = position.PositionGains(1.0, Gains(2.0, 1.0, 0.25, 0.0, 0.0, 10.0, 0.0, 0.0, 5.0, 5.0))
+    position.control_horizontal(c, Vec2(0.0, 0.0), Vec2(north, east), 3.0, gains)
+    assert norm2(c.accel_target) <= 3.0 * (1 + 1e-9)
+    assert (norm2(c.limit) > 0.0) == (2.0 * math.hypot(north, east) > 3.0)
+    assert dot2(c.accel_target, Vec2(north, east)) <= 0.0

@@ -102,11 +102,11 @@ def test_nose_follows_the_desired_velocity_but_not_a_slow_one(flying):
     ap = flying.autopilot
     auto_yaw.set_mode(flying, auto_yaw.LOOK_AT_NEXT_WP)
     ap.control.pos_ne.speed_max = 10.0
-    ap.control.pos_ne.vel_desired[1] = 0.4
+    ap.control.pos_ne.vel_desired = (0.0, 0.4)
     assert auto_yaw.advance(flying, 0.0025)[0] == 0.0
-    ap.control.pos_ne.vel_desired[1] = 3.0
+    ap.control.pos_ne.vel_desired = (0.0, 3.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 2)
-    ap.control.pos_ne.vel_desired[1] = 0.0
+    ap.control.pos_ne.vel_desired = (0.0, 0.0)
     assert auto_yaw.advance(flying, 0.0025)[0] == pytest.approx(math.pi / 2)
 
 
