@@ -87,9 +87,9 @@ def driving(rover_bench: Bench) -> Bench:
     """At (3, 4) m, on the way to (3, 24) m, with the target of the moment at (8, 9) m."""
     rover_bench.vehicle.locate()
     ap = rover_bench.vehicle.v.autopilot
-    ap.estimate.pos, ap.modes.nav.target[:] = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
+    ap.estimate.pos, ap.modes.nav.target = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
     ap.modes.loiter.place[:], ap.modes.circle.target[:] = (13.0, 4.0), (-7.0, 4.0)
-    ap.modes.nav.drive.crosstrack, ap.control.position.pos_target[:] = -1.5, (8.0, 9.0)
+    ap.modes.nav.drive.crosstrack, ap.control.position.pos_target = -1.5, (8.0, 9.0)
     return rover_bench
 
 

@@ -30,15 +30,13 @@ def point(ap: Autopilot, item: MissionItem, default: Vec3) -> Vec3:
 def set_home(ap: Autopilot, item: MissionItem) -> None:
     """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no place), else to the item's place."""
     home, estimate = ap.home, ap.estimate
-    if estimate.origin_set == 0:
+    if not estimate.origin_set:
         return
     if item.p1 == 1.0 or (item.no_place and item.z == 0.0):
-        n, e, d = (float(x) for x in estimate.pos)
-        lat, lon = add_offset(int(estimate.origin_lat), int(estimate.origin_lon), n, e)
+        home.pos = estimate.pos
+        lat, lon = add_offset(estimate.origin_lat, estimate.origin_lon, home.pos.x, home.pos.y)
     else:
-        d = down(ap, item)
-        n, e, _ = point(ap, item, (0.0, 0.0, d))
+        home.pos = point(ap, item, Vec3(0.0, 0.0, down(ap, item)))
         lat, lon = item.x, item.y
-    home.lat, home.lon, home.alt = round(lat), round(lon), float(estimate.origin_alt) - d
-    home.pos = Vec3(n, e, d)
-    home.is_set = home.locked = 1
+    home.lat, home.lon, home.alt = round(lat), round(lon), estimate.origin_alt - home.pos.z
+    home.is_set = home.locked = True

@@ -38,6 +38,7 @@ from sitl.autopilot.navigation.state import (
     STOPPED,
     WAYPOINT,
 )
+from sitl.core.vectors import Vec3
 from sitl.vehicle.record import Copter
 
 LAT, LON, ALT = -353632621, 1491652371, 584.0
@@ -83,7 +84,7 @@ class Vehicle:
     def wait(self, seconds: float) -> None:
         """Let time pass for conditions."""
         self.v.time_us += round(seconds * 1e6)
-        command.check_condition(self.v.autopilot, int(self.v.time_us), 1)
+        command.check_condition(self.v.autopilot, int(self.v.time_us), True)
         self.told += self.sequencer.attend()
 
     def order(self, most: int = 20) -> list[int]:
@@ -271,7 +272,7 @@ def test_leaving_keeps_the_new_modes_legs() -> None:
     ap = p.v.autopilot
     waypoint.stop(ap)
     ap.modes.number, ap.modes.nav.speed_ne = 6, 4.0
-    path.request_leg(ap, 0, 0.0, 0.0, -15.0)
+    path.request_leg(ap, 0, Vec3(0.0, 0.0, -15.0))
     events.emit(ap.events, 0, events.MODE_CHANGED, 6.0, 0.0)
     p.sequencer.attend()
     assert p.nav.current.segments > 0

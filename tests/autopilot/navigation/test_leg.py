@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from sitl.autopilot.navigation.leg import LegError, Limits, Profile, axis_limits, plan, write
 from sitl.autopilot.navigation.profile import clear, evaluate, finished, remaining, step
 from sitl.autopilot.navigation.state import SEGMENTS, Leg
+from sitl.core.algebra import ZERO
+from sitl.core.vectors import Vec3
 
 DEFAULT = Limits(10.0, 2.5, 1.0, 0.3)
 limits = st.builds(
@@ -27,7 +29,7 @@ limits = st.builds(
 def record(profile: Profile, length: float):
     """The leg in a record."""
     leg = Leg()
-    write(leg, profile, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), length)
+    write(leg, profile, ZERO, Vec3(1.0, 0.0, 0.0), length)
     return leg
 
 
@@ -135,11 +137,11 @@ def test_refused(length: float, within: Limits) -> None:
 
 def test_axis_limits() -> None:
     """A slanted leg is limited by whichever axis is used up first."""
-    assert axis_limits((1.0, 0.0, 0.0), 10.0, 2.5, 1.5) == 10.0
-    assert axis_limits((0.0, 0.0, -1.0), 10.0, 2.5, 1.5) == 2.5
-    assert axis_limits((0.0, 0.0, 1.0), 10.0, 2.5, 1.5) == 1.5
-    assert axis_limits((0.6, 0.0, -0.8), 10.0, 2.5, 1.5) == pytest.approx(2.5 / 0.8)
-    assert axis_limits((0.995, 0.0, 0.0999), 10.0, 2.5, 1.5) == pytest.approx(10.0 / 0.995)
+    assert axis_limits(Vec3(1.0, 0.0, 0.0), 10.0, 2.5, 1.5) == 10.0
+    assert axis_limits(Vec3(0.0, 0.0, -1.0), 10.0, 2.5, 1.5) == 2.5
+    assert axis_limits(Vec3(0.0, 0.0, 1.0), 10.0, 2.5, 1.5) == 1.5
+    assert axis_limits(Vec3(0.6, 0.0, -0.8), 10.0, 2.5, 1.5) == pytest.approx(2.5 / 0.8)
+    assert axis_limits(Vec3(0.995, 0.0, 0.0999), 10.0, 2.5, 1.5) == pytest.approx(10.0 / 0.995)
 
 
 @given(st.floats(0.5, 8.0), st.floats(0.0, 2.5), st.floats(0.5, 4.0), st.floats(1.05, 3.0))

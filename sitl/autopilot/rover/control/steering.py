@@ -127,8 +127,10 @@ def out_from_rate(ap: Autopilot, turn_rate: float) -> float:
 @law
 def out_from_heading(ap: Autopilot, heading: float) -> float:
     """Steering demand towards ``heading`` [rad]."""
+    if not finite(heading):
+        return out_from_rate(ap, 0.0)
     error = wrap_pi(heading - ap.estimate.euler.yaw)
-    return out_from_rate(ap, turn_rate_from_heading(error, 0.0, ap.params.ATC) if finite(heading) else 0.0)
+    return out_from_rate(ap, turn_rate_from_heading(error, 0.0, ap.params.ATC))
 
 
 @law

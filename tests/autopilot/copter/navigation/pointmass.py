@@ -88,7 +88,7 @@ class PointMass:
                 self._move()
             elif not self.stuck:
                 ap.estimate.pos, ap.estimate.vel = nav.pos, nav.vel
-        check_condition(ap, now, 1)
+        check_condition(ap, now, True)
         self.note(self.sequencer.attend())
         ap.events.attention = 0
 

@@ -24,6 +24,7 @@ from sitl.autopilot.navigation import path as paths
 from sitl.autopilot.navigation.leg import LegError, Limits, plan
 from sitl.autopilot.navigation.planner import end
 from sitl.core.geodesy import add_offset
+from sitl.core.vectors import Vec3
 from tests.autopilot.copter.navigation.pointmass import DT, ORIGIN, PointMass
 
 
@@ -150,7 +151,7 @@ def test_leg_for_the_core() -> None:
     path(p, 1.0)
     ap = p.v.autopilot
     waypoint.stop(ap)
-    paths.request_legs(ap, int(p.v.time_us), 0.0, 0.0, -15.0, 30.0, 0.0, -15.0)
+    paths.request_legs(ap, p.v.time_us, Vec3(0.0, 0.0, -15.0), Vec3(30.0, 0.0, -15.0))
     assert ap.events.attention == 1
     assert waypoint.advance(ap, int(p.v.time_us)) == 0
     p.sequencer.attend()

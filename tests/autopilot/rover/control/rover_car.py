@@ -11,7 +11,6 @@ import math
 from typing import Any
 
 from sitl.autopilot.rover.control import update
-from sitl.autopilot.rover.control.init import init
 from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control
 from sitl.autopilot.rover.parameters import TABLE, Parameters
 from sitl.autopilot.state import Actuators, Autopilot, Sensors
@@ -58,7 +57,7 @@ def make_vehicle(**params: float) -> Any:
     v.autopilot.estimate.status_flags = HORIZONTAL
     v.autopilot.estimate.position_ok = 1
     set_motion(v, 0.0, 0.0, 0.0)
-    init(v.autopilot)
+    update.init(v.autopilot)
     return v
 
 

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.rover.control import mixer, motors, servos
+from sitl.autopilot.rover.control.state import TEST_STEERING, TEST_THROTTLE, MotorsState
 from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, set_motion
 
 SKID = {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
@@ -31,10 +31,6 @@ def demand(v, steering, throttle, periods=1, scaled=True):
         finish(v)
 
 
-def flags():
-    return SimpleNamespace(limit_left=0, limit_right=0, limit_lower=0, limit_upper=0)
-
-
 def test_car_outputs():
     v = arm(make_vehicle(MOT_SLEWRATE=0.0))
     demand(v, 0.5, -0.25)
@@ -46,11 +42,11 @@ def test_car_outputs():
 
 def test_pulse_is_cut_towards_trim_and_reversible():
     v = make_vehicle(SERVO1_TRIM=1510.0, SERVO1_MIN=1000.0, SERVO1_MAX=2000.0)
-    assert servos.pulse(v.autopilot, 0, 0.4999) == 1510 + 244
-    assert servos.pulse(v.autopilot, 0, -0.4999) == 1510 - 254
+    assert servos.pulse(v.autopilot.params.SERVO[0], 0.4999) == 1510 + 244
+    assert servos.pulse(v.autopilot.params.SERVO[0], -0.4999) == 1510 - 254
     v.autopilot.params.SERVO1_REVERSED = 1.0
-    assert servos.pulse(v.autopilot, 0, 2.0) == 1000
-    assert servos.pulse(v.autopilot, 0, math.nan) == 1510
+    assert servos.pulse(v.autopilot.params.SERVO[0], 2.0) == 1000
+    assert servos.pulse(v.autopilot.params.SERVO[0], math.nan) == 1510
 
 
 def test_throttle_slews_and_says_so():
@@ -104,7 +100,7 @@ def test_disarmed_wheels_steer_but_do_not_drive(safe, throttle_pulse):
 
 def test_skid_outputs():
     v = arm(make_vehicle(MOT_SLEWRATE=0.0, **SKID))
-    assert motors.is_skid(v.autopilot)
+    assert motors.is_skid(v.autopilot.params)
     demand(v, 0.25, 0.5)
     assert pulses(v) == (1800, 0, 1600, 0)
     demand(v, 0.5, 0.0)
@@ -119,22 +115,22 @@ def test_skid_outputs():
     [(0.5, 1.0 / 7.0, 1), (1.0, -0.2, 0), (0.2, 0.4171428571, 1)],
 )
 def test_sharing_of_what_the_motors_have(mix, right, steering_cut):
-    m = flags()
-    assert mixer.skid(m, 0.6, 0.8, mix, 1.0) == pytest.approx((1.0, right))
+    m = MotorsState()
+    assert mixer.mix_skid(m, 0.6, 0.8, mix, 1.0) == pytest.approx((1.0, right))
     assert (m.limit_left, m.limit_right, m.limit_lower, m.limit_upper) == (0, steering_cut, 0, 1)
 
 
 def test_weak_backwards_thrust_is_made_up_for():
-    assert mixer.skid(flags(), 0.4, 0.0, 0.5, 2.0) == pytest.approx((0.4, -0.8))
-    m = flags()
-    assert mixer.skid(m, 1.0, 0.0, 0.5, 2.0) == pytest.approx((0.5, -1.0))
+    assert mixer.mix_skid(MotorsState(), 0.4, 0.0, 0.5, 2.0) == pytest.approx((0.4, -0.8))
+    m = MotorsState()
+    assert mixer.mix_skid(m, 1.0, 0.0, 0.5, 2.0) == pytest.approx((0.5, -1.0))
     assert m.limit_right == 1
 
 
 @given(unit, unit, st.floats(0.2, 1.0), st.floats(1.0, 4.0))
 def test_skid_mixer_stays_in_range_and_turns_the_right_way(steering, throttle, mix, asymmetry):
-    m = flags()
-    left, right = mixer.skid(m, steering, throttle, mix, asymmetry)
+    m = MotorsState()
+    left, right = mixer.mix_skid(m, steering, throttle, mix, asymmetry)
     assert -1.0 - 1e-9 <= left <= 1.0 + 1e-9
     assert -1.0 - 1e-9 <= right <= 1.0 + 1e-9
     assert (left - right) * steering >= -1e-9
@@ -169,12 +165,16 @@ def test_pause_at_a_change_of_direction():
     assert outputs == [0.0] * 4 + [-0.5, -0.5]
 
 
+def set_servo(v, output, width):
+    return servos.set_servo(v.autopilot.params, v.actuators, output, width)
+
+
 def test_free_outputs_belong_to_do_set_servo():
     v = arm(make_vehicle())
-    assert servos.set_servo(v, 1, 1234) == 1
-    assert servos.set_servo(v, 8, 1800) == 1
-    assert servos.set_servo(v, 2, 1900) == 0
-    assert servos.set_servo(v, 16, 1900) == 0
+    assert set_servo(v, 1, 1234)
+    assert set_servo(v, 8, 1800)
+    assert not set_servo(v, 2, 1900)
+    assert not set_servo(v, 16, 1900)
     finish(v)
     assert pulses(v) == (1500, 1234, 1500, 0)
     v.autopilot.params.SERVO3_FUNCTION = 0.0
@@ -194,13 +194,13 @@ def test_motor_test_drives_one_motor_alone():
     v = arm(make_vehicle())
     m = v.autopilot.control.motors
     demand(v, 0.5, 0.5)
-    m.test_motor, m.test_value = motors.TEST_THROTTLE, 0.3
+    m.test_motor, m.test_value = TEST_THROTTLE, 0.3
     finish(v)
     assert pulses(v) == (1500, 0, 1620, 0)
     m.test_pulse = 1555
     finish(v)
     assert pulses(v) == (1500, 0, 1555, 0)
-    m.test_motor, m.test_value, m.test_pulse = motors.TEST_STEERING, -1.0, 0
+    m.test_motor, m.test_value, m.test_pulse = TEST_STEERING, -1.0, 0
     finish(v)
     assert pulses(v) == (1100, 0, 1500, 0)
 

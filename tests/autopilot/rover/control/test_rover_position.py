@@ -8,25 +8,36 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.rover.control import forward_speed, motors, position, speed, steering
 from sitl.autopilot.rover.control.state import DT
+from sitl.core.algebra import ZERO2, horizontal, norm2
+from sitl.core.vectors import Vec2
 from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle
 
 
 def ready(heading=0.0, **params):
     car = Car(arm(make_vehicle(**{**RECORDED, **params})), heading)
     ap = car.v.autopilot
-    position.set_limits(ap, 5.0, 1.0, steering.lat_accel_max(ap), 1.0)
-    assert position.init(ap) == 1
+    position.set_limits(ap.control.position, 5.0, 1.0, steering.lat_accel_max(ap.params.ATC), 1.0)
+    assert position.init(ap.control.position, ap.estimate)
     return car
 
 
-def follow(car, backward=0):
+def standing(n, e):
+    return Motion2(Vec2(n, e), ZERO2, ZERO2)
+
+
+def pos_error(ap):
+    return ap.control.position.pos_target - horizontal(ap.estimate.pos)
+
+
+def follow(car, backward=False):
     """One period towards what the targets say."""
     v, c = car.v, car.v.autopilot.control.position
     forward_speed.sense(v)
-    position.set_reversed(v.autopilot, backward)
-    position.update(v)
+    c.reversed = backward
+    position.follow_target(v.autopilot)
     speed.drive(v, float(c.desired_speed))
     motors.set_steering(v.autopilot, steering.out_from_rate(v.autopilot, float(c.desired_turn_rate)))
     finish(v)
@@ -36,10 +47,10 @@ def follow(car, backward=0):
 def test_point_20_m_to_the_right_as_recorded():
     """A real ArduRover, GUIDED: 3 m away at 7.8 s, 1 m at 9.2 s, peak 3.96 m/s, and swings out 1.45 m to the north."""
     car = ready()
-    target = (0.0, 20.0)
+    target = Vec2(0.0, 20.0)
     away, speeds, north = [], [], []
     for _ in range(500):
-        position.input_pos(car.v.autopilot, *target)
+        position.input_pos(car.v.autopilot.control.position, target)
         follow(car)
         away.append(math.dist(car.position, target))
         speeds.append(car.speed)
@@ -56,8 +67,8 @@ def test_a_car_keeps_the_speed_of_its_tightest_turn_where_a_skid_steered_one_wai
     for car in (wide, tight):
         ap = car.v.autopilot
         forward_speed.sense(car.v)
-        position.set_pos_vel_accel(ap, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0)
-        position.update(car.v)
+        position.set_pos_vel_accel(ap.control.position, Motion2(ZERO2, Vec2(0.0, 3.0), ZERO2))
+        position.follow_target(ap)
         assert ap.control.position.desired_turn_rate > 0.5
     least = math.sqrt(0.5 * 0.6 * 9.80665 * 0.9)
     assert wide.v.autopilot.control.position.desired_speed == pytest.approx(least)
@@ -67,8 +78,8 @@ def test_a_car_keeps_the_speed_of_its_tightest_turn_where_a_skid_steered_one_wai
 def test_backwards():
     car = ready()
     for _ in range(700):
-        position.input_pos(car.v.autopilot, -10.0, 1.0)
-        follow(car, backward=1)
+        position.input_pos(car.v.autopilot.control.position, Vec2(-10.0, 1.0))
+        follow(car, backward=True)
     assert math.dist(car.position, (-10.0, 1.0)) < 0.6
     assert abs(math.remainder(car.heading, 2 * math.pi)) < 0.5
 
@@ -80,13 +91,12 @@ def test_smooth_path_is_followed():
     for k in range(1500):
         a = omega * k * DT
         s, c = math.sin(a), math.cos(a)
-        position.set_pos_vel_accel(
-            car.v.autopilot, radius * s, radius * (1 - c), radius * omega * c, radius * omega * s,
-            -radius * omega**2 * s, radius * omega**2 * c,
-        )  # fmt: skip
+        pos, direction = Vec2(radius * s, radius * (1 - c)), Vec2(c, s)
+        path = Motion2(pos, direction * (radius * omega), Vec2(-s, c) * (radius * omega**2))
+        position.set_pos_vel_accel(car.v.autopilot.control.position, path)
         follow(car)
         if k > 750:
-            worst = max(worst, math.hypot(*position.pos_error(car.v.autopilot)))
+            worst = max(worst, norm2(pos_error(car.v.autopilot)))
     assert worst < 0.6
 
 
@@ -94,27 +104,27 @@ def test_target_follows_a_jump_of_the_estimate():
     car = ready()
     ap = car.v.autopilot
     for _ in range(50):
-        position.input_pos(ap, 10.0, 0.0)
+        position.input_pos(ap.control.position, Vec2(10.0, 0.0))
         follow(car)
-    before = position.pos_error(ap)
+    before = pos_error(ap)
     ap.estimate.pos = ap.estimate.pos.replace(x=ap.estimate.pos.x + 5.0)
     ap.estimate.reset_ne_count += 1
-    position.update(car.v)
-    assert position.pos_error(ap) == pytest.approx(before, abs=0.05)
+    position.follow_target(ap)
+    assert pos_error(ap) == pytest.approx(before, abs=0.05)
 
 
 def test_disarmed_or_lost_it_brakes():
     car = ready()
     ap = car.v.autopilot
     for _ in range(50):
-        position.input_pos(ap, 10.0, 3.0)
+        position.input_pos(ap.control.position, Vec2(10.0, 3.0))
         follow(car)
     before = float(ap.control.speed.desired)
     ap.estimate.position_ok = 0
-    position.update(car.v)
+    position.follow_target(ap)
     assert ap.control.position.desired_turn_rate == 0.0
     assert ap.control.position.desired_speed == pytest.approx(before - 1.0 * DT)
-    assert position.init(ap) == 0
+    assert not position.init(ap.control.position, ap.estimate)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
@@ -122,9 +132,9 @@ def test_bad_targets_are_not_taken_over(bad):
     car = ready()
     ap = car.v.autopilot
     before = list(ap.control.position.pos_target)
-    position.input_pos(ap, bad, 0.0)
-    position.input_pos_vel_accel(ap, 0.0, 0.0, bad, 0.0, 0.0, 0.0)
-    position.set_pos_vel_accel(ap, 0.0, 0.0, 0.0, 0.0, 0.0, bad)
+    position.input_pos(ap.control.position, Vec2(bad, 0.0))
+    position.input_pos_vel_accel(ap.control.position, Motion2(ZERO2, Vec2(bad, 0.0), ZERO2))
+    position.set_pos_vel_accel(ap.control.position, Motion2(ZERO2, ZERO2, Vec2(0.0, bad)))
     assert list(ap.control.position.pos_target) == before
 
 
@@ -133,7 +143,7 @@ def test_a_way_straight_back_begins_with_a_turn(speed_max):
     """Also of a vehicle that is never fast: else nothing turns it, and it drives away for ever."""
     car = ready(PSC_POS_P=1.0)
     ap = car.v.autopilot
-    position.set_limits(ap, speed_max, 1.0, steering.lat_accel_max(ap), 1.0)
-    position.set_pos_vel_accel(ap, -10.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    position.set_limits(ap.control.position, speed_max, 1.0, steering.lat_accel_max(ap.params.ATC), 1.0)
+    position.set_pos_vel_accel(ap.control.position, standing(-10.0, 0.0))
     follow(car)
     assert ap.control.position.desired_lat_accel > 0.0

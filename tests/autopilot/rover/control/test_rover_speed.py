@@ -7,8 +7,10 @@ import math
 
 import pytest
 
-from sitl.autopilot.rover.control import forward_speed, speed
+from sitl.autopilot.rover.control import speed
+from sitl.autopilot.rover.control.forward_speed import sense, yaw_rate
 from sitl.autopilot.rover.control.state import DT
+from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.rover.control.rover_car import PERIOD_US, arm, finish, make_vehicle, set_motion
 
 
@@ -18,26 +20,34 @@ def rolling(forward=0.0, **params):
     return v
 
 
+def throttle_for_speed(v, wanted):
+    return speed.control_speed(v.autopilot.control, wanted, sense(v), v.autopilot.params)
+
+
+def throttle_for_stop(v):
+    return speed.control_stop(v.autopilot.control, sense(v), v.autopilot.params)
+
+
 def run(v, wanted, periods):
     throttle = 0.0
     for _ in range(periods):
-        throttle = speed.throttle_for_speed(v, wanted)
+        throttle = throttle_for_speed(v, wanted)
         finish(v)
     return throttle
 
 
 def test_desired_speed_starts_at_the_present_speed_and_changes_with_accel_max():
     v = rolling(1.0, ATC_ACCEL_MAX=2.0)
-    assert speed.desired_speed_accel_limited(v.autopilot, 9.0) == 9.0
+    assert speed.accel_limited(v.autopilot.control, 9.0, v.autopilot.params.ATC) == 9.0
     run(v, 9.0, 5)
-    assert speed.desired_speed(v.autopilot) == pytest.approx(1.0 + 5 * 2.0 * DT)
+    assert v.autopilot.control.speed.desired == pytest.approx(1.0 + 5 * 2.0 * DT)
 
 
 def test_deceleration_has_its_own_limit():
     v = rolling(5.0, ATC_DECEL_MAX=3.0)
     run(v, 0.0, 5)
-    assert speed.desired_speed(v.autopilot) == pytest.approx(5.0 - 5 * 3.0 * DT)
-    assert speed.stopping_distance(v.autopilot, 6.0) == pytest.approx(6.0)
+    assert v.autopilot.control.speed.desired == pytest.approx(5.0 - 5 * 3.0 * DT)
+    assert speed.stopping_distance(6.0, v.autopilot.params.ATC) == pytest.approx(6.0)
 
 
 def test_cruise_throttle_is_fed_forward():
@@ -57,22 +67,22 @@ def test_brake_off_never_works_against_the_motion():
 
 def test_stop_stands_below_stop_speed_and_for_a_while_after():
     v = rolling(0.05)
-    assert speed.throttle_for_stop(v) == (0.0, 1)
+    assert throttle_for_stop(v) == (0.0, True)
     finish(v)
     set_motion(v, 0.3, 0.5, 0.0)
-    assert speed.throttle_for_stop(v) == (0.0, 1)
+    assert throttle_for_stop(v) == (0.0, True)
     for _ in range(16):
         finish(v)
-    throttle, stands = speed.throttle_for_stop(v)
-    assert stands == 0
+    throttle, stands = throttle_for_stop(v)
+    assert not stands
     assert throttle != 0.0
 
 
 def test_without_a_speed_nothing_drives_and_a_stop_stands():
     v = rolling(3.0)
     v.autopilot.estimate.status_flags = 0
-    assert speed.throttle_for_speed(v, 5.0) == 0.0
-    assert speed.throttle_for_stop(v) == (0.0, 1)
+    assert throttle_for_speed(v, 5.0) == 0.0
+    assert throttle_for_stop(v) == (0.0, True)
 
 
 def test_drive_at_zero_is_a_controlled_stop():
@@ -97,7 +107,7 @@ def test_drive_at_zero_is_a_controlled_stop():
     ],
 )
 def test_speed_at_full_throttle(params, most):
-    assert speed.speed_max(rolling(**params).autopilot) == pytest.approx(most)
+    assert speed.speed_max(rolling(**params).autopilot.params) == pytest.approx(most)
 
 
 def test_speed_from_the_receiver_has_the_sign_of_its_course():
@@ -105,9 +115,9 @@ def test_speed_from_the_receiver_has_the_sign_of_its_course():
     v.autopilot.estimate.status_flags = 1
     v.sensors.gps_fix = 3
     v.sensors.gps_vel = (300, 400, 0)
-    assert forward_speed.forward_speed(v) == (1, pytest.approx(5.0))
+    assert sense(v) == (True, pytest.approx(5.0))
     v.sensors.gps_vel = (-300, -400, 0)
-    assert forward_speed.forward_speed(v) == (1, pytest.approx(-5.0))
+    assert sense(v) == (True, pytest.approx(-5.0))
 
 
 def test_speed_from_the_wheels():
@@ -116,26 +126,23 @@ def test_speed_from_the_wheels():
     for k in range(100):
         v.sensors.wheel_count = k + 1
         v.sensors.wheel_distance = (-0.02 * k, -0.04 * k)
-        forward_speed.sense(v)
+        sense(v)
         v.time_us += PERIOD_US
-    assert forward_speed.forward_speed(v) == (1, pytest.approx(-1.5))
+    assert sense(v) == (True, pytest.approx(-1.5))
     v.time_us += 600_000
-    assert forward_speed.forward_speed(v) == (0, 0.0)
+    assert sense(v) == (False, 0.0)
 
 
 def test_turn_rate_about_the_vertical_of_a_leaning_body():
-    v = rolling()
-    ap = v.autopilot
-    ap.estimate.q = (math.cos(0.25), math.sin(0.25), 0.0, 0.0)
-    ap.estimate.rates = (0.0, 0.3, 0.4)
-    assert forward_speed.yaw_rate(ap) == pytest.approx(0.3 * math.sin(0.5) + 0.4 * math.cos(0.5))
+    leaning = Quat(math.cos(0.25), math.sin(0.25), 0.0, 0.0)
+    assert yaw_rate(leaning, Vec3(0.0, 0.3, 0.4)) == pytest.approx(0.3 * math.sin(0.5) + 0.4 * math.cos(0.5))
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_bad_numbers_brake(bad):
     v = rolling(2.0)
     speed.drive(v, bad)
-    speed.throttle_for_speed(v, bad)
+    throttle_for_speed(v, bad)
     assert math.isfinite(v.autopilot.control.speed.desired)
     v.autopilot.estimate.vel = v.autopilot.estimate.vel.replace(x=bad)
-    assert forward_speed.forward_speed(v) == (0, 0.0)
+    assert sense(v) == (False, 0.0)

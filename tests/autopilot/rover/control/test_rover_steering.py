@@ -6,9 +6,12 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sitl.autopilot.rover.control import forward_speed, motors, steering
-from sitl.autopilot.rover.control.state import DT, GRAVITY
+from sitl.autopilot.rover.control.state import DT, GRAVITY, Control
+from sitl.autopilot.rover.parameters.control import Attitude
 from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, set_motion
 
 
@@ -31,7 +34,7 @@ def run(v, rate, periods):
 def test_turn_rate_grows_no_faster_than_acc_max():
     v = moving()
     run(v, 1.0, 5)
-    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(5 * math.radians(120.0) * DT)
+    assert v.autopilot.control.steering.turn_rate == pytest.approx(5 * math.radians(120.0) * DT)
     assert v.autopilot.control.steering.limit_right == 1
 
 
@@ -39,20 +42,19 @@ def test_turn_rate_decays_no_faster_than_dec_max():
     v = moving(ATC_STR_DEC_MAX=60.0)
     run(v, 1.0, 40)
     run(v, 0.0, 5)
-    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(1.0 - 5 * math.radians(60.0) * DT)
+    assert v.autopilot.control.steering.turn_rate == pytest.approx(1.0 - 5 * math.radians(60.0) * DT)
 
 
 def test_rate_limit():
     v = moving(ATC_STR_RAT_MAX=20.0)
     run(v, 3.0, 100)
-    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(math.radians(20.0))
+    assert v.autopilot.control.steering.turn_rate == pytest.approx(math.radians(20.0))
 
 
 def test_lateral_acceleration_limit():
     v = moving(speed=8.0)
     run(v, 3.0, 100)
-    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(0.6 * GRAVITY / 8.0)
-    assert steering.lat_accel(v.autopilot, 3.0, 8.0) == pytest.approx(0.6 * GRAVITY)
+    assert v.autopilot.control.steering.turn_rate == pytest.approx(0.6 * GRAVITY / 8.0)
 
 
 def test_first_call_starts_at_the_present_turn_rate_and_a_pause_forgets():
@@ -62,8 +64,7 @@ def test_first_call_starts_at_the_present_turn_rate_and_a_pause_forgets():
     v.autopilot.estimate.rates = v.autopilot.estimate.rates.replace(z=-0.4)
     for _ in range(11):
         finish(v)
-    assert not steering.is_active(v.autopilot)
-    assert steering.desired_turn_rate(v.autopilot) == 0.0
+    assert not steering.is_active(v.autopilot.control)
     steering.out_from_rate(v.autopilot, 0.5)
     assert v.autopilot.control.steering.turn_rate == pytest.approx(-0.4 + math.radians(120.0) * DT)
     assert v.autopilot.control.steering.rate.integrator == pytest.approx(0.0, abs=1e-3)
@@ -83,11 +84,37 @@ def test_integrator_rests_below_the_scaling_speed_and_learns_above():
 
 
 def test_heading_gives_a_rate_that_can_stop_in_time():
-    v = moving(heading=3.0)
-    ap = v.autopilot
-    assert steering.turn_rate_from_heading(ap, -3.0, 0.0) == pytest.approx((2 * math.pi - 6.0) * 2.0)
-    assert steering.turn_rate_from_heading(ap, 1.0, 0.0) == pytest.approx(-math.sqrt(2 * 2.0 * math.radians(120.0)))
-    assert steering.turn_rate_from_heading(ap, 1.0, 0.4) == pytest.approx(-0.4)
+    atc = Attitude()
+    atc.STR_ANG_P, atc.STR_ACC_MAX = 2.0, 120.0
+    assert steering.turn_rate_from_heading(0.3, 0.0, atc) == pytest.approx(0.6)
+    assert steering.turn_rate_from_heading(-2.0, 0.0, atc) == pytest.approx(-math.sqrt(2 * 2.0 * math.radians(120.0)))
+    assert steering.turn_rate_from_heading(-2.0, 0.4, atc) == pytest.approx(-0.4)
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(0.0, 3.0), st.floats(0.1, 10.0), st.floats(0.0, 360.0))
+def test_heading_rate_points_at_the_heading_within_its_limits(error, rate_max, gain, accel):
+    atc = Attitude()
+    atc.STR_ANG_P, atc.STR_ACC_MAX = gain, accel
+    rate = steering.turn_rate_from_heading(error, rate_max, atc)
+    assert rate * error >= 0.0
+    assert rate_max == 0.0 or abs(rate) <= rate_max
+    if accel > 0.0:
+        assert rate * rate <= 2.0 * abs(error) * math.radians(accel) * (1.0 + 1e-9)
+
+
+@given(st.lists(st.floats(-20.0, 20.0), min_size=1, max_size=30), st.floats(0.0, 10.0))
+def test_turn_rate_keeps_its_limits_whatever_is_asked(wanted, speed):
+    control, atc = Control(), Attitude()
+    atc.STR_ACC_MAX, atc.STR_RAT_MAX, atc.TURN_MAX_G = 120.0, 90.0, 0.6
+    control.speed.forward_ok, control.speed.forward = True, speed
+    for rate in wanted:
+        before = control.steering.turn_rate
+        steering.control_turn_rate(control, rate, before, atc)
+        now = control.steering.turn_rate
+        assert abs(now) <= math.radians(90.0) + 1e-12
+        assert abs(now) * max(speed, 1.0) <= 0.6 * GRAVITY + 1e-9
+        assert abs(now - before) <= math.radians(120.0) * DT + 1e-9
+        control.tick += 1
 
 
 def test_lateral_acceleration_to_turn_rate():
@@ -96,13 +123,13 @@ def test_lateral_acceleration_to_turn_rate():
     assert steering.turn_rate_from_lat_accel(2.0, -0.1) == -2.0
     v = moving(speed=-4.0, ATC_STR_ACC_MAX=0.0)
     steering.out_from_lat_accel(v.autopilot, 2.0)
-    assert steering.desired_turn_rate(v.autopilot) == pytest.approx(-0.5)
-    assert steering.desired_lat_accel(v.autopilot) == 2.0
+    assert v.autopilot.control.steering.turn_rate == pytest.approx(-0.5)
+    assert v.autopilot.control.steering.lat_accel == 2.0
 
 
 def test_no_speed_no_steering_by_lateral_acceleration():
     v = moving()
-    v.autopilot.control.speed.forward_ok = 0
+    v.autopilot.control.speed.forward_ok = False
     assert steering.out_from_lat_accel(v.autopilot, 2.0) == 0.0
 
 
@@ -112,5 +139,5 @@ def test_bad_numbers_steer_straight_and_leave_no_trace(bad):
     for law in (steering.out_from_rate, steering.out_from_lat_accel):
         assert math.isfinite(law(v.autopilot, bad))
         finish(v)
-    assert math.isfinite(steering.out_from_heading(v.autopilot, bad, 0.0))
-    assert steering.desired_turn_rate(v.autopilot) == 0.0
+    assert math.isfinite(steering.out_from_heading(v.autopilot, bad))
+    assert v.autopilot.control.steering.turn_rate == 0.0

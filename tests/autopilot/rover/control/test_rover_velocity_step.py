@@ -76,7 +76,7 @@ def towards(heading: float, wanted: float) -> Callable[[Any], object]:
     """GUIDED: heading and speed."""
 
     def act(v: Any) -> None:
-        motors.set_steering(v.autopilot, steering.out_from_heading(v.autopilot, heading, 0.0))
+        motors.set_steering(v.autopilot, steering.out_from_heading(v.autopilot, heading))
         speed.drive(v, wanted)
 
     return act

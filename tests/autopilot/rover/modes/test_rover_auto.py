@@ -16,6 +16,7 @@ from sitl.autopilot.rover.modes.guided_state import NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.numbers import ACRO, AUTO, GUIDED, MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.navigation.planner import PLANNER
+from sitl.core.vectors import Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover, set_velocity
 
 
@@ -35,9 +36,9 @@ def give(rover: Rover, kind: int, place: tuple[float, float] | None = None, **fi
     """What the shell does to give a command."""
     nav = rover.ap.modes.nav
     if place is not None and kind != kinds.LOITER_TURNS:
-        PLANNER.begin(rover.ap, int(rover.v.time_us), (*place, 0.0))
+        PLANNER.begin(rover.ap, int(rover.v.time_us), Vec3(*place, 0.0))
     if place is not None:
-        nav.target[:2] = place
+        nav.target = (*place, 0.0)
     nav.has_place = int(place is not None)
     for name, value in {"delay": 0.0, "turns": 0.0, **fields}.items():
         setattr(nav, name, value)
@@ -126,7 +127,7 @@ def test_guided_until_its_place_or_limit(rover: Rover) -> None:
     assert rover.position[0] > 2.0
     guided.set_limits(rover.v, 0.0, 0.0)
     give(rover, kinds.GUIDED)
-    rover.ap.modes.nav.target[:2] = (30.0, 0.0)
+    rover.ap.modes.nav.target = (30.0, 0.0, 0.0)
     rover.ap.modes.nav.has_place = 1
     rover.run(0.1)
     assert guided.set_position(rover.v, 30.0, 0.0) == OK
