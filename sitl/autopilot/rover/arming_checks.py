@@ -39,11 +39,7 @@ CHECK_PARAMETERS = 32
 def estimate_checks(v: Vehicle) -> int:
     """Failed checks of GPS and estimate, as far as the mode needs them; the first of them."""
     ap = v.autopilot
-<<<<<<< HEAD
     mode = ap.modes.number
-=======
-    mode = int(ap.modes.number)
->>>>>>> e3d871b
     if not requires_position(mode) and not requires_velocity(mode, is_skid(ap.params)):
         return 0
     if v.sensors.gps_fix < 3 and wants(v, CHECK_GPS):
@@ -64,12 +60,7 @@ def equipment_checks(v: Vehicle) -> int:
             failed |= RC_MISSING
         elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
-<<<<<<< HEAD
     if not (servos.is_assigned(p, servos.STEERING) or servos.is_assigned(p, servos.THROTTLE) or is_skid(p)):
-=======
-    drives = servos.is_assigned(ap.params, servos.STEERING) or servos.is_assigned(ap.params, servos.THROTTLE)
-    if not drives and not is_skid(ap.params):
->>>>>>> e3d871b
         failed |= NO_OUTPUTS
     if p.WP.SPEED <= 0.0 and wants(v, CHECK_PARAMETERS):
         failed |= WAYPOINT_SPEED

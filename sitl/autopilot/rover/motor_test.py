@@ -12,12 +12,8 @@ from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from .arming import disarm, try_arm
 from .control.motors import is_skid
-<<<<<<< HEAD
 from .control.state import TEST_RIGHT, TEST_THROTTLE, MotorsState
 from .state import Vehicle
-=======
-from .control.state import TEST_RIGHT, TEST_THROTTLE
->>>>>>> e3d871b
 
 SECONDS_MAX = 30.0
 PULSE_MIN, PULSE_MAX = 800, 2200
@@ -54,22 +50,11 @@ def start(v: Vehicle, motor: int, throttle: float, pulse: int, seconds: float) -
     """
     ap = v.autopilot
     motors = ap.control.motors
-<<<<<<< HEAD
     cause = refusal(is_skid(ap.params), motor, throttle, pulse, seconds)
     if cause != OK:
         return cause
     if not is_running(motors):
         if not ap.arming.armed and try_arm(v, BY_MOTOR_TEST, False) != 0:
-=======
-    if motor < TEST_THROTTLE or motor > TEST_RIGHT or is_skid(ap.params) != (motor > 2):
-        return BAD_MOTOR
-    if not -1.0 <= throttle <= 1.0 or (pulse != 0 and not LEAST_PULSE <= pulse <= LARGEST_PULSE):
-        return BAD_THROTTLE
-    if not seconds >= 0.0:
-        return BAD_TIME
-    if motors.test_motor == 0:
-        if ap.arming.armed == 0 and try_arm(v, BY_MOTOR_TEST, 0) != 0:
->>>>>>> e3d871b
             return NOT_ARMABLE
         emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor))
     motors.test_motor = motor

@@ -114,7 +114,6 @@ def turned_with(steering: float, asked: float, given: float, steer_type: int) ->
 
 
 @law
-<<<<<<< HEAD
 def within_skid(wanted: Sticks) -> Sticks:
     """Within what the motors of a skid-steered vehicle have for both together."""
     both = abs(wanted.steering) + abs(wanted.throttle)
@@ -130,31 +129,6 @@ def limited_sticks(ap: Autopilot) -> Sticks:
     wanted = within_skid(sticks(ap)) if motors.is_skid(p) else sticks(ap)
     throttle = motors.slew_limited(wanted.throttle, ap.control.motors.throttle_last, p.MOT.SLEWRATE)
     return Sticks(turned_with(wanted.steering, wanted.throttle, throttle, int(p.PILOT_STEER_TYPE)), throttle)
-=======
-def steering_and_limited_throttle(ap):
-    """(steering, throttle) within what a skid-steered vehicle has for both, and within MOT_SLEWRATE."""
-    steering, throttle = steering_and_throttle(ap)
-    if motors.is_skid(ap.params):
-        both = abs(steering) + abs(throttle)
-        if both > 1.0:
-            steering /= both
-            throttle /= both
-    limited = motors.slew_limited(throttle, ap.control.motors.throttle_last, ap.params.MOT.SLEWRATE)
-    if _is_turned(ap, throttle, limited):
-        steering = -steering
-    return (steering, limited)
-
-
-@law
-def steering_and_speed(ap):
-    """(steering, speed [m/s] within the acceleration limits)."""
-    steering, throttle = steering_and_throttle(ap)
-    asked = throttle * speed.speed_max(ap.params)
-    limited = speed.accel_limited(ap.control, asked, ap.params.ATC)
-    if _is_turned(ap, asked, limited):
-        steering = -steering
-    return (steering, limited)
->>>>>>> e3d871b
 
 
 @law
@@ -174,11 +148,7 @@ def pointed(pilot: PilotState, steer_type: int, speed_max: float) -> HeadingAndS
     if steer_type == TWO_PADDLES:
         steering, throttle = 0.5 * (steering - throttle), 0.5 * (steering + throttle)
     pushed = min(math.sqrt(steering * steering + throttle * throttle), 1.0)
-<<<<<<< HEAD
     return HeadingAndSpeed(wrap_2pi(math.atan2(steering, throttle)), pushed * speed_max)
-=======
-    return (wrap_2pi(math.atan2(steering, throttle)), pushed * speed.speed_max(ap.params))
->>>>>>> e3d871b
 
 
 @law

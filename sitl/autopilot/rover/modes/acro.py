@@ -9,32 +9,21 @@ from ....core.kernels import law
 from .. import pilot
 from ..control import motors, speed
 from ..control.forward_speed import sense
-<<<<<<< HEAD
 from ..control.steering import out_from_rate
 from ..state import Vehicle
 from .mode import RoverMode
 
 ACRO = 1
-=======
-from . import drive
->>>>>>> e3d871b
 
 
 @law
 def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-<<<<<<< HEAD
     if sense(v).known:
         wanted = pilot.steering_and_speed(ap)
         steering = wanted.steering
         speed.drive(v, wanted.speed)
-=======
-    known, _ = sense(v)
-    if not known:
-        steering, throttle = pilot.steering_and_limited_throttle(ap)
-        motors.set_throttle(ap, throttle)
->>>>>>> e3d871b
     else:
         sticks = pilot.limited_sticks(ap)
         steering = sticks.steering

@@ -41,7 +41,6 @@ def start(v: Vehicle) -> int:
     auto = modes.auto
     if modes.mission_count < 2:
         return NO_MISSION
-<<<<<<< HEAD
     waypoint.start(v.autopilot)
     modes.guided.limit_us = 0
     modes.guided.limit_distance = 0.0
@@ -49,34 +48,16 @@ def start(v: Vehicle) -> int:
     modes.nav.command_kind = kinds.NONE
     auto.submode = STOPPED
     auto.complete = False
-=======
-    auto = ap.modes.auto
-    waypoint.start(ap)
-    ap.modes.guided.limit_us = 0
-    ap.modes.guided.limit_distance = 0.0
-    auto.command = int(ap.modes.nav.command_count)
-    ap.modes.nav.command_kind = kinds.NONE
-    auto.submode = doing.STOP
-    auto.complete = 0
->>>>>>> e3d871b
     return ACCEPTED
 
 
 @law
 def begin(v: Vehicle) -> None:
     """Begin the command that the shell has written."""
-<<<<<<< HEAD
     modes = v.autopilot.modes
     nav, auto = modes.nav, modes.auto
     auto.command = nav.command_count
     auto.complete = False
-=======
-    ap = v.autopilot
-    nav = ap.modes.nav
-    auto = ap.modes.auto
-    auto.command = int(nav.command_count)
-    auto.complete = 0
->>>>>>> e3d871b
     nav.completed = False
     nav.since_us = 0
     kind = nav.command_kind
@@ -124,32 +105,13 @@ def run(v: Vehicle) -> None:
         begin(v)
     if nav.mission_state == kinds.COMPLETE and not auto.complete:
         finish(v)
-<<<<<<< HEAD
     run_command(v)
-=======
-    submode = ap.modes.auto.submode
-    if submode == doing.WAYPOINT:
-        run_path(v)
-    elif submode == doing.CIRCLE:
-        circle.run(v)
-    elif submode == doing.RTL:
-        rtl.run(v)
-    elif submode == doing.LOITER:
-        loiter.run(v)
-    elif submode == doing.GUIDED:
-        guided_drive.run(v)
-    elif submode == doing.HEADING_AND_SPEED:
-        run_heading(v)
-    else:
-        speed.stop(v)
->>>>>>> e3d871b
     if not nav.completed and is_done(v):
         command.complete(ap, v.time_us)
     command.check_condition(ap, v.time_us, True)
 
 
 @law
-<<<<<<< HEAD
 def run_command(v: Vehicle) -> None:
     """One period of the command under way."""
     submode = v.autopilot.modes.auto.submode
@@ -165,12 +127,6 @@ def run_command(v: Vehicle) -> None:
         guided.run(v)
     elif submode == TURNING:
         run_turn(v)
-=======
-def run_path(v):
-    """One period towards a waypoint. There, waiting, a car stands: it would have to circle to hold the very point."""
-    if waypoint.reached(v.autopilot) and not waypoint.is_fast(v.autopilot):
-        speed.stop(v)
->>>>>>> e3d871b
     else:
         speed.stop(v)
 
@@ -212,19 +168,11 @@ def is_done(v: Vehicle) -> bool:
     if kind == kinds.DELAY:
         return (v.time_us - nav.since_us) * 1e-6 >= nav.delay
     submode = ap.modes.auto.submode
-<<<<<<< HEAD
     if submode == CIRCLING:
         return circle.turns(ap.modes.circle) >= nav.turns
     if submode == RETURNING:
         return waypoint.reached(ap)
     if submode == GUIDED_IN_MISSION:
-=======
-    if submode == doing.CIRCLE:
-        return circle.turns(ap) >= nav.turns
-    if submode == doing.RTL:
-        return waypoint.reached(ap)
-    if submode == doing.GUIDED:
->>>>>>> e3d871b
         return is_guided_done(v)
     if submode == TURNING:
         return ap.modes.auto.heading_reached
@@ -236,14 +184,8 @@ def is_guided_done(v: Vehicle) -> bool:
     """Guided within the mission: at its place, or at its limit."""
     ap = v.autopilot
     nav = ap.modes.nav
-<<<<<<< HEAD
     pos = horizontal(ap.estimate.pos)
     if nav.has_place and norm2(horizontal(nav.target) - pos) <= ap.params.WP.RADIUS:
-=======
-    north = float(nav.target[0]) - float(ap.estimate.pos[0])
-    east = float(nav.target[1]) - float(ap.estimate.pos[1])
-    if nav.has_place and math.sqrt(north * north + east * east) <= ap.params.WP.RADIUS:
->>>>>>> e3d871b
         return True
     return guided.is_at_limit(ap.modes.guided, v.time_us, pos)
 

@@ -59,49 +59,28 @@ def set_speed(v: Vehicle, wanted: float) -> None:
     """Speed [m/s] around the circle, within what the lateral acceleration allows."""
     ap = v.autopilot
     circle = ap.modes.circle
-<<<<<<< HEAD
     speed_max = math.sqrt(lat_accel_max(ap.params.ATC) * circle.radius)
     circle.speed = min(wanted, speed_max)
     if wanted > speed_max:
         emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(SPEED_LIMITED), speed_max)
-=======
-    most = math.sqrt(lat_accel_max(ap.params.ATC) * float(circle.radius))
-    circle.speed = min(wanted, most)
-    if wanted > most:
-        emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(SPEED_LIMITED), most)
->>>>>>> e3d871b
 
 
 @law
 def acceleration(params: Parameters) -> float:
     """Of the target along its way [m/s^2] (WP_ACCEL within ATC_ACCEL_MAX and ATC_DECEL_MAX)."""
-<<<<<<< HEAD
     limit = min(params.ATC.ACCEL_MAX, speed.decel_max(params.ATC))
     if limit <= 0.0:
         limit = DEFAULT_ACCEL
     return min(limit, params.WP.ACCEL) if params.WP.ACCEL > 0.0 else limit
-=======
-    p = ap.params
-    most = min(float(p.ATC.ACCEL_MAX), speed.decel_max(p.ATC))
-    if most <= 0.0:
-        most = DEFAULT_ACCEL
-    return min(most, float(p.WP.ACCEL)) if p.WP.ACCEL > 0.0 else most
->>>>>>> e3d871b
 
 
 @law
 def set_limits(ap: Autopilot) -> None:
     """Limits of the position controller for this circle."""
-<<<<<<< HEAD
     p = ap.params
     accel = acceleration(p)
     jerk = p.WP.JERK if p.WP.JERK > 0.0 else accel
     position.set_limits(ap.control.position, ap.modes.circle.speed, accel, lat_accel_max(p.ATC), jerk)
-=======
-    accel = acceleration(ap)
-    jerk = float(ap.params.WP.JERK) if ap.params.WP.JERK > 0.0 else accel
-    position.set_limits(ap.control.position, float(ap.modes.circle.speed), accel, lat_accel_max(ap.params.ATC), jerk)
->>>>>>> e3d871b
 
 
 @law
@@ -125,11 +104,7 @@ def begin(v: Vehicle, centre: Vec2, radius: float, direction: float, angle: floa
     circle.waiting = False
     set_limits(ap)
     position.init(ap.control.position, ap.estimate)
-<<<<<<< HEAD
     circle.target = edge(circle)
-=======
-    place_target(ap)
->>>>>>> e3d871b
     return ACCEPTED
 
 
@@ -157,61 +132,12 @@ def angle_from(centre: Vec2, estimate: Estimate) -> float:
 
 
 @law
-<<<<<<< HEAD
 def edge(circle: CircleState) -> Vec2:
     """The point of the edge at ``angle`` [m]."""
     return Vec2(
         circle.centre.x + circle.radius * math.cos(circle.angle),
         circle.centre.y + circle.radius * math.sin(circle.angle),
     )
-=======
-def place_target(ap):
-    """The point of the edge at ``angle``."""
-    circle = ap.modes.circle
-    circle.target[0] = circle.centre[0] + circle.radius * math.cos(circle.angle)
-    circle.target[1] = circle.centre[1] + circle.radius * math.sin(circle.angle)
-
-
-@law
-def edge_distance(ap):
-    """Distance of the vehicle from the edge [m]."""
-    circle = ap.modes.circle
-    north = float(ap.estimate.pos[0]) - float(circle.centre[0])
-    east = float(ap.estimate.pos[1]) - float(circle.centre[1])
-    return abs(math.sqrt(north * north + east * east) - float(circle.radius))
-
-
-@law
-def distance(ap):
-    """Distance to the target on the edge [m]."""
-    circle = ap.modes.circle
-    north = float(circle.target[0]) - float(ap.estimate.pos[0])
-    east = float(circle.target[1]) - float(ap.estimate.pos[1])
-    return math.sqrt(north * north + east * east)
-
-
-@law
-def advance(ap):
-    """Move the target along the edge by one period, and the position controller's with it."""
-    circle = ap.modes.circle
-    most = 0.5 * float(ap.control.position.accel_max) * DT
-    change = constrain(float(circle.speed) - float(circle.target_speed), -most, most)
-    circle.target_speed += change
-    if circle.waiting == 0:
-        step = circle.direction * circle.target_speed / circle.radius * DT
-        circle.angle = wrap_pi(float(circle.angle) + step)
-        circle.total += step
-    else:
-        circle.angle = angle_from(ap, float(circle.centre[0]), float(circle.centre[1]))
-    place_target(ap)
-    out_n, out_e = math.cos(circle.angle), math.sin(circle.angle)
-    along_n, along_e = -out_e * circle.direction, out_n * circle.direction
-    size = float(circle.target_speed)
-    inward, along = size * size / circle.radius, change / DT
-    vel = Vec2(along_n * size, along_e * size)
-    acc = Vec2(along_n * along - out_n * inward, along_e * along - out_e * inward)
-    position.set_pos_vel_accel(ap.control.position, Motion2(Vec2(circle.target[0], circle.target[1]), vel, acc))
->>>>>>> e3d871b
 
 
 @law
@@ -244,21 +170,12 @@ def follow(v: Vehicle) -> None:
     """To the edge, then along it, waiting for a vehicle that falls behind."""
     ap = v.autopilot
     circle = ap.modes.circle
-<<<<<<< HEAD
     away = edge_distance(circle, horizontal(ap.estimate.pos))
     near = tolerance(circle.radius, ap.params.TURN_RADIUS)
     if not circle.at_edge:
         circle.at_edge = away <= near
         position.input_pos(ap.control.position, circle.target)
     elif away > 2.0 * near and not circle.waiting:
-=======
-    away, near = edge_distance(ap), tolerance(ap)
-    if circle.at_edge == 0:
-        if away <= near:
-            circle.at_edge = 1
-        position.input_pos(ap.control.position, Vec2(circle.target[0], circle.target[1]))
-    elif away > 2.0 * near and circle.waiting == 0:
->>>>>>> e3d871b
         circle.speed *= SLOWER
         circle.waiting = True
         emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(FELL_BEHIND), circle.speed)
@@ -278,13 +195,8 @@ def run(v: Vehicle) -> None:
         return
     follow(v)
     position.follow_target(ap)
-<<<<<<< HEAD
     drive.turn(ap, ap.control.position.desired_turn_rate)
     speed.drive(v, ap.control.position.desired_speed)
-=======
-    drive.turn(v, float(ap.control.position.desired_turn_rate))
-    speed.drive(v, float(ap.control.position.desired_speed))
->>>>>>> e3d871b
 
 
 @law

@@ -35,39 +35,18 @@ def turn(ap: Autopilot, rate: float) -> None:
 @law
 def turn_to(ap: Autopilot, heading: float) -> None:
     """Turn towards ``heading`` [rad]."""
-<<<<<<< HEAD
     steer(ap, steering.out_from_heading(ap, heading))
 
 
 @law
 def stick_speed(ap: Autopilot, backward: bool) -> float:
-=======
-    steer(v, steering.out_from_heading(v.autopilot, heading))
-
-
-@law
-def accelerate_sideways(v, accel):
-    """Turn with a lateral acceleration [m/s^2] to the right, within ATC_TURN_MAX_G."""
-    ap = v.autopilot
-    most = steering.lat_accel_max(ap.params.ATC)
-    steer(v, steering.out_from_lat_accel(ap, constrain(accel, -most, most)))
-
-
-@law
-def pilots_speed(ap, backward):
->>>>>>> e3d871b
     """Speed [m/s] that the throttle stick asks for in the direction of travel; 0 when it pulls the other way.
 
     ``backward``: the vehicle drives backwards on purpose.
     """
     if not CRUISE_THROTTLE_MIN <= ap.params.CRUISE.THROTTLE <= CRUISE_THROTTLE_MAX:
         return 0.0
-<<<<<<< HEAD
     asked = pilot.sticks(ap).throttle * speed.speed_max(ap.params)
-=======
-    _, stick = pilot.steering_and_throttle(ap)
-    asked = stick * speed.speed_max(ap.params)
->>>>>>> e3d871b
     return min(asked, 0.0) if backward else max(asked, 0.0)
 
 
@@ -84,7 +63,6 @@ def follow_path(v: Vehicle) -> None:
     """One period along the path of ``navigation.waypoint``: it says how fast and how to turn."""
     ap = v.autopilot
     path = ap.modes.nav.drive
-<<<<<<< HEAD
     waypoint.set_nudge_speed(ap, abs(stick_speed(ap, path.reversed)))
     waypoint.follow(v)
     speed.drive(v, path.desired_speed)
@@ -95,9 +73,3 @@ def follow_path(v: Vehicle) -> None:
 def change_path_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED [m/s] of a mode that follows a path; False for a speed that is too slow."""
     return waypoint.set_speed(v.autopilot, wanted)
-=======
-    waypoint.set_nudge_speed(ap, abs(pilots_speed(ap, path.reversed)))
-    waypoint.follow(v)
-    speed.drive(v, float(path.desired_speed))
-    turn(v, float(path.desired_turn_rate))
->>>>>>> e3d871b

@@ -9,15 +9,10 @@ from __future__ import annotations
 
 from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
-<<<<<<< HEAD
 from ....core.vectors import Vec2
 from ...events import GUIDED_REACHED, GUIDED_TIMEOUT, emit
 from ...modes import ACCEPTED
 from ..control import motors, speed
-=======
-from ....core.scalars import constrain, wrap_pi
-from ....core.vectors import Vec2
->>>>>>> e3d871b
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import drive
@@ -56,7 +51,6 @@ def check_age(v: Vehicle) -> None:
 def run_position(v: Vehicle) -> None:
     """One period of a position target."""
     ap = v.autopilot
-<<<<<<< HEAD
     if not waypoint.reached(ap):
         drive.follow_path(v)
         return
@@ -64,17 +58,6 @@ def run_position(v: Vehicle) -> None:
         ap.modes.guided.reached_told = True
         emit(ap.events, v.time_us, GUIDED_REACHED, 0.0, 0.0)
     speed.stop(v)
-=======
-    if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0:
-        waypoint.set_destination(ap, v.time_us, Vec2(n, e))
-    else:
-        waypoint.set_destination_shaped(ap, v.time_us, Vec2(n, e))
-    begin(v, POSITION)
-    ap.modes.guided.pos[0] = n
-    ap.modes.guided.pos[1] = e
-    ap.modes.guided.reached_told = 0
-    return OK
->>>>>>> e3d871b
 
 
 @law

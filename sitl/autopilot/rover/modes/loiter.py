@@ -32,17 +32,10 @@ def start(v: Vehicle) -> int:
     if not ap.estimate.origin_set:
         return INIT_FAILED
     loiter = ap.modes.loiter
-<<<<<<< HEAD
     loiter.place = waypoint.stopping_point(ap)
     forward = sense(v)
     loiter.speed = forward.speed if forward.known else 0.0
     loiter.heading = ap.estimate.euler.yaw
-=======
-    place = waypoint.stopping_point(ap)
-    loiter.place[0], loiter.place[1] = place.x, place.y
-    loiter.speed = sense(v).speed
-    loiter.heading = ap.estimate.euler[2]
->>>>>>> e3d871b
     loiter.distance = 0.0
     return ACCEPTED
 

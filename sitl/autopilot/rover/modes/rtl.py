@@ -24,15 +24,9 @@ def start(v: Vehicle) -> int:
         return INIT_FAILED
     waypoint.start(ap)
     if ap.params.RTL_SPEED > 0.0:
-<<<<<<< HEAD
         waypoint.set_speed(ap, ap.params.RTL_SPEED)
     waypoint.set_destination(ap, v.time_us, horizontal(ap.home.pos))
     ap.modes.rtl.told = False
-=======
-        waypoint.set_speed(ap, float(ap.params.RTL_SPEED))
-    waypoint.set_destination(ap, v.time_us, horizontal(ap.home.pos))
-    ap.modes.rtl.told = 0
->>>>>>> e3d871b
     return ACCEPTED
 
 
@@ -41,11 +35,7 @@ def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
     if not waypoint.reached(ap):
-<<<<<<< HEAD
         drive.follow_path(v)
-=======
-        drive.along_path(v)
->>>>>>> e3d871b
         return
     if not ap.modes.rtl.told:
         ap.modes.rtl.told = True

@@ -38,11 +38,7 @@ def refusal(ap: Autopilot, number: int) -> int:
         return ACCEPTED
     if table.requires_position(number):
         return REQUIRES_POSITION
-<<<<<<< HEAD
     if table.requires_velocity(number, is_skid(ap.params)) and not ap.control.speed.forward_ok:
-=======
-    if requires_velocity(number, is_skid(ap.params)) and not good and not ap.control.speed.forward_ok:
->>>>>>> e3d871b
         return REQUIRES_POSITION
     return ACCEPTED
 
@@ -68,11 +64,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     waypoint.set_reversed(ap, False)
-<<<<<<< HEAD
     modes.previous = modes.number
-=======
-    modes.previous = int(modes.number)
->>>>>>> e3d871b
     modes.number = number
     modes.reason = reason
     modes.wanted = 0

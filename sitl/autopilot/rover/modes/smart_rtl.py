@@ -39,7 +39,6 @@ def start(v: Vehicle) -> int:
 
 
 @law
-<<<<<<< HEAD
 def skip_near(path: PathState, pos: Vec2, radius: float) -> None:
     """Leave out last points within ``radius`` [m] of ``pos``: a car would have to circle to meet them."""
     while path.points > 1:
@@ -47,15 +46,6 @@ def skip_near(path: PathState, pos: Vec2, radius: float) -> None:
         if not math.hypot(away.x, away.y) <= radius:
             return
         smart_rtl_path.drop_last(path)
-=======
-def skip_near(ap):
-    """Leave out last points where the vehicle is already (WP_RADIUS): a car would have to circle to meet them."""
-    there, n, e = smart_rtl_path.peek(ap)
-    at = waypoint.stopping_point(ap)
-    while there != 0 and ap.modes.path.points > 1 and math.hypot(n - at.x, e - at.y) <= ap.params.WP.RADIUS:
-        smart_rtl_path.pop(ap)
-        there, n, e = smart_rtl_path.peek(ap)
->>>>>>> e3d871b
 
 
 @law
@@ -67,20 +57,12 @@ def load(v: Vehicle) -> None:
         ap.modes.smart_rtl.state = ARRIVED
         emit(ap.events, v.time_us, DESTINATION_REACHED, float(SMART_RTL), 0.0)
         return
-<<<<<<< HEAD
     place = smart_rtl_path.point(path, path.points - 1)
     smart_rtl_path.drop_last(path)
     if path.points > 0:
         waypoint.set_destinations(ap, v.time_us, place, smart_rtl_path.point(path, path.points - 1))
     else:
         waypoint.set_destination(ap, v.time_us, place)
-=======
-    more, next_n, next_e = smart_rtl_path.peek(ap)
-    if more != 0:
-        waypoint.set_destinations(ap, v.time_us, Vec2(n, e), Vec2(next_n, next_e))
-    else:
-        waypoint.set_destination(ap, v.time_us, Vec2(n, e))
->>>>>>> e3d871b
 
 
 @law
