@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.autopilot.rover.modes import auto_state, guided_state
+from sitl.autopilot.rover.modes import auto
+from sitl.autopilot.rover.modes import guided as guided_mode
 from tests.bridge.fakes import HOME, Bench
 
 MANUAL, HOLD, AUTO, RTL, GUIDED, INITIALISING = 0, 4, 10, 11, 15, 16
@@ -97,13 +98,13 @@ def test_targets_of_guided(driving: Bench) -> None:
     modes = driving.vehicle.v.autopilot.modes
     modes.number = GUIDED
     assert get(driving, "POSITION_TARGET_GLOBAL_INT") is None
-    modes.guided.submode, modes.guided.heading = guided_state.HEADING_AND_SPEED, math.radians(-30.5)
+    modes.guided.submode, modes.guided.heading = guided_mode.HEADING_AND_SPEED, math.radians(-30.5)
     modes.guided.has_target = 1
     output = get(driving, "NAV_CONTROLLER_OUTPUT")
     assert (output.nav_bearing, output.target_bearing, output.wp_dist, output.xtrack_error) == (-30, 0, 0, 0.0)
     modes.guided.has_target = 0
     assert get(driving, "NAV_CONTROLLER_OUTPUT").nav_bearing == 0, "timed out"
-    modes.guided.submode = guided_state.POSITION
+    modes.guided.submode = guided_mode.POSITION
     output = get(driving, "NAV_CONTROLLER_OUTPUT")
     assert (output.nav_bearing, output.target_bearing, output.wp_dist, output.xtrack_error) == (45, 90, 20, -1.5)
     target = get(driving, "POSITION_TARGET_GLOBAL_INT")
@@ -111,9 +112,9 @@ def test_targets_of_guided(driving: Bench) -> None:
 
 
 @pytest.mark.parametrize(("mode", "in_auto", "bearing", "distance"), [
-    (RTL, 0, 90, 20), (12, 0, 90, 20), (5, 0, 0, 10), (9, 0, 180, 10), (AUTO, auto_state.WAYPOINT, 90, 20),
-    (AUTO, auto_state.RTL, 90, 20), (AUTO, auto_state.CIRCLE, 180, 10), (AUTO, auto_state.LOITER, 0, 10),
-    (AUTO, auto_state.STOP, 0, 0),
+    (RTL, 0, 90, 20), (12, 0, 90, 20), (5, 0, 0, 10), (9, 0, 180, 10), (AUTO, auto.ON_PATH, 90, 20),
+    (AUTO, auto.RETURNING, 90, 20), (AUTO, auto.CIRCLING, 180, 10), (AUTO, auto.LOITERING, 0, 10),
+    (AUTO, auto.STOPPED, 0, 0),
 ])  # fmt: skip
 def test_targets_of_other_modes(driving: Bench, mode: int, in_auto: int, bearing: int, distance: int) -> None:
     modes = driving.vehicle.v.autopilot.modes
@@ -136,7 +137,7 @@ def test_no_number_of_the_record_stops_telemetry(rover_bench: Bench, value: floa
     for mode in (AUTO, RTL, GUIDED, 5, 9, 12):
         v.autopilot.modes.number, v.autopilot.estimate.origin_set = mode, 1
         v.autopilot.estimate.pos = value
-        v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_state.POSITION, value
+        v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_mode.POSITION, value
         v.autopilot.control.motors.throttle = v.autopilot.control.motors.out_throttle = value
         for number in rover_bench.bridge.telemetry:
             rover_bench.bridge.send_now(rover_bench.bridge.channels[0], number)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Failsafes: radio and ground station (FS_ACTION after FS_TIMEOUT), battery (BATT_FS_LOW_ACT, BATT_FS_CRT_ACT), estimator.
+"""Failsafes: radio, ground station (FS_ACTION after FS_TIMEOUT), battery (BATT_FS_LOW_ACT, _CRT_ACT), estimator.
 
 FAILSAFE (which, 1 on or 0 off) tells the shell. The pilot's sticks count as centred as soon as the radio is lost.
 """

@@ -109,7 +109,7 @@ def sticks(ap: Autopilot) -> Sticks:
 @law
 def turned_with(steering: float, asked: float, given: float, steer_type: int) -> float:
     """``steering``, turned round when a limiter still gives the other direction than was asked for."""
-    turns = steer_type == TURNS_ROUND or steer_type == TURNS_ROUND_TOO
+    turns = steer_type in (TURNS_ROUND, TURNS_ROUND_TOO)
     return -steering if turns and (asked < 0.0) != (given < 0.0) else steering
 
 

@@ -37,7 +37,7 @@ BAD_POSITION, FULL = 0, 1
 class Farthest(NamedTuple):
     """The point of a stretch that is farthest from the line between the stretch's ends."""
 
-    index: int
+    k: int
     distance: float  # [m]
 
 
@@ -174,14 +174,14 @@ def stretch_distance(p: Vec2, a: Vec2, b: Vec2) -> float:
 def farthest(path: PathState, first: int, last: int) -> Farthest:
     """The point between two of the path that is farthest from the line between them."""
     a, b = point(path, first), point(path, last)
-    index = first
+    k_max = first
     distance_max = 0.0
     for k in range(first + 1, last):
         distance = stretch_distance(point(path, k), a, b)
         if distance > distance_max:
             distance_max = distance
-            index = k
-    return Farthest(index, distance_max)
+            k_max = k
+    return Farthest(k_max, distance_max)
 
 
 @law
@@ -198,7 +198,7 @@ def simplify(path: PathState, accuracy: float) -> None:
             b += 1
         found = farthest(path, a, b)
         if found.distance > EPSILON_RATIO * accuracy:
-            path.keep[found.index] = 1
+            path.keep[found.k] = 1
         else:
             a = b
     kept = 0

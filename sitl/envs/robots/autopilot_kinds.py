@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.guided import GUIDED
-from sitl.autopilot.rover.modes import numbers as rover
+from sitl.autopilot.rover.modes import guided as rover
+from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.vehicles import Airframe
 
 from ..actions import Action, Continuous, Discrete
@@ -94,7 +95,7 @@ COPTER_KIND = Kind(
 )
 ROVER_KIND = Kind(
     setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
-    modes={"rc": rover.MANUAL, "velocity": rover.GUIDED, "position": rover.GUIDED, "attitude": rover.GUIDED},
+    modes={"rc": MANUAL, "velocity": rover.GUIDED, "position": rover.GUIDED, "attitude": rover.GUIDED},
     guided=rover.GUIDED,
     encode=ROVER,
     tick=0.02,
