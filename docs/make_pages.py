@@ -10,7 +10,7 @@ from sitl.bridge import docs as mavlink
 from sitl.missions import compare, engines
 from sitl.missions.figures import table
 from sitl.physics.engines import BACKENDS
-from sitl.simulation import ESTIMATORS
+from sitl.scenario import ESTIMATORS
 from sitl.vehicle.kinds import KINDS
 
 HERE = Path(__file__).parent

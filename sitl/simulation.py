@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from numbers import Integral, Real
-from pathlib import Path
-from typing import Any, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from numbers import Real
+from typing import Any, Protocol, Unpack
 
 import numpy as np
 
-from . import vehicles
 from .autopilot import boot
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
@@ -20,26 +18,23 @@ from .autopilot.params import files
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.services.statustext import StatusTextService
 from .core.compile import Progress
+from .core.constants import TICK_US
 from .core.record_reader import RecordReader
 from .errors import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
-from .physics.native.power_on import DEFAULT_HOME, Home
 from .plants.choose import is_remote, remote
 from .plants.local import LocalPlant
 from .plants.plant import Craft, PhysicsLostError, Plant
-from .plants.surroundings import StartPose
+from .scenario import Options, Scenario
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
-from .vehicle.kinds import KINDS
-from .vehicle.record import TICK_US
 from .vehicles import Airframe, AirframeError
 from .worlds import World
 
 Array = np.ndarray[Any, Any]
 _WARNING = 4
 """MAV_SEVERITY"""
-ESTIMATORS = ("ekf", "truth")
 
 
 class Observer(Protocol):
@@ -76,19 +71,10 @@ class Simulation:
     """A vehicle from power-on, advanced in simulated time.
 
     Args:
-        frame: airframe name (``sitl.vehicles.names()``), path of a file that defines one, or an Airframe.
-        home: where it stands at power-on.
-        seed: seed of all sensor noise and turbulence.
-        estimator: "ekf", or "truth" for work on controllers.
-        params: values under ArduPilot's names, over the airframe's own and the defaults.
+        frame: airframe name, path of a file that defines one, an Airframe, or a whole ``Scenario``.
         core: the core of this kind of vehicle, if it is loaded already.
-        world: name (``sitl.worlds.names()``), path of a .toml file, or a World. Its origin is at ``home``, and the
-            vehicle stands at ``start``; home's heading does not count.
-        start: name of one of the world's start poses, or x, y, z [m], yaw [deg] in the world's frame; None: the
-            world's own for this airframe.
-        physics: "native", "pybullet", "jsbsim", or where the physics is: "hil:tcp:HOST:PORT" (``sitl physics``),
-            "json:HOST:PORT" (a simulator with ArduPilot's JSON interface). Home, seed, world and start of a physics
-            elsewhere are its own.
+        progress: told of each unit that is compiled.
+        options: the other fields of ``sitl.scenario.Scenario``: home, seed, estimator, params, world, start, physics.
 
     Raises:
         OptionError, sitl.physics.engine.EngineError, sitl.vehicles.AirframeError, ParameterError,
@@ -99,25 +85,17 @@ class Simulation:
 
     def __init__(
         self,
-        frame: str | Airframe = "erle_copter",
+        frame: str | Airframe | Scenario | None = None,
         *,
-        home: Home | None = None,
-        seed: int | None = None,
-        estimator: str = "ekf",
-        params: Mapping[str, float] | None = None,
         core: Core | None = None,
         progress: Progress | None = None,
-        world: str | Path | World | None = None,
-        start: StartPose | None = None,
-        physics: str = NATIVE,
+        **options: Unpack[Options],
     ) -> None:
-        if estimator not in ESTIMATORS:
-            raise OptionError(f"estimator {estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
-        self.airframe = vehicles.load(frame)
-        self.seed, self.estimator, self.physics = checked_seed(seed or 0), estimator, physics
-        self.given: dict[str, Any] = {"frame": frame, "world": world, "start": start, "params": dict(params or {})}
-        """What it was made of, as it was told."""
-        self.kind = KINDS[self.airframe.kind]
+        self.scenario = scenario = Scenario.of(frame, **options)
+        """What is simulated, as it was told."""
+        self.airframe = scenario.airframe
+        self.seed, self.estimator, self.physics = scenario.seed_or_default, scenario.estimator, scenario.physics
+        self.kind = scenario.kind
         self.firmware = self.kind.firmware
         self.fleet: Array = self.kind.record.fleet(1)
         self.index = 0
@@ -139,26 +117,28 @@ class Simulation:
         unknown = files.apply(table, params_record, self.airframe.parameters, label)
         if unknown:
             raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
-        self.unknown_parameters = files.apply(table, params_record, params or {}, "parameters")
+        self.unknown_parameters = files.apply(table, params_record, scenario.params or {}, "parameters")
         """Names in ``params`` that this firmware does not have."""
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
         craft = Craft(self.kind, self.airframe, self.fleet, self.index, self.v, reader, self._physics_restarted)
-        if is_remote(physics):
-            truth = estimator if estimator == "truth" else None
-            given = {"home": home, "seed": seed, "world": world, "start": start, "estimator": truth}
-            self.plant: Plant = remote(craft, physics, **given)
+        if is_remote(self.physics):
+            self.plant: Plant = remote(craft, scenario)
             self.world: World | None = None
             """Where it is; None: on a plain without end, or known at the other end of the link alone."""
-            self.home = checked_home(home or DEFAULT_HOME)
+            self.home = scenario.home_or_default
         else:
-            where = checked_home(home or DEFAULT_HOME)
-            plant = LocalPlant(craft, physics, where, self.seed, world, start, core, progress)
+            plant = LocalPlant(craft, scenario, core, progress)
             plant.load()
             self.plant, self.world, self.home = plant, plant.world, plant.home
         self.mission = Mission()
         self._power_on()
         self.bridge = Bridge(self)
+
+    @property
+    def resolved(self) -> Scenario:
+        """What is simulated, with what was left open filled in."""
+        return replace(self.scenario, home=self.home, seed=self.seed)
 
     @property
     def time_us(self) -> int:
@@ -322,22 +302,3 @@ class Simulation:
         self._power_on()  # raises when the physics is not there: the next call begins here again
         self._reboot = False
         self.bridge = self.bridge.successor()
-
-
-def checked_home(home: Home) -> Home:
-    """``home`` as floats; OptionError when it is not four numbers or not on the globe."""
-    try:
-        lat, lon, alt, heading = (float(number) for number in home)
-    except (TypeError, ValueError):
-        wanted = "(latitude, longitude, altitude, heading) in degrees and metres"
-        raise OptionError(f"home {home!r} is not {wanted}") from None
-    if not (abs(lat) <= 90 and abs(lon) <= 180 and math.isfinite(alt) and math.isfinite(heading)):
-        raise OptionError(f"home {home}: latitude is within +-90, longitude within +-180 degrees, the rest finite")
-    return (lat, lon, alt, heading)
-
-
-def checked_seed(seed: int) -> int:
-    """``seed``; OptionError when it is not a whole number."""
-    if not isinstance(seed, Integral):
-        raise OptionError(f"seed {seed!r} is not a whole number")
-    return int(seed)

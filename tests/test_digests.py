@@ -17,7 +17,8 @@ from benchmarks.digests.compare import compare
 from benchmarks.digests.leaves import leaves
 from benchmarks.digests.pilot import KINDS, MODES
 from sitl.simulation import Core
-from sitl.vehicle.kinds import COPTER, ROVER
+from sitl.vehicle.copter import COPTER
+from sitl.vehicle.rover import ROVER
 
 FLIGHT = "native/power_on/copter"
 

@@ -65,5 +65,5 @@ def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> N
         "autopilot.estimation.update.update",
         f"autopilot.{name}.modes.update.update",
         f"autopilot.{name}.control.update.update",
-        f"vehicle.advance.advance_{name}",
+        f"vehicle.{name}.advance",
     ]

@@ -15,11 +15,12 @@ import pytest
 
 from sitl import vehicles
 from sitl.core import records
+from sitl.core.constants import TICK_US
 from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
-from sitl.vehicle.advance import advance_copter
-from sitl.vehicle.record import TICK_US, Copter
+from sitl.vehicle.copter import Copter
+from sitl.vehicle.copter import advance as advance_copter
 from sitl.vehicles import AirframeError
 
 

@@ -8,6 +8,9 @@ ARMING_CHECK selects which optional checks count.
 from __future__ import annotations
 
 from ..core.kernels import law
+from .params.parameters import Parameters
+from .params.system import Arming
+from .state import BatteryState, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
 BY_RUDDER = 0
@@ -92,44 +95,42 @@ _GYROS_US = 23_400_000
 
 
 @law
-def wants(v, check):
+def wants(params: Arming, check: int) -> bool:
     """Whether ARMING_CHECK asks for a check (CHECK_*)."""
-    return (int(v.autopilot.params.ARMING.CHECK) & (CHECK_ALL | check)) != 0
+    return int(params.CHECK) & (CHECK_ALL | check) != 0
 
 
 @law
-def sensor_checks(v):
+def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, params: Arming) -> int:
     """Failed checks of sensors and attitude."""
     failed = 0
-    if v.time_us < _READY_US:
+    if time_us < _READY_US:
         failed |= NOT_INITIALISED
-    if v.sensors.baro_count == 0 and wants(v, CHECK_BARO):
+    if sensors.baro_count == 0 and wants(params, CHECK_BARO):
         failed |= BAROMETER
-    if v.sensors.mag_count == 0 and wants(v, CHECK_COMPASS):
+    if sensors.mag_count == 0 and wants(params, CHECK_COMPASS):
         failed |= COMPASS
-    if wants(v, CHECK_INS):
-        if v.time_us < _ACCELS_US:
+    if wants(params, CHECK_INS):
+        if time_us < _ACCELS_US:
             failed |= ACCELS
-        elif v.time_us < _GYROS_US:
+        elif time_us < _GYROS_US:
             failed |= GYROS
-        elif v.autopilot.estimate.attitude_ok == 0:
+        elif not attitude_ok:
             failed |= ATTITUDE
     return failed
 
 
 @law
-def battery_checks(v):
-    """Failed checks of the battery."""
-    ap = v.autopilot
-    p = ap.params
+def battery_checks(battery: BatteryState, level: int, params: Parameters) -> int:
+    """Failed checks of the battery; ``level``: 0, or what the failsafe found (``failsafe.battery``)."""
+    limits = params.BATT
     failed = 0
-    if p.BATT.MONITOR > 0.0 and wants(v, CHECK_BATTERY):
-        if ap.battery.voltage < p.BATT.ARM_VOLT:
+    if limits.MONITOR > 0.0 and wants(params.ARMING, CHECK_BATTERY):
+        if battery.voltage < limits.ARM_VOLT:
             failed |= BATTERY_VOLTAGE
-        left = p.BATT.CAPACITY - ap.battery.consumed_mah
-        if p.BATT.ARM_MAH > 0.0 and left < p.BATT.ARM_MAH:
+        if limits.ARM_MAH > 0.0 and limits.CAPACITY - battery.consumed_mah < limits.ARM_MAH:
             failed |= BATTERY_CAPACITY
-        if ap.modes.failsafe.battery != 0:
+        if level != 0:
             failed |= BATTERY_FAILSAFE
     return failed
 
@@ -138,5 +139,5 @@ def texts(failed: int, prefix: str = "") -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
     shown = failed
     if shown & WAITING_FOR_HOME:
-        shown &= ~NEED_POSITION  # said only when it is what is missing
+        shown &= ~NEED_POSITION  # shown only when it is what is missing
     return [prefix + text for bit, text in TEXTS.items() if shown & bit]

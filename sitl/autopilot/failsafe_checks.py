@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from ..core.kernels import law
 from ..core.scalars import TWO_PI
-from .events import FAILSAFE, emit
+from .events import FAILSAFE, Events, emit
+from .params.system import Battery, Failsafes
+from .state import Autopilot, BatteryState, Estimate, Failsafe
 
 RADIO = 1
 GCS = 2
@@ -32,69 +34,77 @@ def text(which: int, on: bool) -> str | None:
 
 
 @law
-def tell(v, which, on):
+def report(events: Events, time_us: int, which: int, on: bool) -> None:
     """Emit FAILSAFE."""
-    emit(v.autopilot.events, v.time_us, FAILSAFE, float(which), float(on))
+    emit(events, time_us, FAILSAFE, float(which), 1.0 if on else 0.0)
 
 
 @law
-def is_gcs_lost(v):
+def is_gcs_lost(failsafe: Failsafe, time_us: int, params: Failsafes) -> bool:
     """Whether the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge) was there and is missing."""
-    ap = v.autopilot
-    heard = ap.modes.failsafe.gcs_us
-    return ap.params.FS.GCS_ENABLE > 0.0 and heard > 0 and v.time_us - heard > ap.params.FS.GCS_TIMEOUT * 1e6
+    last_us = failsafe.gcs_us
+    return params.GCS_ENABLE > 0.0 and last_us > 0 and time_us - last_us > params.GCS_TIMEOUT * 1e6
 
 
 @law
-def below(v, volt, mah):
-    """(voltage under ``volt``, charge left under ``mah``), limits of zero being off."""
-    battery = v.autopilot.battery
-    left = v.autopilot.params.BATT.CAPACITY - battery.consumed_mah
-    counts = v.autopilot.params.BATT.MONITOR >= 4.0
-    return (volt > 0.0 and battery.voltage < volt, mah > 0.0 and counts and left < mah)
+def is_low(voltage: float, limit: float) -> bool:
+    """Whether a voltage is below a limit [V]; a limit of zero is off."""
+    return limit > 0.0 and voltage < limit
 
 
 @law
-def battery_fell_to(v):
-    """Ten times a second, armed: 1 when the battery has become low, 2 when critical, else 0.
+def is_used_up(consumed: float, limit: float, params: Battery) -> bool:
+    """Whether less charge than a limit [mAh] is left; off with a limit of zero and without a current sensor."""
+    return limit > 0.0 and params.MONITOR >= 4.0 and params.CAPACITY - consumed < limit
 
-    Both stay (``failsafe.battery``) until the next start.
-    """
-    ap = v.autopilot
-    fs = ap.modes.failsafe
-    p = ap.params
-    if p.BATT.MONITOR < 3.0 or ap.arming.armed == 0:
+
+@law
+def low_since(since_us: int, low: bool, time_us: int) -> int:
+    """Since when a voltage has been low: ``since_us``, when it was low before; 0 when it is not low."""
+    if not low:
+        return 0
+    return since_us if since_us != 0 else time_us
+
+
+@law
+def watch_battery(fs: Failsafe, battery: BatteryState, armed: bool, time_us: int, params: Battery) -> int:
+    """Ten times a second: 1 when the battery has become low, 2 when critical, else 0."""
+    if params.MONITOR < 3.0 or not armed:
         fs.battery_low_us = 0
         fs.battery_critical_us = 0
         return 0
-    wait = p.BATT.LOW_TIMER * 1e6
-    found = 0
-    volt, charge = below(v, p.BATT.CRT_VOLT, p.BATT.CRT_MAH)
-    if not volt:
-        fs.battery_critical_us = 0
-    elif fs.battery_critical_us == 0:
-        fs.battery_critical_us = v.time_us
-    if fs.battery < 2 and (charge or (volt and v.time_us - fs.battery_critical_us >= wait)):
+    wait = params.LOW_TIMER * 1e6
+    before = fs.battery
+    low = is_low(battery.voltage, params.CRT_VOLT)
+    fs.battery_critical_us = low_since(fs.battery_critical_us, low, time_us)
+    lasts = low and time_us - fs.battery_critical_us >= wait
+    if fs.battery < 2 and (lasts or is_used_up(battery.consumed_mah, params.CRT_MAH, params)):
         fs.battery = 2
-        found = 2
-        tell(v, BATTERY_CRITICAL, 1)
-    volt, charge = below(v, p.BATT.LOW_VOLT, p.BATT.LOW_MAH)
-    if not volt:
-        fs.battery_low_us = 0
-    elif fs.battery_low_us == 0:
-        fs.battery_low_us = v.time_us
-    if fs.battery < 1 and (charge or (volt and v.time_us - fs.battery_low_us >= wait)):
+    low = is_low(battery.voltage, params.LOW_VOLT)
+    fs.battery_low_us = low_since(fs.battery_low_us, low, time_us)
+    lasts = low and time_us - fs.battery_low_us >= wait
+    if fs.battery < 1 and (lasts or is_used_up(battery.consumed_mah, params.LOW_MAH, params)):
         fs.battery = 1
-        found = 1
-        tell(v, BATTERY_LOW, 1)
-    return found
+    return fs.battery if fs.battery != before else 0
+
+
+@law
+def battery_fell_to(ap: Autopilot, time_us: int) -> int:
+    """Ten times a second: 1 when the battery has become low, 2 when critical, else 0; it is reported.
+
+    Both stay (``failsafe.battery``) until the next start.
+    """
+    level = watch_battery(ap.modes.failsafe, ap.battery, ap.arming.armed, time_us, ap.params.BATT)
+    if level != 0:
+        report(ap.events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
+    return level
 
 
 _EKF_PERIOD_S = 0.1
 
 
 @law
-def follow(filtered, value, gain):
+def low_pass(filtered: float, value: float, gain: float) -> float:
     """A low-pass; a value that is not a number (a filter about to restart) is passed over."""
     if value != value:
         return filtered
@@ -102,21 +112,17 @@ def follow(filtered, value, gain):
 
 
 @law
-def is_estimate_bad(v, cutoff):
-    """Whether two test ratios are over FS_EKF_THRESH, or there is no position; called ten times a second.
+def is_estimate_bad(fs: Failsafe, est: Estimate, limit: float, cutoff: float) -> bool:
+    """Whether two test ratios are over ``limit``, or there is no position; called ten times a second.
 
     Velocity counts double when it is twice over. ``cutoff`` [Hz] of a low-pass of the ratios, 0 none.
     """
-    ap = v.autopilot
-    fs = ap.modes.failsafe
-    est = ap.estimate
     gain = 1.0
     if cutoff > 0.0:
         gain = _EKF_PERIOD_S / (_EKF_PERIOD_S + 1.0 / (TWO_PI * cutoff))
-    fs.ekf_vel = follow(float(fs.ekf_vel), float(est.variance_vel), gain)
-    fs.ekf_pos = follow(float(fs.ekf_pos), float(est.variance_pos), gain)
-    fs.ekf_mag = follow(float(fs.ekf_mag), float(est.variance_mag), gain)
-    limit = ap.params.FS.EKF_THRESH
+    fs.ekf_vel = low_pass(fs.ekf_vel, est.variance_vel, gain)
+    fs.ekf_pos = low_pass(fs.ekf_pos, est.variance_pos, gain)
+    fs.ekf_mag = low_pass(fs.ekf_mag, est.variance_mag, gain)
     count = 0
     if fs.ekf_mag >= limit:
         count += 1
@@ -126,4 +132,4 @@ def is_estimate_bad(v, cutoff):
         count += 1
     if fs.ekf_pos >= limit and count > 0:
         count += 1
-    return count >= 2 or est.position_ok == 0
+    return count >= 2 or not est.position_ok

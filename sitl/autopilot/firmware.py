@@ -16,7 +16,7 @@ class Firmware:
     """One of the firmwares that the autopilot is."""
 
     name: str
-    """"copter" or "rover"."""
+    """Of the kind of vehicle that it controls."""
     table: Table
     """Its parameters."""
     mode_names: Mapping[int, str]

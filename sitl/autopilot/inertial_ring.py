@@ -6,8 +6,10 @@ A log wants them more often than anything else. The core keeps them, so that the
 
 from __future__ import annotations
 
+from ..core.algebra import set_row_vector
 from ..core.kernels import law
 from ..core.records import Floats, Ints, Record, array
+from ..core.vectors import Euler, Vec3
 
 INERTIAL_RING = 4
 PERIOD_US = 40_000
@@ -25,16 +27,14 @@ class InertialRing(Record):
 
 
 @law
-def remember(v):
+def remember(ring: InertialRing, time_us: int, acc: Vec3, gyro: Vec3, euler: Euler) -> None:
     """Last thing of a tick: keep a sample when it is time."""
-    ring = v.autopilot.inertial
-    if v.time_us < ring.due_us:
+    if time_us < ring.due_us:
         return
-    ring.due_us = (int(v.time_us) // PERIOD_US + 1) * PERIOD_US
-    k = int(ring.count) % INERTIAL_RING
+    ring.due_us = (time_us // PERIOD_US + 1) * PERIOD_US
+    k = ring.count % INERTIAL_RING
     ring.count += 1
-    ring.time_us[k] = v.time_us
-    acc, gyro, euler = v.sensors.acc, v.sensors.gyro, v.autopilot.estimate.euler
-    ring.acc[k, 0], ring.acc[k, 1], ring.acc[k, 2] = acc.x, acc.y, acc.z
-    ring.gyro[k, 0], ring.gyro[k, 1], ring.gyro[k, 2] = gyro.x, gyro.y, gyro.z
+    ring.time_us[k] = time_us
+    set_row_vector(ring.acc, k, acc)
+    set_row_vector(ring.gyro, k, gyro)
     ring.euler[k, 0], ring.euler[k, 1], ring.euler[k, 2] = euler.roll, euler.pitch, euler.yaw

@@ -3,62 +3,50 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from ..core.kernels import law
+from .state import Radio
 
 DEBOUNCE_US = 200_000
+_ENDS = (1231, 1361, 1491, 1621, 1750)
+"""Where a position ends and the next one begins [us]."""
+
+
+class Switch(Protocol):
+    """What a firmware keeps of the switch."""
+
+    switch_position: int
+    switch_candidate: int
+    switch_us: int
 
 
 @law
-def position(pulse):
-    """Position 0 .. 5 of the mode channel, -1 for a pulse that means nothing."""
+def position(pulse: int) -> int:
+    """Position 0 .. 5 of the mode channel, -1 for a pulse [us] that means nothing."""
     if pulse <= 900 or pulse >= 2200:
         return -1
-    if pulse < 1231:
-        return 0
-    if pulse < 1361:
-        return 1
-    if pulse < 1491:
-        return 2
-    if pulse < 1621:
-        return 3
-    if pulse < 1750:
-        return 4
+    for k in range(5):
+        if pulse < _ENDS[k]:
+            return k
     return 5
 
 
 @law
-def moved_to(v, channel):
+def moved_to(switch: Switch, rc: Radio, channel: int, time_us: int) -> int:
     """After each frame of the receiver: the position 0 .. 5 that ``channel`` (1 .. 18) was moved to and stayed at.
 
     -1 when nothing new is there: an old position changes nothing.
     """
-    ap = v.autopilot
-    pilot = ap.modes.pilot
-    if channel < 1 or channel > 18 or ap.rc.receiver_ok == 0 or ap.modes.failsafe.radio != 0:
+    if channel < 1 or channel > 18 or not rc.receiver_ok:
         return -1
-    now = position(int(ap.rc.channels[channel - 1]))
+    now = position(rc.channels[channel - 1])
     if now < 0:
         return -1
-    if now != pilot.switch_candidate:
-        pilot.switch_candidate = now
-        pilot.switch_us = v.time_us
-    elif now != pilot.switch_position and v.time_us - pilot.switch_us >= DEBOUNCE_US:
-        pilot.switch_position = now
+    if now != switch.switch_candidate:
+        switch.switch_candidate = now
+        switch.switch_us = time_us
+    elif now != switch.switch_position and time_us - switch.switch_us >= DEBOUNCE_US:
+        switch.switch_position = now
         return now
     return -1
-
-
-@law
-def chosen(k, mode1, mode2, mode3, mode4, mode5, mode6):
-    """The mode of position ``k`` (0 .. 5), of the six that the firmware's parameters name."""
-    if k == 0:
-        return int(mode1)
-    if k == 1:
-        return int(mode2)
-    if k == 2:
-        return int(mode3)
-    if k == 3:
-        return int(mode4)
-    if k == 4:
-        return int(mode5)
-    return int(mode6)

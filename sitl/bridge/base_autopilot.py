@@ -86,13 +86,14 @@ class BaseAutopilot:
     # ------------------------------------------------------------------ home, origin, parameters
 
     def set_home_here(self) -> bool:
-        if not self._v.autopilot.estimate.position_ok or not home.set_here(self._v):
+        ap = self._v.autopilot
+        if not ap.estimate.position_ok or not home.set_here(ap.home, ap.estimate):
             return False
-        self._v.autopilot.home.locked = 1
+        ap.home.locked = True
         return True
 
     def set_home(self, lat: int, lon: int, alt: float) -> bool:
-        return bool(home.set_place(self._v, lat, lon, alt, 1))
+        return home.set_place(self._v.autopilot.home, self._v.autopilot.estimate, lat, lon, alt)
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
         return aiding.set_origin(self._v.autopilot, lat, lon, alt)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import re
 from collections.abc import Callable, Iterable
@@ -11,11 +10,12 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega
 
-from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import COMMANDS as MISSION_COMMANDS
+from ..vehicle.kind import Kind
+from ..vehicle.kinds import BUILT_IN, DEFAULT, KINDS
 from .bridge import Bridge
 from .dialect import message
-from .profile import NAMES, Profile, load
+from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.streams import RATE_PREFIX
 from .telemetry.builder import builders
@@ -31,7 +31,7 @@ def page(text: str) -> str:
 
 def profiles() -> dict[str, Profile]:
     """Every firmware's profile by the firmware's name."""
-    return {name: load(name) for name in NAMES}
+    return {name: load(name) for name in BUILT_IN}
 
 
 def first_sentence(thing: Any) -> str:
@@ -58,7 +58,7 @@ def _by_firmware(tables: dict[str, Any]) -> Iterable[tuple[Any, Any, str]]:
             if key in table:
                 owners.setdefault(id(table[key]), []).append(name)
         for names in owners.values():
-            yield key, tables[names[0]][key], "both" if len(names) == len(NAMES) else ", ".join(names)
+            yield key, tables[names[0]][key], "both" if len(names) == len(BUILT_IN) else ", ".join(names)
 
 
 def commands() -> str:
@@ -72,26 +72,20 @@ def commands() -> str:
     return _table(("number", "command", "vehicle", "as", "what it does"), rows)
 
 
-def _firmware(name: str) -> Firmware:
-    found: Firmware = importlib.import_module(f"sitl.autopilot.{name}.firmware").FIRMWARE
-    return found
-
-
 class _Nobody:
     """A vehicle that only a bridge without links can have."""
 
     index, time_us = 0, 0
 
-    def __init__(self, name: str) -> None:
-        self.firmware = _firmware(name)
-        record = getattr(importlib.import_module("sitl.vehicle.record"), name.capitalize())
-        self.fleet = record.fleet(1)
-        self.v = record.of(self.fleet, 0)
+    def __init__(self, kind: Kind) -> None:
+        self.firmware = kind.firmware
+        self.fleet = kind.record.fleet(1)
+        self.v = kind.record.of(self.fleet, 0)
 
 
-def handled(name: str = "copter") -> dict[str, type]:
+def handled(name: str = DEFAULT) -> dict[str, type]:
     """Messages that a service acts on, by name; every firmware has the same."""
-    services = Bridge(_Nobody(name)).services  # type: ignore[arg-type]
+    services = Bridge(_Nobody(KINDS[name])).services  # type: ignore[arg-type]
     return {message: kind for kind, service in services.items() for message in service.handlers()}
 
 
@@ -113,7 +107,7 @@ def sent() -> str:
     }
     rows = []
     for name, builder, whose in _by_firmware({vehicle: builders(p) for vehicle, p in profiles().items()}):
-        vehicle = NAMES[0] if whose == "both" else whose
+        vehicle = DEFAULT if whose == "both" else whose
         group = group_of.get((vehicle, name), "-")
         rows.append((message(name).id, name, whose, group, _content(builder, name)))
     return _table(("id", "message", "vehicle", "stream group", "content"), rows)
@@ -134,6 +128,6 @@ def modes() -> str:
 
 def missions() -> str:
     """Mission items by number."""
-    tables = {name: {n: MISSION_COMMANDS[n] for n in _firmware(name).commands.taken} for name in NAMES}
+    tables = {name: {n: MISSION_COMMANDS[n] for n in KINDS[name].firmware.commands.taken} for name in BUILT_IN}
     rows = [(n, command_name(n), whose, "yes" if c.is_nav else "no") for n, c, whose in _by_firmware(tables)]
     return _table(("number", "command", "vehicle", "navigation"), rows)

@@ -6,12 +6,12 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..autopilot.modes import Mode
+from ..vehicle.kinds import KINDS
 from .autopilot_api import Autopilot
 from .services.command import Entry
 from .telemetry.builder import Builder
@@ -77,11 +77,10 @@ class Profile:
     """The firmware's laws behind the services."""
 
 
-NAMES = ("copter", "rover")
-"""Firmwares that have a profile."""
+def load(kind: str) -> Profile:
+    """The profile of a kind of vehicle by its name; its code is loaded with the first vehicle that has it.
 
-
-def load(firmware: str) -> Profile:
-    """The profile of a firmware by its name; its code is loaded with the first vehicle that has it."""
-    found: Profile = importlib.import_module(f"{__package__}.{firmware}.profile").PROFILE
-    return found
+    Raises:
+        UnknownKindError, MissingPartError: no kind of this name, or it has no face on MAVLink.
+    """
+    return KINDS[kind].part("mavlink", Profile)

@@ -17,18 +17,18 @@ from ..logs import flight as flights
 from ..logs import plot
 from ..run import runner
 from ..simulation import OptionError, Simulation
+from ..vehicle.kinds import KINDS
 from . import execute, recordings
-from .options import VEHICLES, add_vehicle_options, build_simulation, open_folder
+from .options import add_vehicle_options, build_simulation, open_folder
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-SCRIPTS = {"copter": "mavsdk_mission.py", "rover": "mavsdk_rover.py"}
 _SHOWN_US = 200_000
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("demo", help="run a MAVSDK example and draw what the vehicle did")
-    parser.add_argument("vehicle", choices=sorted(VEHICLES))
+    parser.add_argument("vehicle", choices=sorted(KINDS))
     execute.add_speedup(parser, default="max")
     recordings.add_recording_option(parser)
     add_vehicle_options(parser)
@@ -37,7 +37,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def demo(options: argparse.Namespace) -> int:
     """Run the example, print the figures, draw."""
-    script = EXAMPLES / SCRIPTS[options.vehicle]
+    name = KINDS[options.vehicle].demo_script
+    if name is None:
+        raise OptionError(f"there is no demo of a {options.vehicle}")
+    script = EXAMPLES / name
     check_installed(script)
     reason = execute.can_warp()
     if reason:

@@ -14,10 +14,10 @@ from collections.abc import Callable, Iterator
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup
 from ..simulation import OptionError, Simulation
+from ..vehicle.kinds import DEFAULT, KINDS
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
 from . import recordings, run
-from .options import VEHICLES
 from .status import StatusLine
 
 DEFAULT_SPEEDUP = "20"
@@ -31,7 +31,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         usage="sitl exec [options] -- COMMAND [ARGUMENT ...]",
         epilog="{tcp} in an argument of the command becomes the TCP port that is served.",
     )
-    parser.add_argument("--vehicle", choices=sorted(VEHICLES), default="copter")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), default=DEFAULT)
     add_speedup(parser)
     run.add_run_options(parser)
     parser.add_argument("script", nargs=argparse.REMAINDER, metavar="-- COMMAND", help="what to run")

@@ -10,7 +10,6 @@ import sys
 import time
 from pathlib import Path
 
-from .. import vehicles
 from ..autopilot.params import files
 from ..bridge.bridge import EPOCH_US
 from ..bridge.links.address import open_link
@@ -25,8 +24,7 @@ from ..plants.alone import stand_alone
 from ..plants.local import LocalPlant
 from ..run import runner
 from ..run.pacing import parse_speedup
-from ..simulation import DEFAULT_HOME
-from .options import VEHICLES, check_kind, open_folder
+from .options import open_folder, scenario_of
 from .progress import CompileProgress
 
 
@@ -98,16 +96,12 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
 
 def build_plant(options: argparse.Namespace) -> LocalPlant:
     """Physics and world by the options; known SIM_ parameters of the parameter files act on them."""
-    airframe = vehicles.load(options.frame or VEHICLES[options.vehicle])
-    check_kind(options.frame, airframe, options.vehicle)
     values: dict[str, float] = {}
     for path in options.params:
         values.update((name, value) for name, value in files.load(path).items() if name.startswith("SIM_"))
+    scenario = scenario_of(options, values)
     with CompileProgress() as progress:
-        return stand_alone(
-            airframe, home=options.home or DEFAULT_HOME, backend=options.physics, seed=options.seed or 0,
-            world=options.world, start=options.start, params=values, progress=progress,
-        )  # fmt: skip
+        return stand_alone(scenario, progress=progress)
 
 
 def open_links(options: argparse.Namespace) -> list[Link]:

@@ -12,12 +12,10 @@ from .. import vehicles
 from ..autopilot.params import files
 from ..physics.engines import NATIVE
 from ..plants.choose import FORMS
-from ..plants.surroundings import StartPose
-from ..simulation import DEFAULT_HOME, ESTIMATORS, Home, OptionError, Simulation, checked_home
+from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, checked_home
+from ..simulation import OptionError, Simulation
+from ..vehicle.kinds import DEFAULT, KINDS
 from .progress import CompileProgress
-
-VEHICLES = {"copter": "erle_copter", "rover": "erle_rover"}
-"""Vehicle kinds and the airframe each flies by default."""
 
 
 def home(text: str) -> Home:
@@ -96,26 +94,31 @@ def check_kind(frame: str, airframe: vehicles.Airframe, vehicle: str) -> None:
         raise OptionError(f"--frame {frame} is a {airframe.kind}; those of a {vehicle} are {others}")
 
 
+def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None = None) -> Scenario:
+    """What the options of a command describe, with these parameters."""
+    vehicle = getattr(options, "vehicle", DEFAULT)
+    airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
+    check_kind(options.frame, airframe, vehicle)
+    return Scenario(
+        airframe,
+        home=options.home,
+        seed=options.seed,
+        estimator=getattr(options, "estimator", ESTIMATORS[0]),
+        params=params,
+        world=options.world,
+        start=options.start,
+        physics=options.physics,
+    )
+
+
 def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
-    vehicle = getattr(options, "vehicle", "copter")
-    airframe = vehicles.load(options.frame or VEHICLES[vehicle])
-    check_kind(options.frame, airframe, vehicle)
     values: dict[str, float] = dict(overrides or {})
     for path in options.params:
         values.update(files.load(path))
+    scenario = scenario_of(options, values)
     with CompileProgress() as progress:
-        simulation = Simulation(
-            airframe,
-            home=options.home,
-            seed=options.seed,
-            physics=options.physics,
-            estimator=options.estimator,
-            params=values,
-            progress=progress,
-            world=options.world,
-            start=options.start,
-        )
+        simulation = Simulation(scenario, progress=progress)
     if simulation.unknown_parameters:
         names = simulation.unknown_parameters
         shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")

@@ -7,14 +7,16 @@ import argparse
 
 from .. import vehicles
 from ..autopilot.params import docs, files
-from ..vehicle.kinds import KINDS
+from ..vehicle.kinds import DEFAULT, KINDS
 from .options import check_kind
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("params", help="list the parameters")
-    parser.add_argument("--vehicle", choices=sorted(KINDS), help="whose parameters (default: the frame's, or copter)")
+    parser.add_argument(
+        "--vehicle", choices=sorted(KINDS), help=f"whose parameters (default: the frame's, or {DEFAULT})"
+    )
     parser.add_argument("--frame", metavar="NAME", help="with the values of this airframe")
     parser.add_argument("--markdown", action="store_true", help="as the documentation page")
     parser.set_defaults(function=params)
@@ -29,7 +31,7 @@ def params(options: argparse.Namespace) -> int:
     airframe = vehicles.load(options.frame) if options.frame else None
     if airframe and options.vehicle:
         check_kind(options.frame, airframe, options.vehicle)
-    kind = KINDS[airframe.kind if airframe else options.vehicle or "copter"]
+    kind = KINDS[airframe.kind if airframe else options.vehicle or DEFAULT]
     table = kind.firmware.table
     if options.markdown:
         print(docs.page(kind.name, table), end="")

@@ -8,12 +8,12 @@ import signal
 from collections.abc import Callable
 from importlib import import_module
 
-from .. import vehicles
 from ..errors import OptionError
 from ..physics.engines import BACKENDS, NATIVE
 from ..physics.native.power_on import DEFAULT_HOME
 from ..plants.alone import stand_alone
 from ..plants.local import LocalPlant
+from ..vehicle.kinds import KINDS
 from . import options as shared
 from .progress import CompileProgress
 
@@ -27,8 +27,10 @@ LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_ser
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("physics", help="run the physics of a vehicle whose autopilot is elsewhere")
-    parser.add_argument("vehicle", choices=sorted(shared.VEHICLES))
-    parser.add_argument("--backend", choices=BACKENDS, default=NATIVE, help=f"what simulates it (default {NATIVE})")
+    parser.add_argument("vehicle", choices=sorted(KINDS))
+    parser.add_argument(
+        "--backend", dest="physics", choices=BACKENDS, default=NATIVE, help=f"what simulates it (default {NATIVE})"
+    )
     parser.add_argument(
         "--listen",
         default="tcp",
@@ -56,20 +58,11 @@ def physics(options: argparse.Namespace) -> int:
     if kind not in LISTENERS:
         raise OptionError(f"--listen {options.listen!r}: {kind!r} is not known; it is one of {', '.join(LISTENERS)}")
     serve: Serve = import_module(LISTENERS[kind]).serve
-    airframe = vehicles.load(options.frame or shared.VEHICLES[options.vehicle])
-    shared.check_kind(options.frame, airframe, options.vehicle)
+    scenario = shared.scenario_of(options)
     with CompileProgress() as progress:
-        plant = stand_alone(
-            airframe,
-            home=options.home,
-            backend=options.backend,
-            seed=options.seed,
-            world=options.world,
-            start=options.start,
-            progress=progress,
-        )
+        plant = stand_alone(scenario, progress=progress)
         plant.load_tick()
-    print(f"{airframe.name}, {options.backend} physics, seed {options.seed}", flush=True)
+    print(f"{scenario.airframe.name}, {scenario.physics} physics, seed {options.seed}", flush=True)
     stopped: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
         signal.signal(number, lambda n, _: stopped.append(n))

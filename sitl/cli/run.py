@@ -15,15 +15,16 @@ from ..run import runner
 from ..run.lockstep import serve_lockstep
 from ..run.pacing import Pacing, parse_speedup
 from ..simulation import Simulation
+from ..vehicle.kinds import KINDS
 from . import foreign, recordings
-from .options import VEHICLES, add_vehicle_options, build_simulation, instance, open_folder, port, seconds
+from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds
 from .status import StatusLine
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("run", help="run a vehicle and serve MAVLink")
-    parser.add_argument("vehicle", choices=sorted(VEHICLES))
+    parser.add_argument("vehicle", choices=sorted(KINDS))
     clock = parser.add_mutually_exclusive_group()
     clock.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")
     clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")

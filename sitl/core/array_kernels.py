@@ -1,57 +1,145 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compiles functions on arrays, and keeps their machine code in the same folder as the core's.
 
-A kernel is a law on arrays with a signature. Its machine code lies in a folder named after the fingerprint of all that
-it reaches (``sitl.core.fingerprint``), so stale code cannot be loaded. With ``NUMBA_DISABLE_JIT=1`` it runs as plain
-Python.
+A kernel is a law on arrays; it is compiled for the types of its annotations. Its machine code lies in a folder named
+after the fingerprint of all that it reaches (``sitl.core.fingerprint``), so stale code cannot be loaded. With
+``NUMBA_DISABLE_JIT=1`` it runs as plain Python.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Annotated, Any, Generic, NamedTuple, ParamSpec, TypeVar, get_args, get_origin, get_type_hints
 
 from .code_cache import ENTRY, cache_folder, load_entry
 from .compile import make_jitable, toolchain
 from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
+from .records import FloatRows, Floats, IntRows, Ints, Records
+from .vectors import Value
 
-KERNELS: dict[str, Kernel] = {}
-Signature = str | Callable[[], Any]
-"""Numba's text, or a function that makes Numba's signature: for arrays of records."""
+KERNELS: dict[str, Kernel[..., Any]] = {}
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
-class Kernel:
+class Layout(NamedTuple):
+    """How an array of numbers lies in memory."""
+
+    code: str
+    """NumPy's code of one number."""
+    axes: int
+    order: str = "C"
+    """"C": in one piece, row by row; "A": any."""
+
+
+Line = Annotated[Floats, Layout("f8", 1)]
+"""Floats, shape (n,)."""
+Table = Annotated[FloatRows, Layout("f8", 2)]
+"""Floats, shape (m, n)."""
+NarrowLine = Annotated[Floats, Layout("f4", 1)]
+"""Floats at float32 precision, shape (n,)."""
+NarrowTable = Annotated[FloatRows, Layout("f4", 2)]
+"""Floats at float32 precision, shape (m, n)."""
+IntLine = Annotated[Ints, Layout("i8", 1)]
+"""Integers, shape (n,)."""
+IntTable = Annotated[IntRows, Layout("i8", 2)]
+"""Integers, shape (m, n)."""
+IntColumn = Annotated[Ints, Layout("i8", 1, "A")]
+"""Integers, shape (n,), of every record of a fleet."""
+Flags = Annotated[Ints, Layout("b1", 1)]
+"""Booleans, shape (n,)."""
+
+
+class Kernel(Generic[P, R]):
     """A law on arrays that the shell calls; compiled, or loaded from the cache, when it is called first."""
 
-    def __init__(self, law: Callable[..., Any], signature: Signature) -> None:
+    def __init__(self, law: Callable[P, R]) -> None:
         self.law = law
         self.name = law.__module__.removeprefix("sitl.") + "." + law.__name__
-        self.signature = signature
-        self._loaded: Callable[..., Any] | None = None
+        self._loaded: Callable[P, R] | None = None
         KERNELS[self.name] = self
 
-    def __call__(self, *arguments: Any) -> Any:
-        return self.function()(*arguments)
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        return self.function()(*args, **kwargs)
 
-    def function(self) -> Callable[..., Any]:
+    def function(self) -> Callable[P, R]:
         """The compiled function itself, which is a little quicker to call."""
         if self._loaded is None:
             self._loaded = self.law if jit_disabled() else _load(self)
         return self._loaded
 
+    def unchecked(self) -> Callable[P, R]:
+        """The same, without a look at the types of the arguments, which must be those of the signature: the quickest to
+        call."""
+        function: Any = self.function()
+        return function if jit_disabled() else next(iter(function.overloads.values())).entry_point  # type: ignore[no-any-return]
 
-def kernel(signature: Signature) -> Callable[[Callable[..., Any]], Kernel]:
-    """Mark a law on arrays as a kernel. ``signature``: as "void(f8[:,::1], f8[::1])", or a function that makes it."""
-    return lambda law: Kernel(law, signature)
+    def bind(self, *arguments: Any) -> Callable[[], R]:
+        """The compiled function of arguments that stay in place: their types are looked at once, so that a call is
+        quick.
+
+        Raises:
+            TypeError: the types are not those of the signature.
+        """
+        function: Any = self.function()
+        if not jit_disabled():
+            from numba import typeof
+
+            types, given = function.signatures[0], tuple(map(typeof, arguments))
+            if given != types:
+                raise TypeError(f"{self.name} takes {types}, not {given}")
+        call: Any = self.unchecked()
+        return partial(call, *arguments)
 
 
-def _load(wanted: Kernel) -> Callable[..., Any]:
+def _signature(law: Callable[..., Any]) -> Any:
+    """Numba's signature of a law's annotations."""
+    hints = get_type_hints(law, include_extras=True)
+    result = hints.pop("return")
+    return _type(result)(*map(_type, hints.values()))
+
+
+def _type(hint: Any) -> Any:
+    """Numba's type of an annotation."""
+    from numba import types
+
+    from .numba_records import numba_type
+    from .numba_vectors import TYPES
+
+    numbers = {float: types.float64, int: types.int64, bool: types.boolean, type(None): types.void}
+    if hint in numbers:
+        return numbers[hint]
+    if get_origin(hint) is Annotated:
+        _, layout = get_args(hint)
+        codes = {"f8": types.float64, "f4": types.float32, "i8": types.int64, "b1": types.boolean}
+        return types.Array(codes[layout.code], layout.axes, layout.order)
+    if get_origin(hint) is Records:
+        return types.Array(numba_type(get_args(hint)[0]), 1, "C")
+    if issubclass(hint, Value):
+        return TYPES[hint]
+    return types.BaseTuple.from_types(
+        [_type(part) for part in get_type_hints(hint, include_extras=True).values()], hint
+    )
+
+
+def _layouts(types: Any) -> Iterator[str]:
+    """Of the records in a signature, as text."""
+    for kind in types:
+        if hasattr(kind, "instance_class"):
+            yield from _layouts(kind.types)
+        elif hasattr(getattr(kind, "dtype", None), "values"):
+            yield f"{kind.dtype} {kind.dtype.dtype} {kind.dtype.values}"
+
+
+def _load(wanted: Kernel[..., Any]) -> Callable[..., Any]:
     import numba
 
     unit = Unit(wanted.name, wanted.law, 0)
-    signature = wanted.signature if isinstance(wanted.signature, str) else wanted.signature()
-    key = fingerprint(unit, "", f"{toolchain()} {signature}")
+    signature = _signature(wanted.law)
+    layouts = " ".join(_layouts(signature.args))
+    key = fingerprint(unit, layouts, f"{toolchain()} {signature}")
     folder = cache_folder() / f"{wanted.name}-{key}"
     make_jitable()
     names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))

@@ -54,6 +54,8 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
                 _walk(value, seen, units, lines)
         elif isinstance(value, (bool, int, float, str, tuple)):
             lines.append(f"{name} = {value!r}")
+        elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector
+            lines.append(f"{name} of {getattr(value, '_fields', ())}")
         elif isinstance(value, np.ndarray):
             lines.append(f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}")
 

@@ -13,7 +13,17 @@ from llvmlite import ir
 from numba.core import types
 from numba.core.imputils import lower_constant
 from numba.core.typing.templates import AbstractTemplate, infer, infer_global, signature
-from numba.extending import lower_builtin, make_attribute_wrapper, models, register_model, type_callable, typeof_impl
+from numba.extending import (
+    NativeValue,
+    box,
+    lower_builtin,
+    make_attribute_wrapper,
+    models,
+    register_model,
+    type_callable,
+    typeof_impl,
+    unbox,
+)
 
 from .vectors import VALUES, Value
 
@@ -92,6 +102,22 @@ def _typeof(value: Any, context: Any) -> Any:
 @lower_constant(VectorType)
 def _constant(context: Any, builder: Any, kind: VectorType, value: Any) -> Any:
     return _make(context, builder, kind, [context.get_constant(types.float64, number) for number in value])
+
+
+@unbox(VectorType)
+def _unbox(kind: VectorType, value: Any, c: Any) -> NativeValue:
+    numbers = [c.pyapi.float_as_double(c.pyapi.tuple_getitem(value, k)) for k in range(len(kind.names))]
+    return NativeValue(_make(c.context, c.builder, kind, numbers), is_error=c.pyapi.c_api_error())
+
+
+@box(VectorType)
+def _box(kind: VectorType, value: Any, c: Any) -> Any:
+    cls = c.pyapi.unserialize(c.pyapi.serialize_object(kind.cls))
+    numbers = [c.pyapi.float_from_double(part) for part in components(c.builder, kind, value)]
+    boxed = c.pyapi.call_function_objargs(cls, numbers)
+    for number in (cls, *numbers):
+        c.pyapi.decref(number)
+    return boxed
 
 
 def _by_component(instruction: str) -> Any:

@@ -8,10 +8,10 @@ of the family is used because its arithmetic fits into int64, so that Numba and 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from .kernels import law
 from .records import Ints, Record, array
+from .vectors import Vec3
 
 
 class Rng(Record):
@@ -19,19 +19,19 @@ class Rng(Record):
 
     s: Ints = array(4, stored="i8")  # 32-bit words, not all zero
     spare: float  # a normal deviate kept for the next call
-    has_spare: int
+    has_spare: bool
 
 
 _MASK = 0xFFFFFFFF
 
 
 @law
-def _rotl(x, k):
+def _rotl(x: int, k: int) -> int:
     return ((x << k) & _MASK) | (x >> (32 - k))
 
 
 @law
-def next_u32(rng):
+def next_u32(rng: Rng) -> int:
     """Next word, 0 .. 2^32 - 1."""
     s0, s1, s2, s3 = int(rng.s[0]), int(rng.s[1]), int(rng.s[2]), int(rng.s[3])
     result = (_rotl((s0 + s3) & _MASK, 7) + s0) & _MASK
@@ -46,17 +46,17 @@ def next_u32(rng):
 
 
 @law
-def uniform(rng):
+def uniform(rng: Rng) -> float:
     """Uniform deviate in [0, 1) with 32 bits."""
     return next_u32(rng) * (1.0 / 4294967296.0)
 
 
 @law
-def normal(rng):
+def normal(rng: Rng) -> float:
     """Normal deviate, mean 0, standard deviation 1 (Marsaglia's polar method)."""
-    if rng.has_spare != 0:
-        rng.has_spare = 0
-        return float(rng.spare)
+    if rng.has_spare:
+        rng.has_spare = False
+        return rng.spare
     while True:
         u = 2.0 * uniform(rng) - 1.0
         w = 2.0 * uniform(rng) - 1.0
@@ -65,11 +65,19 @@ def normal(rng):
             break
     scale = math.sqrt(-2.0 * math.log(r2) / r2)
     rng.spare = w * scale
-    rng.has_spare = 1
+    rng.has_spare = True
     return u * scale
 
 
-def seed(rng: Any, value: int) -> None:
+@law
+def normal_vector(rng: Rng) -> Vec3:
+    """Three normal deviates, mean 0, standard deviation 1."""
+    x = normal(rng)
+    y = normal(rng)
+    return Vec3(x, y, normal(rng))
+
+
+def seed(rng: Rng, value: int) -> None:
     """Fill the state from any integer seed through splitmix64."""
     z = value & 0xFFFFFFFFFFFFFFFF
     for k in range(4):
@@ -80,4 +88,4 @@ def seed(rng: Any, value: int) -> None:
     if not any(int(w) for w in rng.s):
         rng.s[0] = 1
     rng.spare = 0.0
-    rng.has_spare = 0
+    rng.has_spare = False

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import gymnasium as gym
 import numpy as np
 
-from sitl.core.array_kernels import kernel
+from sitl.core.array_kernels import IntTable, Kernel, NarrowTable
 from sitl.core.kernels import law
 
 from .options import EnvOptionError
@@ -30,8 +30,21 @@ class Observation(Protocol):
         """New arrays with a row a robot; a dict of arrays for a ``Dict`` space."""
 
 
+class DigitPlan(NamedTuple):
+    """How readings become digits."""
+
+    every: int
+    """Each so-many-th is taken."""
+    when_inf: int
+    """Digit of inf."""
+    highest: int
+    """Greatest digit."""
+    digits: int
+    """How many there are."""
+
+
 @law
-def digits_of(scans, every, when_inf, highest, out):
+def digits_of(scans: NarrowTable, every: int, when_inf: int, highest: int, out: IntTable) -> None:
     """The paper's rule: each ``every``-th reading, rounded down; inf and nan have digits of their own.
 
     Readings above ``highest`` give ``highest``: a user's ``randomise`` function may have extended the lidar's range.
@@ -47,7 +60,7 @@ def digits_of(scans, every, when_inf, highest, out):
                 out[i, k] = min(int(reading), highest)
 
 
-_digits = kernel("void(f4[:,::1], i8, i8, i8, i8[:,::1])")(digits_of)
+_digits = Kernel(digits_of)
 
 
 class Digits:
@@ -66,7 +79,7 @@ class Digits:
             raise EnvOptionError(f"Digits(when_inf={when_inf}, parts={parts}): parts from 1 on, when_inf from 0 on")
         self.when_inf = when_inf
         self.parts = parts
-        self._plan = (0, 0, 0, 0)
+        self._plan = DigitPlan(0, 0, 0, 0)
 
     def space(self, robot: Robot) -> gym.Space[Any]:
         """See ``Observation``."""
@@ -75,20 +88,19 @@ class Digits:
         when_inf = robot.digit_when_inf if self.when_inf is None else self.when_inf
         taken = len(range(0, readings, every))
         highest = max(int(robot.range_max), when_inf)
-        self._plan = (every, when_inf, highest, taken)
+        self._plan = DigitPlan(every, when_inf, highest, taken)
         return gym.spaces.MultiDiscrete(np.full(taken, highest + 1))
 
     @property
-    def plan(self) -> tuple[int, int, int, int]:
+    def plan(self) -> DigitPlan:
         """(Stride of the readings, digit of inf, greatest digit, number of digits); valid after ``space`` was
         called."""
         return self._plan
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
-        every, when_inf, highest, taken = self._plan
-        out = np.empty((robot.count, taken), np.int64)
-        _digits(robot.scan, every, when_inf, highest, out)
+        out = np.empty((robot.count, self._plan.digits), np.int64)
+        _digits(robot.scan, *self._plan[:3], out)
         return out
 
 

@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import kernel
+from sitl.core.algebra import ZERO2
+from sitl.core.array_kernels import IntTable, Kernel, Table
 from sitl.core.kernels import law
+from sitl.core.vectors import Vec2
 from sitl.turtlebots.native import full_pose
 from sitl.worlds import WorldError
-from sitl.worlds.contact import clearance, nearest_of
+from sitl.worlds.contact import Volume, clearance, nearest_of
 from sitl.worlds.frames import to_ned
 
 from .options import EnvOptionError
@@ -38,26 +40,25 @@ the same ones: a vehicle with an autopilot calculates its state after take-off o
 
 
 @law
-def mark_free(solids, first_n, first_e, cell, top, bottom, radius, margin, out):
+def mark_free(solids: Table, first: Vec2, cell: float, robot: Volume, margin: float, out: IntTable) -> None:
     """Mark the cells of a grid in whose centre a robot can stand with a margin to solids.
 
     Args:
         solids: rows of a ``Geometry``.
-        first_n, first_e: north and east of the centre of cell (0, 0) [m]; north grows with the row, east falls with the
-            column.
+        first: north and east of the centre of cell (0, 0) [m]; north grows with the row, east falls with the column.
         cell: side of a cell [m].
-        top, bottom, radius: the robot's cylinder [m]; top and bottom are down coordinates.
+        robot: its volume, anywhere.
         margin: distance to keep to solids [m].
         out: shape (rows, columns), 1 for free.
     """
     for i in range(out.shape[0]):
         for j in range(out.shape[1]):
-            n, e = first_n + cell * i, first_e - cell * j
-            nearest = nearest_of(solids, solids.shape[0], n, e, top, bottom, radius)
-            out[i, j] = 1 if nearest[0] > margin else 0
+            there = Vec2(first.x + cell * i, first.y - cell * j)
+            volume = Volume(there, robot.top, robot.bottom, robot.radius)
+            out[i, j] = 1 if nearest_of(solids, solids.shape[0], volume).distance > margin else 0
 
 
-_mark_free = kernel("void(f8[:,::1], f8, f8, f8, f8, f8, f8, f8, i8[:,::1])")(mark_free)
+_mark_free = Kernel(mark_free)
 
 
 class ReachableCells:
@@ -97,7 +98,8 @@ class ReachableCells:
         north, east, down = to_ned(x, y, self.z)
         v = self._volume
         geometry = self._world.geometry
-        _mark_free(geometry.solids, north, east, self.cell, down - v.top, down - v.bottom, v.radius, self.margin, out)
+        robot = Volume(ZERO2, down - v.top, down - v.bottom, v.radius)
+        _mark_free(geometry.solids, Vec2(north, east), self.cell, robot, self.margin, out)
         return out
 
     @staticmethod

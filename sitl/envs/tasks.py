@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import kernel
+from sitl.core.array_kernels import Flags, IntColumn, Kernel, NarrowTable
 from sitl.core.kernels import law
 
 from .options import EnvOptionError, unknown
@@ -23,7 +23,7 @@ _DRAWS = 100
 
 
 @law
-def count_crashes(scans, crash_range, touched, contact_ends, out):
+def count_crashes(scans: NarrowTable, crash_range: float, touched: IntColumn, contact_ends: bool, out: Flags) -> int:
     """Mark the robots that have crashed in ``out``; returns their number. A reading of 0 does not count, as in the
     paper's
     code.
@@ -37,7 +37,7 @@ def count_crashes(scans, crash_range, touched, contact_ends, out):
     """
     crashes = 0
     for i in range(out.shape[0]):
-        crashed = contact_ends != 0 and touched[i] != 0
+        crashed = contact_ends and touched[i] != 0
         for k in range(scans.shape[1]):
             if 0.0 < scans[i, k] < crash_range:
                 crashed = True
@@ -47,7 +47,7 @@ def count_crashes(scans, crash_range, touched, contact_ends, out):
     return crashes
 
 
-_crashes = kernel("i8(f4[:,::1], f8, i8[:], i8, b1[::1])")(count_crashes)
+_crashes = Kernel(count_crashes)
 
 
 class Task:

@@ -11,7 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..core.constants import TICK_HZ
 from ..physics.native.power_on import Home
+from ..vehicle.kinds import KINDS
 from ..vehicles import Airframe
 from .process import AutopilotProcess
 
@@ -31,9 +33,8 @@ def defaults(airframe: Airframe, sees_ground: bool) -> str:
     The airframe's own are ArduPilot's names already. A step of the physics for each loop of a copter; a version that
     does not know a name ignores it.
     """
-    values: dict[str, float] = {"SIM_RATE_HZ": 400, **airframe.parameters}
-    if airframe.kind == "copter":
-        values = {"FRAME_CLASS": 1, **values}
+    of_kind = KINDS[airframe.kind].ardupilot_parameters
+    values: dict[str, float] = {**of_kind, "SIM_RATE_HZ": TICK_HZ, **airframe.parameters}
     if sees_ground:
         low, high = float(airframe.value("rangefinder_min")), float(airframe.value("rangefinder_max"))
         values |= {

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..bridge.ardupilot_json import motion
+from ..core.algebra import euler_of
 from ..plants.plant import Craft
 
 CLOCK_LEAD = 1e-9
@@ -60,7 +61,5 @@ class BodyLines:
     def _vane(self, wind: list[float]) -> tuple[float, float]:
         """Apparent wind: direction that it comes from, clockwise from the nose [rad], and speed [m/s]."""
         body = self._v.physics.body
-        w, x, y, z = body.q.tolist()
-        yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-        north, east = (float(body.vel[k]) - wind[k] for k in range(2))
-        return math.remainder(math.atan2(east, north) - yaw, 2.0 * math.pi), math.hypot(north, east)
+        north, east = body.vel.x - wind[0], body.vel.y - wind[1]
+        return math.remainder(math.atan2(east, north) - euler_of(body.q).yaw, 2.0 * math.pi), math.hypot(north, east)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import OptionError
+from ..vehicle.kinds import KINDS
 
 NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
-PROGRAMS = {ARDUPILOT: {"copter": "arducopter", "rover": "ardurover"}, PX4: {"copter": "px4", "rover": "px4"}}
-"""Autopilot -> kind of vehicle -> default name of its program."""
+FOREIGN = (ARDUPILOT, PX4)
 _REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 FORMS = (
     '"native", "ardupilot" or "px4" (the program is looked for in PATH), "ardupilot:PROGRAM", "px4:PROGRAM", or, for '
@@ -42,7 +42,7 @@ def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | 
 
     Args:
         text: one of the forms.
-        vehicle: "copter" or "rover".
+        vehicle: kind of vehicle ("copter", "rover" ...).
         path: path of the program, when the text does not say.
 
     Raises:
@@ -51,14 +51,16 @@ def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | 
     kind, _, rest = text.partition(":") if isinstance(text, str) else ("", "", "")
     if kind == NATIVE and not rest and path is None:
         return None
-    if kind not in PROGRAMS:
+    if kind not in FOREIGN:
         extra = f" with a program ({path})" if kind == NATIVE else ""
         raise OptionError(f"autopilot {text!r}{extra} is none of {FORMS}")
     if rest.startswith(_REACHED):
         return Choice(kind, connection=rest)
     wanted = rest or (str(path) if path is not None else "")
-    usual = PROGRAMS[kind][vehicle]
-    found = shutil.which(os.path.expanduser(wanted) if wanted else usual)
+    usual = KINDS[vehicle].programs.get(kind)
+    if usual is None and not wanted:
+        raise OptionError(f"autopilot {text!r}: no program for a {vehicle} is known; name it: {kind}:PROGRAM")
+    found = shutil.which(os.path.expanduser(wanted) if wanted else str(usual))
     if found is None:
         if not wanted:
             raise OptionError(f"autopilot {text!r}: no program {usual!r} in PATH; say where it is: {kind}:PROGRAM")

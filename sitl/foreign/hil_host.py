@@ -10,10 +10,10 @@ import time
 from collections.abc import Callable
 
 from ..bridge.hil.physics_end import PhysicsEnd
+from ..core.constants import TICK_US
 from ..errors import OptionError
 from ..plants.local import LocalPlant
 from ..plants.physics_server import SimulatedPlant
-from ..vehicle.record import TICK_US
 
 WAIT_S = 0.2
 _READ = 1 << 16

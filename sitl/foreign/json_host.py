@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 from ..bridge.ardupilot_json.physics_end import Asked, Heard, PhysicsEnd, ticks
 from ..bridge.ardupilot_json.servos import controls, is_frame
+from ..core.constants import TICK_US
 from ..errors import OptionError
 from ..plants.alone import restart
 from ..plants.json_link import WAIT_S, wait_in_kernel
 from ..plants.local import LocalPlant
-from ..vehicle.record import TICK_US
 from .body import BodyLines
 
 _MAX_DATAGRAM = 65535
@@ -64,7 +64,7 @@ class JsonHost:
         self.plant = plant
         self._lines = BodyLines(plant.craft)
         self._clock: Callable[[], int] = plant.craft.reader.field("time_us")
-        self._is_copter = plant.craft.kind.name == "copter"
+        self._is_reversible = plant.craft.kind.has_reversible_outputs
 
     @property
     def address(self) -> tuple[str, int]:
@@ -135,7 +135,7 @@ class JsonHost:
             restart(plant)
             self.boots += 1
         actuators = plant.craft.v.actuators
-        actuators.controls[:] = controls(servos.pulses, self._is_copter)
+        actuators.controls[:] = controls(servos.pulses, self._is_reversible)
         actuators.pwm[:] = servos.pulses[:16]
         count = ticks(servos.rate)
         if until_us is not None:

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..core.extras import MissingExtra
+from ..vehicle.kinds import DEFAULT
 from .flight import Flight
+from .kind import logs_of
 
 
 def new_figure(width: float, height: float, title: str = "") -> Any:
@@ -29,10 +31,11 @@ def new_figure(width: float, height: float, title: str = "") -> Any:
     return figure
 
 
-def draw(flight: Flight, path: str | Path, title: str = "", kind: str = "copter") -> None:
+def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT) -> None:
     """Write the picture (PNG, SVG or PDF by the name's ending).
 
-    Beside the plan view: altitude, attitude and motors of a copter; speed, heading and outputs of a rover.
+    Beside the plan view: what the kind of vehicle has there (``sitl.logs.kind``), as altitude, attitude and motors of a
+    copter.
 
     Raises:
         MissingExtra: matplotlib is not installed.
@@ -47,7 +50,7 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = "copter"
     _plan(figure.add_subplot(grid[:, 0]), flight)
     armed = next((t for t, state in flight.armed if state), position[0, 0])
     start = max(position[0, 0], armed - 5.0)
-    panels = _COPTER if kind == "copter" else _ROVER
+    panels = logs_of(kind).panels
     for axis, panel in zip(axes[:, 1], panels, strict=True):
         panel(axis, flight)
         axis.grid(alpha=0.3)
@@ -76,44 +79,46 @@ def _plan(axis: Any, flight: Flight) -> None:
     axis.legend(loc="upper right")
 
 
-def _altitude(axis: Any, flight: Flight) -> None:
+def altitude(axis: Any, flight: Flight) -> None:
+    """Altitude over time."""
     position = flight["LOCAL_POSITION_NED"]
     axis.plot(position[:, 0], -position[:, 3])
     axis.set(ylabel="altitude [m]")
 
 
-def _attitude(axis: Any, flight: Flight) -> None:
+def attitude(axis: Any, flight: Flight) -> None:
+    """Roll, pitch and yaw over time."""
     attitude = flight["ATTITUDE"]
     for column, name in enumerate(("roll", "pitch", "yaw"), 1):
         axis.plot(attitude[:, 0], np.degrees(attitude[:, column]), lw=0.9, label=name)
     axis.set(ylabel="attitude [deg]")
 
 
-def _motors(axis: Any, flight: Flight) -> None:
+def motors(axis: Any, flight: Flight) -> None:
+    """Outputs 1 to 4 over time."""
     outputs = flight["SERVO_OUTPUT_RAW"]
     for column in range(1, 5):
         axis.plot(outputs[:, 0], outputs[:, column], lw=0.7, label=f"motor {column}")
     axis.set(ylabel="output [us]")
 
 
-def _speed(axis: Any, flight: Flight) -> None:
+def speed(axis: Any, flight: Flight) -> None:
+    """Ground speed over time."""
     position = flight["LOCAL_POSITION_NED"]
     axis.plot(position[:, 0], np.hypot(position[:, 4], position[:, 5]))
     axis.set(ylabel="speed [m/s]")
 
 
-def _heading(axis: Any, flight: Flight) -> None:
+def heading(axis: Any, flight: Flight) -> None:
+    """Heading over time, without jumps at north."""
     attitude = flight["ATTITUDE"]
     axis.plot(attitude[:, 0], np.degrees(np.unwrap(attitude[:, 3])), lw=0.9)
     axis.set(ylabel="heading [deg]")
 
 
-def _outputs(axis: Any, flight: Flight) -> None:
+def outputs(axis: Any, flight: Flight) -> None:
+    """Outputs 1 and 3 over time."""
     outputs = flight["SERVO_OUTPUT_RAW"]
     for column, name in ((1, "output 1"), (3, "output 3")):
         axis.plot(outputs[:, 0], outputs[:, column], lw=0.7, label=name)
     axis.set(ylabel="output [us]")
-
-
-_COPTER = (_altitude, _attitude, _motors)
-_ROVER = (_speed, _heading, _outputs)

@@ -55,7 +55,7 @@ class Track:
     """One vehicle's flight."""
 
     kind: str
-    """"copter" or "rover"."""
+    """Name of the kind of vehicle."""
     data: Array
     """(n, 11): ``COLUMNS``."""
     home: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -18,7 +18,7 @@ import numpy as np
 from pymavlink import DFReader
 
 from ..core.geodesy import offset_ne
-from .mode_names import mode_name
+from .kind import kinds_with_logs, mode_name
 from .tlog import LogError
 from .track import STEP_US, Array, Track, TrackError, is_angle, sampled
 
@@ -28,7 +28,6 @@ _ARMED, _DISARMED, _HOME = 10, 11, 1
 _INFO = 6
 _REACHED = re.compile(r"Reached (?:command|waypoint) #(\d+)")
 _STARTED = re.compile(r"Mission: (\d+) (\S+)")
-_FIRMWARE = {"Copter": "copter", "Rover": "rover"}
 
 
 class _Reader:
@@ -70,7 +69,7 @@ class _Reader:
 
     def _text(self, t: float, text: str) -> None:
         if not self.track.kind:
-            self.track.kind = next((kind for word, kind in _FIRMWARE.items() if word in text), "")
+            self.track.kind = next((kind for kind, logs in kinds_with_logs().items() if logs.word in text), "")
         self.track.texts.append((t, _INFO, text))
         reached, started = _REACHED.match(text), _STARTED.match(text)
         if started is not None:

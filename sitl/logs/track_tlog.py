@@ -12,7 +12,7 @@ import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from ..core.geodesy import offset_ne
-from .mode_names import KINDS, mode_name
+from .kind import kind_of_mav_type, mode_name
 from .tlog import LogError, read_tlog
 from .track import STEP_US, Array, Track, TrackError, is_angle, sampled
 
@@ -60,8 +60,9 @@ class _Reader:
         """One message of an autopilot."""
         name = message.get_type()
         if name == "HEARTBEAT" and message.autopilot != _NO_AUTOPILOT and not self.kind:
-            if message.type in KINDS and self.system in (None, message.get_srcSystem()):
-                self.system, self.kind = message.get_srcSystem(), KINDS[message.type]
+            kind = kind_of_mav_type(message.type)
+            if kind is not None and self.system in (None, message.get_srcSystem()):
+                self.system, self.kind = message.get_srcSystem(), kind
         if message.get_srcSystem() != self.system:
             return
         boot_ms = getattr(message, "time_boot_ms", None)

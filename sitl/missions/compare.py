@@ -9,7 +9,8 @@ from typing import Any
 
 from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, FORMS, Choice, choose
-from sitl.simulation import ESTIMATORS, Simulation, load_core
+from sitl.scenario import ESTIMATORS
+from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
 from . import copter, rover

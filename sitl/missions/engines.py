@@ -15,12 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from sitl.core.rotations import quat_to_euler
+from sitl.core.algebra import euler_of
 from sitl.errors import SitlError
 from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
-from sitl.vehicles.figures.copter import Figures as CopterFigures
 
 from . import copter
 from .figures import shown
@@ -45,14 +44,10 @@ class Witness(Pilot):
     def note(self) -> None:
         super().note()
         v = self.simulation.v
-        body, battery, controls = v.physics.body, v.physics.battery, v.actuators.controls
-        figures = v.physics.airframe
-        if isinstance(figures, CopterFigures):
-            output = float(np.mean(controls[: figures.rotor_count]))
-        else:
-            output = float(controls[2])
+        body, battery = v.physics.body, v.physics.battery
+        output = self.simulation.kind.motor_output(v)
         self._wh += float(battery.voltage) * float(battery.current) * 0.04 / 3600.0
-        row = (*body.pos.tolist(), *body.vel.tolist(), *quat_to_euler(*body.q.tolist()))
+        row = (*body.pos, *body.vel, *euler_of(body.q))
         self.truth.append((self.now, *row, output, self._wh))
 
 

@@ -175,14 +175,14 @@ class _Flight:
         if not station.passes(self._is_over, self.limit_s):
             outcome.reason = f"not ended after {self.limit_s:g} s, at item {self._current} of {len(self.items) - 1}"
             return
-        if station.armed and self.simulation.kind.name == "rover":
+        if station.armed and not self.simulation.kind.flies:
             self._stop_rover()
         self._judge()
 
     def _is_over(self) -> bool:
         """Disarmed, or the mission is complete and nothing more will come (a copter on the ground disarms)."""
         ap = self.simulation.v.autopilot
-        stays = self.simulation.kind.name == "rover" or int(ap.arming.landed) == 0
+        stays = not self.simulation.kind.flies or int(ap.arming.landed) == 0
         self._is_complete = int(ap.modes.nav.mission_state) == COMPLETE
         return not self.station.armed or (self._is_complete and stays)
 

@@ -32,7 +32,7 @@ class ForeignVehicle:
 
     def __init__(self, choice: Choice, frame: str, home: Home, seed: int = 0, physics: str = NATIVE) -> None:
         airframe = vehicles.load(frame)
-        plant = stand_alone(airframe, home=home, backend=physics, seed=seed)
+        plant = stand_alone(airframe, home=home, physics=physics, seed=seed)
         self.kind = KINDS[airframe.kind]
         self.firmware = self.kind.firmware
         self.v = plant.craft.v

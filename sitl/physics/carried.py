@@ -45,9 +45,9 @@ def carried(v: Any) -> Carried:
     """The truth of a vehicle (a view of its record) as the message carries it."""
     p = v.physics
     b, place = p.body, p.place
-    pos, vel, force = b.pos.tolist(), b.vel.tolist(), b.specific_force.tolist()
-    singles = _SINGLES.unpack(_SINGLES.pack(*b.q.tolist(), *b.rates.tolist()))
-    lat, lon = add_offset(float(place.lat), float(place.lon), pos[0], pos[1])
+    pos, vel, force = b.pos, b.vel, b.specific_force
+    singles = _SINGLES.unpack(_SINGLES.pack(*b.q, *b.rates))
+    lat, lon = add_offset(place.lat, place.lon, pos.x, pos.y)
     vn, ve, vd = (_whole(100.0 * c, -32768, 32767) for c in vel)
     ax, ay, az = (_whole(c / MILLIG, -32768, 32767) for c in force)
     return Carried(
@@ -55,7 +55,7 @@ def carried(v: Any) -> Carried:
         singles[4:],
         _whole(lat, -(1 << 31), (1 << 31) - 1),
         _whole(lon, -(1 << 31), (1 << 31) - 1),
-        _whole(1000.0 * (float(place.alt) - pos[2]), -(1 << 31), (1 << 31) - 1),
+        _whole(1000.0 * (place.alt - pos.z), -(1 << 31), (1 << 31) - 1),
         (vn, ve, vd),
         (ax, ay, az),
     )

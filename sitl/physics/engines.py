@@ -4,26 +4,31 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Callable, Mapping
 
 from .engine import Engine, EngineError, Seat
 
 NATIVE = "native"
-ENGINES = {
-    "pybullet": "sitl.physics.pybullet.make",
-    "jsbsim": "sitl.physics.jsbsim.make",
-}
-"""Name -> module whose ``make(seat)`` gives an engine for a vehicle."""
+ENGINES = ("pybullet", "jsbsim")
 BACKENDS = (NATIVE, *ENGINES)
 
 
-def make(name: str, seat: Seat) -> Engine:
-    """An engine for a vehicle.
+def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[Seat], Engine]:
+    """The function that makes an engine for a vehicle.
+
+    Args:
+        name: of the engine.
+        kind: name of the kind of vehicle.
+        models: engine -> "module:FUNCTION" that makes it for this kind; loaded when it is asked for.
 
     Raises:
-        EngineError: no engine of this name, or it cannot simulate this vehicle or world.
-        sitl.core.extras.MissingExtra: its library is not installed.
+        EngineError: no engine of this name, or it does not simulate this kind.
     """
-    if name not in ENGINES:
+    if name not in ENGINES and name not in models:
         raise EngineError(f"physics {name!r} is not known; there are {', '.join(BACKENDS)}")
-    engine: Engine = importlib.import_module(ENGINES[name]).make(seat)
-    return engine
+    if name not in models:
+        able = ", ".join((NATIVE, *models))
+        raise EngineError(f"physics {name!r} has no model of a {kind}; it is simulated by {able}")
+    module, _, function = models[name].partition(":")
+    make: Callable[[Seat], Engine] = getattr(importlib.import_module(module), function)
+    return make

@@ -12,7 +12,6 @@ import time
 from collections.abc import Callable
 
 from ..bridge.hil.autopilot_end import TAKEN, WAITING, AutopilotEnd
-from ..bridge.hil.numbers import MAV_TYPES
 from ..physics.carried import Carried
 from ..physics.engine import EngineError
 from ..vehicle.core_entry import bind_unit
@@ -47,7 +46,7 @@ class HilPlant(Plant):
         super().__init__(craft)
         self.link, self._patience_s = link, patience_s
         apply(craft.airframe, craft.v)
-        self.end = AutopilotEnd(craft.fleet, craft.index, craft.v, MAV_TYPES[craft.kind.name])
+        self.end = AutopilotEnd(craft.fleet, craft.index, craft.v, craft.kind.mav_type)
         self._has_joined = self._is_silent = False
         self._fly = bind_unit(craft.kind.fly, craft.kind, craft.fleet, craft.index)
         self._told: Callable[[], int] = craft.reader.field("autopilot.events.count")

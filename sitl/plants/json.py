@@ -17,15 +17,16 @@ from collections.abc import Callable
 from ..bridge.ardupilot_json.autopilot_end import LONGEST_S, AutopilotEnd
 from ..bridge.ardupilot_json.motion import Motion
 from ..core import rng
+from ..core.algebra import multiply, rotate
+from ..core.constants import TICK_US
 from ..core.record_reader import locate
-from ..core.rotations import quat_multiply, quat_rotate
+from ..core.vectors import Quat, Vec3
 from ..physics.carried import Carried, carried
 from ..physics.engine import EngineError
-from ..physics.native.body import GRAVITY
+from ..physics.native.body import GRAVITY, unit
 from ..physics.native.power_on import DEFAULT_HOME, Home
 from ..physics.native.tick import TICK_S
 from ..vehicle.core_entry import bind_unit
-from ..vehicle.record import TICK_US
 from .json_link import WAIT_S, JsonLink, parse_address
 from .plant import Craft, PhysicsLostError, Plant
 
@@ -87,7 +88,7 @@ class JsonPlant(Plant):
         self._memory = memoryview(craft.fleet.view("u1"))  # type: ignore[arg-type]
         self._body_at = craft.index * craft.fleet.dtype.itemsize + locate(craft.fleet.dtype, "physics.body.pos")[0]
         self._units: tuple[Callable[[], None], ...] = ()
-        self._substeps = int(craft.airframe.value("substeps")) if craft.kind.name == "copter" else 0
+        self._substeps = int(craft.airframe.value("substeps")) if craft.airframe.has("substeps") else 0
         self._note = ""
         """Why lines were not taken."""
 
@@ -194,18 +195,14 @@ class JsonPlant(Plant):
     def _move(self, motion: Motion) -> None:
         """Write the motion, and the one before that the IMU's laws make this line's gyro and accel of."""
         m = self.craft.v.physics.motion
-        q0, q1, q2, q3 = q = motion.attitude
+        q = Quat(*motion.attitude)
         _BODY.pack_into(self._memory, self._body_at, *motion.position, *motion.velocity, *q, *motion.gyro)
         gx, gy, gz = motion.gyro
         half = 0.5 * TICK_S * math.sqrt(gx * gx + gy * gy + gz * gz)
         k = -0.5 * TICK_S * (math.sin(half) / half if half > 1e-9 else 1.0)
-        before = quat_multiply(q0, q1, q2, q3, math.cos(half), k * gx, k * gy, k * gz)
-        w, x, y, z = (b + a for b, a in zip(before, q))
-        norm = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
-        n, e, d = quat_rotate(w * norm, x * norm, y * norm, z * norm, *motion.accel)
-        vn, ve, vd = motion.velocity
-        m.q[:] = before
-        m.vel[:] = (vn - TICK_S * n, ve - TICK_S * e, vd - TICK_S * (d + GRAVITY))
+        m.q = multiply(q, Quat(math.cos(half), k * gx, k * gy, k * gz))
+        acc = rotate(unit(m.q + q), Vec3(*motion.accel))
+        m.vel = Vec3(*motion.velocity) - TICK_S * Vec3(acc.x, acc.y, acc.z + GRAVITY)
 
     def _others(self, motion: Motion) -> None:
         """What a line may tell beside the motion."""

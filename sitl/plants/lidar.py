@@ -10,101 +10,102 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.array_kernels import kernel
+from ..core.algebra import rotate
+from ..core.array_kernels import Kernel, Line, NarrowLine, Table
 from ..core.kernels import jit_disabled, law
 from ..core.record_reader import RecordReader
+from ..core.records import Record, Records
 from ..core.rng import Rng, normal
-from ..core.rotations import quat_rotate
+from ..core.vectors import Vec3
+from ..physics.native.records import Body
 from ..worlds import Geometry, planar
+from ..worlds.geometry import Solids
 from ..worlds.planar import publish_readings
-from ..worlds.raycast import scan_rays
+from ..worlds.raycast import scan_rays, turn_rays
 
 Cast = Callable[..., bool]
 NEVER = 1 << 62
 DOWN = np.array([[0.0], [0.0], [1.0]])
 
 
-@law
-def aim(position, attitude, figures, rays, origin, directions):
-    """Turn a sensor's rays into the world: ``origin`` NED, down from z = 0 of the world's frame [m], shape (3,), and
-    ``directions`` NED, shape (3, rays)."""
-    w, x, y, z = float(attitude[0]), float(attitude[1]), float(attitude[2]), float(attitude[3])
-    for k in range(rays.shape[1]):
-        n, e, d = quat_rotate(w, x, y, z, float(rays[0, k]), float(rays[1, k]), float(rays[2, k]))
-        directions[0, k], directions[1, k], directions[2, k] = n, e, d
-    n, e, d = quat_rotate(w, x, y, z, float(figures[3]), float(figures[4]), float(figures[5]))
-    origin[0] = n + float(position[0])
-    origin[1] = e + float(position[1])
-    origin[2] = d + float(position[2]) - float(figures[6])
+class RangerFigures(Record):
+    """What a sensor is, and where."""
+
+    range_min: float  # least reading [m]
+    range_max: float  # greatest reading [m]
+    noise: float  # standard deviation of a reading [m]
+    at: Vec3  # place on the body, FRD [m]
+    floor: float  # height of the floor in the world's frame [m]
+
+
+class Beams(NamedTuple):
+    """A sensor's rays, and room to work in."""
+
+    rays: Table
+    """Unit vectors on the body, FRD, shape (3, rays)."""
+    origin: Line
+    """Where they start, NED, down from z = 0 of the world's frame [m], shape (3,)."""
+    directions: Table
+    """Unit vectors NED, shape (3, rays)."""
+    ranges: Line
+    """What they met [m], shape (rays,)."""
 
 
 @law
-def publish(rng, figures, ranges, readings):
+def aim(bodies: Records[Body], sensors: Records[RangerFigures], beams: Beams) -> None:
+    """Turn a sensor's rays into the world: ``origin`` and ``directions``."""
+    body, sensor, directions = bodies[0], sensors[0], beams.directions
+    q = body.q
+    turn_rays(q, beams.rays, directions)
+    origin = rotate(q, sensor.at) + body.pos
+    beams.origin[0], beams.origin[1], beams.origin[2] = origin.x, origin.y, origin.z - sensor.floor
+
+
+@law
+def publish(rngs: Records[Rng], sensors: Records[RangerFigures], ranges: Line, readings: NarrowLine) -> None:
     """What a sensor reads of the ranges that its rays met [m]; see ``measure_ranges``."""
-    least, longest, noise = float(figures[0]), float(figures[1]), float(figures[2])
-    publish_readings(ranges, longest, readings)
+    sensor = sensors[0]
+    publish_readings(ranges, sensor.range_max, readings)
     for k in range(readings.shape[0]):
         reading = float(readings[k])
-        if reading < longest:
-            if noise > 0.0:
-                reading = min(reading + noise * normal(rng[0]), longest)
-            readings[k] = max(reading, least)
+        if reading < sensor.range_max:
+            if sensor.noise > 0.0:
+                reading = min(reading + sensor.noise * normal(rngs[0]), sensor.range_max)
+            readings[k] = max(reading, sensor.range_min)
 
 
 @law
-def measure_ranges(rng, position, attitude, figures, solids, grid, cells, rays, origin, directions, ranges, readings):
+def measure_ranges(
+    rngs: Records[Rng],
+    bodies: Records[Body],
+    sensors: Records[RangerFigures],
+    solids: Solids,
+    beams: Beams,
+    readings: NarrowLine,
+) -> None:
     """One scan of a sensor on a body, into ``readings``.
 
     Args:
-        rng: records, shape (1,): of the vehicle's random numbers.
-        position: of the body, NED from the origin on the floor [m].
-        attitude: quaternion from body to NED.
-        figures: least reading, range, standard deviation of a reading [m], place on the body forward, right, down [m],
-            height of the floor in the world's frame [m].
-        solids, grid, cells: of the world's ``Geometry``.
-        rays: unit vectors on the body, FRD, shape (3, rays).
-        origin, directions, ranges: room to work in, shapes (3,), (3, rays), (rays,).
-        readings: float32 [m]; inf: nothing in range.
+        rngs: of the vehicle's random numbers, shape (1,).
+        bodies: its body, whose position counts from the origin on the floor, shape (1,).
+        sensors: the sensor, shape (1,).
+        solids: of the world.
+        beams: of the sensor.
+        readings: [m]; inf: nothing in range.
     """
-    aim(position, attitude, figures, rays, origin, directions)
-    scan_rays(solids, grid, cells, float(origin[0]), float(origin[1]), float(origin[2]), directions, ranges)
-    publish(rng, figures, ranges, readings)
+    aim(bodies, sensors, beams)
+    origin = Vec3(beams.origin[0], beams.origin[1], beams.origin[2])
+    scan_rays(solids, origin, beams.directions, beams.ranges)
+    publish(rngs, sensors, beams.ranges, readings)
 
 
-def _signature() -> Any:
-    from numba import types
-
-    from ..core.numba_records import numba_type
-
-    rng = types.Array(numba_type(Rng), 1, "C")
-    line, table, whole = types.float64[::1], types.float64[:, ::1], types.int64[::1]
-    return types.void(rng, line, line, line, table, line, whole, table, line, table, line, types.float32[::1])
-
-
-def _aim_signature() -> Any:
-    from numba import types
-
-    line, table = types.float64[::1], types.float64[:, ::1]
-    return types.void(line, line, line, table, line, table)
-
-
-def _publish_signature() -> Any:
-    from numba import types
-
-    from ..core.numba_records import numba_type
-
-    rng = types.Array(numba_type(Rng), 1, "C")
-    return types.void(rng, types.float64[::1], types.float64[::1], types.float32[::1])
-
-
-_measure = kernel(_signature)(measure_ranges)
-_aim = kernel(_aim_signature)(aim)
-_publish = kernel(_publish_signature)(publish)
+_measure = Kernel(measure_ranges)
+_aim = Kernel(aim)
+_publish = Kernel(publish)
 
 
 class Ranger:
@@ -137,23 +138,24 @@ class Ranger:
         self._count = reader.field(f"sensors.{name}_count")
         figures = ("rate", "min", "max", "noise", "at")
         self._read = reader.fields(*(f"physics.airframe.{name}_{figure}" for figure in figures))
-        self._floor, self._figures = floor, np.empty(7)
         self._known: tuple[float, ...] = ()
-        rng: Any = [v.rng] if jit_disabled() else fleet["rng"][index : index + 1]
-        origin, room, ranges = np.empty(3), np.empty_like(rays), np.empty(rays.shape[1])
-        body, numbers = v.physics.body, self._figures
-        measure = partial(
-            _measure.function(), rng, body.pos, body.q, numbers,
-            geometry.solids, geometry.grid, geometry.cells, rays, origin, room, ranges, readings,
-        )  # fmt: skip
+        rngs: Any = [v.rng] if jit_disabled() else fleet["rng"][index : index + 1]
+        bodies: Any = [v.physics.body] if jit_disabled() else fleet["physics"]["body"][index : index + 1]
+        sensors: Any = RangerFigures.fleet(1)
+        self._figures = RangerFigures.of(sensors, 0)
+        self._figures.floor = floor
+        if jit_disabled():
+            sensors = [self._figures]
+        beams = Beams(rays, np.empty(3), np.empty_like(rays), np.empty(rays.shape[1]))
+        measure = _measure.bind(rngs, bodies, sensors, geometry.arrays, beams, readings)
         self._measure: Callable[[], None] = measure
         if cast is not None:
-            turn, read = _aim.function(), _publish.function()
+            turn, read = _aim.bind(bodies, sensors, beams), _publish.bind(rngs, sensors, beams.ranges, readings)
 
             def by_engine() -> None:
-                turn(body.pos, body.q, numbers, rays, origin, room)
-                if cast(origin, room, ranges, float(numbers[1])):
-                    read(rng, numbers, ranges, readings)
+                turn()
+                if cast(beams.origin, beams.directions, beams.ranges, self._figures.range_max):
+                    read()
                 else:
                     measure()
 
@@ -167,7 +169,8 @@ class Ranger:
         if figures != self._known:
             self._known = figures
             self._period_us = 1e6 / figures[0]
-            self._figures[:] = *figures[1:], self._floor
+            f = self._figures
+            f.range_min, f.range_max, f.noise, f.at = *figures[1:4], Vec3(*figures[4:])
 
     def find_due(self) -> None:
         """Set ``due_us`` from how many measurements there have been."""

@@ -5,19 +5,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 
 from ..core import rng
 from ..core.compile import Progress
 from ..physics.carried import Carried, carried
 from ..physics.engine import Engine, Laws, Seat
-from ..physics.engines import NATIVE, make
-from ..physics.native.power_on import Home
+from ..physics.engines import NATIVE, find
+from ..scenario import Scenario
 from ..vehicle.core_entry import Core, bind_unit, load_core
-from ..worlds import World
 from .lidar import Rangers
 from .plant import Craft, Plant
-from .surroundings import StartPose, Surroundings, checked_world
+from .surroundings import Surroundings
 
 
 class LocalPlant(Plant):
@@ -25,8 +23,7 @@ class LocalPlant(Plant):
 
     Args:
         craft: the vehicle.
-        backend: name of the engine (``sitl.physics.engines.BACKENDS``).
-        home, seed, world, start: see ``sitl.simulation.Simulation``.
+        scenario: what is simulated; its physics is an engine (``sitl.physics.engines.BACKENDS``).
         core: the core of this kind of vehicle, if it is loaded already.
         progress: told of each unit that is compiled.
 
@@ -38,27 +35,23 @@ class LocalPlant(Plant):
     def __init__(
         self,
         craft: Craft,
-        backend: str,
-        home: Home,
-        seed: int,
-        world: str | Path | World | None = None,
-        start: StartPose | None = None,
+        scenario: Scenario,
         core: Core | None = None,
         progress: Progress | None = None,
     ) -> None:
         super().__init__(craft)
-        self.backend = backend
-        self.seed, self.home = seed, home
-        self.world = checked_world(world, start)
-        self.surroundings = Surroundings(self.world, start, craft.airframe) if self.world is not None else None
+        self.backend = backend = scenario.physics
+        self.seed, self.home = scenario.seed_or_default, scenario.home_or_default
+        self.world = world = scenario.load_world()
+        self.surroundings = Surroundings(world, scenario.start, craft.airframe) if world is not None else None
         if self.surroundings is not None:
-            self.home = (*home[:3], math.degrees(self.surroundings.heading))
+            self.home = (*self.home[:3], math.degrees(self.surroundings.heading))
         self.rangers: Rangers | None = None
         self.core = core
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
-            self.engine = make(backend, self._seat())
+            self.engine = find(backend, craft.kind.name, craft.kind.engines)(self._seat())
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
         self._told = craft.reader.field("autopilot.events.count")

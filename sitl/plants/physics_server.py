@@ -13,17 +13,16 @@ import time
 from collections.abc import Callable
 
 from ..autopilot.params.table import stored
-from ..bridge.hil.numbers import BASE_PORT, MAV_TYPES
+from ..bridge.hil.numbers import BASE_PORT
 from ..bridge.hil.physics_end import PhysicsEnd, text_frame
 from ..bridge.links.address import LOCAL, LinkAddressError
+from ..core.constants import TICK_S
 from ..physics.carried import Carried
-from ..vehicle.record import TICK_US
 from ..vehicle.sim_parameters import PREFIX
 from .alone import restart
 from .hil_link import tune
 from .local import LocalPlant
 
-TICK_S = 1e-6 * TICK_US
 _CATCH_UP_S = 0.05
 
 PATIENCE_S = 5.0
@@ -103,7 +102,7 @@ class PhysicsServer:
     """
 
     def __init__(self, plant: LocalPlant, host: str, port: int, say: Callable[[str], None] = lambda text: None) -> None:
-        self.end = PhysicsEnd(SimulatedPlant(plant), MAV_TYPES[plant.craft.kind.name])
+        self.end = PhysicsEnd(SimulatedPlant(plant), plant.craft.kind.mav_type)
         self._say = say
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -13,7 +13,7 @@ import numpy as np
 from ..core.record_reader import RecordReader
 from ..errors import SitlError
 from ..physics.carried import Carried
-from ..vehicle.kinds import Kind
+from ..vehicle.kind import Kind
 from ..vehicles import Airframe
 
 NEVER = 1 << 62

@@ -7,23 +7,19 @@ Body positions are NED from the world's origin on the floor; the world's own hei
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from .. import worlds
 from ..core.record_reader import RecordReader
 from ..errors import OptionError
-from ..physics.native.obstacles import OBSTACLES_MAX
+from ..physics.native.records import OBSTACLES_MAX
+from ..scenario import StartPose
 from ..vehicles import Airframe
 from ..worlds import World, contact
 from ..worlds.frames import to_heading, to_ned
 from ..worlds.geometry import BOTTOM, TOP
-
-StartPose = str | Sequence[float]
-"""Name of a start pose of the world, or x, y, z [m], yaw [deg] in the world's frame."""
 
 REACH = 30.0
 """Solids farther away than this are not listed [m]."""
@@ -69,17 +65,17 @@ class Surroundings:
             reader: of the same.
             lists_solids: native physics finds the solids near the vehicle in its record; other engines have their own.
         """
-        self._obstacles, self._position = v.physics.obstacles, v.physics.body.pos
+        self._obstacles, self._body = v.physics.obstacles, v.physics.body
         self.is_wanted: Callable[[], int] = reader.field("physics.obstacles.wanted")
         """Whether the vehicle needs a new list of the solids near it."""
-        self._position[:] = self.position
-        self._obstacles.present = int(lists_solids and len(self.world.geometry) > 0)
+        self._body.pos = self.position
+        self._obstacles.present = lists_solids and len(self.world.geometry) > 0
         if lists_solids:
             self.gather()
 
     def gather(self) -> None:
         """List the solids near the vehicle in its record."""
-        o, north, east = self._obstacles, float(self._position[0]), float(self._position[1])
+        o, (north, east, _) = self._obstacles, self._body.pos
         count, complete = contact.near(self.world.geometry, north, east, REACH, self._rows)
         rows = o.rows
         rows[:] = 0.0
@@ -88,7 +84,7 @@ class Surroundings:
         rows[:count, BOTTOM] += self.floor
         o.count, o.north, o.east, o.complete = count, north, east, complete
         o.clear = 0.0
-        o.wanted = 0
+        o.wanted = False
 
     def _check_free(self, airframe: Airframe) -> None:
         top, bottom = float(airframe.value("contact_top")), float(airframe.value("contact_bottom"))
@@ -104,20 +100,6 @@ class Surroundings:
                     f"start at x {x:g}, y {y:g} m, yaw {math.degrees(yaw):g} deg: {airframe.name} would stand in solid "
                     f"{name} of world {self.world.name!r} ({-at.distance:.3f} m deep)"
                 )
-
-
-def checked_world(world: str | Path | World | None, start: StartPose | None) -> World | None:
-    """The world to load, if any.
-
-    Raises:
-        OptionError: a start pose without a world.
-        WorldError: no such world.
-    """
-    if world is None:
-        if start is not None:
-            raise OptionError(f"start {start!r} needs a world; without one a vehicle starts at its home")
-        return None
-    return worlds.load(world)
 
 
 def start_pose(world: World, start: StartPose | None, robot: str) -> tuple[float, float, float, float]:

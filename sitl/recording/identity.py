@@ -10,15 +10,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from .. import __version__, vehicles, worlds
+from .. import __version__
 from ..core import compile as compiler
 from ..core.fingerprint import reached
 from ..physics.engines import NATIVE
 from ..simulation import Simulation
-from ..vehicle.kinds import Kind
-from ..vehicles import Airframe
+from ..vehicle.kind import Kind
 from ..worlds import World
 
 ROOMS = ("autopilot", "bridge", "core", "physics", "plants", "vehicle", "vehicles")
@@ -64,20 +61,6 @@ def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
     return found
 
 
-def _plain(value: Any) -> Any:
-    """A value as JSON types."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def of_airframe(airframe: Airframe) -> dict[str, Any]:
-    """Name, figures and parameters."""
-    record = airframe.record()
-    figures = {name: _plain(record[name]) for name in record.dtype.names or ()}
-    return {"name": airframe.name, "figures": figures, "parameters": dict(airframe.parameters)}
-
-
 def of_world(world: World) -> str:
     """Digest of all that a world's file says, but its words."""
     parts = (world.solids, world.starts, world.floor_z, world.friction)
@@ -86,35 +69,11 @@ def of_world(world: World) -> str:
 
 def describe(simulation: Simulation) -> dict[str, Any]:
     """Description of a simulation's code and settings, as JSON types."""
-    given = simulation.given
-    frame, world = given["frame"], given["world"]
-    name = simulation.airframe.name
-    if not isinstance(frame, str):
-        frame = name if name in vehicles.names() and vehicles.load(name) is simulation.airframe else None
-    if not isinstance(world, str | Path):
-        found = simulation.world.name if simulation.world is not None else None
-        world = found if found in worlds.names() and worlds.load(found or "") is simulation.world else None
-    start = given["start"]
-    return {
-        "version": version(simulation.kind, simulation.physics),
-        "vehicle": simulation.kind.name,
-        "frame": frame,
-        "airframe": of_airframe(simulation.airframe),
-        "home": list(simulation.home),
-        "seed": simulation.seed,
-        "estimator": simulation.estimator,
-        "physics": simulation.physics,
-        "world": None
-        if simulation.world is None
-        else {
-            "file": str(world) if world is not None else None,
-            "name": simulation.world.name,
-            "digest": of_world(simulation.world),
-        },
-        "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
-        "params": {name: float(value) for name, value in given["params"].items()},
-        "epoch_us": simulation.bridge.epoch_us,
-    }
+    found = simulation.resolved.to_json()
+    if found["world"] is not None and simulation.world is not None:
+        found["world"]["digest"] = of_world(simulation.world)
+    kind, physics = simulation.kind, simulation.physics
+    return {"version": version(kind, physics), **found, "epoch_us": simulation.bridge.epoch_us}
 
 
 def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:

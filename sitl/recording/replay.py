@@ -10,14 +10,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .. import vehicles
 from ..bridge.frame import Splitter
 from ..bridge.links.log import FrameWriter
 from ..core.compile import Progress
 from ..logs.dataflash.attach import attach
 from ..plants.choose import is_remote
+from ..scenario import Scenario
 from ..simulation import Simulation
 from ..vehicle.core_entry import Core
+from ..vehicle.kinds import UnknownKindError
 from ..vehicles import Airframe, AirframeError
 from ..worlds import World, WorldError
 from . import identity
@@ -262,17 +263,6 @@ def _title(recording: Recording) -> str:
     return f"recording {str(recording.path)!r}"
 
 
-def _airframe(header: dict[str, Any]) -> str | Airframe:
-    """The recorded airframe: ours by its name, any other from the figures in the recording.
-
-    A file that a recording names is never loaded: an airframe's file is Python, and would be run.
-    """
-    frame = header["frame"]
-    if isinstance(frame, str) and not frame.endswith(".py"):
-        return frame
-    return vehicles.of_data(header["vehicle"], header["airframe"])
-
-
 def _build(
     recording: Recording,
     frame: str | Airframe | None,
@@ -290,27 +280,13 @@ def _build(
             f"{title}: its physics was at the other end of a link ({physics}), and what came from there is not in it; "
             "give --physics NAME to fly it on an engine of this machine"
         )
-    if world is None and header["world"] is not None:
-        world = header["world"]["file"]
-        if world is None:
-            raise RecordingError(
-                f"{title}: its world {header['world']['name']!r} was made by a program; give it: --world FILE"
-            )
-    start = header["start"]
+    if world is None and header["world"] is not None and header["world"]["file"] is None:
+        name = header["world"]["name"]
+        raise RecordingError(f"{title}: its world {name!r} was made by a program; give it: --world FILE")
     try:
-        return Simulation(
-            frame or _airframe(header),
-            home=tuple(header["home"]),
-            seed=header["seed"],
-            estimator=header["estimator"],
-            params=header["params"],
-            core=core,
-            progress=progress,
-            world=world,
-            start=tuple(start) if isinstance(start, list) else start,
-            physics=physics,
-        )
-    except AirframeError as error:
+        scenario = Scenario.from_json(header, frame=frame, world=world, physics=physics)
+        return Simulation(scenario, core=core, progress=progress)
+    except (AirframeError, UnknownKindError) as error:
         raise RecordingError(f"{title}: {error}; --frame FILE gives another") from None
     except WorldError as error:
         raise RecordingError(f"{title}: {error}; --world FILE gives another") from None

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ..core.constants import TICK_US
 from ..errors import SitlError
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 MAX = "max"
 _SLICE_WALL_S = 0.002
-_SHORTEST_US, _LONGEST_US = 2500, 20000
+_SHORTEST_US, _LONGEST_US = TICK_US, 20000
 _CATCH_UP_S = 0.05
 
 

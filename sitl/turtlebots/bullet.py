@@ -44,7 +44,7 @@ class BulletTurtlebots(Turtlebots):
                 continue
             if ticks > 0:
                 v, (forward, turn) = robot.v, self.commands[index].tolist()
-                v.body.collided = 0
+                v.body.collided = False
                 if not math.isnan(forward):
                     v.command.forward, v.command.turn, v.command.time_us = forward, turn, v.time_us
                 robot.advance(ticks)

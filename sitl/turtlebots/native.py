@@ -14,14 +14,18 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.array_kernels import NarrowTable
 from ..core.kernels import jit_disabled
-from ..physics.native.turtlebot.fleet import advance
+from ..core.records import Records
+from ..physics.native.turtlebot.fleet import Orders, advance
 from ..physics.native.turtlebot.init import place
+from ..physics.native.turtlebot.scan import Beams
 from ..physics.native.turtlebot.state import TICK_US
 from ..physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from ..vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
 from ..worlds import World, load, planar
 from ..worlds.frames import from_heading, from_ned, to_heading, to_ned
+from ..worlds.geometry import Solids
 
 Pose = Sequence[float]
 """x, y [m], yaw [rad], or x, y, z [m], yaw [rad]."""
@@ -73,11 +77,9 @@ class Turtlebots:
         rays = planar.rays(self.lidar.rays, self.lidar.field_of_view)
         g = self.world.geometry
         fleet: Any = self.views if jit_disabled() else self.fleet
-        self._advance = advance.function()
-        self._arguments = (
-            fleet, self.commands, self.ticks, g.solids, g.grid, g.cells,
-            rays, np.empty_like(rays), np.empty(self.lidar.rays), self.scan,
-        )  # fmt: skip
+        beams = Beams(rays, np.empty_like(rays), np.empty(self.lidar.rays))
+        self._arguments = fleet, Orders(self.commands, self.ticks), g.arrays, beams, self.scan
+        self._advance = advance.bind(*self._arguments)
 
     def reset(self, index: int = 0, pose: Pose | None = None, seed: int = 0) -> None:
         """Put one robot at a pose, at rest; its scan is that of the next ``advance`` or ``look``.
@@ -98,21 +100,21 @@ class Turtlebots:
             ValueError: not a whole number of physics steps of 0.01 s.
         """
         self.ticks[:] = ticks_in(seconds)
-        self._advance(*self._arguments)
+        self._advance()
 
     def advance_each(self) -> None:
         """The same, each robot by its own number of ``ticks``."""
-        self._advance(*self._arguments)
+        self._advance()
 
     @property
-    def arguments(self) -> tuple[Any, ...]:
+    def arguments(self) -> tuple[Records[TurtlebotRecord], Orders, Solids, Beams, NarrowTable]:
         """What ``fleet.advance_fleet`` is called with: for laws of others that call it; the arrays stay in place."""
         return self._arguments
 
     def look(self) -> None:
         """Read the lidars where the robots stand."""
         self.ticks[:] = 0
-        self._advance(*self._arguments)
+        self._advance()
 
     def snapshot(self, index: int = 0) -> tuple[bytes, bytes]:
         """All that ``restore`` needs for one robot to go on bit for bit."""

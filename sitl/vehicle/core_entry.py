@@ -12,7 +12,8 @@ import numpy as np
 
 from ..core import compile as compiler
 from ..core.compile import Progress
-from .kinds import COPTER, Kind
+from .kind import Kind
+from .kinds import DEFAULT, KINDS
 
 Array = np.ndarray[Any, Any]
 
@@ -33,8 +34,9 @@ class Core:
         return _bound(self.kind, self.kind.advance, self._function, fleet, index)
 
 
-def load_core(kind: Kind = COPTER, progress: Progress | None = None) -> Core:
-    """The core of a kind of vehicle; compiles what changed since it was last built."""
+def load_core(kind: Kind | None = None, progress: Progress | None = None) -> Core:
+    """The core of a kind of vehicle (None: the default one); compiles what changed since it was last built."""
+    kind = kind or KINDS[DEFAULT]
     return Core(kind, compiler.load(kind.advance, kind.record_path, progress))
 
 

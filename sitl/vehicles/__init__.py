@@ -1,30 +1,45 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles as data: one file an airframe. To add one, write its file and name it in ``_MODULES``."""
+"""Vehicles as data: one file an airframe. To add one, write its file and name it in ``_MODULES``; another package names
+it in the entry point group ``sitl.airframes``."""
 
 from __future__ import annotations
 
 import importlib
 import runpy
 from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from .airframe import Airframe, AirframeError, apply
 from .copter_airframe import CopterAirframe, Rotor
 from .rover_airframe import RoverAirframe
 
-__all__ = ["Airframe", "AirframeError", "CopterAirframe", "Rotor", "RoverAirframe", "apply", "load", "names", "of_data"]
+__all__ = [
+    "Airframe",
+    "AirframeError",
+    "CopterAirframe",
+    "Rotor",
+    "RoverAirframe",
+    "apply",
+    "load",
+    "names",
+    "of_data",
+    "to_data",
+]
 
-_MODULES = {
-    "copter": ("erle_copter", "ardupilot_quad"),
-    "rover": ("erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover"),
-}
-"""Kind of vehicle -> its airframes, the one that is taken when none is named first."""
+_MODULES = ("erle_copter", "ardupilot_quad", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover")
+GROUP = "sitl.airframes"
+"""Entry points of airframes of other packages: name -> Airframe."""
 
 
 def names(kind: str | None = None) -> tuple[str, ...]:
-    """Names of the airframes that ``load`` knows: all, or those of a kind ("copter", "rover")."""
-    return tuple(name for k, of_kind in _MODULES.items() if kind in (None, k) for name in of_kind)
+    """Names of the airframes that ``load`` knows: all, or those of a kind of vehicle."""
+    known = tuple(dict.fromkeys((*_MODULES, *_installed())))
+    return known if kind is None else tuple(name for name in known if load(name).kind == kind)
 
 
 def load(name: str | Airframe) -> Airframe:
@@ -43,23 +58,48 @@ def load(name: str | Airframe) -> Airframe:
     module = name.strip().lower().replace("-", "_")
     if module not in names():
         raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(names())}, or a .py file")
-    found: Airframe = importlib.import_module(f"{__name__}.{module}").AIRFRAME
+    if module in _MODULES:
+        found = importlib.import_module(f"{__name__}.{module}").AIRFRAME
+    else:
+        found = _installed()[module].load()
+    if not isinstance(found, Airframe):
+        raise AirframeError(f"airframe {name!r}: {found!r} is no Airframe")
     return found
 
 
-def of_data(kind: str, data: Mapping[str, Any]) -> Airframe:
-    """An airframe from a data file: "name", "figures", "parameters", as ``recording.identity.of_airframe`` has them.
+@cache
+def _installed() -> dict[str, EntryPoint]:
+    return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def to_data(airframe: Airframe) -> dict[str, Any]:
+    """An airframe as JSON has it: "name", "figures", "parameters"."""
+    record = airframe.record()
+    figures = {name: _plain(record[name]) for name in record.dtype.names or ()}
+    return {"name": airframe.name, "figures": figures, "parameters": dict(airframe.parameters)}
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def of_data(kind: type[Airframe], data: Mapping[str, Any]) -> Airframe:
+    """An airframe from a data file: "name", "figures", "parameters", as ``to_data`` has them.
 
     Nothing that the data names is loaded or run.
 
+    Args:
+        kind: class of the airframe.
+        data: as above.
+
     Raises:
-        AirframeError: there is no such kind; the data make no airframe.
+        AirframeError: the data make no airframe.
     """
-    known: dict[str, type[Airframe]] = {"copter": CopterAirframe, "rover": RoverAirframe}
-    if kind not in known:
-        raise AirframeError(f"airframe of the kind {kind!r}: it is one of {', '.join(known)}")
     try:
-        return known[kind].of_record(str(data["name"]), data["figures"], data["parameters"])
+        return kind.of_record(str(data["name"]), data["figures"], data["parameters"])
     except AirframeError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -77,5 +117,5 @@ def _load_file(path: Path) -> Airframe:
         raise AirframeError(f"airframe file {str(path)!r}: {type(error).__name__}: {error}") from error
     found = scope.get("AIRFRAME")
     if not isinstance(found, Airframe):
-        raise AirframeError(f"airframe file {str(path)!r} does not define AIRFRAME, a CopterAirframe or RoverAirframe")
+        raise AirframeError(f"airframe file {str(path)!r} does not define AIRFRAME, an Airframe")
     return found

@@ -23,7 +23,7 @@ class AirframeError(SitlError, ValueError):
 
 @dataclass(frozen=True, kw_only=True)
 class Airframe:
-    """A vehicle as data: what both kinds have; make a ``CopterAirframe`` or a ``RoverAirframe``.
+    """A vehicle as data: what all kinds have; make a ``CopterAirframe``, a ``RoverAirframe`` ...
 
     Args:
         name: what ``--frame`` takes.
@@ -36,7 +36,7 @@ class Airframe:
     """
 
     kind: ClassVar[str] = ""
-    """"copter" or "rover"."""
+    """Name of the kind of vehicle."""
     known: ClassVar[tuple[Figure, ...]] = ()
     """Figures that may be given."""
     dtype: ClassVar[np.dtype[Any]]
@@ -51,7 +51,7 @@ class Airframe:
 
     def __post_init__(self) -> None:
         if not self.kind:
-            raise AirframeError(f"airframe {self.name!r} is of no kind: make a CopterAirframe or a RoverAirframe")
+            raise AirframeError(f"airframe {self.name!r} is of no kind: make one of a class of its kind")
         names = {figure.name: figure for figure in self.known}
         for name in self.figures:
             if name not in names:
@@ -89,6 +89,10 @@ class Airframe:
     def _rest(cls, record: Mapping[str, Any]) -> dict[str, Any]:
         """What a kind has besides figures, as its arguments."""
         return {}
+
+    def has(self, name: str) -> bool:
+        """Whether airframes of this kind have a figure of this name."""
+        return any(figure.name == name for figure in self.known)
 
     def value(self, name: str) -> Any:
         """A figure by its name: a number, or a sequence for a vector."""

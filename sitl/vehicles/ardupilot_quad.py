@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 
+from ..core.constants import GRAVITY
 from . import sensor_sets
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
 from .figures.copter import THRUST_MOMENTUM
 
 MASS = 3.0  # [kg]
 ARM = 0.35  # [m] rotors from the centre
-GRAVITY = 9.80665  # [m/s^2]
 HOVER_POWER = 29.3 * 12.09  # [W] reference current and voltage in the hover
 HOVER_THRUST = 0.39  # [1] share of the greatest thrust that hovers
 DISC_AREA = 0.385  # [m^2] all four rotors

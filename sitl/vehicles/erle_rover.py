@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ..core.constants import GRAVITY
 from . import sensor_sets
 from .figures.rover import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
@@ -29,7 +30,7 @@ AIRFRAME = RoverAirframe(
         # [kg m^2] chassis 140, 550, 550; about z also wheels and blocks at their axles [model, derived]
         "inertia": (200.0, 610.0, 677.0),
         "control_full": 0.8,  # 1100 and 1900 us are the ends [model]
-        "speed_max": SPEED + TIME_CONSTANT * ROLLING * 9.80665,  # [m/s] so that it drives at SPEED under its load
+        "speed_max": SPEED + TIME_CONSTANT * ROLLING * GRAVITY,  # [m/s] so that it drives at SPEED under its load
         "time_constant": TIME_CONSTANT,
         "drive_accel": 2.5,  # [m/s^2] 2.2 kN at the rims [estimate]
         "rolling_resistance": ROLLING,

@@ -12,12 +12,13 @@ rows. The floor is no solid.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from ..core.array_kernels import kernel
+from ..core.array_kernels import Kernel, Table
 from ..core.kernels import law
+from ..core.vectors import Vec2, Vec3
 from .geometry import (
     BOTTOM,
     COS,
@@ -38,14 +39,53 @@ _NOTHING = 1e-100
 """A length [m] whose square is still a number."""
 
 
-@law
-def beside(solids, k, n, e):
-    """Signed distance seen from above from a point to the solid of row ``k``, and the unit vector away from it.
+class Volume(NamedTuple):
+    """A robot's volume, or a disc of it."""
 
-    Returns (distance, north, east).
-    """
+    axis: Vec2
+    """North, east [m]."""
+    top: float
+    """Down coordinate of its upper end [m]."""
+    bottom: float
+    """Down coordinate of its lower end [m], below: top < bottom."""
+    radius: float
+    """[m]; 0 for a line."""
+
+
+class Side(NamedTuple):
+    """How near a solid is, seen from above."""
+
+    distance: float
+    """[m]; negative inside."""
+    normal: Vec2
+    """Unit vector away from the solid: north, east."""
+
+
+class Contact(NamedTuple):
+    """How near a solid is."""
+
+    distance: float
+    """[m]; negative where the volumes overlap; inf: there is none."""
+    normal: Vec3
+    """Unit vector from the solid to the robot, NED."""
+    solid: int
+    """Its row, which is its number in the world's ``solids``; -1: there is none."""
+
+
+class Listed(NamedTuple):
+    """What ``near`` has listed."""
+
+    rows: int
+    """How many were written."""
+    complete: float
+    """Distance of the nearest solid that was left out [m]; inf: none was."""
+
+
+@law
+def beside(solids: Table, k: int, point: Vec2) -> Side:
+    """How near the solid of row ``k`` is to a point (north, east [m]), seen from above."""
     c, s = solids[k, COS], solids[k, SIN]
-    dn, de = n - solids[k, NORTH], e - solids[k, EAST]
+    dn, de = point.x - solids[k, NORTH], point.y - solids[k, EAST]
     x, y = c * dn + s * de, c * de - s * dn
     side_x, side_y = 1.0 if x >= 0.0 else -1.0, 1.0 if y >= 0.0 else -1.0
     out_x, out_y = side_x * x - solids[k, HALF_LENGTH], side_y * y - solids[k, HALF_WIDTH]
@@ -56,96 +96,67 @@ def beside(solids, k, n, e):
         distance, away_x, away_y = out_x, side_x, 0.0
     else:
         distance, away_x, away_y = out_y, 0.0, side_y
-    return (distance - solids[k, RADIUS], c * away_x - s * away_y, s * away_x + c * away_y)
+    return Side(distance - solids[k, RADIUS], Vec2(c * away_x - s * away_y, s * away_x + c * away_y))
 
 
 @law
-def separation(solids, k, n, e, top, bottom, radius):
-    """Signed distance from a robot to the solid of row ``k``, with the normal: (distance, north, east, down).
-
-    Args:
-        solids: rows.
-        k: number of the row.
-        n, e: axis of the robot's volume.
-        top, bottom: down coordinates of its ends, top < bottom.
-        radius: of the volume; 0 for a line.
-    """
-    level, away_n, away_e = beside(solids, k, n, e)
-    level -= radius
-    above, below = solids[k, TOP] - bottom, top - solids[k, BOTTOM]  # gaps when the robot is above it, below it
+def separation(solids: Table, k: int, volume: Volume) -> Contact:
+    """How near the solid of row ``k`` is to a robot."""
+    side = beside(solids, k, volume.axis)
+    away, level = side.normal, side.distance - volume.radius
+    above, below = solids[k, TOP] - volume.bottom, volume.top - solids[k, BOTTOM]  # gaps when it is above, below
     upright = max(above, below)
     away_d = -1.0 if above >= below else 1.0
     if level > _NOTHING and upright > _NOTHING:
         distance = math.sqrt(level * level + upright * upright)
         share = level / distance
-        return (distance, away_n * share, away_e * share, away_d * upright / distance)
+        return Contact(distance, Vec3(away.x * share, away.y * share, away_d * upright / distance), k)
     if level >= upright:
-        return (level, away_n, away_e, 0.0)
-    return (upright, 0.0, 0.0, away_d)
+        return Contact(level, Vec3(away.x, away.y, 0.0), k)
+    return Contact(upright, Vec3(0.0, 0.0, away_d), k)
 
 
 @law
-def nearest_of(solids, count, n, e, top, bottom, radius):
-    """The nearest of the first ``count`` rows: (distance, north, east, down of the normal, row).
-
-    The distance is inf and the row -1 when there is none.
-    """
-    distance, away_n, away_e, away_d, row = INF, 0.0, 0.0, 0.0, -1
+def nearest_of(solids: Table, count: int, volume: Volume) -> Contact:
+    """The nearest of the first ``count`` rows."""
+    nearest = Contact(INF, Vec3(0.0, 0.0, 0.0), -1)
     for k in range(count):
-        apart, north, east, down = separation(solids, k, n, e, top, bottom, radius)
-        if apart < distance:
-            distance, away_n, away_e, away_d, row = apart, north, east, down, k
-    return (distance, away_n, away_e, away_d, row)
+        contact = separation(solids, k, volume)
+        if contact.distance < nearest.distance:
+            nearest = contact
+    return nearest
 
 
 @law
-def gather(solids, n, e, reach, rows):
-    """Copy the rows of the solids near a point, the nearest first, into ``rows``: (count, complete); see ``near``."""
+def gather(solids: Table, place: Vec2, reach: float, rows: Table) -> Listed:
+    """Copy the rows of the solids near a place, the nearest first, into ``rows``; see ``near``."""
     room, count, complete = rows.shape[0], 0, INF
     for k in range(solids.shape[0]):
-        distance, _, _ = beside(solids, k, n, e)
+        distance = beside(solids, k, place).distance
         if distance > reach:
             complete = min(complete, distance)
             continue
-        place = count
-        while place > 0:
-            before, _, _ = beside(rows, place - 1, n, e)
-            if before <= distance:
-                break
-            place -= 1
+        row = count
+        while row > 0 and beside(rows, row - 1, place).distance > distance:
+            row -= 1
         if count == room:  # the last falls out, or the new one does not get in
-            last = distance
-            if place < room:
-                last, _, _ = beside(rows, room - 1, n, e)
-            complete = min(complete, last)
+            complete = min(complete, beside(rows, room - 1, place).distance if row < room else distance)
         else:
             count += 1
-        if place < room:
-            for below in range(count - 1, place, -1):
+        if row < room:
+            for below in range(count - 1, row, -1):
                 for figure in range(SOLID_FIGURES):
                     rows[below, figure] = rows[below - 1, figure]
             for figure in range(SOLID_FIGURES):
-                rows[place, figure] = solids[k, figure]
-    return (count, complete)
+                rows[row, figure] = solids[k, figure]
+    return Listed(count, complete)
 
 
-_nearest = kernel("Tuple((f8, f8, f8, f8, i8))(f8[:,::1], i8, f8, f8, f8, f8, f8)")(nearest_of)
-_gather = kernel("Tuple((i8, f8))(f8[:,::1], f8, f8, f8, f8[:,::1])")(gather)
+_nearest = Kernel(nearest_of)
+_gather = Kernel(gather)
 
 
-@dataclass(frozen=True)
-class Clearance:
-    """How far a robot is from the nearest solid."""
-
-    distance: float
-    """[m]; negative: they overlap by so much; inf: there is no solid."""
-    normal: tuple[float, float, float]
-    """From the solid to the robot: north, east, down; a unit vector."""
-    solid: int
-    """Its number in the world's ``solids``; -1: there is none."""
-
-
-def clearance(geometry: Geometry, north: float, east: float, top: float, bottom: float, radius: float) -> Clearance:
+def clearance(geometry: Geometry, north: float, east: float, top: float, bottom: float, radius: float) -> Contact:
     """The solid nearest to a robot.
 
     Args:
@@ -154,11 +165,12 @@ def clearance(geometry: Geometry, north: float, east: float, top: float, bottom:
         top, bottom: down coordinates of its ends [m], top < bottom.
         radius: of the volume [m].
     """
-    distance, n, e, d, row = _nearest(geometry.solids, len(geometry), north, east, top, bottom, radius)
-    return Clearance(float(distance), (float(n), float(e), float(d)), int(row))
+    volume = Volume(Vec2(north, east), float(top), float(bottom), float(radius))
+    found = _nearest(geometry.solids, len(geometry), volume)
+    return Contact(float(found.distance), found.normal, found.solid)
 
 
-def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floats) -> tuple[int, float]:
+def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floats) -> Listed:
     """The solids near a place, for a vehicle that tests contacts itself: their rows, the nearest first, into ``rows``.
 
     Args:
@@ -171,8 +183,8 @@ def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floa
         How many rows were written, and the distance [m] of the nearest solid that was left out (inf: none was). As
         long as a robot's volume stays within that distance of the place it can touch only what is listed.
     """
-    count, complete = _gather(geometry.solids, north, east, reach, rows)
-    return int(count), float(complete)
+    count, complete = _gather(geometry.solids, Vec2(north, east), reach, rows)
+    return Listed(count, float(complete))
 
 
 def rows(count: int) -> Floats:

@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from ..core.array_kernels import IntLine, Line, Table
 from .frames import to_heading, to_ned
 from .shapes import Box, Cylinder, Solid
 
@@ -55,6 +57,17 @@ _LEAST_CELL = 0.1
 """[m]."""
 
 
+class Solids(NamedTuple):
+    """A world's solids as laws take them."""
+
+    rows: Table
+    """Shape (n, SOLID_FIGURES)."""
+    grid: Line
+    """Shape (GRID_FIGURES,)."""
+    cells: IntLine
+    """See ``Geometry``."""
+
+
 @dataclass(frozen=True, eq=False)
 class Geometry:
     """What ray casting and contacts work on; pickles as it is."""
@@ -68,6 +81,11 @@ class Geometry:
 
     def __len__(self) -> int:
         return len(self.solids)
+
+    @property
+    def arrays(self) -> Solids:
+        """All that laws need."""
+        return Solids(self.solids, self.grid, self.cells)
 
     @property
     def floor(self) -> float:

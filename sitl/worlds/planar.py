@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from ..core.array_kernels import kernel
+from ..core.array_kernels import Kernel, Line
 from ..core.kernels import law
 from .geometry import Floats
 from .rays import INF
@@ -32,7 +32,7 @@ def rays(count: int, field_of_view: float) -> Floats:
 
 
 @law
-def publish_readings(ranges, longest, out):
+def publish_readings(ranges: Line, longest: float, out: Line) -> None:
     """The published readings of the ranges that were cast, into ``out``; see ``publish``."""
     cast, published = ranges.shape[0], out.shape[0]
     for i in range(published):
@@ -44,7 +44,7 @@ def publish_readings(ranges, longest, out):
         out[i] = INF if reading >= longest else reading
 
 
-_publish = kernel("void(f8[::1], f8, f8[::1])")(publish_readings)
+_publish = Kernel(publish_readings)
 
 
 def publish(ranges: Floats, longest: float, out: Floats) -> Floats:

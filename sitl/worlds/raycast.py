@@ -11,11 +11,14 @@ that are listed in its cells. The first is quicker until there are very many sol
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ..core.array_kernels import kernel
+from ..core.algebra import rotate
+from ..core.array_kernels import IntLine, Kernel, Line, Table
 from ..core.kernels import law
-from ..core.rotations import quat_rotate
+from ..core.vectors import Quat, Vec2, Vec3
 from .geometry import (
     BOTTOM,
     CELL,
@@ -35,41 +38,44 @@ from .geometry import (
     TOP,
     Floats,
     Geometry,
+    Solids,
 )
-from .rays import INF, TINY, crossing, to_box, to_cylinder, to_floor
+from .rays import INF, TINY, Span, crossing, to_box, to_cylinder, to_floor
 
 MANY = 128
 """From so many solids on a scan walks through the grid: measured, see docs/worlds.md."""
 
 
 @law
-def to_solid(solids, k, n, e, d, vn, ve, vd):
-    """Range to the solid of row ``k`` from n, e, d along vn, ve, vd."""
-    c, s = solids[k, COS], solids[k, SIN]
-    dn, de = n - solids[k, NORTH], e - solids[k, EAST]
-    top, bottom = solids[k, TOP] - d, solids[k, BOTTOM] - d
-    if solids[k, RADIUS] > 0.0:
-        return to_cylinder(dn, de, solids[k, RADIUS], top, bottom, vn, ve, vd)
-    x, y, vx, vy = c * dn + s * de, c * de - s * dn, c * vn + s * ve, c * ve - s * vn
-    return to_box(x, y, solids[k, HALF_LENGTH], solids[k, HALF_WIDTH], top, bottom, vx, vy, vd)
+def to_solid(rows: Table, k: int, origin: Vec3, direction: Vec3) -> float:
+    """Range to the solid of row ``k``."""
+    c, s = rows[k, COS], rows[k, SIN]
+    dn, de = origin.x - rows[k, NORTH], origin.y - rows[k, EAST]
+    heights = Span(rows[k, TOP] - origin.z, rows[k, BOTTOM] - origin.z)
+    if rows[k, RADIUS] > 0.0:
+        return to_cylinder(Vec2(dn, de), rows[k, RADIUS], heights, direction)
+    start, half = Vec2(c * dn + s * de, c * de - s * dn), Vec2(rows[k, HALF_LENGTH], rows[k, HALF_WIDTH])
+    along, across = c * direction.x + s * direction.y, c * direction.y - s * direction.x
+    return to_box(start, half, heights, Vec3(along, across, direction.z))
 
 
 @law
-def walk(solids, grid, cells, n, e, d, vn, ve, vd):
+def walk(solids: Solids, origin: Vec3, direction: Vec3) -> float:
     """Range along one ray to the nearest solid or the floor, through the cells of the grid that lie below the ray.
 
     Ends when what was met lies before the next cell. A solid is listed in every cell that comes near it, so rounding in
     the walk cannot pass one by.
     """
-    nearest = to_floor(grid[FLOOR] - d, vd)
+    grid, cells, vn, ve = solids.grid, solids.cells, direction.x, direction.y
+    nearest = to_floor(grid[FLOOR] - origin.z, direction.z)
     cell, rows, columns = grid[CELL], int(grid[ROWS]), int(grid[COLUMNS])
     if rows == 0:
         return nearest
-    north, east = n - grid[GRID_NORTH], e - grid[GRID_EAST]
-    enter, leave = crossing(-north, cell * rows - north, vn)
-    enter2, leave2 = crossing(-east, cell * columns - east, ve)
-    enter = max(max(enter, enter2), 0.0)
-    if enter > min(leave, leave2) or enter >= nearest:
+    north, east = origin.x - grid[GRID_NORTH], origin.y - grid[GRID_EAST]
+    over_rows = crossing(-north, cell * rows - north, vn)
+    over_columns = crossing(-east, cell * columns - east, ve)
+    enter = max(max(over_rows.enter, over_columns.enter), 0.0)
+    if enter > min(over_rows.leave, over_columns.leave) or enter >= nearest:
         return nearest
     row = min(max(int((north + enter * vn) * grid[PER_METRE]), 0), rows - 1)
     column = min(max(int((east + enter * ve) * grid[PER_METRE]), 0), columns - 1)
@@ -81,7 +87,7 @@ def walk(solids, grid, cells, n, e, d, vn, ve, vd):
     while True:
         place = row * columns + column
         for item in range(cells[place], cells[place + 1]):
-            met = to_solid(solids, cells[item], n, e, d, vn, ve, vd)
+            met = to_solid(solids.rows, cells[item], origin, direction)
             nearest = met if met < nearest else nearest
         row_end = (cell * (row + row_edge) - north) * row_pace if north_bound else INF
         column_end = (cell * (column + column_edge) - east) * column_pace if east_bound else INF
@@ -98,73 +104,97 @@ def walk(solids, grid, cells, n, e, d, vn, ve, vd):
 
 
 @law
-def walk_rays(solids, grid, cells, n, e, d, directions, out):
+def ray(directions: Table, k: int) -> Vec3:
+    """Direction ``k`` of three rows (norths, easts, downs)."""
+    return Vec3(directions[0, k], directions[1, k], directions[2, k])
+
+
+@law
+def turn_rays(q: Quat, rays: Table, directions: Table) -> None:
+    """Turn rays on a body of attitude ``q`` into the world, into ``directions``; both have three rows."""
+    for k in range(rays.shape[1]):
+        turned = rotate(q, ray(rays, k))
+        directions[0, k], directions[1, k], directions[2, k] = turned.x, turned.y, turned.z
+
+
+@law
+def walk_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
     """Ranges along many rays from one point, by ``walk``."""
     for k in range(out.shape[0]):
-        out[k] = walk(solids, grid, cells, n, e, d, directions[0, k], directions[1, k], directions[2, k])
+        out[k] = walk(solids, origin, ray(directions, k))
 
 
 @law
-def sweep_rays(solids, grid, n, e, d, directions, out):
+def sweep_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
     """Ranges along many rays from one point, by testing every solid for all rays."""
-    rays = out.shape[0]
-    floor = grid[FLOOR] - d
+    rows, rays = solids.rows, out.shape[0]
+    floor = solids.grid[FLOOR] - origin.z
     for k in range(rays):
         out[k] = to_floor(floor, directions[2, k])
-    for j in range(solids.shape[0]):
-        c, s = solids[j, COS], solids[j, SIN]
-        dn, de = n - solids[j, NORTH], e - solids[j, EAST]
-        top, bottom = solids[j, TOP] - d, solids[j, BOTTOM] - d
-        radius = solids[j, RADIUS]
+    for j in range(rows.shape[0]):
+        c, s = rows[j, COS], rows[j, SIN]
+        dn, de = origin.x - rows[j, NORTH], origin.y - rows[j, EAST]
+        heights = Span(rows[j, TOP] - origin.z, rows[j, BOTTOM] - origin.z)
+        radius = rows[j, RADIUS]
         if radius > 0.0:
             for k in range(rays):
-                met = to_cylinder(dn, de, radius, top, bottom, directions[0, k], directions[1, k], directions[2, k])
+                met = to_cylinder(Vec2(dn, de), radius, heights, ray(directions, k))
                 out[k] = met if met < out[k] else out[k]
         else:
-            x, y = c * dn + s * de, c * de - s * dn
-            length, width = solids[j, HALF_LENGTH], solids[j, HALF_WIDTH]
+            start, half = Vec2(c * dn + s * de, c * de - s * dn), Vec2(rows[j, HALF_LENGTH], rows[j, HALF_WIDTH])
             for k in range(rays):
-                vn, ve = directions[0, k], directions[1, k]
-                met = to_box(x, y, length, width, top, bottom, c * vn + s * ve, c * ve - s * vn, directions[2, k])
+                v = ray(directions, k)
+                met = to_box(start, half, heights, Vec3(c * v.x + s * v.y, c * v.y - s * v.x, v.z))
                 out[k] = met if met < out[k] else out[k]
 
 
 @law
-def scan_rays(solids, grid, cells, n, e, d, directions, out):
+def scan_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
     """Ranges along many rays from one point, the quicker way."""
-    if solids.shape[0] < MANY:
-        sweep_rays(solids, grid, n, e, d, directions, out)
+    if solids.rows.shape[0] < MANY:
+        sweep_rays(solids, origin, directions, out)
     else:
-        walk_rays(solids, grid, cells, n, e, d, directions, out)
+        walk_rays(solids, origin, directions, out)
 
 
 @law
-def scan_point(solids, grid, cells, origin, directions, out):
-    """Ranges along many rays from the point ``origin`` (three numbers); see ``scan``."""
-    scan_rays(solids, grid, cells, origin[0], origin[1], origin[2], directions, out)
+def scan_point(rows: Table, grid: Line, cells: IntLine, origin: Line, directions: Table, out: Line) -> None:
+    """``scan_rays`` of the arrays of a ``Geometry`` and a point of three numbers."""
+    scan_rays(Solids(rows, grid, cells), Vec3(origin[0], origin[1], origin[2]), directions, out)
+
+
+class Scene(NamedTuple):
+    """Bodies with a sensor each, and room to work in."""
+
+    positions: Table
+    """NED [m], shape (m, 3)."""
+    attitudes: Table
+    """Quaternions (w, x, y, z) from body (FRD) to NED, shape (m, 4)."""
+    mount: Line
+    """Place of the sensor on the body, FRD [m], shape (3,)."""
+    rays: Table
+    """Unit vectors on the body, FRD, shape (3, n)."""
+    directions: Table
+    """Room, as ``rays``."""
 
 
 @law
-def scan_bodies(solids, grid, cells, positions, attitudes, mount, rays, directions, out):
-    """Ranges seen by a sensor on each of many bodies; see ``scan_from``. ``directions``: room to work, as ``rays``."""
+def scan_bodies(solids: Solids, scene: Scene, out: Table) -> None:
+    """Ranges seen by a sensor on each of many bodies; see ``scan_from``."""
+    positions, attitudes, mount = scene.positions, scene.attitudes, scene.mount
     for i in range(positions.shape[0]):
-        w, x, y, z = attitudes[i, 0], attitudes[i, 1], attitudes[i, 2], attitudes[i, 3]
-        n, e, d = quat_rotate(w, x, y, z, mount[0], mount[1], mount[2])
-        for k in range(rays.shape[1]):
-            vn, ve, vd = quat_rotate(w, x, y, z, rays[0, k], rays[1, k], rays[2, k])
-            directions[0, k], directions[1, k], directions[2, k] = vn, ve, vd
-        scan_rays(
-            solids, grid, cells, n + positions[i, 0], e + positions[i, 1], d + positions[i, 2], directions, out[i]
-        )
+        q = Quat(attitudes[i, 0], attitudes[i, 1], attitudes[i, 2], attitudes[i, 3])
+        at = rotate(q, Vec3(mount[0], mount[1], mount[2]))
+        turn_rays(q, scene.rays, scene.directions)
+        origin = at + Vec3(positions[i, 0], positions[i, 1], positions[i, 2])
+        scan_rays(solids, origin, scene.directions, out[i])
 
 
-_scan = kernel("void(f8[:,::1], f8[::1], i8[::1], f8[::1], f8[:,::1], f8[::1])")(scan_point)
-_scan_bodies = kernel(
-    "void(f8[:,::1], f8[::1], i8[::1], f8[:,::1], f8[:,::1], f8[::1], f8[:,::1], f8[:,::1], f8[:,::1])"
-)(scan_bodies)
-walked = kernel("void(f8[:,::1], f8[::1], i8[::1], f8, f8, f8, f8[:,::1], f8[::1])")(walk_rays)
+_scan = Kernel(scan_point)
+_scan_bodies = Kernel(scan_bodies)
+walked = Kernel(walk_rays)
 """``walk_rays``, compiled: for tests and measurements."""
-swept = kernel("void(f8[:,::1], f8[::1], f8, f8, f8, f8[:,::1], f8[::1])")(sweep_rays)
+swept = Kernel(sweep_rays)
 """``sweep_rays``, compiled: for tests and measurements."""
 
 
@@ -194,6 +224,5 @@ def scan_from(
         rays: unit vectors on the body, FRD, shape (3, n), as from ``planar.rays``.
         out: shape (m, n). The arrays are contiguous float64.
     """
-    room = np.empty_like(rays)
-    _scan_bodies(geometry.solids, geometry.grid, geometry.cells, positions, attitudes, mount, rays, room, out)
+    _scan_bodies(geometry.arrays, Scene(positions, attitudes, mount, rays, np.empty_like(rays)), out)
     return out

@@ -10,64 +10,74 @@ Faces are half open: a ray that runs within a face's plane meets the solid on on
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from ..core.kernels import law
+from ..core.vectors import Vec2, Vec3
 
 INF = math.inf
 TINY = 1e-300
 """Stands for a component that is less: what is reached along it is then very far away, with the right sign."""
 
 
+class Span(NamedTuple):
+    """From where to where along a ray something is [m]."""
+
+    enter: float
+    leave: float
+
+
 @law
-def crossing(low, high, velocity):
-    """When a point is between two planes that lie ``low`` and ``high`` ahead of it: (enters, leaves)."""
+def crossing(low: float, high: float, velocity: float) -> Span:
+    """When a point is between two planes that lie ``low`` and ``high`` [m] ahead of it."""
     pace = 1.0 / (velocity if abs(velocity) > TINY else TINY)
     first, second = low * pace, high * pace
-    return (first if first < second else second, second if first < second else first)
+    return Span(first if first < second else second, second if first < second else first)
 
 
 @law
-def first_of(enter, leave, enter2, leave2):
-    """Range of a ray that is in one set from ``enter`` to ``leave``, in another from ``enter2``: the first in both."""
-    enter = enter if enter > enter2 else enter2
-    leave = leave if leave < leave2 else leave2
+def first_of(a: Span, b: Span) -> float:
+    """Range of a ray that is in one set along a span, in another along the other: the first in both."""
+    enter = a.enter if a.enter > b.enter else b.enter
+    leave = a.leave if a.leave < b.leave else b.leave
     enter = enter if enter > 0.0 else 0.0
     return enter if leave >= enter else INF
 
 
 @law
-def to_box(x, y, half_length, half_width, top, bottom, vx, vy, vd):
+def to_box(start: Vec2, half: Vec2, heights: Span, direction: Vec3) -> float:
     """Range to a box.
 
     Args:
-        x, y: where the ray starts, from the box's middle along its own axes [m].
-        half_length, half_width: of the box [m].
-        top, bottom: down, from where the ray starts [m].
-        vx, vy, vd: the ray's direction along the box's own axes, and down.
+        start: where the ray starts, from the box's middle along its own axes [m].
+        half: half lengths along those [m].
+        heights: top and bottom, down from where the ray starts [m].
+        direction: the ray's, along the box's own axes, and down.
     """
-    enter, leave = crossing(-half_length - x, half_length - x, vx)
-    enter2, leave2 = crossing(-half_width - y, half_width - y, vy)
-    enter = enter if enter > enter2 else enter2
-    leave = leave if leave < leave2 else leave2
-    enter2, leave2 = crossing(top, bottom, vd)
-    return first_of(enter, leave, enter2, leave2)
+    length = crossing(-half.x - start.x, half.x - start.x, direction.x)
+    width = crossing(-half.y - start.y, half.y - start.y, direction.y)
+    enter = length.enter if length.enter > width.enter else width.enter
+    leave = length.leave if length.leave < width.leave else width.leave
+    return first_of(Span(enter, leave), crossing(heights.enter, heights.leave, direction.z))
 
 
 @law
-def to_cylinder(x, y, radius, top, bottom, vx, vy, vd):
+def to_cylinder(start: Vec2, radius: float, heights: Span, direction: Vec3) -> float:
     """Range to a vertical cylinder; arguments as for a box."""
+    x, y, vx, vy = start.x, start.y, direction.x, direction.y
     a = vx * vx + vy * vy
     a = a if a > TINY else TINY
     b = x * vx + y * vy
     inside = b * b - a * (x * x + y * y - radius * radius)
     root = math.sqrt(inside if inside > 0.0 else 0.0)
     enter, leave = (-b - root) / a, (root - b) / a
-    enter2, leave2 = crossing(top, bottom, vd)
-    return first_of(enter if inside >= 0.0 else INF, leave, enter2, leave2)
+    upright = crossing(heights.enter, heights.leave, direction.z)
+    return first_of(Span(enter if inside >= 0.0 else INF, leave), upright)
 
 
 @law
-def to_floor(floor, vd):
-    """Range to the floor, which lies ``floor`` [m] below where the ray starts: 0 from below it."""
-    reached = floor / (vd if vd > TINY else 1.0) if vd > TINY else INF
+def to_floor(floor: float, down: float) -> float:
+    """Range to the floor, which lies ``floor`` [m] below where the ray starts: 0 from below it; ``down``: component of
+    its direction."""
+    reached = floor / (down if down > TINY else 1.0) if down > TINY else INF
     return reached if floor >= 0.0 else 0.0

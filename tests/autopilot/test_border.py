@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.state import Actuators, Sensors
+from sitl.core.border import Actuators, Sensors
 
 FLOATS = ("acc", "gyro", "mag", "abs_pressure", "temperature", "battery_voltage", "battery_current")
 INTEGERS = ("gps_lat", "gps_lon", "gps_alt", "gps_eph", "gps_epv", "gps_vel", "gps_satellites")

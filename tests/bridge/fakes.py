@@ -19,7 +19,8 @@ from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
 from sitl.core import rng
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle.record import Copter, Rover
+from sitl.vehicle.copter import Copter
+from sitl.vehicle.rover import Rover
 
 TICK_US = 2500
 HOME = (-353632620, 1491652370, 584.0)

@@ -9,15 +9,17 @@ from collections import Counter
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.profile import NAMES, Profile, load
+from sitl.bridge.profile import Profile, load
 from sitl.bridge.telemetry.builder import builders
 from sitl.vehicle.kinds import KINDS
 
+NAMES = tuple(KINDS)
 PROFILES = [load(name) for name in NAMES]
 
 
-def test_every_firmware_has_one() -> None:
-    assert set(NAMES) == set(KINDS)
+@pytest.mark.parametrize(("name", "profile"), list(zip(NAMES, PROFILES, strict=True)), ids=NAMES)
+def test_it_says_the_type_of_its_kind(name: str, profile: Profile) -> None:
+    assert profile.mav_type == KINDS[name].mav_type
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=NAMES)

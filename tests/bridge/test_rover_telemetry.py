@@ -11,6 +11,7 @@ import pytest
 
 from sitl.autopilot.rover.modes import auto
 from sitl.autopilot.rover.modes import guided as guided_mode
+from sitl.core.vectors import Vec3
 from tests.bridge.fakes import HOME, Bench
 
 MANUAL, HOLD, AUTO, RTL, GUIDED, INITIALISING = 0, 4, 10, 11, 15, 16
@@ -136,7 +137,7 @@ def test_no_number_of_the_record_stops_telemetry(rover_bench: Bench, value: floa
     v = rover_bench.vehicle.v
     for mode in (AUTO, RTL, GUIDED, 5, 9, 12):
         v.autopilot.modes.number, v.autopilot.estimate.origin_set = mode, 1
-        v.autopilot.estimate.pos = value
+        v.autopilot.estimate.pos = Vec3(value, value, value)
         v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_mode.POSITION, value
         v.autopilot.control.motors.throttle = v.autopilot.control.motors.out_throttle = value
         for number in rover_bench.bridge.telemetry:

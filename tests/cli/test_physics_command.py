@@ -44,4 +44,4 @@ def test_a_port_that_is_taken(tmp_path: Path) -> None:
 
 def test_what_is_there_by_default() -> None:
     options = parser().parse_args(["physics", "rover"])
-    assert (options.backend, options.listen, options.seed, options.instance) == ("native", "tcp", 0, 0)
+    assert (options.physics, options.listen, options.seed, options.instance) == ("native", "tcp", 0, 0)

@@ -91,6 +91,19 @@ def test_constrain_takes_nan_to_the_middle() -> None:
     assert [scalars.constrain(x, -1.0, 3.0) for x in (-5.0, 0.0, 5.0)] == [-1.0, 0.0, 3.0]
 
 
+@given(st.tuples(*[st.floats(-3.0, 3.0)] * 3), st.tuples(*[st.floats(-9.0, 9.0)] * 3))
+def test_the_matrix_of_a_rotation_turns_as_its_quaternion_does(turn: tuple[float, ...], v: tuple[float, ...]) -> None:
+    q = al.quat_from_rotation_vector(Vec3(*turn))
+    assert al.apply(al.rotation_matrix(q), Vec3(*v)) == pytest.approx(al.rotate(q, Vec3(*v)), abs=1e-9)
+
+
+def test_one_component_is_replaced_in_a_copy() -> None:
+    v = Vec3(1.0, 2.0, 3.0)
+    assert v.replace(y=5.0) == (1.0, 5.0, 3.0) and v.y == 2.0
+    with pytest.raises(TypeError):
+        v.replace(yaw=1.0)
+
+
 def test_values_are_tuples_with_arithmetic() -> None:
     v = Vec3(1.0, 2.0, 3.0)
     assert v + v == v * 2.0 == 2.0 * v == Vec3(2.0, 4.0, 6.0)

@@ -17,15 +17,15 @@ def grow(x):
 KERNEL = """
 import numpy as np
 from sitl.core.kernels import law
-from sitl.core.array_kernels import kernel
+from sitl.core.array_kernels import Kernel, Line
 from toy_room import grow
 
 @law
-def grow_all(values):
+def grow_all(values: Line) -> None:
     for k in range(values.shape[0]):
         values[k] = grow(values[k])
 
-grown = kernel("void(f8[::1])")(grow_all)
+grown = Kernel(grow_all)
 values = np.ones(3)
 grown(values)
 print(values.tolist())

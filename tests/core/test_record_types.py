@@ -11,7 +11,8 @@ import pytest
 from sitl.core.numba_records import numba_type
 from sitl.core.records import Float32, Ints, Record, array, as_dict
 from sitl.core.vectors import Value
-from sitl.vehicle.record import Copter, Rover
+from sitl.vehicle.copter import Copter
+from sitl.vehicle.rover import Rover
 
 
 class Small(Record):

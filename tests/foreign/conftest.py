@@ -7,7 +7,8 @@ import pytest
 
 from sitl.plants.alone import stand_alone
 from sitl.plants.json_link import LOCAL
-from sitl.simulation import DEFAULT_HOME, Simulation
+from sitl.scenario import DEFAULT_HOME
+from sitl.simulation import Simulation
 from tests.foreign import arducopter_stand_in, px4_stand_in
 
 

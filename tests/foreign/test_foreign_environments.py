@@ -119,7 +119,7 @@ def test_the_port_of_the_physics_follows_the_instance(connection, port):
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "count": 2}, "one vehicle"),
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "connection": "tcp:127.0.0.1:5760"}, "no connection"),
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "gcs": "udp:127.0.0.1:14550"}, "gcs"),
-        ({"autopilot": "px4:udp:127.0.0.1:14540"}, "copters"),
+        ({"autopilot": "px4:udp:127.0.0.1:14540"}, "flies no rover here"),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(options, why):

@@ -10,7 +10,7 @@ import pytest
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.plants.alone import stand_alone
-from sitl.simulation import DEFAULT_HOME
+from sitl.scenario import DEFAULT_HOME
 from tests.foreign import json_peer
 
 ANY = ("127.0.0.1", 0)

@@ -23,7 +23,8 @@ from sitl.plants import json as json_plant
 from sitl.plants.alone import stand_alone
 from sitl.plants.json_link import parse_address
 from sitl.plants.plant import PhysicsLostError
-from sitl.simulation import DEFAULT_HOME, Simulation
+from sitl.scenario import DEFAULT_HOME
+from sitl.simulation import Simulation
 
 ANY = ("127.0.0.1", 0)
 REST = (0.0, 0.0, 0.0, 0.0, 0.0, -9.80665, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

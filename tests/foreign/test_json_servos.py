@@ -44,9 +44,9 @@ def test_only_16_or_32_pulses_make_a_frame():
     [(0, 0.0, 0.0), (900, 0.0, -1.0), (1000, 0.0, -1.0), (1250, 0.25, -0.5), (1500, 0.5, 0.0), (2100, 1.0, 1.0)],
 )
 def test_a_pulse_is_a_rotors_or_a_servos_control(pulse, rotor, servo):
-    assert control(pulse, True) == rotor
-    assert control(pulse, False) == servo
+    assert control(pulse, False) == rotor
+    assert control(pulse, True) == servo
 
 
 def test_the_border_takes_sixteen_of_32_pulses():
-    assert controls((1500,) * 16 + (2000,) * 16, True) == [0.5] * 16
+    assert controls((1500,) * 16 + (2000,) * 16, False) == [0.5] * 16

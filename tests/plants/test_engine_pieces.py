@@ -13,7 +13,8 @@ from sitl.physics.native.obstacles import settle
 from sitl.physics.native.rover import pieces as rover
 from sitl.physics.native.rover.motion import roll
 from sitl.physics.native.rover.step import step as step_rover
-from sitl.vehicle.kinds import COPTER, ROVER
+from sitl.vehicle.copter import COPTER
+from sitl.vehicle.rover import ROVER
 from sitl.vehicles import load
 
 HOME = (-35.0, 149.0, 100.0, 30.0)
@@ -50,8 +51,8 @@ def test_a_copter_in_the_air(name: str) -> None:
             fly(p, *p.motion.force.tolist(), *p.motion.torque.tolist())
             rates += p.body.rates_mean
         copter.sense(views, 1)
-        assert whole.physics.body.pos.tolist() == parts.physics.body.pos.tolist()
-        assert whole.physics.body.q.tolist() == parts.physics.body.q.tolist()
+        assert list(whole.physics.body.pos) == list(parts.physics.body.pos)
+        assert list(whole.physics.body.q) == list(parts.physics.body.q)
         assert parts.physics.body.rates_mean == pytest.approx(rates / int(p.airframe.substeps), abs=1e-5)
         assert parts.sensors.gyro == pytest.approx(whole.sensors.gyro, abs=1e-5)
         # The change of velocity over the tick, looked at from the attitude half-way.
@@ -72,7 +73,7 @@ def test_a_rover_that_drives() -> None:
         parts.physics.wheels.forward = whole.physics.wheels.forward
         roll(parts.physics, before, float(whole.physics.body.rates[2]))
         rover.sense(views, 1)
-        assert parts.physics.wheels.speed.tolist() == whole.physics.wheels.speed.tolist()
+        assert list(parts.physics.wheels.speed) == list(whole.physics.wheels.speed)
         assert parts.physics.wheels.angle == whole.physics.wheels.angle
         assert parts.sensors.gyro == pytest.approx(whole.sensors.gyro, abs=1e-6)
         assert parts.sensors.acc == pytest.approx(whole.sensors.acc, abs=0.01)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sitl import vehicles
-from sitl.autopilot.state import LIDAR_SAMPLES as ROOM
+from sitl.core.border import LIDAR_SAMPLES as ROOM
 from sitl.core.rotations import quat_from_euler
 from sitl.simulation import Core, Simulation
 from sitl.vehicles import AirframeError
@@ -33,7 +33,7 @@ def walled(*boxes: Box, floor: float = 0.0) -> World:
 def stand(simulation: Simulation, down: float, *angles: float) -> np.ndarray:
     """Put a vehicle there (roll, pitch, yaw [rad]) and let its lidar measure."""
     b = simulation.v.physics.body
-    b.pos[2] = down
+    b.pos = b.pos.replace(z=down)
     if angles:
         b.q = quat_from_euler(*angles)
     assert simulation.plant.rangers is not None
@@ -107,7 +107,7 @@ def test_looking_down_meets_what_is_below(cores: dict[str, Core]) -> None:
     b, s = simulation.v.physics.body, simulation.v.sensors
     stand(simulation, -3.0)
     assert float(s.rangefinder_range[0]) == pytest.approx(3.0)
-    b.pos[0] = 5.0
+    b.pos = b.pos.replace(x=5.0)
     stand(simulation, -3.0)
     assert float(s.rangefinder_range[0]) == pytest.approx(2.2)
     stand(simulation, -3.0, 0.0, math.radians(100.0), 0.0)

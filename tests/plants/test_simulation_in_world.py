@@ -86,7 +86,7 @@ def test_a_copter_lands_on_a_table_rests_and_takes_off_again(cores: dict[str, Co
     pilot.choose_mode("LAND")
     assert pilot.fly(40.0, lambda: not pilot.armed), pilot.texts
     v = pilot.simulation.v
-    there = v.physics.body.pos.copy()
+    there = v.physics.body.pos
     assert there[2] == pytest.approx(-1.0, abs=1e-6)
     pilot.fly(30.0)
     assert v.physics.body.pos == pytest.approx(there, abs=0.01)
@@ -209,7 +209,7 @@ def test_a_world_file_and_a_reboot(cores: dict[str, Core], tmp_path: Path) -> No
     simulation.advance(0.25)
     v = simulation.v
     assert simulation.time_us == 1_300_000 and v.sensors.lidar_count == 3
-    assert v.physics.body.pos.tolist() == [1.0, -1.0, 0.0] and v.physics.obstacles.present == 1
+    assert list(v.physics.body.pos) == [1.0, -1.0, 0.0] and v.physics.obstacles.present == 1
     assert (v.sensors.lidar_ranges == scan).all() and np.isfinite(scan[:70]).any()
 
 

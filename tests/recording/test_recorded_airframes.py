@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from sitl import vehicles
-from sitl.recording.identity import of_airframe
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.simulation import Core
@@ -39,6 +38,6 @@ def test_a_file_that_a_recording_names_is_not_run(core: Core, tmp_path: Path) ->
 def test_an_airframe_comes_back_from_its_figures(name: str) -> None:
     """All that a simulation takes from an airframe is the same."""
     airframe = vehicles.load(name)
-    again = vehicles.of_data(airframe.kind, of_airframe(airframe))
+    again = vehicles.of_data(type(airframe), vehicles.to_data(airframe))
     assert again.record().tobytes() == airframe.record().tobytes()
     assert again.parameters == airframe.parameters and again.name == airframe.name

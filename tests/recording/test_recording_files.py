@@ -125,7 +125,7 @@ def test_a_killed_run_can_be_flown_as_far_as_it_was_written(core: Core, tmp_path
     [
         ({"frame": "gone"}, "airframe 'gone' is not known.*--frame FILE gives another"),
         ({"frame": None, "airframe": {"name": "odd"}}, "data of an airframe.*KeyError.*--frame FILE gives another"),
-        ({"frame": "x.py", "vehicle": "boat"}, "airframe of the kind 'boat': it is one of copter, rover"),
+        ({"frame": "x.py", "vehicle": "boat"}, "vehicle 'boat' is none of copter, rover"),
         ({"world": {"file": "gone.toml", "name": "w", "digest": ""}}, "world file 'gone.toml' cannot be read.*--world"),
         ({"physics": "hil:tcp:127.0.0.1:1"}, "its physics was at the other end of a link"),
     ],

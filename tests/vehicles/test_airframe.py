@@ -6,7 +6,7 @@ from pytest import approx
 
 from sitl import vehicles
 from sitl.autopilot.copter.parameters import TABLE
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 from sitl.vehicles import AirframeError, ardupilot_quad
 from sitl.vehicles.figures.copter import Figures
 

@@ -3,7 +3,7 @@ import pytest
 
 from sitl import vehicles
 from sitl.autopilot.rover.parameters import TABLE
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.rover import Figures
 
@@ -43,7 +43,7 @@ def test_bad_figures_of_a_rover_are_named(figures, message):
 
 
 def test_an_airframe_has_a_kind():
-    with pytest.raises(AirframeError, match="'x' is of no kind: make a CopterAirframe or a RoverAirframe"):
+    with pytest.raises(AirframeError, match="'x' is of no kind: make one of a class of its kind"):
         vehicles.Airframe(name="x", description="", figures={})
 
 

@@ -10,7 +10,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from sitl.core.vectors import Vec2
 from sitl.worlds import contact
+from sitl.worlds.contact import Contact, Volume
 from sitl.worlds.geometry import Floats, Geometry, compile_geometry
 from sitl.worlds.shapes import Box, Cylinder, Solid
 from tests.worlds.world_cases import lengths, random_solids, solids, worlds
@@ -73,14 +75,15 @@ def test_the_normal_is_the_shortest_way_out(
     solid: Solid, x: float, y: float, low: float, height: float, radius: float
 ) -> None:
     rows = compile_geometry([solid], -50.0).solids
-    robot = np.array([x, -y, -(low + height), -low])
+
+    def at(move: Floats) -> Contact:
+        n, e, d = move.tolist()
+        return contact.separation(rows, 0, Volume(Vec2(x + n, e - y), d - (low + height), d - low, radius))
 
     def distance(move: Floats) -> float:
-        n, e, d = (float(m) for m in move)
-        at = robot + (n, e, d, d)
-        return float(contact.separation(rows, 0, *at.tolist(), radius)[0])
+        return at(move).distance
 
-    here, *normal = contact.separation(rows, 0, *robot.tolist(), radius)
+    here, normal, _ = at(np.zeros(3))
     assume(abs(here) > 1e-6)
     way = np.array(normal)
     assert distance(-here * way) == pytest.approx(0.0, abs=1e-9), "along the normal it is as far as is said"
@@ -99,7 +102,8 @@ def test_the_normal_is_the_shortest_way_out(
 @given(worlds, lengths, lengths)
 def test_the_nearest_of_all(geometry: Geometry, n: float, e: float) -> None:
     found = contact.clearance(geometry, n, e, -0.4, 0.0, 0.2)
-    each = [contact.separation(geometry.solids, k, n, e, -0.4, 0.0, 0.2)[0] for k in range(len(geometry))]
+    robot = Volume(Vec2(n, e), -0.4, 0.0, 0.2)
+    each = [contact.separation(geometry.solids, k, robot).distance for k in range(len(geometry))]
     assert found.distance == min(each, default=math.inf)
     assert found.solid == (each.index(min(each)) if each else -1)
 
@@ -108,9 +112,9 @@ def test_the_nearest_of_all(geometry: Geometry, n: float, e: float) -> None:
 def test_solids_near_a_place(geometry: Geometry, n: float, e: float, reach: float, room: int) -> None:
     rows = contact.rows(room)
     count, complete = contact.near(geometry, n, e, reach, rows)
-    distances = sorted(contact.beside(geometry.solids, k, n, e)[0] for k in range(len(geometry)))
+    distances = sorted(contact.beside(geometry.solids, k, Vec2(n, e)).distance for k in range(len(geometry)))
     wanted = [d for d in distances if d <= reach][:room]
-    assert [contact.beside(rows, k, n, e)[0] for k in range(count)] == wanted
+    assert [contact.beside(rows, k, Vec2(n, e)).distance for k in range(count)] == wanted
     left = distances[len(wanted) :]
     assert complete == (left[0] if left else math.inf)
 
@@ -124,7 +128,7 @@ def test_the_short_list_tells_all_contacts_while_it_is_complete() -> None:
         turn, far = rng.uniform(-math.pi, math.pi), max(complete, 0.0) * rng.uniform()
         n2, e2 = n + far * math.cos(turn), e + far * math.sin(turn)
         radius = 0.999 * (max(complete, 0.0) - far)
-        listed = contact.nearest_of(rows, count, n2, e2, -0.4, 0.0, radius)[0]
+        listed = contact.nearest_of(rows, count, Volume(Vec2(n2, e2), -0.4, 0.0, radius)).distance
         everything = contact.clearance(geometry, n2, e2, -0.4, 0.0, radius).distance
         assert min(listed, 0.0) == min(everything, 0.0)
         assert everything > 0.0 or listed == everything

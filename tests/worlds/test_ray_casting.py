@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from sitl.core.rotations import quat_from_euler, quat_rotate
+from sitl.core.algebra import quat_from_euler, rotate
+from sitl.core.vectors import Euler, Quat, Vec2, Vec3
 from sitl.worlds import contact, planar, raycast
 from sitl.worlds.geometry import Floats, Geometry, compile_geometry
 from tests.worlds.world_cases import LIDARS, fans, points, random_solids, worlds
@@ -21,13 +22,13 @@ from tests.worlds.world_cases import LIDARS, fans, points, random_solids, worlds
 
 def walked(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> Floats:
     out = np.full(fan.shape[1], -1.0)
-    raycast.walked(geometry.solids, geometry.grid, geometry.cells, *point, fan, out)
+    raycast.walked(geometry.arrays, Vec3(*point), fan, out)
     return out
 
 
 def swept(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> Floats:
     out = np.full(fan.shape[1], -1.0)
-    raycast.swept(geometry.solids, geometry.grid, *point, fan, out)
+    raycast.swept(geometry.arrays, Vec3(*point), fan, out)
     return out
 
 
@@ -41,9 +42,9 @@ def test_the_grid_gives_the_bits_of_brute_force(
 @given(worlds, points, fans())
 def test_plain_python_gives_the_same_bits(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> None:
     plain = np.zeros(fan.shape[1])
-    raycast.sweep_rays(geometry.solids, geometry.grid, *point, fan, plain)
+    raycast.sweep_rays(geometry.arrays, Vec3(*point), fan, plain)
     assert plain.tobytes() == swept(geometry, point, fan).tobytes()
-    raycast.walk_rays(geometry.solids, geometry.grid, geometry.cells, *point, fan, plain)
+    raycast.walk_rays(geometry.arrays, Vec3(*point), fan, plain)
     assert plain.tobytes() == swept(geometry, point, fan).tobytes()
 
 
@@ -80,7 +81,7 @@ def test_the_way_to_a_hit_is_free_and_its_end_is_not(
 
 def _distance(geometry: Geometry, point: Floats) -> float:
     n, e, d = (float(x) for x in point)
-    nearest = contact.nearest_of(geometry.solids, len(geometry), n, e, d, d, 0.0)[0]
+    nearest = contact.nearest_of(geometry.solids, len(geometry), contact.Volume(Vec2(n, e), d, d, 0.0)).distance
     return min(nearest, geometry.floor - d)
 
 
@@ -102,14 +103,14 @@ def test_many_bodies_in_one_call_see_what_each_alone_sees() -> None:
     geometry = compile_geometry(random_solids(25, 3), 0.0)
     rng = np.random.default_rng(0)
     positions = np.concatenate([rng.uniform(-8, 8, (6, 2)), rng.uniform(-1, 0, (6, 1))], axis=1)
-    attitudes = np.array([quat_from_euler(*rng.uniform(-0.3, 0.3, 2), rng.uniform(-3, 3)) for _ in range(6)])
+    attitudes = np.array([quat_from_euler(Euler(*rng.uniform(-0.3, 0.3, 2), rng.uniform(-3, 3))) for _ in range(6)])
     mount, rays = np.array([0.15, 0.0, -0.1]), planar.rays(36, math.radians(270.0))
     together = raycast.scan_from(geometry, positions, attitudes, mount, rays, np.zeros((6, 36)))
     for i in range(6):
         alone = raycast.scan_from(geometry, positions[i : i + 1], attitudes[i : i + 1], mount, rays, np.zeros((1, 36)))
         assert alone.tobytes() == together[i].tobytes()
-        origin = positions[i] + quat_rotate(*attitudes[i], *mount)
-        directions = np.array([quat_rotate(*attitudes[i], *ray) for ray in rays.T]).T
+        origin = positions[i] + rotate(Quat(*attitudes[i]), Vec3(*mount))
+        directions = np.array([rotate(Quat(*attitudes[i]), Vec3(*ray)) for ray in rays.T]).T
         by_hand = raycast.scan(geometry, origin, np.ascontiguousarray(directions), np.zeros(36))
         assert by_hand == pytest.approx(together[i], rel=1e-12)
 

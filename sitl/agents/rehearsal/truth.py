@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.core.rotations import quat_to_euler
+from sitl.core.algebra import euler_of
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.worlds.contact import clearance
@@ -36,15 +36,15 @@ def lidar_distance(robot: Any) -> float:
     if isinstance(robot, Turtlebot):
         x, y, z, yaw = robot.pose[0].tolist()
         figures = robot.robots.views[0].figures
-        ahead = figures.lidar_ahead
-        place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + figures.lidar_height)
+        ahead = float(figures.lidar_ahead)  # type: ignore[attr-defined]
+        place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
         north, east, down = to_ned(*place)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
         v = robot.simulation(0).v
         body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
-        heading = quat_to_euler(*body.q.tolist())[2]
+        heading = euler_of(body.q).yaw
         c, s = math.cos(heading), math.sin(heading)
-        north, east, down = body.pos.tolist()
+        north, east, down = body.pos
         north, east = north + forward * c - right * s, east + forward * s + right * c
         down += below - robot.world.floor_z
     else:

@@ -128,7 +128,7 @@ def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
         return measured
 
     def true() -> tuple[float, float]:
-        return from_ned(*robot.simulation(0).v.physics.body.pos.tolist())[:2]
+        return from_ned(*robot.simulation(0).v.physics.body.pos)[:2]
 
     return true
 

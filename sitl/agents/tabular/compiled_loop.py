@@ -7,90 +7,126 @@ as ``loop.learn_episode``, many times faster.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from sitl.core.array_kernels import kernel
+from sitl.core.array_kernels import Flags, IntColumn, IntLine, IntTable, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
+from sitl.core.records import Records
 from sitl.envs.actions import Discrete
 from sitl.envs.navigate import Navigate
-from sitl.envs.observations import Digits, digits_of
+from sitl.envs.observations import DigitPlan, Digits, digits_of
 from sitl.envs.rewards import ByAction
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.envs.tasks import Task, count_crashes
-from sitl.physics.native.turtlebot.fleet import advance_fleet
+from sitl.physics.native.turtlebot.fleet import Orders, advance_fleet
+from sitl.physics.native.turtlebot.scan import Beams
 from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from sitl.turtlebots.native import Turtlebots, ticks_in
+from sitl.worlds.geometry import Solids
 
-from .learn import choose_first, learn_first, learners_type
+from .learn import Move, choose_first, learn_first
 from .learner import Learner
 from .outcome import Outcome
-from .slots import key_of
+from .slots import Memory, key_of
+from .state import LearnerState
 
 _TRANSPARENT = (TimeLimit, OrderEnforcing, PassiveEnvChecker)
 """Wrappers that change nothing but when an episode is truncated."""
 
 
+class Rules(NamedTuple):
+    """What the environment says of a step."""
+
+    table: Table
+    """Set-point of each action, shape (actions, 2)."""
+    action_rewards: Line
+    """Of each action, shape (actions,)."""
+    crash_range: float
+    """A reading below it is a crash [m]."""
+    contact_ends: bool
+    crash_reward: float
+    digits: DigitPlan
+
+
+class Robot(NamedTuple):
+    """A robot, as ``advance_fleet`` takes it, and what is seen of it."""
+
+    fleet: Records[TurtlebotRecord]
+    orders: Orders
+    solids: Solids
+    beams: Beams
+    readings: NarrowTable
+    crashed: Flags
+    """Room, shape (1,)."""
+    digits: IntTable
+    """Room, shape (1, n)."""
+
+
+class Extent(NamedTuple):
+    """Where an episode begins, and how long it is."""
+
+    first: int
+    """Number of its first state."""
+    limit: int
+    """Of steps."""
+    step_ticks: int
+    """Length of a step [physics steps]."""
+
+
+class Episode(NamedTuple):
+    """How an episode went."""
+
+    steps: int
+    reward: float
+    """Sum over the steps."""
+    crashes: int
+
+
 @law
 def run_episode(
-    learners, keys, values, visits, first, radix, limit, step_ticks,
-    table, action_rewards, crash_range, contact_ends, crash_reward, every, when_inf, highest,
-    crashed, touched, digits,
-    fleet, commands, ticks, solids, grid, cells, rays, directions, ranges, readings,
-):  # fmt: skip
-    """Learn from the episode of a robot that was reset; returns steps, sum of rewards, and whether it crashed (1, 0).
+    learners: Records[LearnerState],
+    table: Memory,
+    radix: IntLine,
+    extent: Extent,
+    rules: Rules,
+    robot: Robot,
+    touched: IntColumn,
+) -> Episode:
+    """Learn from the episode of a robot that was reset.
 
     Args:
-        learners, keys, values, visits: of a learner; there must be room for ``limit`` states more.
-        first: number of the first state.
+        learners: the learner, shape (1,).
+        table: its own; there must be room for ``extent.limit`` states more.
         radix: see ``key_of``.
-        limit: largest number of steps.
-        step_ticks: length of a step [physics steps].
-        table: set-point of each action, shape (actions, 2).
-        action_rewards: reward of each action, shape (actions,).
-        crash_range, contact_ends, crash_reward: of the task.
-        every, when_inf, highest: of the digits.
-        crashed, touched, digits: room, shape (1,); the robot's ``collided``; room, shape (1, n).
-        fleet, commands, ticks, solids, grid, cells, rays, directions, ranges, readings: see ``advance_fleet``.
+        extent: of the episode.
+        rules: of the task.
+        robot: that drives.
+        touched: whether something stopped it, shape (1,).
     """
-    key, total, steps = first, 0.0, 0
-    action = choose_first(learners, keys, values, key)
+    key, total, steps = extent.first, 0.0, 0
+    commands, plan = robot.orders.commands, rules.digits
+    action = choose_first(learners, table, key)
     while True:
-        commands[0, 0], commands[0, 1] = table[action, 0], table[action, 1]
-        ticks[0] = step_ticks
-        advance_fleet(fleet, commands, ticks, solids, grid, cells, rays, directions, ranges, readings)
-        ended = count_crashes(readings, crash_range, touched, contact_ends, crashed)
-        reward = crash_reward if ended != 0 else float(action_rewards[action])
-        digits_of(readings, every, when_inf, highest, digits)
-        after = key_of(digits[0], radix)
-        action = learn_first(learners, keys, values, visits, key, action, reward, after, ended)
+        commands[0, 0], commands[0, 1] = rules.table[action, 0], rules.table[action, 1]
+        robot.orders.ticks[0] = extent.step_ticks
+        advance_fleet(robot.fleet, robot.orders, robot.solids, robot.beams, robot.readings)
+        ended = count_crashes(robot.readings, rules.crash_range, touched, rules.contact_ends, robot.crashed)
+        reward = rules.crash_reward if ended != 0 else rules.action_rewards[action]
+        digits_of(robot.readings, plan.every, plan.when_inf, plan.highest, robot.digits)
+        after = key_of(robot.digits[0], radix)
+        action = learn_first(learners, table, Move(key, action, reward, after, ended != 0))
         key = after
         steps += 1
         total += reward
-        if ended != 0 or steps >= limit:
-            return steps, total, ended
+        if ended != 0 or steps >= extent.limit:
+            return Episode(steps, total, ended)
 
 
-def _signature() -> Any:
-    from numba import types
-
-    from sitl.core.numba_records import numba_type
-
-    whole, number = types.int64, types.float64
-    line, table, wholes = number[::1], number[:, ::1], whole[::1]
-    fleet = types.Array(numba_type(TurtlebotRecord), 1, "C")
-    learner = (learners_type(), wholes, table, whole[:, ::1])
-    task = (table, line, number, whole, number, whole, whole, whole)
-    room = (types.boolean[::1], whole[:], whole[:, ::1])
-    robot = (fleet, table, wholes, table, line, wholes, table, table, line, types.float32[:, ::1])
-    result = types.Tuple((whole, number, whole))
-    return result(*learner, whole, wholes, whole, whole, *task, *room, *robot)
-
-
-_episode = kernel(_signature)(run_episode)
+_episode = Kernel(run_episode)
 
 
 class CompiledLoop:
@@ -102,15 +138,14 @@ class CompiledLoop:
         session = navigate.session
         task, robot = session.task, session.robot
         terms: Any = task.terms
-        every, when_inf, highest, taken = session.observation.plan
-        self._steps = (
-            np.ascontiguousarray(session.action.table),
-            np.ascontiguousarray(terms[0].rewards),
-            float(task.limit), int(task.contact_ends), float(task.crash_reward),
-            every, when_inf, highest,
-            np.zeros(1, np.bool_), robot.collided, np.zeros((1, taken), np.int64),
+        plan = session.observation.plan
+        self._rules = Rules(
+            np.ascontiguousarray(session.action.table, float), np.ascontiguousarray(terms[0].rewards, float),
+            float(task.limit), bool(task.contact_ends), float(task.crash_reward), plan,
         )  # fmt: skip
-        self._robots: Turtlebots = robot.robots
+        robots: Turtlebots = robot.robots
+        self._robot = Robot(*robots.arguments, np.zeros(1, np.bool_), np.zeros((1, plan.digits), np.int64))
+        self._touched = robot.collided
         self._ticks = ticks_in(session.seconds)
         self._run = _episode.function()
 
@@ -140,11 +175,11 @@ class CompiledLoop:
         learner, limit = self._learner, int(self._limit or 0)
         observation, _ = self._env.reset(seed=seed, options=options)
         first = learner.first_key(observation)
-        steps, total, ended = self._run(
-            *learner.arguments(limit), first, learner.table.radix, limit, self._ticks,
-            *self._steps, *self._robots.arguments,
-        )  # fmt: skip
-        return Outcome(int(steps), float(total), bool(ended))
+        extent = Extent(first, limit, self._ticks)
+        episode = self._run(
+            *learner.arguments(limit), learner.table.radix, extent, self._rules, self._robot, self._touched
+        )
+        return Outcome(episode.steps, float(episode.reward), episode.crashes != 0)
 
 
 def _step_limit(env: Any) -> int | None:

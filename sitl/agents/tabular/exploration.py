@@ -9,9 +9,10 @@ values differ.
 from __future__ import annotations
 
 from sitl.core.kernels import law
-from sitl.core.rng import uniform
+from sitl.core.records import Floats
+from sitl.core.rng import Rng, uniform
 
-from .state import NOISE
+from .state import NOISE, LearnerState
 
 
 def epsilon_in(episode: int, start: float, decay: float, floor: float) -> float:
@@ -20,33 +21,33 @@ def epsilon_in(episode: int, start: float, decay: float, floor: float) -> float:
 
 
 @law
-def noisy_greedy(learner, row, width):
+def noisy_greedy(rng: Rng, row: Floats, width: float) -> int:
     """The best action of a row of values, each disturbed by up to half of ``width``; one of several best at random.
 
     With a width of 0 nothing is disturbed, and random numbers are drawn only to decide between equals.
     """
     best, equals, chosen = 0.0, 0, 0
     for a in range(row.shape[0]):
-        value = float(row[a])
+        value = row[a]
         if width > 0.0:
-            value += (uniform(learner.rng) - 0.5) * width
+            value += (uniform(rng) - 0.5) * width
         if equals == 0 or value > best:
             best, equals, chosen = value, 1, a
         elif value == best:
             equals += 1
-            if uniform(learner.rng) * equals < 1.0:
+            if uniform(rng) * equals < 1.0:
                 chosen = a
     return chosen
 
 
 @law
-def choose(learner, row):
+def choose(learner: LearnerState, row: Floats) -> int:
     """The action that a learner takes, given its values of the actions."""
-    if uniform(learner.rng) >= float(learner.epsilon):
-        return noisy_greedy(learner, row, 0.0)
-    if int(learner.exploration) != NOISE:
+    if uniform(learner.rng) >= learner.epsilon:
+        return noisy_greedy(learner.rng, row, 0.0)
+    if learner.exploration != NOISE:
         return int(uniform(learner.rng) * row.shape[0])
-    low, high = float(row[0]), float(row[0])
+    low, high = row[0], row[0]
     for a in range(1, row.shape[0]):
-        low, high = min(low, float(row[a])), max(high, float(row[a]))
-    return noisy_greedy(learner, row, max(abs(low), abs(high)))
+        low, high = min(low, row[a]), max(high, row[a])
+    return noisy_greedy(learner.rng, row, max(abs(low), abs(high)))

@@ -10,12 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.core.kernels import jit_disabled
+from sitl.core.records import Records
 from sitl.core.rng import seed as seed_rng
 
 from ..errors import AgentError
 from .exploration import epsilon_in
-from .learn import choose_action, learn_step
+from .learn import Move, choose_action, learn_step
 from .settings import EXPLORATIONS, RULES, Settings
+from .slots import Memory
 from .state import LearnerState
 from .table import Table
 
@@ -42,9 +44,8 @@ class Learner:
         self._view = view = LearnerState.of(self.record, 0)
         view.rule = RULES.index(algorithm)
         view.exploration = EXPLORATIONS.index(settings.exploration)
-        view.first_visit = int(settings.first_visit)
-        view.terminal_bootstrap = int(settings.terminal_bootstrap)
-        view.redraw, view.frozen = int(settings.redraw), int(frozen)
+        view.first_visit, view.terminal_bootstrap = settings.first_visit, settings.terminal_bootstrap
+        view.redraw, view.frozen = settings.redraw, frozen
         view.alpha, view.gamma = settings.alpha, settings.gamma
         view.states = len(table)
         self.seed(seed)
@@ -69,11 +70,10 @@ class Learner:
         s = self.settings
         self._view.epsilon = epsilon_in(episode, s.epsilon, s.epsilon_decay, s.epsilon_floor) * (not self._view.frozen)
 
-    def arguments(self, new_states: int) -> tuple[Any, ...]:
+    def arguments(self, new_states: int) -> tuple[Records[LearnerState], Memory]:
         """Record and table as ``learn`` takes them, with room for so many states more."""
-        table = self.table
-        table.make_room(self.states, new_states)
-        return self._records, table.keys, table.values, table.visits
+        self.table.make_room(self.states, new_states)
+        return self._records, self.table.memory
 
     def first_key(self, observation: Any) -> int:
         """Number of the state that an episode begins in."""
@@ -81,11 +81,13 @@ class Learner:
 
     def choose(self, key: int) -> int:
         """The first action of an episode."""
-        return int(choose_action(*self.arguments(1)[:3], key))
+        return choose_action.unchecked()(*self.arguments(1), int(key))
 
     def learn(self, key: int, action: int, reward: float, after: int, terminated: bool) -> int:
         """Learn from a step; returns the next action. See ``learn.learn``."""
-        return int(learn_step(*self.arguments(1), key, action, reward, after, int(terminated)))
+        return learn_step.unchecked()(
+            *self.arguments(1), Move(int(key), int(action), float(reward), int(after), bool(terminated))
+        )
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """All that ``restore`` needs to go on bit for bit."""

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from sitl.core.kernels import law
+from sitl.core.records import Floats
 
 
 @law
-def best_value(row):
+def best_value(row: Floats) -> float:
     """Value of a state for Q-learning: the greatest value of its row."""
-    best = float(row[0])
+    best = row[0]
     for a in range(1, row.shape[0]):
-        best = max(best, float(row[a]))
+        best = max(best, row[a])
     return best

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from sitl.core.kernels import law
+from sitl.core.records import Floats
 
 
 @law
-def value_taken(row, action):
+def value_taken(row: Floats, action: int) -> float:
     """Value of a state for Sarsa: that of the action taken."""
-    return float(row[action])
+    return row[action]

@@ -15,10 +15,10 @@ class LearnerState(Record):
 
     rule: int  # QLEARN or SARSA
     exploration: int  # UNIFORM or NOISE
-    first_visit: int  # 1: the first update of a pair stores its reward
-    terminal_bootstrap: int  # 1: the value of a state counts though the episode has ended there
-    redraw: int  # 1: Sarsa draws the action that it takes anew after learning from another
-    frozen: int  # 1: it plays and does not learn
+    first_visit: bool  # the first update of a pair stores its reward
+    terminal_bootstrap: bool  # the value of a state counts though the episode has ended there
+    redraw: bool  # Sarsa draws the action that it takes anew after learning from another
+    frozen: bool  # it plays and does not learn
     alpha: float  # step size
     gamma: float  # discount
     epsilon: float  # probability of exploring, in this episode

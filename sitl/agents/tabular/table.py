@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ..errors import AgentError
 from ..runs.files import read_arrays, write_arrays
-from .slots import EMPTY, key_of, move_rows, slot_of
+from .slots import EMPTY, Memory, key_of, move_rows, slot_of
 
 _LEAST_ROWS = 4096
 _FIRST_KEY_LIMIT = 2**62
@@ -84,17 +84,22 @@ class Table:
     def __len__(self) -> int:
         return int(np.count_nonzero(self.keys != EMPTY))
 
+    @property
+    def memory(self) -> Memory:
+        """The arrays as laws take them."""
+        return Memory(self.keys, self.values, self.visits)
+
     def make_room(self, taken: int, more: int) -> None:
         """Grow until ``more`` states beside the ``taken`` ones leave half of the rows empty."""
         rows = len(self.keys)
         while 2 * (taken + more) > rows:
             rows *= 2
         if rows > len(self.keys):
-            keys, values, visits = self.keys, self.values, self.visits
+            old = self.memory
             self.keys = np.full(rows, EMPTY, np.int64)
             self.values = np.zeros((rows, self.actions))
             self.visits = np.zeros((rows, self.actions), np.int64)
-            move_rows(keys, values, visits, self.keys, self.values, self.visits)
+            move_rows(old, self.memory)
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """Arrays for a file: the states met, sorted, with their values and visits."""

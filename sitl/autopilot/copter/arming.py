@@ -35,7 +35,7 @@ def try_arm(v, method, force):
         emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
         return failed
     if ap.home.locked == 0:
-        home.set_here(v)
+        home.set_here(v.autopilot.home, v.autopilot.estimate)
     ap.arming.armed = 1
     ap.arming.armed_us = v.time_us
     ap.arming.auto_armed = 0

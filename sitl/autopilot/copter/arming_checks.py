@@ -26,7 +26,7 @@ from ..arming_checks import (
     sensor_checks,
     wants,
 )
-from ..radio import stick_channel
+from ..radio import THROTTLE, stick_pulse
 from . import pilot
 from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
 
@@ -46,7 +46,7 @@ def lean_check(v):
 def estimate_checks(v):
     """Failed checks of position, height and home, as far as the mode needs them."""
     ap = v.autopilot
-    gps = wants(v, CHECK_GPS)
+    gps = wants(ap.params.ARMING, CHECK_GPS)
     failed = 0
     mode = int(ap.modes.number)
     if requires_position(mode):
@@ -66,11 +66,11 @@ def equipment_checks(v):
     """Failed checks of radio, battery and frame."""
     ap = v.autopilot
     p = ap.params
-    failed = battery_checks(v)
-    if p.FS.THR_ENABLE > 0.0 and wants(v, CHECK_RC):
+    failed = battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         if ap.rc.receiver_ok == 0:
             failed |= RC_MISSING
-        elif ap.rc.channels[stick_channel(p, 2) - 1] < p.FS.THR_VALUE:
+        elif stick_pulse(ap.rc, p.RCMAP, THROTTLE) < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
     if p.FRAME.CLASS != 1.0:
         failed |= FRAME
@@ -80,7 +80,9 @@ def equipment_checks(v):
 @law
 def check(v):
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
-    return sensor_checks(v) | lean_check(v) | estimate_checks(v) | equipment_checks(v)
+    ap = v.autopilot
+    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, ap.params.ARMING)
+    return sensors | lean_check(v) | estimate_checks(v) | equipment_checks(v)
 
 
 @law

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, tell, text
+from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report, text
 from ..modes import (
     ACCEPTED,
     REASON_BATTERY_FAILSAFE,
@@ -13,7 +13,7 @@ from ..modes import (
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
 )
-from ..radio import stick_channel
+from ..radio import THROTTLE, stick_pulse
 from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
@@ -50,20 +50,20 @@ def update_radio(v):
     ap = v.autopilot
     fs = ap.modes.failsafe
     enable = int(ap.params.FS.THR_ENABLE)
-    pulse = ap.rc.channels[stick_channel(ap.params, 2) - 1]
+    pulse = stick_pulse(ap.rc, ap.params.RCMAP, THROTTLE)
     heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver != 0
     bad = enable > 0 and heard and (ap.rc.receiver_ok == 0 or pulse < ap.params.FS.THR_VALUE)
     if bad and fs.radio == 0:
         fs.radio_count += 1
         if fs.radio_count >= RADIO_FRAMES:
             fs.radio = 1
-            tell(v, RADIO, 1)
+            report(v.autopilot.events, v.time_us, RADIO, True)
             start_radio(v, radio_action(enable))
     elif not bad and fs.radio != 0:
         fs.radio_count -= 1
         if fs.radio_count <= 0:
             fs.radio = 0
-            tell(v, RADIO, 0)
+            report(v.autopilot.events, v.time_us, RADIO, False)
     elif not bad:
         fs.radio_count = 0
 
@@ -86,10 +86,10 @@ def update_gcs(v):
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    lost = is_gcs_lost(v)
+    lost = is_gcs_lost(v.autopilot.modes.failsafe, v.time_us, v.autopilot.params.FS)
     if lost and fs.gcs == 0:
         fs.gcs = 1
-        tell(v, GCS, 1)
+        report(v.autopilot.events, v.time_us, GCS, True)
         options = int(ap.params.FS.OPTIONS)
         mode = int(ap.modes.number)
         goes_on = mode == AUTO and (options & _GCS_AUTO) != 0
@@ -98,14 +98,14 @@ def update_gcs(v):
             act(v, gcs_action(int(ap.params.FS.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
     elif not lost and fs.gcs != 0:
         fs.gcs = 0
-        tell(v, GCS, 0)
+        report(v.autopilot.events, v.time_us, GCS, False)
 
 
 @law
 def update_battery(v):
     """Ten times a second: act on a battery that has become low or critical."""
     p = v.autopilot.params
-    level = battery_fell_to(v)
+    level = battery_fell_to(v.autopilot, v.time_us)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
@@ -120,7 +120,7 @@ def update_ekf(v):
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    bad = is_estimate_bad(v, ap.params.FS.EKF_FILT)
+    bad = is_estimate_bad(ap.modes.failsafe, ap.estimate, ap.params.FS.EKF_THRESH, ap.params.FS.EKF_FILT)
     if ap.params.FS.EKF_THRESH <= 0.0 or ap.arming.armed == 0 or ap.estimate.origin_set == 0:
         fs.ekf_count = 0
         fs.ekf = 0
@@ -134,7 +134,7 @@ def update_ekf(v):
         fs.ekf_count -= 1
         if fs.ekf_count == 0 and fs.ekf != 0:
             if fs.ekf == EKF_ACTED:
-                tell(v, EKF, 0)
+                report(v.autopilot.events, v.time_us, EKF, False)
             fs.ekf = 0
 
 
@@ -147,7 +147,7 @@ def start_ekf(v):
     if mode != LAND and (action == 0 or (not requires_position(mode) and action != 3)):
         return
     ap.modes.failsafe.ekf = EKF_ACTED
-    tell(v, EKF, 1)
+    report(v.autopilot.events, v.time_us, EKF, True)
     if mode == LAND:
         ap.modes.land.with_position = 0
         return

@@ -114,17 +114,17 @@ def update_mix(v):
     """Attitude first in the air, throttle first on and near the ground."""
     ap = v.autopilot
     if ap.arming.armed == 0 or ap.arming.landed != 0:
-        throttle_mix.set_mix_min(ap)
+        throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
     elif table.has_manual_throttle(ap.modes.number):
         if ap.modes.pilot.throttle <= 0.0:
-            throttle_mix.set_mix_min(ap)
+            throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
         else:
-            throttle_mix.set_mix_man(ap)
+            throttle_mix.set_mix_man(ap.control.attitude, ap.params.ATC)
     else:
         asked, off = leans_far(ap)
         level = ap.control.pos_d.vel_desired <= 0.0
         busy = asked or off or level or acceleration(v) > ACCEL_MOVING
         if busy and not is_meant_to_land(ap):
-            throttle_mix.set_mix_max(ap, float(ap.control.pos_d.control_ratio))
+            throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, ap.control.pos_d.control_ratio)
         else:
-            throttle_mix.set_mix_min(ap)
+            throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)

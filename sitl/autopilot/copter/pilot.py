@@ -7,7 +7,19 @@ import math
 
 from ...core.kernels import law
 from ...core.scalars import constrain
-from ..radio import FRAME_S, RECEIVER_PULSES, calibration, centred_channel, expo, ranged, receive, stick_channel
+from ..radio import (
+    FRAME_S,
+    PITCH,
+    RECEIVER_PULSES,
+    ROLL,
+    THROTTLE,
+    YAW,
+    expo,
+    ranged,
+    receive,
+    stick_channel,
+    stick_position,
+)
 
 THROTTLE_ZERO_US = 400_000
 """The throttle counts as zero when it was low for so long."""
@@ -28,7 +40,8 @@ def init(v):
 @law
 def read(v):
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
-    receive(v, _THROTTLE_LOW, v.autopilot.params.RC_FS_TIMEOUT)
+    ap = v.autopilot
+    receive(ap.rc, v.sensors, ap.params, v.time_us, _THROTTLE_LOW, ap.params.RC_FS_TIMEOUT)
     read_sticks(v)
 
 
@@ -43,12 +56,11 @@ def read_sticks(v):
         pilot.yaw = 0.0
         pilot.throttle = 0.0
     else:
-        pilot.roll = centred_channel(ap, 0)
-        pilot.pitch = centred_channel(ap, 1)
-        pilot.yaw = centred_channel(ap, 3)
-        channel = stick_channel(ap.params, 2)
-        low, _trim, high, reverse, dead = calibration(ap.params, channel)
-        pilot.throttle = ranged(int(ap.rc.channels[channel - 1]), low, high, reverse, dead)
+        pilot.roll = stick_position(ap.rc, ap.params, ROLL)
+        pilot.pitch = stick_position(ap.rc, ap.params, PITCH)
+        pilot.yaw = stick_position(ap.rc, ap.params, YAW)
+        channel = stick_channel(ap.params.RCMAP, THROTTLE)
+        pilot.throttle = ranged(ap.rc.channels[channel], ap.params.RC[channel])
     if pilot.throttle > 0.0:
         pilot.throttle_zero_us = v.time_us
         pilot.throttle_zero = 0

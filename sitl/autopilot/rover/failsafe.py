@@ -9,9 +9,9 @@ from __future__ import annotations
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, tell
+from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report
 from ..modes import ACCEPTED, REASON_BATTERY_FAILSAFE, REASON_EKF_FAILSAFE, REASON_FAILSAFE
-from ..radio import stick_channel
+from ..radio import THROTTLE, stick_pulse
 from . import arming, motor_test
 from .modes import set_mode
 from .modes.auto import AUTO
@@ -77,7 +77,7 @@ def update_radio(v: Vehicle) -> None:
     """After each frame of the receiver."""
     ap = v.autopilot
     p = ap.params
-    pulse = ap.rc.channels[stick_channel(p, 2) - 1]
+    pulse = stick_pulse(ap.rc, p.RCMAP, THROTTLE)
     heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver
     bad = p.FS.THR_ENABLE > 0.0 and heard and (not ap.rc.receiver_ok or pulse < p.FS.THR_VALUE)
     ap.modes.failsafe.radio = bad
@@ -87,8 +87,9 @@ def update_radio(v: Vehicle) -> None:
 @law
 def update_gcs(v: Vehicle) -> None:
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
-    lost = is_gcs_lost(v)
-    v.autopilot.modes.failsafe.gcs = lost
+    fs = v.autopilot.modes.failsafe
+    lost = is_gcs_lost(fs, v.time_us, v.autopilot.params.FS)
+    fs.gcs = lost
     watch(v, BIT_GCS, lost)
 
 
@@ -116,7 +117,7 @@ def watch(v: Vehicle, bit: int, bad: bool) -> None:
     if before == 0 and links.bad != 0:
         links.since_us = v.time_us
     if links.acted != 0 and links.bad == 0:
-        tell(v, kind_of(bit), 0)
+        report(ap.events, v.time_us, kind_of(bit), False)
     links.acted = links.acted & links.bad
     if links.acted != 0 or not bad or v.time_us - links.since_us <= ap.params.FS.TIMEOUT * 1e6:
         return
@@ -130,12 +131,12 @@ def begin(v: Vehicle, bit: int) -> None:
     """FS_ACTION, unless the mission may go on."""
     ap = v.autopilot
     p = ap.params
-    tell(v, kind_of(bit), 1)
+    report(ap.events, v.time_us, kind_of(bit), True)
     for k in range(18):
         ap.rc.override[k] = 0
     enabled = p.FS.THR_ENABLE if bit == BIT_RADIO else p.FS.GCS_ENABLE
     if ap.modes.number == AUTO and enabled == ENABLED_BUT_IN_AUTO:
-        tell(v, CONTINUES, 1)
+        report(ap.events, v.time_us, CONTINUES, True)
     else:
         act(v, int(p.FS.ACTION), REASON_FAILSAFE)
 
@@ -144,7 +145,7 @@ def begin(v: Vehicle, bit: int) -> None:
 def update_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
     p = v.autopilot.params
-    level = battery_fell_to(v)
+    level = battery_fell_to(v.autopilot, v.time_us)
     if level != 0:
         act(v, int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT), REASON_BATTERY_FAILSAFE)
 
@@ -159,7 +160,7 @@ def update_ekf(v: Vehicle) -> None:
     fs = ap.modes.failsafe
     if not ap.estimate.origin_set:
         return
-    bad = is_estimate_bad(v, 0.0)
+    bad = is_estimate_bad(fs, ap.estimate, ap.params.FS.EKF_THRESH, 0.0)
     if ap.params.FS.EKF_THRESH <= 0.0 or not ap.arming.armed:
         fs.ekf_count = 0
         clear_ekf(v)
@@ -172,7 +173,7 @@ def update_ekf(v: Vehicle) -> None:
         fs.ekf_count += 1
         if fs.ekf_count >= EKF_COUNT and fs.ekf == 0:
             fs.ekf = 1
-            tell(v, VARIANCE, 1)
+            report(ap.events, v.time_us, VARIANCE, True)
             begin_ekf(v)
     elif not bad and fs.ekf_count > 0:
         fs.ekf_count -= 1
@@ -186,7 +187,7 @@ def clear_ekf(v: Vehicle) -> None:
     fs = v.autopilot.modes.failsafe
     if fs.ekf != 0:
         fs.ekf = 0
-        tell(v, EKF, 0)
+        report(v.autopilot.events, v.time_us, EKF, False)
 
 
 @law
@@ -198,4 +199,4 @@ def begin_ekf(v: Vehicle) -> None:
         return
     if action != EKF_REPORT:
         set_mode.request(v, HOLD, REASON_EKF_FAILSAFE)
-    tell(v, EKF, 1)
+    report(ap.events, v.time_us, EKF, True)

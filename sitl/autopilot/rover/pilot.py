@@ -11,16 +11,17 @@ from typing import NamedTuple
 
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_2pi
-from ..radio import calibration, centred, centred_channel, receive, stick_channel
+from ..radio import ROLL, THROTTLE, centred, receive, stick_channel, stick_position
+from ..state import Radio
 from .control import motors, speed
 from .modes.state import PilotState
+from .parameters import Parameters
 from .state import Autopilot, Vehicle
 
 RECEIVER_TIMEOUT_S = 0.5
 """Silence of the receiver that counts as lost (ArduRover's)."""
 THROTTLE_AT_REST = 1500
 """[us]"""
-STEERING_AXIS, THROTTLE_AXIS = 0, 2
 MIXING_RANGE = 500.0  # [us]
 
 # PILOT_STEER_TYPE
@@ -59,24 +60,21 @@ def init(ap: Autopilot) -> None:
 @law
 def read(v: Vehicle) -> None:
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
-    receive(v, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
     ap = v.autopilot
+    receive(ap.rc, v.sensors, ap.params, v.time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
     pilot = ap.modes.pilot
-    pilot.steering = centred_channel(ap, STEERING_AXIS)
-    pilot.throttle = centred_channel(ap, THROTTLE_AXIS)
-    pilot.left = paddle(ap, STEERING_AXIS)
-    pilot.right = paddle(ap, THROTTLE_AXIS)
+    pilot.steering = stick_position(ap.rc, ap.params, ROLL)
+    pilot.throttle = stick_position(ap.rc, ap.params, THROTTLE)
+    pilot.left = paddle(ap.rc, ap.params, ROLL)
+    pilot.right = paddle(ap.rc, ap.params, THROTTLE)
 
 
 @law
-def paddle(ap: Autopilot, axis: int) -> float:
+def paddle(rc: Radio, params: Parameters, stick: int) -> float:
     """-1 .. 1 of a stick without dead zone."""
-    channel = stick_channel(ap.params, axis)
-    pulse = int(ap.rc.channels[channel - 1])
-    if pulse == 0:
-        return 0.0
-    low, trim, high, reverse, _dead = calibration(ap.params, channel)
-    return centred(pulse, low, trim, high, reverse, 0.0)
+    channel = stick_channel(params.RCMAP, stick)
+    pulse = rc.channels[channel]
+    return centred(pulse, params.RC[channel], 0.0) if pulse != 0 else 0.0
 
 
 @law
@@ -164,7 +162,6 @@ def mixed(ap: Autopilot, demand: float) -> float:
     """``demand`` -1 .. 1 and the steering stick; the further the stick is out, the less of ``demand`` is left."""
     if is_lost(ap):
         return demand
-    channel = stick_channel(ap.params, STEERING_AXIS)
-    _low, trim, _high, _reverse, _dead = calibration(ap.params, channel)
-    out = min(abs(float(ap.rc.channels[channel - 1]) - trim), MIXING_RANGE)
+    channel = stick_channel(ap.params.RCMAP, ROLL)
+    out = min(abs(ap.rc.channels[channel] - ap.params.RC[channel].TRIM), MIXING_RANGE)
     return constrain(demand * (1.0 - out / MIXING_RANGE) + ap.modes.pilot.steering, -1.0, 1.0)

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ...core.constants import TICK_HZ
 from . import motion, servos
 from .motion import Motion, MotionError
 from .servos import Servos
 
-RATE = 400
+RATE = TICK_HZ
 """Steps a second that our autopilot asks for [Hz]: one for each of its loops."""
 LONGEST_S = 0.1
 """A longer step of the physics is a jump of its clock [s]."""

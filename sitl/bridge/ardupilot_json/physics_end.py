@@ -22,9 +22,9 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from enum import Enum
 
+from ...core.constants import TICK_HZ
 from .servos import ServoError, Servos, decode
 
-TICK_HZ = 400
 MOST_TICKS = 8
 """A step is no longer than 20 ms, the period of a rover's loop."""
 CROSSED_S = 0.5

@@ -64,15 +64,15 @@ def is_frame(datagram: bytes) -> bool:
     return known is not None and int.from_bytes(datagram[:2], "little") == known[0]
 
 
-def control(pulse: int, is_copter: bool) -> float:
-    """The actuator control that a pulse [us] stands for: 0 .. 1 of a rotor, -1 .. 1 of a servo or a wheel's motor."""
+def control(pulse: int, is_reversible: bool) -> float:
+    """The actuator control that a pulse [us] stands for: -1 .. 1 of a servo or a wheel's motor, 0 .. 1 of a rotor."""
     if pulse == 0:
         return 0.0
-    if is_copter:
-        return min(max((pulse - 1000) * 0.001, 0.0), 1.0)
-    return min(max((pulse - 1500.0) / 500.0, -1.0), 1.0)
+    if is_reversible:
+        return min(max((pulse - 1500.0) / 500.0, -1.0), 1.0)
+    return min(max((pulse - 1000) * 0.001, 0.0), 1.0)
 
 
-def controls(pulses: Sequence[int], is_copter: bool) -> list[float]:
+def controls(pulses: Sequence[int], is_reversible: bool) -> list[float]:
     """The border's 16 actuator controls of a frame."""
-    return [control(pulse, is_copter) for pulse in pulses[:16]]
+    return [control(pulse, is_reversible) for pulse in pulses[:16]]

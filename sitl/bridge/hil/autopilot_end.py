@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from ...core.constants import TICK_US
 from ...core.record_reader import RecordReader
-from ...vehicle.record import TICK_US
 from ..dialect import message
 from ..frame import Frame, Splitter
 from . import controls, truth

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...vehicle.record import TICK_US
+from ...core.constants import TICK_US
 from .controls import Controls
 
 LATE = 400

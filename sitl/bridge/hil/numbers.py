@@ -16,8 +16,6 @@ AUTOPILOT = (1, 1)
 PHYSICS = (1, 158)
 """Of the physics: a peripheral of the same system (MAV_COMP_ID_PERIPHERAL)."""
 
-MAV_TYPES = {"copter": 2, "rover": 10}
-"""By kind of vehicle: what the autopilot's HEARTBEAT says it is."""
 ARDUPILOTMEGA, PX4 = 3, 12
 """MAV_AUTOPILOT in a HEARTBEAT: ours, and one that counts time from the first tick that it got."""
 ARMED, CUSTOM_MODE = 128, 1

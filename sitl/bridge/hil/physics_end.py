@@ -14,8 +14,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ...core.constants import TICK_US
 from ...physics.carried import Carried
-from ...vehicle.record import TICK_US
 from ..dialect import message
 from ..frame import Frame, Splitter
 from ..services.results import ACCEPTED, DENIED, UNSUPPORTED

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot.state import RC_INPUTS
+from ...core.border import RC_INPUTS
 from ..dialect import MessageType, message
 from .numbers import LATEST_US, RefusedError
 

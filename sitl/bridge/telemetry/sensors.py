@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 
+from ...core.constants import GRAVITY
 from ...core.rotations import quat_to_euler
 from ...physics.carried import MILLIG
 from ..dialect import message
 from .builder import Build, Builder, Context
-from .units import G, boot_ms, int16
+from .units import boot_ms, int16
 
 S = "sensors."
 _IMU = (S + "acc", S + "gyro", S + "mag")
@@ -17,7 +18,7 @@ _IMU = (S + "acc", S + "gyro", S + "mag")
 
 def _scaled(values: tuple[float, ...]) -> list[int]:
     """Specific force [mG], rates [mrad/s], field [mgauss]."""
-    k = 1000.0 / G
+    k = 1000.0 / GRAVITY
     return [int16(x * k) for x in values[:3]] + [int16(x * 1000.0) for x in values[3:9]]
 
 

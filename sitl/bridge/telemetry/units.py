@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import math
 
-G = 9.80665
-"""Standard gravity [m/s^2] (MAVLink's mG)."""
 DEG = 180.0 / math.pi
 CDEG = 18000.0 / math.pi
 """Radians to centidegrees."""

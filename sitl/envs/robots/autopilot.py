@@ -21,7 +21,8 @@ from sitl.client.connection import Connection
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
-from sitl.simulation import DEFAULT_HOME, Home, OptionError, Simulation
+from sitl.scenario import DEFAULT_HOME, Home, Scenario
+from sitl.simulation import OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
@@ -33,10 +34,10 @@ from ..mavlink.preparation import ALIGN_US, hear_again, set_intervals, set_mode
 from ..mavlink.simulator import RESETS, SIMULATOR
 from ..options import EnvOptionError, unknown
 from ..setpoints import Setpoint
-from .autopilot_kinds import KINDS, PX4_KIND, volume
 from .by_socket import SocketVehicles
 from .foreign import ForeignVehicles
 from .in_process import InProcessVehicles
+from .kind import robot_kind, volume
 from .robot import Floats, Pose
 from .vehicles import INPROCESS, NOT_STARTED, EpisodeState, Vehicles, VehicleSetup
 
@@ -105,22 +106,28 @@ class AutopilotRobot:
             raise EnvOptionError(str(error)) from None
         self.world, self.count = worlds.load(world), count
         self.name = airframe.name
-        self.kind = kind = KINDS[airframe.kind]
+        self.kind = kind = robot_kind(airframe.kind)
         readings = int(airframe.value("lidar_samples"))
         if readings < 1:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
-        if airframe.kind == "copter" and not 0.5 <= take_off <= 100.0:
+        if kind.takes_off and not 0.5 <= take_off <= 100.0:
             raise EnvOptionError(f"take_off = {take_off}; it must be 0.5 .. 100 m")
         try:
             choice = choose(autopilot, airframe.kind, autopilot_path)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         if choice is not None and choice.kind == PX4:
-            self.kind = kind = PX4_KIND
+            if kind.with_px4 is None:
+                raise EnvOptionError(f"autopilot {choice.name} flies no {airframe.kind} here; {self.name} is one")
+            self.kind = kind = kind.with_px4
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
-        setup = VehicleSetup(self._options, airframe, kind, self.world, self.angles)
+        try:
+            scenario = Scenario(airframe, home, params=params, world=self.world, physics=physics)
+        except OptionError as error:
+            raise EnvOptionError(str(error)) from None
+        setup = VehicleSetup(self._options, airframe, kind, self.world, scenario, self.angles)
         self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
@@ -129,7 +136,7 @@ class AutopilotRobot:
             if made.simulates
             else {}
         )
-        self.volume = volume(airframe, take_off if airframe.kind == "copter" else 0.0)
+        self.volume = volume(airframe, take_off if kind.takes_off else 0.0)
         self.scan = np.full((count, readings), np.inf, np.float32)
         self.collided = np.zeros(count, np.int64)
         self._state = np.zeros((count, 8))
@@ -140,7 +147,7 @@ class AutopilotRobot:
         self._states = [NOT_STARTED] * count
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The vehicle kind's actions: see ``autopilot_kinds``."""
+        """The vehicle kind's actions: see ``kind``."""
         return self.kind.action(form, setpoint)
 
     # ------------------------------------------------------------------ episodes

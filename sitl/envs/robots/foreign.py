@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
-from sitl.foreign.choice import PX4, Choice
+from sitl.foreign.choice import Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.alone import stand_alone
 from sitl.vehicles import Airframe, AirframeError
@@ -29,9 +30,7 @@ class ForeignVehicles(Vehicles):
 
     def __init__(self, setup: VehicleSetup, choice: Choice) -> None:
         self._choice = choice
-        options, airframe = setup.options, setup.airframe
-        if choice.kind == PX4 and airframe.kind != "copter":
-            raise EnvOptionError(f"{self.where} flies copters here; {airframe.name} is a {airframe.kind}")
+        options = setup.options
         if options["connection"] != INPROCESS:
             raise EnvOptionError(f"{self.where}: it needs no connection besides")
         if options["gcs"] is not None:
@@ -66,10 +65,8 @@ class ForeignVehicles(Vehicles):
         if before is not None and rebooted is None:
             before.close()
         try:
-            plant = stand_alone(
-                airframe, home=options["home"], backend=options["physics"], seed=seed, world=self.setup.world,
-                start=(*pose[:3], math.degrees(pose[3])),
-            )  # fmt: skip
+            start = (*pose[:3], math.degrees(pose[3]))
+            plant = stand_alone(replace(self.setup.scenario, frame=airframe, seed=seed, start=start, params={}))
             if rebooted is None:
                 found = launch(choice, plant, options["params"] or {}, len(self.setup.angles), options["patience"])
                 try:

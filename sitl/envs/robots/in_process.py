@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
@@ -35,7 +36,7 @@ WIND = {
     "wind_direction": ("SIM_WIND_DIR", Figure("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0)),
     "wind_turbulence": ("SIM_WIND_TURB", Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0)),
 }
-"""Figure -> parameter of the wind, and the figure's limits. Wind acts on copters only."""
+"""Figure -> parameter of the wind, and the figure's limits. Not every kind of vehicle feels wind."""
 
 
 class InProcessVehicles(Vehicles):
@@ -57,7 +58,7 @@ class InProcessVehicles(Vehicles):
 
     @property
     def extra_figures(self) -> Mapping[str, Figure]:
-        return {name: figure for name, (_, figure) in WIND.items()} if self.setup.airframe.kind == "copter" else {}
+        return {name: figure for name, (_, figure) in WIND.items()} if self.setup.kind.feels_wind else {}
 
     @property
     def where(self) -> str:
@@ -88,21 +89,19 @@ class InProcessVehicles(Vehicles):
         return state
 
     def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
-        options, airframe = self.options, self.setup.airframe
+        scenario, airframe = self.setup.scenario, self.setup.airframe
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
         own = {name: value for name, value in figures if name not in WIND}
-        params = {**(options["params"] or {}), **wind} if wind else options["params"]
+        params = {**(scenario.params or {}), **wind}
         try:
-            simulation = Simulation(
-                airframe.changed(**own) if own else airframe, world=self.setup.world, start=start,
-                home=options["home"], params=params, core=self._core, physics=options["physics"],
-            )  # fmt: skip
+            scenario = replace(scenario, frame=airframe.changed(**own) if own else airframe, params=params, start=start)
+            simulation = Simulation(scenario, core=self._core)
         except (OptionError, AirframeError, EngineError, ParameterError) as error:
             raise EnvOptionError(str(error)) from None
         if simulation.unknown_parameters:
             raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
-        if options["physics"] == NATIVE:
+        if scenario.physics == NATIVE:
             self._core = simulation.core
         return simulation
 

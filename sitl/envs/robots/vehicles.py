@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
 from sitl.physics.engines import BACKENDS, NATIVE
+from sitl.scenario import Scenario
 from sitl.simulation import Simulation
 from sitl.vehicles import Airframe
 from sitl.vehicles.figures.figure import Figure
@@ -19,7 +20,7 @@ from sitl.worlds import World
 from ..mavlink import px4, setpoints
 from ..mavlink.preparation import INTERVAL_US, prepare
 from ..options import EnvOptionError
-from .autopilot_kinds import PX4_KIND, Kind
+from .kind import RobotKind
 from .robot import Floats, Pose
 
 INPROCESS = "inprocess"
@@ -54,8 +55,10 @@ class VehicleSetup:
     options: Mapping[str, Any]
     """Options of the robot, by name."""
     airframe: Airframe
-    kind: Kind
+    kind: RobotKind
     world: World
+    scenario: Scenario
+    """What is simulated, without start and seed of an episode."""
     angles: Floats
     """Angles of the lidar's readings, counter-clockwise from ahead, shape (readings,) [rad]."""
 
@@ -144,12 +147,12 @@ class Vehicles(ABC):
         """Arm and take off a vehicle that has just booted; returns its local origin in the world: north, east, down
         [m]."""
         kind, heard = self.setup.kind, link.inbox
-        take_off = self.options["take_off"] if self.setup.airframe.kind == "copter" else 0.0
+        take_off = self.options["take_off"] if kind.takes_off else 0.0
 
         def hold_sticks() -> None:
             link.endpoint.send_payload(*setpoints.override(_AT_REST, heard, ()))
 
-        if kind is PX4_KIND:
+        if kind.guided == px4.OFFBOARD:
             px4.prepare(link, take_off)
         else:
             prepare(link, kind.guided, take_off, hold_sticks)

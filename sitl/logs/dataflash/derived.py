@@ -13,7 +13,6 @@ from ...core.geodesy import METRES_PER_DEGE7
 from .samples import Array
 
 DEG = 180.0 / math.pi
-G = 9.80665
 E, S, A = "autopilot.estimate.", "sensors.", "autopilot."
 Column = Callable[[Any], Array]
 

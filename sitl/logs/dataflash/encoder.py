@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,23 +11,16 @@ import numpy as np
 from ...autopilot.events import EVENT_RING
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
-from . import bits, copter, formats, rover
+from ..kind import logs_of
+from . import bits, formats
 from .common import EVENT_MESSAGES
 from .events import EDGES, HOME, ORIGIN, EventEncoder
-from .formats import Message
 from .plan import Plan
 from .samples import Samples
 
 ROWS = 1024
 """Number of samples that are collected before they are encoded."""
 EVERY_BIT = 0x7FFFFFFF
-MESSAGES: Mapping[str, Callable[[int, int, bool], tuple[Message, ...]]] = {
-    "copter": copter.messages,
-    "rover": rover.messages,
-}
-"""Messages by the firmware's name."""
-TITLES = {"copter": ("ArduCopter", 2), "rover": ("ArduRover", 1)}
-"""Firmware -> the name that readers expect in MSG, the build type in VER."""
 VERSION = (4, 7, 0)
 """The ArduPilot whose messages these are."""
 _RING, _NAV = "autopilot.events.", "autopilot.modes.nav."
@@ -68,9 +61,9 @@ class LogEncoder:
     def __init__(self, vehicle: Vehicle, boot_unix_us: int, bitmask: int, version: str) -> None:
         self._vehicle, self._version = vehicle, version
         self._boot_unix_us = boot_unix_us
-        name = vehicle.firmware.name
+        self._kind = logs_of(vehicle.firmware.name)
         self._simulated = ":" not in vehicle.physics  # elsewhere the record holds no truth
-        every = (*EVENT_MESSAGES, *MESSAGES[name](EVERY_BIT, boot_unix_us, self._simulated))
+        every = (*EVENT_MESSAGES, *self._kind.messages(EVERY_BIT, boot_unix_us, self._simulated))
         self._described = every
         self._numbers = formats.number_all(every)
         self.events = EventEncoder(self._numbers)
@@ -87,7 +80,7 @@ class LogEncoder:
     def _plan_rows(self) -> None:
         v = self._vehicle
         self._samples = Samples(v.fleet, v.index, ROWS)
-        chosen = MESSAGES[v.firmware.name](self._bits, self._boot_unix_us, self._simulated)
+        chosen = self._kind.messages(self._bits, self._boot_unix_us, self._simulated)
         self._plan = Plan(chosen, self._numbers, self._samples)
         self._samples.want(*(edge.path for edge in EDGES), _NAV + "command_count", _NAV + "command_seq")
         for _, is_set, place in _PLACES:
@@ -176,7 +169,7 @@ class LogEncoder:
         """Encode the head of the log: formats, parameters, version, mode, mission, places; time since boot [us]."""
         v, pack = self._vehicle, self.events
         self._last_us = time_us
-        title, build = TITLES[v.firmware.name]
+        title, build = self._kind.title, self._kind.build_type
         described = f"{title} V{'.'.join(map(str, VERSION))}-dev ({self._version})"
         version = (0, 0, *VERSION, 0, 0, described.encode()[:64], 0, build, 0, 0, 0)
         modes = v.v.autopilot.modes

@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from sitl.errors import OptionError
+from sitl.vehicle.kinds import KINDS
 
 from ..files import load, save, straightened
-from ..files.document import TYPE_OF_KIND
 
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -19,7 +19,7 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser = actions.add_parser("convert", help="convert between .plan and .waypoints")
     parser.add_argument("source", metavar="FROM", help=".plan, .waypoints or .txt")
     parser.add_argument("target", metavar="TO", help="the suffix says the format")
-    parser.add_argument("--vehicle", choices=sorted(TYPE_OF_KIND), help="whom a .plan is for")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), help="whom a .plan is for")
     parser.add_argument(
         "--expand", action="store_true", help="write surveys, corridors, structures and splines as waypoints"
     )
@@ -35,7 +35,7 @@ def convert(options: argparse.Namespace) -> int:
         raise OptionError(f"{target} is there already; --force replaces it")
     kind = options.vehicle or (file.kind if file.vehicle_type is None else None)
     if kind is not None:
-        file = replace(file, vehicle_type=TYPE_OF_KIND[kind])
+        file = replace(file, vehicle_type=KINDS[kind].mav_type)
     if options.expand:
         file = straightened(file).simple()
     save(file, target)

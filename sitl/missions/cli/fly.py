@@ -10,16 +10,17 @@ from pathlib import Path
 
 from sitl.bridge.links.address import open_link
 from sitl.cli import recordings
-from sitl.cli.options import VEHICLES, add_vehicle_options, build_simulation, open_folder, seconds
+from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
 from sitl.errors import OptionError
 from sitl.run import runner
 from sitl.run.pacing import Pacing, parse_speedup
 from sitl.simulation import Simulation
+from sitl.vehicle.kinds import DEFAULT, KINDS
 from sitl.vehicles import load as load_airframe
 
 from .. import library
 from ..files import MissionFile, load, straightened
-from ..files.document import KIND_OF_TYPE
+from ..files.document import kind_of_type
 from ..fly import LIMIT_S, Outcome, checked, fly
 
 GENERIC = 0
@@ -30,7 +31,7 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     """Declare the command."""
     parser = actions.add_parser("fly", help="fly a mission file from power-on to its end")
     parser.add_argument("mission", metavar="FILE|NAME", help=".plan, .waypoints, or a mission of the library")
-    parser.add_argument("--vehicle", choices=sorted(VEHICLES), help="default: what the file is made for, or a copter")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), help="default: what the file is made for, or a copter")
     parser.add_argument("--speedup", default="max", metavar="K|max", help="simulated seconds a second (default max)")
     parser.add_argument(
         "--time-limit", type=seconds, default=LIMIT_S, metavar="SIM_SECONDS", help=f"since arming (default {LIMIT_S:g})"
@@ -99,13 +100,13 @@ def prepare(options: argparse.Namespace, file: MissionFile, entry: library.Entry
         OptionError: the file is for another kind of vehicle.
     """
     kind = entry.kind if entry else file.kind
-    if options.vehicle is None and file.vehicle_type not in (None, GENERIC, *KIND_OF_TYPE):
+    if options.vehicle is None and file.vehicle_type not in (None, GENERIC) and kind_of_type(file.vehicle_type) is None:
         raise OptionError(
-            f"{file.name}: vehicleType {file.vehicle_type} (MAV_TYPE) is neither a copter nor a rover; "
+            f"{file.name}: vehicleType {file.vehicle_type} (MAV_TYPE) is none of {', '.join(KINDS)}; "
             "--vehicle says what flies it"
         )
     if options.vehicle is None:
-        options.vehicle = load_airframe(options.frame).kind if options.frame else kind or "copter"
+        options.vehicle = load_airframe(options.frame).kind if options.frame else kind or DEFAULT
     if file.vehicle_type is not None and file.kind is not None and file.kind != options.vehicle:
         raise OptionError(f"{file.name}: vehicleType {file.vehicle_type} is a {file.kind}, not a {options.vehicle}")
     if entry is not None:

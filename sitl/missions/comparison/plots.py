@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from sitl.logs.plot import new_figure
+from sitl.vehicle.kinds import KINDS
 
 from .compare import Comparison
 
@@ -98,7 +99,7 @@ def flown(comparison: Comparison) -> bytes:
         ("heading [deg]", heading),
         ("energy [Wh]", lambda track: track["energy"]),
     ]
-    if new.kind == "rover":
+    if not KINDS[new.kind].flies:
         del rows[2:4], rows[0]
     figure = new_figure(_WIDE, 1.45 * len(rows) + 0.4)
     axes = figure.subplots(len(rows), 1, sharex=True)
@@ -118,7 +119,7 @@ def flown(comparison: Comparison) -> bytes:
 def differing(comparison: Comparison) -> bytes:
     """Each difference over time with its limit. PNG bytes."""
     shown = [comparison.differences[name] for name in _SHOWN]
-    if comparison.pair.new.kind == "rover":
+    if not KINDS[comparison.pair.new.kind].flies:
         shown = [series for series in shown if np.isfinite(comparison.tolerance.limit(f"{series.name}.max"))]
     figure = new_figure(_WIDE, 1.45 * len(shown) + 0.4)
     axes = np.atleast_1d(figure.subplots(len(shown), 1, sharex=True))

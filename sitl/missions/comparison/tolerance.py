@@ -13,13 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from sitl.errors import OptionError
+from sitl.vehicle.kinds import DEFAULT, KINDS
 
 SERIES = ("position", "cross_track", "altitude", "delay", "speed", "climb", "tilt", "heading")
 TOTALS = ("duration", "energy")
 EVENTS = ("items", "modes", "texts")
 PRESETS = ("same", "alike")
 ALIGNMENTS = ("auto", "AUTO", "armed", "start")
-_KINDS = ("copter", "rover")
 _KEYS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(SERIES, ("max", "rms")),
     **dict.fromkeys(TOTALS, ("max",)),
@@ -54,7 +54,7 @@ class Tolerance:
         return self.limits.get(figure, math.inf)
 
 
-def load(given: str | Path | Mapping[str, Any], kind: str = "copter") -> Tolerance:
+def load(given: str | Path | Mapping[str, Any], kind: str = DEFAULT) -> Tolerance:
     """A preset by its name, a TOML file, or a mapping of the same shape; for a kind of vehicle.
 
     What a file does not say is as in its ``base``, "same" unless it says another.
@@ -87,11 +87,11 @@ def _build(title: str, table: Mapping[str, Any], kind: str) -> Tolerance:
     if base not in PRESETS:
         raise ToleranceError(f"{title}: base {base!r} is none of {', '.join(PRESETS)}")
     found: dict[str, Any] = {}
-    for other in _KINDS:
+    for other in KINDS:
         if not isinstance(table.get(other, {}), Mapping):
             raise ToleranceError(f"{title}: [{other}] is a table, not {table[other]!r}")
     for name, layer in (base, _preset(base)), (title, table):
-        _lay(found, layer, name, ("base", "align", *_KEYS, *_KINDS))
+        _lay(found, layer, name, ("base", "align", *_KEYS, *KINDS))
         _lay(found, layer.get(kind, {}), f"{name}: [{kind}]", tuple(_KEYS))
     if found["align"] not in ALIGNMENTS:
         raise ToleranceError(f"{title}: align {found['align']!r} is none of {', '.join(ALIGNMENTS)}")

@@ -9,15 +9,19 @@ from typing import Any
 
 from sitl.autopilot.mission.item import NAV_LAND, NAV_TAKEOFF
 from sitl.autopilot.mission.mission import Mission
+from sitl.vehicle.kinds import KINDS
 
 FIXED_WING, QUADROTOR, GROUND_ROVER, BOAT = 1, 2, 10, 11
 """MAV_TYPE"""
-MULTIROTORS = (QUADROTOR, 13, 14, 15, 29, 35)
-"""MAV_TYPEs that a copter's firmware flies: quadrotor, hexarotor, octorotor, tricopter, dodecarotor, decarotor."""
-KIND_OF_TYPE = {**dict.fromkeys(MULTIROTORS, "copter"), GROUND_ROVER: "rover", BOAT: "rover"}
-TYPE_OF_KIND = {"copter": QUADROTOR, "rover": GROUND_ROVER}
 ARDUPILOT = 3
 """MAV_AUTOPILOT_ARDUPILOTMEGA"""
+
+
+def kind_of_type(vehicle_type: int | None) -> str | None:
+    """Name of the kind of vehicle that a MAV_TYPE is; None: of none."""
+    kind = KINDS.of_mav_type(vehicle_type) if vehicle_type is not None else None
+    return kind.name if kind is not None else None
+
 
 Place = tuple[float, float]
 """Latitude, longitude [deg]."""
@@ -98,11 +102,12 @@ class MissionFile:
 
     @property
     def kind(self) -> str | None:
-        """ "copter" or "rover"; None when neither the file nor its items tell."""
-        if self.vehicle_type is not None and self.vehicle_type in KIND_OF_TYPE:
-            return KIND_OF_TYPE[self.vehicle_type]
+        """Name of the kind of vehicle; None when neither the file nor its items tell."""
+        kind = kind_of_type(self.vehicle_type)
+        if kind is not None:
+            return kind
         flies = any(item.command in (NAV_TAKEOFF, NAV_LAND) for item in self.mission.items)
-        return "copter" if flies else None
+        return next(name for name, kind in KINDS.items() if kind.flies) if flies else None
 
     @property
     def has_fence_or_rally(self) -> bool:

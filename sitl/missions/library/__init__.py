@@ -39,7 +39,7 @@ class Entry:
 
     @property
     def kind(self) -> str:
-        """ "copter" or "rover"."""
+        """Name of the kind of vehicle."""
         return self.name.partition("/")[0]
 
     @property

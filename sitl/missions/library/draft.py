@@ -11,9 +11,10 @@ from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.core.geodesy import add_offset
 from sitl.physics.native.power_on import DEFAULT_HOME
+from sitl.vehicle.kinds import KINDS
 
 from ..files import FenceCircle, FencePolygon, MissionFile, RallyPoint, complex_items
-from ..files.document import TYPE_OF_KIND, Complex
+from ..files.document import Complex
 from ..files.json_reader import Node
 
 LAT, LON, ALT, _ = DEFAULT_HOME
@@ -103,8 +104,8 @@ class Draft:
         """The mission file."""
         return MissionFile(
             Mission.of(self._items),
-            vehicle_type=TYPE_OF_KIND[self.kind],
-            cruise_speed=self.speed or (1.2 if self.kind == "rover" else 10.0),
+            vehicle_type=KINDS[self.kind].mav_type,
+            cruise_speed=self.speed or (10.0 if KINDS[self.kind].flies else 1.2),
             hover_speed=self.speed or 5.0,
             complexes=tuple(self._complexes),
             **self._fence,

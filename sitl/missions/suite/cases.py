@@ -16,7 +16,7 @@ from sitl import vehicles
 from sitl.core import code_in_files
 from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
-from sitl.vehicle.kinds import KINDS
+from sitl.vehicle.kinds import DEFAULT, KINDS
 
 from .. import library
 from ..comparison.tolerance import load as load_tolerance
@@ -41,7 +41,7 @@ _SETTINGS = (
 _MISSION = ("file", "library", *_SETTINGS)
 _VARIANT = ("name", "missions", "vehicle", "seed", "seeds", "params", "physics", "tolerance")
 _TYPES: dict[str, tuple[type | tuple[type, ...], str]] = {
-    "vehicle": (str, '"copter" or "rover"'),
+    "vehicle": (str, f"one of {', '.join(KINDS)}"),
     "frame": (str, "the name or file of an airframe"),
     "world": (str, "the name or file of a world"),
     "start": (str, "a start pose of the world"),
@@ -253,8 +253,8 @@ def _vehicle(path: Path, row: dict[str, Any], entry: library.Entry | None) -> tu
     frame = row.get("frame", entry.frame if entry else None)
     if frame is not None:
         return vehicles.load(_local(path.parent, frame) or frame).kind, _local(path.parent, frame) or frame
-    kind = row.get("vehicle") or load(path).kind or "copter"
-    return kind, {"copter": "erle_copter", "rover": "erle_rover"}.get(kind, kind)
+    kind = row.get("vehicle") or load(path).kind or DEFAULT
+    return kind, KINDS[kind].default_frame
 
 
 def _local(folder: Path, name: str | None) -> str | None:

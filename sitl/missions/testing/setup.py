@@ -13,10 +13,10 @@ from sitl.autopilot.params import files
 from sitl.core.compile import Progress
 from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
-from sitl.plants.surroundings import StartPose
+from sitl.scenario import StartPose
 from sitl.simulation import Simulation
 from sitl.vehicle.core_entry import Core, load_core
-from sitl.vehicle.kinds import KINDS
+from sitl.vehicle.kinds import DEFAULT, KINDS
 from sitl.vehicles import Airframe
 from sitl.worlds import World
 
@@ -130,10 +130,7 @@ def setup(
             raise OptionError(f"wind {wind!r} is neither a speed nor (speed, direction, turbulence)")
         values.update(zip(WIND, figures))
     if frame is None:
-        kinds = ("copter", "rover")
-        if kind is not None and kind not in kinds:
-            raise OptionError(f"vehicle {kind!r} is none of {', '.join(kinds)}")
-        frame = vehicles.names(kind or "copter")[0]
+        frame = KINDS[kind or DEFAULT].default_frame
     elif not isinstance(frame, Airframe):
         frame = str(_beside(frame, defaults.folders)) if str(frame).endswith(".py") else str(frame)
     if kind is not None and vehicles.load(frame).kind != kind:

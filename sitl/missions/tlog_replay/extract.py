@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.simulation import Home
+from sitl.scenario import Home
+from sitl.vehicle.kinds import KINDS
 
 from .log import Log, LoggedMessage
 from .steps import ARM, LEFT_OUT, PASSED, QUESTIONS, SET_MODE, Found, Send, Sender, Step, Upload, item_of
@@ -19,11 +20,6 @@ ANSWER_S = 3.0
 UPLOAD_S = 60.0
 """An upload takes no longer than this."""
 GROUND_STATION: Sender = (255, 190)
-FLIGHT_PARAMETERS = {
-    "copter": ("WPNAV_", "WP_", "RTL_", "LAND_", "LOIT_", "PILOT_", "TKOFF_", "GUID_", "AUTO_", "MIS_", "CIRCLE_"),
-    "rover": ("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
-}
-"""Parameters that say how missions and commands are flown. Gains, sensors and failsafes are the airframe's."""
 
 
 @dataclass(frozen=True)
@@ -186,7 +182,7 @@ def home_of(log: Log) -> Home | None:
 def parameters_of(log: Log) -> dict[str, float]:
     """The vehicle's own values, before anybody set them, of what says how it is flown."""
     found: dict[str, float] = {}
-    prefixes = FLIGHT_PARAMETERS[log.kind]
+    prefixes = KINDS[log.kind].flight_parameters
     for message in log.of_vehicle("PARAM_VALUE"):
         name = message.fields.param_id.decode(errors="replace")
         if name.startswith(prefixes) and name not in found and math.isfinite(message.fields.param_value):

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from sitl.bridge.frame import Splitter
 from sitl.logs.tlog import LogError, read_tlog
 
-from ..files.document import KIND_OF_TYPE
+from ..files.document import kind_of_type
 
 INVALID = 8
 """MAV_AUTOPILOT_INVALID: what is no autopilot says so in its HEARTBEAT."""
@@ -63,12 +63,13 @@ class Log:
         """System id of the vehicle."""
         if self.system not in found:
             raise LogError(f"{title} has no vehicle {system}; it has {', '.join(str(n) for n in sorted(found))}")
-        if found[self.system] not in KIND_OF_TYPE:
+        kind = kind_of_type(found[self.system])
+        if kind is None:
             raise LogError(
                 f"{title}: vehicle {self.system} is of MAV_TYPE {found[self.system]}, neither a multicopter nor a rover"
             )
-        self.kind: str = KIND_OF_TYPE[found[self.system]]
-        """"copter" or "rover"."""
+        self.kind: str = kind
+        """Name of the kind of vehicle."""
 
     @property
     def duration(self) -> float:

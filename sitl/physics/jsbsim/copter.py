@@ -7,11 +7,13 @@ import math
 from typing import Any
 
 from ..engine import Seat
-from ..native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from ..native.copter.ground import upright
 from ..native.obstacles import HIT_PAUSE_US
+from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from . import copter_aircraft, memory
 from .copter_aircraft import GOES
 from .craft import Craft
+from .engine import JsbsimEngine
 from .model import NAME
 from .properties import Properties
 
@@ -62,7 +64,7 @@ class CopterCraft(Craft):
 
     def started(self) -> None:
         self._goes_to(1.0)
-        self._down = float(self._body.vel[2])
+        self._down = self._body.vel.z
 
     def inputs(self) -> None:
         commands = self._commands.tolist()
@@ -99,6 +101,15 @@ class CopterCraft(Craft):
                 g.hit_count += 1
                 g.hit_speed = self._down
                 g.hit_time_us = now
-        _, x, y, _ = self._body.q.tolist()
-        if 1.0 - 2.0 * (x * x + y * y) < self._upright:
+        if upright(self._body.q) < self._upright:
             g.state = GROUND_LYING
+
+
+def make(seat: Seat) -> JsbsimEngine:
+    """JSBSim for a copter.
+
+    Raises:
+        EngineError: its world is nothing for JSBSim.
+        MissingExtra: JSBSim is not installed.
+    """
+    return JsbsimEngine(seat, CopterCraft(seat))

@@ -13,11 +13,10 @@ the flight that goes on by rounding.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from ...core.rotations import quat_rotate, quat_to_euler
+from ...core.algebra import euler_of, quat_from_euler, rotate
+from ...core.vectors import Euler, Quat, Vec3
 from ..engine import Engine, EngineError, Seat
 from ..native.tick import TICK_S
 from . import memory, start
@@ -28,7 +27,6 @@ from .model import library, load
 from .properties import Properties
 from .units import FOOT
 
-Vector = tuple[float, float, float]
 _STATE = (
     "position/lat-gc-rad",
     "position/long-gc-rad",
@@ -107,7 +105,7 @@ class JsbsimEngine(Engine):
         self.air.seed(int(self.seat.v.rng.s[0]))
         start.begin(self.executive, self._motion())
         self.air.settle(float(p.place.alt))
-        self.air.blow(p.wind.steady.tolist())
+        self.air.blow(list(p.wind.steady))
         self.craft.starting()
         self.craft.inputs()
         start.settle(self.executive)
@@ -117,27 +115,21 @@ class JsbsimEngine(Engine):
     def _motion(self) -> start.Motion:
         """Of the centre of mass, from the record."""
         b, half = self._physics.body, 0.5 * self.dt
-        q = b.q.tolist()
-        rates = tuple(b.rates.tolist())
-        (x, y, z), (vx, vy, vz) = self._lever(q, rates)
-        (north, east, down), (vn, ve, vd) = b.pos.tolist(), b.vel.tolist()
-        velocity = vn + vx, ve + vy, vd + vz
-        down = down + z - half * velocity[2]
-        position = north + x - half * velocity[0], east + y - half * velocity[1], self._height - down
-        return start.Motion(position, velocity, quat_to_euler(*q), rates)
+        lever, swing = self._lever(b.q, b.rates)
+        velocity = b.vel + swing
+        centre = b.pos + lever - half * velocity
+        return start.Motion((centre.x, centre.y, self._height - centre.z), velocity, euler_of(b.q), b.rates)
 
-    def _lever(self, q: Sequence[float], rates: Sequence[float]) -> tuple[Vector, Vector]:
+    def _lever(self, q: Quat, rates: Vec3) -> tuple[Vec3, Vec3]:
         """From the origin of the body to its centre of mass: place [m] and velocity [m/s], NED."""
-        w, x, y, z = q
         ahead = self.craft.ahead
-        across, upward = ahead * rates[2], ahead * rates[1]
-        return quat_rotate(w, x, y, z, ahead, 0.0, 0.0), quat_rotate(w, x, y, z, 0.0, across, -upward)
+        return rotate(q, Vec3(ahead, 0.0, 0.0)), rotate(q, Vec3(0.0, ahead * rates.z, -(ahead * rates.y)))
 
     # ------------------------------------------------------------------ going on
 
     def move(self) -> None:
         air = self.air
-        wind = self._wind.steady.tolist()
+        wind = list(self._wind.steady)
         if wind != air.wind:
             air.blow(wind)
         if self._wind.turbulence != air.turbulence:
@@ -149,17 +141,9 @@ class JsbsimEngine(Engine):
         vn, ve, vd = FOOT * vn, FOOT * ve, FOOT * vd
         half = 0.5 * self.dt
         north, east, down = RADIUS * lat + half * vn, RADIUS * lon + half * ve, self._height - FOOT * height + half * vd
-        cr, sr = math.cos(0.5 * roll), math.sin(0.5 * roll)
-        cp, sp = math.cos(0.5 * pitch), math.sin(0.5 * pitch)
-        cy, sy = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
-        attitude = (
-            cr * cp * cy + sr * sp * sy,
-            sr * cp * cy - cr * sp * sy,
-            cr * sp * cy + sr * cp * sy,
-            cr * cp * sy - sr * sp * cy,
-        )
+        attitude = quat_from_euler(Euler(roll, pitch, yaw))
         if self.craft.ahead != 0.0:
-            (x, y, z), (vx, vy, vz) = self._lever(attitude, (p, q, r))
+            (x, y, z), (vx, vy, vz) = self._lever(attitude, Vec3(p, q, r))
             north, east, down, vn, ve, vd = north - x, east - y, down - z, vn - vx, ve - vy, vd - vz
         self._write_body(north, east, down, vn, ve, vd, *attitude, p, q, r)
         self.craft.outputs(vd)

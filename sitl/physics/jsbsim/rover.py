@@ -6,12 +6,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...core.vectors import Vec2
 from ...vehicles.figures.rover import STEERING_SKID
 from ..engine import Seat
 from ..native.rover.steering import curvature
 from ..native.tick import TICK_S
-from . import memory, rover_aircraft
+from . import rover_aircraft
 from .craft import Craft
+from .engine import JsbsimEngine
 from .model import NAME
 from .properties import Properties
 from .rover_aircraft import FRONT_LEFT, FRONT_RIGHT
@@ -25,8 +27,6 @@ class RoverCraft(Craft):
         super().__init__(seat)
         self._p = seat.v.physics
         self._wheels = self._p.wheels
-        self._speeds, self._rolled = self._wheels.speed, self._wheels.distance
-        self._write_distance = memory.writer(seat, "physics.wheels.distance", 2)
 
     def document(self, a: Any, dt: float) -> str:
         return rover_aircraft.document(a, NAME, dt)
@@ -50,7 +50,7 @@ class RoverCraft(Craft):
         self._angle = math.nan
 
     def inputs(self) -> None:
-        left, right = self._speeds.tolist()
+        left, right = self._wheels.speed
         self._speed_to[0](left)
         if self._is_skid:
             self._speed_to[1](right)
@@ -58,7 +58,7 @@ class RoverCraft(Craft):
         angle = self._wheels.angle
         if angle != self._angle:
             self._angle = angle
-            self._steer(curvature(self._p))
+            self._steer(curvature(angle, self._p.airframe, self._p.derived))
 
     def _steer(self, bend: float) -> None:
         """Turn each front wheel to the circle of curvature ``bend`` [1/m] that the rear axle shall run on."""
@@ -67,9 +67,18 @@ class RoverCraft(Craft):
 
     def outputs(self, down: float) -> None:
         self._wheels.forward = FOOT * self._forward()
-        left, right = self._speeds.tolist()
+        left, right = self._wheels.speed
         if not self._is_skid:
             differ = self._half_track * self._yaw_rate()  # the outer wheel rolls further
             left, right = left + differ, left - differ
-        rolled = self._rolled.tolist()
-        self._write_distance(rolled[0] + TICK_S * left, rolled[1] + TICK_S * right)
+        self._wheels.distance += TICK_S * Vec2(left, right)
+
+
+def make(seat: Seat) -> JsbsimEngine:
+    """JSBSim for a rover.
+
+    Raises:
+        EngineError: its world is nothing for JSBSim.
+        MissingExtra: JSBSim is not installed.
+    """
+    return JsbsimEngine(seat, RoverCraft(seat))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ...core.vectors import Euler, Vec3
 from .aircraft import RADIUS
 from .units import FOOT
 
@@ -30,11 +31,11 @@ class Motion(NamedTuple):
 
     position: tuple[float, float, float]
     """Of the centre of mass: north, east, height over the floor [m]."""
-    velocity: tuple[float, float, float]
+    velocity: Vec3
     """NED [m/s]."""
-    euler: tuple[float, float, float]
-    """Roll, pitch, yaw [rad]."""
-    rates: tuple[float, float, float]
+    euler: Euler
+    """[rad]"""
+    rates: Vec3
     """Body [rad/s]."""
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from .records import Air
 
 SEA_LEVEL_PRESSURE = 101325.0
 SEA_LEVEL_TEMPERATURE = 288.15
@@ -15,25 +16,25 @@ EXPONENT = 9.80665 / (GAS_CONSTANT * LAPSE_RATE)
 
 
 @law
-def temperature(altitude):
+def temperature(altitude: float) -> float:
     """Air temperature [K] at an altitude above mean sea level [m]."""
     return SEA_LEVEL_TEMPERATURE - LAPSE_RATE * altitude
 
 
 @law
-def pressure(altitude):
+def pressure(altitude: float) -> float:
     """Static pressure [Pa] at an altitude above mean sea level [m]."""
     return SEA_LEVEL_PRESSURE * math.pow(temperature(altitude) / SEA_LEVEL_TEMPERATURE, EXPONENT)
 
 
 @law
-def density(altitude):
+def density(altitude: float) -> float:
     """Air density [kg/m^3] at an altitude above mean sea level [m]."""
     return pressure(altitude) / (GAS_CONSTANT * temperature(altitude))
 
 
 @law
-def update(p):
-    """Air density at the vehicle (called as often as the barometer samples)."""
-    p.air.density = density(float(p.place.alt) - float(p.body.pos[2]))
-    p.air.density_root = math.sqrt(float(p.air.density))
+def set_air(air: Air, altitude: float) -> None:
+    """Set the air to that at an altitude above mean sea level [m] (called as often as the barometer samples)."""
+    air.density = density(altitude)
+    air.density_root = math.sqrt(air.density)

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from ...core.kernels import law
+from ...vehicles.figures.battery import Battery
+from .records import BatteryState
 
 OPEN_CIRCUIT = (0.714, 0.845, 0.869, 0.895, 0.905, 0.919, 0.938, 0.957, 0.976, 0.990, 1.0)
 """Share of the full voltage at charge 0, 0.1 ... 1: a lithium-polymer cell (4.20, 3.86, 3.00 V)."""
 
 
 @law
-def open_circuit(charge):
+def open_circuit(charge: float) -> float:
     """Open-circuit voltage, as a share of the full one, at a charge of 0 .. 1."""
     place = min(max(charge, 0.0), 1.0) * 10.0
     k = min(int(place), 9)
@@ -18,15 +20,13 @@ def open_circuit(charge):
 
 
 @law
-def update(p, power):
-    """Draw the motors' power [W] for one tick."""
-    a, b = p.airframe, p.battery
-    full = float(a.battery_voltage_full)
-    voltage = max(float(b.voltage), 0.1 * full)
-    current = float(a.avionics_current) + power / voltage
-    b.current = current
-    if a.battery_capacity > 0.0:
-        b.charge = max(float(b.charge) - current * float(p.derived.charge_per_amp), 0.0)
-        b.voltage = max(full * open_circuit(float(b.charge)) - current * float(a.battery_resistance), 0.1 * full)
+def discharge(battery: BatteryState, power: float, figures: Battery, charge_per_amp: float) -> None:
+    """Draw the motors' power [W] for one tick; ``charge_per_amp``: loss of charge (of 1) per ampere and tick [1/A]."""
+    full = figures.battery_voltage_full
+    current = figures.avionics_current + power / max(battery.voltage, 0.1 * full)
+    battery.current = current
+    if figures.battery_capacity > 0.0:
+        battery.charge = max(battery.charge - current * charge_per_amp, 0.0)
+        battery.voltage = max(full * open_circuit(battery.charge) - current * figures.battery_resistance, 0.1 * full)
     else:
-        b.voltage = full  # as ArduPilot's simulator without SIM_BATT_CAP_AH
+        battery.voltage = full  # as ArduPilot's simulator without SIM_BATT_CAP_AH

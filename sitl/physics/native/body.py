@@ -9,57 +9,69 @@ Translation: the force, fixed in the body, acts along the attitude at mid-step (
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ...core.algebra import by_component, dot, multiply, quat_norm_squared, rotate, rotate_inverse
 from ...core.kernels import law
-from ...core.rotations import quat_multiply, quat_rotate, quat_rotate_inverse
+from ...core.vectors import Quat, Vec3
+from .records import Body
 
 GRAVITY = 9.80665
 """Standard gravity [m/s^2]."""
 
 
+class Wrench(NamedTuple):
+    """What acts on a body, in its own frame (FRD)."""
+
+    force: Vec3
+    """[N]"""
+    torque: Vec3
+    """About the origin [N m]."""
+
+
+class Inertia(NamedTuple):
+    """What a body resists with."""
+
+    moments: Vec3
+    """About body x, y, z [kg m^2]."""
+    inverse_moments: Vec3
+    """1 / moments."""
+    inverse_mass: float
+    """[1/kg]"""
+
+
 @law
-def small_rotation(x, y, z):
-    """Quaternion of the rotation vector (x, y, z) [rad] of up to half a radian, by its power series."""
-    s = 0.25 * (x * x + y * y + z * z)
+def small_rotation(r: Vec3) -> Quat:
+    """Quaternion of the rotation vector ``r`` [rad] of up to half a radian, by its power series."""
+    s = 0.25 * dot(r, r)
     k = 0.5 * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s / 5040.0)))
-    return (1.0 - s * (0.5 - s * (1.0 / 24.0 - s / 720.0)), k * x, k * y, k * z)
+    return Quat(1.0 - s * (0.5 - s * (1.0 / 24.0 - s / 720.0)), k * r.x, k * r.y, k * r.z)
 
 
 @law
-def fly(p, fx, fy, fz, mx, my, mz):
-    """Move the free body on by a substep under a force and a torque in its own frame; adds to rates_mean."""
-    b, inertia, inverse = p.body, p.airframe.inertia, p.derived.inverse_inertia
-    dt = float(p.derived.dt)
-    ix, iy, iz = inertia.x, inertia.y, inertia.z
-    jx, jy, jz = float(inverse[0]), float(inverse[1]), float(inverse[2])
-    wx, wy, wz = float(b.rates[0]), float(b.rates[1]), float(b.rates[2])
+def unit(q: Quat) -> Quat:
+    """``q``, which is not zero, at length 1."""
+    return q * (1.0 / math.sqrt(quat_norm_squared(q)))
+
+
+@law
+def fly(b: Body, wrench: Wrench, inertia: Inertia, dt: float) -> None:
+    """Move the free body on by ``dt`` [s] under a wrench and gravity; adds the rates at mid-step to ``rates_mean``."""
     half = 0.5 * dt
-    # Rates at mid-step.
-    ux = wx + half * jx * (mx - wy * wz * (iz - iy))
-    uy = wy + half * jy * (my - wz * wx * (ix - iz))
-    uz = wz + half * jz * (mz - wx * wy * (iy - ix))
-    dw, dx, dy, dz = small_rotation(ux * dt, uy * dt, uz * dt)
-    w, x, y, z = float(b.q[0]), float(b.q[1]), float(b.q[2]), float(b.q[3])
-    nw, nx, ny, nz = quat_multiply(w, x, y, z, dw, dx, dy, dz)
-    norm = 1.0 / math.sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
-    nw, nx, ny, nz = nw * norm, nx * norm, ny * norm, nz * norm
-    b.q[0], b.q[1], b.q[2], b.q[3] = nw, nx, ny, nz
+    moments, inverse, torque = inertia.moments, inertia.inverse_moments, wrench.torque
+    w, q, vel = b.rates, b.q, b.vel
+    gyroscopic = Vec3(
+        w.y * w.z * (moments.z - moments.y), w.z * w.x * (moments.x - moments.z), w.x * w.y * (moments.y - moments.x)
+    )
+    rates = w + by_component(half * inverse, torque - gyroscopic)  # at mid-step
+    turn = small_rotation(rates * dt)
+    b.q = unit(multiply(q, turn))
     # Angular momentum: half the torque in the old frame, the turn of the frame, half in the new one.
-    norm = 1.0 / math.sqrt(dw * dw + dx * dx + dy * dy + dz * dz)
-    lx, ly, lz = ix * wx + half * mx, iy * wy + half * my, iz * wz + half * mz
-    lx, ly, lz = quat_rotate_inverse(dw * norm, dx * norm, dy * norm, dz * norm, lx, ly, lz)
-    b.rates[0], b.rates[1], b.rates[2] = jx * (lx + half * mx), jy * (ly + half * my), jz * (lz + half * mz)
-    b.rates_mean[0] += ux
-    b.rates_mean[1] += uy
-    b.rates_mean[2] += uz
+    momentum = rotate_inverse(unit(turn), by_component(moments, w) + half * torque)
+    b.rates = by_component(inverse, momentum + half * torque)
+    b.rates_mean += rates
     # Force along the attitude at mid-step.
-    w, x, y, z = w + nw, x + nx, y + ny, z + nz
-    norm = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
-    k = float(p.derived.inverse_mass)
-    ax, ay, az = quat_rotate(w * norm, x * norm, y * norm, z * norm, k * fx, k * fy, k * fz)
-    az += GRAVITY
-    vx, vy, vz = float(b.vel[0]), float(b.vel[1]), float(b.vel[2])
-    b.pos[0] += dt * (vx + half * ax)
-    b.pos[1] += dt * (vy + half * ay)
-    b.pos[2] += dt * (vz + half * az)
-    b.vel[0], b.vel[1], b.vel[2] = vx + dt * ax, vy + dt * ay, vz + dt * az
+    acc = rotate(unit(q + b.q), inertia.inverse_mass * wrench.force)
+    acc = Vec3(acc.x, acc.y, acc.z + GRAVITY)
+    b.pos += dt * (vel + half * acc)
+    b.vel = vel + dt * acc

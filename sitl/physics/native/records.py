@@ -8,9 +8,19 @@ Only physics and the shell read them; the autopilot sees ``sensors``.
 
 from __future__ import annotations
 
-from ...core.records import Floats, Ints, Record, array
+from typing import Annotated, Protocol, TypeVar
+
+from ...core.border import Actuators, Sensors
+from ...core.records import Float32, FloatRows, Record, Records, Stored, array, repeat
+from ...core.rng import Rng
+from ...core.vectors import Quat, Vec3
 from ...vehicles.figures.common import Figures
-from .obstacles import Obstacles
+from ...worlds.geometry import SOLID_FIGURES
+
+GROUND_AIRBORNE = 0
+GROUND_STANDING = 1
+GROUND_LYING = 2
+"""Tipped over: it stays as it fell, whatever the rotors do."""
 
 
 class Derived(Record):
@@ -38,23 +48,23 @@ class Derived(Record):
 class Body(Record):
     """Where the body really is and how it moves."""
 
-    pos: Floats = array(3)  # NED from the home ground point [m]
-    vel: Floats = array(3)  # NED [m/s]
-    q: Floats = array(4)  # body to NED
-    rates: Floats = array(3)  # body [rad/s], now
-    rates_mean: Floats = array(3)  # mean over the last tick, what an integrating gyro measures
-    acc_ned: Floats = array(3)  # acceleration NED, mean over the last tick [m/s^2]
-    specific_force: Floats = array(3)  # body, mean over the last tick; at rest and level (0, 0, -9.80665)
+    pos: Vec3  # NED from the home ground point, in a world from its origin on the floor [m]
+    vel: Vec3  # NED [m/s]
+    q: Quat  # body to NED
+    rates: Vec3  # body [rad/s], now
+    rates_mean: Vec3  # body [rad/s], mean over the last tick: what an integrating gyro measures
+    acc_ned: Vec3  # acceleration NED, mean over the last tick [m/s^2]
+    specific_force: Vec3  # body, mean over the last tick [m/s^2]; at rest and level (0, 0, -9.80665)
 
 
 class Motion(Record):
     """What passes between the common laws and an engine that moves the body (``sitl.physics.engine``)."""
 
-    force: Floats = array(3)  # on the body but gravity and ground, FRD [N]
-    torque: Floats = array(3)  # FRD [N m]
-    contact: Floats = array(3)  # change of velocity in this tick that hard contacts gave, NED [m/s]
-    vel: Floats = array(3)  # body.vel before this tick
-    q: Floats = array(4)  # body.q before this tick
+    force: Vec3  # on the body but gravity and ground, FRD [N]
+    torque: Vec3  # FRD [N m]
+    contact: Vec3  # change of velocity in this tick that hard contacts gave, NED [m/s]
+    vel: Vec3  # body.vel before this tick, NED [m/s]
+    q: Quat  # body.q before this tick
 
 
 class BatteryState(Record):
@@ -69,7 +79,7 @@ class Air(Record):
     """The air around the vehicle."""
 
     density: float  # at the vehicle [kg/m^3]
-    density_root: float  # its square root
+    density_root: float  # its square root [sqrt(kg/m^3)]
 
 
 class Wind(Record):
@@ -79,36 +89,40 @@ class Wind(Record):
     direction: float  # where it comes from [deg] (SIM_WIND_DIR)
     turbulence: float  # standard deviation of each axis [m/s] (SIM_WIND_TURB)
     time_constant: float  # correlation time of turbulence and lag of changes [s] (SIM_WIND_TC)
-    steady: Floats = array(3)  # NED, after the lag [m/s]
-    gust: Floats = array(3)  # NED [m/s]
-    vel: Floats = array(3)  # NED, steady and gust: what the vehicle meets
+    steady: Vec3  # NED, after the lag [m/s]
+    gust: Vec3  # NED [m/s]
+    vel: Vec3  # NED, steady and gust: what the vehicle meets
 
 
 GPS_RING = 8
 """Fixes under way to the reader: delay times rate must stay below this."""
 
 
+class Fix(Record):
+    """What a GPS receiver found, on its way to the reader."""
+
+    due: int  # tick of delivery
+    type: int  # MAVLink's GPS_FIX_TYPE
+    lat: int  # [degE7]
+    lon: int  # [degE7]
+    alt: int  # above mean sea level [mm]
+    vel: Annotated[Vec3, Stored("i8")]  # NED, whole [cm/s]
+
+
 class SensorState(Record):
     """What is wrong with the sensors; hidden from the autopilot."""
 
-    acc_bias: Floats = array(3)  # turn-on bias [m/s^2]
-    acc_walk: Floats = array(3)  # in-run bias
-    acc_scale: Floats = array(3)  # 1 + error
-    gyro_bias: Floats = array(3)
-    gyro_walk: Floats = array(3)
-    gyro_scale: Floats = array(3)
-    gps_drift: Floats = array(3)  # in standard deviations
-    gps_off: int  # the receiver is switched off
+    acc_bias: Vec3  # turn-on bias, body [m/s^2]
+    acc_walk: Vec3  # in-run bias, body [m/s^2]
+    acc_scale: Vec3  # 1 + error, body
+    gyro_bias: Vec3  # turn-on bias, body [rad/s]
+    gyro_walk: Vec3  # in-run bias, body [rad/s]
+    gyro_scale: Vec3  # 1 + error, body
+    gps_drift: Vec3  # NED, in standard deviations
+    gps_off: bool  # the receiver is switched off
     gps_head: int  # fixes taken so far
     gps_tail: int  # fixes delivered so far
-    gps_due: Ints = array(GPS_RING, stored="i8")  # tick of delivery
-    gps_fix: Ints = array(GPS_RING, stored="i8")
-    gps_lat: Ints = array(GPS_RING, stored="i8")  # [degE7]
-    gps_lon: Ints = array(GPS_RING, stored="i8")
-    gps_alt: Ints = array(GPS_RING, stored="i8")  # [mm]
-    gps_vel_n: Ints = array(GPS_RING, stored="i8")  # [cm/s]
-    gps_vel_e: Ints = array(GPS_RING, stored="i8")
-    gps_vel_d: Ints = array(GPS_RING, stored="i8")
+    gps_fixes: Records[Fix] = repeat(Fix, GPS_RING)  # fix n at n % GPS_RING
     baro_drift: float  # in standard deviations
 
 
@@ -118,7 +132,31 @@ class Place(Record):
     lat: int  # [degE7]
     lon: int  # [degE7]
     alt: float  # above mean sea level [m]
-    field: Floats = array(3)  # geomagnetic field NED [gauss]
+    field: Vec3  # geomagnetic field NED [gauss]
+
+
+OBSTACLES_MAX = 24
+"""Solids in the list."""
+
+
+class Obstacles(Record):
+    """The solids near the vehicle, and contact with them."""
+
+    present: bool  # there is a world with solids
+    count: int  # rows of the list
+    north: float  # where it was gathered, as body.pos [m]
+    east: float  # [m]
+    complete: float  # every solid nearer to there is in the list [m]
+    rows: FloatRows = array(OBSTACLES_MAX, SOLID_FIGURES)
+    wanted: bool  # the list no longer does
+    looked: Vec3  # where the vehicle was when distances were last worked out [m]
+    clear: float  # the nearest solid was at least this far away then [m]
+    turned: float  # angle that the body has turned by since then, at most [rad]
+    touching: bool  # a solid
+    hit_count: int  # contacts so far that were faster than HIT_SPEED
+    hit_speed: Float32  # of the last one, into the solid [m/s]
+    hit_time_us: int  # when the last one was
+    impulse: Vec3  # velocity taken away that the accelerometer still has to show, NED [m/s]
 
 
 class Physics(Record):
@@ -134,3 +172,21 @@ class Physics(Record):
     wind: Wind
     sensors: SensorState
     obstacles: Obstacles
+
+
+P_co = TypeVar("P_co", bound=Physics, covariant=True)
+
+
+class Vehicle(Protocol[P_co]):
+    """What physics knows of a vehicle."""
+
+    time_us: int
+    tick: int
+    rng: Rng
+    sensors: Sensors
+    actuators: Actuators
+
+    @property
+    def physics(self) -> P_co: ...
+
+    def zero(self, *names: str) -> None: ...

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ...core.algebra import euler_of
 from ...core.geodesy import add_offset
-from ...core.rotations import quat_to_euler
+from ...core.vectors import Euler, Vec3
+from .records import GROUND_AIRBORNE
 
 
 class Truth(NamedTuple):
@@ -19,38 +21,24 @@ class Truth(NamedTuple):
     """[deg]"""
     alt: float
     """Above mean sea level [m]."""
-    pos: tuple[float, float, float]
+    pos: Vec3
     """NED from the home ground point [m]."""
-    vel: tuple[float, float, float]
+    vel: Vec3
     """NED [m/s]."""
-    euler: tuple[float, float, float]
-    """Roll, pitch, yaw [rad]."""
-    rates: tuple[float, float, float]
+    euler: Euler
+    """[rad]"""
+    rates: Vec3
     """Body rates [rad/s]."""
-    specific_force: tuple[float, float, float]
+    specific_force: Vec3
     """What a perfect accelerometer shows, body frame [m/s^2]."""
     on_ground: bool
-
-
-def _three(values: Any) -> tuple[float, float, float]:
-    return (float(values[0]), float(values[1]), float(values[2]))
 
 
 def read(v: Any) -> Truth:
     """The truth of a vehicle (a view of its record) at its present time."""
     p = v.physics
-    b = p.body
-    lat, lon = add_offset(float(p.place.lat), float(p.place.lon), float(b.pos[0]), float(b.pos[1]))
-    w, x, y, z = (float(c) for c in b.q)
-    return Truth(
-        int(v.time_us),
-        lat * 1e-7,
-        lon * 1e-7,
-        float(p.place.alt) - float(b.pos[2]),
-        _three(b.pos),
-        _three(b.vel),
-        quat_to_euler(w, x, y, z),
-        _three(b.rates),
-        _three(b.specific_force),
-        not hasattr(p, "ground") or int(p.ground.state) != 0,  # a rover never leaves it
-    )
+    b, place = p.body, p.place
+    lat, lon = add_offset(place.lat, place.lon, b.pos.x, b.pos.y)
+    on_ground = not hasattr(p, "ground") or p.ground.state != GROUND_AIRBORNE  # a rover never leaves it
+    alt, euler = place.alt - b.pos.z, euler_of(b.q)
+    return Truth(v.time_us, lat * 1e-7, lon * 1e-7, alt, b.pos, b.vel, euler, b.rates, b.specific_force, on_ground)

@@ -5,37 +5,36 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import ZERO
 from ...core.kernels import law
-from ...core.rng import normal
+from ...core.rng import Rng, normal_vector
+from ...core.vectors import Vec3
+from .records import Wind
+from .tick import TICK_S
 
 PERIOD_TICKS = 8
 """Wind is stepped every 20 ms."""
-PERIOD_S = 0.0025 * PERIOD_TICKS
+PERIOD_S = TICK_S * PERIOD_TICKS
 
 
 @law
-def target(w):
-    """Steady wind vector (north, east) [m/s] that the settings ask for; direction is where it comes from."""
-    angle = float(w.direction) * (math.pi / 180.0)
-    return (-float(w.speed) * math.cos(angle), -float(w.speed) * math.sin(angle))
+def target(speed: float, direction: float) -> Vec3:
+    """Steady wind NED [m/s] of a speed [m/s] and the direction that it comes from [deg]."""
+    angle = direction * (math.pi / 180.0)
+    return Vec3(-speed * math.cos(angle), -speed * math.sin(angle), 0.0)
 
 
 @law
-def update(w, rng):
-    """Step the wind record; draws random numbers only with turbulence."""
-    north, east = target(w)
+def blow(w: Wind, rng: Rng) -> None:
+    """Step the wind by ``PERIOD_S``; draws random numbers only with turbulence."""
     k = 1.0
     if w.time_constant > PERIOD_S:
-        k = PERIOD_S / float(w.time_constant)
-    w.steady[0] += k * (north - float(w.steady[0]))
-    w.steady[1] += k * (east - float(w.steady[1]))
+        k = PERIOD_S / w.time_constant
+    steady, aim = w.steady, target(w.speed, w.direction)
+    w.steady = Vec3(steady.x + k * (aim.x - steady.x), steady.y + k * (aim.y - steady.y), steady.z)
     if w.turbulence > 0.0:
         left = 1.0 - k
-        added = float(w.turbulence) * math.sqrt(1.0 - left * left)
-        for j in range(3):
-            w.gust[j] = left * float(w.gust[j]) + added * normal(rng)
+        w.gust = left * w.gust + w.turbulence * math.sqrt(1.0 - left * left) * normal_vector(rng)
     else:
-        for j in range(3):
-            w.gust[j] = 0.0
-    for j in range(3):
-        w.vel[j] = float(w.steady[j]) + float(w.gust[j])
+        w.gust = ZERO
+    w.vel = w.steady + w.gust

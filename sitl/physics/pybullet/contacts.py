@@ -12,8 +12,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ..native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
-from ..native.obstacles import HIT_PAUSE_US, HIT_SPEED
+from ..native.copter.ground import upright
+from ..native.obstacles import report_hit
+from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from .worlds import Surfaces
 
 CLEAR = 0.01
@@ -52,14 +53,11 @@ def report(v: Any, surfaces: Surfaces, rows: Sequence[Row], before: Sequence[flo
             into = max(into, y * before[1] + z * before[2] - x * before[0])
     o = p.obstacles
     if in_solid or o.touching:
-        o.touching = int(in_solid)
-    if into > HIT_SPEED and (o.hit_count == 0 or v.time_us - o.hit_time_us > HIT_PAUSE_US):
-        o.hit_count += 1
-        o.hit_speed = into
-        o.hit_time_us = v.time_us
+        o.touching = in_solid
+    report_hit(o, into, v.time_us)
     if on_floor:
         touch(v, before[2])
-    elif p.ground.state != GROUND_AIRBORNE and p.body.pos[2] < -CLEAR:
+    elif p.ground.state != GROUND_AIRBORNE and p.body.pos.z < -CLEAR:
         p.ground.state = GROUND_AIRBORNE
     return is_hard
 
@@ -71,6 +69,4 @@ def touch(v: Any, speed: float) -> None:
         g.hit_count += 1
         g.hit_speed = speed
         g.hit_time_us = v.time_us
-    x, y = float(q[1]), float(q[2])
-    upright = 1.0 - 2.0 * (x * x + y * y)  # cosine of the lean
-    g.state = GROUND_STANDING if upright >= math.cos(float(a.tip_angle)) else GROUND_LYING
+    g.state = GROUND_STANDING if upright(q) >= math.cos(float(a.tip_angle)) else GROUND_LYING

@@ -12,12 +12,13 @@ import struct
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from ...core.rotations import quat_rotate
+from ...core.algebra import rotate
+from ...core.vectors import Quat, Vec3
 from ...worlds.contact import clearance
 from ..engine import Array, Engine, EngineError, Seat
 from ..native.body import GRAVITY
-from ..native.copter.state import GROUND_AIRBORNE, GROUND_STANDING
 from ..native.obstacles import settle
+from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
 from ..record import offset
 from . import lidar, state, urdf
 from .contacts import CLEAR, Row, report
@@ -80,9 +81,9 @@ class BulletEngine(Engine):
         body.put(position, (x, y, z, w))
         _, found = body.client.p.getBasePositionAndOrientation(body.number, body.client.id)
         if found[0] * x + found[1] * y + found[2] * z + found[3] * w < 0.0:
-            p.body.q *= -1.0  # the same attitude under the sign that Bullet gives it
+            p.body.q = -p.body.q  # the same attitude under the sign that Bullet gives it
         if body.has_hard_feet:
-            settle(p)
+            settle(p.obstacles)
 
     def move(self) -> None:
         body = self._body
@@ -100,12 +101,12 @@ class BulletEngine(Engine):
             p.stepSimulation(id_)
             (x, y, z), (qx, qy, qz, qw) = p.getBasePositionAndOrientation(number, id_)
             (vx, vy, vz), (ox, oy, oz) = p.getBaseVelocity(number, id_)
-            roll, pitch, yaw = quat_rotate(qw, -qx, -qy, -qz, ox, oy, oz)  # from the world to the body
+            roll, pitch, yaw = rotate(Quat(qw, -qx, -qy, -qz), Vec3(ox, oy, oz))  # from the world to the body
             links = ALL
             if ground.state == may_rest and abs(vx) + abs(vy) < _SLOW and z < zero + CLEAR:
                 links = BODY  # its feet stand where they stood
             rows = p.getContactPoints(number, -1, links, ALL, id_)
-            if rows or obstacles.touching != 0 or (links == ALL and ground.state != GROUND_AIRBORNE):
+            if rows or obstacles.touching or (links == ALL and ground.state != GROUND_AIRBORNE):
                 before = _VELOCITY.unpack_from(memory, body_at + _VELOCITY_AT)
                 figures = (x, -y, zero - z, vx, -vy, -vz, qw, qx, -qy, -qz, roll, -pitch, -yaw)
                 _BODY_FIGURES.pack_into(memory, body_at, *figures)
@@ -123,12 +124,9 @@ class BulletEngine(Engine):
         is_hard = report(v, body.surfaces, rows, before)
         if not (is_hard or (rows and body.has_hard_feet)):
             return
-        b, contact, dt = v.physics.body, v.physics.motion.contact, body.step_s
-        k = dt / body.model.mass
-        n, e, d = quat_rotate(*b.q.tolist(), *force)
-        contact[0] += b.vel[0] - before[0] - k * n
-        contact[1] += b.vel[1] - before[1] - k * e
-        contact[2] += b.vel[2] - before[2] - k * d - dt * GRAVITY
+        b, motion, dt = v.physics.body, v.physics.motion, body.step_s
+        gained = b.vel - Vec3(*before) - dt / body.model.mass * rotate(b.q, Vec3(*force))
+        motion.contact += Vec3(gained.x, gained.y, gained.z - dt * GRAVITY)
 
     # ------------------------------------------------------------------ snapshots
 
@@ -172,7 +170,7 @@ class BulletEngine(Engine):
     def _pose(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Place and attitude that the record says, in Bullet's frame."""
         b = self.seat.v.physics.body
-        (north, east, down), (w, x, y, z) = b.pos.tolist(), b.q.tolist()
+        (north, east, down), (w, x, y, z) = b.pos, b.q
         return (north, -east, self.body.zero - down), (x, -y, -z, w)
 
     def close(self) -> None:

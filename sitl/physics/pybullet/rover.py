@@ -115,7 +115,7 @@ class BulletRover(Engine):
 
     def place(self) -> None:
         client, b, p = self._fit(), self.seat.v.physics.body, self._fit().p
-        (n, e, _), (w, x, y, z) = b.pos.tolist(), b.q.tolist()
+        (n, e, _), (w, x, y, z) = b.pos, b.q
         ahead = self.model.layout.origin
         c, s = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
         p.restoreState(self._as_built, physicsClientId=client.id)
@@ -193,7 +193,7 @@ class BulletRover(Engine):
         joints = p.getJointStates(number, self._measured, id_)
         if self._has_solids:
             rows = p.getContactPoints(number, -1, -1, _LINKS, id_)
-            if rows or self.seat.v.physics.obstacles.touching != 0:
+            if rows or self.seat.v.physics.obstacles.touching:
                 before = self._state
                 report(self.seat.v, rows, before[:3], before[3:6], self._spin, self._gain)
         # Axes of the body, forward and left and up, in the world's frame.

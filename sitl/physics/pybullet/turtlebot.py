@@ -90,9 +90,9 @@ class BulletTurtlebot:
             self._turn(client, wheel_speeds(v.figures, c.forward, c.turn) if is_fresh else (0.0, 0.0))
             p.stepSimulation(id_)
             v.time_us += TICK_US
-            if has_solids and b.collided == 0:
+            if has_solids and not b.collided:
                 rows = p.getContactPoints(number, -1, -1, -2, id_)
-                b.collided = int(any(row[_FORCE] > 0.0 for row in rows))
+                b.collided = any(row[_FORCE] > 0.0 for row in rows)
         if ticks > 0:
             self._read(client)
 

@@ -12,7 +12,7 @@ from sitl.autopilot import home
 from sitl.autopilot.copter.control.update import init as init_control
 from sitl.autopilot.copter.modes.update import init as init_modes
 from sitl.autopilot.copter.parameters import TABLE
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 
 READY_US = 60_000_000
 
@@ -36,7 +36,7 @@ def make() -> Any:
     ap.rc.channels[:8] = (1500, 1500, 1000, 1500, 1800, 1000, 1000, 1800)
     ap.rc.receiver_ok = 1
     ap.rc.receiver_us = v.time_us
-    home.set_here(v)
+    home.set_here(v.autopilot.home, v.autopilot.estimate)
     return v
 
 

@@ -173,10 +173,11 @@ def test_estimator_lost_for_a_second(flying, mode, action, after):
     ),
 )
 def test_two_test_ratios_count(flying, vel, pos, mag, bad):
-    est = flying.autopilot.estimate
+    ap = flying.autopilot
+    est = ap.estimate
     est.variance_vel, est.variance_pos, est.variance_mag = vel, pos, mag
     for _ in range(20):
-        found = failsafe_checks.is_estimate_bad(flying, flying.autopilot.params.FS_EKF_FILT)
+        found = failsafe_checks.is_estimate_bad(ap.modes.failsafe, est, ap.params.FS.EKF_THRESH, ap.params.FS.EKF_FILT)
     assert found == bad
 
 

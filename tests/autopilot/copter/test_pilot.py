@@ -12,9 +12,17 @@ from hypothesis import strategies as st
 from sitl.autopilot import mode_switch, radio
 from sitl.autopilot.copter import pilot
 from sitl.autopilot.copter.modes import switch
+from sitl.autopilot.params.radio import RcChannel
 from tests.autopilot.copter.steady_copter import make, wait
 
 PULSES = st.integers(0, 3000)
+
+
+def channel(low, trim, high, reverse=0.0, dead=0.0):
+    """Calibration of a channel."""
+    c = RcChannel()
+    c.MIN, c.TRIM, c.MAX, c.REVERSED, c.DZ = low, trim, high, reverse, dead
+    return c
 
 
 @pytest.mark.parametrize(
@@ -22,8 +30,8 @@ PULSES = st.integers(0, 3000)
     ((1500, 0.0), (1520, 0.0), (1480, 0.0), (1900, 1.0), (1100, -1.0), (1710, 0.5), (2100, 1.0)),
 )
 def test_centred_stick(pulse, value):
-    assert radio.centred(pulse, 1100.0, 1500.0, 1900.0, 0.0, 20.0) == pytest.approx(value)
-    assert radio.centred(pulse, 1100.0, 1500.0, 1900.0, 1.0, 20.0) == pytest.approx(-value)
+    assert radio.centred(pulse, channel(1100.0, 1500.0, 1900.0), 20.0) == pytest.approx(value)
+    assert radio.centred(pulse, channel(1100.0, 1500.0, 1900.0, 1.0), 20.0) == pytest.approx(-value)
 
 
 @given(
@@ -35,8 +43,8 @@ def test_centred_stick(pulse, value):
     st.floats(0, 200),
 )
 def test_sticks_stay_in_range_whatever_the_calibration(pulse, low, trim, high, reverse, dead):
-    assert -1.0 <= radio.centred(pulse, low, trim, high, reverse, dead) <= 1.0
-    assert 0.0 <= radio.ranged(pulse, low, max(high, low), reverse, dead) <= 1.0
+    assert -1.0 <= radio.centred(pulse, channel(low, trim, high, reverse), dead) <= 1.0
+    assert 0.0 <= radio.ranged(pulse, channel(low, trim, max(high, low), reverse, dead)) <= 1.0
 
 
 def send(v, *pulses):

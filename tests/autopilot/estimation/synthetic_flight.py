@@ -17,7 +17,7 @@ from sitl.autopilot.estimation import update
 from sitl.core import compile as compiler
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 
 DT = 0.0025
 TAKE_OFF = 50.0
@@ -35,7 +35,7 @@ def new() -> np.ndarray:
 
 def updater() -> Any:
     """``f(fleet)``: one tick of the estimator, compiled unless Numba is switched off."""
-    call = compiler.load(update.update, "sitl.vehicle.record.Copter")
+    call = compiler.load(update.update, "sitl.vehicle.copter.Copter")
     if call is None:
         return lambda fleet: update.update({0: Copter.of(fleet, 0)}, 0)
     return lambda fleet: call(fleet.ctypes.data, 1, 0)

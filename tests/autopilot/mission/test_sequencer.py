@@ -39,7 +39,7 @@ from sitl.autopilot.navigation.state import (
     WAYPOINT,
 )
 from sitl.core.vectors import Vec3
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 
 LAT, LON, ALT = -353632621, 1491652371, 584.0
 WP = MissionItem(c.NAV_WAYPOINT, x=LAT + 1000, y=LON, z=10.0)

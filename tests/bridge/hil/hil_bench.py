@@ -11,8 +11,9 @@ from sitl.bridge.dialect import message
 from sitl.bridge.hil.autopilot_end import AutopilotEnd
 from sitl.bridge.hil.physics_end import PhysicsEnd
 from sitl.bridge.hil.sender import Sender
+from sitl.core.constants import TICK_US
 from sitl.physics.carried import Carried, carried
-from sitl.vehicle.record import TICK_US, Copter
+from sitl.vehicle.copter import Copter
 from sitl.vehicles import apply, load
 
 

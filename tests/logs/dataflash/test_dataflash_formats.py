@@ -10,13 +10,14 @@ from pymavlink import DFReader
 
 from sitl.logs.dataflash import formats
 from sitl.logs.dataflash.common import EVENT_MESSAGES
-from sitl.logs.dataflash.encoder import EVERY_BIT, MESSAGES
+from sitl.logs.dataflash.encoder import EVERY_BIT
 from sitl.logs.dataflash.formats import Field, Message
+from sitl.logs.kind import logs_of
 
 
 @pytest.mark.parametrize("kind", ["copter", "rover"])
 def test_every_message_fits_what_fmt_can_say(kind: str) -> None:
-    messages = (*EVENT_MESSAGES, *MESSAGES[kind](EVERY_BIT, 0, True))
+    messages = (*EVENT_MESSAGES, *logs_of(kind).messages(EVERY_BIT, 0, True))
     for m in messages:
         formats.check(m)
     names = [m.name for m in messages]

@@ -99,7 +99,7 @@ def test_a_flight_that_is_flown_again_is_the_same(make: VehicleFactory, tmp_path
 
 def test_reaching_past_mavlink_is_noticed(make: VehicleFactory, tmp_path: Path) -> None:
     copter = make("copter")
-    copter.simulation.v.physics.body.vel[0] = 1.0
+    copter.simulation.v.physics.body.vel = copter.simulation.v.physics.body.vel.replace(x=1.0)
     copter.delay(1)
     assert not fly_again(copter, tmp_path, "flight", log=False).same
     with pytest.raises(AssertionError, match="past MAVLink"):

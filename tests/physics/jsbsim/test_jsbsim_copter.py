@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sitl.core.rotations import quat_from_euler, quat_to_euler
-from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from tests.physics.jsbsim.jsbsim_bench import Bench
 
 FRAMES = pytest.mark.parametrize("frame", ("erle_copter", "ardupilot_quad"))

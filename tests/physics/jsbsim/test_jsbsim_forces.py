@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sitl.core.rotations import quat_rotate
 from sitl.physics.jsbsim.units import POUND, POUND_FOOT
 from sitl.physics.native import atmosphere
-from sitl.physics.native.copter.wrench import wrench
+from sitl.physics.native.copter.wrench import act
 from sitl.physics.native.tick import TICK_S
 from sitl.vehicles.figures.copter import THRUST_MOMENTUM
 from tests.physics.jsbsim.jsbsim_bench import Bench
@@ -57,7 +57,8 @@ def test_forces_and_torques_are_those_of_native_physics(flying: Any, seed: int) 
     torque = read(flying, *(f"moments/{axis}-aero-lbsft" for axis in "lmn")) * POUND_FOOT
     power = read(flying, "rotor/power")[0]
     atmosphere.update(flying.p)
-    expected = np.array(wrench(flying.p))
+    wrench = act(flying.p)
+    expected = np.array([*wrench.force, *wrench.torque])
     scale = np.abs(expected).max() + 10.0
     assert force == pytest.approx(expected[:3], abs=3e-5 * scale)
     assert torque == pytest.approx(expected[3:], abs=3e-5 * scale)

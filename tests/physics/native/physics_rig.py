@@ -6,8 +6,8 @@ from __future__ import annotations
 from typing import Any
 
 from sitl import vehicles
-from sitl.autopilot.state import Actuators, Sensors
 from sitl.core import compile as compiler
+from sitl.core.border import Actuators, Sensors
 from sitl.core.kernels import UNITS
 from sitl.core.records import Record
 from sitl.core.rng import Rng
@@ -84,10 +84,11 @@ class Rig:
             if self.airframe.kind == "rover":
                 rover_step.move(self.p, self.v.actuators.controls)
             else:
-                copter_step.rotors.command(self.p, self.v.actuators.controls)
-                copter_step.move(self.p, 0)
+                p = self.p
+                copter_step.rotors.command(p.rotors, self.v.actuators.controls, p.airframe, p.derived)
+                copter_step.move(p, 0)
 
     def fly(self, height: float = 100.0) -> None:
         """Put a copter into the air, at rest."""
         self.p.ground.state = 0
-        self.p.body.pos[2] = -height
+        self.p.body.pos = self.p.body.pos.replace(z=-height)

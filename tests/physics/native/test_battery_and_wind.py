@@ -8,7 +8,10 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from sitl.core import rng as random
+from sitl.core.rng import Rng
 from sitl.physics.native import battery, wind
+from sitl.physics.native.atmosphere import density
+from sitl.physics.native.records import Wind
 
 
 @given(st.floats(-0.5, 1.5), st.floats(0.0, 0.5))
@@ -17,18 +20,22 @@ def test_open_circuit_voltage_rises_with_charge(charge, more):
     assert 0.7 < low <= high <= 1.0
 
 
+def discharge(rig, power):
+    battery.discharge(rig.p.battery, power, rig.p.airframe, rig.p.derived.charge_per_amp)
+
+
 def test_voltage_sags_under_load_and_falls_with_charge(rig):
     r = rig("erle_copter")
-    battery.update(r.p, 0.0)
-    idle = float(r.p.battery.voltage)
+    discharge(r, 0.0)
+    idle = r.p.battery.voltage
     for _ in range(400):
-        battery.update(r.p, 150.0)
-    current = float(r.p.battery.current)
-    assert current == approx(0.8 + 150.0 / float(r.p.battery.voltage), rel=1e-6)
-    assert idle - float(r.p.battery.voltage) == approx(0.02 * (current - 0.8), abs=0.01)
+        discharge(r, 150.0)
+    current = r.p.battery.current
+    assert current == approx(0.8 + 150.0 / r.p.battery.voltage, rel=1e-6)
+    assert idle - r.p.battery.voltage == approx(0.02 * (current - 0.8), abs=0.01)
     assert 1.0 - r.p.battery.charge == approx(current * 1.0 / 3600.0 / 5.0, rel=0.01)
     r.p.battery.charge = 0.0
-    battery.update(r.p, 150.0)
+    discharge(r, 150.0)
     assert r.p.battery.voltage < 9.0
 
 
@@ -42,31 +49,31 @@ def test_empty_battery_limits_top_speed(rig):
 
 def test_ideal_source_keeps_its_voltage(rig):
     r = rig()
-    battery.update(r.p, 354.2)
+    discharge(r, 354.2)
     assert r.p.battery.voltage == 12.6
     assert r.p.battery.current == approx(28.1, abs=0.05)
 
 
-def test_wind_follows_its_setting(rig):
-    w, rng = rig().p.wind, rig().v.rng
+def test_wind_follows_its_setting():
+    w, rng = Wind(), Rng()
+    random.seed(rng, 1)
     before = rng.s.tolist()
     w.speed, w.direction, w.time_constant = 5.0, 90.0, 0.5
     for _ in range(25):
-        wind.update(w, rng)
-    assert w.vel[1] == approx(-5.0 * (1.0 - math.exp(-1.0)), rel=0.02)
-    assert w.vel[0] == approx(0.0, abs=1e-12)
+        wind.blow(w, rng)
+    assert w.vel.y == approx(-5.0 * (1.0 - math.exp(-1.0)), rel=0.02)
+    assert w.vel.x == approx(0.0, abs=1e-12)
     assert rng.s.tolist() == before  # without turbulence the random numbers stay as they are
 
 
-def test_turbulence_has_its_deviation_and_correlation_time(rig):
-    r = rig()
-    random.seed(r.v.rng, 3)
-    w = r.p.wind
+def test_turbulence_has_its_deviation_and_correlation_time():
+    w, rng = Wind(), Rng()
+    random.seed(rng, 3)
     w.turbulence, w.time_constant = 2.0, 0.2
     gusts = np.empty(4000)
     for k in range(len(gusts)):
-        wind.update(w, r.v.rng)
-        gusts[k] = w.gust[0]
+        wind.blow(w, rng)
+        gusts[k] = w.gust.x
     assert gusts.std() == approx(2.0, rel=0.1)
     after_tau = np.corrcoef(gusts[:-10], gusts[10:])[0, 1]  # 10 steps of 20 ms
     assert after_tau == approx((1.0 - 0.1) ** 10, abs=0.08)
@@ -74,6 +81,4 @@ def test_turbulence_has_its_deviation_and_correlation_time(rig):
 
 @pytest.mark.parametrize("altitude, expected", [(0.0, 1.225), (593.0, 1.15682), (5000.0, 0.73612)])
 def test_standard_density(altitude, expected):
-    from sitl.physics.native.atmosphere import density
-
     assert density(altitude) == approx(expected, rel=1e-4)

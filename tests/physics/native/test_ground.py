@@ -4,8 +4,9 @@ import math
 import pytest
 from pytest import approx
 
-from sitl.core.rotations import quat_from_euler, quat_to_euler
-from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from sitl.core.algebra import euler_of, quat_from_euler
+from sitl.core.vectors import Euler
+from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 
 
 @pytest.mark.parametrize("frame", ["ardupilot_quad", "erle_copter"])
@@ -13,13 +14,13 @@ from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_LYING, GROU
 def test_stands_still_below_lift_off_thrust(rig, frame, control):
     r = rig(frame, heading=30.0)
     r.p.wind.vel = (3.0, -4.0, 0.5)
-    q = r.p.body.q.tolist()
+    q = list(r.p.body.q)
     r.command(control, 0.9 * control, control, control)
     r.move(100)
-    assert r.p.body.pos.tolist() == [0.0, 0.0, 0.0]
-    assert r.p.body.vel.tolist() == [0.0, 0.0, 0.0]
-    assert r.p.body.q.tolist() == q
-    assert r.p.body.specific_force.tolist() == approx([0.0, 0.0, -9.80665])
+    assert list(r.p.body.pos) == [0.0, 0.0, 0.0]
+    assert list(r.p.body.vel) == [0.0, 0.0, 0.0]
+    assert list(r.p.body.q) == q
+    assert list(r.p.body.specific_force) == approx([0.0, 0.0, -9.80665])
 
 
 def test_lifts_off_above_it(rig):
@@ -33,7 +34,7 @@ def test_lifts_off_above_it(rig):
 def test_landing_is_reported_once_with_its_speed(rig):
     r = rig()
     r.fly(0.02)
-    r.p.body.vel[2] = 0.5
+    r.p.body.vel = r.p.body.vel.replace(z=0.5)
     felt = 0.0
     for _ in range(200):
         r.move()
@@ -41,14 +42,14 @@ def test_landing_is_reported_once_with_its_speed(rig):
         assert r.p.body.pos[2] <= 0.0
     assert r.p.ground.hit_count == 1
     assert r.p.ground.hit_speed == approx(math.sqrt(0.25 + 2 * 9.8 * 0.02), rel=0.05)
-    assert r.p.body.vel.tolist() == [0.0, 0.0, 0.0]
+    assert list(r.p.body.vel) == [0.0, 0.0, 0.0]
     assert felt == approx(-0.5, abs=1e-4)  # what the accelerometer feels takes the whole speed away
 
 
 def test_gentle_touch_is_not_reported(rig):
     r = rig()
     r.fly(1e-5)
-    r.p.body.vel[2] = 0.05
+    r.p.body.vel = r.p.body.vel.replace(z=0.05)
     r.command(0.59)
     r.move(5)
     assert r.p.ground.state == GROUND_STANDING
@@ -60,30 +61,30 @@ def test_slides_to_a_stop(rig):
     r.fly(0.0)
     r.p.body.vel = (1.0, 0.0, 0.1)
     r.move(200)
-    assert r.p.body.vel.tolist() == [0.0, 0.0, 0.0]
+    assert list(r.p.body.vel) == [0.0, 0.0, 0.0]
     assert r.p.body.pos[0] == approx(1.0 / (2.0 * 0.8 * 9.80665), abs=0.003)
 
 
 def test_legs_level_a_leaning_touch(rig):
     r = rig()
     r.fly(0.001)
-    r.p.body.q = quat_from_euler(0.3, -0.2, 1.0)
-    r.p.body.vel[2] = 0.5
+    r.p.body.q = quat_from_euler(Euler(0.3, -0.2, 1.0))
+    r.p.body.vel = r.p.body.vel.replace(z=0.5)
     r.move(120)
-    roll, pitch, yaw = quat_to_euler(*r.p.body.q.tolist())
+    roll, pitch, yaw = euler_of(r.p.body.q)
     assert (roll, pitch) == approx((0.0, 0.0), abs=2e-5)
     assert yaw == approx(1.0, abs=0.05)
-    assert r.p.body.rates.tolist() == [0.0, 0.0, 0.0]
+    assert list(r.p.body.rates) == [0.0, 0.0, 0.0]
 
 
 def test_tipped_over_it_lies_whatever_the_rotors_do(rig):
     r = rig()
     r.fly(0.001)
-    r.p.body.q = quat_from_euler(2.0, 0.0, 0.0)
+    r.p.body.q = quat_from_euler(Euler(2.0, 0.0, 0.0))
     r.p.body.vel = (0.5, 0.0, 1.0)
     r.command(0.8)
     r.move(100)
     assert r.p.ground.state == GROUND_LYING
-    assert quat_to_euler(*r.p.body.q.tolist())[0] == approx(2.0, abs=0.05)
-    assert r.p.body.vel.tolist() == [0.0, 0.0, 0.0]
+    assert euler_of(r.p.body.q)[0] == approx(2.0, abs=0.05)
+    assert list(r.p.body.vel) == [0.0, 0.0, 0.0]
     assert r.p.body.pos[2] == 0.0

@@ -30,7 +30,7 @@ def test_the_same_pulses_give_the_same_path(rig):
         due = round(now["t"] / 0.0025)
         r.move(due - ticks)
         ticks = due
-        assert r.p.body.pos[:2].tolist() == approx([now["north"], now["east"]], abs=0.12)
+        assert list(r.p.body.pos[:2]) == approx([now["north"], now["east"]], abs=0.12)
         assert math.remainder(truth.read(r.v).euler[2] - now["yaw"], 2.0 * math.pi) == approx(0.0, abs=0.015)
         assert r.p.wheels.forward == approx(now["speed"], abs=0.03)
     assert r.p.body.pos[1] > 19.0

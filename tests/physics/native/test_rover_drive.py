@@ -14,9 +14,9 @@ def test_stands_still_without_throttle(rig, frame):
     r = rig(frame, heading=30.0)
     r.command(0.0, 0.0)
     r.move(100)
-    assert r.p.body.pos.tolist() == [0.0, 0.0, 0.0]
-    assert r.p.body.specific_force.tolist() == [0.0, 0.0, -9.80665]
-    assert r.p.wheels.distance.tolist() == [0.0, 0.0]
+    assert list(r.p.body.pos) == [0.0, 0.0, 0.0]
+    assert list(r.p.body.specific_force) == [0.0, 0.0, -9.80665]
+    assert list(r.p.wheels.distance) == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(("frame", "speed"), [("erle_rover", 1.5875), ("erle_rover_small", 0.3175)])
@@ -25,7 +25,7 @@ def test_erle_rovers_drive_at_5_rad_s_at_1900_us(rig, frame, speed):
     for sign in (1.0, -1.0):
         r.command(0.0, 0.8 * sign)
         r.move(4000)
-        assert r.p.body.vel.tolist() == approx([sign * speed, 0.0, 0.0], abs=1e-6)
+        assert list(r.p.body.vel) == approx([sign * speed, 0.0, 0.0], abs=1e-6)
 
 
 @pytest.mark.parametrize("throttle", [1.0, 0.3, -0.5])

@@ -29,7 +29,7 @@ def test_wheel_encoders_count_at_their_rate(rig):
     r.step(800)
     s = r.v.sensors
     assert s.wheel_count == 100
-    assert list(s.wheel_distance) == approx(r.p.wheels.distance.tolist(), abs=0.035)  # up to 7 ticks ago
+    assert list(s.wheel_distance) == approx(list(r.p.wheels.distance), abs=0.035)  # up to 7 ticks ago
     counts = s.wheel_distance[0] / 0.002
     assert counts == approx(round(counts), abs=1e-6)
 

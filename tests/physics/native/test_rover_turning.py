@@ -51,7 +51,7 @@ def test_skid_steering_turns_on_the_spot(rig):
     r.move(3000)
     side = 2.1 * 0.25 - 0.2 * 0.05 * 9.80665  # under the load of its tyres
     assert r.p.body.rates[2] == approx(2.0 * side / (0.376 * 1.5), rel=1e-6)
-    assert r.p.body.pos.tolist() == approx([0.0, 0.0, 0.0], abs=1e-9)
+    assert list(r.p.body.pos) == approx([0.0, 0.0, 0.0], abs=1e-9)
     assert r.p.wheels.distance[0] == approx(-r.p.wheels.distance[1])
 
 

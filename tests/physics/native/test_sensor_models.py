@@ -36,7 +36,7 @@ def test_in_run_bias_settles_at_its_deviation(rig):
     r = rig("erle_copter", acc_bias_time=1.0)
     values = np.empty((3000, 3))
     for k in range(len(values)):
-        imu.walk(r.p, r.v.rng)
+        imu.walk(r.p.sensors, r.p.derived, r.v.rng)
         values[k] = r.p.sensors.acc_walk
     assert values[100:].std() == approx(0.006 * math.sqrt(0.5), rel=0.1)
 
@@ -62,9 +62,9 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
     p, s = r.p, r.v.sensors
     arrivals = []
     for tick in range(1, 400):
-        p.body.pos[0] = 0.0025 * tick * 10.0  # 10 m/s north
+        p.body.pos = p.body.pos.replace(x=0.0025 * tick * 10.0)  # 10 m/s north
         before = int(s.gps_count)
-        gps.update(p, s, tick, tick * 2500, r.v.rng)
+        gps.sample(p, s, gps.Clock(tick, tick * 2500), r.v.rng)
         if s.gps_count != before:
             arrivals.append(tick)
             north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
@@ -79,7 +79,7 @@ def test_gps_has_no_fix_at_first(rig):
     p, s = r.p, r.v.sensors
     fixes = {}
     for tick in range(1, 600):
-        gps.update(p, s, tick, tick * 2500, r.v.rng)
+        gps.sample(p, s, gps.Clock(tick, tick * 2500), r.v.rng)
         fixes[tick] = int(s.gps_fix)
     assert fixes[40] == 0 and fixes[60] == 1 and fixes[400] == 1 and fixes[599] == 3
     assert s.gps_eph == 80 and s.gps_satellites == 12
@@ -91,7 +91,7 @@ def test_gps_errors_have_their_deviation(rig):
     rows = []
     for k in range(600):
         gps.take(r.p, 10_000 + k, r.v.rng)
-        gps.deliver(r.p, r.v.sensors, 20_000 + k, 0)
+        gps.deliver(r.p.sensors, r.v.sensors, gps.Clock(20_000 + k, 0), r.p.airframe)
         s = r.v.sensors
         north = (int(s.gps_lat) - int(r.p.place.lat)) * METRES_PER_DEGE7
         rows.append((north, s.gps_alt / 1e3 - 584.0, *s.gps_vel))
@@ -102,7 +102,7 @@ def test_gps_errors_have_their_deviation(rig):
 
 def test_barometer_shows_the_standard_atmosphere(rig):
     r = rig("erle_copter", baro_drift=0.0)
-    r.p.body.pos[2] = -100.0
+    r.p.body.pos = r.p.body.pos.replace(z=-100.0)
     values = np.empty(800)
     for k in range(len(values)):
         barometer.sample(r.p, r.v.sensors, r.v.rng)

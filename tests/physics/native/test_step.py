@@ -26,7 +26,7 @@ def test_compiled_and_plain_python_give_the_same_bits(rig, frame):
         for r in (plain, compiled):
             r.command(*row)
             if k == 100:
-                r.p.body.pos[2], r.p.body.vel[2] = -0.02, 1.5
+                r.p.body.pos, r.p.body.vel = r.p.body.pos.replace(z=-0.02), r.p.body.vel.replace(z=1.5)
         plain.step()
         unit(compiled.fleet.ctypes.data, 1, 0)
         assert records.first_difference(plain.fleet[0], compiled.fleet[0]) is None
@@ -50,15 +50,15 @@ def test_init_again_forgets_everything_but_the_wind_setting(rig):
     r.power_on(seed=2)
     assert r.p.wind.speed == 3.0
     r.p.wind.speed = 0.0
-    r.p.wind.steady = r.p.wind.vel = 0.0
-    fresh.p.wind.steady = fresh.p.wind.vel = 0.0
+    r.p.wind.steady = r.p.wind.vel = (0.0, 0.0, 0.0)
+    fresh.p.wind.steady = fresh.p.wind.vel = (0.0, 0.0, 0.0)
     assert records.first_difference(r.fleet[0], fresh.fleet[0]) is None
 
 
 def test_truth_for_the_shell(rig):
     r = rig(heading=353.0)
     r.fly(10.0)
-    r.p.body.pos[0] = 111.31884502145034
+    r.p.body.pos = r.p.body.pos.replace(x=111.31884502145034)
     now = truth.read(r.v)
     assert now.lat == approx(-35.363262 + 0.001, abs=1e-9)
     assert now.alt == approx(594.0)

@@ -14,7 +14,7 @@ from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.copter import pieces
 from sitl.physics.native.copter.init import init
 from sitl.physics.pybullet.engine import BulletEngine
-from sitl.vehicle.record import Copter
+from sitl.vehicle.copter import Copter
 from sitl.vehicles import Airframe
 from sitl.worlds import World
 

@@ -10,8 +10,8 @@ from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.rover.init import init
 from sitl.physics.pybullet.rover import BulletRover
 from sitl.vehicle.core_entry import bind_unit
-from sitl.vehicle.kinds import ROVER
-from sitl.vehicle.record import Rover as RoverRecord
+from sitl.vehicle.rover import ROVER
+from sitl.vehicle.rover import Rover as RoverRecord
 from sitl.worlds import World
 
 HOME = (-35.36, 149.16, 584.0, 0.0)

@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("pybullet")
 
-from sitl.physics.native.copter.state import GROUND_AIRBORNE, GROUND_STANDING
+from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_STANDING
 from sitl.physics.pybullet.contacts import report
 from sitl.physics.pybullet.worlds import Surfaces
 from sitl.worlds import Box, Start, World
@@ -63,7 +63,7 @@ def test_points_without_force_are_no_contact() -> None:
 
 def test_the_floor_out_of_the_air() -> None:
     v, surfaces = flying()
-    v.physics.body.pos[2] = 0.0
+    v.physics.body.pos = v.physics.body.pos.replace(z=0.0)
     g, down = v.physics.ground, row(FLOOR, LEGS, (0.0, 0.0, 1.0))
     report(v, surfaces, [down], (0.0, 0.0, 0.75))
     assert (g.state, g.hit_count, g.hit_speed, g.hit_time_us) == (GROUND_STANDING, 1, 0.75, 1_000_000)
@@ -71,7 +71,7 @@ def test_the_floor_out_of_the_air() -> None:
     assert g.hit_count == 1, "it stands already"
     report(v, surfaces, [], (0.0, 0.0, 0.0))
     assert g.state == GROUND_STANDING, "not clear of the floor yet"
-    v.physics.body.pos[2] = -0.02
+    v.physics.body.pos = v.physics.body.pos.replace(z=-0.02)
     report(v, surfaces, [], (0.0, 0.0, 0.0))
     assert g.state == GROUND_AIRBORNE
     assert v.physics.obstacles.touching == 0
@@ -86,7 +86,7 @@ def test_a_wall_stops_it_and_the_accelerometer_can_show_it() -> None:
     felt, gained = [], 0.0
     for _ in range(160):
         engine.tick()
-        felt.append(v.physics.body.specific_force.copy())
+        felt.append(v.physics.body.specific_force)
         gained += 0.0025 * v.physics.body.acc_ned[0]
     o = v.physics.obstacles
     assert (o.hit_count, o.hit_speed) == (1, pytest.approx(3.0, abs=0.05))

@@ -79,7 +79,7 @@ def test_power_on_forgets_what_it_ran_into() -> None:
         body.client.p.resetBaseVelocity(body.number, velocity, spin, body.client.id)
         by_dice(engine, 200, k)
         touched += engine.body.keeps_contacts()
-        n, e, d = engine.seat.v.physics.body.pos.tolist()
+        n, e, d = list(engine.seat.v.physics.body.pos)
         ends = []
         for again in (engine, copter(world=world)):
             again.seat.fleet.view("u1")[:] = bytearray(record)

@@ -25,32 +25,10 @@ from ...control.shaping import (
 )
 from ..parameters.control import Position
 from ..state import Autopilot
-from .altitude_start import (
-    ACCZ_UNIT,
-    init_d,
-    init_d_stopping_point,
-    is_active_d,
-    relax_d,
-    set_max_speed_accel_d,
-    stopping_point_d,
-)
+from .altitude_start import ACCZ_UNIT, init_d, is_active_d
 from .motors import hover_throttle
 from .state import DT, AltitudeState
 from .throttle_mix import set_throttle_out
-
-__all__ = [
-    "init_d",
-    "init_d_stopping_point",
-    "input_pos_vel_accel_d",
-    "input_vel_accel_d",
-    "is_active_d",
-    "land_at_rate_d",
-    "relax_d",
-    "set_max_speed_accel_d",
-    "set_pos_vel_accel_d",
-    "stopping_point_d",
-    "update_d",
-]
 
 _ACCZ_IMAX_UNIT = 0.001
 _THROTTLE_HZ = 2.0  # low-pass of the throttle [Hz]
@@ -208,7 +186,7 @@ def update_d(ap: Autopilot) -> None:
     c = ap.control.pos_d
     est = ap.estimate
     motors = ap.control.motors
-    if not is_active_d(ap):
+    if not is_active_d(ap.control):
         init_d(ap)
     follow_reset_d(c, est.pos.z, est.reset_vel.z, est.reset_d_count)
     c.last_tick = ap.control.tick

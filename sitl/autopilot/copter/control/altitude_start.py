@@ -10,7 +10,7 @@ from ...control.shaping import inverse_sqrt_controller
 from ..parameters.control import Position
 from ..state import Autopilot
 from .motors import hover_throttle
-from .state import DT, GRAVITY
+from .state import DT, GRAVITY, Control
 
 RELAX_TIME = 0.16
 """Time constant with which the throttle decays on the ground [s] (ArduPilot's)."""
@@ -43,9 +43,9 @@ def jerk_limit_d(p: Position, accel: float) -> float:
 
 
 @law
-def is_active_d(ap: Autopilot) -> bool:
+def is_active_d(control: Control) -> bool:
     """Whether ``update_d`` ran in this tick or the one before."""
-    return ap.control.tick > 0 and ap.control.tick - ap.control.pos_d.last_tick <= 1
+    return control.tick > 0 and control.tick - control.pos_d.last_tick <= 1
 
 
 @law

@@ -25,6 +25,8 @@ from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
 from ....core.vectors import Euler, Quat, Vec3
 from ...control.shaping import shape_angle, shape_rate
+from ...state import Estimate
+from ..parameters import Parameters
 from ..parameters.control import Attitude
 from ..state import Autopilot
 from . import rate
@@ -41,12 +43,13 @@ from .attitude_target import (
     set_target,
     turned_by_rate,
 )
-from .state import DT, AttitudeState
+from .state import DT, AttitudeState, Control
 
 
 class Shaping(NamedTuple):
     """How the target attitude may move."""
 
+    enabled: bool  # false: it jumps (ATC_RATE_FF_ENAB)
     time_constant: float  # of the exponential end [s]
     yaw_time_constant: float  # of turn rates [s]
     accel_max: Vec3  # [rad/s^2]; 0: no limit
@@ -107,10 +110,9 @@ def shape_rates(rate: Vec3, wanted: Vec3, shaping: Shaping) -> Vec3:
 
 
 @law
-def shaping_limits(ap: Autopilot) -> Shaping:
-    """ATC_INPUT_TC, PILOT_Y_RATE_TC and the limits of acceleration and rate."""
-    p = ap.params
-    return Shaping(p.ATC.INPUT_TC, p.PILOT.Y_RATE_TC, accel_max(p.ATC), rate_max(p.ATC))
+def shaping_limits(p: Parameters) -> Shaping:
+    """ATC_RATE_FF_ENAB, ATC_INPUT_TC, PILOT_Y_RATE_TC and the limits of acceleration and rate."""
+    return Shaping(p.ATC.RATE_FF_ENAB != 0.0, p.ATC.INPUT_TC, p.PILOT.Y_RATE_TC, accel_max(p.ATC), rate_max(p.ATC))
 
 
 @law
@@ -127,23 +129,23 @@ def limit_turn(rate: float, rate_max: float) -> float:
 
 
 @law
-def follow_yaw_reset(ap: Autopilot) -> None:
+def follow_yaw_reset(control: Control, est: Estimate) -> None:
     """When the estimate's heading jumps, the target jumps with it: the vehicle does not turn."""
-    attitude = ap.control.attitude
-    if attitude.yaw_reset_count == ap.estimate.reset_yaw_count:
+    attitude = control.attitude
+    if attitude.yaw_reset_count == est.reset_yaw_count:
         return
-    attitude.yaw_reset_count = ap.estimate.reset_yaw_count
-    if ap.control.tick > 0:
-        set_target(attitude, multiply(ap.estimate.q, attitude.error_q))
+    attitude.yaw_reset_count = est.reset_yaw_count
+    if control.tick > 0:
+        set_target(attitude, multiply(est.q, attitude.error_q))
 
 
 @law
-def advance_target(ap: Autopilot) -> bool:
-    """What every input starts with: the target turns on. Returns whether it is shaped (ATC_RATE_FF_ENAB)."""
-    follow_yaw_reset(ap)
+def advance_target(ap: Autopilot) -> Shaping:
+    """What every input starts with: the target turns on. Returns how it may move."""
+    follow_yaw_reset(ap.control, ap.estimate)
     attitude = ap.control.attitude
     set_target(attitude, turned_by_rate(attitude.target_q, attitude.target_rate, DT))
-    return ap.params.ATC.RATE_FF_ENAB != 0.0
+    return shaping_limits(ap.params)
 
 
 @law
@@ -156,37 +158,36 @@ def jump(attitude: AttitudeState, q: Quat, rate: Vec3) -> None:
 @law
 def correct(ap: Autopilot) -> None:
     """Body-rate targets from the difference between target and estimate."""
-    attitude = ap.control.attitude
-    q, rates = ap.estimate.q, ap.estimate.rates
-    out = attitude_control(q, attitude.target_q, attitude.target_rate, rates, attitude_gains(ap.params.ATC))
+    attitude, est = ap.control.attitude, ap.estimate
+    gains = attitude_gains(ap.params.ATC)
+    out = attitude_control(est.q, attitude.target_q, attitude.target_rate, est.rates, gains)
     if out.yaw_limited:
         set_target(attitude, out.target)
     attitude.rate_target = out.rate_target
     attitude.error = out.error
     attitude.error_q = out.error_q
     attitude.thrust_error_angle = out.thrust_error_angle
-    attitude.cos_lean = cos_lean(q)
+    attitude.cos_lean = cos_lean(est.q)
 
 
 @law
-def hold(ap: Autopilot, shaped: bool) -> None:
+def hold(attitude: AttitudeState, shaping: Shaping) -> None:
     """Bring the target to rest where it is."""
-    attitude = ap.control.attitude
     rest = Vec3(0.0, 0.0, 0.0)
-    attitude.target_rate = shape_rotation(rest, attitude.target_rate, rest, shaping_limits(ap), 0.0) if shaped else rest
-    correct(ap)
+    rate = attitude.target_rate
+    attitude.target_rate = shape_rotation(rest, rate, rest, shaping, 0.0) if shaping.enabled else rest
 
 
 @law
 def input_euler_roll_pitch_yaw_rate(ap: Autopilot, roll: float, pitch: float, yaw_rate: float) -> None:
     """Lean to ``roll``, ``pitch`` [rad] while turning at ``yaw_rate`` [rad/s]."""
-    shaped = advance_target(ap)
+    shaping = advance_target(ap)
     attitude = ap.control.attitude
     euler = attitude.target_euler
     if not (finite(roll) and finite(pitch) and finite(yaw_rate)):
         roll, pitch, yaw_rate = euler.roll, euler.pitch, 0.0
-    if shaped:
-        attitude.target_rate = shape_euler(euler, attitude.target_rate, roll, pitch, yaw_rate, shaping_limits(ap))
+    if shaping.enabled:
+        attitude.target_rate = shape_euler(euler, attitude.target_rate, roll, pitch, yaw_rate, shaping)
     else:
         jump(attitude, quat_from_euler(Euler(roll, pitch, euler.yaw + yaw_rate * DT)), Vec3(0.0, 0.0, 0.0))
     correct(ap)
@@ -195,34 +196,31 @@ def input_euler_roll_pitch_yaw_rate(ap: Autopilot, roll: float, pitch: float, ya
 @law
 def input_thrust_vector_heading(ap: Autopilot, thrust: Vec3, heading: float, heading_rate: float) -> None:
     """Point thrust along an NED vector and the nose to ``heading`` [rad], which moves at ``heading_rate`` [rad/s]."""
-    shaped = advance_target(ap)
-    if not (finite_vector(thrust) and finite(heading) and finite(heading_rate)):
-        hold(ap, shaped)
-        return
+    shaping = advance_target(ap)
     attitude = ap.control.attitude
-    q = thrust_quaternion(thrust, heading)
-    if shaped:
+    if not (finite_vector(thrust) and finite(heading) and finite(heading_rate)):
+        hold(attitude, shaping)
+    elif shaping.enabled:
         slew = slew_yaw_max(ap.params.ATC)
         ahead = Vec3(0.0, 0.0, limit_turn(heading_rate, slew))
-        error = split_error(multiply(conjugate(attitude.target_q), q)).error
-        attitude.target_rate = shape_rotation(error, attitude.target_rate, ahead, shaping_limits(ap), slew)
+        error = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, heading))).error
+        attitude.target_rate = shape_rotation(error, attitude.target_rate, ahead, shaping, slew)
     else:
-        jump(attitude, q, Vec3(0.0, 0.0, 0.0))
+        jump(attitude, thrust_quaternion(thrust, heading), Vec3(0.0, 0.0, 0.0))
     correct(ap)
 
 
 @law
 def input_thrust_vector_heading_rate(ap: Autopilot, thrust: Vec3, heading_rate: float) -> None:
     """Point thrust along an NED vector while turning about it at ``heading_rate`` [rad/s]."""
-    shaped = advance_target(ap)
-    if not (finite_vector(thrust) and finite(heading_rate)):
-        hold(ap, shaped)
-        return
+    shaping = advance_target(ap)
     attitude = ap.control.attitude
     turn = limit_turn(heading_rate, slew_yaw_max(ap.params.ATC))
     split = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, 0.0)))
-    if shaped:
-        attitude.target_rate = shape_thrust_turn(split.error, attitude.target_rate, turn, shaping_limits(ap))
+    if not (finite_vector(thrust) and finite(heading_rate)):
+        hold(attitude, shaping)
+    elif shaping.enabled:
+        attitude.target_rate = shape_thrust_turn(split.error, attitude.target_rate, turn, shaping)
     else:
         q = multiply(attitude.target_q, split.thrust_turn)
         jump(attitude, multiply(q, Quat(1.0, 0.0, 0.0, 0.5 * turn * DT)), Vec3(0.0, 0.0, 0.0))
@@ -232,15 +230,14 @@ def input_thrust_vector_heading_rate(ap: Autopilot, thrust: Vec3, heading_rate: 
 @law
 def input_quaternion(ap: Autopilot, q: Quat, rates: Vec3) -> None:
     """Turn to attitude ``q`` (body to NED), which itself turns at body rates ``rates`` [rad/s]."""
-    shaped = advance_target(ap)
+    shaping = advance_target(ap)
+    attitude = ap.control.attitude
     n2 = quat_norm_squared(q)
     if not (finite(n2) and finite_vector(rates)) or n2 < 1e-6:
-        hold(ap, shaped)
-        return
-    attitude = ap.control.attitude
-    if shaped:
+        hold(attitude, shaping)
+    elif shaping.enabled:
         error = split_error(multiply(conjugate(attitude.target_q), q / math.sqrt(n2))).error
-        attitude.target_rate = shape_rotation(error, attitude.target_rate, rates, shaping_limits(ap), 0.0)
+        attitude.target_rate = shape_rotation(error, attitude.target_rate, rates, shaping, 0.0)
     else:
         jump(attitude, q, rates)
     correct(ap)
@@ -249,11 +246,10 @@ def input_quaternion(ap: Autopilot, q: Quat, rates: Vec3) -> None:
 @law
 def input_rates(ap: Autopilot, rates: Vec3) -> None:
     """Turn at body rates [rad/s]; the attitude reached on the way is held."""
-    shaped = advance_target(ap)
+    shaping = advance_target(ap)
     attitude = ap.control.attitude
     wanted = rates if finite_vector(rates) else Vec3(0.0, 0.0, 0.0)
-    shaping = shaping_limits(ap)
-    if shaped:
+    if shaping.enabled:
         wanted = shape_rates(attitude.target_rate, wanted, shaping)
     attitude.target_rate = limit_rates(wanted, shaping.rate_max)
     correct(ap)

@@ -8,8 +8,6 @@ with the throttle limited to ``thrust_max``, which ramps over MOT_SPOOL_TIME.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
 from ...control.pid import lowpass_gain
@@ -31,24 +29,6 @@ ARMING_DELAY_US = 2_000_000
 _SLOW_TICKS = round(SLOW_DT / DT)
 _HOVER_TIME = 10.0  # time constant of hover-throttle learning [s]
 _HOVER_MIN, _HOVER_MAX = 0.125, 0.6875  # range in which a hover throttle is believed
-
-
-class SpoolTimes(NamedTuple):
-    """How the motors spool."""
-
-    up: float  # over the whole range [s]
-    down: float  # [s]; 0: as up
-    idle_ratio: float  # spin of armed motors on the ground: MOT_SPIN_ARM over MOT_SPIN_MIN
-
-
-class MotorCurve(NamedTuple):
-    """From thrust to command."""
-
-    spin_min: float  # command range of the motors 0 .. 1
-    spin_max: float
-    expo: float  # of the thrust curve
-    slew_up: float  # time for the whole range [s]; 0: at once
-    slew_down: float
 
 
 @law
@@ -77,7 +57,7 @@ def set_limits(motors: MotorsState, value: bool) -> None:
 
 
 @law
-def spool(motors: MotorsState, enabled: bool, times: SpoolTimes) -> None:
+def spool(motors: MotorsState, enabled: bool, p: Motors) -> None:
     """One tick of the spool state machine.
 
     ``enabled`` is false while disarmed and during the arming delay: then the motors stand.
@@ -85,8 +65,8 @@ def spool(motors: MotorsState, enabled: bool, times: SpoolTimes) -> None:
     if not enabled:
         motors.desired_spool = DESIRED_SHUT_DOWN
         motors.spool_state = SHUT_DOWN
-    up = DT / max(times.up, 0.05)
-    down = DT / max(times.down, 0.05) if times.down > 0.0 else up
+    up = DT / max(p.SPOOL_TIME, 0.05)
+    down = DT / max(p.SPOOL_TIM_DN, 0.05) if p.SPOOL_TIM_DN > 0.0 else up
     state = motors.spool_state
     desired = motors.desired_spool
     if state == SHUT_DOWN:
@@ -103,7 +83,8 @@ def spool(motors: MotorsState, enabled: bool, times: SpoolTimes) -> None:
             if ratio <= 0.0:
                 motors.spool_state = SHUT_DOWN
         elif desired == DESIRED_GROUND_IDLE:
-            ratio += constrain(times.idle_ratio - ratio, -down, up)
+            idle = p.SPIN_ARM / p.SPIN_MIN if p.SPIN_MIN > 0.0 else 0.0
+            ratio += constrain(idle - ratio, -down, up)
         else:
             ratio = min(ratio + up, 1.0)
             if ratio >= 1.0:
@@ -158,20 +139,20 @@ def slew(old: float, new: float, time_up: float, time_down: float) -> float:
 
 
 @law
-def command_motors(motors: MotorsState, curve: MotorCurve) -> None:
+def command_motors(motors: MotorsState, p: Motors) -> None:
     """``motors.actuator`` from the spool state and the mixer's thrusts."""
     state = motors.spool_state
-    span = curve.spin_max - curve.spin_min
+    span = p.SPIN_MAX - p.SPIN_MIN
     for k in range(MOTORS):
         if state == SHUT_DOWN:
             motors.actuator[k] = 0.0
             continue
-        wanted = motors.spin_up_ratio * curve.spin_min
+        wanted = motors.spin_up_ratio * p.SPIN_MIN
         if state != GROUND_IDLE:
             thrust = motors.thrust[k] if finite(motors.thrust[k]) else 0.0
-            command = command_from_thrust(thrust, curve.expo, motors.lift_max, motors.voltage_ratio)
-            wanted = curve.spin_min + span * command
-        motors.actuator[k] = slew(motors.actuator[k], wanted, curve.slew_up, curve.slew_down)
+            command = command_from_thrust(thrust, p.THST_EXPO, motors.lift_max, motors.voltage_ratio)
+            wanted = p.SPIN_MIN + span * command
+        motors.actuator[k] = slew(motors.actuator[k], wanted, p.SLEW_UP_TIME, p.SLEW_DN_TIME)
 
 
 @law
@@ -196,33 +177,20 @@ def drive_test_motor(motors: MotorsState) -> None:
 
 
 @law
-def spool_times(p: Motors) -> SpoolTimes:
-    """MOT_SPOOL_TIME, MOT_SPOOL_TIM_DN and the spin of armed motors."""
-    return SpoolTimes(p.SPOOL_TIME, p.SPOOL_TIM_DN, p.SPIN_ARM / p.SPIN_MIN if p.SPIN_MIN > 0.0 else 0.0)
-
-
-@law
-def motor_curve(p: Motors) -> MotorCurve:
-    """MOT_SPIN_*, MOT_THST_EXPO, MOT_SLEW_*."""
-    return MotorCurve(p.SPIN_MIN, p.SPIN_MAX, p.THST_EXPO, p.SLEW_UP_TIME, p.SLEW_DN_TIME)
-
-
-@law
 def drive_motors(ap: Autopilot, time_us: int) -> None:
     """Everything between the demands of the controllers and ``motors.actuator``; ``time_us`` since boot."""
-    motors = ap.control.motors
+    p, motors = ap.params.MOT, ap.control.motors
     if ap.control.tick % _SLOW_TICKS == 0:
-        compensate(ap)
+        compensate(motors, ap.battery, ap.estimate, p)
     armed = ap.arming.armed != 0
     filter_throttle(motors, armed)
-    spool(motors, armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US, spool_times(ap.params.MOT))
+    spool(motors, armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US, p)
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
-        headroom = ap.params.MOT.YAW_HEADROOM * 0.001
-        out = mix(motors, int(ap.params.FRAME.TYPE), compensated_demands(motors), headroom)
+        out = mix(motors, int(ap.params.FRAME.TYPE), compensated_demands(motors), p.YAW_HEADROOM * 0.001)
         motors.throttle_out = out / motors.compensation_gain
-    command_motors(motors, motor_curve(ap.params.MOT))
+    command_motors(motors, p)
     if motors.test_motor != 0:
         drive_test_motor(motors)
 

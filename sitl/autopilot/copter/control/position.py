@@ -28,36 +28,8 @@ from ...control.shaping import (
 )
 from ..parameters.control import Position
 from ..state import Autopilot
-from .position_start import (
-    accel_limit_ne,
-    init_ne,
-    init_ne_stopping_point,
-    is_active_ne,
-    lean_accel,
-    relax_ne,
-    set_max_speed_accel_ne,
-    soften_for_landing_ne,
-    stopping_point_ne,
-)
+from .position_start import accel_limit_ne, init_ne, is_active_ne
 from .state import DT, GRAVITY, PositionState
-
-__all__ = [
-    "init_ne",
-    "init_ne_stopping_point",
-    "brake_ne",
-    "input_accel_ne",
-    "input_pos_vel_accel_ne",
-    "input_vel_accel_ne",
-    "is_active_ne",
-    "lean_accel",
-    "relax_ne",
-    "set_max_speed_accel_ne",
-    "set_pos_vel_accel_ne",
-    "soften_for_landing_ne",
-    "stopping_point_ne",
-    "thrust_vector",
-    "update_ne",
-]
 
 
 class PositionGains(NamedTuple):
@@ -216,9 +188,9 @@ def update_ne(ap: Autopilot) -> None:
     """One tick of the cascade: ``accel_target`` comes out (see ``thrust_vector``)."""
     c = ap.control.pos_ne
     est = ap.estimate
-    if not is_active_ne(ap):
+    if not is_active_ne(ap.control):
         init_ne(ap)
     pos, vel = horizontal(est.pos), horizontal(est.vel)
     follow_reset_ne(c, pos, horizontal(est.reset_vel), est.reset_ne_count)
     c.last_tick = ap.control.tick
-    control_horizontal(c, pos, vel, accel_limit_ne(ap), position_gains(ap.params.PSC))
+    control_horizontal(c, pos, vel, accel_limit_ne(ap.control, ap.params), position_gains(ap.params.PSC))

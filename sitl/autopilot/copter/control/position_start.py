@@ -8,12 +8,12 @@ import math
 from ....core.algebra import horizontal, limit_length, norm2, turned
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ....core.vectors import Vec2
+from ....core.vectors import Vec2, Vec3
 from ...control.shaping import inverse_sqrt_controller
 from ..parameters import Parameters
 from ..parameters.control import Attitude, Position
 from ..state import Autopilot
-from .state import DT, GRAVITY, PositionState
+from .state import DT, GRAVITY, Control, PositionState
 from .throttle_mix import LEAN_TICKS, lean_limit
 
 RELAX_TIME = 0.16
@@ -53,25 +53,25 @@ def lean_max_ne(p: Parameters) -> float:
 
 
 @law
-def renew_accel_limit(ap: Autopilot) -> float:
+def renew_accel_limit(control: Control, p: Parameters) -> float:
     """Acceleration [m/s^2] that the permitted lean gives; kept in the record."""
-    limit = GRAVITY * math.tan(min(lean_limit(ap.control.attitude), lean_max_ne(ap.params)))
-    ap.control.pos_ne.accel_limit = limit
+    limit = GRAVITY * math.tan(min(lean_limit(control.attitude), lean_max_ne(p)))
+    control.pos_ne.accel_limit = limit
     return limit
 
 
 @law
-def accel_limit_ne(ap: Autopilot) -> float:
+def accel_limit_ne(control: Control, p: Parameters) -> float:
     """The same, renewed every few ticks."""
-    if ap.control.tick % LEAN_TICKS == 0:
-        return renew_accel_limit(ap)
-    return ap.control.pos_ne.accel_limit
+    if control.tick % LEAN_TICKS == 0:
+        return renew_accel_limit(control, p)
+    return control.pos_ne.accel_limit
 
 
 @law
-def is_active_ne(ap: Autopilot) -> bool:
+def is_active_ne(control: Control) -> bool:
     """Whether ``update_ne`` ran in this tick or the one before."""
-    return ap.control.tick > 0 and ap.control.tick - ap.control.pos_ne.last_tick <= 1
+    return control.tick > 0 and control.tick - control.pos_ne.last_tick <= 1
 
 
 @law
@@ -101,9 +101,9 @@ def init_ne(ap: Autopilot) -> None:
     c = ap.control.pos_ne
     est = ap.estimate
     lean = ap.control.attitude.target_euler
-    if not is_active_ne(ap):
+    if not is_active_ne(ap.control):
         c.accel_target = lean_accel(lean.roll, lean.pitch, est.euler.yaw)
-    c.accel_target = limit_length(c.accel_target, renew_accel_limit(ap))
+    c.accel_target = limit_length(c.accel_target, renew_accel_limit(ap.control, ap.params))
     start_from(c, horizontal(est.pos), horizontal(est.vel))
     c.reset_count = est.reset_ne_count
     c.last_tick = ap.control.tick
@@ -125,10 +125,9 @@ def relax_ne(ap: Autopilot) -> None:
 
 
 @law
-def soften_for_landing_ne(ap: Autopilot) -> None:
-    """Let the position error decay and the integrator not grow: the ground may hold the vehicle."""
-    c = ap.control.pos_ne
-    c.pos_desired += DT / (DT + RELAX_TIME) * (horizontal(ap.estimate.pos) - c.pos_desired)
+def soften_for_landing_ne(c: PositionState, pos: Vec3) -> None:
+    """Let the position error to ``pos`` [m] decay and the integrator not grow: the ground may hold the vehicle."""
+    c.pos_desired += DT / (DT + RELAX_TIME) * (horizontal(pos) - c.pos_desired)
     c.limit = c.accel_target
 
 

@@ -7,6 +7,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
+from ..parameters.control import Attitude
 from ..state import Autopilot
 from .motors import hover_throttle
 from .state import DT, AttitudeState, MotorsState
@@ -72,23 +73,22 @@ def lean_limit(attitude: AttitudeState) -> float:
 
 
 @law
-def set_mix_min(ap: Autopilot) -> None:
+def set_mix_min(attitude: AttitudeState, p: Attitude) -> None:
     """Throttle first: landing, idle on the ground."""
-    ap.control.attitude.mix_desired = ap.params.ATC.THR_MIX_MIN
+    attitude.mix_desired = p.THR_MIX_MIN
 
 
 @law
-def set_mix_man(ap: Autopilot) -> None:
+def set_mix_man(attitude: AttitudeState, p: Attitude) -> None:
     """Throttle in the pilot's hand."""
-    ap.control.attitude.mix_desired = ap.params.ATC.THR_MIX_MAN
+    attitude.mix_desired = p.THR_MIX_MAN
 
 
 @law
-def set_mix_max(ap: Autopilot, ratio: float) -> None:
+def set_mix_max(attitude: AttitudeState, p: Attitude, ratio: float) -> None:
     """Attitude first; ``ratio`` 0 .. 1 between the lowest and the highest priority."""
     r = constrain(ratio, 0.0, 1.0)
-    p = ap.params.ATC
-    ap.control.attitude.mix_desired = (1.0 - r) * p.THR_MIX_MIN + r * p.THR_MIX_MAX
+    attitude.mix_desired = (1.0 - r) * p.THR_MIX_MIN + r * p.THR_MIX_MAX
 
 
 @law

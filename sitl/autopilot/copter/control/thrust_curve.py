@@ -13,7 +13,8 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ...control.pid import lowpass_gain
-from ..state import Autopilot
+from ...state import BatteryState, Estimate
+from ..parameters.control import Motors
 from .state import MotorsState
 
 SLOW_DT = 0.1
@@ -60,27 +61,24 @@ def resting_voltage(motors: MotorsState, voltage: float, current: float) -> floa
 
 
 @law
-def compensate_voltage(motors: MotorsState, resting: float, low: float, full: float, expo: float) -> None:
-    """Voltage ratio and lift for a ``resting`` voltage of a battery between ``low`` and ``full`` [V] (0: ignored)."""
+def compensate_voltage(motors: MotorsState, resting: float, p: Motors) -> None:
+    """Voltage ratio and lift for a ``resting`` voltage [V] of a battery between MOT_BAT_VOLT_MIN and _MAX."""
+    low, full = p.BAT_VOLT_MIN, p.BAT_VOLT_MAX
     if full <= 0.0 or low >= full or not resting >= 0.25 * low:
         motors.voltage_ratio = 1.0
         motors.lift_max = 1.0
         return
     ratio = constrain(resting, max(low, 0.6 * full), full) / full
     motors.voltage_ratio += lowpass_gain(_VOLTAGE_HZ, SLOW_DT) * (ratio - motors.voltage_ratio)
-    e = constrain(expo, -1.0, 1.0)
+    e = constrain(p.THST_EXPO, -1.0, 1.0)
     v = motors.voltage_ratio
     motors.lift_max = v * (1.0 - e) + e * v * v
 
 
 @law
-def compensate(ap: Autopilot) -> None:
+def compensate(motors: MotorsState, battery: BatteryState, est: Estimate, p: Motors) -> None:
     """Voltage and density compensation, to be called every ``SLOW_DT``."""
-    p = ap.params.MOT
-    est = ap.estimate
-    motors = ap.control.motors
-    resting = resting_voltage(motors, ap.battery.voltage, ap.battery.current)
-    compensate_voltage(motors, resting, p.BAT_VOLT_MIN, p.BAT_VOLT_MAX, p.THST_EXPO)
+    compensate_voltage(motors, resting_voltage(motors, battery.voltage, battery.current), p)
     gain = 1.0 / max(motors.lift_max, 0.1)
     if est.origin_set:
         gain /= constrain(air_density_ratio(est.origin_alt - est.pos.z), 0.5, 1.25)

@@ -8,9 +8,9 @@ from ....core.records import Records
 from ...state import Actuators
 from ..state import Autopilot, Vehicle
 from . import motors, rate, throttle_mix
-from .altitude import set_max_speed_accel_d
+from .altitude_start import set_max_speed_accel_d
 from .attitude import relax
-from .position import set_max_speed_accel_ne
+from .position_start import set_max_speed_accel_ne
 
 
 @law

@@ -8,7 +8,7 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain
 from .. import pilot
-from ..control import altitude, attitude
+from ..control import altitude, altitude_start, attitude
 from ..control.throttle_mix import lean_limit
 from . import ground, takeoff
 from .mode import CopterMode
@@ -35,8 +35,8 @@ def start_vertical(v):
     """Limits of the throttle stick: PILOT_SPEED_UP, PILOT_SPEED_DN, PILOT_ACCEL_Z."""
     ap = v.autopilot
     set_limits(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     ap.modes.takeoff.user_active = 0
 
 
@@ -45,7 +45,7 @@ def set_limits(ap):
     """Vertical limits of modes that the pilot flies."""
     p = ap.params
     down = p.PILOT.SPEED_DN if p.PILOT.SPEED_DN > 0.0 else p.PILOT.SPEED_UP
-    altitude.set_max_speed_accel_d(ap, down * 0.01, p.PILOT.SPEED_UP * 0.01, p.PILOT.ACCEL_Z * 0.01)
+    altitude_start.set_max_speed_accel_d(ap, down * 0.01, p.PILOT.SPEED_UP * 0.01, p.PILOT.ACCEL_Z * 0.01)
 
 
 @law
@@ -84,11 +84,11 @@ def run_vertical(v, doing, climb):
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             takeoff.run_user(v, climb)
             return
-        altitude.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap, 0.0)
     elif doing == FLYING:
         altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
     else:
-        altitude.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap, 0.0)
     altitude.update_d(ap)
 
 

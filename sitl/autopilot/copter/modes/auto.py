@@ -12,7 +12,7 @@ from ...arming_checks import BY_MISSION_EXIT
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
-from ..control import altitude, position
+from ..control import altitude, altitude_start, position, position_start
 from ..navigation import command, waypoint
 from . import auto_yaw, ground, land, rtl, takeoff
 from .mode import CopterMode
@@ -51,10 +51,10 @@ def start(v):
         auto_yaw.set_mode(v, auto_yaw.HOLD)
     auto_yaw.set_default(v, 0)
     ground.set_waypoint_limits(v)
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     return ACCEPTED
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ..control import altitude, attitude, position
+from ..control import altitude, altitude_start, attitude, position, position_start
 from . import ground
 from .mode import CopterMode, never_arms
 
@@ -23,10 +23,10 @@ def start(v):
     """Enter. Returns 0."""
     ap = v.autopilot
     vn, ve, vd = float(ap.estimate.vel[0]), float(ap.estimate.vel[1]), float(ap.estimate.vel[2])
-    position.set_max_speed_accel_ne(ap, max(math.hypot(vn, ve), 0.1), DECELERATION)
-    position.init_ne(ap)
-    altitude.set_max_speed_accel_d(ap, max(SPEED_D, vd), max(SPEED_D, -vd), DECELERATION)
-    altitude.init_d(ap)
+    position_start.set_max_speed_accel_ne(ap, max(math.hypot(vn, ve), 0.1), DECELERATION)
+    position_start.init_ne(ap)
+    altitude_start.set_max_speed_accel_d(ap, max(SPEED_D, vd), max(SPEED_D, -vd), DECELERATION)
+    altitude_start.init_d(ap)
     return 0
 
 

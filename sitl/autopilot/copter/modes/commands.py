@@ -7,7 +7,7 @@ Every law returns OK, or says why it left the record as it was.
 from __future__ import annotations
 
 from ....core.kernels import law
-from ..control import altitude, position
+from ..control import altitude_start, position_start
 from . import auto_yaw, guided, takeoff
 from .auto import AUTO
 from .guided import GUIDED
@@ -106,11 +106,11 @@ def change_speed(v, kind, speed):
     ne = ap.control.pos_ne
     d = ap.control.pos_d
     if kind == HORIZONTAL:
-        position.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
+        position_start.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
     elif kind == CLIMB:
-        altitude.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
+        altitude_start.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
     elif kind == DESCENT:
-        altitude.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
+        altitude_start.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
     else:
         return OUT_OF_RANGE
     return OK

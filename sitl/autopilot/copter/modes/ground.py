@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...events import DISARMED, emit_and_return
-from ..control import altitude, attitude, position
+from ..control import altitude, altitude_start, attitude, position, position_start
 from . import auto_yaw
 
 # Spool states wanted by a mode (control/motors.py)
@@ -66,9 +66,9 @@ def handle(v):
     motors.desired_spool = GROUND_IDLE if ap.arming.armed != 0 else SHUT_DOWN
     if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
         attitude.reset_yaw_target(ap)
-    position.relax_ne(ap)
+    position_start.relax_ne(ap)
     position.update_ne(ap)
-    altitude.relax_d(ap, 0.0)
+    altitude_start.relax_d(ap, 0.0)
     altitude.update_d(ap)
     attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, 0.0)
 
@@ -97,8 +97,8 @@ def set_waypoint_limits(v):
     """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
     ap = v.autopilot
     p = ap.params
-    position.set_max_speed_accel_ne(ap, p.WPNAV.SPEED * 0.01, p.WPNAV.ACCEL * 0.01)
-    altitude.set_max_speed_accel_d(ap, p.WPNAV.SPEED_DN * 0.01, p.WPNAV.SPEED_UP * 0.01, p.WPNAV.ACCEL_Z * 0.01)
+    position_start.set_max_speed_accel_ne(ap, p.WPNAV.SPEED * 0.01, p.WPNAV.ACCEL * 0.01)
+    altitude_start.set_max_speed_accel_d(ap, p.WPNAV.SPEED_DN * 0.01, p.WPNAV.SPEED_UP * 0.01, p.WPNAV.ACCEL_Z * 0.01)
 
 
 @law
@@ -106,5 +106,5 @@ def start_position_control(v):
     """Take over position control from whatever flew before, without a jump."""
     ap = v.autopilot
     set_waypoint_limits(v)
-    position.init_ne(ap)
-    altitude.init_d(ap)
+    position_start.init_ne(ap)
+    altitude_start.init_d(ap)

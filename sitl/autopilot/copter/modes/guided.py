@@ -16,7 +16,7 @@ from ....core.scalars import constrain
 from ...arming_checks import BY_RUDDER
 from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, emit
-from ..control import altitude, attitude, position, position_ned, throttle_mix
+from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from . import auto_yaw, ground, takeoff
 from .mode import CopterMode
 
@@ -175,7 +175,7 @@ def run_angle(v):
         attitude.relax(ap)
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             ground.set_landed(v, 0)
-            altitude.init_d(ap)
+            altitude_start.init_d(ap)
         return
     if guided.use_attitude != 0:
         attitude.input_quaternion(ap, quat_of(guided.q), vec3_of(guided.rates))
@@ -206,7 +206,7 @@ def level_off(v):
         guided.rates[k] = 0.0
     if guided.use_thrust != 0:
         guided.use_thrust = 0
-        altitude.init_d(ap)
+        altitude_start.init_d(ap)
     guided.climb_rate = 0.0
 
 

@@ -15,7 +15,7 @@ from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
 from ...modes import REASON_THROTTLE_LAND_ESCAPE
 from .. import pilot
-from ..control import altitude, attitude, position
+from ..control import altitude, altitude_start, attitude, position, position_start
 from . import auto_yaw, ground
 from .alt_hold import ALT_HOLD
 from .loiter import LOITER
@@ -48,10 +48,10 @@ def begin(v):
     ap = v.autopilot
     land = ap.modes.land
     ground.set_waypoint_limits(v)
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     land.start_us = v.time_us
     land.pause = 0
     land.with_position = 1
@@ -105,7 +105,7 @@ def descend(v, pause):
     """One tick of a landing with position control; the sticks move the landing place (LAND_REPOSITION)."""
     ap = v.autopilot
     if ap.arming.landed_maybe != 0:
-        position.soften_for_landing_ne(ap)
+        position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
     position.input_vel_accel_ne(ap.control.pos_ne, stick_velocity(ap), Vec2(0.0, 0.0))
     sink(v, pause)
     ground.fly(v)

@@ -15,7 +15,7 @@ from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
 from ...control.shaping import Motion2, shape_angle, sqrt_controller
 from .. import pilot
-from ..control import attitude, position
+from ..control import attitude, position, position_start
 from . import alt_hold
 from .mode import CopterMode
 
@@ -45,13 +45,13 @@ def start(v):
     ap = v.autopilot
     loiter = ap.modes.loiter
     set_limits(ap)
-    active = position.is_active_ne(ap)
+    active = position_start.is_active_ne(ap.control)
     if not active:
-        position.init_ne(ap)
+        position_start.init_ne(ap)
     target = ap.control.attitude.target_euler
     loiter.predicted_euler[0] = target[0]
     loiter.predicted_euler[1] = target[1]
-    acc = position.lean_accel(target.roll, target.pitch, ap.estimate.euler[2])
+    acc = position_start.lean_accel(target.roll, target.pitch, ap.estimate.euler[2])
     loiter.predicted_acc[0], loiter.predicted_acc[1] = acc.x, acc.y
     loiter.predicted_rate[0] = 0.0
     loiter.predicted_rate[1] = 0.0
@@ -65,7 +65,7 @@ def start(v):
 def set_limits(ap):
     """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
     p = ap.params
-    position.set_max_speed_accel_ne(ap, max(p.LOIT.SPEED * 0.01, _SPEED_MIN), p.LOIT.ACC_MAX * 0.01)
+    position_start.set_max_speed_accel_ne(ap, max(p.LOIT.SPEED * 0.01, _SPEED_MIN), p.LOIT.ACC_MAX * 0.01)
 
 
 @law
@@ -79,7 +79,7 @@ def read_sticks(v, roll, pitch):
         loiter.acc[0] = 0.0
         loiter.acc[1] = 0.0
     else:
-        acc = position.lean_accel(roll, pitch, yaw)
+        acc = position_start.lean_accel(roll, pitch, yaw)
         loiter.acc[0], loiter.acc[1] = acc.x, acc.y
     tc = float(p.ATC.INPUT_TC)
     wanted = (roll, pitch)
@@ -89,7 +89,7 @@ def read_sticks(v, roll, pitch):
         rate = shape_angle(error, loiter.predicted_rate[k], tc, limits[k], DT, 0.0, 0.0)
         loiter.predicted_rate[k] = rate
         loiter.predicted_euler[k] = loiter.predicted_euler[k] + rate * DT
-    predicted = position.lean_accel(loiter.predicted_euler[0], loiter.predicted_euler[1], yaw)
+    predicted = position_start.lean_accel(loiter.predicted_euler[0], loiter.predicted_euler[1], yaw)
     loiter.predicted_acc[0], loiter.predicted_acc[1] = predicted.x, predicted.y
 
 
@@ -139,13 +139,13 @@ def run(v):
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
         attitude.reset_yaw_target(ap)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
         ap.modes.loiter.brake_acc = 0.0
         position.update_ne(ap)
         attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, float(ap.modes.pilot.yaw_rate))
     else:
         if ap.arming.landed_maybe != 0:
-            position.soften_for_landing_ne(ap)
+            position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
         advance(v)
         position.update_ne(ap)
         attitude.input_thrust_vector_heading_rate(

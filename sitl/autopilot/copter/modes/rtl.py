@@ -11,7 +11,7 @@ from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
-from ..control import altitude, position
+from ..control import altitude, altitude_start, position, position_start
 from ..navigation import waypoint
 from . import auto_yaw, ground, land
 from .mode import CopterMode, never_arms
@@ -50,15 +50,15 @@ def begin(v):
     ap.modes.nav.speed_up = 0.0
     ap.modes.nav.speed_down = 0.0
     ground.set_waypoint_limits(v)
-    if not position.is_active_ne(ap):
-        position.init_ne(ap)
-    if not altitude.is_active_d(ap):
-        altitude.init_d(ap)
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)
     build_path(v)
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(v, auto_yaw.HOLD)
-    stop = position.stopping_point_ne(ap)
+    stop = position_start.stopping_point_ne(ap)
     if ap.arming.armed != 0 and ap.arming.landed == 0:
         path.request_legs(ap, v.time_us, with_down(stop, rtl.return_d), Vec3(rtl.home[0], rtl.home[1], rtl.return_d))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...arming_checks import BY_RUDDER
-from ...mode_switch import chosen, moved_to
+from ...mode_switch import moved_to
 from ...modes import REASON_RC
 from .. import arming
 from .set_mode import request
@@ -18,11 +18,12 @@ _FULL_STICK = 4000.0 / 4500.0
 @law
 def read_mode(v):
     """After each frame: a new position of the switch changes the mode."""
-    p = v.autopilot.params
-    now = moved_to(v, int(p.FLTMODE_CH))
+    ap = v.autopilot
+    if ap.modes.failsafe.radio:
+        return
+    now = moved_to(ap.modes.pilot, ap.rc, int(ap.params.FLTMODE_CH), v.time_us)
     if now >= 0:
-        mode = chosen(now, p.FLTMODE[0], p.FLTMODE[1], p.FLTMODE[2], p.FLTMODE[3], p.FLTMODE[4], p.FLTMODE[5])
-        request(v, mode, REASON_RC)
+        request(v, int(ap.params.FLTMODE[now]), REASON_RC)
 
 
 @law

@@ -11,7 +11,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...control.shaping import Motion
 from ...events import TAKEOFF_COMPLETE, emit
-from ..control import altitude, attitude, position, throttle_mix
+from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
 from . import ground
 
 _LIFT_SPEED = 0.1
@@ -30,8 +30,8 @@ def begin(v, target_d):
     takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP.NAVALT_MIN
     takeoff.no_nav_active = 1 if ap.params.WP.NAVALT_MIN > 0.0 and ap.arming.landed != 0 else 0
     ground.set_waypoint_limits(v)
-    altitude.init_d(ap)
-    position.init_ne(ap)
+    altitude_start.init_d(ap)
+    position_start.init_ne(ap)
 
 
 @law
@@ -46,15 +46,15 @@ def run(v):
         return
     motors.desired_spool = ground.UNLIMITED
     if motors.spool_state != ground.IS_UNLIMITED:
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
         position.update_ne(ap)
-        altitude.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap, 0.0)
         altitude.update_d(ap)
         attitude.reset_yaw_target(ap)
         level(v)
         return
     if ap.arming.landed != 0:
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
         position.update_ne(ap)
         throttle = ramp(ap)
         level(v)
@@ -65,7 +65,7 @@ def run(v):
     if takeoff.no_nav_active != 0:
         if ap.estimate.pos[2] <= takeoff.no_nav_d:
             takeoff.no_nav_active = 0
-        position.relax_ne(ap)
+        position_start.relax_ne(ap)
     else:
         position.brake_ne(ap.control.pos_ne)
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.target_d, 0.0, 0.0))
@@ -88,7 +88,7 @@ def ramp(ap):
     slew = max(float(ap.params.TKOFF.SLEW_TIME), 0.1)
     throttle = constrain(ap.control.attitude.throttle_in + 0.0025 / slew, 0.0, 1.0)
     throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
-    altitude.init_d(ap)
+    altitude_start.init_d(ap)
     return throttle
 
 
@@ -116,7 +116,7 @@ def begin_user(v, altitude_m):
     takeoff.user_active = 1
     takeoff.user_start_d = float(ap.estimate.pos[2])
     takeoff.user_alt = altitude_m
-    altitude.init_d(ap)
+    altitude_start.init_d(ap)
 
 
 @law
@@ -139,7 +139,7 @@ def run_user(v, climb):
         fast = -ap.estimate.vel[2] >= constrain(climb, 0.1 * top, 0.5 * top)
         if has_thrust(ap, throttle) or fast or (rise > 0.0 and risen > 0.5 * rise):
             ground.set_landed(v, 0)
-            altitude.init_d(ap)
+            altitude_start.init_d(ap)
         return
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.user_start_d - rise, -climb, 0.0))
     altitude.update_d(ap)

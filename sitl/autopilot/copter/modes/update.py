@@ -43,7 +43,7 @@ def update(fleet, i):
     if tick % _TENTH == 4:
         check_slowly(v)
     if tick % _QUARTER == 12:
-        home.update(v)
+        home.set_first(v.autopilot.home, v.autopilot.estimate)
         arming.update(v)
     arming.update_armed(v)
     run_mode(v)
@@ -67,7 +67,8 @@ def read_transmitter(v):
 @law
 def check_slowly(v):
     """Ten times a second."""
-    battery.update(v)
+    ap = v.autopilot
+    battery.monitor(ap.battery, v.sensors, ap.params.BATT)
     failsafe.update_gcs(v)
     failsafe.update_battery(v)
     failsafe.update_ekf(v)

@@ -10,8 +10,8 @@ from ....core.vectors import Vec3
 from ...navigation.leg import Limits, axis_limits
 from ...navigation.planner import Planner
 from ...navigation.state import LOITER_TURNS, TAKEOFF
-from ..control.altitude import stopping_point_d
-from ..control.position import stopping_point_ne
+from ..control.altitude_start import stopping_point_d
+from ..control.position_start import stopping_point_ne
 from ..parameters import Parameters
 from ..state import Autopilot
 from . import waypoint

@@ -20,8 +20,10 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ...control.shaping import Motion, Motion2
 from ...navigation import path
-from ..control.altitude import init_d_stopping_point, set_max_speed_accel_d, set_pos_vel_accel_d
-from ..control.position import init_ne_stopping_point, set_max_speed_accel_ne, set_pos_vel_accel_ne
+from ..control.altitude import set_pos_vel_accel_d
+from ..control.altitude_start import init_d_stopping_point, set_max_speed_accel_d
+from ..control.position import set_pos_vel_accel_ne
+from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
 
 DT = 0.0025
 CM = 0.01

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Floats, Records
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 from ...params.radio import RcChannel, RcMap
+from ...params.registered import with_registered
 from ...params.system import Arming, Log, Mavlink, Mission, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
@@ -80,4 +83,6 @@ class Parameters(shared.Parameters):
     WPNAV: Legs
 
 
+if not TYPE_CHECKING:
+    Parameters = with_registered("copter", Parameters)
 TABLE = Table(Parameters)

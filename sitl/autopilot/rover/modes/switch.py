@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...arming_checks import BY_RUDDER
-from ...mode_switch import chosen, moved_to
+from ...mode_switch import moved_to
 from ...modes import REASON_RC
 from .. import arming
 from ..control.motors import is_moving
@@ -21,11 +21,12 @@ FULL_STICK = 4000.0 / 4500.0
 @law
 def read_mode(v: Vehicle) -> None:
     """After each frame: a new position of the switch changes the mode."""
-    p = v.autopilot.params
-    now = moved_to(v, int(p.MODE_CH))
+    ap = v.autopilot
+    if ap.modes.failsafe.radio:
+        return
+    now = moved_to(ap.modes.pilot, ap.rc, int(ap.params.MODE_CH), v.time_us)
     if now >= 0:
-        mode = chosen(now, p.MODE[0], p.MODE[1], p.MODE[2], p.MODE[3], p.MODE[4], p.MODE[5])
-        request(v, mode, REASON_RC)
+        request(v, int(ap.params.MODE[now]), REASON_RC)
 
 
 @law

@@ -64,7 +64,8 @@ def read_transmitter(v: Vehicle) -> None:
 @law
 def check_slowly(v: Vehicle) -> None:
     """Ten times a second."""
-    battery.update(v)
+    ap = v.autopilot
+    battery.monitor(ap.battery, v.sensors, ap.params.BATT)
     failsafe.update_gcs(v)
     failsafe.update_battery(v)
     failsafe.update_ekf(v)
@@ -83,10 +84,10 @@ def follow_home(v: Vehicle) -> None:
     """Once a second: home is set with the first position; disarmed it moves with the vehicle, unless locked."""
     ap = v.autopilot
     if not ap.home.is_set:
-        home.update(v)
+        home.set_first(ap.home, ap.estimate)
     elif not (ap.arming.armed or ap.home.locked) and ap.estimate.position_ok:
         if is_away(ap.estimate.pos, ap.home.pos):
-            home.set_here(v)
+            home.set_here(ap.home, ap.estimate)
 
 
 @law

@@ -34,6 +34,7 @@ from ...control.shaping import Motion2
 from ...events import LEG_ENDING, emit_and_return
 from ...navigation import path
 from ...navigation.state import SPEED_REQUEST
+from ...state import Estimate
 from ..control import position, speed
 from ..control.forward_speed import sense
 from ..control.state import DT, PositionState
@@ -147,7 +148,7 @@ def set_destination_shaped(ap: Autopilot, time_us: int, point: Vec2) -> None:
     nav.target = with_down(point, 0.0)
     nav.reached = False
     nav.drive.shaped = True
-    pivot.check(nav.drive, time_us, heading_error(ap), False, ap.params)
+    pivot.check(nav.drive, time_us, heading_error(nav, ap.estimate), False, ap.params)
 
 
 @law
@@ -162,7 +163,7 @@ def begin_leg(ap: Autopilot, time_us: int) -> None:
         nav.vel = Vec3(0.0, 0.0, 0.0)
     if not nav.joined:
         pivot.end(drive)
-        pivot.check(drive, time_us, heading_error(ap), drive.pivot_next, ap.params)
+        pivot.check(drive, time_us, heading_error(nav, ap.estimate), drive.pivot_next, ap.params)
     drive.pivot_next = False
 
 
@@ -188,7 +189,7 @@ def set_reversed(ap: Autopilot, backward: bool) -> None:
     if backward == nav.drive.reversed:
         return
     nav.drive.reversed = backward
-    if has_destination(nav) and pivot.would_turn(heading_error(ap), ap.params):
+    if has_destination(nav) and pivot.would_turn(heading_error(nav, ap.estimate), ap.params):
         pivot.begin(nav.drive)
 
 
@@ -224,9 +225,9 @@ def heading_to_destination(nav: RoverNav, pos: Vec3) -> float:
 
 
 @law
-def heading_error(ap: Autopilot) -> float:
+def heading_error(nav: RoverNav, estimate: Estimate) -> float:
     """From the nose to that heading [rad], not wrapped."""
-    return heading_to_destination(ap.modes.nav, ap.estimate.pos) - ap.estimate.euler.yaw
+    return heading_to_destination(nav, estimate.pos) - estimate.euler.yaw
 
 
 @law
@@ -268,10 +269,11 @@ def follow(v: Vehicle) -> None:
 @law
 def turn_on_the_spot(ap: Autopilot, time_us: int) -> None:
     """One period of a pivot turn: first it stops."""
-    drive = ap.modes.nav.drive
+    nav = ap.modes.nav
+    drive = nav.drive
     command(drive, speed.accel_limited(ap.control, 0.0, ap.params.ATC), 0.0, 0.0)
     if drive.desired_speed == 0.0:
-        error = heading_error(ap)
+        error = heading_error(nav, ap.estimate)
         rate_max = math.radians(ap.params.WP.PIVOT_RATE)
         drive.desired_turn_rate = turn_rate_from_heading(wrap_pi(error), rate_max, ap.params.ATC)
         pivot.check(drive, time_us, error, False, ap.params)

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Floats, Records
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
 from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
+from ...params.registered import with_registered
 from ...params.simulation import Simulated
 from ...params.system import Arming, Log, Mavlink, StreamRates
 from ...params.table import Table
@@ -62,4 +65,6 @@ class Parameters(shared.Parameters):
     WP: Legs
 
 
+if not TYPE_CHECKING:
+    Parameters = with_registered("rover", Parameters)
 TABLE = Table(Parameters)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contact with flat ground at pos[2] = 0.
+"""Contact with flat ground at pos.z = 0.
 
 A vehicle that touches stays where it is until its thrust exceeds its weight: Coulomb friction stops it, its
 legs level it. Touching with more lean than the airframe's tip angle tips it over: it lies as it fell,
@@ -10,96 +10,102 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import ZERO, multiply, normalise, rotate, rotate_inverse
 from ....core.kernels import law
-from ....core.rotations import quat_multiply, quat_normalise, quat_rotate, quat_rotate_inverse
+from ....core.vectors import Quat, Vec3
+from ....vehicles.figures.copter import Legs
 from ..body import GRAVITY, small_rotation
-from .state import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
+from ..records import GROUND_LYING, GROUND_STANDING, Body
+from ..tick import TICK_S
+from .state import Ground
 
 _LEVEL = 1e-5
 """Lean [rad] below which a standing vehicle is at rest."""
 
 
 @law
-def touch(p, time_us):
+def upright(q: Quat) -> float:
+    """Cosine of the lean."""
+    return 1.0 - 2.0 * (q.x * q.x + q.y * q.y)
+
+
+@law
+def touch(body: Body, ground: Ground, legs: Legs, time_us: int) -> None:
     """Called in the air after a substep: stop at the ground when it is reached."""
-    b, g = p.body, p.ground
-    if float(b.pos[2]) < 0.0 or float(b.vel[2]) < 0.0:
+    pos, vel = body.pos, body.vel
+    if pos.z < 0.0 or vel.z < 0.0:
         return
-    speed = float(b.vel[2])
-    if speed > p.airframe.hit_speed:
-        g.hit_count += 1
-        g.hit_speed = speed
-        g.hit_time_us = time_us
-    b.pos[2] = 0.0
-    b.vel[2] = 0.0
-    g.impulse += speed
-    b.rates[0], b.rates[1], b.rates[2] = 0.0, 0.0, 0.0
-    x, y = float(b.q[1]), float(b.q[2])
-    upright = 1.0 - 2.0 * (x * x + y * y)  # cosine of the lean
-    if upright < math.cos(float(p.airframe.tip_angle)):
-        g.state = GROUND_LYING
+    if vel.z > legs.hit_speed:
+        ground.hit_count += 1
+        ground.hit_speed = vel.z
+        ground.hit_time_us = time_us
+    ground.impulse += vel.z
+    body.pos, body.vel, body.rates = Vec3(pos.x, pos.y, 0.0), Vec3(vel.x, vel.y, 0.0), ZERO
+    if upright(body.q) < math.cos(legs.tip_angle):
+        ground.state = GROUND_LYING
     else:
-        g.state = GROUND_STANDING
+        ground.state = GROUND_STANDING
 
 
 @law
-def leaves(p, fx, fy, fz):
-    """Whether a standing vehicle takes off under the body force (fx, fy, fz) [N]; if so it is airborne."""
-    b = p.body
-    _, _, down = quat_rotate(float(b.q[0]), float(b.q[1]), float(b.q[2]), float(b.q[3]), fx, fy, fz)
-    if GRAVITY + down * float(p.derived.inverse_mass) < 0.0:
-        p.ground.state = GROUND_AIRBORNE
-        return True
-    return False
+def lifts_off(q: Quat, force: Vec3, inverse_mass: float) -> bool:
+    """Whether a standing vehicle of 1 / mass [1/kg] takes off under a force [N], body frame, without gravity."""
+    return GRAVITY + rotate(q, force).z * inverse_mass < 0.0
 
 
 @law
-def rest(p, fx, fy, fz):
-    """One substep on the ground under the body force (fx, fy, fz) [N].
-
-    Returns the specific force [m/s^2] in the body frame.
-    """
-    b = p.body
-    dt, k = float(p.derived.dt), float(p.derived.inverse_mass)
-    w, x, y, z = float(b.q[0]), float(b.q[1]), float(b.q[2]), float(b.q[3])
-    an, ae, ad = 0.0, 0.0, 0.0
-    if p.ground.state == GROUND_STANDING:
-        an, ae, ad = quat_rotate(w, x, y, z, k * fx, k * fy, k * fz)
-    vn, ve = float(b.vel[0]), float(b.vel[1])
-    n, e = vn + dt * an, ve + dt * ae
+def slide(vel: Vec3, acc: Vec3, friction: float, dt: float) -> Vec3:
+    """Velocity [m/s] after ``dt`` [s] on the ground under an acceleration NED [m/s^2] and Coulomb friction."""
+    n, e = vel.x + dt * acc.x, vel.y + dt * acc.y
     speed = math.sqrt(n * n + e * e)
-    grip = float(p.airframe.ground_friction) * (GRAVITY + ad) * dt
+    grip = friction * (GRAVITY + acc.z) * dt
     if speed <= grip:
-        n, e = 0.0, 0.0
-    else:
-        n, e = n * (1.0 - grip / speed), e * (1.0 - grip / speed)
-    b.vel[0], b.vel[1], b.vel[2] = n, e, 0.0
-    b.pos[0] += 0.5 * dt * (vn + n)
-    b.pos[1] += 0.5 * dt * (ve + e)
-    b.pos[2] = 0.0
-    sx, sy, sz = quat_rotate_inverse(w, x, y, z, (n - vn) / dt, (e - ve) / dt, -GRAVITY)
-    p_rate, q_rate = 0.0, 0.0
-    if p.ground.state == GROUND_STANDING:
-        down_x, down_y = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x)
-        if down_x * down_x + down_y * down_y > _LEVEL * _LEVEL:
-            tau = max(float(p.airframe.leg_time_constant), dt)
-            p_rate, q_rate = -down_y / tau, down_x / tau
-            dw, dx, dy, dz = small_rotation(p_rate * dt, q_rate * dt, 0.0)
-            w, x, y, z = quat_multiply(w, x, y, z, dw, dx, dy, dz)
-            w, x, y, z = quat_normalise(w, x, y, z)
-            b.q[0], b.q[1], b.q[2], b.q[3] = w, x, y, z
-    b.rates[0], b.rates[1], b.rates[2] = p_rate, q_rate, 0.0
-    b.rates_mean[0] += p_rate
-    b.rates_mean[1] += q_rate
-    return (sx, sy, sz)
+        return ZERO
+    return Vec3(n * (1.0 - grip / speed), e * (1.0 - grip / speed), 0.0)
 
 
 @law
-def absorb(p, dt):
-    """Upward acceleration [m/s^2] of the legs taking up past impacts during a tick of dt [s]."""
-    g = p.ground
-    speed = float(g.impulse) * float(p.derived.leg_release)
+def levelling_rates(q: Quat, time_constant: float) -> Vec3:
+    """Body rates [rad/s] at which legs level a lean."""
+    down_x, down_y = 2.0 * (q.x * q.z - q.w * q.y), 2.0 * (q.y * q.z + q.w * q.x)
+    if down_x * down_x + down_y * down_y > _LEVEL * _LEVEL:
+        return Vec3(-down_y / time_constant, down_x / time_constant, 0.0)
+    return ZERO
+
+
+@law
+def rest(body: Body, acc: Vec3, stands: bool, legs: Legs, dt: float) -> Vec3:
+    """One substep on the ground of a vehicle that stands, or lies.
+
+    Args:
+        body: adds the rates to its ``rates_mean``.
+        acc: that its rotors and the air would give it [m/s^2], body frame, without gravity.
+        stands: on its legs, which level it; otherwise its rotors do nothing.
+        legs: that it has.
+        dt: length of the substep [s].
+
+    Returns:
+        The specific force [m/s^2], body frame.
+    """
+    q, before = body.q, body.vel
+    vel = slide(before, rotate(q, acc) if stands else ZERO, legs.ground_friction, dt)
+    n, e = body.pos.x + 0.5 * dt * (before.x + vel.x), body.pos.y + 0.5 * dt * (before.y + vel.y)
+    body.pos, body.vel = Vec3(n, e, 0.0), vel
+    body.rates = ZERO
+    if stands:
+        rates = levelling_rates(q, max(legs.leg_time_constant, dt))
+        if rates.x != 0.0 or rates.y != 0.0:
+            body.q = normalise(multiply(q, small_rotation(rates * dt)))
+        body.rates = rates
+        body.rates_mean += rates
+    return rotate_inverse(q, Vec3((vel.x - before.x) / dt, (vel.y - before.y) / dt, -GRAVITY))
+
+
+@law
+def absorb(ground: Ground, leg_release: float) -> float:
+    """Upward acceleration [m/s^2] of the legs taking up past impacts during a tick."""
+    speed = ground.impulse * leg_release
     if speed < 1e-6:
-        speed = float(g.impulse)
-    g.impulse -= speed
-    return speed / dt
+        speed = ground.impulse
+    ground.impulse -= speed
+    return speed / TICK_S

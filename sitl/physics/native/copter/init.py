@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ....vehicles import CopterAirframe
 from ..power_on import Home, clear, place, wake
+from ..records import GROUND_STANDING, Vehicle
 from .prepare import prepare
-from .state import GROUND_STANDING
+from .state import Physics
 
 
-def init(v: Any, airframe: CopterAirframe, home: Home, seed: int) -> None:
+def init(v: Vehicle[Physics], airframe: CopterAirframe, home: Home, seed: int) -> None:
     """Set physics, sensors, clock and random numbers of a vehicle to power-on; the wind's settings stay.
 
     Args:
@@ -22,8 +21,8 @@ def init(v: Any, airframe: CopterAirframe, home: Home, seed: int) -> None:
     """
     clear(v, airframe, seed)
     p = v.physics
-    p.rotors.efficiency = 1.0
+    p.rotors.efficiency[:] = 1.0
     p.ground.state = GROUND_STANDING
-    prepare(p)
+    prepare(p.airframe, p.derived)
     place(p, home)
     wake(v)

@@ -4,29 +4,31 @@
 from __future__ import annotations
 
 from ....core.kernels import unit
+from ....core.records import Records
 from ..observe import note, observe
+from ..records import Vehicle
 from . import step
-from .wrench import wrench
+from .state import Physics
+from .wrench import act
 
 
 @unit
-def begin(fleet, i):
+def begin(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Clock, wind, rotor commands."""
     v = fleet[i]
-    note(v.physics)
+    note(v.physics.body, v.physics.motion)
     step.begin(v)
 
 
 @unit
-def load(fleet, i):
+def load(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """One substep of the rotors; leaves their and the air's force and torque in ``motion``."""
     p = fleet[i].physics
-    m = p.motion
-    m.force[0], m.force[1], m.force[2], m.torque[0], m.torque[1], m.torque[2] = wrench(p)
+    p.motion.force, p.motion.torque = act(p)
 
 
 @unit
-def sense(fleet, i):
+def sense(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Accelerations, battery, sensors."""
     v = fleet[i]
     observe(v.physics)

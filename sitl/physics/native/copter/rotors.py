@@ -11,118 +11,134 @@ hover).
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.algebra import ZERO
 from ....core.kernels import law
-from ....vehicles.figures.copter import THRUST_MOMENTUM
+from ....core.records import Floats
+from ....core.vectors import Vec3
+from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
+from ..body import Wrench
+from ..records import Air
+from .state import Derived, Rotors
+
+
+class Flow(NamedTuple):
+    """How a body moves through the air, in its own frame (FRD)."""
+
+    velocity: Vec3
+    """Through the air [m/s]."""
+    rates: Vec3
+    """[rad/s]"""
 
 
 @law
-def command(p, controls):
+def command(rotors: Rotors, controls: Floats, figures: Figures, derived: Derived) -> None:
     """Take over the actuator controls [0 .. 1] as rotor commands; called once a tick."""
-    a = p.airframe
-    lowest = float(a.control_min)
-    scale = float(p.derived.control_scale)
-    step = float(p.derived.command_step)
-    commands = p.rotors.command
-    for k in range(int(a.rotor_count)):
-        c = (float(controls[k]) - lowest) * scale
+    step = derived.command_step
+    for k in range(figures.rotor_count):
+        c = (float(controls[k]) - figures.control_min) * derived.control_scale
         if not c > 0.0:  # also for NaN
             c = 0.0
         elif c > 1.0:
             c = 1.0
         if step > 0.0:
-            before = float(commands[k])
+            before = rotors.command[k]
             c = min(max(c, before - step), before + step)
-        commands[k] = c
+        rotors.command[k] = c
 
 
 @law
-def lag(p):
-    """Let the rotor speeds follow the commands for a substep; returns the yaw torque [N m] of spinning up."""
-    a = p.airframe
+def lag(rotors: Rotors, figures: Figures, derived: Derived, voltage: float) -> float:
+    """Let the rotor speeds follow the commands for a substep at a battery voltage [V]; returns the yaw torque [N m] of
+    spinning up.
+    """
     top = 1.0
-    if int(a.thrust_model) != THRUST_MOMENTUM:
-        top = float(a.speed_max)
+    if figures.thrust_model != THRUST_MOMENTUM:
+        top = figures.speed_max
     limit = top
-    if p.derived.speed_per_volt > 0.0:
-        limit = min(top, float(p.derived.speed_per_volt) * float(p.battery.voltage))
-    up, down = float(p.derived.decay_up), float(p.derived.decay_down)
-    speeds, commands, direction = p.rotors.speed, p.rotors.command, a.rotor_direction
+    if derived.speed_per_volt > 0.0:
+        limit = min(top, derived.speed_per_volt * voltage)
     spin_up = 0.0
-    for k in range(int(a.rotor_count)):
-        target = min(float(commands[k]) * top, limit)
-        before = float(speeds[k])
+    for k in range(figures.rotor_count):
+        target = min(rotors.command[k] * top, limit)
+        before = rotors.speed[k]
         error = before - target
-        after = target + error * (up if error < 0.0 else down)
-        speeds[k] = after
-        spin_up += float(direction[k]) * (after - before)
-    return spin_up * float(a.rotor_inertia) / float(p.derived.dt)
+        after = target + error * (derived.decay_up if error < 0.0 else derived.decay_down)
+        rotors.speed[k] = after
+        spin_up += figures.rotor_direction[k] * (after - before)
+    return spin_up * figures.rotor_inertia / derived.dt
 
 
 @law
-def speed_squared_wrench(p, vx, vy, roll_rate, pitch_rate, yaw_rate):
-    """(fx, fy, fz, mx, my, mz) [N, N m], RotorS model; (vx, vy) air velocity [m/s]; body frame."""
-    a = p.airframe
-    speeds, thrusts, health = p.rotors.speed, p.rotors.thrust, p.rotors.efficiency
-    xs, ys, zs, direction = a.rotor_x, a.rotor_y, a.rotor_z, a.rotor_direction
-    k_thrust, k_moment = float(a.thrust_coefficient), float(a.moment_coefficient)
-    k_drag, k_roll = float(a.rotor_drag), float(a.rolling_moment)
-    fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+def hub(figures: Figures, k: int) -> Vec3:
+    """Where rotor ``k`` is, FRD [m]."""
+    return Vec3(figures.rotor_x[k], figures.rotor_y[k], figures.rotor_z[k])
+
+
+@law
+def velocity_at(at: Vec3, flow: Flow) -> Vec3:
+    """Velocity through the air [m/s] of a point of the body, FRD [m]."""
+    v, rates = flow.velocity, flow.rates
+    return Vec3(
+        v.x + rates.y * at.z - rates.z * at.y,
+        v.y + rates.z * at.x - rates.x * at.z,
+        v.z + rates.x * at.y - rates.y * at.x,
+    )
+
+
+@law
+def speed_squared_wrench(rotors: Rotors, figures: Figures, flow: Flow) -> Wrench:
+    """What the rotors do by RotorS' model."""
+    k_moment, k_roll = figures.moment_coefficient, figures.rolling_moment
+    force, torque = ZERO, ZERO
     momentum, shaft = 0.0, 0.0
-    for k in range(int(a.rotor_count)):
-        w = float(speeds[k])
-        x, y, z = float(xs[k]), float(ys[k]), float(zs[k])
-        d = float(direction[k])
-        thrust = k_thrust * w * w * float(health[k])
-        thrusts[k] = thrust
-        hub_x = vx + pitch_rate * z - yaw_rate * y
-        hub_y = vy + yaw_rate * x - roll_rate * z
-        drag_x = -k_drag * w * hub_x
-        drag_y = -k_drag * w * hub_y
-        fx += drag_x
-        fy += drag_y
-        fz -= thrust
-        mx += -y * thrust - z * drag_y - k_roll * w * hub_x
-        my += x * thrust + z * drag_x - k_roll * w * hub_y
-        mz += d * k_moment * thrust + x * drag_y - y * drag_x
-        momentum += d * w
+    for k in range(figures.rotor_count):
+        w, direction, at = rotors.speed[k], figures.rotor_direction[k], hub(figures, k)
+        thrust = figures.thrust_coefficient * w * w * rotors.efficiency[k]
+        rotors.thrust[k] = thrust
+        air = velocity_at(at, flow)
+        drag_x = -figures.rotor_drag * w * air.x
+        drag_y = -figures.rotor_drag * w * air.y
+        force += Vec3(drag_x, drag_y, -thrust)
+        torque += Vec3(
+            -at.y * thrust - at.z * drag_y - k_roll * w * air.x,
+            at.x * thrust + at.z * drag_x - k_roll * w * air.y,
+            direction * k_moment * thrust + at.x * drag_y - at.y * drag_x,
+        )
+        momentum += direction * w
         shaft += k_moment * thrust * w
     # Gyroscopic torque: a counter-clockwise rotor's momentum points up, so that the sum is (0, 0, -h).
-    h = momentum * float(a.rotor_inertia)
-    p.rotors.power = shaft / float(a.efficiency)
-    return (fx, fy, fz, mx + pitch_rate * h, my - roll_rate * h, mz)
+    h = momentum * figures.rotor_inertia
+    rotors.power = shaft / figures.efficiency
+    return Wrench(force, Vec3(torque.x + flow.rates.y * h, torque.y - flow.rates.x * h, torque.z))
 
 
 @law
-def momentum_wrench(p, vx, vy, vz, roll_rate, pitch_rate, yaw_rate):
-    """(fx, fy, fz, mx, my, mz) [N, N m], momentum model; (vx, vy, vz) air velocity [m/s]; body frame."""
-    a = p.airframe
-    speeds, thrusts, health = p.rotors.speed, p.rotors.thrust, p.rotors.efficiency
-    xs, ys, zs, direction = a.rotor_x, a.rotor_y, a.rotor_z, a.rotor_direction
-    expo, lever = float(a.thrust_expo), float(a.yaw_lever)
-    half_flow = 0.5 * float(p.air.density) * float(a.outflow_area)
-    fastest = float(a.outflow_speed_max) * float(p.battery.voltage) * float(p.derived.voltage_scale)
-    fastest2 = fastest * fastest
-    k_drag = float(a.momentum_drag) * float(p.air.density_root) * math.sqrt(float(a.disc_area))
-    fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+def momentum_wrench(rotors: Rotors, figures: Figures, flow: Flow, air: Air, outflow: float) -> Wrench:
+    """What the rotors do by the momentum model; ``outflow``: its speed at command 1 [m/s]."""
+    expo = figures.thrust_expo
+    half_flow = 0.5 * air.density * figures.outflow_area
+    outflow2 = outflow * outflow
+    k_drag = figures.momentum_drag * air.density_root * math.sqrt(figures.disc_area)
+    force, torque = ZERO, ZERO
     total = 0.0
-    for k in range(int(a.rotor_count)):
-        c = float(speeds[k])
-        x, y, z = float(xs[k]), float(ys[k]), float(zs[k])
-        hub_z = vz + roll_rate * y - pitch_rate * x
-        inflow = max(-hub_z, 0.0)
-        thrust = half_flow * (fastest2 * c * (1.0 - expo + expo * c) - inflow * inflow) * float(health[k])
-        thrusts[k] = thrust
+    for k in range(figures.rotor_count):
+        c, at = rotors.speed[k], hub(figures, k)
+        hub_air = velocity_at(at, flow)
+        inflow = max(-hub_air.z, 0.0)
+        thrust = half_flow * (outflow2 * c * (1.0 - expo + expo * c) - inflow * inflow) * rotors.efficiency[k]
+        rotors.thrust[k] = thrust
         drag = k_drag * math.sqrt(abs(thrust))
-        drag_x = -drag * (vx + pitch_rate * z - yaw_rate * y)
-        drag_y = -drag * (vy + yaw_rate * x - roll_rate * z)
-        axial = thrust + drag * hub_z
-        fx += drag_x
-        fy += drag_y
-        fz -= axial
-        mx += -y * axial - z * drag_y
-        my += x * axial + z * drag_x
-        mz += float(direction[k]) * lever * thrust * c + x * drag_y - y * drag_x
+        drag_x = -drag * hub_air.x
+        drag_y = -drag * hub_air.y
+        axial = thrust + drag * hub_air.z
+        force += Vec3(drag_x, drag_y, -axial)
+        torque += Vec3(
+            -at.y * axial - at.z * drag_y,
+            at.x * axial + at.z * drag_x,
+            figures.rotor_direction[k] * figures.yaw_lever * thrust * c + at.x * drag_y - at.y * drag_x,
+        )
         total += abs(thrust)
-    p.rotors.power = total * float(a.power_by_thrust)
-    return (fx, fy, fz, mx, my, mz)
+    rotors.power = total * figures.power_by_thrust
+    return Wrench(force, torque)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ....core.records import Float32, Floats, Record, array
+from ....core.vectors import Vec3
 from ....vehicles.figures.copter import ROTORS_MAX, Figures
 from .. import records as shared
 
@@ -12,14 +13,14 @@ class Derived(shared.Derived):
     """What follows from the figures (``prepare``)."""
 
     dt: float  # substep [s]
-    inverse_mass: float
-    inverse_inertia: Floats = array(3)
+    inverse_mass: float  # [1/kg]
+    inverse_inertia: Vec3  # about body x, y, z [1/(kg m^2)]
     control_scale: float  # 1 / (control_max - control_min)
     command_step: float  # largest change of command a tick
     decay_up: float  # what is left of a speed error after a substep
     decay_down: float
-    speed_per_volt: float  # speed_max / speed_voltage, 0 without limit
-    voltage_scale: float  # 1 / battery_voltage_full
+    speed_per_volt: float  # speed_max / speed_voltage [rad/s/V], 0 without limit
+    voltage_scale: float  # 1 / battery_voltage_full [1/V]
     leg_release: float  # share of an impact that the legs take up in a tick
 
 
@@ -33,19 +34,13 @@ class Rotors(Record):
     power: float  # taken from the battery by all [W]
 
 
-GROUND_AIRBORNE = 0
-GROUND_STANDING = 1
-GROUND_LYING = 2
-"""Tipped over: it stays as it fell, whatever the rotors do."""
-
-
 class Ground(Record):
     """Contact of the legs with the ground."""
 
     state: int  # GROUND_*
     hit_count: int  # touches so far that were faster than the airframe's hit_speed
     hit_speed: Float32  # of the last one, vertical [m/s]
-    hit_time_us: int
+    hit_time_us: int  # when it was
     impulse: float  # vertical impact that the legs still have to take up [m/s]
 
 

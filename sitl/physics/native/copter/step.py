@@ -3,78 +3,81 @@
 
 from __future__ import annotations
 
+from ....core.algebra import ZERO, rotate, rotate_inverse
 from ....core.kernels import law, unit
-from ....core.rotations import quat_rotate, quat_rotate_inverse
+from ....core.records import Records
+from ....core.vectors import Vec3
 from .. import battery, obstacles, wind
-from ..body import GRAVITY, fly
+from ..body import GRAVITY, Inertia, Wrench, fly
+from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
 from ..sensors.sense import sense
-from ..tick import TICK_S, TICK_US
+from ..tick import TICK_US
 from . import rotors
-from .ground import absorb, leaves, rest, touch
-from .state import GROUND_AIRBORNE, GROUND_STANDING
-from .wrench import wrench
+from .ground import absorb, lifts_off, rest, touch
+from .state import Physics
+from .wrench import act
 
 
 @law
-def begin(v):
+def begin(v: Vehicle[Physics]) -> None:
     """First thing of a tick: the clock goes on, wind blows, actuator controls become rotor commands."""
     v.time_us += TICK_US
     v.tick += 1
     p = v.physics
-    if int(v.tick) % wind.PERIOD_TICKS == 0:
-        wind.update(p.wind, v.rng)
-    rotors.command(p, v.actuators.controls)
+    if v.tick % wind.PERIOD_TICKS == 0:
+        wind.blow(p.wind, v.rng)
+    rotors.command(p.rotors, v.actuators.controls, p.airframe, p.derived)
 
 
 @law
-def move(p, time_us):
+def substep(p: Physics, wrench: Wrench, time_us: int) -> Vec3:
+    """Advance the body by a substep; returns its specific force [m/s^2], body frame."""
+    body, ground, figures, inverse_mass, dt = p.body, p.ground, p.airframe, p.derived.inverse_mass, p.derived.dt
+    acc = inverse_mass * wrench.force
+    stands = ground.state == GROUND_STANDING
+    if stands and lifts_off(body.q, wrench.force, inverse_mass):
+        ground.state = GROUND_AIRBORNE
+    if ground.state != GROUND_AIRBORNE:
+        return rest(body, acc, stands, figures, dt)
+    fly(body, wrench, Inertia(figures.inertia, p.derived.inverse_inertia, inverse_mass), dt)
+    touch(body, ground, figures, time_us)
+    return acc
+
+
+@law
+def move(p: Physics, time_us: int) -> None:
     """Advance the body by one tick; sets its means over the tick."""
-    b = p.body
-    b.rates_mean[0], b.rates_mean[1], b.rates_mean[2] = 0.0, 0.0, 0.0
-    sx, sy, sz = 0.0, 0.0, 0.0
-    n = int(p.airframe.substeps)
-    for _ in range(n):
-        fx, fy, fz, mx, my, mz = wrench(p)
-        standing = p.ground.state == GROUND_STANDING
-        if p.ground.state == GROUND_AIRBORNE or (standing and leaves(p, fx, fy, fz)):
-            fly(p, fx, fy, fz, mx, my, mz)
-            touch(p, time_us)
-            k = float(p.derived.inverse_mass)
-            ax, ay, az = fx * k, fy * k, fz * k
-        else:
-            ax, ay, az = rest(p, fx, fy, fz)
-        sx += ax
-        sy += ay
-        sz += az
-    k = 1.0 / n
-    for j in range(3):
-        b.rates_mean[j] *= k
-    sx, sy, sz = sx * k, sy * k, sz * k
-    q = b.q
-    w, x, y, z = float(q[0]), float(q[1]), float(q[2]), float(q[3])
+    body, substeps = p.body, p.airframe.substeps
+    body.rates_mean = ZERO
+    force = ZERO
+    for _ in range(substeps):
+        force += substep(p, act(p), time_us)
+    k = 1.0 / substeps
+    body.rates_mean *= k
+    force *= k
     if p.ground.impulse != 0.0:
-        ax, ay, az = quat_rotate_inverse(w, x, y, z, 0.0, 0.0, -absorb(p, TICK_S))
-        sx, sy, sz = sx + ax, sy + ay, sz + az
-    b.specific_force[0], b.specific_force[1], b.specific_force[2] = sx, sy, sz
-    an, ae, ad = quat_rotate(w, x, y, z, sx, sy, sz)
-    b.acc_ned[0], b.acc_ned[1], b.acc_ned[2] = an, ae, ad + GRAVITY
+        force += rotate_inverse(body.q, Vec3(0.0, 0.0, -absorb(p.ground, p.derived.leg_release)))
+    body.specific_force = force
+    acc = rotate(body.q, force)
+    body.acc_ned = Vec3(acc.x, acc.y, acc.z + GRAVITY)
 
 
 @law
-def end(v):
+def end(v: Vehicle[Physics]) -> None:
     """Last thing of a tick: battery and sensors."""
-    battery.update(v.physics, float(v.physics.rotors.power))
-    sense(v.physics, v.sensors, int(v.tick), int(v.time_us), v.rng)
+    p = v.physics
+    battery.discharge(p.battery, p.rotors.power, p.airframe, p.derived.charge_per_amp)
+    sense(v)
 
 
 @unit
-def step(fleet, i):
+def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
     v = fleet[i]
     begin(v)
-    p, time_us = v.physics, int(v.time_us)
-    move(p, time_us)
-    if p.obstacles.present != 0:
-        obstacles.collide(p, time_us)
-        obstacles.show(p)
+    p = v.physics
+    move(p, v.time_us)
+    if p.obstacles.present:
+        obstacles.collide(p, v.time_us)
+        obstacles.show(p.obstacles, p.body)
     end(v)

@@ -3,38 +3,45 @@
 
 from __future__ import annotations
 
+from ....core.algebra import rotate_inverse
 from ....core.kernels import law
-from ....core.rotations import quat_rotate_inverse
-from ....vehicles.figures.copter import THRUST_MOMENTUM
-from .rotors import lag, momentum_wrench, speed_squared_wrench
+from ....core.vectors import Vec3
+from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
+from ..body import Wrench
+from .rotors import Flow, lag, momentum_wrench, speed_squared_wrench
+from .state import Physics
 
 
 @law
-def wrench(p):
-    """(fx, fy, fz, mx, my, mz) [N, N m], body frame, but gravity and ground; rotors move on by a substep."""
-    a, b = p.airframe, p.body
-    spin_up = lag(p)
-    wind = p.wind.vel
-    vx, vy, vz = quat_rotate_inverse(
-        float(b.q[0]),
-        float(b.q[1]),
-        float(b.q[2]),
-        float(b.q[3]),
-        float(b.vel[0]) - float(wind[0]),
-        float(b.vel[1]) - float(wind[1]),
-        float(b.vel[2]) - float(wind[2]),
+def add_air(wrench: Wrench, spin_up: float, flow: Flow, figures: Figures, density: float) -> Wrench:
+    """The rotors' wrench and their yaw torque of spinning up [N m], with what air of a density [kg/m^3] does to the
+    airframe.
+    """
+    f, m, v, rates = wrench.force, wrench.torque, flow.velocity, flow.rates
+    area, inertia = figures.drag_area, figures.inertia
+    half, damping = 0.5 * density, figures.angular_damping
+    force = Vec3(
+        f.x - half * area.x * v.x * abs(v.x),
+        f.y - half * area.y * v.y * abs(v.y),
+        f.z - half * area.z * v.z * abs(v.z),
     )
-    roll_rate, pitch_rate, yaw_rate = float(b.rates[0]), float(b.rates[1]), float(b.rates[2])
-    if int(a.thrust_model) == THRUST_MOMENTUM:
-        fx, fy, fz, mx, my, mz = momentum_wrench(p, vx, vy, vz, roll_rate, pitch_rate, yaw_rate)
+    torque = Vec3(
+        m.x - damping * inertia.x * rates.x,
+        m.y - damping * inertia.y * rates.y,
+        m.z + (spin_up - damping * inertia.z * rates.z),
+    )
+    return Wrench(force, torque)
+
+
+@law
+def act(p: Physics) -> Wrench:
+    """All that acts on the body but gravity and ground; rotors move on by a substep."""
+    figures, body, rotors, voltage = p.airframe, p.body, p.rotors, p.battery.voltage
+    spin_up = lag(rotors, figures, p.derived, voltage)
+    flow = Flow(rotate_inverse(body.q, body.vel - p.wind.vel), body.rates)
+    if figures.thrust_model == THRUST_MOMENTUM:
+        outflow = figures.outflow_speed_max * voltage * p.derived.voltage_scale
+        wrench = momentum_wrench(rotors, figures, flow, p.air, outflow)
     else:
-        fx, fy, fz, mx, my, mz = speed_squared_wrench(p, vx, vy, roll_rate, pitch_rate, yaw_rate)
-    half = 0.5 * float(p.air.density)
-    fx -= half * a.drag_area.x * vx * abs(vx)
-    fy -= half * a.drag_area.y * vy * abs(vy)
-    fz -= half * a.drag_area.z * vz * abs(vz)
-    damping = float(a.angular_damping)
-    mx -= damping * a.inertia.x * roll_rate
-    my -= damping * a.inertia.y * pitch_rate
-    mz += spin_up - damping * a.inertia.z * yaw_rate
-    return (fx, fy, fz, mx, my, mz)
+        wrench = speed_squared_wrench(rotors, figures, flow)
+    return add_air(wrench, spin_up, flow, figures, p.air.density)

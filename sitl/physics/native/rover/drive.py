@@ -9,14 +9,36 @@ voltage with the throttle); nothing flows back into it.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ....core.kernels import law
+from ....vehicles.figures.rover import Figures
 from ..tick import TICK_S
+from .state import Derived
 
 _PER_S = 1.0 / TICK_S
 
 
+class Drive(NamedTuple):
+    """What a motor does in a tick."""
+
+    speed: float
+    """Rolling speed of its wheels after it [m/s]."""
+    power: float
+    """That it takes if it drives the whole vehicle [W]."""
+
+
+class Pull(NamedTuple):
+    """What driven tyres do in a tick."""
+
+    accel: float
+    """Along the body [m/s^2]."""
+    speed: float
+    """Of the driven axle over the ground after it [m/s]."""
+
+
 @law
-def commanded(control, scale):
+def commanded(control: float, scale: float) -> float:
     """Command -1 .. 1 of an actuator control (0 of a NaN)."""
     c = control * scale
     if c > 1.0:
@@ -29,32 +51,22 @@ def commanded(control, scale):
 
 
 @law
-def run(p, k, command):
-    """Let motor ``k`` follow its command for a tick; returns the power it takes if it drives the whole vehicle [W]."""
-    a, d, speeds = p.airframe, p.derived, p.wheels.speed
-    target = command * float(a.speed_max)
-    before = float(speeds[k])
-    step = float(d.speed_step)
-    after = min(max(target + (before - target) * float(d.speed_decay), before - step), before + step)
+def run(before: float, command: float, figures: Figures, derived: Derived) -> Drive:
+    """A motor follows its command for a tick, from a rolling speed [m/s]."""
+    target = command * figures.speed_max
+    step, loss = derived.speed_step, derived.rolling_step
+    after = min(max(target + (before - target) * derived.speed_decay, before - step), before + step)
     pull = (after - before) * _PER_S * target
-    loss = float(d.rolling_step)
-    speeds[k] = after - min(max(after, -loss), loss)
-    return max(pull, 0.0) * float(d.power_by_accel) + abs(command) * float(a.power_full)
+    power = max(pull, 0.0) * derived.power_by_accel + abs(command) * figures.power_full
+    return Drive(after - min(max(after, -loss), loss), power)
 
 
 @law
-def grip_along(p, wanted):
-    """Take the vehicle along with its wheels' speed [m/s] as far as the driven tyres hold; returns the acceleration."""
-    w = p.wheels
-    bound = float(p.derived.drive_grip)
-    before = float(w.forward)
+def grip_along(before: float, wanted: float, grip: float) -> Pull:
+    """Take the vehicle along with its wheels' speed [m/s] as far as driven tyres of a grip [m/s^2] hold."""
     accel = (wanted - before) * _PER_S
-    if accel > bound:
-        accel = bound
-    elif accel < -bound:
-        accel = -bound
-    else:
-        w.forward = wanted
-        return accel
-    w.forward = before + accel * TICK_S
-    return accel
+    if accel > grip:
+        return Pull(grip, before + grip * TICK_S)
+    if accel < -grip:
+        return Pull(-grip, before + -grip * TICK_S)
+    return Pull(accel, wanted)

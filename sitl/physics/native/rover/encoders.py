@@ -5,23 +5,25 @@ from __future__ import annotations
 
 import math
 
+from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.vectors import Vec2
+from .state import Physics
 
 
 @law
-def _counted(distance, step):
+def counted(distance: float, step: float) -> float:
+    """A distance [m] in whole steps [m]; 0: continuous."""
     if step <= 0.0:
         return distance
     return math.floor(distance / step + 0.5) * step
 
 
 @law
-def update(p, sensors, tick):
+def sample(p: Physics, sensors: Sensors, tick: int) -> None:
     """Write wheel_distance [m] when a sample falls due."""
-    period = int(p.derived.encoder_period)
+    period, rolled, step = p.derived.encoder_period, p.wheels.distance, p.airframe.encoder_step
     if period == 0 or tick % period != 1:
         return
-    rolled, step = p.wheels.distance, float(p.airframe.encoder_step)
-    sensors.wheel_distance = Vec2(_counted(float(rolled[0]), step), _counted(float(rolled[1]), step))
+    sensors.wheel_distance = Vec2(counted(rolled.x, step), counted(rolled.y, step))
     sensors.wheel_count += 1

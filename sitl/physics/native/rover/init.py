@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ....vehicles import RoverAirframe
 from ..power_on import Home, clear, place, wake
+from ..records import Vehicle
 from .prepare import prepare
+from .state import Physics
 
 
-def init(v: Any, airframe: RoverAirframe, home: Home, seed: int) -> None:
+def init(v: Vehicle[Physics], airframe: RoverAirframe, home: Home, seed: int) -> None:
     """Set physics, sensors, clock and random numbers of a vehicle to power-on; the wind's settings stay.
 
     Args:
@@ -20,6 +20,6 @@ def init(v: Any, airframe: RoverAirframe, home: Home, seed: int) -> None:
         seed: of all sensor errors; any integer.
     """
     clear(v, airframe, seed)
-    prepare(v.physics)
+    prepare(v.physics.airframe, v.physics.derived)
     place(v.physics, home)
     wake(v)

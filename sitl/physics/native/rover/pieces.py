@@ -3,35 +3,32 @@
 
 from __future__ import annotations
 
+from ....core.algebra import ZERO
 from ....core.kernels import unit
-from ....vehicles.figures.rover import STEERING_SKID
+from ....core.records import Records
 from ..observe import note, observe
+from ..records import Vehicle
 from . import step
+from .state import Physics
 
 
 @unit
-def begin(fleet, i):
+def begin(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Clock; motors and steering follow the controls: ``wheels.speed``, ``wheels.angle``, ``wheels.power``."""
     v = fleet[i]
-    note(v.physics)
+    note(v.physics.body, v.physics.motion)
     step.begin(v)
-    p = v.physics
-    first, second = step.commands(p, v.actuators.controls)
-    if int(p.airframe.steering_model) == STEERING_SKID:
-        step.drive_sides(p, first, second)
-    else:
-        step.drive_axle(p, first, second)
+    step.drive(v.physics, v.actuators.controls)
 
 
 @unit
-def load(fleet, i):
+def load(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Nothing: all forces on a rover come from its wheels."""
-    v = fleet[i]
-    v.physics.motion.force[0] = 0.0
+    fleet[i].physics.motion.force = ZERO
 
 
 @unit
-def sense(fleet, i):
+def sense(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Accelerations, battery, sensors."""
     v = fleet[i]
     observe(v.physics)

@@ -6,63 +6,63 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
-from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
+from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Figures
 from ..body import GRAVITY
 from ..prepare import decay, prepare_shared, whole_ticks
 from ..tick import TICK_S
+from .state import Derived
 
 UNLIMITED = 1e9
 """A step that nothing reaches."""
 
 
 @law
-def _step(rate):
+def _step(rate: float) -> float:
     """Largest change in a tick at a rate a second; 0 is no limit."""
     return rate * TICK_S if rate > 0.0 else UNLIMITED
 
 
 @law
-def yaw_acceleration(a):
+def yaw_acceleration(a: Figures) -> float:
     """Greatest yaw acceleration [rad/s^2] that the tyres can give.
 
     Front wheels: the side force of the front axle about the centre of mass, which is (1 - front_load) of the
     wheelbase behind it. Skid steering: one side pushes, the other brakes, half a track from the middle.
     """
-    force = float(a.grip) * GRAVITY * float(a.mass)
-    if int(a.steering_model) == STEERING_FRONT_WHEELS:
-        torque = force * float(a.front_load) * (1.0 - float(a.front_load)) * float(a.wheelbase)
-    elif int(a.steering_model) == STEERING_SKID:
-        torque = 0.5 * force * float(a.track)
+    force = a.grip * GRAVITY * a.mass
+    if a.steering_model == STEERING_FRONT_WHEELS:
+        torque = force * a.front_load * (1.0 - a.front_load) * a.wheelbase
+    elif a.steering_model == STEERING_SKID:
+        torque = 0.5 * force * a.track
     else:
         return 0.0
     return torque / a.inertia.z
 
 
 @law
-def prepare(p):
-    """Fill ``p.derived`` from ``p.airframe``."""
-    a, d = p.airframe, p.derived
-    d.control_scale = 1.0 / float(a.control_full)
-    d.speed_decay = decay(float(a.time_constant), TICK_S)
-    d.speed_step = _step(float(a.drive_accel))
-    lag = float(a.time_constant)
-    resisting = lag * (1.0 - float(d.speed_decay)) if lag > 0.0 else TICK_S  # exact for a motor of first order
-    d.rolling_step = float(a.rolling_resistance) * GRAVITY * resisting
-    d.grip = float(a.grip) * GRAVITY
-    d.drive_grip = float(d.grip) * float(a.driven_load)
+def prepare(a: Figures, d: Derived) -> None:
+    """Fill ``d`` from the airframe's figures."""
+    d.control_scale = 1.0 / a.control_full
+    d.speed_decay = decay(a.time_constant, TICK_S)
+    d.speed_step = _step(a.drive_accel)
+    lag = a.time_constant
+    resisting = lag * (1.0 - d.speed_decay) if lag > 0.0 else TICK_S  # exact for a motor of first order
+    d.rolling_step = a.rolling_resistance * GRAVITY * resisting
+    d.grip = a.grip * GRAVITY
+    d.drive_grip = d.grip * a.driven_load
     d.yaw_step = _step(yaw_acceleration(a))
-    d.steering_step = _step(float(a.steering_rate))
+    d.steering_step = _step(a.steering_rate)
     d.inverse_wheelbase, d.circle_scale, d.inverse_track = 0.0, 0.0, 0.0
-    if int(a.steering_model) == STEERING_FRONT_WHEELS:
-        d.inverse_wheelbase = 1.0 / float(a.wheelbase)
-    elif int(a.steering_model) == STEERING_TURNING_CIRCLE:
-        d.circle_scale = 2.0 / (float(a.turning_diameter) * math.sin(float(a.steering_angle)))
+    if a.steering_model == STEERING_FRONT_WHEELS:
+        d.inverse_wheelbase = 1.0 / a.wheelbase
+    elif a.steering_model == STEERING_TURNING_CIRCLE:
+        d.circle_scale = 2.0 / (a.turning_diameter * math.sin(a.steering_angle))
     else:
-        d.inverse_track = 1.0 / (float(a.track) * float(a.track_slip))
+        d.inverse_track = 1.0 / (a.track * a.track_slip)
     d.power_by_accel = 0.0
     if a.efficiency > 0.0:
-        d.power_by_accel = float(a.mass) / float(a.efficiency)
+        d.power_by_accel = a.mass / a.efficiency
     d.encoder_period = 0
     if a.encoder_rate > 0.0:
-        d.encoder_period = max(whole_ticks(1.0 / float(a.encoder_rate)), 2)
-    prepare_shared(p)
+        d.encoder_period = max(whole_ticks(1.0 / a.encoder_rate), 2)
+    prepare_shared(a, d)

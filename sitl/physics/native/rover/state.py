@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ....core.records import Floats, Record, array
+from ....core.records import Record
+from ....core.vectors import Vec2
 from ....vehicles.figures.rover import Figures
 from .. import records as shared
 
@@ -14,9 +15,9 @@ class Derived(shared.Derived):
     control_scale: float  # 1 / control_full
     speed_decay: float  # what is left of a wheel-speed error after a tick
     speed_step: float  # largest change of wheel speed a tick that the motors give [m/s]
-    rolling_step: float  # what rolling resistance takes off a tick [m/s]
+    rolling_step: float  # speed that rolling resistance takes off a tick [m/s]
     grip: float  # greatest acceleration on these tyres [m/s^2]
-    drive_grip: float  # the same, of the driven wheels along
+    drive_grip: float  # the same, of the driven wheels along [m/s^2]
     yaw_step: float  # largest change of the yaw rate a tick that the tyres give [rad/s]
     steering_step: float  # largest turn of the front wheels a tick [rad]
     inverse_wheelbase: float  # STEERING_FRONT_WHEELS [1/m]
@@ -30,8 +31,8 @@ class Wheels(Record):
     """Wheels and motors."""
 
     angle: float  # of the front wheels, to the right [rad]
-    speed: Floats = array(2)  # rolling speed that the motors give [m/s]: of the axle, or of the left and right side
-    distance: Floats = array(2)  # rolled by the left and right driven wheel [m]
+    speed: Vec2  # rolling speed that the motors give [m/s]: x of the axle, or x of the left and y of the right side
+    distance: Vec2  # rolled by the left (x) and right (y) driven wheel [m]
     power: float  # taken from the battery by the motors [W]
     forward: float  # speed of the driven axle over the ground [m/s]; less than the wheels' when they slip
 

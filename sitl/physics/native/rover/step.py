@@ -4,14 +4,18 @@
 from __future__ import annotations
 
 from ....core.kernels import law, unit
+from ....core.records import Floats, Records
+from ....core.vectors import Vec2
 from ....vehicles.figures.rover import STEERING_SKID
 from .. import battery, obstacles
+from ..records import Vehicle
 from ..sensors.sense import sense
 from ..tick import TICK_S, TICK_US
 from . import encoders
 from .drive import commanded, grip_along, run
-from .motion import hold_back, roll
-from .steering import curvature, grip_across, turn_wheels
+from .motion import Course, hold_back, roll
+from .state import Physics
+from .steering import approach, curvature, grip_across
 
 STEERING_OUTPUT = 0
 """Output of the steering servo, or of the left motors."""
@@ -20,73 +24,70 @@ THROTTLE_OUTPUT = 2
 
 
 @law
-def commands(p, controls):
-    """Commands -1 .. 1 of the two actuator controls in use."""
-    scale = float(p.derived.control_scale)
-    return (commanded(float(controls[STEERING_OUTPUT]), scale), commanded(float(controls[THROTTLE_OUTPUT]), scale))
-
-
-@law
-def drive_sides(p, left, right):
-    """Let the motors of both sides follow their commands for a tick."""
-    p.wheels.power = 0.5 * (run(p, 0, left) + run(p, 1, right))
-
-
-@law
-def drive_axle(p, steering, throttle):
-    """Let steering and motor follow their commands for a tick."""
-    turn_wheels(p, steering)
-    p.wheels.power = run(p, 0, throttle)
-
-
-@law
-def move(p, controls):
-    """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
-    w, rolled = p.wheels, p.wheels.distance
-    first, second = commands(p, controls)
-    before = float(w.forward)
-    if int(p.airframe.steering_model) == STEERING_SKID:
-        drive_sides(p, first, second)
-        left, right = float(w.speed[0]), float(w.speed[1])
-        accel = grip_along(p, 0.5 * (left + right))
-        rate = (left - right) * float(p.derived.inverse_track)
-        roll(p, before, grip_across(p, rate, accel))
+def drive(p: Physics, controls: Floats) -> None:
+    """Let motors and steering follow the actuator controls [-1 .. 1] for a tick."""
+    wheels, figures, derived = p.wheels, p.airframe, p.derived
+    first = commanded(float(controls[STEERING_OUTPUT]), derived.control_scale)
+    second = commanded(float(controls[THROTTLE_OUTPUT]), derived.control_scale)
+    if figures.steering_model == STEERING_SKID:
+        left = run(wheels.speed.x, first, figures, derived)
+        right = run(wheels.speed.y, second, figures, derived)
+        wheels.speed = Vec2(left.speed, right.speed)
+        wheels.power = 0.5 * (left.power + right.power)
     else:
-        drive_axle(p, first, second)
-        speed = float(w.speed[0])
-        accel = grip_along(p, speed)
-        roll(p, before, grip_across(p, float(w.forward) * curvature(p), accel))
-        differ = 0.5 * float(p.airframe.track) * float(p.body.rates_mean[2])  # the outer wheel rolls further
-        left, right = speed + differ, speed - differ
-    rolled[0] += TICK_S * left
-    rolled[1] += TICK_S * right
+        wheels.angle = approach(wheels.angle, first * figures.steering_angle, derived.steering_step)
+        axle = run(wheels.speed.x, second, figures, derived)
+        wheels.speed = Vec2(axle.speed, wheels.speed.y)
+        wheels.power = axle.power
 
 
 @law
-def begin(v):
+def move(p: Physics, controls: Floats) -> None:
+    """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
+    wheels, body, figures, derived = p.wheels, p.body, p.airframe, p.derived
+    drive(p, controls)
+    before, left, right = wheels.forward, wheels.speed.x, wheels.speed.y
+    skids = figures.steering_model == STEERING_SKID
+    pull = grip_along(before, 0.5 * (left + right) if skids else left, derived.drive_grip)
+    wheels.forward = pull.speed
+    if skids:
+        wanted = (left - right) * derived.inverse_track
+    else:
+        wanted = pull.speed * curvature(wheels.angle, figures, derived)
+    held = grip_across(wanted, pull.speed, pull.accel, derived.grip)
+    yaw_rate = approach(body.rates.z, held, derived.yaw_step)
+    roll(body, Course(before, pull.speed, yaw_rate), figures.rear_axle)
+    if not skids:
+        differ = 0.5 * figures.track * body.rates_mean.z  # the outer wheel rolls further
+        left, right = left + differ, left - differ
+    wheels.distance += TICK_S * Vec2(left, right)
+
+
+@law
+def begin(v: Vehicle[Physics]) -> None:
     """First thing of a tick: the clock goes on."""
     v.time_us += TICK_US
     v.tick += 1
 
 
 @law
-def end(v):
+def end(v: Vehicle[Physics]) -> None:
     """Last thing of a tick: battery and sensors."""
     p = v.physics
-    battery.update(p, float(p.wheels.power))
-    sense(p, v.sensors, int(v.tick), int(v.time_us), v.rng)
-    encoders.update(p, v.sensors, int(v.tick))
+    battery.discharge(p.battery, p.wheels.power, p.airframe, p.derived.charge_per_amp)
+    sense(v)
+    encoders.sample(p, v.sensors, v.tick)
 
 
 @unit
-def step(fleet, i):
+def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
     v = fleet[i]
     begin(v)
-    p, time_us = v.physics, int(v.time_us)
+    p = v.physics
     move(p, v.actuators.controls)
-    if p.obstacles.present != 0:
-        if obstacles.collide(p, time_us):
-            hold_back(p)
-        obstacles.show(p)
+    if p.obstacles.present:
+        if obstacles.collide(p, v.time_us):
+            hold_back(p.body, p.obstacles, p.wheels, p.airframe.rear_axle)
+        obstacles.show(p.obstacles, p.body)
     end(v)

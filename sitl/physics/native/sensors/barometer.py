@@ -3,18 +3,20 @@
 
 from __future__ import annotations
 
+from ....core.border import Sensors
 from ....core.kernels import law
-from ....core.rng import normal
+from ....core.rng import Rng, normal
 from ..atmosphere import pressure, temperature
+from ..records import Physics
 
 
 @law
-def sample(p, sensors, rng):
+def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write abs_pressure [hPa] and temperature [degC]."""
     a, s, d = p.airframe, p.sensors, p.derived
-    altitude = float(p.place.alt) - float(p.body.pos[2])
-    s.baro_drift = float(d.baro_drift_decay) * float(s.baro_drift) + float(d.baro_drift_step) * normal(rng)
-    error = float(a.baro_drift) * float(s.baro_drift) + float(a.baro_noise) * normal(rng)
-    sensors.abs_pressure = 0.01 * (pressure(altitude) + float(a.noise_scale) * error)
+    altitude = p.place.alt - p.body.pos.z
+    s.baro_drift = d.baro_drift_decay * s.baro_drift + d.baro_drift_step * normal(rng)
+    error = a.baro_drift * s.baro_drift + a.baro_noise * normal(rng)
+    sensors.abs_pressure = 0.01 * (pressure(altitude) + a.noise_scale * error)
     sensors.temperature = temperature(altitude) - 273.15
     sensors.baro_count += 1

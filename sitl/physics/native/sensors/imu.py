@@ -7,48 +7,40 @@ error + range.
 
 from __future__ import annotations
 
+from ....core.algebra import by_component
+from ....core.border import Sensors
 from ....core.kernels import law
-from ....core.rng import normal
+from ....core.rng import Rng, normal, normal_vector
 from ....core.vectors import Vec3
+from ..records import Derived, Physics, SensorState
 
 WALK_TICKS = 40
 """The in-run biases are stepped every 0.1 s."""
 
 
 @law
-def _limit(value, bound):
-    return min(max(value, -bound), bound)
+def saturate(v: Vec3, bound: float) -> Vec3:
+    """``v`` with each component within +-``bound``."""
+    return Vec3(min(max(v.x, -bound), bound), min(max(v.y, -bound), bound), min(max(v.z, -bound), bound))
 
 
 @law
-def _acc(p, rng, j):
-    s = p.sensors
-    bias = float(s.acc_bias[j]) + float(s.acc_walk[j])
-    value = float(p.body.specific_force[j]) * float(s.acc_scale[j]) + bias + p.derived.acc_noise * normal(rng)
-    return _limit(value, p.airframe.acc_range)
-
-
-@law
-def _gyro(p, rng, j):
-    s = p.sensors
-    bias = float(s.gyro_bias[j]) + float(s.gyro_walk[j])
-    value = float(p.body.rates_mean[j]) * float(s.gyro_scale[j]) + bias + p.derived.gyro_noise * normal(rng)
-    return _limit(value, p.airframe.gyro_range)
-
-
-@law
-def sample(p, sensors, rng):
+def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
-    sensors.acc = Vec3(_acc(p, rng, 0), _acc(p, rng, 1), _acc(p, rng, 2))
-    sensors.gyro = Vec3(_gyro(p, rng, 0), _gyro(p, rng, 1), _gyro(p, rng, 2))
+    a, s, d, body = p.airframe, p.sensors, p.derived, p.body
+    bias = s.acc_bias + s.acc_walk
+    acc = by_component(body.specific_force, s.acc_scale) + bias + d.acc_noise * normal_vector(rng)
+    sensors.acc = saturate(acc, a.acc_range)
+    bias = s.gyro_bias + s.gyro_walk
+    gyro = by_component(body.rates_mean, s.gyro_scale) + bias + d.gyro_noise * normal_vector(rng)
+    sensors.gyro = saturate(gyro, a.gyro_range)
 
 
 @law
-def walk(p, rng):
+def walk(s: SensorState, d: Derived, rng: Rng) -> None:
     """Step the in-run biases by WALK_TICKS ticks."""
-    s, d = p.sensors, p.derived
-    for j in range(3):
-        left, added = float(d.acc_bias_decay), float(d.acc_bias_step)
-        s.acc_walk[j] = left * float(s.acc_walk[j]) + added * normal(rng)
-        left, added = float(d.gyro_bias_decay), float(d.gyro_bias_step)
-        s.gyro_walk[j] = left * float(s.gyro_walk[j]) + added * normal(rng)
+    acc_x, gyro_x = normal(rng), normal(rng)
+    acc_y, gyro_y = normal(rng), normal(rng)
+    acc_z, gyro_z = normal(rng), normal(rng)
+    s.acc_walk = d.acc_bias_decay * s.acc_walk + d.acc_bias_step * Vec3(acc_x, acc_y, acc_z)
+    s.gyro_walk = d.gyro_bias_decay * s.gyro_walk + d.gyro_bias_step * Vec3(gyro_x, gyro_y, gyro_z)

@@ -3,24 +3,25 @@
 
 from __future__ import annotations
 
+from ....core.algebra import rotate_inverse
+from ....core.border import Sensors
 from ....core.kernels import law
-from ....core.rng import normal
-from ....core.rotations import quat_rotate_inverse
-from ....core.vectors import Vec3
+from ....core.rng import Rng, normal_vector
+from ....core.vectors import Quat, Vec3
+from ....vehicles.figures.sensors import Sensors as SensorFigures
+from ..records import Physics
 
 
 @law
-def sample(p, sensors, rng):
+def measure_field(q: Quat, field: Vec3, figures: SensorFigures, rng: Rng) -> Vec3:
+    """Field [gauss] that a sensor at attitude ``q`` shows, body frame; ``field``: NED."""
+    scale = figures.noise_scale
+    noise = scale * figures.mag_noise
+    return rotate_inverse(q, field) + scale * figures.mag_offset + noise * normal_vector(rng)
+
+
+@law
+def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write mag [gauss], body frame."""
-    a, q, field = p.airframe, p.body.q, p.place.field
-    x, y, z = quat_rotate_inverse(
-        float(q[0]), float(q[1]), float(q[2]), float(q[3]), float(field[0]), float(field[1]), float(field[2])
-    )
-    scale = float(a.noise_scale)
-    noise = scale * float(a.mag_noise)
-    sensors.mag = Vec3(
-        x + scale * a.mag_offset.x + noise * normal(rng),
-        y + scale * a.mag_offset.y + noise * normal(rng),
-        z + scale * a.mag_offset.z + noise * normal(rng),
-    )
+    sensors.mag = measure_field(p.body.q, p.place.field, p.airframe, rng)
     sensors.mag_count += 1

@@ -4,21 +4,23 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from .. import atmosphere
+from ..atmosphere import set_air
+from ..records import Physics, Vehicle
 from . import barometer, gps, imu, magnetometer, power
 
 
 @law
-def sense(p, sensors, tick, time_us, rng):
+def sense(v: Vehicle[Physics]) -> None:
     """Write the samples that fall due in this tick."""
+    p, sensors, rng, tick = v.physics, v.sensors, v.rng, v.tick
     if tick % imu.WALK_TICKS == 0:
-        imu.walk(p, rng)
-        power.sample(p, sensors)
+        imu.walk(p.sensors, p.derived, rng)
+        power.sample(p.battery, sensors)
     imu.sample(p, sensors, rng)
-    if tick % int(p.derived.mag_period) == 1:
+    if tick % p.derived.mag_period == 1:
         magnetometer.sample(p, sensors, rng)
-    if tick % int(p.derived.baro_period) == 1:
-        atmosphere.update(p)
+    if tick % p.derived.baro_period == 1:
+        set_air(p.air, p.place.alt - p.body.pos.z)
         barometer.sample(p, sensors, rng)
-    gps.update(p, sensors, tick, time_us, rng)
-    sensors.time_us = time_us
+    gps.sample(p, sensors, gps.Clock(tick, v.time_us), rng)
+    sensors.time_us = v.time_us

@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ....core.rng import seed as seed_rng
+from .state import Turtlebot
 
 _LONG_AGO = -(10**15)
 """[us]: no command holds."""
 
 
-def place(v: Any, north: float, east: float, down: float, heading: float, seed: int) -> None:
+def place(v: Turtlebot, north: float, east: float, down: float, heading: float, seed: int) -> None:
     """Put it at a place, at rest; figures stay, everything else begins anew.
 
     Args:
@@ -23,7 +22,7 @@ def place(v: Any, north: float, east: float, down: float, heading: float, seed: 
     """
     b, c = v.body, v.command
     b.north, b.east, b.down, b.heading = north, east, down, heading
-    b.speed, b.yaw_rate, b.clearance, b.collided = 0.0, 0.0, 0.0, 0
+    b.speed, b.yaw_rate, b.clearance, b.collided = 0.0, 0.0, 0.0, False
     c.forward, c.turn, c.time_us = 0.0, 0.0, _LONG_AGO
     v.time_us = 0
     seed_rng(v.rng, seed)

@@ -13,7 +13,7 @@ TICK_S = 1e-6 * TICK_US
 
 
 class Command(Record):
-    """What the robot was told to do."""
+    """What the robot shall do."""
 
     forward: float  # speed [m/s]
     turn: float  # rate [rad/s], counter-clockwise seen from above
@@ -30,7 +30,7 @@ class Body(Record):
     speed: float  # forward, of the last tick [m/s]
     yaw_rate: float  # clockwise, of the last tick [rad/s]
     clearance: float  # it can go so far in any direction before it may touch something [m]
-    collided: int  # 1: a solid has stopped it since it was last advanced
+    collided: bool  # a solid has stopped it since it was last advanced
 
 
 class Turtlebot(Record):

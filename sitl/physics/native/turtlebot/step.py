@@ -8,66 +8,77 @@ asks for), the tyres do not slip, and the base stands level.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.array_kernels import Table
 from ....core.kernels import law
-from ....worlds.contact import nearest_of
-from .state import TICK_S, TICK_US
+from ....core.scalars import TWO_PI
+from ....core.vectors import Vec2
+from ....vehicles.turtlebot import Figures
+from ....worlds.contact import Volume, nearest_of
+from .state import TICK_S, TICK_US, Turtlebot
 
-_TWO_PI = 2.0 * math.pi
+
+class WheelSpeeds(NamedTuple):
+    """Speeds over ground of the wheels."""
+
+    left: float
+    """[m/s]"""
+    right: float
+    """[m/s]"""
 
 
 @law
-def wheel_speeds(f, forward, turn):
-    """Speeds over ground (left, right) [m/s] for a forward speed [m/s] and a turn rate [rad/s], counter-clockwise.
+def wheel_speeds(f: Figures, forward: float, turn: float) -> WheelSpeeds:
+    """What the wheels do for a forward speed [m/s] and a turn rate [rad/s], counter-clockwise.
 
     Each wheel is limited on its own. The drive assumes one radius; the true ones differ.
     """
-    half = 0.5 * float(f.wheel_separation) * turn
-    limit = float(f.wheel_speed_max)
+    half, limit = 0.5 * f.wheel_separation * turn, f.wheel_speed_max
     left = min(max(forward - half, -limit), limit)
     right = min(max(forward + half, -limit), limit)
-    scale = 1.0 / float(f.wheel_radius)
-    return (left * float(f.wheel_radius_left) * scale, right * float(f.wheel_radius_right) * scale)
+    scale = 1.0 / f.wheel_radius
+    return WheelSpeeds(left * f.wheel_radius_left * scale, right * f.wheel_radius_right * scale)
 
 
 @law
-def free_distance(v, solids, n, e):
-    """Distance [m] from the robot's cylinder, were its axis at (n, e), to the nearest solid; negative inside of one."""
-    f, floor = v.figures, float(v.body.down)
-    nearest = nearest_of(solids, solids.shape[0], n, e, floor - float(f.top), floor - float(f.bottom), float(f.radius))
-    return nearest[0]
+def free_distance(f: Figures, floor: float, solids: Table, place: Vec2) -> float:
+    """Distance [m] from the robot's cylinder, were its axis at a place (north, east [m]) of a floor (down [m]), to the
+    nearest solid; negative inside of one.
+    """
+    return nearest_of(solids, solids.shape[0], Volume(place, floor - f.top, floor - f.bottom, f.radius)).distance
 
 
 @law
-def step(v, solids):
+def step(v: Turtlebot, solids: Table) -> None:
     """Move on by ``TICK_US``. A move that would bring the robot into a solid does not happen; it still turns.
 
     Args:
         v: one record.
         solids: rows of a world's ``Geometry``.
     """
-    b, c = v.body, v.command
-    left, right = 0.0, 0.0
-    if 1e-6 * (int(v.time_us) - int(c.time_us)) < float(v.figures.command_timeout):
-        left, right = wheel_speeds(v.figures, float(c.forward), float(c.turn))
-    speed, yaw_rate = 0.5 * (left + right), (left - right) / float(v.figures.wheel_separation)
+    b, c, f = v.body, v.command, v.figures
+    wheels = WheelSpeeds(0.0, 0.0)
+    if 1e-6 * (v.time_us - c.time_us) < f.command_timeout:
+        wheels = wheel_speeds(f, c.forward, c.turn)
+    speed, yaw_rate = 0.5 * (wheels.left + wheels.right), (wheels.left - wheels.right) / f.wheel_separation
     turned = yaw_rate * TICK_S
-    heading = float(b.heading) + turned
+    heading = b.heading + turned
     if speed != 0.0:
         middle = heading - 0.5 * turned
         travel = speed * TICK_S
-        n, e = float(b.north) + travel * math.cos(middle), float(b.east) + travel * math.sin(middle)
-        free = float(b.clearance) - abs(travel)
+        n, e = b.north + travel * math.cos(middle), b.east + travel * math.sin(middle)
+        free = b.clearance - abs(travel)
         if free < 0.0:
-            free = free_distance(v, solids, n, e)
-        if free < 0.0 and free < free_distance(v, solids, float(b.north), float(b.east)):
-            b.collided = 1
+            free = free_distance(f, b.down, solids, Vec2(n, e))
+        if free < 0.0 and free < free_distance(f, b.down, solids, Vec2(b.north, b.east)):
+            b.collided = True
             speed = 0.0
         else:
             b.north, b.east, b.clearance = n, e, free
     if heading > math.pi:
-        heading -= _TWO_PI
+        heading -= TWO_PI
     elif heading < -math.pi:
-        heading += _TWO_PI
+        heading += TWO_PI
     b.heading, b.speed, b.yaw_rate = heading, speed, yaw_rate
     v.time_us += TICK_US

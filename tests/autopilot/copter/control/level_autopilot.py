@@ -11,8 +11,8 @@ from sitl.autopilot.copter.control import motors, throttle_mix
 from sitl.autopilot.copter.control.update import drive, init
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
-from sitl.autopilot.state import Actuators
 from sitl.core.algebra import euler_of, multiply, normalise, quat_from_rotation_vector
+from sitl.core.border import Actuators
 from sitl.core.vectors import Quat
 
 

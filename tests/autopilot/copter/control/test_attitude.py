@@ -41,7 +41,7 @@ UP = Vec3(0.0, 0.0, -1.0)
 
 
 def test_period_agrees_with_the_vehicles():
-    from sitl.vehicle.record import TICK_US
+    from sitl.core.constants import TICK_US
 
     assert DT * 1e6 == TICK_US
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from sitl.autopilot.copter.control import motors, throttle_mix, thrust_curve
 from sitl.autopilot.copter.control.state import DT, MotorsState
 from sitl.autopilot.copter.control.update import drive
+from sitl.autopilot.copter.parameters.control import Motors
 from tests.autopilot.copter.control.level_autopilot import arm, output
 
 
@@ -79,7 +80,7 @@ def test_thrust_stays_as_the_battery_empties(ap):
     ap.params.MOT_BAT_VOLT_MAX, ap.params.MOT_BAT_VOLT_MIN = 12.8, 9.6
     ap.battery.voltage = 11.0
     for _ in range(100):
-        thrust_curve.compensate(ap)
+        thrust_curve.compensate(ap.control.motors, ap.battery, ap.estimate, ap.params.MOT)
     m = ap.control.motors
     demand = 0.3
     command = thrust_curve.command_from_thrust(
@@ -91,7 +92,7 @@ def test_thrust_stays_as_the_battery_empties(ap):
 
 def test_compensation_is_off_by_default(ap):
     ap.battery.voltage = 11.0
-    thrust_curve.compensate(ap)
+    thrust_curve.compensate(ap.control.motors, ap.battery, ap.estimate, ap.params.MOT)
     assert ap.control.motors.compensation_gain == 1.0
 
 
@@ -136,13 +137,13 @@ def test_upside_down_throttle_is_cut(ap):
 
 
 def test_priority_rises_quickly_and_falls_slowly(ap):
-    throttle_mix.set_mix_max(ap, 1.0)
+    throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, 1.0)
     ticks = 0
     while ap.control.attitude.mix < 0.5:
         throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, 0.35)
         ticks += 1
     assert ticks * DT == pytest.approx(0.2, abs=0.01)
-    throttle_mix.set_mix_min(ap)
+    throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
     ap.control.motors.throttle_out = ap.control.motors.throttle = 0.35
     throttle_mix.follow_mix(ap.control.attitude, ap.control.motors, 0.35)
     assert ap.control.attitude.mix == pytest.approx(0.5 - 0.5 * DT)
@@ -152,3 +153,34 @@ def test_slew_limit():
     assert motors.slew(0.2, 1.0, 0.5, 0.0) == pytest.approx(0.2 + DT / 0.5)
     assert motors.slew(0.8, 0.0, 0.0, 0.25) == pytest.approx(0.8 - DT / 0.25)
     assert motors.slew(0.8, 0.0, 0.0, 0.0) == 0.0
+
+
+@given(st.floats(0.0, 1.0), st.floats(0.1, 1.0))
+def test_boosted_throttle_keeps_the_lift_at_any_lean(throttle, cos_lean):
+    assert throttle_mix.boosted(throttle, cos_lean) * cos_lean == pytest.approx(throttle)
+
+
+@given(st.floats(0.0, 1.0), st.floats(0.2, 0.6), st.floats(0.0, 1.0))
+def test_throttle_for_attitude_lies_between_the_demand_and_hovering(throttle, hover, mix):
+    top = throttle_mix.throttle_average_max(throttle, hover, mix)
+    assert throttle <= top <= max(throttle, hover) + 1e-12
+
+
+@pytest.mark.parametrize(("desired", "end"), [(0, 0), (1, 1), (2, 3)])
+def test_the_spool_ends_where_it_is_told_to_and_stops_at_once_when_disabled(desired, end):
+    m, p = MotorsState(), Motors()
+    p.SPOOL_TIME, p.SPIN_MIN, p.SPIN_ARM = 0.5, 0.15, 0.1
+    for _ in range(1000):
+        m.desired_spool = desired
+        motors.spool(m, True, p)
+        assert 0.0 <= m.spin_up_ratio <= 1.0 and 0.0 <= m.thrust_max <= 1.0
+    assert m.spool_state == end
+    motors.spool(m, False, p)
+    assert m.spool_state == motors.SHUT_DOWN and m.thrust_max == 0.0 and m.limit_roll
+
+
+def test_the_motor_under_test_turns_alone():
+    m = MotorsState()
+    m.test_motor, m.test_actuator = 3, 0.4
+    motors.drive_test_motor(m)
+    assert list(m.actuator) == [0.0, 0.0, 0.4, 0.0]

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.control.pid import Gains
+from sitl.autopilot.control.pid import Blocked, Gains
 from sitl.autopilot.control.shaping import Motion, Motion2
-from sitl.autopilot.copter.control import altitude, position, position_ned
+from sitl.autopilot.copter.control import altitude, altitude_start, position, position_ned, position_start
 from sitl.autopilot.copter.control.motors import hover_throttle
-from sitl.autopilot.copter.control.state import DT, GRAVITY, PositionState
+from sitl.autopilot.copter.control.state import DT, GRAVITY, AltitudeState, PositionState
 from sitl.core.algebra import dot2, norm2, quat_from_euler, rotate, with_down
 from sitl.core.vectors import Euler, Vec2, Vec3
 
@@ -31,11 +31,11 @@ def spooled(ap):
     ap.control.tick = 5
     ap.control.motors.thrust_max = 1.0
     ap.control.attitude.lean_max = 1.2
-    position.set_max_speed_accel_ne(ap, 10.0, 2.5)
-    altitude.set_max_speed_accel_d(ap, 1.5, 2.5, 1.0)
+    position_start.set_max_speed_accel_ne(ap, 10.0, 2.5)
+    altitude_start.set_max_speed_accel_d(ap, 1.5, 2.5, 1.0)
     ap.control.attitude.throttle_in = hover_throttle(ap.params.MOT)
-    position.init_ne(ap)
-    altitude.init_d(ap)
+    position_start.init_ne(ap)
+    altitude_start.init_d(ap)
     return ap
 
 
@@ -148,7 +148,7 @@ def test_landing_descends_at_the_rate(ap):
 def test_init_does_not_move_the_throttle(ap):
     spooled(ap)
     ap.control.attitude.throttle_in = 0.42
-    altitude.init_d(ap)
+    altitude_start.init_d(ap)
     altitude.update_d(ap)
     assert ap.control.attitude.throttle_in == pytest.approx(0.42, abs=1e-3)
 
@@ -156,7 +156,7 @@ def test_init_does_not_move_the_throttle(ap):
 def test_relaxed_throttle_decays(ap):
     spooled(ap)
     for _ in range(400):
-        altitude.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap, 0.0)
         altitude.update_d(ap)
         ap.control.tick += 1
     assert ap.control.attitude.throttle_in == pytest.approx(0.0, abs=0.01)
@@ -182,19 +182,19 @@ def test_jump_of_the_estimate_moves_the_path_with_it(ap):
 def test_stopping_point_is_ahead_and_bounded(ap):
     spooled(ap)
     ap.estimate.vel = (3.0, 4.0, -5.0)
-    n, e = position.stopping_point_ne(ap)
+    n, e = position_start.stopping_point_ne(ap)
     assert n / e == pytest.approx(0.75)
     assert math.hypot(n, e) == pytest.approx(0.5 * 2.5 + 25.0 / 5.0)
-    assert altitude.stopping_point_d(ap) == -3.0
+    assert altitude_start.stopping_point_d(ap) == -3.0
     ap.estimate.vel = (0.0, 0.0, 0.0)
-    assert position.stopping_point_ne(ap) == Vec2(0.0, 0.0)
+    assert position_start.stopping_point_ne(ap) == Vec2(0.0, 0.0)
 
 
 @given(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2), st.floats(-3.0, 3.0))
 def test_acceleration_of_a_lean_is_that_of_its_thrust(roll, pitch, yaw):
     thrust = rotate(quat_from_euler(Euler(roll, pitch, yaw)), Vec3(0.0, 0.0, -1.0))
     level = thrust * (GRAVITY / -thrust.z)
-    assert position.lean_accel(roll, pitch, yaw) == pytest.approx((level.x, level.y), rel=1e-9, abs=1e-9)
+    assert position_start.lean_accel(roll, pitch, yaw) == pytest.approx((level.x, level.y), rel=1e-9, abs=1e-9)
 
 
 def test_straight_line_to_a_point_keeps_all_limits(ap):
@@ -243,8 +243,37 @@ def test_the_path_waits_for_a_vehicle_that_cannot_keep_up():
 @given(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
 def test_acceleration_stays_within_the_lean_and_says_where_it_is_used_up(north, east):
     c = PositionState()
-    gains = position.PositionGains(1.0, Gains(2.0, 1.0, 0.25, 0.0, 0.0, 10.0, 0.0, 0.0, 5.0, 5.0))
+    gains = position.PositionGains(1.0, Gains(2.0, 0.0, 0.25, 0.0, 0.0, 10.0, 0.0, 0.0, 5.0, 5.0))
     position.control_horizontal(c, Vec2(0.0, 0.0), Vec2(north, east), 3.0, gains)
     assert norm2(c.accel_target) <= 3.0 * (1 + 1e-9)
     assert (norm2(c.limit) > 0.0) == (2.0 * math.hypot(north, east) > 3.0)
     assert dot2(c.accel_target, Vec2(north, east)) <= 0.0
+
+
+ALTITUDE = altitude.AltitudeGains(
+    1.0,
+    Gains(5.0, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 5.0, 5.0),
+    Gains(0.05, 0.0, 0.0, 0.0, 0.0, 0.8, 0.0, 0.0, 20.0, 0.0),
+)
+
+
+@given(st.floats(-20.0, 20.0), st.floats(-3.0, 3.0))
+def test_throttle_is_taken_off_above_the_path_and_added_below(pos, vel):
+    c = AltitudeState()
+    off = altitude.control_vertical(c, Motion(pos, vel, 0.0), Blocked(False, False), ALTITUDE)
+    assert off == pytest.approx(-0.05 * 5.0 * (pos + vel), abs=1e-9)
+    assert c.pos_error == -pos and c.vel_target == -pos and c.limit == 0.0
+
+
+@pytest.mark.parametrize(("blocked", "limit"), [(Blocked(True, False), 1.0), (Blocked(False, True), -1.0)])
+def test_the_path_learns_in_which_direction_thrust_is_used_up(blocked, limit):
+    c = AltitudeState()
+    altitude.control_vertical(c, Motion(0.0, 0.0, 0.0), blocked, ALTITUDE)
+    assert c.limit == limit
+
+
+@given(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
+def test_a_vehicle_stops_ahead_of_where_it_is(north, east):
+    stop = position_start.stopping_point(Vec2(1.0, 2.0), Vec2(north, east), 1.0, 5.0, 2.5) - Vec2(1.0, 2.0)
+    assert north * stop.y == pytest.approx(east * stop.x, abs=1e-9) and dot2(stop, Vec2(north, east)) >= 0.0
+    assert norm2(stop) <= 0.5 * 2.5 + 25.0 / 5.0 + 1e-9

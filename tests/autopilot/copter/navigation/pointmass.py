@@ -16,8 +16,9 @@ from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.navigation.command import check_condition, complete
 from sitl.autopilot.navigation.state import LAND, NONE, TAKEOFF
+from sitl.core.constants import TICK_US
 from sitl.core.vectors import Vec2
-from sitl.vehicle.record import TICK_US, Copter
+from sitl.vehicle.copter import Copter
 
 ORIGIN = (-353632621, 1491652371, 584.0)
 DT = TICK_US * 1e-6

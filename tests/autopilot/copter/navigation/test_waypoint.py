@@ -185,10 +185,10 @@ def test_odd_lengths(far: float) -> None:
     """Legs of no length and huge ones neither fail nor stand still."""
     p = vehicle(item(1.0, 0.0), follow=False)
     ap = p.v.autopilot
-    PLANNER.begin(ap, int(p.v.time_us), (far, 0.0, -10.0))
+    PLANNER.begin(ap, p.v.time_us, Vec3(far, 0.0, -10.0))
     assert math.isfinite(ap.modes.nav.current.duration)
     with pytest.raises(LegError):
-        PLANNER.begin(ap, int(p.v.time_us), (math.nan, 0.0, -10.0))
+        PLANNER.begin(ap, p.v.time_us, Vec3(math.nan, 0.0, -10.0))
 
 
 @pytest.mark.slow

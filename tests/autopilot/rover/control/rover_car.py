@@ -13,7 +13,8 @@ from typing import Any
 from sitl.autopilot.rover.control import update
 from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control
 from sitl.autopilot.rover.parameters import TABLE, Parameters
-from sitl.autopilot.state import Actuators, Autopilot, Sensors
+from sitl.autopilot.state import Autopilot
+from sitl.core.border import Actuators, Sensors
 from sitl.core.records import Record
 
 

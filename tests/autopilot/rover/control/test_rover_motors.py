@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.rover.control import mixer, motors, servos
-from sitl.autopilot.rover.control.state import TEST_STEERING, TEST_THROTTLE, MotorsState
+from sitl.autopilot.rover.control.state import DT, TEST_STEERING, TEST_THROTTLE, Control, MotorsState
+from sitl.autopilot.rover.parameters.control import Motors
 from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, set_motion
 
 SKID = {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
@@ -210,3 +211,28 @@ def test_bad_demands_are_none(bad):
     v = arm(make_vehicle(MOT_SLEWRATE=0.0))
     demand(v, bad, bad)
     assert pulses(v) == (1500, 0, 1500, 0)
+
+
+@given(unit, unit, st.one_of(st.just(0.0), st.floats(0.1, 1000.0)))
+def test_slew_limit_approaches_the_demand(throttle, last, rate):
+    out = motors.slew_limited(throttle, last, rate)
+    assert min(throttle, last) <= out <= max(throttle, last)
+    if rate > 0.0:
+        assert abs(out - last) <= rate * 0.01 * DT + 1e-12
+
+
+def test_outputs_on_their_records_alone():
+    control, mot = Control(), Motors()
+    mot.THR_MAX, mot.SPD_SCA_BASE = 100.0, 1.0
+    m = control.motors
+    m.steering, m.throttle, m.scale_steering = 0.8, 0.3, True
+    control.speed.forward_ok, control.speed.forward = True, 4.0
+    motors.drive_car(control, True, mot)
+    assert (m.out_steering, m.out_throttle) == pytest.approx((0.2, 0.3))
+    mot.STR_THR_MIX, mot.THST_ASYM = 0.5, 1.0
+    m.steering = 0.1
+    motors.drive_skid(control, True, mot)
+    assert (m.out_left, m.out_right) == pytest.approx((0.4, 0.2))
+    m.test_motor, m.test_value = TEST_THROTTLE, 0.5
+    motors.run_motor_test(m, mot)
+    assert (m.out_steering, m.out_throttle, m.out_left, m.out_right) == (0.0, 0.5, 0.0, 0.0)

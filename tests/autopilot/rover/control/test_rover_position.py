@@ -7,13 +7,18 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from sitl.autopilot.control.pid import Gains
 from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.rover.control import forward_speed, motors, position, speed, steering
-from sitl.autopilot.rover.control.state import DT
-from sitl.core.algebra import ZERO2, horizontal, norm2
+from sitl.autopilot.rover.control.state import DT, PositionState
+from sitl.core.algebra import ZERO2, dot2, horizontal, norm2
 from sitl.core.vectors import Vec2
 from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle
+
+number = st.floats(-50.0, 50.0)
 
 
 def ready(heading=0.0, **params):
@@ -147,3 +152,34 @@ def test_a_way_straight_back_begins_with_a_turn(speed_max):
     position.set_pos_vel_accel(ap.control.position, standing(-10.0, 0.0))
     follow(car)
     assert ap.control.position.desired_lat_accel > 0.0
+
+
+@given(number, number, number, number)
+def test_the_correction_points_at_the_target_and_is_no_faster_than_the_limit(n, e, north, east):
+    c = PositionState()
+    position.set_limits(c, 3.0, 1.0, 2.0, 1.0)
+    c.pos_target = Vec2(n, e)
+    vel = position.control_position(c, Vec2(north, east), 0.8)
+    assert norm2(vel) <= 3.0 + 1e-6
+    assert dot2(vel, Vec2(n - north, e - east)) >= 0.0
+    assert norm2(c.pos_target - Vec2(north, east)) <= math.hypot(n - north, e - east) + 1e-9
+
+
+@given(st.floats(-5.0, 5.0), st.floats(0.0, 5.0), st.booleans())
+def test_a_car_keeps_moving_its_way(along, slowest, backward):
+    c = PositionState()
+    c.reversed = backward
+    size = abs(along) + 0.5
+    out = position.speed_along(c, along, size, slowest)
+    assert (-out if backward else out) >= min(size, slowest)
+
+
+def test_the_velocity_loop_on_its_record_alone():
+    c = PositionState()
+    c.vel_target = Vec2(2.0, -1.0)
+    gains = Gains(
+        p=0.5, i=1.0, d=0.0, ff=0.1, d_ff=0.0, i_max=0.01, pd_max=0.0, target_hz=0.0, error_hz=0.0, derivative_hz=0.0
+    )
+    out = position.control_velocity(c, ZERO2, gains)
+    assert norm2(c.vel_integrator) == pytest.approx(0.01)
+    assert tuple(out - c.vel_integrator) == pytest.approx((1.2, -0.6))

@@ -6,10 +6,15 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from sitl.autopilot.estimation.status import VELOCITY_HORIZ
 from sitl.autopilot.rover.control import speed
-from sitl.autopilot.rover.control.forward_speed import sense, yaw_rate
-from sitl.autopilot.rover.control.state import DT
+from sitl.autopilot.rover.control.forward_speed import ForwardSpeed, estimate_forward_speed, sense, yaw_rate
+from sitl.autopilot.rover.control.state import DT, Control, SpeedState
+from sitl.autopilot.rover.parameters import Parameters
+from sitl.autopilot.state import Estimate, Sensors
 from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.rover.control.rover_car import PERIOD_US, arm, finish, make_vehicle, set_motion
 
@@ -146,3 +151,25 @@ def test_bad_numbers_brake(bad):
     assert math.isfinite(v.autopilot.control.speed.desired)
     v.autopilot.estimate.vel = v.autopilot.estimate.vel.replace(x=bad)
     assert sense(v) == (False, 0.0)
+
+
+@given(st.lists(st.floats(-30.0, 30.0), min_size=1, max_size=30), st.floats(0.1, 5.0), st.floats(0.1, 5.0))
+def test_desired_speed_keeps_its_limits_whatever_is_asked(wanted, accel, decel):
+    control, params = Control(), Parameters()
+    params.ATC.ACCEL_MAX, params.ATC.DECEL_MAX, params.ATC.BRAKE = accel, decel, 1.0
+    for desired in wanted:
+        before = control.speed.desired
+        assert math.isfinite(speed.control_speed(control, desired, ForwardSpeed(True, before), params))
+        assert abs(control.speed.desired - before) <= max(accel, decel) * DT + 1e-12
+        control.tick += 1
+
+
+def test_speed_sources_in_their_order():
+    s, estimate, sensors = SpeedState(), Estimate(), Sensors()
+    assert estimate_forward_speed(s, estimate, sensors) == (False, 0.0)
+    s.wheel_ok, s.wheel = True, 1.0
+    assert estimate_forward_speed(s, estimate, sensors) == (True, 1.0)
+    sensors.gps_fix, sensors.gps_vel = 3, (-200, 0, 0)
+    assert estimate_forward_speed(s, estimate, sensors) == (True, -2.0)
+    estimate.status_flags, estimate.vel = VELOCITY_HORIZ, Vec3(3.0, 9.0, 0.0)
+    assert estimate_forward_speed(s, estimate, sensors) == (True, 3.0)

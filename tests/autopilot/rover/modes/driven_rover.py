@@ -20,7 +20,7 @@ from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.parameters import TABLE
 from sitl.autopilot.rover.state import Autopilot
-from sitl.autopilot.state import Actuators, Sensors
+from sitl.core.border import Actuators, Sensors
 from sitl.core.records import Record
 from sitl.core.vectors import Vec2
 

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sitl.autopilot.events import LEG_ENDING
 from sitl.autopilot.navigation import path
@@ -15,6 +17,9 @@ from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.navigation import pivot, waypoint
 from sitl.autopilot.rover.navigation.planner import PLANNER
+from sitl.autopilot.rover.navigation.state import DriveState
+from sitl.autopilot.rover.parameters import Parameters
+from sitl.core.algebra import turned
 from sitl.core.vectors import Vec2
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -263,3 +268,28 @@ def test_limits() -> None:
     assert (waypoint.accel_max(ap.params), waypoint.jerk_max(ap.params)) == (0.5, 3.0)
     ap.params.TURN_RADIUS = 7.0
     assert waypoint.corner_radius(ap.params) == 7.0
+
+
+@given(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0), st.floats(-3.0, 3.0))
+def test_crosstrack_and_finish_line_turn_with_the_world(n: float, e: float, heading: float) -> None:
+    """Seen from the line, it does not matter where it leads."""
+    pos, target = Vec2(n, e), Vec2(20.0, 0.0)
+    assert waypoint.crosstrack(Vec2(0.0, 0.0), target, pos) == pytest.approx(-e)
+    away = waypoint.crosstrack(Vec2(0.0, 0.0), turned(target, heading), turned(pos, heading))
+    assert away == pytest.approx(-e, abs=1e-9)
+    assert waypoint.has_passed(Vec2(0.0, 0.0), target, pos) == (n >= 20.0)
+
+
+def test_pivot_on_its_record_alone() -> None:
+    drive, params = DriveState(), Parameters()
+    for servo, function in ((0, 73.0), (2, 74.0)):
+        params.SERVO[servo].FUNCTION = function
+    params.WP.PIVOT_ANGLE, params.WP.PIVOT_DELAY = 60.0, 1.0
+    pivot.check(drive, 1, math.radians(59.0), False, params)
+    assert not drive.pivoting
+    pivot.check(drive, 1, math.radians(-61.0), False, params)
+    assert pivot.is_active(drive, params)
+    pivot.check(drive, 10, 0.01, False, params)
+    assert drive.pivoting
+    pivot.check(drive, 1_000_010, 0.01, False, params)
+    assert not drive.pivoting

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Groups of parameters that other packages add to a firmware."""
+
+from __future__ import annotations
+
+import re
+from typing import TypeVar
+
+from ...core.places import ExtensionError, Places
+from .parameter import ParameterGroup
+from .parameters import Parameters
+
+P = TypeVar("P", bound=Parameters)
+
+_PLACES = Places("SITL_PARAMETERS", "group of parameters")
+
+
+def register_parameters(firmware: str, prefix: str, place: str) -> None:
+    """Give a firmware a group of parameters of another package, before the firmware is imported.
+
+    Laws read it as ``autopilot.params.PREFIX``; its names begin with "PREFIX_", and come last on the wire.
+
+    Args:
+        firmware: "copter" or "rover".
+        prefix: capital letters and digits, not taken.
+        place: where the class of the group is: "package.module:NAME", importable by that name.
+
+    Raises:
+        ExtensionError: too late, or an argument is no such text.
+    """
+    if not re.fullmatch(r"[A-Z][A-Z0-9]{0,9}", prefix):
+        raise ExtensionError(
+            f"group of parameters {place}: prefix {prefix!r} is not 1 to 10 capital letters and digits"
+        )
+    _PLACES.add(f"{firmware}.{prefix}", place)
+
+
+def with_registered(firmware: str, record: type[P]) -> type[P]:
+    """A firmware's record of parameters with the groups that other packages gave it.
+
+    Raises:
+        ExtensionError: one cannot be imported, is no group, or has a prefix that is taken.
+    """
+    found: dict[str, type[ParameterGroup]] = {}
+    for prefix, place, group in _PLACES.of(firmware):
+        if not (isinstance(group, type) and issubclass(group, ParameterGroup)):
+            raise ExtensionError(f"group of parameters {place}: {group!r} is no ParameterGroup")
+        if prefix in record.fields or prefix in found:
+            raise ExtensionError(f"group of parameters {place}: the {firmware} has parameters {prefix} already")
+        found[prefix] = group
+    if not found:
+        return record
+    members = {"__annotations__": found, "__module__": record.__module__, "__doc__": record.__doc__}
+    return type(record.__name__, (record,), members)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The border between physics and autopilot: what each lets the other know, and nothing else.
+
+It carries what MAVLink's HIL_SENSOR, HIL_GPS and HIL_ACTUATOR_CONTROLS carry, at that precision
+(https://mavlink.io/en/messages/common.html#HIL_SENSOR).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from .records import Float32, Floats, Int32, Ints, Record, Stored, array
+from .vectors import Vec2, Vec3
+
+LIDAR_SAMPLES = 360
+"""Readings of a scan that there is room for."""
+
+RC_INPUTS = 12
+"""Channels of HIL_RC_INPUTS_RAW."""
+
+NarrowVec3 = Annotated[Vec3, Stored("f4")]
+"""A vector at float32 precision, as HIL_SENSOR carries it."""
+
+
+class Sensors(Record):
+    """What the autopilot gets from its sensors."""
+
+    # HIL_SENSOR, one a tick
+    time_us: int
+    acc: NarrowVec3  # specific force, body [m/s^2]; at rest and level (0, 0, -9.81)
+    gyro: NarrowVec3  # body rates [rad/s]
+    mag: NarrowVec3  # field, body [gauss]
+    abs_pressure: Float32  # [hPa]
+    temperature: Float32  # [degC]
+    mag_count: int  # samples so far; a change tells the reader that the sample is new
+    baro_count: int
+    # HIL_GPS
+    gps_count: int
+    gps_time_us: int  # when the reader got it; the fix is older by the receiver's delay
+    gps_fix: int  # GPS_FIX_TYPE: 0 no GPS, 1 none, 3 3D
+    gps_lat: Int32  # [degE7]
+    gps_lon: Int32  # [degE7]
+    gps_alt: Int32  # above mean sea level [mm]
+    gps_eph: Int32  # HDOP * 100
+    gps_epv: Int32  # VDOP * 100
+    gps_vel: Annotated[Vec3, Stored("i4")]  # NED, whole [cm/s]
+    gps_satellites: Int32
+    # BATTERY_STATUS
+    battery_voltage: Float32  # [V]
+    battery_current: Float32  # [A]
+    # WHEEL_DISTANCE, of a vehicle with encoders
+    wheel_count: int  # samples so far
+    wheel_distance: Vec2  # rolled by the left and right driven wheel since power-on, forward positive [m]
+    # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.plants.lidar)
+    lidar_count: int  # scans so far
+    lidar_time_us: int  # of the last one
+    rangefinder_count: int  # readings so far
+    # counter-clockwise from right to left [m]; inf: nothing in range
+    lidar_ranges: Floats = array(LIDAR_SAMPLES, stored="f4")
+    rangefinder_range: Floats = array(1, stored="f4")  # looking down [m]; inf: nothing in range
+    # HIL_RC_INPUTS_RAW: frames of a receiver that the physics side has; without any there is a simulated transmitter
+    rc_count: int  # frames so far
+    rc_time_us: int  # of the last one
+    rc_channels: Ints = array(RC_INPUTS, stored="i8")  # pulses [us]; 0 unknown
+
+
+class Actuators(Record):
+    """What the autopilot gives to motors and servos."""
+
+    controls: Floats = array(16, stored="f4")  # 0 .. 1 a rotor (zero when disarmed), -1 .. 1 a servo or a wheel's motor
+    pwm: Ints = array(16, stored="i8")  # the same as pulses [us], whole microseconds
+    armed: bool

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parts of the compiled core that other packages bring: modes, groups of parameters.
+
+Each is named by where it is, "package.module:NAME", and kept in an environment variable, so that the processes that
+compile the core and those of a pool have it, too; a shell can set the variable as well.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import re
+from collections.abc import Iterator
+
+from ..errors import SitlError
+
+
+class ExtensionError(SitlError, ValueError):
+    """A part of another package that cannot be taken; the message says which, and why."""
+
+
+class Places:
+    """The parts of one sort.
+
+    Args:
+        variable: name of the environment variable: "OWNER=package.module:NAME ...".
+        noun: what one is called in messages.
+    """
+
+    def __init__(self, variable: str, noun: str) -> None:
+        self.variable, self.noun = variable, noun
+        self._read: set[str] = set()
+
+    def add(self, owner: str, place: str) -> None:
+        """Keep a part for ``owner``, which must not have asked for its parts yet.
+
+        Raises:
+            ExtensionError: too late, or ``place`` does not say where it is.
+        """
+        name = owner.split(".")[0]
+        if name in self._read:
+            raise ExtensionError(f"{self.noun} {place}: too late, the {name} firmware is loaded; register it before")
+        if not re.fullmatch(r"[\w.]+:\w+", place):
+            raise ExtensionError(f'{self.noun} {place!r}: where it is must be written as "package.module:NAME"')
+        known = os.environ.get(self.variable, "").split()
+        if f"{owner}={place}" not in known:
+            os.environ[self.variable] = " ".join((*known, f"{owner}={place}"))
+
+    def of(self, owner: str) -> Iterator[tuple[str, str, object]]:
+        """(key, place, part) of each part of ``owner``; the key is what stands behind a dot: "copter.TOY" -> "TOY".
+
+        Raises:
+            ExtensionError: one cannot be imported.
+        """
+        self._read.add(owner)
+        for entry in os.environ.get(self.variable, "").split():
+            whose, _, place = entry.partition("=")
+            name, _, key = whose.partition(".")
+            if name == owner:
+                yield key, place, self._load(place)
+
+    def _load(self, place: str) -> object:
+        module, _, name = place.partition(":")
+        try:
+            return getattr(importlib.import_module(module), name)
+        except (ImportError, AttributeError, ValueError) as error:
+            raise ExtensionError(f"{self.noun} {place}: {error}") from error

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter as environments drive it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
+from sitl.autopilot.copter.modes.guided import GUIDED
+from sitl.core.constants import TICK_S
+
+from ..mavlink import px4, setpoints
+from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
+from .kind import FAR, RobotKind, pulses
+
+_ARDUPILOT = RobotKind(
+    setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
+    modes={"rc": ALT_HOLD, "velocity": GUIDED, "position": GUIDED, "attitude": GUIDED},
+    guided=GUIDED,
+    encode=setpoints.COPTER,
+    tick=TICK_S,
+    crash_range=0.2,
+    discrete={
+        "rc": {  # the paper's
+            "forward": pulses(1500, 1400, 1500),
+            "left": pulses(1400, 1500, 1500),
+            "right": pulses(1600, 1500, 1500),
+        },
+        "velocity": {
+            "forward": (0.5, 0.0, 0.0, 0.0),
+            "left": (0.2, 0.0, 0.0, 0.6),
+            "right": (0.2, 0.0, 0.0, -0.6),
+        },
+    },
+    continuous={
+        "rc": ((1300, 1300, 1300, 1300), (1700, 1700, 1700, 1700), (0, 1, 2, 3)),
+        "velocity": ((-1.0, -1.0, -0.5, -1.0), (1.0, 1.0, 0.5, 1.0), (0, 1, 2, 3)),
+        "position": ((-FAR, -FAR, 0.5, -3.2), (FAR, FAR, 100.0, 3.2), (0, 1, 2, 3)),
+        "attitude": ((-0.2, -0.2, -1.0, -1.0), (0.2, 0.2, 1.0, 1.0), (0, 1, 2, 3)),
+    },
+    takes_off=True,
+    feels_wind=True,
+)
+_PX4 = replace(
+    _ARDUPILOT,
+    setpoints=(VELOCITY, POSITION),
+    modes={"velocity": px4.OFFBOARD, "position": px4.OFFBOARD},
+    guided=px4.OFFBOARD,
+    encode=px4.COPTER,
+    discrete={"velocity": _ARDUPILOT.discrete["velocity"]},
+    continuous={name: _ARDUPILOT.continuous[name] for name in ("velocity", "position")},
+)
+"""A copter that PX4 flies: it has no climb rate in attitude set-points, and takes sticks in modes of its own."""
+
+ROBOT = replace(_ARDUPILOT, with_px4=_PX4)

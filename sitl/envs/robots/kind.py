@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What environments need to know of a kind of vehicle: modes, set-points, usual actions; part "environments" of
+``sitl.vehicle.kind.Kind``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sitl.vehicle.kinds import KINDS
+from sitl.vehicles import Airframe
+
+from ..actions import Action, Continuous, Discrete
+from ..mavlink.setpoints import Encode
+from ..options import EnvOptionError
+from ..setpoints import Setpoint
+from .robot import Volume
+
+Rows = Mapping[str, tuple[float, ...]]
+Limits = tuple[tuple[float, ...], tuple[float, ...], tuple[int, ...]]
+"""Low limits, high limits, and the columns of the set-point that they belong to."""
+
+
+@dataclass(frozen=True)
+class RobotKind:
+    """A kind of vehicle with an autopilot, as environments drive it."""
+
+    setpoints: tuple[Setpoint, ...]
+    modes: Mapping[str, int]
+    """Flight mode for each kind of set-point."""
+    guided: int
+    encode: Mapping[str, Encode]
+    tick: float
+    """Period of its autopilot's loop [s]."""
+    crash_range: float
+    """Range below which a reading is a crash, as in the paper [m]."""
+    discrete: Mapping[str, Rows]
+    continuous: Mapping[str, Limits]
+    takes_off: bool
+    """An episode begins in the air."""
+    feels_wind: bool
+    """Wind is among the figures that may be changed."""
+    with_px4: RobotKind | None = None
+    """The same when PX4 controls it; None: environments do not drive it then."""
+
+    def action(self, form: str, setpoint: Setpoint) -> Action:
+        """The default actions of a form, "discrete" or "continuous", for a kind of set-point."""
+        if form == "discrete":
+            if setpoint.name not in self.discrete:
+                allowed = ", ".join(self.discrete)
+                raise EnvOptionError(f"no discrete actions for setpoint {setpoint.name!r}; there are for {allowed}")
+            return Discrete(setpoint, self.discrete[setpoint.name])
+        return Continuous(setpoint, *self.continuous[setpoint.name])
+
+
+def robot_kind(name: str) -> RobotKind:
+    """Of a kind of vehicle, by its name.
+
+    Raises:
+        UnknownKindError, MissingPartError: there is no such kind, or environments cannot drive it.
+    """
+    return KINDS[name].part("environments", RobotKind)
+
+
+def volume(airframe: Airframe, climbs: float) -> Volume:
+    """The volume of a vehicle, extended upwards by the height that it climbs [m]."""
+    reach = max(abs(x) for x in airframe.value("contact_along")) if airframe.value("contact_discs") > 1 else 0.0
+    return Volume(
+        float(reach + airframe.value("contact_radius")),
+        0.0 - float(airframe.value("contact_bottom")),
+        float(airframe.value("contact_top")) + climbs,
+    )
+
+
+def pulses(one: int, two: int, three: int) -> tuple[float, ...]:
+    """A row of RC_OVERRIDE: channels 1 to 3 [us], the others released."""
+    return (one, two, three, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+FAR = 10_000.0
+"""A limit that no position reaches [m]."""

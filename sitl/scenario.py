@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is simulated: one vehicle, where it stands, its world, what moves it.
+
+The command line, environments, missions, recordings and hosts of foreign autopilots describe a simulation by it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+from numbers import Integral
+from pathlib import Path
+from typing import Any, TypedDict
+
+from . import vehicles, worlds
+from .errors import OptionError, did_you_mean
+from .physics.engines import NATIVE
+from .physics.native.power_on import DEFAULT_HOME, Home
+from .vehicle.kind import Kind
+from .vehicle.kinds import DEFAULT, KINDS
+from .vehicles import Airframe
+from .worlds import World
+
+ESTIMATORS = ("ekf", "truth")
+StartPose = str | Sequence[float]
+"""Name of a start pose of the world, or x, y, z [m], yaw [deg] in the world's frame."""
+
+
+class Options(TypedDict, total=False):
+    """The fields of a ``Scenario`` besides its frame, as keyword arguments."""
+
+    home: Home | None
+    seed: int | None
+    estimator: str
+    params: Mapping[str, float] | None
+    world: str | Path | World | None
+    start: StartPose | None
+    physics: str
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario:
+    """What is simulated. It is checked as far as it can be without loading the world or the physics.
+
+    Args:
+        frame: airframe name (``sitl.vehicles.names()``), path of a file that defines one, or an Airframe.
+        home: where it stands at power-on: latitude, longitude [deg], altitude [m], heading [deg]; None: Canberra.
+        seed: seed of all sensor noise and turbulence; None: 0.
+        estimator: "ekf", or "truth" for work on controllers.
+        params: values under ArduPilot's names, over the airframe's own and the defaults.
+        world: name (``sitl.worlds.names()``), path of a .toml file, or a World. Its origin is at ``home``, and the
+            vehicle stands at ``start``; home's heading does not count.
+        start: name of one of the world's start poses, or x, y, z [m], yaw [deg] in the world's frame; None: the
+            world's own for this airframe.
+        physics: "native", "pybullet", "jsbsim", or where the physics is: "hil:tcp:HOST:PORT" (``sitl physics``),
+            "json:HOST:PORT" (a simulator with ArduPilot's JSON interface). Home, seed, world and start of a physics
+            elsewhere are its own.
+
+    Raises:
+        OptionError, sitl.vehicles.AirframeError: a value that cannot be taken, named.
+    """
+
+    frame: str | Airframe = KINDS[DEFAULT].default_frame
+    home: Home | None = None
+    seed: int | None = None
+    estimator: str = ESTIMATORS[0]
+    params: Mapping[str, float] | None = field(default_factory=dict)
+    world: str | Path | World | None = None
+    start: StartPose | None = None
+    physics: str = NATIVE
+
+    def __post_init__(self) -> None:
+        if self.estimator not in ESTIMATORS:
+            raise OptionError(f"estimator {self.estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
+        object.__setattr__(self, "params", dict(self.params or {}))
+        if self.home is not None:
+            object.__setattr__(self, "home", checked_home(self.home))
+        if self.seed is not None:
+            object.__setattr__(self, "seed", checked_seed(self.seed))
+
+    @classmethod
+    def of(cls, frame: Scenario | str | Airframe | None = None, **options: Any) -> Scenario:
+        """A scenario as functions take it: one that is made already, with ``options`` over its fields, or a frame.
+
+        Raises:
+            OptionError: an option that there is not; the message lists those there are.
+        """
+        known = [f.name for f in fields(cls)]
+        for name in options:
+            if name not in known:
+                raise OptionError(f"option {name!r} is none of {', '.join(known)}{did_you_mean(name, known)}")
+        if isinstance(frame, Scenario):
+            return replace(frame, **options) if options else frame
+        return cls(**options) if frame is None else cls(frame, **options)
+
+    @cached_property
+    def airframe(self) -> Airframe:
+        """The vehicle.
+
+        Raises:
+            AirframeError: there is no such airframe.
+        """
+        return vehicles.load(self.frame)
+
+    @property
+    def kind(self) -> Kind:
+        """Of vehicle.
+
+        Raises:
+            UnknownKindError: no package defines it.
+        """
+        return KINDS[self.airframe.kind]
+
+    @property
+    def home_or_default(self) -> Home:
+        """Where the vehicle stands when the physics is in this process."""
+        return self.home or DEFAULT_HOME
+
+    @property
+    def seed_or_default(self) -> int:
+        """0 when none is given."""
+        return self.seed or 0
+
+    def load_world(self) -> World | None:
+        """The world, if there is one.
+
+        Raises:
+            OptionError: a start pose without a world.
+            WorldError: no such world.
+        """
+        if self.world is None:
+            if self.start is not None:
+                raise OptionError(f"start {self.start!r} needs a world; without one a vehicle starts at its home")
+            return None
+        return worlds.load(self.world)
+
+    # ------------------------------------------------------------------ as JSON
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON has it; ``from_json`` makes the same scenario of that.
+
+        An airframe that has no name here is kept with its figures. A world made by a program is kept by its name alone
+        ("file" is None): ``from_json`` needs it again.
+        """
+        airframe, start = self.airframe, self.start
+        frame: str | None
+        if isinstance(self.frame, str):
+            frame = self.frame
+        else:
+            named = airframe.name in vehicles.names() and vehicles.load(airframe.name) is airframe
+            frame = airframe.name if named else None
+        return {
+            "vehicle": airframe.kind,
+            "frame": frame,
+            "airframe": vehicles.to_data(airframe),
+            "home": list(self.home_or_default),
+            "seed": self.seed_or_default,
+            "estimator": self.estimator,
+            "physics": self.physics,
+            "world": _world_to_json(self.world),
+            "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
+            "params": {name: float(value) for name, value in (self.params or {}).items()},
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any], **options: Any) -> Scenario:
+        """A scenario of what ``to_json`` gave; ``options`` stand over it. No file that the data name is run.
+
+        Raises:
+            OptionError, sitl.vehicles.AirframeError: the data make no scenario.
+        """
+        if options.get("frame") is None:
+            options["frame"] = _frame_of(data)
+        if options.get("world") is None and data["world"] is not None:
+            options["world"] = data["world"]["file"]
+            if options["world"] is None:
+                raise OptionError(f"world {data['world']['name']!r} was made by a program; it has to be given")
+        start = data["start"]
+        found: dict[str, Any] = {
+            "home": tuple(data["home"]),
+            "seed": data["seed"],
+            "estimator": data["estimator"],
+            "params": data["params"],
+            "start": tuple(start) if isinstance(start, list) else start,
+            "physics": data["physics"],
+        }
+        return cls(**{**found, **{name: value for name, value in options.items() if value is not None}})
+
+
+def _frame_of(data: Mapping[str, Any]) -> str | Airframe:
+    """Ours by its name, any other from its figures: an airframe's file is Python, and would be run."""
+    frame = data["frame"]
+    if isinstance(frame, str) and not frame.endswith(".py"):
+        return frame
+    return vehicles.of_data(KINDS[data["vehicle"]].airframe, data["airframe"])
+
+
+def _world_to_json(world: str | Path | World | None) -> dict[str, Any] | None:
+    if world is None:
+        return None
+    found = worlds.load(world)
+    if not isinstance(world, str | Path):
+        return {"file": found.name if found.name in worlds.names() and worlds.load(found.name) is found else None,
+                "name": found.name}  # fmt: skip
+    return {"file": str(world), "name": found.name}
+
+
+def checked_home(home: Home) -> Home:
+    """``home`` as floats; OptionError when it is not four numbers or not on the globe."""
+    try:
+        lat, lon, alt, heading = (float(number) for number in home)
+    except (TypeError, ValueError):
+        wanted = "(latitude, longitude, altitude, heading) in degrees and metres"
+        raise OptionError(f"home {home!r} is not {wanted}") from None
+    if not (abs(lat) <= 90 and abs(lon) <= 180 and math.isfinite(alt) and math.isfinite(heading)):
+        raise OptionError(f"home {home}: latitude is within +-90, longitude within +-180 degrees, the rest finite")
+    return (lat, lon, alt, heading)
+
+
+def checked_seed(seed: int) -> int:
+    """``seed``; OptionError when it is not a whole number."""
+    if not isinstance(seed, Integral):
+        raise OptionError(f"seed {seed!r} is not a whole number")
+    return int(seed)

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The boat's face on MAVLink."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from sitl.bridge.autopilot_api import Note, Vector, Yaw
+from sitl.bridge.base_autopilot import BaseAutopilot
+from sitl.bridge.dialect import message
+from sitl.bridge.profile import Controllers, Mode, Profile
+from sitl.bridge.services import commands_system, commands_vehicle
+from sitl.bridge.services.setpoints import SetpointService
+from sitl.bridge.telemetry.builder import Build, Context
+from sitl.bridge.telemetry.identity import CAPABILITIES
+
+from .firmware import AHEAD
+
+SURFACE_BOAT, ARDUPILOTMEGA, ACTIVE, ARMED = 11, 3, 4, 128
+
+
+class BoatAutopilot(BaseAutopilot):
+    """What the services call."""
+
+    def arm(self, force: bool) -> bool:
+        self._v.autopilot.arming.armed = 1
+        return True
+
+    def disarm(self, force: bool) -> bool:
+        self._v.autopilot.arming.armed = 0
+        return True
+
+    def run_prearm_checks(self) -> None: ...
+
+    def set_mode(self, number: int) -> bool:
+        return number == AHEAD
+
+    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
+        return []
+
+    def set_servo(self, number: int, pulse: int) -> bool:
+        return False
+
+    def change_speed(self, kind: int, speed: float) -> bool:
+        return False
+
+    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
+        return False
+
+    def guided_stop(self) -> bool:
+        return False
+
+
+def heartbeat(context: Context) -> Build:
+    """HEARTBEAT: a boat, its mode, armed or not."""
+    read = context.fields("autopilot.arming.armed", "autopilot.modes.number")
+    pack = message("HEARTBEAT").pack
+
+    def build() -> bytes:
+        armed, mode = read()
+        return pack(mode, SURFACE_BOAT, ARDUPILOTMEGA, 1 | (ARMED if armed else 0), ACTIVE, 3)
+
+    return build
+
+
+def no_controllers(mode: int, armed: bool) -> int:
+    """Bits of SYS_STATUS."""
+    return 0
+
+
+_VEHICLE: dict[int, Any] = {**commands_vehicle.COMMANDS, **commands_system.COMMANDS}
+PROFILE = Profile(
+    firmware="Boat",
+    mav_type=SURFACE_BOAT,
+    capabilities=CAPABILITIES,
+    modes=(Mode(AHEAD, "AHEAD"),),
+    auto=-1,
+    guided=-1,
+    rtl=-1,
+    groups={6: ("POSITION", ("LOCAL_POSITION_NED",))},
+    commands=_VEHICLE,
+    set_points=SetpointService,
+    texts={},
+    sticks=(),
+    receiver_timeout=1.0,
+    controllers=Controllers(0, no_controllers, healthy_at_rest=True),
+    builders={"HEARTBEAT": heartbeat},
+    autopilot=BoatAutopilot,
+)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The boat's hull: its speed follows the throttle with a lag, its heading stays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from sitl.core.constants import TICK_S, TICK_US
+from sitl.core.kernels import unit
+from sitl.core.records import Record
+from sitl.physics.native import battery, records
+from sitl.physics.native.power_on import Home, clear, place, wake
+from sitl.physics.native.prepare import prepare_shared
+from sitl.physics.native.sensors.sense import sense
+from sitl.vehicles import Airframe, sensor_sets
+from sitl.vehicles.figures import common
+from sitl.vehicles.figures.battery import Battery
+from sitl.vehicles.figures.body import Body, Outline
+from sitl.vehicles.figures.figure import figure, figures
+from sitl.vehicles.figures.ranging import Ranging
+from sitl.vehicles.figures.sensors import Sensors
+
+
+class Motor(Record):
+    """What drives it."""
+
+    speed_max: float = figure("m/s", "at full throttle", 0.1, 50.0)
+
+
+class Figures(common.Figures, Body, Battery, Sensors, Outline, Ranging, Motor):
+    """All figures of a boat."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoatAirframe(Airframe):
+    """A boat as data."""
+
+    kind: ClassVar[str] = "boat"
+    known = figures(Figures)
+    dtype = Figures.dtype
+
+
+class Hull(Record):
+    """What only a boat has."""
+
+    speed: float  # through the water [m/s]
+
+
+class Physics(records.Physics):
+    """The physics of a boat."""
+
+    airframe: Figures
+    hull: Hull
+
+
+@unit
+def step(fleet: Sequence[Any], i: int) -> None:
+    """One tick: throttle in, sensors out. The boat heads north."""
+    v = fleet[i]
+    v.time_us += TICK_US
+    v.tick += 1
+    p = v.physics
+    wanted = v.actuators.controls[0] * p.airframe.speed_max
+    change = TICK_S * (wanted - p.hull.speed)
+    p.hull.speed += change
+    p.body.vel[0] = p.hull.speed
+    p.body.pos[0] += TICK_S * p.hull.speed
+    p.body.specific_force[0] = change / TICK_S
+    battery.update(p, 20.0)
+    sense(p, v.sensors, int(v.tick), int(v.time_us), v.rng)
+
+
+def init(v: Any, airframe: BoatAirframe, home: Home, seed: int) -> None:
+    """Power-on at home, heading north."""
+    clear(v, airframe, seed)
+    prepare_shared(v.physics)
+    place(v.physics, (*home[:3], 0.0))
+    wake(v)
+
+
+AIRFRAME = BoatAirframe(
+    name="dinghy",
+    description="A dinghy with an electric motor",
+    figures={
+        "mass": 80.0,
+        "inertia": (10.0, 40.0, 45.0),
+        "speed_max": 4.0,
+        "battery_voltage_full": 12.6,
+        "battery_capacity": 50.0,
+        "battery_resistance": 0.05,
+        "avionics_current": 0.5,
+        **sensor_sets.ADIS16448,
+        **sensor_sets.UBLOX_M8,
+        **sensor_sets.MS5611,
+        **sensor_sets.HMC5883,
+    },
+)
