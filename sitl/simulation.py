@@ -265,7 +265,7 @@ class Simulation:
 
     def parameter_changed(self, name: str) -> None:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
-        if name.startswith(sim_parameters.PREFIX):
+        if sim_parameters.acts_on_the_world(name):
             self.plant.parameter_changed(name)
 
     def reseed(self, seed: int) -> None:

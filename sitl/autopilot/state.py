@@ -151,12 +151,12 @@ class Vehicle(Protocol):
     """What the autopilot sees of the vehicle that it flies: time, sensors, and what it writes."""
 
     @property
-    def tick(self) -> int:
-        """Ticks of 2.5 ms since boot."""
-
-    @property
     def time_us(self) -> int:
         """Since boot [us]; only physics advances it."""
+
+    @property
+    def tick(self) -> int:
+        """Ticks since boot."""
 
     @property
     def sensors(self) -> Sensors:

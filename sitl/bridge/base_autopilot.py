@@ -75,7 +75,7 @@ class BaseAutopilot:
         return bool(ok)
 
     def disarm(self, force: bool) -> bool:
-        return bool(self._arming.disarm(self._v, BY_MAVLINK, int(force)))
+        return bool(self._arming.disarm(self._v, BY_MAVLINK, force))
 
     def run_prearm_checks(self) -> None:
         self._say(CRITICAL, self._arming.texts(self._arming.check(self._v), "PreArm: "))

@@ -18,7 +18,7 @@ from .frame import Frame
 from .links.link import Link
 from .places import Places
 from .profile import load
-from .services import ALL_SERVICES
+from .services import all_services
 from .services.events import EventService
 from .services.grants import Grants
 from .services.listener import Listener
@@ -81,7 +81,7 @@ class Bridge:
         self._handlers: dict[int, tuple[int, Handler]] = {}
         """By message number: place of the field target_system, -1 when there is none, and what is to be done."""
         self.services: dict[type, Service] = {}
-        for kind in ALL_SERVICES:
+        for kind in all_services():
             service = self.profile.set_points(self) if kind is SetpointService else kind(self)
             self.services[kind] = service
             for name, handler in service.handlers().items():

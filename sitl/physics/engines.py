@@ -11,6 +11,29 @@ from .engine import Engine, EngineError, Seat
 NATIVE = "native"
 ENGINES = ("pybullet", "jsbsim")
 BACKENDS = (NATIVE, *ENGINES)
+_registered: dict[str, dict[str, str]] = {}
+"""Engines of other packages: name -> kind of vehicle -> "module:FUNCTION"."""
+
+
+def register_engine(name: str, kind: str, place: str) -> None:
+    """Make an engine of another package known in this process.
+
+    Args:
+        name: what ``physics=`` takes.
+        kind: name of a kind of vehicle that it simulates.
+        place: "module:FUNCTION" of a function that makes an ``Engine`` of a ``Seat``.
+
+    Raises:
+        EngineError: the name is one of ours.
+    """
+    if name in BACKENDS:
+        raise EngineError(f"physics {name!r} comes with the simulator; choose another name")
+    _registered.setdefault(name, {})[kind] = place
+
+
+def backends() -> tuple[str, ...]:
+    """Names of all engines, native physics first."""
+    return (*BACKENDS, *_registered)
 
 
 def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[Seat], Engine]:
@@ -24,8 +47,9 @@ def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[Seat], En
     Raises:
         EngineError: no engine of this name, or it does not simulate this kind.
     """
-    if name not in ENGINES and name not in models:
-        raise EngineError(f"physics {name!r} is not known; there are {', '.join(BACKENDS)}")
+    models = {**models, **{engine: places[kind] for engine, places in _registered.items() if kind in places}}
+    if name not in backends() and name not in models:
+        raise EngineError(f"physics {name!r} is not known; there are {', '.join(backends())}")
     if name not in models:
         able = ", ".join((NATIVE, *models))
         raise EngineError(f"physics {name!r} has no model of a {kind}; it is simulated by {able}")

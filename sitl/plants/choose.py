@@ -7,7 +7,7 @@ from collections.abc import Callable
 from importlib import import_module
 
 from ..errors import OptionError
-from ..physics.engines import BACKENDS
+from ..physics.engines import BACKENDS, backends
 from ..scenario import Scenario
 from .plant import Craft, Plant
 
@@ -22,7 +22,7 @@ def is_remote(physics: str) -> bool:
     Raises:
         OptionError: no physics of this name.
     """
-    if physics in BACKENDS:
+    if physics in backends():
         return False
     scheme = physics.partition(":")[0] if isinstance(physics, str) else ""
     if scheme in LINKS and ":" in physics:

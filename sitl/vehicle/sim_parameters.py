@@ -3,15 +3,38 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+
+from .record import Vehicle
 
 PREFIX = "SIM_"
+Fault = Callable[[Vehicle], None]
+"""Brings the physics or the sensors of a vehicle in line with its parameters."""
+
+_registered: dict[str, Fault] = {}
 
 
-def apply(v: Any) -> None:
-    """Bring what every kind of vehicle has in line with the SIM_ parameters of ``v``."""
-    params, physics, wind = v.autopilot.params, v.physics, v.physics.wind
-    wind.speed, wind.direction = params.SIM.WIND_SPD, params.SIM.WIND_DIR
-    wind.turbulence, wind.time_constant = params.SIM.WIND_TURB, params.SIM.WIND_TC
-    physics.sensors.gps_off = params.SIM.GPS1_ENABLE == 0
-    v.autopilot.rc.has_receiver = int(params.SIM.RC_FAIL == 0)
+def register_fault(prefix: str, apply: Fault) -> None:
+    """Make a fault of another package known in this process.
+
+    Args:
+        prefix: of its parameters (``sitl.autopilot.params.registered``): whenever one is set, ``apply`` is called.
+        apply: called at power-on, too.
+    """
+    _registered[f"{prefix}_"] = apply
+
+
+def acts_on_the_world(parameter: str) -> bool:
+    """Whether a parameter belongs to the simulated world, not to the firmware."""
+    return parameter.startswith((PREFIX, *_registered))
+
+
+def apply(v: Vehicle) -> None:
+    """Bring what every kind of vehicle has in line with its SIM_ parameters, and with those of other packages."""
+    sim, physics, wind = v.autopilot.params.SIM, v.physics, v.physics.wind
+    wind.speed, wind.direction = sim.WIND_SPD, sim.WIND_DIR
+    wind.turbulence, wind.time_constant = sim.WIND_TURB, sim.WIND_TC
+    physics.sensors.gps_off = sim.GPS1_ENABLE == 0
+    v.autopilot.rc.has_receiver = sim.RC_FAIL == 0
+    for fault in _registered.values():
+        fault(v)

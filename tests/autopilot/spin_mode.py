@@ -16,11 +16,11 @@ RATE = math.radians(30.0)
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
-    if ground.is_grounded(v):
-        ground.handle(v)
+    if ground.is_grounded(v.autopilot.arming):
+        ground.rest(v.autopilot)
     else:
-        auto_yaw.turn_rate(v, RATE)
-        ground.hold(v)
+        auto_yaw.turn_at(v.autopilot, RATE)
+        ground.hold(v.autopilot)
 
 
 MODE = CopterMode(

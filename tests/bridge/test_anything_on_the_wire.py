@@ -78,8 +78,8 @@ PHASES = ("booting", "ready", "armed", "climbing", "hovering", "on a mission", "
 
 
 def finite(value: Any) -> bool:
-    if isinstance(value, dict):
-        return all(map(finite, value.values()))
+    if isinstance(value, dict | list):
+        return all(map(finite, value.values() if isinstance(value, dict) else value))
     return bool(np.all(np.isfinite(np.asarray(value, float))))
 
 

@@ -6,12 +6,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.physics.native.body import GRAVITY, fly
+from sitl.core.algebra import ZERO
+from sitl.physics.native.body import GRAVITY, Inertia, Wrench, fly
 from sitl.physics.native.copter import pieces as copter
 from sitl.physics.native.copter.step import step as step_copter
 from sitl.physics.native.obstacles import settle
 from sitl.physics.native.rover import pieces as rover
-from sitl.physics.native.rover.motion import roll
+from sitl.physics.native.rover.motion import Course, roll
 from sitl.physics.native.rover.step import step as step_rover
 from sitl.vehicle.copter import COPTER
 from sitl.vehicle.rover import ROVER
@@ -47,8 +48,9 @@ def test_a_copter_in_the_air(name: str) -> None:
         p = parts.physics
         for _ in range(int(p.airframe.substeps)):
             copter.load(views, 1)
-            p.body.rates_mean = 0.0
-            fly(p, *p.motion.force.tolist(), *p.motion.torque.tolist())
+            p.body.rates_mean = ZERO
+            inertia = Inertia(p.airframe.inertia, p.derived.inverse_inertia, p.derived.inverse_mass)
+            fly(p.body, Wrench(p.motion.force, p.motion.torque), inertia, p.derived.dt)
             rates += p.body.rates_mean
         copter.sense(views, 1)
         assert list(whole.physics.body.pos) == list(parts.physics.body.pos)
@@ -71,7 +73,8 @@ def test_a_rover_that_drives() -> None:
         rover.begin(views, 1)
         before = float(parts.physics.wheels.forward)
         parts.physics.wheels.forward = whole.physics.wheels.forward
-        roll(parts.physics, before, float(whole.physics.body.rates[2]))
+        course = Course(before, whole.physics.wheels.forward, whole.physics.body.rates.z)
+        roll(parts.physics.body, course, parts.physics.airframe.rear_axle)
         rover.sense(views, 1)
         assert list(parts.physics.wheels.speed) == list(whole.physics.wheels.speed)
         assert parts.physics.wheels.angle == whole.physics.wheels.angle
@@ -83,7 +86,7 @@ def test_a_rover_that_drives() -> None:
 def test_hard_ground_supports_from_the_first_tick_on() -> None:
     views = silent("erle_copter", COPTER)
     v = views[1]
-    settle(v.physics)
+    settle(v.physics.obstacles)
     for _ in range(20):
         copter.begin(views, 1)
         v.physics.motion.contact = (0.0, 0.0, -GRAVITY * 0.0025)  # what held it against gravity

@@ -12,12 +12,13 @@ from .parameters import ParameterService
 from .ping import PingService
 from .prearm import PreArmService
 from .rc import RcService
+from .service import Service
 from .setpoints import SetpointService
 from .statustext import StatusTextService
 from .streams import StreamService
 from .timesync import TimesyncService
 
-ALL_SERVICES = (
+ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,
     HeartbeatService,
     StreamService,
@@ -35,3 +36,15 @@ ALL_SERVICES = (
     LogDownloadService,
 )
 """In the order in which they act when several are due at the same time."""
+_registered: list[type[Service]] = []
+
+
+def register_service(service: type[Service]) -> None:
+    """Make a service of another package known in this process: every bridge that is made later has it."""
+    if service not in _registered:
+        _registered.append(service)
+
+
+def all_services() -> tuple[type[Service], ...]:
+    """Our services, then those of other packages."""
+    return (*ALL_SERVICES, *_registered)

@@ -35,13 +35,27 @@ class Context:
         return self.reader.fields(*paths)
 
 
+_registered: dict[str, Builder] = {}
+
+
+def register_builder(name: str, builder: Builder) -> None:
+    """Make a message of another package known in this process: every bridge made from now on can send it.
+
+    Args:
+        name: of the message, as the dialect has it.
+        builder: called once for each vehicle; what it returns gives the payload whenever the message is due.
+    """
+    message(name)  # refuses a name that there is not
+    _registered[name] = builder
+
+
 def builders(profile: Profile) -> dict[str, Builder]:
     """All builders by message name: this package's (each module lists its own in ``BUILDERS``) and the firmware's."""
     package = importlib.import_module(__package__)
     found: dict[str, Builder] = {}
     for module in sorted(m.name for m in pkgutil.iter_modules(package.__path__)):
         found.update(getattr(importlib.import_module(f"{__package__}.{module}"), "BUILDERS", {}))
-    return found | dict(profile.builders)
+    return found | dict(profile.builders) | _registered
 
 
 def build_all(context: Context) -> dict[int, tuple[MessageType, Build]]:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
-from sitl.physics.engines import BACKENDS, NATIVE
+from sitl.physics.engines import NATIVE, backends
 from sitl.scenario import Scenario
 from sitl.simulation import Simulation
 from sitl.vehicles import Airframe
@@ -82,8 +82,8 @@ class Vehicles(ABC):
     def __init__(self, setup: VehicleSetup) -> None:
         self.setup, self.options = setup, setup.options
         physics, count = self.options["physics"], self.options["count"]
-        if physics not in BACKENDS or (physics != NATIVE and not self.simulates):
-            raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(BACKENDS)}, of a vehicle in process")
+        if physics not in backends() or (physics != NATIVE and not self.simulates):
+            raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(backends())}, of a vehicle in process")
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]

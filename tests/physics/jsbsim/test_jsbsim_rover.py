@@ -55,7 +55,9 @@ def test_turns_on_its_steering_circle(frame: str, side: float) -> None:
     """Yaw rate by speed at half steering, slowly, is the curvature that native physics has: 2 %."""
     b = Bench(frame)
     b.run(8.0, side * 0.4, 0.0, 0.15 if frame == "ardupilot_rover" else 0.5)
-    assert b.body.rates[2] / b.p.wheels.forward == pytest.approx(curvature(b.p), rel=0.02)
+    assert b.body.rates[2] / b.p.wheels.forward == pytest.approx(
+        curvature(b.p.wheels.angle, b.p.airframe, b.p.derived), rel=0.02
+    )
     assert math.copysign(1.0, b.body.rates[2]) == side
 
 

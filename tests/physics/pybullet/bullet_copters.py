@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from sitl import vehicles
-from sitl.core.rotations import quat_from_euler
+from sitl.core.algebra import ZERO, quat_from_euler
+from sitl.core.vectors import Euler
 from sitl.physics.engine import Laws, Seat
 from sitl.physics.native.copter import pieces
 from sitl.physics.native.copter.init import init
@@ -44,7 +45,7 @@ def copter(
 def put(engine: BulletEngine, position: Sequence[float], euler: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
     """Put it down, at rest."""
     body = engine.seat.v.physics.body
-    body.pos, body.vel, body.rates, body.q = position, 0.0, 0.0, quat_from_euler(*euler)
+    body.pos, body.vel, body.rates, body.q = position, ZERO, ZERO, quat_from_euler(Euler(*euler))
     engine.seat.v.physics.ground.state = int(position[2] > -0.001)
     engine.place()
 

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from sitl.core.constants import TICK_S, TICK_US
 from sitl.core.kernels import unit
-from sitl.core.records import Record
+from sitl.core.records import Record, Records
+from sitl.core.vectors import Vec3
 from sitl.physics.native import battery, records
 from sitl.physics.native.power_on import Home, clear, place, wake
 from sitl.physics.native.prepare import prepare_shared
@@ -56,7 +56,7 @@ class Physics(records.Physics):
 
 
 @unit
-def step(fleet: Sequence[Any], i: int) -> None:
+def step(fleet: Records[records.Vehicle[Physics]], i: int) -> None:
     """One tick: throttle in, sensors out. The boat heads north."""
     v = fleet[i]
     v.time_us += TICK_US
@@ -65,17 +65,17 @@ def step(fleet: Sequence[Any], i: int) -> None:
     wanted = v.actuators.controls[0] * p.airframe.speed_max
     change = TICK_S * (wanted - p.hull.speed)
     p.hull.speed += change
-    p.body.vel[0] = p.hull.speed
-    p.body.pos[0] += TICK_S * p.hull.speed
-    p.body.specific_force[0] = change / TICK_S
-    battery.update(p, 20.0)
-    sense(p, v.sensors, int(v.tick), int(v.time_us), v.rng)
+    p.body.vel = Vec3(p.hull.speed, 0.0, 0.0)
+    p.body.pos += TICK_S * p.body.vel
+    p.body.specific_force = Vec3(change / TICK_S, 0.0, p.body.specific_force.z)
+    battery.discharge(p.battery, 20.0, p.airframe, p.derived.charge_per_amp)
+    sense(v)
 
 
 def init(v: Any, airframe: BoatAirframe, home: Home, seed: int) -> None:
     """Power-on at home, heading north."""
     clear(v, airframe, seed)
-    prepare_shared(v.physics)
+    prepare_shared(v.physics.airframe, v.physics.derived)
     place(v.physics, (*home[:3], 0.0))
     wake(v)
 

@@ -7,7 +7,9 @@ Every law returns OK, or says why it left the record as it was.
 from __future__ import annotations
 
 from ....core.kernels import law
+from ....core.vectors import Vec3
 from ..control import altitude_start, position_start
+from ..state import Autopilot
 from . import auto_yaw, guided, takeoff
 from .auto import AUTO
 from .guided import GUIDED
@@ -30,114 +32,101 @@ HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
 
 
 @law
-def is_finite3(x, y, z):
-    """Whether all of them are usable numbers: neither NaN nor infinite nor absurdly large."""
-    return abs(x) <= LARGEST and abs(y) <= LARGEST and abs(z) <= LARGEST
+def is_usable(x: float) -> bool:
+    """Whether a number is neither NaN nor infinite nor absurdly large."""
+    return abs(x) <= LARGEST
 
 
 @law
-def take_off(v, height):
+def is_usable_vector(x: Vec3) -> bool:
+    """Whether all of them are usable numbers."""
+    return is_usable(x.x) and is_usable(x.y) and is_usable(x.z)
+
+
+@law
+def take_off(ap: Autopilot, height: float) -> int:
     """MAV_CMD_NAV_TAKEOFF to ``height`` [m] above home."""
-    ap = v.autopilot
     mode = ap.modes.number
-    if not abs(height) <= LARGEST:
+    if not is_usable(height):
         return NOT_FINITE
-    if ap.arming.armed == 0:
+    if not ap.arming.armed:
         return NOT_ARMED
-    if ap.arming.landed == 0 and not (mode == GUIDED and guided.is_taking_off(v)):
+    if not ap.arming.landed and not (mode == GUIDED and guided.climbs(ap.modes)):
         return ALREADY_FLYING
     if mode != GUIDED and not has_climb_stick(mode):
         return WRONG_MODE
     target_d = ap.home.pos.z - height
     if target_d >= ap.estimate.pos.z:
         return TOO_LOW
-    if ap.arming.landed == 0:  # repeated in the climb: a client that missed the acknowledgement
+    if not ap.arming.landed:  # repeated in the climb: a client that missed the acknowledgement
         ap.modes.takeoff.target_d = target_d
         return OK
     if mode == GUIDED:
-        guided.take_off(v, target_d)
+        guided.take_off(ap, target_d)
     else:
-        takeoff.begin_user(v, height)
-    ap.arming.auto_armed = 1
+        takeoff.begin_user(ap, height)
+    ap.arming.auto_armed = True
     return OK
 
 
 @law
-def condition_yaw(v, angle, rate, direction, relative):
+def condition_yaw(ap: Autopilot, angle: float, rate: float, direction: int, relative: bool) -> int:
     """MAV_CMD_CONDITION_YAW in GUIDED and AUTO: angle [rad], rate [rad/s], direction -1, 0, 1."""
-    if not is_finite3(angle, rate, 0.0):
+    if not (is_usable(angle) and is_usable(rate)):
         return NOT_FINITE
-    mode = v.autopilot.modes.number
-    if mode != GUIDED and mode != AUTO:
+    if ap.modes.number != GUIDED and ap.modes.number != AUTO:
         return WRONG_MODE
     if rate < 0.0:
         return OUT_OF_RANGE
-    auto_yaw.fixed(v, angle, rate, direction, relative)
+    auto_yaw.turn_to(ap, angle, rate, direction, relative)
     return OK
 
 
 @law
-def set_roi(v, n, e, d):
+def set_roi(ap: Autopilot, place: Vec3) -> int:
     """Keep the nose on a point, NED [m]."""
-    if not is_finite3(n, e, d):
+    if not is_usable_vector(place):
         return NOT_FINITE
-    auto_yaw.look_at(v, n, e, d)
+    auto_yaw.look_at(ap, place)
     return OK
 
 
 @law
-def clear_roi(v):
+def clear_roi(ap: Autopilot) -> int:
     """Give the heading back to WP_YAW_BEHAVIOR."""
-    if v.autopilot.modes.auto_yaw.mode == auto_yaw.ROI:
-        auto_yaw.set_default(v, 1 if v.autopilot.modes.number == RTL else 0)
+    if ap.modes.auto_yaw.mode == auto_yaw.ROI:
+        auto_yaw.set_default(ap, ap.modes.number == RTL)
     return OK
 
 
 @law
-def change_speed(v, kind, speed):
+def change_speed(ap: Autopilot, kind: int, speed: float) -> int:
     """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode or the
     kind of set-point changes.
     """
-    if not is_finite3(speed, 0.0, 0.0):
+    if not is_usable(speed):
         return NOT_FINITE
     if speed <= 0.0:
         return OUT_OF_RANGE
-    ap = v.autopilot
-    ne = ap.control.pos_ne
-    d = ap.control.pos_d
+    path = ap.control.pos_d
     if kind == HORIZONTAL:
-        position_start.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
+        position_start.set_max_speed_accel_ne(ap, speed, ap.control.pos_ne.accel_max)
     elif kind == CLIMB:
-        altitude_start.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
+        altitude_start.set_max_speed_accel_d(ap, path.speed_down, speed, path.accel_max)
     elif kind == DESCENT:
-        altitude_start.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
+        altitude_start.set_max_speed_accel_d(ap, speed, path.speed_up, path.accel_max)
     else:
         return OUT_OF_RANGE
     return OK
 
 
 @law
-def pause(v):
-    """MAV_CMD_DO_PAUSE_CONTINUE 0 in GUIDED and AUTO: stop and hold. OK or WRONG_MODE."""
-    modes = v.autopilot.modes
-    if modes.number == GUIDED:
-        modes.guided.paused = 1
-        return OK
-    if modes.number == AUTO:
-        modes.nav.paused = 1
-        return OK
-    return WRONG_MODE
-
-
-@law
-def resume(v):
-    """MAV_CMD_DO_PAUSE_CONTINUE 1: go on."""
-    modes = v.autopilot.modes
-    if modes.number == GUIDED:
-        if modes.guided.paused != 0:
-            modes.guided.paused = 0
-        return OK
-    if modes.number == AUTO:
-        modes.nav.paused = 0
-        return OK
-    return WRONG_MODE
+def set_paused(ap: Autopilot, paused: bool) -> int:
+    """MAV_CMD_DO_PAUSE_CONTINUE in GUIDED and AUTO: stop and hold, or go on."""
+    if ap.modes.number == GUIDED:
+        ap.modes.guided.paused = paused
+    elif ap.modes.number == AUTO:
+        ap.modes.nav.paused = paused
+    else:
+        return WRONG_MODE
+    return OK

@@ -72,7 +72,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     modes.previous = modes.number
     modes.number = number
     modes.reason = reason
-    modes.takeoff.user_active = 0
+    modes.takeoff.user_active = False
     modes.wanted = 0
     if number == AUTO or modes.previous == AUTO:
         emit_and_return(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
