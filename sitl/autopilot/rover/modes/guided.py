@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GUIDED: drives what the set-points say (``guided_setpoints`` takes them); a set-point too old stops the vehicle.
+"""GUIDED: drives what the set-points say; a set-point too old stops the vehicle.
 
-Positions are good until the next set-point. A mission's GUIDED_ENABLE drives so, too, within limits of time and
+``guided_setpoints`` takes the set-points. Positions are good until the next set-point. A mission's GUIDED_ENABLE drives so, too, within limits of time and
 distance.
 """
 

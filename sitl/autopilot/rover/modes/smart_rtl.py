@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SMART_RTL: drives home the way it came, without the loops (``smart_rtl_path``)."""
+"""SMART_RTL: drives home the way it came, without the loops.
+
+``smart_rtl_path`` keeps the way.
+"""
 
 from __future__ import annotations
 
