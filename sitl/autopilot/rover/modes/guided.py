@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """GUIDED: drives what the set-points say; a set-point too old stops the vehicle.
 
-``guided_setpoints`` takes the set-points. Positions are good until the next set-point. A mission's GUIDED_ENABLE drives so, too, within limits of time and
-distance.
+``guided_setpoints`` takes the set-points. Positions are good until the next one. A mission's GUIDED_ENABLE drives so,
+too, within limits of time and distance.
 """
 
 from __future__ import annotations
