@@ -43,6 +43,28 @@ def test_a_mode_of_another_package_is_in_the_list_that_all_else_is_made_from(tex
     )
 
 
+DRIVEN = """
+from sitl.autopilot.modes import register_mode
+register_mode("rover", "cruise_mode:MODE")
+
+from sitl import Simulation
+from sitl.client import Client
+
+vehicle = Client(Simulation("erle_rover", seed=1))
+vehicle.arm()
+vehicle.set_mode("CRUISE")
+vehicle.delay(5)
+assert vehicle.mode == "CRUISE"
+print(round(float(vehicle.simulation.v.autopilot.control.speed.forward), 1))
+"""
+
+
+@pytest.mark.slow
+def test_a_driving_mode_of_another_package_is_driven_by_mavlink() -> None:
+    done = program(DRIVEN)
+    assert done.stdout.strip() == "2.0", done.stderr
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     (

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from ...autopilot.modes import Mode
-from ...autopilot.rover.modes.numbers import AUTO, GUIDED, INITIALISING, NAMES, RTL, is_autopilot
-from ...autopilot.rover.modes.update import run_mode
+from ...autopilot.rover.modes.auto import AUTO
+from ...autopilot.rover.modes.guided import GUIDED
+from ...autopilot.rover.modes.rtl import RTL
+from ...autopilot.rover.modes.table import MODES
 from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
 from ..profile import Controllers, Profile, Stick
 from ..telemetry.identity import CAPABILITIES
@@ -18,10 +19,7 @@ PROFILE = Profile(
     firmware="ArduRover",
     mav_type=telemetry.GROUND_ROVER,
     capabilities=CAPABILITIES,
-    modes=tuple(
-        Mode(number=number, name=name, run=run_mode, autonomous=is_autopilot(number), selectable=number != INITIALISING)
-        for number, name in NAMES.items()
-    ),
+    modes=MODES,
     auto=AUTO,
     guided=GUIDED,
     rtl=RTL,
