@@ -155,6 +155,10 @@ class Vehicle(Protocol):
         """Since boot [us]; only physics advances it."""
 
     @property
+    def tick(self) -> int:
+        """Ticks since boot."""
+
+    @property
     def sensors(self) -> Sensors:
         """Border: written by physics."""
 

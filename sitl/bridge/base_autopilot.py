@@ -32,9 +32,9 @@ class BaseAutopilot:
     _failsafe: Any
     """of failsafes,"""
     _set_mode: Any
-    """of changing the mode,"""
-    _numbers: Any
-    """and of the modes' numbers."""
+    """and of changing the mode."""
+    _auto: int
+    """Number of the mode that runs missions."""
 
     def __init__(self, vehicle: Any) -> None:
         self._vehicle: Vehicle = vehicle
@@ -50,7 +50,7 @@ class BaseAutopilot:
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         """What only the firmware can tell of an event of the core; nothing for most."""
         if code == events.MODE_REFUSED:
-            return [Text(WARNING, text) for text in self._numbers.refusal_texts(int(a), int(b))]
+            return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
         if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
             return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
         if code == events.FAILSAFE:
@@ -75,7 +75,7 @@ class BaseAutopilot:
         return bool(ok)
 
     def disarm(self, force: bool) -> bool:
-        return bool(self._arming.disarm(self._v, BY_MAVLINK, int(force)))
+        return bool(self._arming.disarm(self._v, BY_MAVLINK, force))
 
     def run_prearm_checks(self) -> None:
         self._say(CRITICAL, self._arming.texts(self._arming.check(self._v), "PreArm: "))
@@ -138,8 +138,8 @@ class BaseAutopilot:
 
     def start_mission(self) -> bool:
         nav = self._v.autopilot.modes.nav
-        if self.mode() != self._numbers.AUTO:
-            return self.set_mode(self._numbers.AUTO)  # it starts the mission: MODE_CHANGED reaches the sequencer
+        if self.mode() != self._auto:
+            return self.set_mode(self._auto)  # it starts the mission: MODE_CHANGED reaches the sequencer
         if nav.mission_state != RUNNING:
             if not self._sequencer().mission.present:
                 return False

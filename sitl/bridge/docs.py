@@ -118,12 +118,9 @@ def _content(builder: Callable[..., Any], name: str) -> str:
 
 
 def modes() -> str:
-    """Flight modes by number."""
-    tables = {vehicle: {mode.number: mode.name for mode in p.modes} for vehicle, p in profiles().items()}
-    numbers = sorted({number for table in tables.values() for number in table})
-    return _table(
-        ("number", *tables), [(number, *(table.get(number, "-") for table in tables.values())) for number in numbers]
-    )
+    """Flight modes by vehicle, in the order of AVAILABLE_MODES."""
+    rows = [(name, m.number, m.name, m.description) for name, profile in profiles().items() for m in profile.modes]
+    return _table(("vehicle", "number", "mode", "what it does"), rows)
 
 
 def missions() -> str:

@@ -6,10 +6,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ..autopilot.modes import Mode
 from ..vehicle.kinds import KINDS
 from .autopilot_api import Autopilot
 from .services.command import Entry
@@ -17,24 +18,6 @@ from .telemetry.builder import Builder
 
 if TYPE_CHECKING:
     from .services.setpoints import SetpointService
-
-
-class Mode(NamedTuple):
-    """A flight mode as AVAILABLE_MODES tells it."""
-
-    number: int
-    """``custom_mode`` of HEARTBEAT."""
-    name: str
-    standard: int = 0
-    """MAV_STANDARD_MODE"""
-    properties: int = 0
-    """MAV_MODE_PROPERTY bits"""
-
-
-AUTOMATIC = 4
-"""MAV_MODE_PROPERTY_AUTO_MODE: moves without the pilot's sticks."""
-NOT_SELECTABLE = 2
-"""MAV_MODE_PROPERTY_NOT_USER_SELECTABLE"""
 
 
 class Stick(NamedTuple):
@@ -71,7 +54,7 @@ class Profile:
     """MAV_TYPE of HEARTBEAT"""
     capabilities: int
     """MAV_PROTOCOL_CAPABILITY bits"""
-    modes: tuple[Mode, ...]
+    modes: Sequence[Mode[Any]]
     auto: int
     """Number of the mode that runs missions."""
     guided: int

@@ -220,7 +220,7 @@ def _weight(unit: Unit) -> int:
 def _start_worker(entry: Callable[..., Any], record: str, unit: Unit) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "sitl.core.worker", entry.__module__, record, unit.name]
     root = str(Path(__file__).resolve().parents[2])
-    path = os.pathsep.join(p for p in (root, os.environ.get("PYTHONPATH", "")) if p)
+    path = os.pathsep.join(p for p in (root, *sys.path) if p)  # modes of other packages are found, too
     environment = {**os.environ, "PYTHONPATH": path}
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.modes.numbers import is_known
+from sitl.autopilot.copter.modes.table import is_known
 from sitl.autopilot.copter.parameters import TABLE as PARAMETERS
 from sitl.bridge import dialect
 from sitl.bridge.copter.commands import COMMANDS

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from sitl.autopilot import events
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
-from sitl.autopilot.rover.modes import guided_state
+from sitl.autopilot.rover.modes import guided as guided_mode
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.rover.autopilot import RoverAutopilot
 from tests.bridge.fakes import HOME, Bench, FakeRover
@@ -89,17 +89,17 @@ def test_set_points_reach_guided(rover: RoverBench) -> None:
     rover.ready()
     guided = rover.vehicle.v.autopilot.modes.guided
     rover.local(0xDF8, 5.0, 6.0)
-    assert guided.submode == guided_state.POSITION and list(guided.pos) == [5.0, 6.0]
+    assert guided.submode == guided_mode.POSITION and list(guided.pos) == [5.0, 6.0]
     rover.local(0xDC7, 0.0, 1.5)
-    assert guided.submode == guided_state.HEADING_AND_SPEED
+    assert guided.submode == guided_mode.HEADING_AND_SPEED
     assert (float(guided.heading), float(guided.speed)) == (pytest.approx(math.pi / 2), 1.5)
     assert rover.command(213, 45, -0.5, 1) == ACCEPTED
     assert (float(guided.heading), float(guided.speed)) == (pytest.approx(math.radians(135)), -0.5)
     rover.ask(mavlink.MAVLink_set_attitude_target_message(0, 1, 1, 3, [1, 0, 0, 0], 0, 0, 0.25, 0.5))
-    assert guided.submode == guided_state.TURN_RATE_AND_SPEED and guided.turn_rate == 0.25
+    assert guided.submode == guided_mode.TURN_RATE_AND_SPEED and guided.turn_rate == 0.25
     assert guided.speed == pytest.approx(0.5 * float(rover.vehicle.v.autopilot.params.WP_SPEED))
     rover.local(0xDC7, math.nan, 0.0)
-    assert guided.submode == guided_state.STOP
+    assert guided.submode == guided_mode.STOP
 
 
 def test_speed_is_set_on_the_way_to_a_place_only(rover: RoverBench) -> None:

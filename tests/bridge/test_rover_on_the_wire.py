@@ -11,7 +11,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.rover.firmware import FIRMWARE
-from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, RTL, SMART_RTL, is_known
+from sitl.autopilot.rover.modes.auto import AUTO
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.rtl import RTL
+from sitl.autopilot.rover.modes.smart_rtl import SMART_RTL
+from sitl.autopilot.rover.modes.table import is_known
 from sitl.bridge import dialect
 from sitl.bridge.rover.commands import COMMANDS
 from sitl.client.endpoint import Endpoint

@@ -7,7 +7,7 @@ from collections import Counter
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.rover.modes.numbers import NAMES
+from sitl.autopilot.rover.modes.table import NAMES
 from sitl.bridge.frame import Splitter
 from tests.bridge.fakes import Bench
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.autopilot.rover.modes import auto_state, guided_state
+from sitl.autopilot.rover.modes import auto
+from sitl.autopilot.rover.modes import guided as guided_mode
 from sitl.core.vectors import Vec3
 from tests.bridge.fakes import HOME, Bench
 
@@ -89,7 +90,7 @@ def driving(rover_bench: Bench) -> Bench:
     rover_bench.vehicle.locate()
     ap = rover_bench.vehicle.v.autopilot
     ap.estimate.pos, ap.modes.nav.target = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
-    ap.modes.loiter.place[:], ap.modes.circle.target[:] = (13.0, 4.0), (-7.0, 4.0)
+    ap.modes.loiter.place, ap.modes.circle.target = (13.0, 4.0), (-7.0, 4.0)
     ap.modes.nav.drive.crosstrack, ap.control.position.pos_target = -1.5, (8.0, 9.0)
     return rover_bench
 
@@ -98,13 +99,13 @@ def test_targets_of_guided(driving: Bench) -> None:
     modes = driving.vehicle.v.autopilot.modes
     modes.number = GUIDED
     assert get(driving, "POSITION_TARGET_GLOBAL_INT") is None
-    modes.guided.submode, modes.guided.heading = guided_state.HEADING_AND_SPEED, math.radians(-30.5)
+    modes.guided.submode, modes.guided.heading = guided_mode.HEADING_AND_SPEED, math.radians(-30.5)
     modes.guided.has_target = 1
     output = get(driving, "NAV_CONTROLLER_OUTPUT")
     assert (output.nav_bearing, output.target_bearing, output.wp_dist, output.xtrack_error) == (-30, 0, 0, 0.0)
     modes.guided.has_target = 0
     assert get(driving, "NAV_CONTROLLER_OUTPUT").nav_bearing == 0, "timed out"
-    modes.guided.submode = guided_state.POSITION
+    modes.guided.submode = guided_mode.POSITION
     output = get(driving, "NAV_CONTROLLER_OUTPUT")
     assert (output.nav_bearing, output.target_bearing, output.wp_dist, output.xtrack_error) == (45, 90, 20, -1.5)
     target = get(driving, "POSITION_TARGET_GLOBAL_INT")
@@ -112,9 +113,9 @@ def test_targets_of_guided(driving: Bench) -> None:
 
 
 @pytest.mark.parametrize(("mode", "in_auto", "bearing", "distance"), [
-    (RTL, 0, 90, 20), (12, 0, 90, 20), (5, 0, 0, 10), (9, 0, 180, 10), (AUTO, auto_state.WAYPOINT, 90, 20),
-    (AUTO, auto_state.RTL, 90, 20), (AUTO, auto_state.CIRCLE, 180, 10), (AUTO, auto_state.LOITER, 0, 10),
-    (AUTO, auto_state.STOP, 0, 0),
+    (RTL, 0, 90, 20), (12, 0, 90, 20), (5, 0, 0, 10), (9, 0, 180, 10), (AUTO, auto.ON_PATH, 90, 20),
+    (AUTO, auto.RETURNING, 90, 20), (AUTO, auto.CIRCLING, 180, 10), (AUTO, auto.LOITERING, 0, 10),
+    (AUTO, auto.STOPPED, 0, 0),
 ])  # fmt: skip
 def test_targets_of_other_modes(driving: Bench, mode: int, in_auto: int, bearing: int, distance: int) -> None:
     modes = driving.vehicle.v.autopilot.modes
@@ -137,7 +138,7 @@ def test_no_number_of_the_record_stops_telemetry(rover_bench: Bench, value: floa
     for mode in (AUTO, RTL, GUIDED, 5, 9, 12):
         v.autopilot.modes.number, v.autopilot.estimate.origin_set = mode, 1
         v.autopilot.estimate.pos = Vec3(value, value, value)
-        v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_state.POSITION, value
+        v.autopilot.modes.guided.submode, v.autopilot.modes.guided.heading = guided_mode.POSITION, value
         v.autopilot.control.motors.throttle = v.autopilot.control.motors.out_throttle = value
         for number in rover_bench.bridge.telemetry:
             rover_bench.bridge.send_now(rover_bench.bridge.channels[0], number)

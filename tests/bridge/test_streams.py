@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.copter.modes.numbers import NAMES
+from sitl.autopilot.copter.modes.table import NAMES
 from sitl.bridge.frame import Splitter
 from tests.bridge.fakes import Bench
 

@@ -28,63 +28,46 @@ from ..arming_checks import (
 )
 from ..radio import THROTTLE, stick_pulse
 from . import pilot
-from .modes.numbers import AUTO, BRAKE, GUIDED, LAND, RTL, has_manual_throttle, requires_position
+from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
+from .state import Vehicle
 
 MANDATORY = NEED_POSITION | NEED_ALTITUDE
 """What forcing does not skip."""
 
-_ARM_ONLY = 1  # AUTO_OPTIONS and GUID_OPTIONS: arming in AUTO; arming by transmitter in GUIDED
+
+@law
+def lean_check(cos_lean: float, lean_max: float) -> int:
+    """A vehicle must stand upright: lean at most ``lean_max`` [rad]."""
+    return 0 if cos_lean >= math.cos(lean_max) else LEANING
 
 
 @law
-def mode_allows(v, method):
-    """Whether the present mode may be armed by ``method``."""
-    ap = v.autopilot
-    mode = ap.modes.number
-    if mode in (RTL, LAND, BRAKE):
-        return False
-    if mode == AUTO:
-        return (int(ap.params.AUTO_OPTIONS) & _ARM_ONLY) != 0
-    if mode == GUIDED:
-        return method != BY_RUDDER or (int(ap.params.GUID.OPTIONS) & _ARM_ONLY) != 0
-    return True
-
-
-@law
-def lean_check(v):
-    """A vehicle must stand upright."""
-    ap = v.autopilot
-    level = ap.control.attitude.cos_lean >= math.cos(math.radians(ap.params.ANGLE_MAX * 0.01))
-    return 0 if level else LEANING
-
-
-@law
-def estimate_checks(v):
+def estimate_checks(v: Vehicle) -> int:
     """Failed checks of position, height and home, as far as the mode needs them."""
     ap = v.autopilot
     gps = wants(ap.params.ARMING, CHECK_GPS)
     failed = 0
-    mode = int(ap.modes.number)
+    mode = ap.modes.number
     if requires_position(mode):
-        if ap.home.is_set == 0 and gps:
+        if not ap.home.is_set and gps:
             failed |= WAITING_FOR_HOME
         elif v.sensors.gps_fix < 3 and gps:
             failed |= GPS_FIX
-        if ap.estimate.position_ok == 0:
+        if not ap.estimate.position_ok:
             failed |= NEED_POSITION
-    if not has_manual_throttle(mode) and ap.estimate.attitude_ok == 0:
+    if not has_manual_throttle(mode) and not ap.estimate.attitude_ok:
         failed |= NEED_ALTITUDE
     return failed
 
 
 @law
-def equipment_checks(v):
+def equipment_checks(v: Vehicle) -> int:
     """Failed checks of radio, battery and frame."""
     ap = v.autopilot
     p = ap.params
     failed = battery_checks(ap.battery, ap.modes.failsafe.battery, p)
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
-        if ap.rc.receiver_ok == 0:
+        if not ap.rc.receiver_ok:
             failed |= RC_MISSING
         elif stick_pulse(ap.rc, p.RCMAP, THROTTLE) < p.FS.THR_VALUE:
             failed |= THROTTLE_FAILSAFE
@@ -94,24 +77,25 @@ def equipment_checks(v):
 
 
 @law
-def check(v):
+def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
+    lean = lean_check(ap.control.attitude.cos_lean, math.radians(ap.params.ANGLE_MAX * 0.01))
     sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, ap.params.ARMING)
-    return sensors | lean_check(v) | estimate_checks(v) | equipment_checks(v)
+    return sensors | lean | estimate_checks(v) | equipment_checks(v)
 
 
 @law
-def arm_checks(v, method):
+def arm_checks(v: Vehicle, method: int) -> int:
     """Failed checks that count only at the moment of arming."""
     ap = v.autopilot
     failed = 0
-    mode = int(ap.modes.number)
-    if not mode_allows(v, method):
+    mode = ap.modes.number
+    if not may_arm(mode, v, method):
         failed |= MODE
     if method == BY_RUDDER and ap.params.ARMING.RUDDER < 1.0:
         failed |= RUDDER_DISABLED
-    if method != BY_MAVLINK or (mode != GUIDED and mode != AUTO):
+    if method != BY_MAVLINK or not arms_at_any_throttle(mode):
         if has_manual_throttle(mode):
             if ap.modes.pilot.throttle > 0.0:
                 failed |= THROTTLE_HIGH
@@ -121,6 +105,6 @@ def arm_checks(v, method):
 
 
 @law
-def check_now(v, method):
+def check_now(v: Vehicle, method: int) -> int:
     """All failed checks of arming at this moment by ``method``."""
     return check(v) | arm_checks(v, method)

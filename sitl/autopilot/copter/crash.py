@@ -5,10 +5,13 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import dot
 from ...core.kernels import law
 from ..arming_checks import BY_CRASH
 from ..events import CRASH_DISARM, emit
-from . import arming, landing
+from . import landing
+from .modes import ground
+from .state import Autopilot, Vehicle
 
 TRIGGER_TICKS = 800
 """2 s."""
@@ -19,32 +22,31 @@ SPEED_MAX = 10.0  # [m/s]
 
 
 @law
-def is_crashed(v):
+def is_crashed(ap: Autopilot) -> bool:
     """Whether this tick looks like a crash: far off its lean, yet neither accelerating nor fast."""
-    ap = v.autopilot
-    if ap.arming.armed == 0 or ap.arming.landed != 0 or ap.params.FS.CRASH_CHECK < 1.0:
+    if not ap.arming.armed or ap.arming.landed or ap.params.FS.CRASH_CHECK < 1.0:
         return False
     attitude = ap.control.attitude
     if attitude.cos_lean > COS_LEAN_MIN or attitude.thrust_error_angle <= ANGLE_ERROR_MAX:
         return False
-    if landing.acceleration(v) >= ACCEL_MAX:
+    if landing.acceleration(ap.modes) >= ACCEL_MAX:
         return False
     vel = ap.estimate.vel
-    return vel[0] * vel[0] + vel[1] * vel[1] + vel[2] * vel[2] < SPEED_MAX * SPEED_MAX
+    return dot(vel, vel) < SPEED_MAX * SPEED_MAX
 
 
 @law
-def update(v):
+def check(v: Vehicle) -> None:
     """One tick: count, and disarm after two seconds."""
     ap = v.autopilot
-    if not is_crashed(v):
+    if not is_crashed(ap):
         ap.arming.crash_ticks = 0
         return
     ap.arming.crash_ticks += 1
     if ap.arming.crash_ticks >= TRIGGER_TICKS:
         error = math.degrees(ap.control.attitude.thrust_error_angle)
-        emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(v))
-        arming.disarm(v, BY_CRASH, 1)
+        emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(ap.modes))
+        ground.disarm(v, BY_CRASH)
 
 
 def text(angle_error_deg: float, acceleration: float) -> str:

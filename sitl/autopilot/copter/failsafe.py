@@ -6,8 +6,14 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
 from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report, text
+from ..modes import (
+    ACCEPTED,
+    REASON_BATTERY_FAILSAFE,
+    REASON_EKF_FAILSAFE,
+    REASON_GCS_FAILSAFE,
+    REASON_RADIO_FAILSAFE,
+)
 from ..radio import THROTTLE, stick_pulse
-from . import arming
 from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
@@ -21,19 +27,12 @@ from .failsafe_actions import (
     radio_action,
 )
 from .modes import ground, set_mode
-from .modes.numbers import (
-    ACCEPTED,
-    ALT_HOLD,
-    AUTO,
-    GUIDED,
-    LAND,
-    REASON_BATTERY_FAILSAFE,
-    REASON_EKF_FAILSAFE,
-    REASON_GCS_FAILSAFE,
-    REASON_RADIO_FAILSAFE,
-    is_autopilot,
-    requires_position,
-)
+from .modes.alt_hold import ALT_HOLD
+from .modes.auto import AUTO
+from .modes.guided import GUIDED
+from .modes.land import LAND
+from .modes.table import is_autonomous, requires_position
+from .state import Vehicle
 
 __all__ = ["DO_BRAKE", "DO_LAND", "DO_RTL", "DO_STOP", "NOTHING", "act", "terminate", "text"]
 
@@ -47,64 +46,64 @@ EKF_COUNT = 10
 
 
 @law
-def update_radio(v):
+def watch_radio(v: Vehicle) -> None:
     """After each frame of the receiver."""
     ap = v.autopilot
     fs = ap.modes.failsafe
     enable = int(ap.params.FS.THR_ENABLE)
     pulse = stick_pulse(ap.rc, ap.params.RCMAP, THROTTLE)
-    heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver != 0
-    bad = enable > 0 and heard and (ap.rc.receiver_ok == 0 or pulse < ap.params.FS.THR_VALUE)
-    if bad and fs.radio == 0:
+    fitted = ap.rc.receiver_us > 0 or ap.rc.has_receiver
+    bad = enable > 0 and fitted and (not ap.rc.receiver_ok or pulse < ap.params.FS.THR_VALUE)
+    if bad and not fs.radio:
         fs.radio_count += 1
         if fs.radio_count >= RADIO_FRAMES:
-            fs.radio = 1
-            report(v.autopilot.events, v.time_us, RADIO, True)
+            fs.radio = True
+            report(ap.events, v.time_us, RADIO, True)
             start_radio(v, radio_action(enable))
-    elif not bad and fs.radio != 0:
+    elif not bad and fs.radio:
         fs.radio_count -= 1
         if fs.radio_count <= 0:
-            fs.radio = 0
-            report(v.autopilot.events, v.time_us, RADIO, False)
+            fs.radio = False
+            report(ap.events, v.time_us, RADIO, False)
     elif not bad:
         fs.radio_count = 0
 
 
 @law
-def start_radio(v, action):
+def start_radio(v: Vehicle, action: int) -> None:
     """Act on the lost radio, unless FS_OPTIONS lets the mode go on."""
     ap = v.autopilot
     options = int(ap.params.FS.OPTIONS)
     mode = ap.modes.number
-    if mode == AUTO and (options & _RADIO_AUTO) != 0 and ap.arming.landed == 0:
+    if mode == AUTO and (options & _RADIO_AUTO) != 0 and not ap.arming.landed:
         return
-    if mode == GUIDED and (options & _RADIO_GUIDED) != 0 and ap.arming.landed == 0:
+    if mode == GUIDED and (options & _RADIO_GUIDED) != 0 and not ap.arming.landed:
         return
     act(v, action, REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
 
 
 @law
-def update_gcs(v):
+def watch_gcs(v: Vehicle) -> None:
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    lost = is_gcs_lost(v.autopilot.modes.failsafe, v.time_us, v.autopilot.params.FS)
-    if lost and fs.gcs == 0:
-        fs.gcs = 1
-        report(v.autopilot.events, v.time_us, GCS, True)
+    lost = is_gcs_lost(fs, v.time_us, ap.params.FS)
+    if lost and not fs.gcs:
+        fs.gcs = True
+        report(ap.events, v.time_us, GCS, True)
         options = int(ap.params.FS.OPTIONS)
-        mode = int(ap.modes.number)
+        mode = ap.modes.number
         goes_on = mode == AUTO and (options & _GCS_AUTO) != 0
-        goes_on = goes_on or (not is_autopilot(mode) and (options & _GCS_PILOT) != 0)
-        if not goes_on or ap.arming.landed != 0:
+        goes_on = goes_on or (not is_autonomous(mode) and (options & _GCS_PILOT) != 0)
+        if not goes_on or ap.arming.landed:
             act(v, gcs_action(int(ap.params.FS.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
-    elif not lost and fs.gcs != 0:
-        fs.gcs = 0
-        report(v.autopilot.events, v.time_us, GCS, False)
+    elif not lost and fs.gcs:
+        fs.gcs = False
+        report(ap.events, v.time_us, GCS, False)
 
 
 @law
-def update_battery(v):
+def watch_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
     p = v.autopilot.params
     level = battery_fell_to(v.autopilot, v.time_us)
@@ -118,12 +117,12 @@ EKF_ACTED = 2
 
 
 @law
-def update_ekf(v):
+def watch_estimate(v: Vehicle) -> None:
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
     ap = v.autopilot
     fs = ap.modes.failsafe
-    bad = is_estimate_bad(ap.modes.failsafe, ap.estimate, ap.params.FS.EKF_THRESH, ap.params.FS.EKF_FILT)
-    if ap.params.FS.EKF_THRESH <= 0.0 or ap.arming.armed == 0 or ap.estimate.origin_set == 0:
+    bad = is_estimate_bad(fs, ap.estimate, ap.params.FS.EKF_THRESH, ap.params.FS.EKF_FILT)
+    if ap.params.FS.EKF_THRESH <= 0.0 or not ap.arming.armed or not ap.estimate.origin_set:
         fs.ekf_count = 0
         fs.ekf = 0
         return
@@ -136,31 +135,31 @@ def update_ekf(v):
         fs.ekf_count -= 1
         if fs.ekf_count == 0 and fs.ekf != 0:
             if fs.ekf == EKF_ACTED:
-                report(v.autopilot.events, v.time_us, EKF, False)
+                report(ap.events, v.time_us, EKF, False)
             fs.ekf = 0
 
 
 @law
-def start_ekf(v):
+def start_ekf(v: Vehicle) -> None:
     """Act on the bad estimate."""
     ap = v.autopilot
     action = int(ap.params.FS.EKF_ACTION)
-    mode = int(ap.modes.number)
+    mode = ap.modes.number
     if mode != LAND and (action == 0 or (not requires_position(mode) and action != 3)):
         return
     ap.modes.failsafe.ekf = EKF_ACTED
-    report(v.autopilot.events, v.time_us, EKF, True)
+    report(ap.events, v.time_us, EKF, True)
     if mode == LAND:
-        ap.modes.land.with_position = 0
+        ap.modes.land.with_position = False
         return
     if action == 2 and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
         return
     land_with_pause(v, REASON_EKF_FAILSAFE)
-    ap.modes.land.with_position = 0
+    ap.modes.land.with_position = False
 
 
 @law
-def terminate(v):
+def terminate(v: Vehicle) -> None:
     """MAV_CMD_DO_FLIGHTTERMINATION: stop the motors."""
-    arming.disarm(v, BY_TERMINATION, 1)
-    ground.set_landed(v, 1)
+    ground.disarm(v, BY_TERMINATION)
+    ground.set_landed(v.autopilot.arming, True)

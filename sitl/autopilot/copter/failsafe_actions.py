@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from . import arming
-from .modes import set_mode
-from .modes.numbers import ACCEPTED, BRAKE, LAND, RTL, STABILIZE
+from ..modes import ACCEPTED
+from .modes import ground, set_mode
+from .modes.brake import BRAKE
+from .modes.land import LAND
+from .modes.rtl import RTL
+from .modes.table import has_manual_throttle
+from .state import Autopilot, Vehicle
 
 # What a failsafe does
 NOTHING = 0
@@ -20,7 +24,7 @@ CONTINUE_LANDING = 8
 
 
 @law
-def radio_action(choice):
+def radio_action(choice: int) -> int:
     """What FS_THR_ENABLE and FS_GCS_ENABLE mean; return paths that this firmware lacks become RTL or LAND."""
     if choice <= 0:
         return NOTHING
@@ -32,7 +36,7 @@ def radio_action(choice):
 
 
 @law
-def gcs_action(choice):
+def gcs_action(choice: int) -> int:
     """What FS_GCS_ENABLE means."""
     if choice <= 0:
         return NOTHING
@@ -44,7 +48,7 @@ def gcs_action(choice):
 
 
 @law
-def battery_action(choice):
+def battery_action(choice: int) -> int:
     """What BATT_FS_LOW_ACT and BATT_FS_CRT_ACT mean."""
     if choice == 1 or choice == 4:
         return DO_LAND
@@ -58,29 +62,26 @@ def battery_action(choice):
 
 
 @law
-def is_idle(v):
+def is_idle(ap: Autopilot) -> bool:
     """Whether disarming is safe: landed, or the pilot's own throttle is closed."""
-    ap = v.autopilot
-    if ap.modes.number == STABILIZE:
-        return ap.modes.pilot.throttle_zero != 0
-    return ap.arming.landed != 0
+    return ap.modes.pilot.throttle_zero if has_manual_throttle(ap.modes.number) else ap.arming.landed
 
 
 @law
-def land_with_pause(v, reason):
+def land_with_pause(v: Vehicle, reason: int) -> None:
     """LAND, and wait 4 s before the descent."""
     if set_mode.request(v, LAND, reason) == ACCEPTED:
-        v.autopilot.modes.land.pause = 1
+        v.autopilot.modes.land.pause = True
 
 
 @law
-def act(v, action, reason, method):
+def act(v: Vehicle, action: int, reason: int, method: int) -> None:
     """Do what a failsafe asks; on the ground it disarms."""
     ap = v.autopilot
-    if action == NOTHING or ap.arming.armed == 0:
+    if action == NOTHING or not ap.arming.armed:
         return
-    if is_idle(v) or action == DO_STOP:
-        arming.disarm(v, method, 1)
+    if is_idle(ap) or action == DO_STOP:
+        ground.disarm(v, method)
         return
     mode = ap.modes.number
     if mode == LAND and (int(ap.params.FS.OPTIONS) & CONTINUE_LANDING) != 0:

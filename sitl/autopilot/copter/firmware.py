@@ -11,8 +11,8 @@ from ..firmware import Firmware
 from .control.update import init as init_control
 from .control.update import update as control
 from .mission import COMMANDS
-from .modes.init import init as init_modes
-from .modes.numbers import NAMES
+from .modes.table import NAMES
+from .modes.update import init as init_modes
 from .modes.update import update as decide
 from .parameters import TABLE
 

@@ -11,12 +11,15 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import norm
 from ...core.kernels import law
 from ..events import LANDED, emit
 from .control import throttle_mix
 from .control.motors import hover_throttle
-from .modes import auto, ground, guided_state, rtl
-from .modes.numbers import ALT_HOLD, AUTO, GUIDED, LAND, LOITER, RTL, has_manual_throttle
+from .control.state import AttitudeState
+from .modes import ground, table
+from .modes.state import Modes
+from .state import Autopilot, Vehicle
 
 TRIGGER_TICKS = 400
 """1 s."""
@@ -34,114 +37,95 @@ _STOPPED = 0.1  # [m/s]
 
 
 @law
-def is_landing(v):
-    """Whether the mode is on its way to the ground."""
-    mode = v.autopilot.modes.number
-    if mode == LAND:
-        return True
-    if mode == RTL:
-        return rtl.is_landing(v)
-    return mode == AUTO and auto.is_landing(v)
-
-
-@law
-def is_taking_off(v):
+def is_taking_off(v: Vehicle) -> bool:
     """Whether the mode raises the throttle from the ground by itself and tells when it flies."""
-    ap = v.autopilot
-    mode = ap.modes.number
-    if ap.modes.takeoff.user_active != 0:
-        return True
-    if mode == GUIDED:
-        return ap.modes.guided.submode == guided_state.TAKEOFF and ap.modes.takeoff.complete == 0
-    return mode == AUTO and auto.is_taking_off(v)
+    modes = v.autopilot.modes
+    return modes.takeoff.user_active or table.is_taking_off(modes.number, v)
 
 
 @law
-def acceleration(v):
+def acceleration(modes: Modes) -> float:
     """Filtered acceleration [m/s^2]."""
-    acc = v.autopilot.modes.landing.acc
-    return math.sqrt(acc[0] * acc[0] + acc[1] * acc[1] + acc[2] * acc[2])
+    return norm(modes.landing.acc)
 
 
 @law
-def leans_far(ap):
-    """(a lean over 15 degrees is asked for, the lean is off by more than 30 degrees)"""
-    target = ap.control.attitude.target_euler
+def leans_far(attitude: AttitudeState) -> bool:
+    """Whether a lean over 15 degrees is asked for, or the lean is off by more than 30 degrees."""
+    target = attitude.target_euler
     asked = target.roll * target.roll + target.pitch * target.pitch > LEAN_REQUEST_MAX * LEAN_REQUEST_MAX
-    return (asked, ap.control.attitude.thrust_error_angle > LEAN_ERROR_MAX)
+    return asked or attitude.thrust_error_angle > LEAN_ERROR_MAX
 
 
 @law
-def update(v):
+def detect(v: Vehicle) -> None:
     """One tick of the detector."""
     ap = v.autopilot
     arming = ap.arming
     landing = ap.modes.landing
-    for k in range(3):
-        landing.acc[k] += _FILTER * (ap.estimate.acc_ned[k] - landing.acc[k])
-    landing.landing = 1 if is_landing(v) else 0
-    if arming.armed == 0:
-        arming.landed = 1
-        arming.landed_maybe = 1
-        arming.landed_ticks = 0
-        return
-    if arming.landed != 0:
-        motors = ap.control.motors
-        pushes = motors.throttle > 0.5 * hover_throttle(ap.params.MOT) and motors.spool_state == ground.IS_UNLIMITED
-        if pushes and not is_taking_off(v):
-            ground.set_landed(v, 0)
-        return
-    if is_at_rest(v):
+    landing.acc += _FILTER * (ap.estimate.acc_ned - landing.acc)
+    landing.landing = table.is_landing(ap.modes.number, v)
+    if not arming.armed:
+        ground.set_landed(arming, True)
+    elif arming.landed:
+        if pushes(ap) and not is_taking_off(v):
+            ground.set_landed(arming, False)
+    elif is_at_rest(ap):
         arming.landed_ticks += 1
         if arming.landed_ticks >= TRIGGER_TICKS:
-            ground.set_landed(v, 1)
+            ground.set_landed(arming, True)
             emit(ap.events, v.time_us, LANDED, 0.0, 0.0)
+        arming.landed_maybe = arming.landed or arming.landed_ticks >= MAYBE_TICKS
     else:
         arming.landed_ticks = 0
-    arming.landed_maybe = 1 if arming.landed != 0 or arming.landed_ticks >= MAYBE_TICKS else 0
+        arming.landed_maybe = False
 
 
 @law
-def is_meant_to_land(ap):
+def pushes(ap: Autopilot) -> bool:
+    """Whether the motors lift more than half of the vehicle."""
+    motors = ap.control.motors
+    return motors.throttle > 0.5 * hover_throttle(ap.params.MOT) and motors.spool_state == ground.IS_UNLIMITED
+
+
+@law
+def is_meant_to_land(ap: Autopilot) -> bool:
     """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
-    if ap.modes.landing.landing != 0:
+    if ap.modes.landing.landing:
         return True
-    if ap.modes.number != LOITER and ap.modes.number != ALT_HOLD:
+    if not table.has_climb_stick(ap.modes.number):
         return False
-    stopped = ap.control.motors.limit_throttle_lower and abs(ap.estimate.vel[2]) < _STOPPED
-    return ap.modes.pilot.throttle_zero != 0 and stopped
+    stopped = ap.control.motors.limit_throttle_lower and abs(ap.estimate.vel.z) < _STOPPED
+    return ap.modes.pilot.throttle_zero and stopped
 
 
 @law
-def is_at_rest(v):
+def is_at_rest(ap: Autopilot) -> bool:
     """Whether everything in this tick speaks for the ground."""
-    ap = v.autopilot
     if not ap.control.motors.limit_throttle_lower:
         return False
     if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC.THR_MIX_MIN:
         return False
-    asked, off = leans_far(ap)
-    if (asked or off) and not is_meant_to_land(ap):
+    if leans_far(ap.control.attitude) and not is_meant_to_land(ap):
         return False
-    return abs(ap.estimate.vel[2]) < SPEED_MAX and acceleration(v) <= ACCEL_MAX
+    return abs(ap.estimate.vel.z) < SPEED_MAX and acceleration(ap.modes) <= ACCEL_MAX
 
 
 @law
-def update_mix(v):
+def set_priority(v: Vehicle) -> None:
     """Attitude first in the air, throttle first on and near the ground."""
     ap = v.autopilot
-    if ap.arming.armed == 0 or ap.arming.landed != 0:
+    if not ap.arming.armed or ap.arming.landed:
         throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
-    elif has_manual_throttle(int(ap.modes.number)):
+    elif table.has_manual_throttle(ap.modes.number):
         if ap.modes.pilot.throttle <= 0.0:
             throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
         else:
             throttle_mix.set_mix_man(ap.control.attitude, ap.params.ATC)
     else:
-        asked, off = leans_far(ap)
-        level = ap.control.pos_d.vel_desired <= 0.0
-        busy = asked or off or level or acceleration(v) > ACCEL_MOVING
+        path = ap.control.pos_d
+        busy = leans_far(ap.control.attitude) or path.vel_desired <= 0.0 or acceleration(ap.modes) > ACCEL_MOVING
         if busy and not is_meant_to_land(ap):
-            throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, ap.control.pos_d.control_ratio)
+            throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, path.control_ratio)
         else:
             throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)

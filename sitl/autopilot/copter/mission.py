@@ -16,7 +16,7 @@ from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
 from .modes import auto, auto_yaw
-from .modes.numbers import AUTO
+from .modes.auto import AUTO
 from .navigation import waypoint
 from .navigation.planner import PLANNER
 from .navigation.state import CopterNav
@@ -66,11 +66,11 @@ class CopterCommands(Commands[Vehicle]):
         """Speeds are the parameters' again."""
         nav = v.autopilot.modes.nav
         nav.speed_ne = nav.speed_up = nav.speed_down = 0.0
-        waypoint.stop(v.autopilot)
+        waypoint.stop(v.autopilot.modes.nav)
 
     def reset(self, v: Vehicle) -> None:
         """Forget the legs."""
-        waypoint.stop(v.autopilot)
+        waypoint.stop(v.autopilot.modes.nav)
 
     def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way."""
@@ -78,7 +78,7 @@ class CopterCommands(Commands[Vehicle]):
         nav = ap.modes.nav
         kind = KINDS[item.command]
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
-            auto.face(v, kind)
+            auto.choose_heading(ap, kind)
         here, _ = PLANNER.origin_of_next(ap, time_us)
         if kind in LEGS:
             PLANNER.begin(ap, time_us, point(ap, item, here))
@@ -92,7 +92,7 @@ class CopterCommands(Commands[Vehicle]):
             _end_path(nav)
             nav.target = here.replace(z=down(ap, item)) if kind == kinds.TAKEOFF else here
         command.give(nav, kind, seq)
-        nav.circle_running = 0
+        nav.circle_running = False
         nav.has_place = not item.no_place
         if kind in (kinds.WAYPOINT, kinds.LOITER_TIME):
             nav.delay = whole_seconds(item)
@@ -128,7 +128,7 @@ class CopterCommands(Commands[Vehicle]):
         else:
             PLANNER.begin(ap, time_us, PLANNER.origin_of_next(ap, time_us)[0])
             command.give(nav, kinds.LOITER_UNLIMITED, nav.command_seq)
-        nav.circle_running = 0
+        nav.circle_running = False
         return []
 
     def run(self, v: Vehicle, item: MissionItem) -> list[Note]:
@@ -138,12 +138,12 @@ class CopterCommands(Commands[Vehicle]):
             self.change_speed(v, int(item.p1), item.p2)
         elif item.command == commands.CONDITION_YAW:
             direction = int(math.copysign(1.0, item.p3)) if item.p3 else 0
-            auto_yaw.fixed(v, math.radians(item.p1), math.radians(item.p2), direction, 1 if item.p4 > 0.0 else 0)
+            auto_yaw.turn_to(ap, math.radians(item.p1), math.radians(item.p2), direction, item.p4 > 0.0)
             ap.modes.nav.condition_kind = kinds.CONDITION_YAW
         elif item.command in (commands.DO_SET_ROI, commands.DO_SET_ROI_LOCATION):
             set_roi(v, item)
         elif item.command == commands.DO_SET_ROI_NONE:
-            auto_yaw.set_default(v, 0)
+            auto_yaw.set_default(ap, False)
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
@@ -164,9 +164,9 @@ class CopterCommands(Commands[Vehicle]):
 def set_roi(v: Vehicle, item: MissionItem) -> None:
     """Keep the nose on a place; a place of zeros ends that."""
     if item.no_place and item.z == 0.0:
-        auto_yaw.set_default(v, 0)
+        auto_yaw.set_default(v.autopilot, False)
         return
-    auto_yaw.look_at(v, *point(v.autopilot, item, v.autopilot.estimate.pos))
+    auto_yaw.look_at(v.autopilot, point(v.autopilot, item, v.autopilot.estimate.pos))
 
 
 def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:
@@ -190,7 +190,7 @@ def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:
         PLANNER.begin(ap, time_us, here)
         nav.reached = True
     nav.circle_radius = radius
-    nav.circle_centre[:] = centre
+    nav.circle_centre = centre
     nav.target = centre
 
 

@@ -10,8 +10,9 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
-from .arming import disarm
 from .control.motors import MOTORS
+from .modes import ground
+from .state import Vehicle
 
 LONGEST_S = 600.0
 
@@ -28,22 +29,22 @@ _X_ORDER = (0, 3, 1, 2)
 
 
 @law
-def motor_in_order(frame_type, position):
+def motor_in_order(frame_type: int, position: int) -> int:
     """Motor 0 .. 3 at ``position`` 0 .. 3 clockwise from the front (front right for X)."""
     return _PLUS_ORDER[position] if frame_type == 0 else _X_ORDER[position]
 
 
 @law
-def start(v, motor, throttle, seconds):
+def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
     """Turn motor 0 .. 3 at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
 
     A test under way goes on with the new motor, throttle and time.
     """
     ap = v.autopilot
     motors = ap.control.motors
-    if ap.arming.landed == 0:
+    if not ap.arming.landed:
         return NOT_LANDED
-    if ap.arming.armed != 0 and motors.test_motor == 0:
+    if ap.arming.armed and motors.test_motor == 0:
         return ARMED
     if motor < 0 or motor >= MOTORS:
         return BAD_MOTOR
@@ -56,22 +57,22 @@ def start(v, motor, throttle, seconds):
     motors.test_motor = motor + 1
     motors.test_actuator = throttle
     motors.test_until_us = v.time_us + int(seconds * 1e6)
-    ap.arming.armed = 1
+    ap.arming.armed = True
     ap.arming.armed_us = v.time_us
     return OK
 
 
 @law
-def update(v):
+def run(v: Vehicle) -> None:
     """Every tick of a test, behind the mode: keep the mode's hands off the motors; end in time."""
     ap = v.autopilot
     motors = ap.control.motors
     if motors.test_motor == 0:
         return
     motors.desired_spool = 0
-    ap.arming.auto_armed = 0
+    ap.arming.auto_armed = False
     ap.arming.idle_us = v.time_us
-    if v.time_us >= motors.test_until_us or ap.arming.landed == 0 or ap.arming.armed == 0:
+    if v.time_us >= motors.test_until_us or not ap.arming.landed or not ap.arming.armed:
         motors.test_motor = 0
         emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
-        disarm(v, BY_MOTOR_TEST, 1)
+        ground.disarm(v, BY_MOTOR_TEST)

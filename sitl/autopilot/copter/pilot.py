@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ...core.algebra import norm2
 from ...core.kernels import law
 from ...core.scalars import constrain
+from ...core.vectors import Vec2
 from ..radio import (
     FRAME_S,
     PITCH,
@@ -20,25 +23,41 @@ from ..radio import (
     stick_channel,
     stick_position,
 )
+from .modes.state import PilotState
+from .parameters.flight import Pilot
+from .state import Autopilot, Vehicle
 
 THROTTLE_ZERO_US = 400_000
 """The throttle counts as zero when it was low for so long."""
 _THROTTLE_LOW = RECEIVER_PULSES[2]
 
 
+class Lean(NamedTuple):
+    """A lean, [rad]."""
+
+    roll: float
+    pitch: float
+
+
 @law
-def init(v):
+def init(v: Vehicle) -> None:
     """A receiver is fitted; channels are not known yet."""
-    v.autopilot.rc.has_receiver = 1
+    v.autopilot.rc.has_receiver = True
     pilot = v.autopilot.modes.pilot
-    pilot.throttle_zero = 1
+    pilot.throttle_zero = True
     pilot.throttle_zero_us = -THROTTLE_ZERO_US
     pilot.switch_position = -1
     pilot.switch_candidate = -1
 
 
 @law
-def read(v):
+def has_receiver(ap: Autopilot) -> bool:
+    """Whether the sticks are the pilot's: the radio is there, and its failsafe off."""
+    return ap.rc.receiver_ok and not ap.modes.failsafe.radio
+
+
+@law
+def read(v: Vehicle) -> None:
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
     ap = v.autopilot
     receive(ap.rc, v.sensors, ap.params, v.time_us, _THROTTLE_LOW, ap.params.RC_FS_TIMEOUT)
@@ -46,77 +65,96 @@ def read(v):
 
 
 @law
-def read_sticks(v):
+def read_sticks(v: Vehicle) -> None:
     """Sticks from effective channels; the radio failsafe centres them and closes the throttle."""
     ap = v.autopilot
     pilot = ap.modes.pilot
-    if ap.modes.failsafe.radio != 0 or ap.rc.receiver_ok == 0:
-        pilot.roll = 0.0
-        pilot.pitch = 0.0
-        pilot.yaw = 0.0
-        pilot.throttle = 0.0
-    else:
+    if has_receiver(ap):
         pilot.roll = stick_position(ap.rc, ap.params, ROLL)
         pilot.pitch = stick_position(ap.rc, ap.params, PITCH)
         pilot.yaw = stick_position(ap.rc, ap.params, YAW)
         channel = stick_channel(ap.params.RCMAP, THROTTLE)
         pilot.throttle = ranged(ap.rc.channels[channel], ap.params.RC[channel])
+    else:
+        pilot.roll = 0.0
+        pilot.pitch = 0.0
+        pilot.yaw = 0.0
+        pilot.throttle = 0.0
+    note_throttle(pilot, v.time_us)
+    filter_sticks(pilot, ap.params.PILOT)
+
+
+@law
+def note_throttle(pilot: PilotState, time_us: int) -> None:
+    """Whether the throttle has been low for long enough to count as zero."""
     if pilot.throttle > 0.0:
-        pilot.throttle_zero_us = v.time_us
-        pilot.throttle_zero = 0
-    elif v.time_us - pilot.throttle_zero_us >= THROTTLE_ZERO_US:
-        pilot.throttle_zero = 1
-    cutoff = ap.params.PILOT.THR_FILT
+        pilot.throttle_zero_us = time_us
+        pilot.throttle_zero = False
+    elif time_us - pilot.throttle_zero_us >= THROTTLE_ZERO_US:
+        pilot.throttle_zero = True
+
+
+@law
+def filter_sticks(pilot: PilotState, p: Pilot) -> None:
+    """PILOT_THR_FILT, and the turn rate by PILOT_Y_RATE, PILOT_Y_EXPO and PILOT_Y_RATE_TC."""
     gain = 1.0
-    if cutoff > 0.0:
-        gain = FRAME_S / (FRAME_S + 1.0 / (2.0 * math.pi * cutoff))
+    if p.THR_FILT > 0.0:
+        gain = FRAME_S / (FRAME_S + 1.0 / (2.0 * math.pi * p.THR_FILT))
     pilot.throttle_filtered += gain * (pilot.throttle - pilot.throttle_filtered)
-    tc = ap.params.PILOT.Y_RATE_TC
-    gain = 1.0 if tc <= 0.0 else FRAME_S / (FRAME_S + tc)
-    wanted = math.radians(ap.params.PILOT.Y_RATE) * expo(float(pilot.yaw), ap.params.PILOT.Y_EXPO)
+    gain = 1.0 if p.Y_RATE_TC <= 0.0 else FRAME_S / (FRAME_S + p.Y_RATE_TC)
+    wanted = math.radians(p.Y_RATE) * expo(pilot.yaw, p.Y_EXPO)
     pilot.yaw_rate += gain * (wanted - pilot.yaw_rate)
 
 
 @law
-def lean_angles(ap, angle_max, limit):
-    """(roll, pitch) [rad] asked by the sticks; ``angle_max`` at full stick, tilt at most ``limit`` [rad].
-
-    Sticks are horizontal thrusts (tangents), so that the tilt of a diagonal stick is limited as a vector.
-    """
-    pilot = ap.modes.pilot
-    forward = -math.tan(angle_max * pilot.pitch)
-    right = math.tan(angle_max * pilot.roll)
-    size = math.sqrt(forward * forward + right * right)
-    most = math.tan(min(limit, angle_max))
-    if size > most and size > 0.0:
-        forward *= most / size
-        right *= most / size
-    pitch = -math.atan(forward)
-    return (math.atan(math.cos(pitch) * right), pitch)
+def limit_stick(stick: Vec2, length_max: float) -> Vec2:
+    """``stick`` shortened to at most ``length_max``."""
+    size = norm2(stick)
+    return stick * (length_max / size) if size > length_max and size > 0.0 else stick
 
 
 @law
-def climb_rate(ap):
-    """Climb rate of the throttle stick [m/s], up positive; 0 within THR_DZ of the middle."""
-    if ap.modes.failsafe.radio != 0 or ap.rc.receiver_ok == 0:
-        return 0.0
-    dead = constrain(ap.params.THR_DZ * 0.001, 0.0, 0.4)
-    throttle = float(ap.modes.pilot.throttle)
+def lean_angles(pilot: PilotState, angle_max: float, limit: float) -> Lean:
+    """Lean asked by the sticks; ``angle_max`` at full stick, tilt at most ``limit`` [rad].
+
+    Sticks are horizontal thrusts (tangents), so that the tilt of a diagonal stick is limited as a vector.
+    """
+    thrust = Vec2(-math.tan(angle_max * pilot.pitch), math.tan(angle_max * pilot.roll))  # forward, right
+    thrust = limit_stick(thrust, math.tan(min(limit, angle_max)))
+    pitch = -math.atan(thrust.x)
+    return Lean(math.atan(math.cos(pitch) * thrust.y), pitch)
+
+
+@law
+def climb_of_stick(throttle: float, dead: float, speed_up: float, speed_down: float) -> float:
+    """Climb rate [m/s], up positive, of a throttle stick 0 .. 1; 0 within ``dead`` of the middle."""
     top = 0.5 + dead
     bottom = 0.5 - dead
-    up = ap.params.PILOT.SPEED_UP * 0.01
-    down = ap.params.PILOT.SPEED_DN * 0.01
-    if down <= 0.0:
-        down = up
     if throttle < bottom:
-        return down * (throttle - bottom) / bottom
+        return speed_down * (throttle - bottom) / bottom
     if throttle > top:
-        return up * (throttle - top) / (1.0 - top)
+        return speed_up * (throttle - top) / (1.0 - top)
     return 0.0
 
 
 @law
-def throttle_out(throttle, hover):
+def speed_down(p: Pilot) -> float:
+    """PILOT_SPEED_DN [m/s], or PILOT_SPEED_UP where that is 0."""
+    return (p.SPEED_DN if p.SPEED_DN > 0.0 else p.SPEED_UP) * 0.01
+
+
+@law
+def climb_rate(ap: Autopilot) -> float:
+    """Climb rate of the throttle stick [m/s], up positive; 0 within THR_DZ of the middle."""
+    if not has_receiver(ap):
+        return 0.0
+    p = ap.params
+    dead = constrain(p.THR_DZ * 0.001, 0.0, 0.4)
+    return climb_of_stick(ap.modes.pilot.throttle, dead, p.PILOT.SPEED_UP * 0.01, speed_down(p.PILOT))
+
+
+@law
+def throttle_out(throttle: float, hover: float) -> float:
     """Motor throttle 0 .. 1 of the stick in STABILIZE: a cubic through 0, 1 and ``hover`` near the middle.
 
     Source: ArduPilot's manual throttle curve, out = x (1 - e) + e x^3 with e from MOT_THST_HOVER.

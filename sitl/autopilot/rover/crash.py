@@ -9,47 +9,54 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.vectors import Euler
 from ..arming_checks import BY_CRASH
 from ..events import CRASH_HOLD, emit
+from ..modes import REASON_CRASH_FAILSAFE
+from ..state import Estimate
 from . import arming, motor_test
 from .modes import set_mode
-from .modes.numbers import HOLD, REASON_CRASH_FAILSAFE, is_autopilot
+from .modes.hold import HOLD
+from .modes.table import is_autonomous
+from .state import Autopilot, Vehicle
 
 TRIGGER = 20
 """Tenths of a second."""
-LEAST_THROTTLE = 0.05
-LEAST_MOTION = 0.08  # [m/s] and [rad/s]
+THROTTLE_MIN = 0.05
+MOTION_MIN = 0.08  # [m/s] and [rad/s]
 HOLD_AND_DISARM = 2.0
 """FS_CRASH_CHECK"""
 
 
 @law
-def is_leaning(ap):
-    """Whether the vehicle leans further than CRASH_ANGLE."""
-    most = math.radians(ap.params.CRASH_ANGLE)
-    return most != 0.0 and (abs(ap.estimate.euler[0]) > most or abs(ap.estimate.euler[1]) > most)
+def is_leaning(euler: Euler, angle_max: float) -> bool:
+    """Whether the vehicle leans further than ``angle_max`` [rad]; 0: no lean counts."""
+    return angle_max != 0.0 and (abs(euler.roll) > angle_max or abs(euler.pitch) > angle_max)
 
 
 @law
-def is_blocked(ap):
-    """Whether the motors push and nothing moves."""
-    speed = math.hypot(ap.estimate.vel[0], ap.estimate.vel[1])
-    if speed >= LEAST_MOTION or abs(ap.estimate.rates[2]) >= LEAST_MOTION:
+def is_blocked(estimate: Estimate, throttle: float) -> bool:
+    """Whether the motors push with ``throttle`` and nothing moves."""
+    speed = math.hypot(estimate.vel.x, estimate.vel.y)
+    if speed >= MOTION_MIN or abs(estimate.rates.z) >= MOTION_MIN:
         return False
-    return abs(ap.control.motors.throttle) >= LEAST_THROTTLE
+    return abs(throttle) >= THROTTLE_MIN
 
 
 @law
-def update(v):
+def is_watched(ap: Autopilot) -> bool:
+    """Whether a crash counts now."""
+    if not ap.arming.armed or ap.params.FS.CRASH_CHECK <= 0.0:
+        return False
+    return is_autonomous(ap.modes.number) and not motor_test.is_running(ap.control.motors)
+
+
+@law
+def update(v: Vehicle) -> None:
     """Ten times a second."""
     ap = v.autopilot
-    check = ap.params.FS.CRASH_CHECK
-    watched = ap.arming.armed != 0 and check > 0.0 and is_autopilot(int(ap.modes.number))
-    if not watched or motor_test.is_running(ap):
-        ap.arming.crash_ticks = 0
-        return
-    leaning = is_leaning(ap)
-    if not leaning and not is_blocked(ap):
+    leaning = is_leaning(ap.estimate.euler, math.radians(ap.params.CRASH_ANGLE))
+    if not is_watched(ap) or not (leaning or is_blocked(ap.estimate, ap.control.motors.throttle)):
         ap.arming.crash_ticks = 0
         return
     ap.arming.crash_ticks += 1
@@ -57,5 +64,5 @@ def update(v):
         ap.arming.crash_ticks = 0
         emit(ap.events, v.time_us, CRASH_HOLD, 0.0, 0.0)
         set_mode.request(v, HOLD, REASON_CRASH_FAILSAFE)
-        if check == HOLD_AND_DISARM:
-            arming.disarm(v, BY_CRASH, 1)
+        if ap.params.FS.CRASH_CHECK == HOLD_AND_DISARM:
+            arming.disarm(v, BY_CRASH, True)

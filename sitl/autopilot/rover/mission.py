@@ -14,14 +14,13 @@ from ..mission.place import point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.planner import end
-from .modes import change_speed, guided
-from .modes.guided_state import OK
-from .modes.numbers import AUTO
+from .modes import guided_setpoints, set_mode
+from .modes.auto import AUTO
 from .navigation import waypoint
 from .navigation.planner import PLANNER
 from .state import Vehicle
 
-WIDEST = 2550.0
+RADIUS_MAX = 2550.0
 """Greatest radius of circles that ArduPilot's mission storage holds [m]."""
 
 KINDS = {
@@ -84,7 +83,7 @@ class RoverCommands(Commands[Vehicle]):
             nav.delay = 0.0 if kind == kinds.LOITER_UNLIMITED else whole_seconds(item)
         elif kind == kinds.LOITER_TURNS:
             nav.turns = max(item.p1, 0.0)
-            nav.circle_radius = min(max(item.p3, -WIDEST), WIDEST)
+            nav.circle_radius = min(max(item.p3, -RADIUS_MAX), RADIUS_MAX)
         elif kind == kinds.YAW_SPEED:
             nav.heading = math.radians(item.p1) + (ap.estimate.euler.yaw if item.p3 > 0.0 else 0.0)
             nav.heading_speed = item.p2
@@ -124,12 +123,12 @@ class RoverCommands(Commands[Vehicle]):
         if item.command == commands.DO_SET_REVERSE:
             waypoint.set_reversed(v.autopilot, item.p1 == 1.0)
         elif item.command == commands.DO_GUIDED_LIMITS:
-            guided.set_limits(v, max(item.p1, 0.0), max(item.p4, 0.0))
+            guided_setpoints.set_limits(v.autopilot.modes.guided, max(item.p1, 0.0), max(item.p4, 0.0))
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
         """Of what AUTO is doing; all kinds of speed are the same."""
-        return is_speed(speed) and int(change_speed.change_speed(v, speed)) == OK
+        return is_speed(speed) and set_mode.change_speed(v, speed)
 
 
 def flat(place: Vec3) -> Vec3:

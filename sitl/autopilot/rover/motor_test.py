@@ -12,11 +12,11 @@ from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from .arming import disarm, try_arm
 from .control.motors import is_skid
-from .control.state import TEST_RIGHT, TEST_THROTTLE
+from .control.state import TEST_RIGHT, TEST_THROTTLE, MotorsState
+from .state import Vehicle
 
-"""Method of arming and disarming (ArduPilot's number)."""
-LONGEST_S = 30.0
-LEAST_PULSE, LARGEST_PULSE = 800, 2200
+SECONDS_MAX = 30.0
+PULSE_MIN, PULSE_MAX = 800, 2200
 """[us]; ArduPilot takes shorter ones, too, which no servo understands."""
 
 # Answers of start()
@@ -28,7 +28,17 @@ BAD_TIME = 4
 
 
 @law
-def start(v, motor, throttle, pulse, seconds):
+def refusal(skid: bool, motor: int, throttle: float, pulse: int, seconds: float) -> int:
+    """OK, or why no vehicle, skid-steered or not, can be tested so."""
+    if motor < TEST_THROTTLE or motor > TEST_RIGHT or skid != (motor > 2):
+        return BAD_MOTOR
+    if not -1.0 <= throttle <= 1.0 or (pulse != 0 and not PULSE_MIN <= pulse <= PULSE_MAX):
+        return BAD_THROTTLE
+    return OK if seconds >= 0.0 else BAD_TIME
+
+
+@law
+def start(v: Vehicle, motor: int, throttle: float, pulse: int, seconds: float) -> int:
     """Drive an output: motor 1 throttle, 2 steering, 3 left, 4 right (MOTOR_TEST_ORDER). OK, or why not.
 
     Args:
@@ -40,40 +50,37 @@ def start(v, motor, throttle, pulse, seconds):
     """
     ap = v.autopilot
     motors = ap.control.motors
-    if motor < TEST_THROTTLE or motor > TEST_RIGHT or is_skid(ap.params) != (motor > 2):
-        return BAD_MOTOR
-    if not -1.0 <= throttle <= 1.0 or (pulse != 0 and not LEAST_PULSE <= pulse <= LARGEST_PULSE):
-        return BAD_THROTTLE
-    if not seconds >= 0.0:
-        return BAD_TIME
-    if motors.test_motor == 0:
-        if ap.arming.armed == 0 and try_arm(v, BY_MOTOR_TEST, 0) != 0:
+    cause = refusal(is_skid(ap.params), motor, throttle, pulse, seconds)
+    if cause != OK:
+        return cause
+    if not is_running(motors):
+        if not ap.arming.armed and try_arm(v, BY_MOTOR_TEST, False) != 0:
             return NOT_ARMABLE
         emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor))
     motors.test_motor = motor
     motors.test_value = throttle
     motors.test_pulse = pulse
-    motors.test_until_us = v.time_us + int(min(seconds, LONGEST_S) * 1e6)
+    motors.test_until_us = v.time_us + int(min(seconds, SECONDS_MAX) * 1e6)
     return OK
 
 
 @law
-def is_running(ap):
+def is_running(motors: MotorsState) -> bool:
     """Whether a test is under way."""
-    return ap.control.motors.test_motor != 0
+    return motors.test_motor != 0
 
 
 @law
-def update(v):
+def update(v: Vehicle) -> None:
     """Every period, behind the mode: keep the mode's hands off the motors; end in time."""
     ap = v.autopilot
     motors = ap.control.motors
-    if motors.test_motor == 0:
+    if not is_running(motors):
         return
     motors.throttle = 0.0
     motors.steering = 0.0
-    if v.time_us >= motors.test_until_us or ap.arming.armed == 0:
+    if v.time_us >= motors.test_until_us or not ap.arming.armed:
         motors.test_motor = 0
         motors.test_pulse = 0
         emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
-        disarm(v, BY_MOTOR_TEST, 1)
+        disarm(v, BY_MOTOR_TEST, True)

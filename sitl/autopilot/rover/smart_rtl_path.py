@@ -3,172 +3,192 @@
 
 A point is kept when it is SRTL_ACCURACY from the last one. Fifty new points, or little room, and the path is simplified
 (Ramer, Douglas and Peucker: points near the line between their neighbours go); when that is not enough, and before the
-way home begins, loops are cut out where two stretches of the path come close. The first point is home.
+way home begins, loops are cut out where two stretches of the path come close. The first point is home. Points are NE
+metres from the EKF origin.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ...core.algebra import dot2, horizontal
 from ...core.kernels import law
 from ...core.scalars import constrain, finite
+from ...core.vectors import Vec2
 from ..events import PATH_LOST, emit
-from .modes.state import PATH_POINTS
+from .modes.state import PATH_POINTS, PathState
+from .parameters.driving import SmartRtl
+from .state import Vehicle
 
 TIMEOUT_US = 15_000_000
 """Without a position or without room for so long, the path is given up."""
-TRIGGER, LEAST, MARGIN = 50, 10, 10
+NEW_POINTS, NEW_POINTS_MIN, MARGIN = 50, 10, 10
 """New points that start a simplification; fewer do when less than MARGIN room is left."""
-EPSILON_SHARE = 0.5
+EPSILON_RATIO = 0.5
 """Of SRTL_ACCURACY: how far a dropped point may lie from the simplified path."""
-LOOP_SHARE = 0.99
+LOOP_RATIO = 0.99
 """Of SRTL_ACCURACY: stretches of the path closer than this are one place."""
 
 # Why the path was given up (PATH_LOST)
 BAD_POSITION, FULL = 0, 1
 
 
+class Farthest(NamedTuple):
+    """The point of a stretch that is farthest from the line between the stretch's ends."""
+
+    k: int
+    distance: float  # [m]
+
+
+class Meeting(NamedTuple):
+    """Where two stretches of the path come closest."""
+
+    distance: float  # [m]
+    place: Vec2  # in the middle between them [m]
+
+
 @law
-def capacity(ap):
+def capacity(params: SmartRtl) -> int:
     """Most points on the path."""
-    return min(max(int(ap.params.SRTL.POINTS), 0), PATH_POINTS)
+    return min(max(int(params.POINTS), 0), PATH_POINTS)
 
 
 @law
-def set_home(v):
+def point(path: PathState, k: int) -> Vec2:
+    """Point ``k`` of the path [m]."""
+    return Vec2(path.n[k], path.e[k])
+
+
+@law
+def set_point(path: PathState, k: int, place: Vec2) -> None:
+    """Write point ``k`` of the path [m]."""
+    path.n[k] = place.x
+    path.e[k] = place.y
+
+
+@law
+def set_home(v: Vehicle) -> None:
     """On arming: forget the path; it begins here, if there is a position."""
     ap = v.autopilot
     path = ap.modes.path
     path.points = 0
     path.simplified = 0
-    path.active = 0
-    path.home_saved = 0
-    if ap.estimate.position_ok == 0 or capacity(ap) == 0 or ap.params.SRTL.ACCURACY <= 0.0:
+    path.active = False
+    path.home_saved = False
+    if not ap.estimate.position_ok or capacity(ap.params.SRTL) == 0 or ap.params.SRTL.ACCURACY <= 0.0:
         return
     path.good_us = v.time_us
     path.saved_us = v.time_us
-    path.active = 1
-    path.home_saved = add(ap, float(ap.estimate.pos[0]), float(ap.estimate.pos[1]))
+    path.active = True
+    path.home_saved = add(path, horizontal(ap.estimate.pos), ap.params.SRTL)
 
 
 @law
-def give_up(v, reason):
+def give_up(v: Vehicle, reason: int) -> None:
     """No path any more until the next arming."""
-    v.autopilot.modes.path.active = 0
+    v.autopilot.modes.path.active = False
     emit(v.autopilot.events, v.time_us, PATH_LOST, float(reason), 0.0)
 
 
 @law
-def update(v, record):
+def update(v: Vehicle, record: bool) -> None:
     """Three times a second: note the position, when ``record``, and keep room."""
     ap = v.autopilot
     path = ap.modes.path
-    if path.home_saved == 0 and ap.estimate.position_ok != 0:
+    if not path.home_saved and ap.estimate.position_ok:
         set_home(v)
-    if path.active == 0 or record == 0:
+    if not path.active or not record:
         return
-    if ap.estimate.position_ok == 0:
+    if not ap.estimate.position_ok:
         if v.time_us - path.good_us > TIMEOUT_US:
             give_up(v, BAD_POSITION)
         return
     path.good_us = v.time_us
-    if add(ap, float(ap.estimate.pos[0]), float(ap.estimate.pos[1])) != 0:
+    if add(path, horizontal(ap.estimate.pos), ap.params.SRTL):
         path.saved_us = v.time_us
     elif v.time_us - path.saved_us > TIMEOUT_US:
         give_up(v, FULL)
-    keep_room(ap)
+    keep_room(path, ap.params.SRTL)
 
 
 @law
-def add(ap, n, e):
-    """Append a point; 0 when there is no room. A point near the last one needs none."""
-    path = ap.modes.path
-    if not finite(n + e):
-        return 1
-    last = int(path.points) - 1
-    if last >= 0 and math.hypot(n - path.n[last], e - path.e[last]) < ap.params.SRTL.ACCURACY:
-        return 1
-    if path.points >= capacity(ap):
-        return 0
-    path.n[last + 1] = n
-    path.e[last + 1] = e
+def add(path: PathState, place: Vec2, params: SmartRtl) -> bool:
+    """Append a point [m]; False when there is no room. A point near the last one needs none."""
+    if not finite(place.x + place.y):
+        return True
+    if path.points > 0:
+        away = place - point(path, path.points - 1)
+        if math.hypot(away.x, away.y) < params.ACCURACY:
+            return True
+    if path.points >= capacity(params):
+        return False
+    set_point(path, path.points, place)
     path.points += 1
-    return 1
+    return True
 
 
 @law
-def keep_room(ap):
-    """Simplify now and then; cut loops only when that leaves little room."""
-    path = ap.modes.path
-    fresh = int(path.points) - int(path.simplified)
-    tight = capacity(ap) - int(path.points) <= MARGIN
-    if fresh >= TRIGGER or (tight and fresh >= LEAST):
-        simplify(ap)
-    elif tight:
-        cut_loops(ap)
-
-
-@law
-def clean_up(ap):
-    """Before the way home: the shortest path that has been driven."""
-    simplify(ap)
-    cut_loops(ap)
-
-
-@law
-def pop(ap):
-    """Take the last point: (1, north, east), or (0, 0, 0) when the path is used up."""
-    path = ap.modes.path
-    if path.points == 0:
-        return (0, 0.0, 0.0)
+def drop_last(path: PathState) -> None:
+    """Take the last point away; there is one."""
     path.points -= 1
-    path.simplified = min(int(path.simplified), int(path.points))
-    last = int(path.points)
-    return (1, float(path.n[last]), float(path.e[last]))
+    path.simplified = min(path.simplified, path.points)
 
 
 @law
-def peek(ap):
-    """The last point without taking it: (1, north, east), or (0, 0, 0)."""
-    path = ap.modes.path
-    last = int(path.points) - 1
-    if last < 0:
-        return (0, 0.0, 0.0)
-    return (1, float(path.n[last]), float(path.e[last]))
+def keep_room(path: PathState, params: SmartRtl) -> None:
+    """Simplify now and then; cut loops only when that leaves little room."""
+    fresh = path.points - path.simplified
+    tight = capacity(params) - path.points <= MARGIN
+    if fresh >= NEW_POINTS or (tight and fresh >= NEW_POINTS_MIN):
+        simplify(path, params.ACCURACY)
+    elif tight:
+        cut_loops(path, params.ACCURACY)
 
 
 @law
-def segment_distance(pn, pe, an, ae, bn, be):
-    """Distance [m] of the point p from the stretch a .. b."""
-    dn, de = bn - an, be - ae
-    square = dn * dn + de * de
-    share = 0.0
+def clean_up(path: PathState, accuracy: float) -> None:
+    """Before the way home: the shortest path that has been driven, to ``accuracy`` [m]."""
+    simplify(path, accuracy)
+    cut_loops(path, accuracy)
+
+
+@law
+def ratio_along(p: Vec2, a: Vec2, b: Vec2) -> float:
+    """Where on the stretch a .. b the point nearest to p is: 0 .. 1."""
+    line = b - a
+    square = dot2(line, line)
     if square > 0.0:
-        share = constrain(((pn - an) * dn + (pe - ae) * de) / square, 0.0, 1.0)
-    return math.hypot(pn - an - share * dn, pe - ae - share * de)
+        return constrain(dot2(p - a, line) / square, 0.0, 1.0)
+    return 0.0
 
 
 @law
-def farthest(path, a, b):
-    """(point between ``a`` and ``b`` that is farthest from the line between them, its distance [m])."""
-    best = a
-    most = 0.0
-    for k in range(a + 1, b):
-        distance = segment_distance(
-            float(path.n[k]), float(path.e[k]), float(path.n[a]), float(path.e[a]), float(path.n[b]), float(path.e[b])
-        )
-        if distance > most:
-            most = distance
-            best = k
-    return (best, most)
+def stretch_distance(p: Vec2, a: Vec2, b: Vec2) -> float:
+    """Distance [m] of the point p from the stretch a .. b."""
+    away = p - a - ratio_along(p, a, b) * (b - a)
+    return math.hypot(away.x, away.y)
 
 
 @law
-def simplify(ap):
+def farthest(path: PathState, first: int, last: int) -> Farthest:
+    """The point between two of the path that is farthest from the line between them."""
+    a, b = point(path, first), point(path, last)
+    k_max = first
+    distance_max = 0.0
+    for k in range(first + 1, last):
+        distance = stretch_distance(point(path, k), a, b)
+        if distance > distance_max:
+            distance_max = distance
+            k_max = k
+    return Farthest(k_max, distance_max)
+
+
+@law
+def simplify(path: PathState, accuracy: float) -> None:
     """Drop points that lie on the line between those that stay; what was simplified before stays as it is."""
-    path = ap.modes.path
-    count = int(path.points)
-    first = max(int(path.simplified) - 1, 0)
+    count = path.points
+    first = max(path.simplified - 1, 0)
     for k in range(count):
         path.keep[k] = 1 if k <= first or k == count - 1 else 0
     a = first
@@ -176,70 +196,56 @@ def simplify(ap):
         b = a + 1
         while path.keep[b] == 0:
             b += 1
-        best, distance = farthest(path, a, b)
-        if distance > EPSILON_SHARE * ap.params.SRTL.ACCURACY:
-            path.keep[best] = 1
+        found = farthest(path, a, b)
+        if found.distance > EPSILON_RATIO * accuracy:
+            path.keep[found.k] = 1
         else:
             a = b
     kept = 0
     for k in range(count):
         if path.keep[k] != 0:
-            path.n[kept] = path.n[k]
-            path.e[kept] = path.e[k]
+            set_point(path, kept, point(path, k))
             kept += 1
     path.points = kept
     path.simplified = kept
 
 
 @law
-def return_to(path, j, i):
-    """(distance of point ``i`` from the stretch j-1 .. j, north and east of the place between) [m]."""
-    an, ae = float(path.n[j - 1]), float(path.e[j - 1])
-    pn, pe = float(path.n[i]), float(path.e[i])
-    dn, de = float(path.n[j]) - an, float(path.e[j]) - ae
-    square = dn * dn + de * de
-    share = 0.0
-    if square > 0.0:
-        share = constrain(((pn - an) * dn + (pe - ae) * de) / square, 0.0, 1.0)
-    qn, qe = an + share * dn, ae + share * de
-    return (math.hypot(pn - qn, pe - qe), 0.5 * (pn + qn), 0.5 * (pe + qe))
+def meeting(p: Vec2, q: Vec2) -> Meeting:
+    """Of two points [m]."""
+    away = p - q
+    return Meeting(math.hypot(away.x, away.y), 0.5 * (p + q))
 
 
 @law
-def crossing(path, j, i):
-    """(distance of the stretches j-1 .. j and i-1 .. i, north and east of the place between) [m].
+def nearest(path: PathState, j: int, i: int) -> Meeting:
+    """Where the stretches j-1 .. j and i-1 .. i of the path come closest.
 
     Of neighbours and of parallel stretches, the end of the later one counts: it drove back along the other.
     """
-    an, ae = float(path.n[j - 1]), float(path.e[j - 1])
-    cn, ce = float(path.n[i - 1]), float(path.e[i - 1])
-    un, ue = float(path.n[j]) - an, float(path.e[j]) - ae
-    wn, we = float(path.n[i]) - cn, float(path.e[i]) - ce
-    rn, re = an - cn, ae - ce
-    uu, uw, ww = un * un + ue * ue, un * wn + ue * we, wn * wn + we * we
+    a, c = point(path, j - 1), point(path, i - 1)
+    b, d = point(path, j), point(path, i)
+    u, w, r = b - a, d - c, a - c
+    uu, uw, ww = dot2(u, u), dot2(u, w), dot2(w, w)
     det = uu * ww - uw * uw
     if i == j + 1 or det <= 1e-9 * uu * ww:
-        return return_to(path, j, i)
-    ur, wr = un * rn + ue * re, wn * rn + we * re
+        return meeting(d, a + ratio_along(d, a, b) * u)
+    ur, wr = dot2(u, r), dot2(w, r)
     s = constrain((uw * wr - ww * ur) / det, 0.0, 1.0)
     t = constrain((uu * wr - uw * ur) / det, 0.0, 1.0)
-    pn, pe = an + s * un, ae + s * ue
-    qn, qe = cn + t * wn, ce + t * we
-    return (math.hypot(pn - qn, pe - qe), 0.5 * (pn + qn), 0.5 * (pe + qe))
+    return meeting(a + s * u, c + t * w)
 
 
 @law
-def cut_loops(ap):
+def cut_loops(path: PathState, accuracy: float) -> None:
     """Where a later stretch comes close to an earlier one, what lies between is cut out; from home outwards."""
-    path = ap.modes.path
-    near = LOOP_SHARE * float(ap.params.SRTL.ACCURACY)
     j = 1
-    while j < int(path.points) - 1:
-        i = int(path.points) - 1
+    while j < path.points - 1:
+        i = path.points - 1
         while i > j:
-            distance, n, e = crossing(path, j, i)
-            if distance < near:
-                remove(path, j, i - 1, n, e)
+            met = nearest(path, j, i)
+            if met.distance < LOOP_RATIO * accuracy:
+                replace(path, j, i - 1, met.place)
                 i = 0
             else:
                 i -= 1
@@ -247,13 +253,10 @@ def cut_loops(ap):
 
 
 @law
-def remove(path, first, last, n, e):
-    """Replace the points ``first`` .. ``last`` by (n, e)."""
-    path.n[first] = n
-    path.e[first] = e
-    count = int(path.points)
-    for k in range(last + 1, count):
-        path.n[k - last + first] = path.n[k]
-        path.e[k - last + first] = path.e[k]
-    path.points = count - last + first
-    path.simplified = min(int(path.simplified), int(path.points))
+def replace(path: PathState, first: int, last: int, place: Vec2) -> None:
+    """Put ``place`` [m] where the points ``first`` .. ``last`` were."""
+    set_point(path, first, place)
+    for k in range(last + 1, path.points):
+        set_point(path, k - last + first, point(path, k))
+    path.points = path.points - last + first
+    path.simplified = min(path.simplified, path.points)

@@ -7,9 +7,10 @@ from .. import events
 from ..arming_checks import BY_MAVLINK
 from ..arming_checks import texts as arming_texts
 from ..failsafe_checks import EKF
+from ..modes import NO_MISSION
 from . import failsafe, smart_rtl_path
 from .modes import circle
-from .modes.numbers import ACCEPTED, NO_MISSION, refusal_texts
+from .modes.set_mode import refusal_texts
 
 EMERGENCY, CRITICAL, WARNING, NOTICE, INFO = 0, 2, 4, 5, 6
 """MAV_SEVERITY"""
@@ -51,9 +52,7 @@ def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
 
 def _refusal(number: int, cause: int) -> list[tuple[int, str]]:
     said = refusal_texts(number, cause)
-    if cause == ACCEPTED or cause != NO_MISSION:
-        return [(WARNING, text) for text in said]
-    return [(NOTICE, said[0]), *((WARNING, text) for text in said[1:])]
+    return [(NOTICE if cause == NO_MISSION and text is said[0] else WARNING, text) for text in said]
 
 
 def _failsafe(which: int, on: bool) -> list[tuple[int, str]]:

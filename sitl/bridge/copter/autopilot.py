@@ -7,8 +7,11 @@ from collections.abc import Sequence
 
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
-from ...autopilot.copter.modes import auto, guided, numbers, set_mode, takeoff
+from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, table
+from ...autopilot.copter.modes.guided_setpoints import YawSetpoint
 from ...autopilot.mission.notes import Text
+from ...core.algebra import IDENTITY
+from ...core.vectors import Quat, Vec3
 from ..autopilot_api import NO_YAW, Note, Vector, Yaw
 from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
@@ -16,7 +19,8 @@ from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 class CopterAutopilot(BaseAutopilot):
     """The copter firmware's laws, called on the vehicle's record."""
 
-    _arming, _failsafe, _set_mode, _numbers = arming, failsafe, set_mode, numbers
+    _arming, _failsafe, _set_mode = arming, failsafe, set_mode
+    _auto = auto.AUTO
 
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.MOTOR_TEST:
@@ -26,14 +30,14 @@ class CopterAutopilot(BaseAutopilot):
     def start_mission(self) -> bool:
         if not super().start_mission():
             return False
-        auto.start(self._v)
+        auto.start_mission(self._v.autopilot)
         return True
 
     # ------------------------------------------------------------------ take-off and motors
 
     def takeoff(self, altitude: float) -> bool:
         """Climb to a height above home [m]."""
-        return int(takeoff.start(self._v, altitude)) == 0
+        return int(commands.take_off(self._v.autopilot, altitude)) == 0
 
     def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
         """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front."""
@@ -61,48 +65,49 @@ class CopterAutopilot(BaseAutopilot):
     # ------------------------------------------------------------------ GUIDED
 
     def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
-        return int(guided.set_position(self._v, *place, *_laws_yaw(yaw))) == 0
+        return int(guided_setpoints.set_position(self._v, Vec3(*place), _laws_yaw(yaw))) == 0
 
     def guided_position_velocity(self, pos: Vector, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided.set_pos_vel_accel(self._v, *pos, *vel, *acc, *_laws_yaw(yaw))) == 0
+        motion = (Vec3(*pos), Vec3(*vel), Vec3(*acc))
+        return int(guided_setpoints.set_pos_vel_accel(self._v, *motion, _laws_yaw(yaw))) == 0
 
     def guided_velocity(self, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided.set_velocity_accel(self._v, *vel, *acc, *_laws_yaw(yaw))) == 0
+        return int(guided_setpoints.set_velocity(self._v, Vec3(*vel), Vec3(*acc), _laws_yaw(yaw))) == 0
 
     def guided_acceleration(self, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided.set_accel(self._v, *acc, *_laws_yaw(yaw))) == 0
+        return int(guided_setpoints.set_accel(self._v, Vec3(*acc), _laws_yaw(yaw))) == 0
 
     def guided_attitude(self, q: tuple[float, ...] | None, rates: Vector, thrust: float) -> bool:
-        w, x, y, z = q or (1.0, 0.0, 0.0, 0.0)
-        return int(guided.set_attitude(self._v, int(q is not None), w, x, y, z, *rates, thrust)) == 0
+        attitude = IDENTITY if q is None else Quat(*q)
+        return int(guided_setpoints.set_attitude(self._v, q is not None, attitude, Vec3(*rates), thrust)) == 0
 
     def guided_stop(self) -> bool:
-        return int(guided.stop(self._v)) == 0
+        return int(guided_setpoints.stop(self._v)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
-        kinds = (guided.HORIZONTAL, guided.HORIZONTAL, guided.CLIMB, guided.DESCENT)
-        if not numbers.requires_position(self.mode()):
+        kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
+        if not table.requires_position(self.mode()):
             return False
-        if self.mode() == numbers.AUTO:
+        if self.mode() == auto.AUTO:
             return bool(self._sequencer().change_speed(self._v, kind, speed))
-        return int(guided.change_speed(self._v, kinds[kind], speed)) == 0
+        return int(commands.change_speed(self._v.autopilot, kinds[kind], speed)) == 0
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
-        return int(guided.condition_yaw(self._v, angle, rate, direction, int(relative))) == 0
+        return int(commands.condition_yaw(self._v.autopilot, angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:
-        return int((guided.pause if on else guided.resume)(self._v)) == 0
+        return int(commands.set_paused(self._v.autopilot, on)) == 0
 
     def set_roi(self, place: Vector | None) -> None:
         if place is None:
-            guided.clear_roi(self._v)
+            commands.clear_roi(self._v.autopilot)
         else:
-            guided.set_roi(self._v, *place)
+            commands.set_roi(self._v.autopilot, Vec3(*place))
 
 
-def _laws_yaw(yaw: Yaw | None) -> tuple[int, float, int, float, int]:
-    """Yaw arguments of the GUIDED laws: a field that is not used must still be a number."""
+def _laws_yaw(yaw: Yaw | None) -> YawSetpoint:
+    """Yaw argument of the GUIDED laws: a field that is not used must still be a number."""
     if yaw is None or yaw is NO_YAW:
-        return (0, 0.0, 0, 0.0, 0)
+        return guided_setpoints.NO_YAW
     use_yaw, angle, use_rate, rate, relative = yaw
-    return (int(use_yaw), angle if use_yaw else 0.0, int(use_rate), rate if use_rate else 0.0, int(relative))
+    return YawSetpoint(use_yaw, angle if use_yaw else 0.0, use_rate, rate if use_rate else 0.0, relative)

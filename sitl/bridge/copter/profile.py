@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 from ...autopilot import events
-from ...autopilot.copter.modes.numbers import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, NAMES, RTL, STABILIZE
-from ..profile import AUTOMATIC, Controllers, Mode, Profile, Stick
+from ...autopilot.copter.modes.auto import AUTO
+from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.rtl import RTL
+from ...autopilot.copter.modes.table import MODES
+from ..profile import Controllers, Profile, Stick
 from ..services.results import CRITICAL, INFO
 from ..telemetry.identity import CAPABILITIES, TERMINATION
 from . import telemetry
@@ -17,16 +20,7 @@ PROFILE = Profile(
     firmware="ArduCopter",
     mav_type=telemetry.QUADROTOR,
     capabilities=CAPABILITIES | TERMINATION,
-    modes=(
-        Mode(STABILIZE, NAMES[STABILIZE]),
-        Mode(ALT_HOLD, NAMES[ALT_HOLD], standard=4),
-        Mode(AUTO, NAMES[AUTO], 6, AUTOMATIC),
-        Mode(GUIDED, NAMES[GUIDED], 0, AUTOMATIC),
-        Mode(LOITER, NAMES[LOITER], standard=1),
-        Mode(RTL, NAMES[RTL], 5, AUTOMATIC),
-        Mode(LAND, NAMES[LAND], 7, AUTOMATIC),
-        Mode(BRAKE, NAMES[BRAKE], 0, AUTOMATIC),
-    ),
+    modes=MODES,
     auto=AUTO,
     guided=GUIDED,
     rtl=RTL,

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import math
 
+from ...autopilot.copter.modes.auto import AUTO
+from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.table import MODES, NEED_POSITION
 from ...core.geodesy import add_offset
 from ..dialect import message
 from ..telemetry import position
@@ -13,15 +16,11 @@ from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW
 from ..telemetry.units import DEG, int16, int32, uint16
 
 A, M, C, E = "autopilot.arming.", "autopilot.modes.", "autopilot.control.", "autopilot.estimate."
-AUTO, GUIDED = 3, 4
 QUADROTOR, ARDUPILOTMEGA = 2, 3
 CUSTOM_MODE, IS_GUIDED, STABILIZED, MANUAL_INPUT, ARMED = 1, 8, 16, 64, 128
 STANDBY, ACTIVE, CRITICAL = 3, 4, 5
-GUIDED_MODES = frozenset((3, 4, 5, 6, 7, 16, 17, 21, 23))
-"""Copter modes that steer by themselves (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE, SMART_RTL.
-
-FOLLOW).
-"""
+GUIDED_MODES = frozenset(NEED_POSITION)
+"""Modes that hold or change the position by themselves: HEARTBEAT's MAV_MODE_FLAG_GUIDED_ENABLED."""
 
 
 def heartbeat(context: Context) -> Build:
@@ -43,8 +42,8 @@ def heartbeat(context: Context) -> Build:
     return build
 
 
-POSITION_MODES = frozenset((3, 4, 5, 6, 7, 9, 16, 17))
-ALTITUDE_MODES = POSITION_MODES | {2}
+POSITION_MODES = frozenset(mode.number for mode in MODES if mode.needs_position or mode.uses_position)
+ALTITUDE_MODES = frozenset(mode.number for mode in MODES if not mode.manual_throttle)
 CONTROLLERS = RATE | ATTITUDE | YAW | ALTITUDE | POSITION | MOTORS
 """Bits of SYS_STATUS"""
 
@@ -73,7 +72,7 @@ def extended_sys_state(context: Context) -> Build:
         elif landing:
             state = LANDING
         else:
-            climbs = (mode == 4 and guided_submode == 0) or (mode == 3 and kind == 1)
+            climbs = (mode == GUIDED and guided_submode == 0) or (mode == AUTO and kind == 1)
             state = TAKING_OFF if user_takeoff or (climbs and not takeoff_complete) else IN_AIR
         return pack(0, state)
 

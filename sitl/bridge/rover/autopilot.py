@@ -9,8 +9,10 @@ from ...autopilot import events
 from ...autopilot.mission.notes import ItemReached, Text
 from ...autopilot.rover import arming, failsafe, motor_test, texts
 from ...autopilot.rover.control import servos
-from ...autopilot.rover.modes import change_speed, guided, numbers, set_mode
+from ...autopilot.rover.modes import guided_setpoints, set_mode
+from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.navigation import waypoint
+from ...core.vectors import Vec2
 from ..autopilot_api import Note, Vector, Yaw
 from ..base_autopilot import INFO, BaseAutopilot
 
@@ -18,7 +20,8 @@ from ..base_autopilot import INFO, BaseAutopilot
 class RoverAutopilot(BaseAutopilot):
     """The rover firmware's laws, called on the vehicle's record. Backward speeds are negative."""
 
-    _arming, _failsafe, _set_mode, _numbers = arming, failsafe, set_mode, numbers
+    _arming, _failsafe, _set_mode = arming, failsafe, set_mode
+    _auto = AUTO
 
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.GUIDED_REACHED:
@@ -39,28 +42,28 @@ class RoverAutopilot(BaseAutopilot):
 
     def is_guided_in_auto(self) -> bool:
         """Whether a mission waits for set-points (NAV_GUIDED_ENABLE)."""
-        return self.mode() == numbers.AUTO and bool(guided.is_open(self._v.autopilot))
+        return self.mode() == AUTO and bool(guided_setpoints.is_open(self._v.autopilot.modes))
 
     def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
         """Drive to a place; height and yaw mean nothing to a rover."""
-        return int(guided.set_position(self._v, place[0], place[1])) == 0
+        return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
 
     def guided_heading(self, heading: float, speed: float) -> bool:
-        return int(guided.set_heading_and_speed(self._v, heading, speed)) == 0
+        return int(guided_setpoints.set_heading_and_speed(self._v, heading, speed)) == 0
 
     def guided_heading_change(self, change: float, speed: float) -> bool:
         """Turn by an angle [rad] from the heading asked for last."""
-        return int(guided.set_heading_change_and_speed(self._v, change, speed)) == 0
+        return int(guided_setpoints.set_heading_change_and_speed(self._v, change, speed)) == 0
 
     def guided_turn_rate(self, rate: float, speed: float) -> bool:
-        return int(guided.set_turn_rate_and_speed(self._v, rate, speed)) == 0
+        return int(guided_setpoints.set_turn_rate_and_speed(self._v, rate, speed)) == 0
 
     def guided_stop(self) -> bool:
-        return int(guided.stop(self._v)) == 0
+        return int(guided_setpoints.stop(self._v)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
         """Airspeed (0) is ground speed (1); there are no others."""
-        return int(change_speed.change_speed(self._v, speed)) == 0
+        return bool(set_mode.change_speed(self._v, speed))
 
     def set_reversed(self, backward: bool) -> None:
         """Drive paths backwards, until the mode changes."""

@@ -3,25 +3,23 @@
 
 from __future__ import annotations
 
-from ...autopilot.rover.modes.numbers import AUTO, GUIDED, INITIALISING, NAMES, RTL, is_autopilot
+from ...autopilot.rover.modes.auto import AUTO
+from ...autopilot.rover.modes.guided import GUIDED
+from ...autopilot.rover.modes.rtl import RTL
+from ...autopilot.rover.modes.table import MODES
 from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
-from ..profile import AUTOMATIC, NOT_SELECTABLE, Controllers, Mode, Profile, Stick
+from ..profile import Controllers, Profile, Stick
 from ..telemetry.identity import CAPABILITIES
 from . import targets, telemetry
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
 from .setpoints import RoverSetpoints
 
-
-def _properties(number: int) -> int:
-    return NOT_SELECTABLE if number == INITIALISING else AUTOMATIC if is_autopilot(number) else 0
-
-
 PROFILE = Profile(
     firmware="ArduRover",
     mav_type=telemetry.GROUND_ROVER,
     capabilities=CAPABILITIES,
-    modes=tuple(Mode(number, name, properties=_properties(number)) for number, name in NAMES.items()),
+    modes=MODES,
     auto=AUTO,
     guided=GUIDED,
     rtl=RTL,

@@ -6,7 +6,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from ...autopilot.rover.modes import auto_state, guided_state, numbers
+from ...autopilot.rover.modes.auto import AUTO, CIRCLING, GUIDED_IN_MISSION, LOITERING, ON_PATH, RETURNING
+from ...autopilot.rover.modes.guided import GUIDED, HEADING_AND_SPEED, POSITION
+from ...autopilot.rover.modes.table import AUTONOMOUS, MODES
 from ...core.geodesy import add_offset
 from ..dialect import message
 from ..telemetry.builder import Build, Builder, Context
@@ -16,35 +18,22 @@ M, NAV, C, E = "autopilot.modes.", "autopilot.modes.nav.", "autopilot.control.po
 NOT_FOR_PLACES = 0xFDF8
 """type_mask of a place alone, as ArduRover sends it."""
 
-PATH, LOITER, CIRCLE, GUIDED = "nav.target", "loiter.place", "circle.target", "guided"
-"""Fields of ``modes`` with a destination; GUIDED: that of the path when its set-point is a position."""
-_IN_AUTO = {
-    auto_state.WAYPOINT: PATH,
-    auto_state.RTL: PATH,
-    auto_state.CIRCLE: CIRCLE,
-    auto_state.LOITER: LOITER,
-    auto_state.GUIDED: GUIDED,
-}
-_IN_MODE = {
-    numbers.RTL: PATH,
-    numbers.SMART_RTL: PATH,
-    numbers.LOITER: LOITER,
-    numbers.CIRCLE: CIRCLE,
-    numbers.GUIDED: GUIDED,
-}
+_OF_MODES = {mode.number: mode.destination for mode in MODES if mode.destination}
+"""Fields of ``modes`` with a destination; GUIDED's is one only when its set-point is a position."""
+PATH, LOITER, CIRCLE = "nav.target", "loiter.place", "circle.target"
+_OF_AUTO = {ON_PATH: PATH, RETURNING: PATH, CIRCLING: CIRCLE, LOITERING: LOITER, GUIDED_IN_MISSION: PATH}
 
 
 def destination(context: Context) -> Callable[[], tuple[str, float, float]]:
     """(what it is, north, east [m]) of where the present mode drives to; "" when it drives to no place."""
     read_mode = context.fields(M + "number", M + "auto.submode", M + "guided.submode")
-    read = {what: context.fields(M + what) for what in (PATH, LOITER, CIRCLE)}
+    read = {what: context.fields(M + what) for what in {*_OF_MODES.values(), *_OF_AUTO.values()}}
 
     def where() -> tuple[str, float, float]:
         mode, in_auto, in_guided = read_mode()
-        what = _IN_AUTO.get(in_auto, "") if mode == numbers.AUTO else _IN_MODE.get(mode, "")
-        if what == GUIDED:
-            what = PATH if in_guided == guided_state.POSITION else ""
-        if what == "":
+        what = _OF_AUTO.get(in_auto, "") if mode == AUTO else _OF_MODES.get(mode, "")
+        guided = mode == GUIDED or (mode == AUTO and in_auto == GUIDED_IN_MISSION)
+        if what == "" or (guided and in_guided != POSITION):
             return "", 0.0, 0.0
         n, e, *_ = read[what]()
         return what, n, e
@@ -63,7 +52,7 @@ def nav_controller_output(context: Context) -> Build:
 
     def build() -> bytes:
         mode, n, e, _, tn, te, submode, heading, is_fresh, beside = read()
-        if not numbers.is_autopilot(mode):
+        if mode not in AUTONOMOUS:
             return b""
         what, to_n, to_e = where()
         distance = bearing = now = 0.0
@@ -72,7 +61,7 @@ def nav_controller_output(context: Context) -> Build:
             bearing = now = math.atan2(to_e - e, to_n - n) * DEG
             if what != LOITER:
                 now = math.atan2(te - e, tn - n) * DEG
-        elif mode == numbers.GUIDED and submode == guided_state.HEADING_AND_SPEED and is_fresh:
+        elif mode == GUIDED and submode == HEADING_AND_SPEED and is_fresh:
             now = heading * DEG
         error = beside if what == PATH else 0.0
         return pack(0.0, 0.0, 0.0, 0.0, error, int16(now), int16(bearing), uint16(distance))

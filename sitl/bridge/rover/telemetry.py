@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from ...autopilot.rover.control.servos import LEFT, OUTPUTS, RIGHT
-from ...autopilot.rover.modes import numbers
+from ...autopilot.rover.modes.hold import HOLD
+from ...autopilot.rover.modes.initialising import INITIALISING
+from ...autopilot.rover.modes.table import AUTONOMOUS, MODES
 from ..dialect import message
 from ..telemetry import position
 from ..telemetry.builder import Build, Builder, Context
@@ -17,12 +19,12 @@ CUSTOM_MODE, IS_GUIDED, MANUAL_INPUT, ARMED = 1, 8, 64, 128
 CALIBRATING, STANDBY, ACTIVE, CRITICAL = 2, 3, 4, 5
 
 _BASE_MODES = {
-    number: CUSTOM_MODE
-    | (IS_GUIDED if numbers.is_autopilot(number) else 0)
-    | (MANUAL_INPUT if numbers.has_manual_input(number) or number == numbers.INITIALISING else 0)
-    for number in numbers.NAMES
+    mode.number: CUSTOM_MODE
+    | (IS_GUIDED if mode.autonomous else 0)
+    | (MANUAL_INPUT if mode.manual_input or mode.number == INITIALISING else 0)
+    for mode in MODES
 }
-_STATES = {numbers.INITIALISING: CALIBRATING, numbers.HOLD: STANDBY}
+_STATES = {INITIALISING: CALIBRATING, HOLD: STANDBY}
 
 
 def heartbeat(context: Context) -> Build:
@@ -34,8 +36,8 @@ def heartbeat(context: Context) -> Build:
 
     def build() -> bytes:
         armed, mode, links, ekf, mixing = read()
-        base = _BASE_MODES.get(mode, CUSTOM_MODE) | (ARMED if armed and mode != numbers.INITIALISING else 0)
-        base |= MANUAL_INPUT if mixing > 0.0 and mode != numbers.INITIALISING else 0
+        base = _BASE_MODES.get(mode, CUSTOM_MODE) | (ARMED if armed and mode != INITIALISING else 0)
+        base |= MANUAL_INPUT if mixing > 0.0 and mode != INITIALISING else 0
         state = CRITICAL if links or ekf else _STATES.get(mode, ACTIVE)
         return pack(mode & 0xFFFFFFFF, GROUND_ROVER, ARDUPILOTMEGA, base, state, 3)
 
@@ -44,13 +46,13 @@ def heartbeat(context: Context) -> Build:
 
 CONTROLLERS = RATE | ATTITUDE | YAW | POSITION | MOTORS
 """Bits of SYS_STATUS"""
-UNSTABILISED_MODES = frozenset((numbers.MANUAL, numbers.HOLD, numbers.INITIALISING))
+CONTROLLED_MODES = frozenset(mode.number for mode in MODES if mode.controlled)
 
 
 def controllers_at_work(mode: int, armed: bool) -> int:
     """Bits of the controllers that a mode uses."""
-    bits = 0 if mode in UNSTABILISED_MODES else RATE | ATTITUDE
-    return bits | (YAW | POSITION if numbers.is_autopilot(mode) else 0) | (MOTORS if armed else 0)
+    bits = RATE | ATTITUDE if mode in CONTROLLED_MODES else 0
+    return bits | (YAW | POSITION if mode in AUTONOMOUS else 0) | (MOTORS if armed else 0)
 
 
 def extended_sys_state(context: Context) -> Build:

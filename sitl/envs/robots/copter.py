@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sitl.autopilot.copter.modes import numbers
+from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
+from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.core.constants import TICK_S
 
 from ..mavlink import px4, setpoints
@@ -14,8 +15,8 @@ from .kind import FAR, RobotKind, pulses
 
 _ARDUPILOT = RobotKind(
     setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
-    modes={"rc": numbers.ALT_HOLD, "velocity": numbers.GUIDED, "position": numbers.GUIDED, "attitude": numbers.GUIDED},
-    guided=numbers.GUIDED,
+    modes={"rc": ALT_HOLD, "velocity": GUIDED, "position": GUIDED, "attitude": GUIDED},
+    guided=GUIDED,
     encode=setpoints.COPTER,
     tick=TICK_S,
     crash_range=0.2,

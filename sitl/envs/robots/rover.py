@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from sitl.autopilot.rover.modes import numbers
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.manual import MANUAL
 
 from ..mavlink import setpoints
 from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
@@ -11,8 +12,8 @@ from .kind import FAR, RobotKind, pulses
 
 ROBOT = RobotKind(
     setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
-    modes={"rc": numbers.MANUAL, "velocity": numbers.GUIDED, "position": numbers.GUIDED, "attitude": numbers.GUIDED},
-    guided=numbers.GUIDED,
+    modes={"rc": MANUAL, "velocity": GUIDED, "position": GUIDED, "attitude": GUIDED},
+    guided=GUIDED,
     encode=setpoints.ROVER,
     tick=0.02,
     crash_range=1.5,

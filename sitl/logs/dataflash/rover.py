@@ -7,7 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ...autopilot.rover.modes import auto_state, guided_state, numbers
+from ...autopilot.rover.modes import auto, guided
+from ...autopilot.rover.modes.circle import CIRCLE
+from ...autopilot.rover.modes.loiter import LOITER
+from ...autopilot.rover.modes.rtl import RTL
+from ...autopilot.rover.modes.smart_rtl import SMART_RTL
+from ...autopilot.rover.modes.table import AUTONOMOUS
 from . import bits, common, derived
 from .derived import DEG
 from .formats import Field, Message
@@ -16,7 +21,7 @@ from .samples import Array
 A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C, M = "autopilot.control.", "autopilot.modes."
 _STEERING, _SPEED, _POSITION, _MOTORS = C + "steering.", C + "speed.", C + "position.", C + "motors."
-_PATHS = (numbers.RTL, numbers.SMART_RTL)
+_PATHS = (RTL, SMART_RTL)
 """Modes that follow paths all the time."""
 _RECENT = 25
 """A position controller that last ran longer ago (periods) is not at work."""
@@ -43,27 +48,27 @@ def _attitude(fast: bool) -> Message:
 
 def _any_of(s: Any, in_mode: tuple[int, ...], in_auto: tuple[int, ...], in_guided: tuple[int, ...] = ()) -> Array:
     """Whether the vehicle is in one of these modes, or does one of these things in AUTO or in GUIDED."""
-    mode, auto, guided = (s.raw(M + name) for name in ("number", "auto.submode", "guided.submode"))
-    guiding = (mode == numbers.GUIDED) | ((mode == numbers.AUTO) & (auto == auto_state.GUIDED))
-    found = np.isin(mode, in_mode) | ((mode == numbers.AUTO) & np.isin(auto, in_auto))
-    return found | (guiding & np.isin(guided, in_guided))
+    mode, of_auto, of_guided = (s.raw(M + name) for name in ("number", "auto.submode", "guided.submode"))
+    guiding = (mode == guided.GUIDED) | ((mode == auto.AUTO) & (of_auto == auto.GUIDED_IN_MISSION))
+    found = np.isin(mode, in_mode) | ((mode == auto.AUTO) & np.isin(of_auto, in_auto))
+    return found | (guiding & np.isin(of_guided, in_guided))
 
 
 def _drives_itself(s: Any) -> Array:
-    return _any_of(s, (*_PATHS, numbers.LOITER, numbers.CIRCLE, numbers.AUTO, numbers.GUIDED), ())
+    return _any_of(s, AUTONOMOUS, ())
 
 
 def _on_path(s: Any) -> Array:
     """Whether it follows a line to a position."""
-    return _any_of(s, _PATHS, (auto_state.WAYPOINT, auto_state.RTL), (guided_state.POSITION,))
+    return _any_of(s, _PATHS, (auto.ON_PATH, auto.RETURNING), (guided.POSITION,))
 
 
 def _at_place(s: Any) -> Array:
-    return _any_of(s, (numbers.LOITER,), (auto_state.LOITER,))
+    return _any_of(s, (LOITER,), (auto.LOITERING,))
 
 
 def _on_circle(s: Any) -> Array:
-    return _any_of(s, (numbers.CIRCLE,), (auto_state.CIRCLE,))
+    return _any_of(s, (CIRCLE,), (auto.CIRCLING,))
 
 
 def _to_target(s: Any) -> tuple[Array, Array]:
@@ -88,8 +93,8 @@ def _bearing(s: Any) -> Array:
 
 def _heading(s: Any) -> Array:
     """The commanded heading, else the bearing to the target."""
-    asked = _any_of(s, (), (), (guided_state.HEADING_AND_SPEED,))
-    turning = _any_of(s, (), (auto_state.HEADING_AND_SPEED,))
+    asked = _any_of(s, (), (), (guided.HEADING_AND_SPEED,))
+    turning = _any_of(s, (), (auto.TURNING,))
     headings = [derived.wrapped(f"{M}{name}.heading")(s) for name in ("guided", "auto")]
     return np.select([asked, turning], headings, _bearing(s))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from sitl.autopilot import home
 from sitl.autopilot.copter.control.update import init as init_control
-from sitl.autopilot.copter.modes.init import init as init_modes
+from sitl.autopilot.copter.modes.update import init as init_modes
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.vehicle.copter import Copter
 

@@ -43,7 +43,7 @@ def test_a_start_as_recorded(vehicle, mode, seconds, texts):
     booting(vehicle, mode, seconds)
     assert arming.texts(arming.check(vehicle)) == texts
     assert arming.arm(vehicle, BY_MAVLINK, False) == (not texts, [f"Arm: {t}" for t in texts])
-    arming.update(vehicle)
+    arming.run_prearm_checks(vehicle)
     assert vehicle.autopilot.arming.prearm_ok == int(not texts)
 
 
@@ -140,7 +140,7 @@ def test_motors_wait_two_seconds(vehicle):
     arming.arm(vehicle, BY_MAVLINK, False)
     for seconds, waits in ((0.0, 1), (1.9, 1), (0.2, 0)):
         wait(vehicle, seconds)
-        arming.update_armed(vehicle)
+        arming.follow_throttle(vehicle)
         assert vehicle.autopilot.modes.arming_delay == waits
 
 
@@ -172,10 +172,10 @@ def test_disarming_what_is_disarmed_is_accepted_silently(vehicle):
 def test_left_alone_it_disarms_after_the_delay(vehicle):
     arming.arm(vehicle, BY_MAVLINK, False)
     wait(vehicle, 9.9)
-    arming.update_delay(vehicle)
+    arming.disarm_idle(vehicle)
     assert vehicle.autopilot.arming.armed == 1
     wait(vehicle, 0.2)
-    arming.update_delay(vehicle)
+    arming.disarm_idle(vehicle)
     assert vehicle.autopilot.arming.armed == 0
 
 
@@ -186,7 +186,7 @@ def test_the_delay_starts_again_while_it_is_busy(vehicle, busy):
     arming.arm(vehicle, BY_MAVLINK, False)
     set_fields(vehicle, **busy)
     wait(vehicle, 60.0)
-    arming.update_delay(vehicle)
+    arming.disarm_idle(vehicle)
     assert vehicle.autopilot.arming.armed == 1
 
 
@@ -194,11 +194,11 @@ def test_auto_armed_follows_the_throttle(vehicle):
     ap = vehicle.autopilot
     arming.arm(vehicle, BY_MAVLINK, False)
     ap.modes.pilot.throttle_zero = 0
-    arming.update_armed(vehicle)
+    arming.follow_throttle(vehicle)
     assert ap.arming.auto_armed == 1
     ap.modes.pilot.throttle_zero = 1
-    arming.update_armed(vehicle)
+    arming.follow_throttle(vehicle)
     assert ap.arming.auto_armed == 0  # STABILIZE: throttle closed
     ap.modes.number, ap.arming.auto_armed = GUIDED, 1
-    arming.update_armed(vehicle)
+    arming.follow_throttle(vehicle)
     assert ap.arming.auto_armed == 1

@@ -19,7 +19,7 @@ STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 
 def lose_gcs(v):
     v.autopilot.modes.failsafe.gcs_us = v.time_us
     wait(v, 5.1)
-    failsafe.update_gcs(v)
+    failsafe.watch_gcs(v)
 
 
 @pytest.mark.parametrize(("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE)))
@@ -33,7 +33,7 @@ def test_ground_station_lost(flying, choice, mode):
 def test_a_ground_station_that_never_was_is_not_lost(flying):
     flying.autopilot.params.FS_GCS_ENABLE = 1.0
     wait(flying, 100.0)
-    failsafe.update_gcs(flying)
+    failsafe.watch_gcs(flying)
     assert flying.autopilot.modes.number == GUIDED
 
 
@@ -41,7 +41,7 @@ def test_the_ground_station_comes_back(flying):
     flying.autopilot.params.FS_GCS_ENABLE = 1.0
     lose_gcs(flying)
     flying.autopilot.modes.failsafe.gcs_us = flying.time_us
-    failsafe.update_gcs(flying)
+    failsafe.watch_gcs(flying)
     assert flying.autopilot.modes.failsafe.gcs == 0
     assert flying.autopilot.modes.number == RTL
     assert codes(flying).count(FAILSAFE) == 2
@@ -72,10 +72,10 @@ def test_radio_lost_after_three_frames(flying, choice, mode):
     ap = flying.autopilot
     ap.params.FS_THR_ENABLE = float(choice)
     ap.rc.channels[2] = 950
-    failsafe.update_radio(flying)
-    failsafe.update_radio(flying)
+    failsafe.watch_radio(flying)
+    failsafe.watch_radio(flying)
     assert ap.modes.number == LOITER
-    failsafe.update_radio(flying)
+    failsafe.watch_radio(flying)
     assert ap.modes.number == mode
 
 
@@ -86,13 +86,13 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
     wait(flying, 1.1)
     for _ in range(3):
         pilot.read(flying)
-        failsafe.update_radio(flying)
+        failsafe.watch_radio(flying)
     assert ap.modes.failsafe.radio == 1
     assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap)) == (RTL, 0.0, 0.0)
     ap.rc.has_receiver = 1
     for _ in range(4):
         pilot.read(flying)
-        failsafe.update_radio(flying)
+        failsafe.watch_radio(flying)
     assert ap.modes.failsafe.radio == 0
 
 
@@ -111,12 +111,12 @@ def test_battery_low_for_its_timer(flying, action, mode, armed):
     ap = flying.autopilot
     ap.params.BATT_MONITOR, ap.params.BATT_FS_LOW_ACT = 4.0, float(action)
     ap.battery.voltage = 10.4
-    failsafe.update_battery(flying)
+    failsafe.watch_battery(flying)
     wait(flying, 9.9)
-    failsafe.update_battery(flying)
+    failsafe.watch_battery(flying)
     assert ap.modes.failsafe.battery == 0
     wait(flying, 0.2)
-    failsafe.update_battery(flying)
+    failsafe.watch_battery(flying)
     assert (ap.modes.failsafe.battery, ap.modes.number, ap.arming.armed) == (1, mode, armed)
 
 
@@ -125,7 +125,7 @@ def test_a_dip_of_the_voltage_is_forgiven(flying):
     ap.params.BATT_MONITOR = 4.0
     for voltage in (10.4, 11.0, 10.4):
         ap.battery.voltage = voltage
-        failsafe.update_battery(flying)
+        failsafe.watch_battery(flying)
         wait(flying, 6.0)
     assert ap.modes.failsafe.battery == 0
 
@@ -134,7 +134,7 @@ def test_charge_critical_at_once(flying):
     ap = flying.autopilot
     ap.params.BATT_MONITOR, ap.params.BATT_CRT_MAH, ap.params.BATT_FS_CRT_ACT = 4.0, 300.0, 1.0
     ap.battery.voltage, ap.battery.consumed_mah = 12.0, 3100.0
-    failsafe.update_battery(flying)
+    failsafe.watch_battery(flying)
     assert (ap.modes.failsafe.battery, ap.modes.number) == (2, LAND)
 
 
@@ -153,9 +153,9 @@ def test_estimator_lost_for_a_second(flying, mode, action, after):
     ap = flying.autopilot
     ap.params.FS_EKF_ACTION, ap.estimate.position_ok = float(action), 0
     for _ in range(9):
-        failsafe.update_ekf(flying)
+        failsafe.watch_estimate(flying)
     assert ap.modes.number == mode
-    failsafe.update_ekf(flying)
+    failsafe.watch_estimate(flying)
     assert (ap.modes.number, ap.modes.failsafe.ekf) == (after, 1 if after == mode else failsafe.EKF_ACTED)
     if after == LAND:
         assert ap.modes.land.with_position == 0
@@ -190,8 +190,8 @@ def test_texts():
 def test_a_variance_that_is_no_number_does_not_blind_the_failsafe(flying):
     ap = flying.autopilot
     ap.estimate.variance_vel = math.nan
-    failsafe.update_ekf(flying)
+    failsafe.watch_estimate(flying)
     ap.estimate.variance_vel = ap.estimate.variance_mag = 5.0
     for _ in range(40):
-        failsafe.update_ekf(flying)
+        failsafe.watch_estimate(flying)
     assert ap.modes.failsafe.ekf != 0

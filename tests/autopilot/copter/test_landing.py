@@ -9,6 +9,7 @@ import pytest
 
 from sitl.autopilot.copter import crash, landing
 from sitl.autopilot.events import CRASH_DISARM, LANDED
+from sitl.core.vectors import Vec3
 from tests.autopilot.copter.steady_copter import codes, fly
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
@@ -22,7 +23,7 @@ def touch(v):
     return v
 
 
-def ticks(v, n, law=landing.update):
+def ticks(v, n, law=landing.detect):
     for _ in range(n):
         law(v)
 
@@ -81,7 +82,7 @@ def test_leaning_counts_as_flight_unless_it_is_meant_to_land(flying, lean, mode,
 
 def test_a_disarmed_vehicle_is_landed(flying):
     flying.autopilot.arming.armed = 0
-    landing.update(flying)
+    landing.detect(flying)
     assert flying.autopilot.arming.landed == 1
 
 
@@ -90,10 +91,10 @@ def test_throttle_above_half_of_hover_takes_off_but_not_while_a_take_off_ramps(f
     ap.arming.landed = 1
     ap.control.motors.throttle = 0.3
     ap.modes.guided.submode = 0  # TAKEOFF
-    landing.update(flying)
+    landing.detect(flying)
     assert ap.arming.landed == 1
     ap.modes.number = ALT_HOLD
-    landing.update(flying)
+    landing.detect(flying)
     assert ap.arming.landed == 0
 
 
@@ -115,8 +116,8 @@ def test_throttle_priority(flying, mode, throttle, descent, mix):
         descent,
         1.0,
     )
-    landing.update(flying)
-    landing.update_mix(flying)
+    landing.detect(flying)
+    landing.set_priority(flying)
     assert ap.control.attitude.mix_desired == pytest.approx(float(ap.params[mix]))
 
 
@@ -128,9 +129,9 @@ def tumble(v):
 
 def test_two_seconds_on_its_side_disarm(flying):
     tumble(flying)
-    ticks(flying, 799, crash.update)
+    ticks(flying, 799, crash.check)
     assert flying.autopilot.arming.armed == 1
-    ticks(flying, 1, crash.update)
+    ticks(flying, 1, crash.check)
     assert flying.autopilot.arming.armed == 0
     assert codes(flying)[0] == CRASH_DISARM
     assert crash.text(40.2, 0.04) == "Crash: Disarming: AngErr=40>30, Accel=0.0<3.0"
@@ -141,7 +142,7 @@ def test_two_seconds_on_its_side_disarm(flying):
     (
         lambda ap: setattr(ap.control.attitude, "thrust_error_angle", 0.5),
         lambda ap: setattr(ap.control.attitude, "cos_lean", 0.97),
-        lambda ap: ap.modes.landing.acc.__setitem__(2, 3.1),
+        lambda ap: setattr(ap.modes.landing, "acc", Vec3(0.0, 0.0, 3.1)),
         lambda ap: setattr(ap.estimate, "vel", ap.estimate.vel.replace(x=11.0)),
         lambda ap: setattr(ap.params, "FS_CRASH_CHECK", 0.0),
         lambda ap: setattr(ap.arming, "landed", 1),
@@ -150,5 +151,5 @@ def test_two_seconds_on_its_side_disarm(flying):
 def test_no_crash(flying, well):
     tumble(flying)
     well(flying.autopilot)
-    ticks(flying, 900, crash.update)
+    ticks(flying, 900, crash.check)
     assert flying.autopilot.arming.armed == 1

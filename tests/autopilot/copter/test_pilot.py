@@ -108,7 +108,7 @@ def test_climb_rate(vehicle, throttle, climb):
 def test_the_lean_never_exceeds_the_limit(roll, pitch, most, limit):
     v = make()
     v.autopilot.modes.pilot.roll, v.autopilot.modes.pilot.pitch = roll, pitch
-    r, p = pilot.lean_angles(v.autopilot, most, limit)
+    r, p = pilot.lean_angles(v.autopilot.modes.pilot, most, limit)
     assert math.cos(r) * math.cos(p) >= math.cos(min(most, limit)) - 1e-9
     assert r * roll >= 0.0 and p * pitch >= 0.0
 

@@ -270,7 +270,7 @@ def test_leaving_keeps_the_new_modes_legs() -> None:
     """RTL asks for its leg before the shell hears that AUTO was left; it gets it."""
     p = Vehicle(WP).start()
     ap = p.v.autopilot
-    waypoint.stop(ap)
+    waypoint.stop(ap.modes.nav)
     ap.modes.number, ap.modes.nav.speed_ne = 6, 4.0
     path.request_leg(ap, 0, Vec3(0.0, 0.0, -15.0))
     events.emit(ap.events, 0, events.MODE_CHANGED, 6.0, 0.0)

@@ -6,7 +6,11 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot.rover import arming
-from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, MANUAL, RTL
+from sitl.autopilot.rover.modes.auto import AUTO
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.manual import MANUAL
+from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
 from tests.autopilot.rover.modes.driven_rover import Rover
 

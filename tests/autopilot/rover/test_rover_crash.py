@@ -7,8 +7,10 @@ import math
 
 import pytest
 
-from sitl.autopilot.rover.modes import guided
-from sitl.autopilot.rover.modes.numbers import GUIDED, HOLD, MANUAL
+from sitl.autopilot.rover.modes import guided_setpoints
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -35,7 +37,7 @@ def blocked(**params: float) -> Stuck:
 
 def run_into_wall(rover: Stuck, seconds: float) -> None:
     for _ in range(round(seconds / 0.5)):
-        guided.set_heading_and_speed(rover.v, 0.0, 2.0)
+        guided_setpoints.set_heading_and_speed(rover.v, 0.0, 2.0)
         rover.run(0.5)
 
 

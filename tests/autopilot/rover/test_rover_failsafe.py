@@ -6,8 +6,13 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot.rover import pilot
-from sitl.autopilot.rover.modes.numbers import AUTO, GUIDED, HOLD, MANUAL, RTL, SMART_RTL
+from sitl.autopilot.rover.modes.auto import AUTO
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.manual import MANUAL
+from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.rover.modes.smart_rtl import SMART_RTL
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
@@ -29,7 +34,7 @@ def lose_radio(rover: Rover, seconds: float) -> None:
 def test_a_lost_radio_centres_the_sticks_at_once_and_acts_later() -> None:
     rover = driving()
     lose_radio(rover, 0.04)
-    assert pilot.steering_and_throttle(rover.ap) == (0.0, 0.0)
+    assert pilot.sticks(rover.ap) == (0.0, 0.0)
     rover.run(0.5)
     assert rover.ap.control.motors.throttle == 0.0
     assert rover.ap.modes.number == MANUAL

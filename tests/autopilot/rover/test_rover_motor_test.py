@@ -9,7 +9,7 @@ import pytest
 
 from sitl.autopilot.events import MOTOR_TEST
 from sitl.autopilot.rover import arming, motor_test
-from sitl.autopilot.rover.modes.numbers import RTL
+from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -72,7 +72,7 @@ def test_disarming_ends_it() -> None:
     rover = Rover()
     motor_test.start(rover.v, THROTTLE, 0.2, 0, 20.0)
     rover.run(0.5)
-    arming.disarm(rover.v, 1, 0)
+    arming.disarm(rover.v, 1, False)
     rover.run(0.1)
     assert int(rover.v.actuators.pwm[2]) == 1500
-    assert not motor_test.is_running(rover.ap)
+    assert not motor_test.is_running(rover.ap.control.motors)

@@ -9,6 +9,7 @@ from typing import Any
 from sitl.autopilot import state
 from sitl.autopilot.firmware import Firmware
 from sitl.autopilot.mission.commands import Commands
+from sitl.autopilot.modes import Mode
 from sitl.autopilot.navigation.planner import Planner
 from sitl.autopilot.params import parameters
 from sitl.autopilot.params.parameter import param
@@ -34,11 +35,19 @@ class Autopilot(state.Autopilot):
 
 
 @law
-def update(fleet: Sequence[Any], index: int) -> None:
-    """One tick, from sensors to actuators."""
-    v = fleet[index]
+def run(v: Any) -> None:
+    """Ahead."""
     v.actuators.armed = v.autopilot.arming.armed
     v.actuators.controls[0] = v.autopilot.params.BOAT_THROTTLE if v.autopilot.arming.armed != 0 else 0.0
+
+
+MODES = (Mode(number=AHEAD, name="AHEAD", run=run),)
+
+
+@law
+def update(fleet: Sequence[Any], index: int) -> None:
+    """One tick, from sensors to actuators."""
+    run(fleet[index])
 
 
 class NoPlanner(Planner):

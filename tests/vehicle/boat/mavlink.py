@@ -9,13 +9,13 @@ from typing import Any
 from sitl.bridge.autopilot_api import Note, Vector, Yaw
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.dialect import message
-from sitl.bridge.profile import Controllers, Mode, Profile
+from sitl.bridge.profile import Controllers, Profile
 from sitl.bridge.services import commands_system, commands_vehicle
 from sitl.bridge.services.setpoints import SetpointService
 from sitl.bridge.telemetry.builder import Build, Context
 from sitl.bridge.telemetry.identity import CAPABILITIES
 
-from .firmware import AHEAD
+from .firmware import AHEAD, MODES
 
 SURFACE_BOAT, ARDUPILOTMEGA, ACTIVE, ARMED = 11, 3, 4, 128
 
@@ -74,7 +74,7 @@ PROFILE = Profile(
     firmware="Boat",
     mav_type=SURFACE_BOAT,
     capabilities=CAPABILITIES,
-    modes=(Mode(AHEAD, "AHEAD"),),
+    modes=MODES,
     auto=-1,
     guided=-1,
     rtl=-1,

@@ -7,10 +7,15 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain
+from ...modes import ACCEPTED
 from .. import pilot
 from ..control import altitude, altitude_start, attitude
 from ..control.throttle_mix import lean_limit
+from ..state import Autopilot, Vehicle
 from . import ground, takeoff
+from .mode import CopterMode
+
+ALT_HOLD = 2
 
 # What the vertical part is doing
 STOPPED = 0
@@ -21,42 +26,39 @@ FLYING = 4
 
 
 @law
-def start(v):
-    """Enter from the present vertical motion. Returns 0."""
-    start_vertical(v)
-    return 0
+def start(v: Vehicle) -> int:
+    """Enter from the present vertical motion."""
+    start_vertical(v.autopilot)
+    return ACCEPTED
 
 
 @law
-def start_vertical(v):
+def start_vertical(ap: Autopilot) -> None:
     """Limits of the throttle stick: PILOT_SPEED_UP, PILOT_SPEED_DN, PILOT_ACCEL_Z."""
-    ap = v.autopilot
     set_limits(ap)
     if not altitude_start.is_active_d(ap.control):
         altitude_start.init_d(ap)
-    ap.modes.takeoff.user_active = 0
+    ap.modes.takeoff.user_active = False
 
 
 @law
-def set_limits(ap):
+def set_limits(ap: Autopilot) -> None:
     """Vertical limits of modes that the pilot flies."""
-    p = ap.params
-    down = p.PILOT.SPEED_DN if p.PILOT.SPEED_DN > 0.0 else p.PILOT.SPEED_UP
-    altitude_start.set_max_speed_accel_d(ap, down * 0.01, p.PILOT.SPEED_UP * 0.01, p.PILOT.ACCEL_Z * 0.01)
+    p = ap.params.PILOT
+    altitude_start.set_max_speed_accel_d(ap, pilot.speed_down(p), p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
 
 
 @law
-def state(v, climb):
+def decide(ap: Autopilot, climb: float) -> int:
     """What to do with the throttle stick asking for ``climb`` [m/s]; sets the spool state that this needs."""
-    ap = v.autopilot
     motors = ap.control.motors
-    if ap.arming.armed == 0:
+    if not ap.arming.armed:
         motors.desired_spool = ground.SHUT_DOWN
         return STOPPED
-    if ap.modes.takeoff.user_active != 0 or takeoff.is_triggered(v, climb):
+    if ap.modes.takeoff.user_active or takeoff.is_triggered(ap, climb):
         motors.desired_spool = ground.UNLIMITED
         return TAKING_OFF
-    if ap.arming.auto_armed == 0 or ap.arming.landed != 0:
+    if not ap.arming.auto_armed or ap.arming.landed:
         motors.desired_spool = ground.GROUND_IDLE if climb < 0.0 else ground.UNLIMITED
         if motors.spool_state == ground.IS_GROUND_IDLE or motors.spool_state == ground.IS_SHUT_DOWN:
             return LANDED_IDLE
@@ -66,20 +68,19 @@ def state(v, climb):
 
 
 @law
-def climb_rate(ap):
+def climb_rate(ap: Autopilot) -> float:
     """Climb rate of the stick within the limits [m/s]."""
     return constrain(pilot.climb_rate(ap), -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
 
 
 @law
-def run_vertical(v, doing, climb):
-    """Vertical part of one tick."""
-    ap = v.autopilot
+def run_vertical(ap: Autopilot, doing: int, climb: float) -> None:
+    """Vertical part of one tick; ``climb`` from the stick [m/s]."""
     if doing == TAKING_OFF:
-        if ap.modes.takeoff.user_active == 0:
-            takeoff.begin_user(v, constrain(ap.params.PILOT.TKOFF_ALT * 0.01, 0.0, 10.0))
+        if not ap.modes.takeoff.user_active:
+            takeoff.begin_user(ap, constrain(ap.params.PILOT.TKOFF_ALT * 0.01, 0.0, 10.0))
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
-            takeoff.run_user(v, climb)
+            takeoff.run_user(ap, climb)
             return
         altitude_start.relax_d(ap, 0.0)
     elif doing == FLYING:
@@ -90,15 +91,18 @@ def run_vertical(v, doing, climb):
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
     set_limits(ap)
     climb = climb_rate(ap)
-    doing = state(v, climb)
+    doing = decide(ap, climb)
     if doing in (STOPPED, LANDED_IDLE):
         attitude.reset_yaw_target(ap)
-    most = math.radians(ap.params.ANGLE_MAX * 0.01)
-    roll, pitch = pilot.lean_angles(ap, most, min(most, lean_limit(ap.control.attitude)))
-    attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
-    run_vertical(v, doing, climb)
+    lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
+    lean = pilot.lean_angles(ap.modes.pilot, lean_max, min(lean_max, lean_limit(ap.control.attitude)))
+    attitude.input_euler_roll_pitch_yaw_rate(ap, lean.roll, lean.pitch, ap.modes.pilot.yaw_rate)
+    run_vertical(ap, doing, climb)
+
+
+MODE = CopterMode(number=ALT_HOLD, name="ALT_HOLD", start=start, run=run, standard_mode=4, climb_stick=True)

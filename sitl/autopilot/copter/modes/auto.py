@@ -9,16 +9,19 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
+from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
-from .. import arming
-from ..control import altitude, altitude_start, position, position_start
 from ..navigation import command, waypoint
+from ..state import Autopilot, Vehicle
 from . import auto_yaw, ground, land, rtl, takeoff
-from .numbers import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from .mode import CopterMode
 
-_TAKE_OFF_ALONE = 2
-"""AUTO_OPTIONS: takes off without a raised throttle."""
+AUTO = 3
+
+# AUTO_OPTIONS
+_ARM = 1
+_TAKE_OFF_ALONE = 2  # without a raised throttle
 _NO_PILOT_YAW = 128
 
 # LAND: on the way to the place, then going down
@@ -27,154 +30,180 @@ DESCENDING = 1
 
 
 @law
-def enter(v, forced):
-    """Enter; needs a mission, on the ground one that begins with a take-off, unless ``forced`` (disarmed)."""
+def has_option(ap: Autopilot, option: int) -> bool:
+    """Whether a bit of AUTO_OPTIONS is set."""
+    return (int(ap.params.AUTO_OPTIONS) & option) != 0
+
+
+@law
+def may_arm(v: Vehicle, method: int) -> bool:
+    """Whether it may be armed: when AUTO_OPTIONS says so."""
+    return has_option(v.autopilot, _ARM)
+
+
+@law
+def start(v: Vehicle) -> int:
+    """Enter; armed it needs a mission, on the ground one that begins with a take-off."""
     ap = v.autopilot
-    if forced == 0:
+    if ap.arming.armed:
         if ap.modes.mission_count < 2:
             return INIT_FAILED
-        if ap.arming.landed != 0 and ap.modes.mission_takes_off == 0:
+        if ap.arming.landed and not ap.modes.mission_takes_off:
             return MISSING_TAKEOFF
     auto = ap.modes.auto
-    waypoint.stop(ap)
-    ap.modes.nav.speed_ne = 0.0
-    ap.modes.nav.speed_up = 0.0
-    ap.modes.nav.speed_down = 0.0
-    auto.command = int(ap.modes.nav.command_count)
-    ap.modes.nav.command_kind = NONE
+    nav = ap.modes.nav
+    waypoint.stop(nav)
+    nav.speed_ne = 0.0
+    nav.speed_up = 0.0
+    nav.speed_down = 0.0
+    nav.command_kind = NONE
+    auto.command = nav.command_count
     auto.submode = NONE
-    auto.started = 0
+    auto.started = False
     if ap.modes.auto_yaw.mode == auto_yaw.ROI:
-        auto_yaw.set_mode(v, auto_yaw.HOLD)
-    auto_yaw.set_default(v, 0)
-    ground.set_waypoint_limits(v)
-    if not position_start.is_active_ne(ap.control):
-        position_start.init_ne(ap)
-    if not altitude_start.is_active_d(ap.control):
-        altitude_start.init_d(ap)
+        auto_yaw.set_mode(ap, auto_yaw.HOLD)
+    auto_yaw.set_default(ap, False)
+    ground.set_waypoint_limits(ap)
+    ground.continue_position_control(ap)
     return ACCEPTED
 
 
 @law
-def start(v):
+def start_mission(ap: Autopilot) -> None:
     """MAV_CMD_MISSION_START: a take-off at the beginning need not wait for a raised throttle."""
-    v.autopilot.modes.auto.started = 1
-    if v.autopilot.arming.armed != 0:
-        v.autopilot.arming.auto_armed = 1
+    ap.modes.auto.started = True
+    if ap.arming.armed:
+        ap.arming.auto_armed = True
 
 
 @law
-def begin(v):
+def begin(v: Vehicle) -> None:
     """Begin the command that the shell has written."""
     ap = v.autopilot
     nav = ap.modes.nav
     auto = ap.modes.auto
-    auto.command = int(nav.command_count)
-    auto.submode = int(nav.command_kind)
+    auto.command = nav.command_count
+    auto.submode = nav.command_kind
     auto.land_state = FLYING
     ap.arming.landed_maybe = ap.arming.landed
     command.begin(ap, v.time_us)
     if auto.submode == TAKEOFF:
-        takeoff.begin(v, float(nav.target[2]))
+        takeoff.begin(ap, nav.target.z)
     elif auto.submode == RTL:
-        rtl.start(v, 1)
-    elif auto.submode == LAND and nav.has_place == 0:
+        rtl.begin(v)
+    elif auto.submode == LAND and not nav.has_place:
         begin_descent(v)
 
 
 @law
-def face(v, kind):
+def choose_heading(ap: Autopilot, kind: int) -> None:
     """Heading of a new command; do-commands on the way to it have run, or follow."""
-    yaw = v.autopilot.modes.auto_yaw
+    mode = ap.modes.auto_yaw.mode
     if kind == TAKEOFF:
-        auto_yaw.set_mode(v, auto_yaw.HOLD)
-    elif yaw.mode != auto_yaw.ROI and (yaw.mode != auto_yaw.FIXED or v.autopilot.params.WP.YAW_BEHAVIOR != 0.0):
-        auto_yaw.set_default(v, 0)
+        auto_yaw.set_mode(ap, auto_yaw.HOLD)
+    elif mode != auto_yaw.ROI and (mode != auto_yaw.FIXED or ap.params.WP.YAW_BEHAVIOR != 0.0):
+        auto_yaw.set_default(ap, False)
 
 
 @law
-def begin_descent(v):
+def begin_descent(v: Vehicle) -> None:
     """Land where it is."""
     v.autopilot.modes.auto.land_state = DESCENDING
     land.begin(v)
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    nav = ap.modes.nav
     auto = ap.modes.auto
-    if auto.command != nav.command_count:
+    if auto.command != ap.modes.nav.command_count:
         begin(v)
-    if (int(ap.params.AUTO_OPTIONS) & _NO_PILOT_YAW) == 0:
-        auto_yaw.pilot(v)
-    kind = auto.submode
-    if kind == TAKEOFF:
+    if not has_option(ap, _NO_PILOT_YAW):
+        auto_yaw.follow_pilot(ap)
+    if auto.submode == TAKEOFF:
         run_takeoff(v)
-    elif kind == LAND:
+    elif auto.submode == LAND:
         run_land(v)
-    elif kind == RTL:
+    elif auto.submode == RTL:
         rtl.run(v)
-        if ap.arming.landed != 0 and ap.modes.rtl.state == rtl.LANDING:
+        if ap.arming.landed and ap.modes.rtl.state == rtl.LANDING:
             complete(ap, v.time_us)
-    elif ground.is_grounded(v):
-        ground.handle(v)
-        if ap.arming.armed != 0 and ap.arming.landed != 0 and nav.mission_state == COMPLETE:
-            arming.disarm(v, BY_MISSION_EXIT, 0)
     else:
-        ap.control.motors.desired_spool = ground.UNLIMITED
-        if command.follows_path(kind) != 0:
-            command.run(ap, v.time_us)
-        else:
-            position.brake_ne(ap.control.pos_ne)
-            altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
-        ground.fly(v)
-    check_condition(ap, v.time_us, auto_yaw.reached(v))
+        run_path(v)
+    check_condition(ap, v.time_us, auto_yaw.has_turned(ap.modes.auto_yaw, ap.estimate.euler.yaw))
 
 
 @law
-def run_takeoff(v):
+def run_path(v: Vehicle) -> None:
+    """One tick of a command that follows a path, or of none; on the ground after the last one the vehicle disarms."""
+    ap = v.autopilot
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap)
+        if ap.arming.armed and ap.arming.landed and ap.modes.nav.mission_state == COMPLETE:
+            ground.disarm(v, BY_MISSION_EXIT)
+    elif command.follows_path(ap.modes.auto.submode):
+        ap.control.motors.desired_spool = ground.UNLIMITED
+        command.run(ap, v.time_us)
+        ground.fly(ap)
+    else:
+        ground.hold(ap)
+
+
+@law
+def run_takeoff(v: Vehicle) -> None:
     """One tick of the take-off command."""
     ap = v.autopilot
-    if ap.arming.armed != 0 and ap.arming.auto_armed == 0:
-        if ap.modes.auto.started != 0 or (int(ap.params.AUTO_OPTIONS) & _TAKE_OFF_ALONE) != 0:
-            ap.arming.auto_armed = 1
+    if ap.arming.armed and (ap.modes.auto.started or has_option(ap, _TAKE_OFF_ALONE)):
+        ap.arming.auto_armed = True
     takeoff.run(v)
-    if ap.modes.takeoff.complete != 0:
+    if ap.modes.takeoff.complete:
         complete(ap, v.time_us)
 
 
 @law
-def run_land(v):
+def run_land(v: Vehicle) -> None:
     """One tick of the land command: to the place at the present height, then down."""
     ap = v.autopilot
     land.finish(v)
-    if ap.arming.landed != 0 and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
+    if ap.arming.landed and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
         complete(ap, v.time_us)
-    if ground.is_grounded(v):
-        ground.handle(v)
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap)
         return
     ap.control.motors.desired_spool = ground.UNLIMITED
     if ap.modes.auto.land_state == FLYING:
         reached = waypoint.advance(ap, v.time_us)
-        ground.fly(v)
-        if reached != 0:
+        ground.fly(ap)
+        if reached:
             begin_descent(v)
     else:
-        land.descend(v, 0)
+        land.descend(ap, False)
 
 
 @law
-def is_landing(v):
+def is_landing(v: Vehicle) -> bool:
     """Whether the descent to the ground has begun."""
     auto = v.autopilot.modes.auto
-    if auto.submode == RTL:
-        return rtl.is_landing(v)
-    return auto.submode == LAND and auto.land_state == DESCENDING
+    return rtl.is_landing(v) if auto.submode == RTL else auto.submode == LAND and auto.land_state == DESCENDING
 
 
 @law
-def is_taking_off(v):
+def is_taking_off(v: Vehicle) -> bool:
     """Whether a take-off command is not done yet."""
-    return v.autopilot.modes.auto.submode == TAKEOFF and v.autopilot.modes.takeoff.complete == 0
+    return v.autopilot.modes.auto.submode == TAKEOFF and not v.autopilot.modes.takeoff.complete
+
+
+MODE = CopterMode(
+    number=AUTO,
+    name="AUTO",
+    start=start,
+    run=run,
+    standard_mode=6,
+    needs_position=True,
+    autonomous=True,
+    arms_at_any_throttle=True,
+    may_arm=may_arm,
+    is_landing=is_landing,
+    is_taking_off=is_taking_off,
+)

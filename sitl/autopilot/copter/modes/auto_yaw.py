@@ -7,10 +7,16 @@ Sources: ArduPilot's WP_YAW_BEHAVIOR, ATC_SLEW_YAW, MAV_CMD_CONDITION_YAW, MAV_C
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
+from ....core.algebra import cross2, dot2, horizontal
 from ....core.kernels import law
-from ....core.scalars import TWO_PI, wrap_pi
+from ....core.scalars import TWO_PI, constrain, wrap_pi
+from ....core.vectors import Vec2, Vec3
 from ..control import attitude
+from ..control.state import DT
+from ..state import Autopilot
+from .state import AutoYaw
 
 HOLD = 0  # heading as it is
 LOOK_AT_NEXT_WP = 1  # along the desired velocity
@@ -24,164 +30,171 @@ PILOT_RATE = 9
 _COURSE_SPEED = 1.0  # slower than this the course says nothing [m/s]
 
 
+class Heading(NamedTuple):
+    """What the attitude controller is asked for."""
+
+    angle: float  # [rad]
+    rate: float  # [rad/s]
+    absolute: bool  # the angle counts; else the rate alone
+
+
 @law
-def set_mode(v, mode):
+def set_mode(ap: Autopilot, mode: int) -> None:
     """Change what decides about the heading; keeps the heading under way."""
-    yaw = v.autopilot.modes.auto_yaw
+    yaw = ap.modes.auto_yaw
     if yaw.mode == mode:
         return
     yaw.mode = mode
     yaw.rate = 0.0
-    yaw.yaw = v.autopilot.control.attitude.target_euler[2]
-    yaw.look_ahead = v.autopilot.estimate.euler[2]
+    yaw.yaw = ap.control.attitude.target_euler.yaw
+    yaw.look_ahead = ap.estimate.euler.yaw
 
 
 @law
-def set_default(v, rtl):
-    """What WP_YAW_BEHAVIOR says; ``rtl``: on the way home."""
-    behaviour = int(v.autopilot.params.WP.YAW_BEHAVIOR)
-    if behaviour == 0 or (behaviour == 2 and rtl != 0):
-        set_mode(v, HOLD)
-    elif behaviour == 3:
-        set_mode(v, LOOK_AHEAD)
-    else:
-        set_mode(v, LOOK_AT_NEXT_WP)
+def default_mode(behaviour: int, homeward: bool) -> int:
+    """What WP_YAW_BEHAVIOR says; ``homeward``: on the way home."""
+    if behaviour == 0 or (behaviour == 2 and homeward):
+        return HOLD
+    return LOOK_AHEAD if behaviour == 3 else LOOK_AT_NEXT_WP
 
 
 @law
-def fixed(v, angle, rate, direction, relative):
-    """Turn to ``angle`` [rad] at ``rate`` [rad/s] (0: ATC_SLEW_YAW), then hold.
+def set_default(ap: Autopilot, homeward: bool) -> None:
+    """Leave the heading to WP_YAW_BEHAVIOR."""
+    set_mode(ap, default_mode(int(ap.params.WP.YAW_BEHAVIOR), homeward))
+
+
+@law
+def turn_from(start: float, angle: float, direction: int, relative: bool) -> float:
+    """The angle to turn, signed [rad], from heading ``start`` to ``angle`` [rad], or by it when it is ``relative``.
 
     ``direction``: 1 clockwise, -1 counter-clockwise, 0 the shorter way. An absolute angle is reached in the
-    direction asked for, even if that is almost a full circle; a relative one is turned from the heading
-    target.
+    direction asked for, even if that is almost a full circle.
     """
-    ap = v.autopilot
+    if relative:
+        return -angle if direction < 0 else angle
+    offset = wrap_pi(angle - start)
+    if direction < 0 and offset > 0.0:
+        return offset - TWO_PI
+    if direction > 0 and offset < 0.0:
+        return offset + TWO_PI
+    return offset
+
+
+@law
+def turn_to(ap: Autopilot, angle: float, rate: float, direction: int, relative: bool) -> None:
+    """Turn to ``angle`` [rad] at ``rate`` [rad/s] (0: ATC_SLEW_YAW), then hold; the rest as ``turn_from``."""
     yaw = ap.modes.auto_yaw
-    start = float(ap.control.attitude.target_euler[2])
-    if relative != 0:
-        offset = -angle if direction < 0 else angle
-    else:
-        offset = wrap_pi(angle - start)
-        if direction < 0 and offset > 0.0:
-            offset -= TWO_PI
-        elif direction > 0 and offset < 0.0:
-            offset += TWO_PI
-    most = math.radians(ap.params.ATC.SLEW_YAW * 0.01)
-    if rate > 0.0 and (rate < most or most <= 0.0):
-        most = rate
+    start = ap.control.attitude.target_euler.yaw
+    rate_max = math.radians(ap.params.ATC.SLEW_YAW * 0.01)
     yaw.mode = FIXED
     yaw.yaw = start
     yaw.rate = 0.0
-    yaw.offset = offset
-    yaw.slew = most
+    yaw.offset = turn_from(start, angle, direction, relative)
+    yaw.slew = rate if rate > 0.0 and (rate < rate_max or rate_max <= 0.0) else rate_max
 
 
 @law
-def angle_rate(v, angle, rate):
+def follow_angle(yaw: AutoYaw, angle: float, rate: float) -> None:
     """Heading ``angle`` [rad] that moves on at ``rate`` [rad/s]."""
-    yaw = v.autopilot.modes.auto_yaw
     yaw.mode = ANGLE_RATE
     yaw.yaw = wrap_pi(angle)
     yaw.rate = rate
 
 
 @law
-def turn_rate(v, rate):
+def turn_at(ap: Autopilot, rate: float) -> None:
     """Turn at ``rate`` [rad/s]."""
-    set_mode(v, RATE)
-    v.autopilot.modes.auto_yaw.rate = rate
+    set_mode(ap, RATE)
+    ap.modes.auto_yaw.rate = rate
 
 
 @law
-def look_at(v, north, east, down):
+def look_at(ap: Autopilot, place: Vec3) -> None:
     """Keep the nose on a point, NED [m]."""
-    yaw = v.autopilot.modes.auto_yaw
-    set_mode(v, ROI)
-    yaw.roi[0] = north
-    yaw.roi[1] = east
-    yaw.roi[2] = down
+    set_mode(ap, ROI)
+    ap.modes.auto_yaw.roi = place
 
 
 @law
-def stop_turning(v):
+def stop_turning(ap: Autopilot) -> None:
     """A set-point's turn rate is too old: keep the heading."""
-    mode = v.autopilot.modes.auto_yaw.mode
-    if mode in (RATE, ANGLE_RATE):
-        set_mode(v, HOLD)
+    if ap.modes.auto_yaw.mode in (RATE, ANGLE_RATE):
+        set_mode(ap, HOLD)
 
 
 @law
-def reached(v):
-    """Whether CONDITION_YAW is done: all of the angle turned, and the nose within 2 degrees."""
-    yaw = v.autopilot.modes.auto_yaw
+def has_turned(yaw: AutoYaw, heading: float) -> bool:
+    """Whether CONDITION_YAW is done: all of the angle turned, and the nose (``heading`` [rad]) within 2 degrees."""
     if yaw.mode != FIXED:
         return True
-    error = wrap_pi(float(v.autopilot.estimate.euler[2]) - yaw.yaw)
-    return abs(yaw.offset) < 1e-6 and abs(error) < math.radians(2.0)
+    return abs(yaw.offset) < 1e-6 and abs(wrap_pi(heading - yaw.yaw)) < math.radians(2.0)
 
 
 @law
-def advance(v, dt):
-    """Move the heading on by ``dt`` [s]. Returns (heading [rad], rate [rad/s], 1 if the heading counts)."""
-    ap = v.autopilot
+def advance_turn(yaw: AutoYaw, dt: float) -> None:
+    """Turn on for ``dt`` [s]."""
+    step = yaw.offset
+    if yaw.slew > 0.0:
+        step = constrain(step, -yaw.slew * dt, yaw.slew * dt)
+    yaw.offset -= step
+    yaw.yaw = wrap_pi(yaw.yaw + step)
+
+
+@law
+def look_along(yaw: AutoYaw, vel: Vec2, acc: Vec2, speed_max: float) -> float:
+    """Point the nose along the path of a motion (NE, [m/s], [m/s^2]), unless that is slow; its turn rate [rad/s]."""
+    speed2 = dot2(vel, vel)
+    speed_min = 0.05 * speed_max
+    if speed2 > speed_min * speed_min and speed2 > 1e-6:
+        yaw.yaw = math.atan2(vel.y, vel.x)
+        return cross2(vel, acc) / speed2
+    return 0.0
+
+
+@law
+def advance(ap: Autopilot, dt: float) -> Heading:
+    """Move the heading on by ``dt`` [s]."""
     yaw = ap.modes.auto_yaw
     if yaw.mode == FIXED:
-        step = float(yaw.offset)
-        most = yaw.slew * dt if yaw.slew > 0.0 else abs(step)
-        if step > most:
-            step = most
-        elif step < -most:
-            step = -most
-        yaw.offset -= step
-        yaw.yaw = wrap_pi(yaw.yaw + step)
-        return (float(yaw.yaw), 0.0, 1)
+        advance_turn(yaw, dt)
+        return Heading(yaw.yaw, 0.0, True)
     if yaw.mode == ROI:
-        north = yaw.roi[0] - ap.estimate.pos[0]
-        east = yaw.roi[1] - ap.estimate.pos[1]
-        if north * north + east * east > 0.01:
-            yaw.yaw = math.atan2(east, north)
-        return (float(yaw.yaw), 0.0, 1)
+        away = horizontal(yaw.roi - ap.estimate.pos)
+        if dot2(away, away) > 0.01:
+            yaw.yaw = math.atan2(away.y, away.x)
+        return Heading(yaw.yaw, 0.0, True)
     if yaw.mode == LOOK_AHEAD:
-        north, east = float(ap.estimate.vel[0]), float(ap.estimate.vel[1])
-        if north * north + east * east > _COURSE_SPEED * _COURSE_SPEED:
-            yaw.look_ahead = math.atan2(east, north)
-        return (float(yaw.look_ahead), 0.0, 1)
+        vel = horizontal(ap.estimate.vel)
+        if dot2(vel, vel) > _COURSE_SPEED * _COURSE_SPEED:
+            yaw.look_ahead = math.atan2(vel.y, vel.x)
+        return Heading(yaw.look_ahead, 0.0, True)
     if yaw.mode == LOOK_AT_NEXT_WP:
-        north, east = float(ap.control.pos_ne.vel_desired[0]), float(ap.control.pos_ne.vel_desired[1])
-        speed2 = north * north + east * east
-        least = 0.05 * ap.control.pos_ne.speed_max
-        rate = 0.0
-        if speed2 > least * least and speed2 > 1e-6:
-            yaw.yaw = math.atan2(east, north)
-            rate = (north * ap.control.pos_ne.accel_desired[1] - east * ap.control.pos_ne.accel_desired[0]) / speed2
-        return (float(yaw.yaw), rate, 1)
+        path = ap.control.pos_ne
+        rate = look_along(yaw, path.vel_desired, path.accel_desired, path.speed_max)
+        return Heading(yaw.yaw, rate, True)
     if yaw.mode == ANGLE_RATE:
         yaw.yaw = wrap_pi(yaw.yaw + yaw.rate * dt)
-        return (float(yaw.yaw), float(yaw.rate), 1)
-    if yaw.mode == RATE or yaw.mode == PILOT_RATE:
-        return (0.0, float(yaw.rate), 0)
-    return (0.0, 0.0, 0)
+        return Heading(yaw.yaw, yaw.rate, True)
+    return Heading(0.0, yaw.rate if yaw.mode in (RATE, PILOT_RATE) else 0.0, False)
 
 
 @law
-def pilot(v):
+def follow_pilot(ap: Autopilot) -> None:
     """Let the yaw stick take over, and keep the heading when it is released."""
-    ap = v.autopilot
-    rate = float(ap.modes.pilot.yaw_rate)
-    if abs(rate) > 1e-4 and ap.modes.failsafe.radio == 0:
-        set_mode(v, PILOT_RATE)
+    rate = ap.modes.pilot.yaw_rate
+    if abs(rate) > 1e-4 and not ap.modes.failsafe.radio:
+        set_mode(ap, PILOT_RATE)
         ap.modes.auto_yaw.rate = rate
     elif ap.modes.auto_yaw.mode == PILOT_RATE:
-        set_mode(v, HOLD)
+        set_mode(ap, HOLD)
 
 
 @law
-def apply(v, thrust):
-    """Send the thrust direction (NED vector) with this mode's heading to the attitude controller."""
-    ap = v.autopilot
-    heading, rate, absolute = advance(v, 0.0025)
-    if absolute != 0:
-        attitude.input_thrust_vector_heading(ap, thrust, heading, rate)
+def point(ap: Autopilot, thrust: Vec3) -> None:
+    """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
+    heading = advance(ap, DT)
+    if heading.absolute:
+        attitude.input_thrust_vector_heading(ap, thrust, heading.angle, heading.rate)
     else:
-        attitude.input_thrust_vector_heading_rate(ap, thrust, rate)
+        attitude.input_thrust_vector_heading_rate(ap, thrust, heading.rate)

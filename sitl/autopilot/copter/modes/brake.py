@@ -6,8 +6,13 @@ from __future__ import annotations
 import math
 
 from ....core.kernels import law
+from ...modes import ACCEPTED
 from ..control import altitude, altitude_start, attitude, position, position_start
+from ..state import Vehicle
 from . import ground
+from .mode import CopterMode, never_arms
+
+BRAKE = 17
 
 DECELERATION = 7.5
 """[m/s^2] (ArduPilot's)."""
@@ -16,27 +21,31 @@ SPEED_D = 2.5
 
 
 @law
-def start(v):
-    """Enter. Returns 0."""
+def start(v: Vehicle) -> int:
+    """Enter."""
     ap = v.autopilot
-    vn, ve, vd = float(ap.estimate.vel[0]), float(ap.estimate.vel[1]), float(ap.estimate.vel[2])
-    position_start.set_max_speed_accel_ne(ap, max(math.hypot(vn, ve), 0.1), DECELERATION)
+    vel = ap.estimate.vel
+    position_start.set_max_speed_accel_ne(ap, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION)
     position_start.init_ne(ap)
-    altitude_start.set_max_speed_accel_d(ap, max(SPEED_D, vd), max(SPEED_D, -vd), DECELERATION)
+    altitude_start.set_max_speed_accel_d(ap, max(SPEED_D, vel.z), max(SPEED_D, -vel.z), DECELERATION)
     altitude_start.init_d(ap)
-    return 0
+    return ACCEPTED
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    if ground.is_grounded(v):
-        ground.handle(v)
-    else:
-        ap.control.motors.desired_spool = ground.UNLIMITED
-        position.brake_ne(ap.control.pos_ne)
-        altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
-        position.update_ne(ap)
-        altitude.update_d(ap)
-        attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    ground.brake(ap)
+    position.update_ne(ap)
+    altitude.update_d(ap)
+    attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
+
+
+MODE = CopterMode(
+    number=BRAKE, name="BRAKE", start=start, run=run, needs_position=True, autonomous=True, may_arm=never_arms
+)

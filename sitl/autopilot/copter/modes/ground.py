@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What all modes share on the ground, and the last step of all modes that hold a position."""
+"""What all modes share: on the ground, disarming, and the last step of those that hold a position."""
 
 from __future__ import annotations
 
 from ....core.kernels import law
+from ...events import DISARMED, emit_and_return
+from ...state import Arming
 from ..control import altitude, altitude_start, attitude, position, position_start
+from ..state import Autopilot, Vehicle
 from . import auto_yaw
 
 # Spool states wanted by a mode (control/motors.py)
@@ -19,30 +22,41 @@ IS_UNLIMITED = 3
 
 
 @law
-def is_grounded(v):
+def is_grounded(arming: Arming) -> bool:
     """Disarmed, not told to fly since arming, or landed."""
-    arming = v.autopilot.arming
-    return arming.armed == 0 or arming.auto_armed == 0 or arming.landed != 0
+    return not arming.armed or not arming.auto_armed or arming.landed
 
 
 @law
-def set_landed(v, landed):
-    """Note that the vehicle stands on the ground (1) or flies (0)."""
-    arming = v.autopilot.arming
+def set_landed(arming: Arming, landed: bool) -> None:
+    """Note that the vehicle stands on the ground, or flies."""
     arming.landed = landed
+    arming.landed_maybe = landed
     arming.landed_ticks = 0
-    if landed != 0:
-        arming.landed_maybe = 1
-    else:
-        arming.landed_maybe = 0
 
 
 @law
-def handle(v):
-    """One tick on the ground: motors idle, controllers follow the vehicle, throttle decays to zero."""
+def disarm(v: Vehicle, method: int) -> None:
+    """Disarm, without asking whether that is safe; ``method``: who (BY_*)."""
     ap = v.autopilot
+    if not ap.arming.armed:
+        return
+    ap.arming.armed = False
+    ap.arming.auto_armed = False
+    set_landed(ap.arming, True)
+    ap.arming.crash_ticks = 0
+    ap.modes.arming_delay = False
+    ap.modes.takeoff.user_active = False
+    ap.modes.auto.started = False
+    ap.control.motors.desired_spool = SHUT_DOWN
+    emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
+
+
+@law
+def rest(ap: Autopilot) -> None:
+    """One tick on the ground: motors idle, controllers follow the vehicle, throttle decays to zero."""
     motors = ap.control.motors
-    motors.desired_spool = GROUND_IDLE if ap.arming.armed != 0 else SHUT_DOWN
+    motors.desired_spool = GROUND_IDLE if ap.arming.armed else SHUT_DOWN
     if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
         attitude.reset_yaw_target(ap)
     position_start.relax_ne(ap)
@@ -53,27 +67,48 @@ def handle(v):
 
 
 @law
-def fly(v):
+def fly(ap: Autopilot) -> None:
     """Position controllers, then the attitude that they ask for with the heading of auto_yaw."""
-    ap = v.autopilot
     position.update_ne(ap)
     altitude.update_d(ap)
-    auto_yaw.apply(v, position.thrust_vector(ap.control.pos_ne))
+    auto_yaw.point(ap, position.thrust_vector(ap.control.pos_ne))
 
 
 @law
-def set_waypoint_limits(v):
+def brake(ap: Autopilot) -> None:
+    """Ask the position controllers to come to a stop and stay."""
+    position.brake_ne(ap.control.pos_ne)
+    altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
+
+
+@law
+def hold(ap: Autopilot) -> None:
+    """One tick of a stop, with the heading of auto_yaw."""
+    ap.control.motors.desired_spool = UNLIMITED
+    brake(ap)
+    fly(ap)
+
+
+@law
+def set_waypoint_limits(ap: Autopilot) -> None:
     """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
-    ap = v.autopilot
-    p = ap.params
-    position_start.set_max_speed_accel_ne(ap, p.WPNAV.SPEED * 0.01, p.WPNAV.ACCEL * 0.01)
-    altitude_start.set_max_speed_accel_d(ap, p.WPNAV.SPEED_DN * 0.01, p.WPNAV.SPEED_UP * 0.01, p.WPNAV.ACCEL_Z * 0.01)
+    p = ap.params.WPNAV
+    position_start.set_max_speed_accel_ne(ap, p.SPEED * 0.01, p.ACCEL * 0.01)
+    altitude_start.set_max_speed_accel_d(ap, p.SPEED_DN * 0.01, p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
 
 
 @law
-def start_position_control(v):
+def start_position_control(ap: Autopilot) -> None:
     """Take over position control from whatever flew before, without a jump."""
-    ap = v.autopilot
-    set_waypoint_limits(v)
+    set_waypoint_limits(ap)
     position_start.init_ne(ap)
     altitude_start.init_d(ap)
+
+
+@law
+def continue_position_control(ap: Autopilot) -> None:
+    """Go on with position control, which starts anew only where the mode before did not have it."""
+    if not position_start.is_active_ne(ap.control):
+        position_start.init_ne(ap)
+    if not altitude_start.is_active_d(ap.control):
+        altitude_start.init_d(ap)

@@ -1,260 +1,255 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Set-points of GUIDED, as the MAVLink services write them.
+"""GUIDED: flies the set-points of a companion computer or ground station.
 
-Every law returns OK, or says why it left the record as it was (``guided_state``). Yaw arguments everywhere:
-``use_yaw`` with ``yaw`` [rad], ``use_rate`` with ``yaw_rate`` [rad/s], ``relative`` != 0 when ``yaw``
-counts from the present heading; without either the heading follows WP_YAW_BEHAVIOR.
+Set-points are written by the laws of ``guided_setpoints``. Velocity, acceleration and attitude set-points older than
+GUID_TIMEOUT stop the vehicle: velocity and acceleration become zero, the attitude level at constant height.
 """
 
 from __future__ import annotations
 
-import math
-
+from ....core.algebra import ZERO, euler_of, horizontal, quat_from_euler
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ..control import altitude_start, position_start
-from . import auto_yaw, guided_flight
-from .guided_state import (
-    ACCEL,
-    ANGLE,
-    LARGEST,
-    NOT_FINITE,
-    NOT_IN_GUIDED,
-    OK,
-    OUT_OF_RANGE,
-    POS_VEL_ACCEL,
-    POSITION,
-    VELOCITY_ACCEL,
+from ....core.vectors import Euler, Vec3
+from ...arming_checks import BY_RUDDER
+from ...control.shaping import Motion, Motion2
+from ...events import GUIDED_TIMEOUT, emit
+from ...modes import ACCEPTED
+from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
+from ..control.state import DT
+from ..state import Autopilot, Vehicle
+from . import auto_yaw, ground, takeoff
+from .mode import CopterMode
+from .state import GuidedState, Modes
+
+GUIDED = 4
+
+# What it is doing (``modes.guided.submode``)
+TAKEOFF = 0
+POSITION = 1
+POS_VEL_ACCEL = 2
+VELOCITY_ACCEL = 3
+ACCEL = 4
+ANGLE = 5
+
+# GUID_OPTIONS
+_ARM_BY_STICK = 1
+_NO_PILOT_YAW = 4  # the yaw stick is ignored
+
+
+@law
+def start(v: Vehicle) -> int:
+    """Enter: come to a stop and hold."""
+    ap = v.autopilot
+    auto_yaw.set_default(ap, False)
+    start_submode(ap, VELOCITY_ACCEL)
+    ap.modes.guided.update_us = v.time_us
+    return ACCEPTED
+
+
+@law
+def start_submode(ap: Autopilot, submode: int) -> None:
+    """Change what kind of set-point is flown, from the present motion."""
+    guided = ap.modes.guided
+    guided.submode = submode
+    guided.paused = False
+    guided.timed_out = False
+    guided.vel = ZERO
+    guided.acc = ZERO
+    ground.start_position_control(ap)
+
+
+@law
+def is_old(v: Vehicle) -> bool:
+    """Whether the set-point is older than GUID_TIMEOUT."""
+    ap = v.autopilot
+    return v.time_us - ap.modes.guided.update_us > ap.params.GUID.TIMEOUT * 1e6
+
+
+@law
+def is_stale(v: Vehicle) -> bool:
+    """Whether the set-point, of a kind that times out, is too old; tells the shell once."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if not is_old(v):
+        guided.timed_out = False
+        return False
+    if not guided.timed_out:
+        guided.timed_out = True
+        emit(ap.events, v.time_us, GUIDED_TIMEOUT, float(guided.submode), 0.0)
+    return True
+
+
+@law
+def run(v: Vehicle) -> None:
+    """One tick."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    if (int(ap.params.GUID.OPTIONS) & _NO_PILOT_YAW) == 0:
+        auto_yaw.follow_pilot(ap)
+    if guided.submode == TAKEOFF:
+        takeoff.run(v)
+    elif guided.submode == ANGLE:
+        run_angle(v)
+    elif ground.is_grounded(ap.arming):
+        ground.rest(ap)
+    else:
+        ap.control.motors.desired_spool = ground.UNLIMITED
+        if guided.paused:
+            ground.brake(ap)
+        elif guided.submode == POSITION:
+            run_position(v)
+        else:
+            run_motion(v)
+        ground.fly(ap)
+
+
+@law
+def run_position(v: Vehicle) -> None:
+    """Fly to a point and stay; the speed limits keep a climbing path straight."""
+    ap = v.autopilot
+    if is_old(v):
+        auto_yaw.stop_turning(ap)
+    position_ned.input_pos_ned(ap.control.pos_ne, ap.control.pos_d, ap.modes.guided.pos)
+
+
+@law
+def run_motion(v: Vehicle) -> None:
+    """Fly velocity, acceleration, or position with both; the set-point moves on between messages."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    stale = is_stale(v)
+    if stale:
+        guided.vel = ZERO
+        guided.acc = ZERO
+        auto_yaw.stop_turning(ap)
+    if guided.submode == ACCEL:
+        if stale:
+            ground.brake(ap)
+        else:
+            follow_accel(ap, guided.acc)
+        return
+    advance(guided, DT)
+    if guided.submode == POS_VEL_ACCEL:
+        follow_motion(ap, guided)
+    else:
+        position.input_vel_accel_ne(ap.control.pos_ne, horizontal(guided.vel), horizontal(guided.acc))
+        altitude.input_vel_accel_d(ap.control.pos_d, guided.vel.z, guided.acc.z)
+
+
+@law
+def advance(guided: GuidedState, dt: float) -> None:
+    """The set-point's own motion during ``dt`` [s]."""
+    guided.pos += (guided.vel + 0.5 * guided.acc * dt) * dt
+    guided.vel += guided.acc * dt
+
+
+@law
+def follow_accel(ap: Autopilot, acc: Vec3) -> None:
+    """Ask the position controllers for an acceleration, NED [m/s^2]."""
+    position.input_accel_ne(ap.control.pos_ne, horizontal(acc))
+    altitude.input_vel_accel_d(ap.control.pos_d, ap.control.pos_d.vel_desired, acc.z)
+
+
+@law
+def follow_motion(ap: Autopilot, target: GuidedState) -> None:
+    """Ask the position controllers to follow a moving point."""
+    pos, vel, acc = target.pos, target.vel, target.acc
+    position.input_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(pos.z, vel.z, acc.z))
+
+
+@law
+def run_angle(v: Vehicle) -> None:
+    """Fly SET_ATTITUDE_TARGET: attitude or rates with a climb rate or a thrust."""
+    ap = v.autopilot
+    guided = ap.modes.guided
+    climb = 0.0
+    if not guided.use_thrust:
+        climb = constrain(guided.climb_rate, -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
+    if is_stale(v):
+        climb = 0.0
+        level_off(ap)
+    wants_up = guided.thrust > 0.0 if guided.use_thrust else climb > 0.0
+    if ap.arming.armed and wants_up:
+        ap.arming.auto_armed = True
+    if not ap.arming.armed or not ap.arming.auto_armed or (ap.arming.landed and not wants_up):
+        ground.rest(ap)
+        return
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    if ap.arming.landed:
+        leave_ground(ap)
+        return
+    if guided.use_attitude:
+        attitude.input_quaternion(ap, guided.q, guided.rates)
+    else:
+        attitude.input_rates(ap, guided.rates)
+    if guided.use_thrust:
+        throttle_mix.set_throttle_out(ap, guided.thrust, True, 0.0)
+    else:
+        altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
+        altitude.update_d(ap)
+
+
+@law
+def leave_ground(ap: Autopilot) -> None:
+    """One tick of a landed vehicle that is asked to climb: it flies as soon as the motors have spooled up."""
+    throttle_mix.set_throttle_out(ap, 0.0, False, 0.0)
+    attitude.relax(ap)
+    if ap.control.motors.spool_state == ground.IS_UNLIMITED:
+        ground.set_landed(ap.arming, False)
+        altitude_start.init_d(ap)
+
+
+@law
+def level_off(ap: Autopilot) -> None:
+    """Replace a stale attitude by level flight at constant height, heading kept."""
+    guided = ap.modes.guided
+    yaw = euler_of(guided.q).yaw if guided.use_attitude else ap.control.attitude.target_euler.yaw
+    guided.q = quat_from_euler(Euler(0.0, 0.0, yaw))
+    guided.use_attitude = True
+    guided.rates = ZERO
+    if guided.use_thrust:
+        guided.use_thrust = False
+        altitude_start.init_d(ap)
+    guided.climb_rate = 0.0
+
+
+@law
+def take_off(ap: Autopilot, target_d: float) -> None:
+    """Climb to ``target_d`` (NED [m]) before the first set-point."""
+    ap.modes.guided.submode = TAKEOFF
+    ap.modes.guided.paused = False
+    auto_yaw.set_mode(ap, auto_yaw.HOLD)
+    takeoff.begin(ap, target_d)
+
+
+@law
+def climbs(modes: Modes) -> bool:
+    """Whether a take-off is not done yet."""
+    return modes.guided.submode == TAKEOFF and not modes.takeoff.complete
+
+
+@law
+def is_taking_off(v: Vehicle) -> bool:
+    """Whether a take-off is not done yet."""
+    return climbs(v.autopilot.modes)
+
+
+@law
+def may_arm(v: Vehicle, method: int) -> bool:
+    """Whether it may be armed: by stick when GUID_OPTIONS says so."""
+    return method != BY_RUDDER or (int(v.autopilot.params.GUID.OPTIONS) & _ARM_BY_STICK) != 0
+
+
+MODE = CopterMode(
+    number=GUIDED,
+    name="GUIDED",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    arms_at_any_throttle=True,
+    may_arm=may_arm,
+    is_taking_off=is_taking_off,
 )
-from .numbers import AUTO, GUIDED, RTL
-
-_THRUST_IS_THRUST = 8
-"""GUID_OPTIONS: thrust of SET_ATTITUDE_TARGET is thrust, not climb rate."""
-
-HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
-"""Kinds of speed that change_speed knows."""
-
-
-@law
-def is_finite3(x, y, z):
-    """Whether all of them are usable numbers: neither NaN nor infinite nor absurdly large."""
-    return abs(x) <= LARGEST and abs(y) <= LARGEST and abs(z) <= LARGEST
-
-
-@law
-def refusal(v, x, y, z, yaw, yaw_rate):
-    """OK, or why a set-point with these numbers is not taken."""
-    if not (is_finite3(x, y, z) and is_finite3(yaw, yaw_rate, 0.0)):
-        return NOT_FINITE
-    if v.autopilot.modes.number != GUIDED:
-        return NOT_IN_GUIDED
-    return OK
-
-
-@law
-def set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Heading that goes with a set-point."""
-    if use_yaw != 0 and relative != 0:
-        auto_yaw.fixed(v, yaw, 0.0, 0, 1)
-    elif use_yaw != 0:
-        auto_yaw.angle_rate(v, yaw, yaw_rate if use_rate != 0 else 0.0)
-    elif use_rate != 0:
-        auto_yaw.turn_rate(v, yaw_rate)
-    else:
-        auto_yaw.set_default(v, 0)
-
-
-@law
-def begin(v, submode):
-    """Prepare for a set-point of this kind and note when it came."""
-    modes = v.autopilot.modes
-    if modes.guided.submode != submode:
-        guided_flight.start_submode(v, submode)
-    modes.guided.paused = 0
-    modes.guided.update_us = v.time_us
-
-
-@law
-def write(target, x, y, z):
-    """Three numbers into a vector of the record."""
-    target[0], target[1], target[2] = x, y, z
-
-
-@law
-def set_position(v, n, e, d, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly to a point, NED [m] from the origin, and stay."""
-    code = refusal(v, n, e, d, yaw, yaw_rate)
-    if code == OK:
-        begin(v, POSITION)
-        write(v.autopilot.modes.guided.pos, n, e, d)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_velocity(v, vn, ve, vd, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly a velocity, NED [m/s]."""
-    return set_velocity_accel(v, vn, ve, vd, 0.0, 0.0, 0.0, use_yaw, yaw, use_rate, yaw_rate, relative)
-
-
-@law
-def set_velocity_accel(v, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly a velocity [m/s] that changes with an acceleration [m/s^2], NED."""
-    code = refusal(v, vn, ve, vd, yaw, yaw_rate)
-    if code == OK and not is_finite3(an, ae, ad):
-        code = NOT_FINITE
-    if code == OK:
-        begin(v, VELOCITY_ACCEL)
-        write(v.autopilot.modes.guided.vel, vn, ve, vd)
-        write(v.autopilot.modes.guided.acc, an, ae, ad)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_accel(v, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Fly an acceleration, NED [m/s^2]."""
-    code = refusal(v, an, ae, ad, yaw, yaw_rate)
-    if code == OK:
-        begin(v, ACCEL)
-        write(v.autopilot.modes.guided.acc, an, ae, ad)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_pos_vel_accel(v, n, e, d, vn, ve, vd, an, ae, ad, use_yaw, yaw, use_rate, yaw_rate, relative):
-    """Follow a point (NED [m]) that moves with a velocity [m/s] and an acceleration [m/s^2]."""
-    code = refusal(v, n, e, d, yaw, yaw_rate)
-    if code == OK and not (is_finite3(vn, ve, vd) and is_finite3(an, ae, ad)):
-        code = NOT_FINITE
-    if code == OK:
-        begin(v, POS_VEL_ACCEL)
-        write(v.autopilot.modes.guided.pos, n, e, d)
-        write(v.autopilot.modes.guided.vel, vn, ve, vd)
-        write(v.autopilot.modes.guided.acc, an, ae, ad)
-        set_yaw(v, use_yaw, yaw, use_rate, yaw_rate, relative)
-    return code
-
-
-@law
-def set_attitude(v, use_attitude, qw, qx, qy, qz, p, q, r, thrust):
-    """Fly an attitude (quaternion body to NED) turning with body rates p, q, r [rad/s], or the rates alone.
-
-    ``thrust`` 0 .. 1 is a climb rate around 0.5 (0: WPNAV_SPEED_DN down, 1: WPNAV_SPEED_UP up), or with
-    GUID_OPTIONS bit 8 the thrust.
-    """
-    ap = v.autopilot
-    code = refusal(v, p, q, r, thrust, 0.0)
-    norm = 1.0
-    if code == OK and use_attitude != 0:
-        norm = math.sqrt(qw * qw + qx * qx + qy * qy + qz * qz)
-        if norm != norm:
-            code = NOT_FINITE
-        elif norm < 0.5 or norm > 2.0:
-            code = OUT_OF_RANGE
-    if code != OK:
-        return code
-    begin(v, ANGLE)
-    target = ap.modes.guided
-    target.use_attitude = 1 if use_attitude != 0 else 0
-    if use_attitude != 0:
-        target.q[0], target.q[1], target.q[2], target.q[3] = qw / norm, qx / norm, qy / norm, qz / norm
-    write(target.rates, p, q, r)
-    share = constrain(thrust, 0.0, 1.0)
-    target.use_thrust = 1 if (int(ap.params.GUID.OPTIONS) & _THRUST_IS_THRUST) != 0 else 0
-    target.thrust = share
-    if share >= 0.5:
-        target.climb_rate = (share - 0.5) * 2.0 * ap.control.pos_d.speed_up
-    else:
-        target.climb_rate = (share - 0.5) * 2.0 * ap.control.pos_d.speed_down
-    return code
-
-
-@law
-def stop(v):
-    """Come to a stop and hold (velocity zero). OK, or NOT_IN_GUIDED."""
-    if v.autopilot.modes.number != GUIDED:
-        return NOT_IN_GUIDED
-    return set_velocity(v, 0.0, 0.0, 0.0, 0, 0.0, 0, 0.0, 0)
-
-
-@law
-def condition_yaw(v, angle, rate, direction, relative):
-    """MAV_CMD_CONDITION_YAW in GUIDED and AUTO: angle [rad], rate [rad/s], direction -1, 0, 1."""
-    if not is_finite3(angle, rate, 0.0):
-        return NOT_FINITE
-    mode = v.autopilot.modes.number
-    if mode != GUIDED and mode != AUTO:
-        return NOT_IN_GUIDED
-    if rate < 0.0:
-        return OUT_OF_RANGE
-    auto_yaw.fixed(v, angle, rate, direction, relative)
-    return OK
-
-
-@law
-def set_roi(v, n, e, d):
-    """Keep the nose on a point, NED [m]."""
-    if not is_finite3(n, e, d):
-        return NOT_FINITE
-    auto_yaw.look_at(v, n, e, d)
-    return OK
-
-
-@law
-def clear_roi(v):
-    """Give the heading back to WP_YAW_BEHAVIOR."""
-    if v.autopilot.modes.auto_yaw.mode == auto_yaw.ROI:
-        auto_yaw.set_default(v, 1 if v.autopilot.modes.number == RTL else 0)
-    return OK
-
-
-@law
-def change_speed(v, kind, speed):
-    """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode or the
-    kind of set-point changes.
-    """
-    if not is_finite3(speed, 0.0, 0.0):
-        return NOT_FINITE
-    if speed <= 0.0:
-        return OUT_OF_RANGE
-    ap = v.autopilot
-    ne = ap.control.pos_ne
-    d = ap.control.pos_d
-    if kind == HORIZONTAL:
-        position_start.set_max_speed_accel_ne(ap, speed, float(ne.accel_max))
-    elif kind == CLIMB:
-        altitude_start.set_max_speed_accel_d(ap, float(d.speed_down), speed, float(d.accel_max))
-    elif kind == DESCENT:
-        altitude_start.set_max_speed_accel_d(ap, speed, float(d.speed_up), float(d.accel_max))
-    else:
-        return OUT_OF_RANGE
-    return OK
-
-
-@law
-def pause(v):
-    """MAV_CMD_DO_PAUSE_CONTINUE 0 in GUIDED and AUTO: stop and hold. OK or NOT_IN_GUIDED."""
-    modes = v.autopilot.modes
-    if modes.number == GUIDED:
-        modes.guided.paused = 1
-        return OK
-    if modes.number == AUTO:
-        modes.nav.paused = 1
-        return OK
-    return NOT_IN_GUIDED
-
-
-@law
-def resume(v):
-    """MAV_CMD_DO_PAUSE_CONTINUE 1: go on."""
-    modes = v.autopilot.modes
-    if modes.number == GUIDED:
-        if modes.guided.paused != 0:
-            modes.guided.paused = 0
-        return OK
-    if modes.number == AUTO:
-        modes.nav.paused = 0
-        return OK
-    return NOT_IN_GUIDED

@@ -8,15 +8,24 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import ZERO2, turned
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
-from .. import arming, pilot
-from ..control import altitude, altitude_start, attitude, position, position_start
+from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE
+from .. import pilot
+from ..control import altitude, attitude, position, position_start
+from ..control.state import DT, AltitudeState
+from ..parameters.flight import Land
+from ..state import Autopilot, Vehicle
 from . import auto_yaw, ground
-from .numbers import ALT_HOLD, LOITER, REASON_THROTTLE_LAND_ESCAPE
+from .alt_hold import ALT_HOLD
+from .loiter import LOITER
+from .mode import CopterMode, never_arms, yes
+
+LAND = 9
 
 PAUSE_US = 4_000_000
 """A landing that a failsafe began waits so long, for the pilot to notice."""
@@ -29,128 +38,138 @@ _REPOSITION_ACCEL = 0.5
 
 
 @law
-def start(v):
-    """Enter LAND; with position control when there is a position. Returns 0."""
-    ap = v.autopilot
+def start(v: Vehicle) -> int:
+    """Enter; with position control when there is a position."""
     begin(v)
-    ap.modes.land.with_position = 1 if ap.estimate.position_ok != 0 else 0
-    return 0
+    v.autopilot.modes.land.with_position = v.autopilot.estimate.position_ok
+    return ACCEPTED
 
 
 @law
-def begin(v):
+def begin(v: Vehicle) -> None:
     """Prepare a descent from the present motion."""
     ap = v.autopilot
-    land = ap.modes.land
-    ground.set_waypoint_limits(v)
-    if not position_start.is_active_ne(ap.control):
-        position_start.init_ne(ap)
-    if not altitude_start.is_active_d(ap.control):
-        altitude_start.init_d(ap)
-    land.start_us = v.time_us
-    land.pause = 0
-    land.with_position = 1
-    auto_yaw.set_mode(v, auto_yaw.HOLD)
+    ground.set_waypoint_limits(ap)
+    ground.continue_position_control(ap)
+    ap.modes.land.start_us = v.time_us
+    ap.modes.land.pause = False
+    ap.modes.land.with_position = True
+    auto_yaw.set_mode(ap, auto_yaw.HOLD)
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One tick of the mode LAND."""
     ap = v.autopilot
-    auto_yaw.pilot(v)
+    auto_yaw.follow_pilot(ap)
     land = ap.modes.land
-    if land.pause != 0 and v.time_us - land.start_us >= PAUSE_US:
-        land.pause = 0
-    if land.with_position != 0 and ap.estimate.position_ok == 0:
-        land.with_position = 0
+    if land.pause and v.time_us - land.start_us >= PAUSE_US:
+        land.pause = False
+    if land.with_position and not ap.estimate.position_ok:
+        land.with_position = False
     finish(v)
-    if ground.is_grounded(v):
-        ground.handle(v)
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap)
         return
     ap.control.motors.desired_spool = ground.UNLIMITED
-    if is_cancelled(v):
-        return
-    if land.with_position != 0:
-        descend(v, int(land.pause))
+    if is_cancelled(ap):
+        ap.modes.wanted = (LOITER if ap.estimate.position_ok else ALT_HOLD) + 1
+        ap.modes.wanted_reason = REASON_THROTTLE_LAND_ESCAPE
+    elif land.with_position:
+        descend(ap, land.pause)
     else:
-        descend_blind(v, int(land.pause))
+        descend_blind(ap, land.pause)
 
 
 @law
-def finish(v):
+def finish(v: Vehicle) -> None:
     """Disarm when landed and the motors have come down to idle."""
     ap = v.autopilot
-    if ap.arming.landed != 0 and ap.control.motors.spool_state == ground.IS_GROUND_IDLE:
-        arming.disarm(v, BY_LANDING, 0)
+    if ap.arming.landed and ap.control.motors.spool_state == ground.IS_GROUND_IDLE:
+        ground.disarm(v, BY_LANDING)
 
 
 @law
-def is_cancelled(v):
+def is_cancelled(ap: Autopilot) -> bool:
     """Whether the pilot's high throttle asks for LOITER (or ALT_HOLD) instead."""
-    ap = v.autopilot
-    if (int(ap.params.PILOT.THR_BHV) & _CANCEL_BEHAVIOUR) == 0 or ap.modes.pilot.throttle <= _CANCEL_THROTTLE:
-        return False
-    ap.modes.wanted = (LOITER if ap.estimate.position_ok != 0 else ALT_HOLD) + 1
-    ap.modes.wanted_reason = REASON_THROTTLE_LAND_ESCAPE
-    return True
+    return (int(ap.params.PILOT.THR_BHV) & _CANCEL_BEHAVIOUR) != 0 and ap.modes.pilot.throttle > _CANCEL_THROTTLE
 
 
 @law
-def descend(v, pause):
+def descend(ap: Autopilot, pause: bool) -> None:
     """One tick of a landing with position control; the sticks move the landing place (LAND_REPOSITION)."""
-    ap = v.autopilot
-    if ap.arming.landed_maybe != 0:
+    vel = stick_velocity(ap)
+    if ap.arming.landed_maybe:
         position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
-    position.input_vel_accel_ne(ap.control.pos_ne, stick_velocity(ap), Vec2(0.0, 0.0))
-    sink(v, pause)
-    ground.fly(v)
+    position.input_vel_accel_ne(ap.control.pos_ne, vel, ZERO2)
+    sink(ap, pause)
+    ground.fly(ap)
 
 
 @law
-def descend_blind(v, pause):
+def descend_blind(ap: Autopilot, pause: bool) -> None:
     """One tick of a landing without a position: the sticks lean the vehicle."""
-    ap = v.autopilot
-    roll, pitch = 0.0, 0.0
+    lean = pilot.Lean(0.0, 0.0)
     if ap.params.LAND.REPOSITION != 0.0:
-        most = math.radians(ap.params.ANGLE_MAX * 0.01)
-        roll, pitch = pilot.lean_angles(ap, most, most)
-    sink(v, pause)
+        lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
+        lean = pilot.lean_angles(ap.modes.pilot, lean_max, lean_max)
+    sink(ap, pause)
     altitude.update_d(ap)
-    attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
+    attitude.input_euler_roll_pitch_yaw_rate(ap, lean.roll, lean.pitch, ap.modes.pilot.yaw_rate)
 
 
 @law
-def sink(v, pause):
-    """Descent of this tick: fast above LAND_ALT_LOW (height above home), then LAND_SPEED."""
-    ap = v.autopilot
-    p = ap.params
-    slow = abs(p.LAND.SPEED) * 0.01
-    low = max(p.LAND.ALT_LOW * 0.01, 1.0)
-    height = float(ap.home.pos[2] - ap.estimate.pos[2])
-    if pause != 0:
-        altitude.land_at_rate_d(ap.control.pos_d, 0.0, False)
-        return
-    fast = p.LAND.SPEED_HIGH * 0.01
+def sink_rate(height: float, limits: AltitudeState, p: Land, pos_p: float) -> float:
+    """Descent [m/s] at a height above home [m]: fast above LAND_ALT_LOW, then LAND_SPEED.
+
+    ``pos_p``: gain of the position loop [1/s].
+    """
+    slow = abs(p.SPEED) * 0.01
+    fast = p.SPEED_HIGH * 0.01
     if fast <= 0.0:
-        fast = float(ap.control.pos_d.speed_down)
+        fast = limits.speed_down
     fast = max(fast, slow)
-    down = sqrt_controller(height - low, p.PSC.POSZ_P, float(ap.control.pos_d.accel_max), 0.0025)
-    rate = constrain(down, slow, fast)
-    altitude.land_at_rate_d(ap.control.pos_d, rate, height < low or ap.arming.landed_maybe != 0)
+    return constrain(sqrt_controller(height - height_low(p), pos_p, limits.accel_max, DT), slow, fast)
 
 
 @law
-def stick_velocity(ap):
-    """(north, east) [m/s] that the sticks ask for while landing; zero without LAND_REPOSITION."""
+def height_low(p: Land) -> float:
+    """LAND_ALT_LOW, at least a metre [m]."""
+    return max(p.ALT_LOW * 0.01, 1.0)
+
+
+@law
+def sink(ap: Autopilot, pause: bool) -> None:
+    """Descent of this tick."""
+    path = ap.control.pos_d
+    if pause:
+        altitude.land_at_rate_d(path, 0.0, False)
+        return
+    height = ap.home.pos.z - ap.estimate.pos.z
+    near_ground = height < height_low(ap.params.LAND) or ap.arming.landed_maybe
+    rate = sink_rate(height, path, ap.params.LAND, ap.params.PSC.POSZ_P)
+    altitude.land_at_rate_d(path, rate, near_ground)
+
+
+@law
+def stick_velocity(ap: Autopilot) -> Vec2:
+    """North and east [m/s] that the sticks ask for while landing; zero without LAND_REPOSITION."""
     sticks = ap.modes.pilot
     if ap.params.LAND.REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
         return Vec2(0.0, 0.0)
-    most = ap.params.WPNAV.ACCEL * 0.01 * _REPOSITION_ACCEL
-    forward, right = -float(sticks.pitch) * most, float(sticks.roll) * most
-    size = math.sqrt(forward * forward + right * right)
-    if size > most:
-        forward *= most / size
-        right *= most / size
-    yaw = float(ap.estimate.euler[2])
-    c, s = math.cos(yaw), math.sin(yaw)
-    return Vec2(forward * c - right * s, forward * s + right * c)
+    speed_max = ap.params.WPNAV.ACCEL * 0.01 * _REPOSITION_ACCEL
+    forward_right = pilot.limit_stick(Vec2(-sticks.pitch * speed_max, sticks.roll * speed_max), speed_max)
+    return turned(forward_right, ap.estimate.euler.yaw)
+
+
+MODE = CopterMode(
+    number=LAND,
+    name="LAND",
+    start=start,
+    run=run,
+    standard_mode=7,
+    uses_position=True,
+    autonomous=True,
+    may_arm=never_arms,
+    is_landing=yes,
+)

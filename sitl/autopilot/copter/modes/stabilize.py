@@ -9,29 +9,27 @@ from ....core.kernels import law
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
+from ..state import Autopilot, Vehicle
 from . import ground
+from .mode import CopterMode
+
+STABILIZE = 0
 
 
 @law
-def start(v):
-    """Enter. Returns 0."""
-    return 0
-
-
-@law
-def throttle(ap):
+def throttle(ap: Autopilot) -> float:
     """Motor throttle 0 .. 1 that the stick asks for."""
-    return pilot.throttle_out(float(ap.modes.pilot.throttle_filtered), hover_throttle(ap.params.MOT))
+    return pilot.throttle_out(ap.modes.pilot.throttle_filtered, hover_throttle(ap.params.MOT))
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
     motors = ap.control.motors
-    if ap.arming.armed == 0:
+    if not ap.arming.armed:
         motors.desired_spool = ground.SHUT_DOWN
-    elif ap.modes.pilot.throttle_zero != 0:
+    elif ap.modes.pilot.throttle_zero:
         motors.desired_spool = ground.GROUND_IDLE
     else:
         motors.desired_spool = ground.UNLIMITED
@@ -40,9 +38,12 @@ def run(v):
     if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
         attitude.reset_yaw_target(ap)
         wanted = 0.0
-    elif state == ground.IS_UNLIMITED and motors.limit_throttle_lower == 0 and ap.arming.landed != 0:
-        ground.set_landed(v, 0)
-    most = math.radians(ap.params.ANGLE_MAX * 0.01)
-    roll, pitch = pilot.lean_angles(ap, most, most)
-    attitude.input_euler_roll_pitch_yaw_rate(ap, roll, pitch, float(ap.modes.pilot.yaw_rate))
+    elif state == ground.IS_UNLIMITED and not motors.limit_throttle_lower and ap.arming.landed:
+        ground.set_landed(ap.arming, False)
+    lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
+    lean = pilot.lean_angles(ap.modes.pilot, lean_max, lean_max)
+    attitude.input_euler_roll_pitch_yaw_rate(ap, lean.roll, lean.pitch, ap.modes.pilot.yaw_rate)
     throttle_mix.set_throttle_out(ap, wanted, True, ap.params.PILOT.THR_FILT)
+
+
+MODE = CopterMode(number=STABILIZE, name="STABILIZE", run=run, manual_throttle=True)

@@ -7,7 +7,8 @@ angles radians.
 
 from __future__ import annotations
 
-from ....core.records import Floats, Record, array
+from ....core.records import Record
+from ....core.vectors import Quat, Vec2, Vec3
 from ... import state as shared
 from ..navigation.state import CopterNav
 
@@ -21,17 +22,17 @@ class AutoYaw(Record):
     offset: float  # FIXED: angle still to turn, signed [rad]
     slew: float  # FIXED: greatest turn rate [rad/s], 0 no limit
     look_ahead: float  # last course flown faster than 1 m/s [rad]
-    roi: Floats = array(3)  # point to look at, NED [m]
+    roi: Vec3  # point to look at, NED [m]
 
 
 class TakeoffState(Record):
     """A take-off under way."""
 
     target_d: float  # NED [m]
-    no_nav_active: int  # no horizontal control below no_nav_d (WP_NAVALT_MIN)
+    no_nav_active: bool  # no horizontal control below no_nav_d (WP_NAVALT_MIN)
     no_nav_d: float  # NED [m]
-    complete: int
-    user_active: int  # take-off in ALT_HOLD and LOITER (PILOT_TKOFF_ALT or NAV_TAKEOFF)
+    complete: bool
+    user_active: bool  # take-off in ALT_HOLD and LOITER (PILOT_TKOFF_ALT or NAV_TAKEOFF)
     user_start_d: float  # NED [m]
     user_alt: float  # to climb [m]
 
@@ -39,28 +40,28 @@ class TakeoffState(Record):
 class GuidedState(Record):
     """GUIDED: the set-point under way."""
 
-    submode: int  # guided.py: TAKEOFF, POSITION, VELOCITY_ACCEL, POS_VEL_ACCEL, ACCEL, ANGLE
-    pos: Floats = array(3)  # NED [m]
-    vel: Floats = array(3)
-    acc: Floats = array(3)
+    submode: int  # guided.py: TAKEOFF, POSITION, ...
+    pos: Vec3  # NED [m]
+    vel: Vec3  # [m/s]
+    acc: Vec3  # [m/s^2]
     update_us: int  # time of the last set-point
-    timed_out: int  # the set-point under way is too old; said once
-    paused: int
-    q: Floats = array(4)  # ANGLE: attitude, body to NED
-    rates: Floats = array(3)  # ANGLE: body rates [rad/s]
-    use_attitude: int  # ANGLE: 0 rates only
+    timed_out: bool  # the set-point under way is too old; said once
+    paused: bool
+    q: Quat  # ANGLE: attitude, body to NED
+    rates: Vec3  # ANGLE: body rates [rad/s]
+    use_attitude: bool  # ANGLE: else rates only
     climb_rate: float  # ANGLE: [m/s] up
     thrust: float  # ANGLE: 0 .. 1
-    use_thrust: int  # ANGLE: thrust instead of climb rate
+    use_thrust: bool  # ANGLE: thrust instead of climb rate
 
 
 class LoiterState(Record):
     """LOITER: what the sticks ask for, and braking."""
 
-    acc: Floats = array(2)  # what the sticks ask, NE [m/s^2]
-    predicted_acc: Floats = array(2)  # what the lean of the sticks would do, NE
-    predicted_euler: Floats = array(2)  # roll, pitch that follow the sticks [rad]
-    predicted_rate: Floats = array(2)  # [rad/s]
+    acc: Vec2  # what the sticks ask, NE [m/s^2]
+    predicted_acc: Vec2  # what the lean of the sticks would do, NE
+    predicted_euler: Vec2  # roll, pitch that follow the sticks [rad]
+    predicted_rate: Vec2  # [rad/s]
     brake_acc: float  # [m/s^2]
     brake_us: int  # when the sticks were released
 
@@ -71,7 +72,7 @@ class RtlState(Record):
     state: int  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING
     return_d: float  # height of the way home, NED [m]
     descent_d: float  # where RTL_ALT_FINAL ends, NED [m]
-    home: Floats = array(2)  # NE [m]
+    home: Vec2  # NE [m]
     loiter_us: int  # when the wait over home began
 
 
@@ -79,15 +80,15 @@ class LandState(Record):
     """LAND."""
 
     start_us: int
-    with_position: int
-    pause: int  # wait 4 s before descending, after a failsafe
+    with_position: bool
+    pause: bool  # wait 4 s before descending, after a failsafe
 
 
 class AutoState(Record):
     """AUTO."""
 
     submode: int  # auto.py
-    started: int  # by MISSION_START, or by raising the throttle
+    started: bool  # by MISSION_START, or by raising the throttle
     command: int  # count of the command that is begun (nav.command_count)
     land_state: int  # 0 flying to the place, 1 descending
 
@@ -105,16 +106,16 @@ class PilotState(Record):
     switch_candidate: int
     switch_us: int  # since when the candidate is there
     rudder_us: int  # since when the yaw stick is held for arming or disarming; 0 not
-    rudder_done: int  # the stick must return before it counts again
-    throttle_zero: int  # low, for at least 0.4 s
+    rudder_done: bool  # the stick must return before it counts again
+    throttle_zero: bool  # low, for at least 0.4 s
     throttle_zero_us: int  # when last above zero
 
 
 class LandingState(Record):
     """What the landing detector filters."""
 
-    acc: Floats = array(3)  # acceleration NED, low-passed at 1 Hz [m/s^2]
-    landing: int  # a mode is descending to land
+    acc: Vec3  # acceleration NED, low-passed at 1 Hz [m/s^2]
+    landing: bool  # a mode is descending to land
 
 
 class Modes(shared.Modes):
@@ -129,5 +130,5 @@ class Modes(shared.Modes):
     auto: AutoState
     pilot: PilotState
     landing: LandingState
-    arming_delay: int  # armed less than 2 s ago: motors wait
+    arming_delay: bool  # armed less than 2 s ago: motors wait
     nav: CopterNav

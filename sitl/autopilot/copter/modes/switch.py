@@ -6,8 +6,9 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...arming_checks import BY_RUDDER
 from ...mode_switch import moved_to
+from ...modes import REASON_RC
 from .. import arming
-from .numbers import REASON_RC
+from ..state import Vehicle
 from .set_mode import request
 
 RUDDER_US = 2_000_000
@@ -16,7 +17,7 @@ _FULL_STICK = 4000.0 / 4500.0
 
 
 @law
-def read_mode(v):
+def read_mode(v: Vehicle) -> None:
     """After each frame: a new position of the switch changes the mode."""
     ap = v.autopilot
     if ap.modes.failsafe.radio:
@@ -27,26 +28,26 @@ def read_mode(v):
 
 
 @law
-def read_rudder(v):
+def read_rudder(v: Vehicle) -> None:
     """After each frame: yaw right arms, yaw left disarms (ARMING_RUDDER)."""
     ap = v.autopilot
     pilot = ap.modes.pilot
     wanted = 0
-    if ap.params.ARMING.RUDDER >= 1.0 and pilot.throttle <= 0.0 and ap.rc.receiver_ok != 0:
-        if pilot.yaw > _FULL_STICK and ap.arming.armed == 0:
+    if ap.params.ARMING.RUDDER >= 1.0 and pilot.throttle <= 0.0 and ap.rc.receiver_ok:
+        if pilot.yaw > _FULL_STICK and not ap.arming.armed:
             wanted = 1
-        elif pilot.yaw < -_FULL_STICK and ap.arming.armed != 0 and ap.params.ARMING.RUDDER >= 2.0:
+        elif pilot.yaw < -_FULL_STICK and ap.arming.armed and ap.params.ARMING.RUDDER >= 2.0:
             wanted = -1
     if abs(pilot.yaw) < 0.5:
-        pilot.rudder_done = 0
-    if wanted == 0 or pilot.rudder_done != 0:
+        pilot.rudder_done = False
+    if wanted == 0 or pilot.rudder_done:
         pilot.rudder_us = 0
         return
     if pilot.rudder_us == 0:
         pilot.rudder_us = v.time_us
     elif v.time_us - pilot.rudder_us >= RUDDER_US:
-        pilot.rudder_done = 1
+        pilot.rudder_done = True
         if wanted > 0:
-            arming.try_arm(v, BY_RUDDER, 0)
+            arming.try_arm(v, BY_RUDDER, False)
         else:
-            arming.disarm(v, BY_RUDDER, 0)
+            arming.disarm(v, BY_RUDDER, False)

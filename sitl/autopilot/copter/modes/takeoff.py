@@ -12,16 +12,9 @@ from ....core.scalars import constrain
 from ...control.shaping import Motion
 from ...events import TAKEOFF_COMPLETE, emit
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
-from . import auto_yaw, ground, guided_state
-from .numbers import ALT_HOLD, GUIDED, LOITER
-
-# Answers of start()
-OK = 0
-NOT_ARMED = 1
-ALREADY_FLYING = 2
-WRONG_MODE = 3
-TOO_LOW = 4
-NOT_FINITE = 5
+from ..control.state import DT, AltitudeState
+from ..state import Autopilot, Vehicle
+from . import ground
 
 _LIFT_SPEED = 0.1
 """Part of the climb speed limit that shows that the vehicle has left the ground."""
@@ -30,158 +23,138 @@ _DONE_SPEED = 0.1
 
 
 @law
-def start(v, altitude_m):
-    """User's take-off (MAV_CMD_NAV_TAKEOFF) to ``altitude_m`` [m] above home. Returns OK or why not."""
-    ap = v.autopilot
-    mode = ap.modes.number
-    if not abs(altitude_m) <= guided_state.LARGEST:
-        return NOT_FINITE
-    if ap.arming.armed == 0:
-        return NOT_ARMED
-    climbs = mode == GUIDED and ap.modes.guided.submode == guided_state.TAKEOFF and ap.modes.takeoff.complete == 0
-    if ap.arming.landed == 0 and not climbs:
-        return ALREADY_FLYING
-    if mode != GUIDED and mode != LOITER and mode != ALT_HOLD:
-        return WRONG_MODE
-    target_d = float(ap.home.pos[2]) - altitude_m
-    if target_d >= ap.estimate.pos[2]:
-        return TOO_LOW
-    if ap.arming.landed == 0:  # repeated in the climb: a client that missed the acknowledgement
-        ap.modes.takeoff.target_d = target_d
-        return OK
-    if mode == GUIDED:
-        ap.modes.guided.submode = guided_state.TAKEOFF
-        ap.modes.guided.paused = 0
-        auto_yaw.set_mode(v, auto_yaw.HOLD)
-        begin(v, target_d)
-    else:
-        begin_user(v, altitude_m)
-    ap.arming.auto_armed = 1
-    return OK
-
-
-@law
-def begin(v, target_d):
+def begin(ap: Autopilot, target_d: float) -> None:
     """Start the take-off of GUIDED and AUTO to ``target_d`` (NED [m])."""
-    ap = v.autopilot
     takeoff = ap.modes.takeoff
     takeoff.target_d = target_d
-    takeoff.complete = 0
-    takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP.NAVALT_MIN
-    takeoff.no_nav_active = 1 if ap.params.WP.NAVALT_MIN > 0.0 and ap.arming.landed != 0 else 0
-    ground.set_waypoint_limits(v)
+    takeoff.complete = False
+    takeoff.no_nav_d = ap.estimate.pos.z - ap.params.WP.NAVALT_MIN
+    takeoff.no_nav_active = ap.params.WP.NAVALT_MIN > 0.0 and ap.arming.landed
+    ground.set_waypoint_limits(ap)
     altitude_start.init_d(ap)
     position_start.init_ne(ap)
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One tick of the take-off of GUIDED and AUTO."""
     ap = v.autopilot
     takeoff = ap.modes.takeoff
-    motors = ap.control.motors
-    if ap.arming.armed == 0 or ap.arming.auto_armed == 0:
-        ground.handle(v)
-        takeoff.no_nav_d = float(ap.estimate.pos[2]) - ap.params.WP.NAVALT_MIN
+    if not ap.arming.armed or not ap.arming.auto_armed:
+        ground.rest(ap)
+        takeoff.no_nav_d = ap.estimate.pos.z - ap.params.WP.NAVALT_MIN
         return
-    motors.desired_spool = ground.UNLIMITED
-    if motors.spool_state != ground.IS_UNLIMITED:
-        position_start.relax_ne(ap)
-        position.update_ne(ap)
-        altitude_start.relax_d(ap, 0.0)
-        altitude.update_d(ap)
-        attitude.reset_yaw_target(ap)
-        level(v)
-        return
-    if ap.arming.landed != 0:
-        position_start.relax_ne(ap)
-        position.update_ne(ap)
-        throttle = ramp(ap)
-        level(v)
-        lifted = ap.estimate.vel[2] <= -_LIFT_SPEED * ap.control.pos_d.speed_up
-        if lifted or has_thrust(ap, throttle):
-            ground.set_landed(v, 0)
-        return
-    if takeoff.no_nav_active != 0:
-        if ap.estimate.pos[2] <= takeoff.no_nav_d:
-            takeoff.no_nav_active = 0
+    ap.control.motors.desired_spool = ground.UNLIMITED
+    if ap.control.motors.spool_state != ground.IS_UNLIMITED:
+        spool_up(ap)
+    elif ap.arming.landed:
+        lift_off(ap)
+    else:
+        climb(ap)
+        if not takeoff.complete and is_done(ap.control.pos_d, takeoff.target_d):
+            takeoff.complete = True
+            emit(ap.events, v.time_us, TAKEOFF_COMPLETE, -ap.estimate.pos.z, 0.0)
+
+
+@law
+def spool_up(ap: Autopilot) -> None:
+    """One tick while the motors spool up."""
+    position_start.relax_ne(ap)
+    position.update_ne(ap)
+    altitude_start.relax_d(ap, 0.0)
+    altitude.update_d(ap)
+    attitude.reset_yaw_target(ap)
+    keep_heading(ap)
+
+
+@law
+def lift_off(ap: Autopilot) -> None:
+    """One tick of raising the throttle on the ground."""
+    position_start.relax_ne(ap)
+    position.update_ne(ap)
+    throttle = raise_throttle(ap)
+    keep_heading(ap)
+    lifted = ap.estimate.vel.z <= -_LIFT_SPEED * ap.control.pos_d.speed_up
+    if lifted or has_thrust(ap, throttle):
+        ground.set_landed(ap.arming, False)
+
+
+@law
+def climb(ap: Autopilot) -> None:
+    """One tick in the air; below WP_NAVALT_MIN the vehicle is left to drift."""
+    takeoff = ap.modes.takeoff
+    if takeoff.no_nav_active:
+        if ap.estimate.pos.z <= takeoff.no_nav_d:
+            takeoff.no_nav_active = False
         position_start.relax_ne(ap)
     else:
         position.brake_ne(ap.control.pos_ne)
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.target_d, 0.0, 0.0))
-    ground.fly(v)
-    if takeoff.complete == 0 and is_done(ap):
-        takeoff.complete = 1
-        emit(ap.events, v.time_us, TAKEOFF_COMPLETE, -float(ap.estimate.pos[2]), 0.0)
+    ground.fly(ap)
 
 
 @law
-def level(v):
+def keep_heading(ap: Autopilot) -> None:
     """Thrust as the position controller says, nose as it is."""
-    ap = v.autopilot
     attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
 
 
 @law
-def ramp(ap):
-    """Raise the throttle by one tick of TKOFF_SLEW_TIME, the vertical controller following. Returns it."""
-    slew = max(float(ap.params.TKOFF.SLEW_TIME), 0.1)
-    throttle = constrain(ap.control.attitude.throttle_in + 0.0025 / slew, 0.0, 1.0)
+def raise_throttle(ap: Autopilot) -> float:
+    """Raise the throttle by one tick of TKOFF_SLEW_TIME, the vertical controller following; the throttle 0 .. 1."""
+    slew_time = max(ap.params.TKOFF.SLEW_TIME, 0.1)
+    throttle = constrain(ap.control.attitude.throttle_in + DT / slew_time, 0.0, 1.0)
     throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
     altitude_start.init_d(ap)
     return throttle
 
 
 @law
-def has_thrust(ap, throttle):
+def has_thrust(ap: Autopilot, throttle: float) -> bool:
     """Nearly full throttle, or accelerating upward with half of the acceleration limit."""
-    most = min(float(ap.params.TKOFF.THR_MAX), 0.9)
-    return throttle >= most or -ap.estimate.acc_ned[2] >= 0.5 * ap.control.pos_d.accel_max
+    full = min(ap.params.TKOFF.THR_MAX, 0.9)
+    return throttle >= full or -ap.estimate.acc_ned.z >= 0.5 * ap.control.pos_d.accel_max
 
 
 @law
-def is_done(ap):
-    """The path is as near to its end as a tenth of the climb speed needs to stop, and as slow."""
-    control = ap.control.pos_d
-    slow = _DONE_SPEED * control.speed_up
-    stop = 0.5 * slow * slow / max(float(control.accel_max), 0.1)
-    return control.pos_desired <= ap.modes.takeoff.target_d + stop and -control.vel_desired < slow
+def is_done(path: AltitudeState, target_d: float) -> bool:
+    """The path is as near to its end (NED [m]) as a tenth of the climb speed needs to stop, and as slow."""
+    slow = _DONE_SPEED * path.speed_up
+    stop = 0.5 * slow * slow / max(path.accel_max, 0.1)
+    return path.pos_desired <= target_d + stop and -path.vel_desired < slow
 
 
 @law
-def begin_user(v, altitude_m):
-    """Start a take-off of ALT_HOLD or LOITER, ``altitude_m`` [m] up."""
-    ap = v.autopilot
+def begin_user(ap: Autopilot, height: float) -> None:
+    """Start a take-off of ALT_HOLD or LOITER, ``height`` [m] up."""
     takeoff = ap.modes.takeoff
-    takeoff.user_active = 1
-    takeoff.user_start_d = float(ap.estimate.pos[2])
-    takeoff.user_alt = altitude_m
+    takeoff.user_active = True
+    takeoff.user_start_d = ap.estimate.pos.z
+    takeoff.user_alt = height
     altitude_start.init_d(ap)
 
 
 @law
-def is_triggered(v, climb):
-    """Whether the raised throttle stick starts a take-off: on the ground, motors ready."""
-    ap = v.autopilot
-    return ap.arming.landed != 0 and climb > 0.0 and ap.control.motors.spool_state == ground.IS_UNLIMITED
+def is_triggered(ap: Autopilot, climb: float) -> bool:
+    """Whether the raised throttle stick (``climb`` [m/s]) starts a take-off: on the ground, motors ready."""
+    return ap.arming.landed and climb > 0.0 and ap.control.motors.spool_state == ground.IS_UNLIMITED
 
 
 @law
-def run_user(v, climb):
+def run_user(ap: Autopilot, climb: float) -> None:
     """One tick of the vertical part of a take-off in ALT_HOLD and LOITER; ``climb`` from the stick [m/s]."""
-    ap = v.autopilot
     takeoff = ap.modes.takeoff
-    rise = float(takeoff.user_alt)
-    top = float(ap.control.pos_d.speed_up)
-    if ap.arming.landed != 0:
-        throttle = ramp(ap)
-        risen = takeoff.user_start_d - ap.estimate.pos[2]
-        fast = -ap.estimate.vel[2] >= constrain(climb, 0.1 * top, 0.5 * top)
+    rise = takeoff.user_alt
+    top = ap.control.pos_d.speed_up
+    if ap.arming.landed:
+        throttle = raise_throttle(ap)
+        risen = takeoff.user_start_d - ap.estimate.pos.z
+        fast = -ap.estimate.vel.z >= constrain(climb, 0.1 * top, 0.5 * top)
         if has_thrust(ap, throttle) or fast or (rise > 0.0 and risen > 0.5 * rise):
-            ground.set_landed(v, 0)
+            ground.set_landed(ap.arming, False)
             altitude_start.init_d(ap)
         return
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.user_start_d - rise, -climb, 0.0))
     altitude.update_d(ap)
     if climb < 0.0 or rise * 0.999 <= takeoff.user_start_d - ap.control.pos_d.pos_desired:
-        takeoff.user_active = 0
+        takeoff.user_active = False

@@ -7,52 +7,53 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import horizontal
 from ....core.kernels import law
+from ....core.scalars import constrain
 from ....core.vectors import Vec3
-from ...control.shaping import Motion, Motion2
-from ..control.altitude import set_pos_vel_accel_d
-from ..control.position import set_pos_vel_accel_ne
-from .waypoint import CM, DT, speed_ne
+from ..control.state import DT
+from ..state import Autopilot
+from .state import CopterNav
+from .waypoint import CM, follow_target, speed_ne
 
-SLOWEST_ACCELERATION = math.radians(2.0)
-"""Least angular acceleration [rad/s^2]."""
+ANGULAR_ACCEL_MIN = math.radians(2.0)
+"""[rad/s^2]"""
 
 
 @law
-def start(ap):
-    """Start circling from where the vehicle is, seen from ``nav.circle_centre``;
-    ``nav.circle_radius`` < 0 is counter-clockwise.
-    """
-    nav = ap.modes.nav
-    n = ap.estimate.pos[0] - nav.circle_centre[0]
-    e = ap.estimate.pos[1] - nav.circle_centre[1]
-    if math.hypot(n, e) > 0.05:
-        nav.circle_angle = math.atan2(e, n)
+def start(nav: CopterNav, pos: Vec3, yaw: float) -> None:
+    """Start circling from ``pos`` (NED [m]), heading ``yaw`` [rad], around ``nav.circle_centre``."""
+    away = pos - nav.circle_centre
+    if math.hypot(away.x, away.y) > 0.05:
+        nav.circle_angle = math.atan2(away.y, away.x)
     else:
-        nav.circle_angle = ap.estimate.euler[2] - math.pi  # at the centre: back out, looking ahead
+        nav.circle_angle = yaw - math.pi  # at the centre: back out, looking ahead
     nav.circle_total = 0.0
     nav.circle_rate = 0.0
-    wanted = abs(math.radians(ap.params.CIRCLE.RATE))
-    radius = abs(nav.circle_radius)
-    if radius > 0.0:
-        acceleration = CM * ap.params.WPNAV.ACCEL
-        top = min(speed_ne(ap), math.sqrt(0.5 * acceleration * radius)) / radius
-        wanted = min(wanted, top)
-        nav.circle_acc = max(acceleration / radius, SLOWEST_ACCELERATION)
-    else:
-        nav.circle_acc = max(wanted, SLOWEST_ACCELERATION)
-    nav.circle_top_rate = wanted if nav.circle_radius >= 0.0 else -wanted
-    nav.circle_running = 1
+    nav.circle_running = True
 
 
 @law
-def advance(ap):
-    """One tick around the circle; returns the turns flown so far (positive whatever the direction)."""
-    nav = ap.modes.nav
+def set_limits(nav: CopterNav, rate: float, speed_max: float, accel: float) -> None:
+    """Turn rate and angular acceleration for ``nav.circle_radius``, negative counter-clockwise.
+
+    ``rate``: wanted [rad/s]; ``speed_max`` [m/s], ``accel`` [m/s^2]: limits of the vehicle.
+    """
+    wanted = abs(rate)
+    radius = abs(nav.circle_radius)
+    if radius > 0.0:
+        wanted = min(wanted, min(speed_max, math.sqrt(0.5 * accel * radius)) / radius)
+        nav.circle_acc = max(accel / radius, ANGULAR_ACCEL_MIN)
+    else:
+        nav.circle_acc = max(wanted, ANGULAR_ACCEL_MIN)
+    nav.circle_top_rate = wanted if nav.circle_radius >= 0.0 else -wanted
+
+
+@law
+def advance(nav: CopterNav) -> float:
+    """Move the target one tick around the circle; the turns flown so far (positive whatever the direction)."""
     change = nav.circle_acc * DT
-    acc = min(max(nav.circle_top_rate - nav.circle_rate, -change), change)
-    nav.circle_rate += acc
+    step = constrain(nav.circle_top_rate - nav.circle_rate, -change, change)
+    nav.circle_rate += step
     nav.circle_angle += nav.circle_rate * DT
     nav.circle_total += nav.circle_rate * DT
     if nav.circle_angle > math.pi:
@@ -60,12 +61,24 @@ def advance(ap):
     elif nav.circle_angle < -math.pi:
         nav.circle_angle += 2.0 * math.pi
     radius = abs(nav.circle_radius)
-    c = radius * math.cos(nav.circle_angle)
-    s = radius * math.sin(nav.circle_angle)
+    n = radius * math.cos(nav.circle_angle)
+    e = radius * math.sin(nav.circle_angle)
     rate = nav.circle_rate
-    nav.pos = Vec3(nav.circle_centre[0] + c, nav.circle_centre[1] + s, nav.circle_centre[2])
-    nav.vel = Vec3(-s * rate, c * rate, 0.0)
-    nav.acc = Vec3(-c * rate * rate - s * acc / DT, -s * rate * rate + c * acc / DT, 0.0)
-    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
-    set_pos_vel_accel_d(ap.control.pos_d, Motion(nav.pos.z, 0.0, 0.0))
+    centre = nav.circle_centre
+    nav.pos = Vec3(centre.x + n, centre.y + e, centre.z)
+    nav.vel = Vec3(-e * rate, n * rate, 0.0)
+    nav.acc = Vec3(-n * rate * rate - e * step / DT, -e * rate * rate + n * step / DT, 0.0)
     return abs(nav.circle_total) / (2.0 * math.pi)
+
+
+@law
+def run(ap: Autopilot) -> float:
+    """One tick around the circle, begun with the first; the turns flown so far."""
+    nav = ap.modes.nav
+    if not nav.circle_running:
+        start(nav, ap.estimate.pos, ap.estimate.euler.yaw)
+        p = ap.params
+        set_limits(nav, math.radians(p.CIRCLE.RATE), speed_ne(nav, p.WPNAV), CM * p.WPNAV.ACCEL)
+    turns = advance(nav)
+    follow_target(ap, 0.0, 0.0)
+    return turns

@@ -10,43 +10,38 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...navigation.command import complete
 from ...navigation.state import DELAY, LOITER_TIME, LOITER_TURNS, LOITER_UNLIMITED, WAYPOINT
+from ..state import Autopilot
 from . import circle, waypoint
 
 
 @law
-def follows_path(kind):
-    """1 for the kinds that ``run`` flies."""
-    return 1 if kind in (WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LOITER_TURNS, DELAY) else 0
+def follows_path(kind: int) -> bool:
+    """Whether ``run`` flies commands of this kind."""
+    return kind in (WAYPOINT, LOITER_UNLIMITED, LOITER_TIME, LOITER_TURNS, DELAY)
 
 
 @law
-def begin(ap, time_us):
+def begin(ap: Autopilot, time_us: int) -> None:
     """Begin the command that the shell has written."""
     nav = ap.modes.nav
     nav.completed = False
     nav.since_us = 0
-    nav.circle_running = 0
+    nav.circle_running = False
     waypoint.start(ap, time_us)
 
 
 @law
-def run(ap, time_us):
-    """One tick of a command that follows a path: writes position targets.
-
-    1 when it is done (and was said so).
-    """
+def run(ap: Autopilot, time_us: int) -> None:
+    """One tick of a command that follows a path: writes position targets."""
     nav = ap.modes.nav
     kind = nav.command_kind
-    if kind == LOITER_TURNS and (nav.circle_running != 0 or nav.reached):
-        if nav.circle_running == 0:
-            circle.start(ap)
+    if kind == LOITER_TURNS and (nav.circle_running or nav.reached):
         nav.active_us = time_us
-        if circle.advance(ap) >= nav.turns:
+        if circle.run(ap) >= nav.turns:
             complete(ap, time_us)
-    elif waypoint.advance(ap, time_us) != 0:
+    elif waypoint.advance(ap, time_us):
         if nav.since_us == 0:
             nav.since_us = time_us
         waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
         if waited and kind in (WAYPOINT, LOITER_TIME, DELAY):
             complete(ap, time_us)
-    return int(nav.completed)

@@ -44,11 +44,12 @@ class CopterPlanner(Planner[Autopilot]):
 
     def limits(self, ap: Autopilot, direction: Vec3) -> Limits:
         """Speed and acceleration of whichever axis is used up first."""
-        vertical = max(waypoint.CM * ap.params.WPNAV.ACCEL_Z, 0.1)
-        horizontal = max(waypoint.CM * ap.params.WPNAV.ACCEL, 0.1)
+        nav, p = ap.modes.nav, ap.params.WPNAV
+        vertical = max(waypoint.CM * p.ACCEL_Z, 0.1)
+        horizontal = max(waypoint.CM * p.ACCEL, 0.1)
         jerk, rise = jerk_limits(ap.params)
         return Limits(
-            axis_limits(direction, waypoint.speed_ne(ap), waypoint.speed_up(ap), waypoint.speed_down(ap)),
+            axis_limits(direction, waypoint.speed_ne(nav, p), waypoint.speed_up(nav, p), waypoint.speed_down(nav, p)),
             axis_limits(direction, horizontal, vertical, vertical),
             jerk,
             rise,
@@ -62,7 +63,7 @@ class CopterPlanner(Planner[Autopilot]):
     def origin_of_next(self, ap: Autopilot, time_us: int) -> tuple[Vec3, bool]:
         """A circle under way is left from where the vehicle is; a take-off ends at its height."""
         nav = ap.modes.nav
-        circling = nav.command_kind == LOITER_TURNS and nav.circle_running != 0
+        circling = nav.command_kind == LOITER_TURNS and nav.circle_running
         if self.continues(ap, time_us) and not circling:
             return super().origin_of_next(ap, time_us)
         rest = self.stopping_point(ap)

@@ -4,8 +4,8 @@
 For the modes::
 
     start(ap, time_us)              begin at the planned legs (AUTO: when a command with legs was given)
-    advance(ap, time_us) -> int     one tick: moves the target, hands it to the controllers; 1 when reached
-    stop(ap)                        forget all legs
+    advance(ap, time_us) -> bool    one tick: moves the target, hands it to the controllers; whether it is reached
+    stop(nav)                       forget all legs
 
 and ``request_leg``, ``distance``, ``bearing`` of ``navigation.path``. After ``advance``, ``nav.pos``, ``nav.vel``,
 ``nav.acc`` hold the target. Corners stay within WPNAV_RADIUS and WPNAV_ACCEL_C.
@@ -15,8 +15,9 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import dot, horizontal
+from ....core.algebra import ZERO, dot, horizontal
 from ....core.kernels import law
+from ....core.scalars import constrain
 from ....core.vectors import Vec3
 from ...control.shaping import Motion, Motion2
 from ...navigation import path
@@ -24,41 +25,42 @@ from ..control.altitude import set_pos_vel_accel_d
 from ..control.altitude_start import init_d_stopping_point, set_max_speed_accel_d
 from ..control.position import set_pos_vel_accel_ne
 from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
+from ..control.state import DT
+from ..parameters.flight import Legs
+from ..state import Autopilot
+from .state import CopterNav
 
-DT = 0.0025
 CM = 0.01
 
 
 @law
-def speed_ne(ap):
+def speed_ne(nav: CopterNav, p: Legs) -> float:
     """Horizontal speed limit along legs [m/s]."""
-    nav = ap.modes.nav
-    return nav.speed_ne if nav.speed_ne > 0.0 else max(CM * ap.params.WPNAV.SPEED, 0.1)
+    return nav.speed_ne if nav.speed_ne > 0.0 else max(CM * p.SPEED, 0.1)
 
 
 @law
-def speed_up(ap):
+def speed_up(nav: CopterNav, p: Legs) -> float:
     """Climb speed limit along legs [m/s]."""
-    nav = ap.modes.nav
-    return nav.speed_up if nav.speed_up > 0.0 else max(CM * ap.params.WPNAV.SPEED_UP, 0.1)
+    return nav.speed_up if nav.speed_up > 0.0 else max(CM * p.SPEED_UP, 0.1)
 
 
 @law
-def speed_down(ap):
+def speed_down(nav: CopterNav, p: Legs) -> float:
     """Descent speed limit along legs [m/s]."""
-    nav = ap.modes.nav
-    return nav.speed_down if nav.speed_down > 0.0 else max(CM * ap.params.WPNAV.SPEED_DN, 0.1)
+    return nav.speed_down if nav.speed_down > 0.0 else max(CM * p.SPEED_DN, 0.1)
 
 
 @law
-def set_limits(ap):
+def set_limits(ap: Autopilot) -> None:
     """Give the position controllers the limits of legs."""
-    set_max_speed_accel_ne(ap, speed_ne(ap), CM * ap.params.WPNAV.ACCEL)
-    set_max_speed_accel_d(ap, speed_down(ap), speed_up(ap), CM * ap.params.WPNAV.ACCEL_Z)
+    nav, p = ap.modes.nav, ap.params.WPNAV
+    set_max_speed_accel_ne(ap, speed_ne(nav, p), CM * p.ACCEL)
+    set_max_speed_accel_d(ap, speed_down(nav, p), speed_up(nav, p), CM * p.ACCEL_Z)
 
 
 @law
-def start(ap, time_us):
+def start(ap: Autopilot, time_us: int) -> None:
     """Begin at the planned legs.
 
     A leg that continues the one just flown keeps the controllers as they are.
@@ -73,61 +75,63 @@ def start(ap, time_us):
         nav.pause_scale = 1.0
         nav.pause_rate = 0.0
         nav.pos = nav.current.origin
-        nav.vel = Vec3(0.0, 0.0, 0.0)
-        nav.acc = Vec3(0.0, 0.0, 0.0)
+        nav.vel = ZERO
+        nav.acc = ZERO
     nav.active_us = time_us
 
 
 @law
-def stop(ap):
+def stop(nav: CopterNav) -> None:
     """Forget all legs."""
-    path.stop(ap.modes.nav)
-    ap.modes.nav.paused = 0
+    path.stop(nav)
+    nav.paused = False
 
 
 @law
-def corner_accel(ap):
+def corner_accel(p: Legs) -> float:
     """Acceleration that corners may need [m/s^2]."""
-    return CM * (ap.params.WPNAV.ACCEL_C if ap.params.WPNAV.ACCEL_C > 0.0 else 2.0 * ap.params.WPNAV.ACCEL)
+    return CM * (p.ACCEL_C if p.ACCEL_C > 0.0 else 2.0 * p.ACCEL)
 
 
 @law
-def advance(ap, time_us):
-    """One tick along the legs; 1 when the destination is reached (a corner: when the next leg takes over)."""
-    nav = ap.modes.nav
+def advance(ap: Autopilot, time_us: int) -> bool:
+    """One tick along the legs; whether the destination is reached (a corner: when the next leg takes over)."""
+    nav, p = ap.modes.nav, ap.params.WPNAV
     if nav.request_pending != 0 or nav.current.segments < 1:
-        return 0
+        return False
     nav.active_us = time_us
     feasible = path.feasible_time_scale(nav, ap.estimate.pos, ap.estimate.vel, ap.params.PSC.POSXY_P)
-    path.scale_time(nav, feasible, CM * ap.params.WPNAV.ACCEL / max(ap.params.WPNAV.JERK, 0.1), DT)
-    _scale_pause(ap)
-    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * ap.params.WPNAV.RADIUS, corner_accel(ap))
+    path.scale_time(nav, feasible, CM * p.ACCEL / max(p.JERK, 0.1), DT)
+    advance_pause(nav, p, ap.params.PSC.JERK_XY)
+    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * p.RADIUS, corner_accel(p))
     nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate
     nav.vel = nav.vel * nav.pause_scale
-    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
-    set_pos_vel_accel_d(ap.control.pos_d, Motion(nav.pos.z, nav.vel.z, nav.acc.z))
-    if done and not nav.reached:
-        if nav.current.fast or _near_end(ap) != 0:
-            nav.reached = True
-    return int(nav.reached)
+    follow_target(ap, nav.vel.z, nav.acc.z)
+    if done and (nav.current.fast or is_near_end(nav, ap.estimate.pos, CM * p.RADIUS)):
+        nav.reached = True
+    return nav.reached
 
 
 @law
-def _scale_pause(ap):
-    """Path time stops when paused and runs again after,
-    with WPNAV_ACCEL and PSC_JERK_XY felt at full speed.
-    """
+def follow_target(ap: Autopilot, climb: float, climb_accel: float) -> None:
+    """Hand the target to the controllers, which climb with it at ``climb`` [m/s], ``climb_accel`` [m/s^2]."""
     nav = ap.modes.nav
-    wanted = 0.0 if nav.paused != 0 else 1.0
+    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
+    set_pos_vel_accel_d(ap.control.pos_d, Motion(nav.pos.z, climb, climb_accel))
+
+
+@law
+def advance_pause(nav: CopterNav, p: Legs, jerk: float) -> None:
+    """Path time stops when paused and runs again after, with WPNAV_ACCEL and ``jerk`` [m/s^3] felt at full speed."""
+    wanted = 0.0 if nav.paused else 1.0
     error = wanted - nav.pause_scale
     if error == 0.0 and nav.pause_rate == 0.0:
         return
-    top = speed_ne(ap)
-    rate = CM * ap.params.WPNAV.ACCEL / top
-    change = max(ap.params.PSC.JERK_XY, 0.1) / top * DT
-    aim = min(rate, math.sqrt(2.0 * change / DT * abs(error)))
+    speed_max = speed_ne(nav, p)
+    change = max(jerk, 0.1) / speed_max * DT
+    aim = min(CM * p.ACCEL / speed_max, math.sqrt(2.0 * change / DT * abs(error)))
     aim = aim if error > 0.0 else -aim
-    nav.pause_rate += min(max(aim - nav.pause_rate, -change), change)
+    nav.pause_rate += constrain(aim - nav.pause_rate, -change, change)
     nav.pause_scale += nav.pause_rate * DT
     if abs(wanted - nav.pause_scale) < 1e-4 or (wanted - nav.pause_scale) * error < 0.0:
         nav.pause_scale = wanted
@@ -135,9 +139,7 @@ def _scale_pause(ap):
 
 
 @law
-def _near_end(ap):
-    """1 when the vehicle is within WPNAV_RADIUS of the end of the current leg."""
-    nav = ap.modes.nav
-    away = nav.current.origin + nav.current.unit * nav.current.length - ap.estimate.pos
-    radius = CM * ap.params.WPNAV.RADIUS
-    return 1 if dot(away, away) <= radius * radius else 0
+def is_near_end(nav: CopterNav, pos: Vec3, radius: float) -> bool:
+    """Whether ``pos`` (NED) is within ``radius`` of the end of the current leg [m]."""
+    away = nav.current.origin + nav.current.unit * nav.current.length - pos
+    return dot(away, away) <= radius * radius

@@ -9,18 +9,26 @@ from ....core.kernels import law
 from .. import pilot
 from ..control import motors, speed
 from ..control.forward_speed import sense
-from . import drive
+from ..control.steering import out_from_rate
+from ..state import Vehicle
+from .mode import RoverMode
+
+ACRO = 1
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    known, _ = sense(v)
-    if not known:
-        steering, throttle = pilot.steering_and_limited_throttle(ap)
-        motors.set_throttle(ap, throttle)
+    if sense(v).known:
+        wanted = pilot.steering_and_speed(ap)
+        steering = wanted.steering
+        speed.drive(v, wanted.speed)
     else:
-        steering, wanted = pilot.steering_and_speed(ap)
-        speed.drive(v, wanted)
-    drive.turn(v, steering * math.radians(ap.params.ACRO_TURN_RATE))
+        sticks = pilot.limited_sticks(ap)
+        steering = sticks.steering
+        motors.set_throttle(ap, sticks.throttle)
+    motors.set_steering(ap, out_from_rate(ap, steering * math.radians(ap.params.ACRO_TURN_RATE)))
+
+
+MODE = RoverMode(number=ACRO, name="ACRO", run=run, car_needs_velocity=True, manual_input=True)

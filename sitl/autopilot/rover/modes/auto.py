@@ -9,145 +9,152 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
+from ...modes import ACCEPTED, NO_MISSION, REASON_MISSION_END
 from ...navigation import command
 from ...navigation import state as kinds
 from ..control import speed
 from ..navigation import waypoint
-from . import auto_state as doing
-from . import circle, drive, guided_drive, loiter, rtl
-from .numbers import ACCEPTED, ACRO, MANUAL, NO_MISSION, REASON_MISSION_END
+from ..navigation.state import RoverNav
+from ..state import Vehicle
+from . import circle, drive, guided, loiter, rtl
+from .acro import ACRO
+from .manual import MANUAL
+from .mode import RoverMode
+from .state import AutoState
 
+AUTO = 10
+
+STOPPED, ON_PATH, TURNING, RETURNING, LOITERING, GUIDED_IN_MISSION, CIRCLING = 0, 1, 2, 3, 4, 5, 6
+"""What it is doing (``modes.auto.submode``); TURNING: to a heading, at a speed."""
 HEADING_REACHED = math.radians(5.0)
 LOITER_WHEN_DONE, ACRO_WHEN_DONE, MANUAL_WHEN_DONE = 1.0, 2.0, 3.0
 """MIS_DONE_BEHAVE"""
 
 
 @law
-def start(v):
+def start(v: Vehicle) -> int:
     """Enter; needs a mission. The shell gives the first command."""
-    ap = v.autopilot
-    if ap.modes.mission_count < 2:
+    modes = v.autopilot.modes
+    auto = modes.auto
+    if modes.mission_count < 2:
         return NO_MISSION
-    auto = ap.modes.auto
-    waypoint.start(ap)
-    ap.modes.guided.limit_us = 0
-    ap.modes.guided.limit_distance = 0.0
-    auto.command = int(ap.modes.nav.command_count)
-    ap.modes.nav.command_kind = kinds.NONE
-    auto.submode = doing.STOP
-    auto.complete = 0
+    waypoint.start(v.autopilot)
+    modes.guided.limit_us = 0
+    modes.guided.limit_distance = 0.0
+    auto.command = modes.nav.command_count
+    modes.nav.command_kind = kinds.NONE
+    auto.submode = STOPPED
+    auto.complete = False
     return ACCEPTED
 
 
 @law
-def begin(v):
+def begin(v: Vehicle) -> None:
     """Begin the command that the shell has written."""
-    ap = v.autopilot
-    nav = ap.modes.nav
-    auto = ap.modes.auto
-    auto.command = int(nav.command_count)
-    auto.complete = 0
+    modes = v.autopilot.modes
+    nav, auto = modes.nav, modes.auto
+    auto.command = nav.command_count
+    auto.complete = False
     nav.completed = False
     nav.since_us = 0
     kind = nav.command_kind
-    auto.submode = doing.STOP
+    auto.submode = STOPPED
     if kind == kinds.WAYPOINT or kind == kinds.LOITER_UNLIMITED or kind == kinds.LOITER_TIME:
-        auto.submode = doing.WAYPOINT
+        auto.submode = ON_PATH
     elif kind == kinds.LOITER_TURNS:
         begin_circle(v)
     elif kind == kinds.RTL:
         if rtl.start(v) == ACCEPTED:
-            auto.submode = doing.RTL
+            auto.submode = RETURNING
     elif kind == kinds.GUIDED:
-        guided_drive.start(v)
-        guided_drive.begin_limits(v)
-        auto.submode = doing.GUIDED
+        guided.start_in_mission(v)
+        auto.submode = GUIDED_IN_MISSION
     elif kind == kinds.YAW_SPEED:
-        begin_heading(v)
+        begin_turn(auto, nav, v.autopilot.params.WP.SPEED)
     elif kind == kinds.DELAY:
         nav.since_us = v.time_us
 
 
 @law
-def begin_circle(v):
+def begin_circle(v: Vehicle) -> None:
     """LOITER_TURNS: around ``nav.target``."""
-    ap = v.autopilot
-    nav = ap.modes.nav
+    nav = v.autopilot.modes.nav
     direction = -1.0 if nav.circle_radius < 0.0 else 1.0
-    n, e = float(nav.target[0]), float(nav.target[1])
-    if circle.start_around(v, n, e, abs(float(nav.circle_radius)), direction) == ACCEPTED:
-        ap.modes.auto.submode = doing.CIRCLE
+    if circle.start_around(v, horizontal(nav.target), abs(nav.circle_radius), direction) == ACCEPTED:
+        v.autopilot.modes.auto.submode = CIRCLING
 
 
 @law
-def begin_heading(v):
-    """SET_YAW_SPEED: towards ``nav.heading`` at ``nav.heading_speed``, no faster than WP_SPEED."""
-    ap = v.autopilot
-    nav = ap.modes.nav
-    auto = ap.modes.auto
-    most = float(ap.params.WP.SPEED)
-    auto.heading = wrap_pi(float(nav.heading))
-    auto.speed = constrain(float(nav.heading_speed), -most, most)
-    auto.heading_reached = 0
-    auto.submode = doing.HEADING_AND_SPEED
+def begin_turn(auto: AutoState, nav: RoverNav, speed_max: float) -> None:
+    """SET_YAW_SPEED: towards ``nav.heading`` at ``nav.heading_speed``, no faster than ``speed_max`` [m/s]."""
+    auto.heading = wrap_pi(nav.heading)
+    auto.speed = constrain(nav.heading_speed, -speed_max, speed_max)
+    auto.heading_reached = False
+    auto.submode = TURNING
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    nav = ap.modes.nav
-    if ap.modes.auto.command != nav.command_count:
+    nav, auto = ap.modes.nav, ap.modes.auto
+    if auto.command != nav.command_count:
         begin(v)
-    if nav.mission_state == kinds.COMPLETE and ap.modes.auto.complete == 0:
+    if nav.mission_state == kinds.COMPLETE and not auto.complete:
         finish(v)
-    submode = ap.modes.auto.submode
-    if submode == doing.WAYPOINT:
-        run_path(v)
-    elif submode == doing.CIRCLE:
-        circle.run(v)
-    elif submode == doing.RTL:
-        rtl.run(v)
-    elif submode == doing.LOITER:
-        loiter.run(v)
-    elif submode == doing.GUIDED:
-        guided_drive.run(v)
-    elif submode == doing.HEADING_AND_SPEED:
-        run_heading(v)
-    else:
-        speed.stop(v)
+    run_command(v)
     if not nav.completed and is_done(v):
         command.complete(ap, v.time_us)
     command.check_condition(ap, v.time_us, True)
 
 
 @law
-def run_path(v):
+def run_command(v: Vehicle) -> None:
+    """One period of the command under way."""
+    submode = v.autopilot.modes.auto.submode
+    if submode == ON_PATH:
+        run_path(v)
+    elif submode == CIRCLING:
+        circle.run(v)
+    elif submode == RETURNING:
+        rtl.run(v)
+    elif submode == LOITERING:
+        loiter.run(v)
+    elif submode == GUIDED_IN_MISSION:
+        guided.run(v)
+    elif submode == TURNING:
+        run_turn(v)
+    else:
+        speed.stop(v)
+
+
+@law
+def run_path(v: Vehicle) -> None:
     """One period towards a waypoint. There, waiting, a car stands: it would have to circle to hold the very point."""
     if waypoint.reached(v.autopilot) and not waypoint.is_fast(v.autopilot):
         speed.stop(v)
     else:
-        drive.along_path(v)
+        drive.follow_path(v)
 
 
 @law
-def run_heading(v):
+def run_turn(v: Vehicle) -> None:
     """One period of SET_YAW_SPEED: turns while it drives, then stops."""
     ap = v.autopilot
     auto = ap.modes.auto
-    if auto.heading_reached != 0:
+    if auto.heading_reached:
         speed.stop(v)
         return
-    drive.to_heading(v, float(auto.heading))
-    speed.drive(v, drive.nudged(ap, float(auto.speed)))
-    if abs(wrap_pi(float(auto.heading) - float(ap.estimate.euler[2]))) < HEADING_REACHED:
-        auto.heading_reached = 1
+    drive.turn_to(ap, auto.heading)
+    speed.drive(v, drive.nudged(ap, auto.speed))
+    auto.heading_reached = abs(wrap_pi(auto.heading - ap.estimate.euler.yaw)) < HEADING_REACHED
 
 
 @law
-def is_done(v):
+def is_done(v: Vehicle) -> bool:
     """Whether the command under way is complete; one that could not begin is."""
     ap = v.autopilot
     nav = ap.modes.nav
@@ -161,40 +168,63 @@ def is_done(v):
     if kind == kinds.DELAY:
         return (v.time_us - nav.since_us) * 1e-6 >= nav.delay
     submode = ap.modes.auto.submode
-    if submode == doing.CIRCLE:
-        return circle.turns(ap) >= nav.turns
-    if submode == doing.RTL:
+    if submode == CIRCLING:
+        return circle.turns(ap.modes.circle) >= nav.turns
+    if submode == RETURNING:
         return waypoint.reached(ap)
-    if submode == doing.GUIDED:
+    if submode == GUIDED_IN_MISSION:
         return is_guided_done(v)
-    if submode == doing.HEADING_AND_SPEED:
-        return ap.modes.auto.heading_reached != 0
+    if submode == TURNING:
+        return ap.modes.auto.heading_reached
     return True
 
 
 @law
-def is_guided_done(v):
+def is_guided_done(v: Vehicle) -> bool:
     """Guided within the mission: at its place, or at its limit."""
     ap = v.autopilot
     nav = ap.modes.nav
-    north = float(nav.target[0]) - float(ap.estimate.pos[0])
-    east = float(nav.target[1]) - float(ap.estimate.pos[1])
-    if nav.has_place and math.sqrt(north * north + east * east) <= ap.params.WP.RADIUS:
+    pos = horizontal(ap.estimate.pos)
+    if nav.has_place and norm2(horizontal(nav.target) - pos) <= ap.params.WP.RADIUS:
         return True
-    return guided_drive.is_at_limit(v)
+    return guided.is_at_limit(ap.modes.guided, v.time_us, pos)
 
 
 @law
-def finish(v):
+def finish(v: Vehicle) -> None:
     """The mission is complete: MIS_DONE_BEHAVE; what cannot be entered becomes a stop."""
-    ap = v.autopilot
-    auto = ap.modes.auto
-    wanted = ap.params.MIS.DONE_BEHAVE
-    auto.complete = 1
-    auto.submode = doing.STOP
+    modes = v.autopilot.modes
+    wanted = v.autopilot.params.MIS.DONE_BEHAVE
+    modes.auto.complete = True
+    modes.auto.submode = STOPPED
     if wanted == LOITER_WHEN_DONE:
         if loiter.start(v) == ACCEPTED:
-            auto.submode = doing.LOITER
+            modes.auto.submode = LOITERING
     elif wanted in (ACRO_WHEN_DONE, MANUAL_WHEN_DONE):
-        ap.modes.wanted = 1 + (ACRO if wanted == ACRO_WHEN_DONE else MANUAL)
-        ap.modes.wanted_reason = REASON_MISSION_END
+        modes.wanted = 1 + (ACRO if wanted == ACRO_WHEN_DONE else MANUAL)
+        modes.wanted_reason = REASON_MISSION_END
+
+
+@law
+def change_speed(v: Vehicle, wanted: float) -> bool:
+    """DO_CHANGE_SPEED [m/s] of what it is doing."""
+    auto = v.autopilot.modes.auto
+    if auto.submode == CIRCLING:
+        return circle.change_speed(v, wanted)
+    if auto.submode == GUIDED_IN_MISSION:
+        return guided.change_speed(v, wanted)
+    if auto.submode == TURNING:
+        auto.speed = wanted
+        return True
+    return auto.submode != LOITERING and drive.change_path_speed(v, wanted)
+
+
+MODE = RoverMode(
+    number=AUTO,
+    name="AUTO",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    change_speed=change_speed,
+)

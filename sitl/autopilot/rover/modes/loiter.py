@@ -5,46 +5,53 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
+from ....core.vectors import Vec2
+from ...modes import ACCEPTED, INIT_FAILED
 from ..control import speed
 from ..control.forward_speed import sense
 from ..navigation import waypoint
+from ..parameters import Parameters
+from ..state import Vehicle
 from . import drive
-from .numbers import ACCEPTED, INIT_FAILED
+from .mode import RoverMode
+from .state import LoiterState
+
+LOITER = 5
 
 EITHER_WAY, FORWARDS, BACKWARDS = 0, 1, 2
 """LOIT_TYPE"""
 
 
 @law
-def start(v):
+def start(v: Vehicle) -> int:
     """Enter; needs an origin."""
     ap = v.autopilot
-    if ap.estimate.origin_set == 0:
+    if not ap.estimate.origin_set:
         return INIT_FAILED
     loiter = ap.modes.loiter
-    place = waypoint.stopping_point(ap)
-    loiter.place[0], loiter.place[1] = place.x, place.y
-    loiter.speed = sense(v).speed
-    loiter.heading = ap.estimate.euler[2]
+    loiter.place = waypoint.stopping_point(ap)
+    forward = sense(v)
+    loiter.speed = forward.speed if forward.known else 0.0
+    loiter.heading = ap.estimate.euler.yaw
     loiter.distance = 0.0
     return ACCEPTED
 
 
 @law
-def aim(v):
-    """Heading and speed back to the place, from beyond LOIT_RADIUS."""
-    ap = v.autopilot
-    p = ap.params
-    loiter = ap.modes.loiter
-    wanted = min((loiter.distance - p.LOIT.RADIUS) * p.LOIT.SPEED_GAIN, float(p.WP.SPEED))
-    heading = math.atan2(loiter.place[1] - ap.estimate.pos[1], loiter.place[0] - ap.estimate.pos[0])
-    error = wrap_pi(heading - float(ap.estimate.euler[2]))
+def aim(loiter: LoiterState, pos: Vec2, yaw: float, params: Parameters) -> None:
+    """Heading and speed back to the place for a vehicle at ``pos`` [m], from beyond LOIT_RADIUS."""
+    p = params.LOIT
+    wanted = min((loiter.distance - p.RADIUS) * p.SPEED_GAIN, params.WP.SPEED)
+    way = loiter.place - pos
+    heading = math.atan2(way.y, way.x)
+    error = wrap_pi(heading - yaw)
     behind = abs(error) > 0.5 * math.pi
-    if p.LOIT.TYPE == BACKWARDS or (behind and p.LOIT.TYPE == EITHER_WAY):
+    if p.TYPE == BACKWARDS or (behind and p.TYPE == EITHER_WAY):
         heading = wrap_pi(heading + math.pi)
-        error = wrap_pi(heading - float(ap.estimate.euler[2]))
+        error = wrap_pi(heading - yaw)
         wanted = -wanted
     loiter.heading = heading
     # slower while it still has to turn: half the speed at a right angle
@@ -52,16 +59,26 @@ def aim(v):
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
     loiter = ap.modes.loiter
-    north = float(loiter.place[0]) - float(ap.estimate.pos[0])
-    east = float(loiter.place[1]) - float(ap.estimate.pos[1])
-    loiter.distance = math.sqrt(north * north + east * east)
+    pos = horizontal(ap.estimate.pos)
+    loiter.distance = norm2(loiter.place - pos)
     if loiter.distance <= ap.params.LOIT.RADIUS:
         loiter.speed = speed.accel_limited(ap.control, 0.0, ap.params.ATC)
     else:
-        aim(v)
-    drive.to_heading(v, float(loiter.heading))
-    speed.drive(v, float(loiter.speed))
+        aim(loiter, pos, ap.estimate.euler.yaw, ap.params)
+    drive.turn_to(ap, loiter.heading)
+    speed.drive(v, loiter.speed)
+
+
+MODE = RoverMode(
+    number=LOITER,
+    name="LOITER",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    destination="loiter.place",
+)

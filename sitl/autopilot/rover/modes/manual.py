@@ -7,19 +7,26 @@ from ....core.kernels import law
 from ...radio import expo
 from .. import pilot
 from ..control import motors
+from ..state import Vehicle
+from .mode import RoverMode
+
+MANUAL = 0
 
 _SCALED = 1
 """MANUAL_OPTIONS: steering shrinks with speed."""
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    steering, throttle = pilot.steering_and_limited_throttle(ap)
-    steering = expo(steering, ap.params.MANUAL.STR_EXPO)
-    motors.set_throttle(ap, throttle)
+    sticks = pilot.limited_sticks(ap)
+    steering = expo(sticks.steering, ap.params.MANUAL.STR_EXPO)
+    motors.set_throttle(ap, sticks.throttle)
     if (int(ap.params.MANUAL.OPTIONS) & _SCALED) != 0:
         motors.set_steering(ap, steering)
     else:
         motors.set_steering_unscaled(ap, steering)
+
+
+MODE = RoverMode(number=MANUAL, name="MANUAL", run=run, manual_input=True, controlled=False)

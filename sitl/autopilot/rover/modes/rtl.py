@@ -6,34 +6,51 @@ from __future__ import annotations
 from ....core.algebra import horizontal
 from ....core.kernels import law
 from ...events import DESTINATION_REACHED, emit
+from ...modes import ACCEPTED, INIT_FAILED
 from ..control import speed
 from ..navigation import waypoint
+from ..state import Vehicle
 from . import drive
-from .numbers import ACCEPTED, INIT_FAILED
+from .mode import RoverMode
+
+RTL = 11
 
 
 @law
-def start(v):
+def start(v: Vehicle) -> int:
     """Enter; needs a home."""
     ap = v.autopilot
-    if ap.home.is_set == 0:
+    if not ap.home.is_set:
         return INIT_FAILED
     waypoint.start(ap)
     if ap.params.RTL_SPEED > 0.0:
-        waypoint.set_speed(ap, float(ap.params.RTL_SPEED))
+        waypoint.set_speed(ap, ap.params.RTL_SPEED)
     waypoint.set_destination(ap, v.time_us, horizontal(ap.home.pos))
-    ap.modes.rtl.told = 0
+    ap.modes.rtl.told = False
     return ACCEPTED
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
     if not waypoint.reached(ap):
-        drive.along_path(v)
+        drive.follow_path(v)
         return
-    if ap.modes.rtl.told == 0:
-        ap.modes.rtl.told = 1
+    if not ap.modes.rtl.told:
+        ap.modes.rtl.told = True
         emit(ap.events, v.time_us, DESTINATION_REACHED, float(ap.modes.number), 0.0)
     speed.stop(v)
+
+
+MODE = RoverMode(
+    number=RTL,
+    name="RTL",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    armable=False,
+    destination="nav.target",
+    change_speed=drive.change_path_speed,
+)

@@ -1,66 +1,51 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Changing the mode: who may enter what, when."""
+"""Changing the mode: who may enter what, when; and the speed of the mode under way."""
 
 from __future__ import annotations
 
 from ....core.kernels import law
 from ...events import MODE_CHANGED, MODE_REFUSED, emit, emit_and_return
+from ...modes import ACCEPTED, NO_MISSION, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION
 from ..control.motors import is_skid
 from ..navigation import waypoint
-from . import auto, circle, guided_drive, loiter, rtl, smart_rtl
-from .numbers import (
-    ACCEPTED,
-    AUTO,
-    CIRCLE,
-    GUIDED,
-    LOITER,
-    NO_SUCH_MODE,
-    REQUIRES_POSITION,
-    RTL,
-    SMART_RTL,
-    is_known,
-    requires_position,
-    requires_velocity,
-)
+from ..state import Autopilot, Vehicle
+from . import table
+from .auto import AUTO
+from .initialising import INITIALISING
+
+SPEED_MAX = 1e7
+"""Speeds beyond this are refused [m/s]."""
 
 
 @law
-def refusal(v, number):
+def enter_first(v: Vehicle) -> None:
+    """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a place, home, a mission)."""
+    modes = v.autopilot.modes
+    number = int(v.autopilot.params.INITIAL_MODE)
+    possible = table.is_known(number) and table.start(number, v) == ACCEPTED
+    modes.number = number if possible else INITIALISING
+    modes.previous = INITIALISING
+    modes.reason = REASON_INITIALISED
+
+
+@law
+def refusal(ap: Autopilot, number: int) -> int:
     """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
-    ap = v.autopilot
-    if not is_known(number):
+    if not table.is_known(number):
         return NO_SUCH_MODE
-    if ap.arming.armed == 0:
+    good = ap.estimate.position_ok and not ap.modes.failsafe.ekf
+    if not ap.arming.armed or good:
         return ACCEPTED
-    good = ap.estimate.position_ok != 0 and ap.modes.failsafe.ekf == 0
-    if requires_position(number) and not good:
+    if table.requires_position(number):
         return REQUIRES_POSITION
-    if requires_velocity(number, is_skid(ap.params)) and not good and not ap.control.speed.forward_ok:
+    if table.requires_velocity(number, is_skid(ap.params)) and not ap.control.speed.forward_ok:
         return REQUIRES_POSITION
     return ACCEPTED
 
 
 @law
-def enter(v, number):
-    """Run the mode's own entry; ACCEPTED or a cause."""
-    if number == AUTO:
-        return auto.start(v)
-    if number == GUIDED:
-        return guided_drive.start(v)
-    if number == RTL:
-        return rtl.start(v)
-    if number == SMART_RTL:
-        return smart_rtl.start(v)
-    if number == LOITER:
-        return loiter.start(v)
-    if number == CIRCLE:
-        return circle.start(v)
-    return ACCEPTED
-
-
-@law
-def request(v, number, reason):
-    """Change to a mode. Returns ACCEPTED (0; also when already there) or the cause (``numbers``).
+def request(v: Vehicle, number: int, reason: int) -> int:
+    """Change to a mode. Returns ACCEPTED (0; also when already there) or the cause (``autopilot.modes``).
 
     A change is told to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number, cause) with
     nothing changed.
@@ -69,17 +54,17 @@ def request(v, number, reason):
     modes = ap.modes
     if number == modes.number:
         return ACCEPTED
-    pending = int(modes.nav.request_pending)
-    cause = refusal(v, number)
+    pending = modes.nav.request_pending
+    cause = refusal(ap, number)
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
-        cause = enter(v, number)
+        cause = table.start(number, v)
     if cause != ACCEPTED:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     waypoint.set_reversed(ap, False)
-    modes.previous = int(modes.number)
+    modes.previous = modes.number
     modes.number = number
     modes.reason = reason
     modes.wanted = 0
@@ -88,3 +73,19 @@ def request(v, number, reason):
     else:
         emit(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
     return cause
+
+
+@law
+def change_speed(v: Vehicle, speed: float) -> bool:
+    """MAV_CMD_DO_CHANGE_SPEED [m/s] until the mode or its destination's kind changes; whether it was taken."""
+    return abs(speed) <= SPEED_MAX and table.change_speed(v.autopilot.modes.number, v, speed)
+
+
+def refusal_texts(number: int, cause: int) -> list[str]:
+    """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
+    if cause == ACCEPTED:
+        return []
+    if cause == NO_SUCH_MODE:
+        return [f"No such mode {number}"]
+    first = ["No Mission. Can't set AUTO."] if cause == NO_MISSION else []
+    return [*first, "Flight mode change failed"]

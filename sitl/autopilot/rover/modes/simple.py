@@ -6,28 +6,35 @@ from __future__ import annotations
 from ....core.kernels import law
 from ....core.scalars import wrap_2pi
 from .. import pilot
-from ..control import speed
-from . import drive
+from ..control import motors, speed
+from ..control.steering import out_from_heading
+from ..state import Vehicle
+from .mode import RoverMode
+from .state import SimpleState
+
+SIMPLE = 7
 
 FROM_FIRST_HEADING = 0
 
 
 @law
-def note_heading(ap):
-    """On arming: forwards is where the nose points."""
-    ap.modes.simple.first_heading = ap.estimate.euler[2]
-    ap.modes.simple.heading = ap.estimate.euler[2]
+def note_heading(simple: SimpleState, yaw: float) -> None:
+    """On arming: forwards is where the nose points [rad]."""
+    simple.first_heading = yaw
+    simple.heading = yaw
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period; with the stick released the last heading stays."""
     ap = v.autopilot
     simple = ap.modes.simple
-    heading, wanted = pilot.heading_and_speed(ap)
-    if int(ap.params.SIMPLE_TYPE) == FROM_FIRST_HEADING:
-        heading = wrap_2pi(heading + float(simple.first_heading))
-    if wanted > 0.0:
-        simple.heading = heading
-    drive.to_heading(v, float(simple.heading))
-    speed.drive(v, wanted)
+    wanted = pilot.heading_and_speed(ap)
+    if wanted.speed > 0.0:
+        from_first = int(ap.params.SIMPLE_TYPE) == FROM_FIRST_HEADING
+        simple.heading = wrap_2pi(wanted.heading + simple.first_heading) if from_first else wanted.heading
+    motors.set_steering(ap, out_from_heading(ap, simple.heading))
+    speed.drive(v, wanted.speed)
+
+
+MODE = RoverMode(number=SIMPLE, name="SIMPLE", run=run, needs_position=True, manual_input=True)

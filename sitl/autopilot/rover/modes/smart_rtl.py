@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SMART_RTL: drives home the way it came, without the loops (``smart_rtl_path``)."""
+"""SMART_RTL: drives home the way it came, without the loops.
+
+``smart_rtl_path`` keeps the way.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,16 @@ import math
 from ....core.kernels import law
 from ....core.vectors import Vec2
 from ...events import DESTINATION_REACHED, emit
+from ...modes import ACCEPTED, INIT_FAILED
 from .. import smart_rtl_path
 from ..control import speed
 from ..navigation import waypoint
+from ..state import Vehicle
 from . import drive
-from .numbers import ACCEPTED, INIT_FAILED, SMART_RTL
+from .mode import RoverMode
+from .state import PathState
+
+SMART_RTL = 12
 
 # States
 CLEAN_UP = 0
@@ -21,57 +29,71 @@ ARRIVED = 2
 
 
 @law
-def start(v):
+def start(v: Vehicle) -> int:
     """Enter; needs a path."""
     ap = v.autopilot
-    if ap.estimate.origin_set == 0 or ap.modes.path.active == 0:
+    if not ap.estimate.origin_set or not ap.modes.path.active:
         return INIT_FAILED
     waypoint.start(ap)
     if ap.params.RTL_SPEED > 0.0:
-        waypoint.set_speed(ap, float(ap.params.RTL_SPEED))
+        waypoint.set_speed(ap, ap.params.RTL_SPEED)
     ap.modes.smart_rtl.state = CLEAN_UP
     return ACCEPTED
 
 
 @law
-def skip_near(ap):
-    """Leave out last points where the vehicle is already (WP_RADIUS): a car would have to circle to meet them."""
-    there, n, e = smart_rtl_path.peek(ap)
-    at = waypoint.stopping_point(ap)
-    while there != 0 and ap.modes.path.points > 1 and math.hypot(n - at.x, e - at.y) <= ap.params.WP.RADIUS:
-        smart_rtl_path.pop(ap)
-        there, n, e = smart_rtl_path.peek(ap)
+def skip_near(path: PathState, pos: Vec2, radius: float) -> None:
+    """Leave out last points within ``radius`` [m] of ``pos``: a car would have to circle to meet them."""
+    while path.points > 1:
+        away = smart_rtl_path.point(path, path.points - 1) - pos
+        if not math.hypot(away.x, away.y) <= radius:
+            return
+        smart_rtl_path.drop_last(path)
 
 
 @law
-def load(v):
+def load(v: Vehicle) -> None:
     """Drive on to the next point, through it when there is one behind it."""
     ap = v.autopilot
-    there, n, e = smart_rtl_path.pop(ap)
-    if there == 0:
+    path = ap.modes.path
+    if path.points == 0:
         ap.modes.smart_rtl.state = ARRIVED
         emit(ap.events, v.time_us, DESTINATION_REACHED, float(SMART_RTL), 0.0)
         return
-    more, next_n, next_e = smart_rtl_path.peek(ap)
-    if more != 0:
-        waypoint.set_destinations(ap, v.time_us, Vec2(n, e), Vec2(next_n, next_e))
+    place = smart_rtl_path.point(path, path.points - 1)
+    smart_rtl_path.drop_last(path)
+    if path.points > 0:
+        waypoint.set_destinations(ap, v.time_us, place, smart_rtl_path.point(path, path.points - 1))
     else:
-        waypoint.set_destination(ap, v.time_us, Vec2(n, e))
+        waypoint.set_destination(ap, v.time_us, place)
 
 
 @law
-def run(v):
+def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
     state = ap.modes.smart_rtl
     if state.state == CLEAN_UP:
-        smart_rtl_path.clean_up(ap)
-        skip_near(ap)
+        smart_rtl_path.clean_up(ap.modes.path, ap.params.SRTL.ACCURACY)
+        skip_near(ap.modes.path, waypoint.stopping_point(ap), ap.params.WP.RADIUS)
         state.state = FOLLOW
         load(v)
     elif state.state == FOLLOW and waypoint.reached(ap):
         load(v)
     if state.state == FOLLOW:
-        drive.along_path(v)
+        drive.follow_path(v)
     else:
         speed.stop(v)
+
+
+MODE = RoverMode(
+    number=SMART_RTL,
+    name="SMART_RTL",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    armable=False,
+    destination="nav.target",
+    change_speed=drive.change_path_speed,
+)

@@ -8,6 +8,7 @@ Positions are NE metres from the EKF origin (as ``estimate.pos``), velocities m/
 from __future__ import annotations
 
 from ....core.records import Floats, Ints, Record, array
+from ....core.vectors import Vec2
 from ... import state as shared
 from ..navigation.state import RoverNav
 
@@ -18,26 +19,26 @@ PATH_POINTS = 500
 class GuidedState(Record):
     """GUIDED: the set-point under way."""
 
-    submode: int  # guided_state.py: STOP, POSITION, HEADING_AND_SPEED, ...
-    pos: Floats = array(2)  # POSITION [m]
+    submode: int  # guided.py: STOP, POSITION, HEADING_AND_SPEED, ...
+    pos: Vec2  # POSITION [m]
     heading: float  # HEADING_AND_SPEED [rad]
     turn_rate: float  # TURN_RATE_AND_SPEED [rad/s]
     speed: float  # of both, backward negative [m/s]
     steering: float  # STEERING_AND_THROTTLE
     throttle: float
     update_us: int  # when the last set-point came
-    has_target: int  # the set-point under way is fresh enough; 0 stops
-    reached_told: int  # POSITION: arrival was said
+    has_target: bool  # the set-point under way is fresh enough; else it stops
+    reached_told: bool  # POSITION: arrival was said
     limit_us: int  # guided within a mission ends after so long; 0 never
     limit_distance: float  # and so far from where it began [m]; 0 never
     limit_since_us: int  # when it began
-    limit_from: Floats = array(2)  # where [m]
+    limit_from: Vec2  # where [m]
 
 
 class LoiterState(Record):
     """LOITER."""
 
-    place: Floats = array(2)  # [m]
+    place: Vec2  # [m]
     heading: float  # [rad]
     speed: float  # [m/s]
     distance: float  # to the place [m]
@@ -46,16 +47,16 @@ class LoiterState(Record):
 class CircleState(Record):
     """CIRCLE."""
 
-    centre: Floats = array(2)  # [m]
+    centre: Vec2  # [m]
     radius: float  # [m]
     direction: float  # 1 clockwise, -1 counter-clockwise
     speed: float  # wanted [m/s]
     angle: float  # of the target, seen from the centre [rad]
-    target: Floats = array(2)  # [m]
+    target: Vec2  # [m]
     target_speed: float  # [m/s]
     total: float  # turned so far, signed [rad]
-    at_edge: int  # 0 still on the way there
-    waiting: int  # the vehicle fell behind: the target waits for it
+    at_edge: bool  # else still on the way there
+    waiting: bool  # the vehicle fell behind: the target waits for it
 
 
 class SimpleState(Record):
@@ -68,14 +69,14 @@ class SimpleState(Record):
 class RtlState(Record):
     """RTL."""
 
-    told: int  # arrival was said
+    told: bool  # arrival was said
 
 
 class PathState(Record):
     """The path that SMART_RTL drives back along."""
 
-    active: int  # points are recorded
-    home_saved: int
+    active: bool  # points are recorded
+    home_saved: bool
     points: int  # on the path; point 0 is home
     simplified: int  # so many from the start need no second look
     good_us: int  # last good position
@@ -94,12 +95,12 @@ class SmartRtlState(Record):
 class AutoState(Record):
     """AUTO."""
 
-    submode: int  # what AUTO is doing (auto_state.py)
+    submode: int  # what AUTO is doing (auto.py: STOPPED, ON_PATH, ...)
     command: int  # count of the command that is begun (nav.command_count)
     heading: float  # SET_YAW_SPEED [rad]
     speed: float  # backward negative [m/s]
-    heading_reached: int
-    complete: int  # what comes after the mission has begun (MIS_DONE_BEHAVE)
+    heading_reached: bool
+    complete: bool  # what comes after the mission has begun (MIS_DONE_BEHAVE)
 
 
 class PilotState(Record):
@@ -136,5 +137,5 @@ class Modes(shared.Modes):
     auto: AutoState
     pilot: PilotState
     links: LinksState
-    ekf_was_good: int  # while armed, since boot
+    ekf_was_good: bool  # while armed, since boot
     nav: RoverNav

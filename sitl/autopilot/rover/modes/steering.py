@@ -14,33 +14,41 @@ from ....core.scalars import constrain
 from .. import pilot
 from ..control import motors, speed
 from ..control.forward_speed import sense
-from ..control.steering import lat_accel_max
-from . import drive
+from ..control.steering import lat_accel_max, out_from_lat_accel, out_from_rate
+from ..state import Vehicle
+from .mode import RoverMode
 
-LEAST_ACCEL = 0.1  # [m/s^2]
-LEAST_RADIUS = 0.1  # [m]
+STEERING = 3
 
-
-@law
-def full_stick_accel(ap, forward):
-    """Lateral acceleration [m/s^2] of a full stick at a speed [m/s]."""
-    most = max(lat_accel_max(ap.params.ATC), LEAST_ACCEL)
-    return constrain(forward * forward / max(float(ap.params.TURN_RADIUS), LEAST_RADIUS), LEAST_ACCEL, most)
+ACCEL_MIN = 0.1  # [m/s^2]
+RADIUS_MIN = 0.1  # [m]
 
 
 @law
-def run(v):
+def full_stick_accel(speed: float, turn_radius: float, accel_max: float) -> float:
+    """Lateral acceleration [m/s^2] of a full stick at ``speed`` [m/s], for a tightest turn of ``turn_radius`` [m]."""
+    return constrain(speed * speed / max(turn_radius, RADIUS_MIN), ACCEL_MIN, max(accel_max, ACCEL_MIN))
+
+
+@law
+def run(v: Vehicle) -> None:
     """One period; without a known speed the motors rest."""
     ap = v.autopilot
-    known, forward = sense(v)
-    if not known:
+    p = ap.params
+    forward = sense(v)
+    if not forward.known:
         motors.set_throttle(ap, 0.0)
         motors.set_steering(ap, 0.0)
         return
-    stick, wanted = pilot.steering_and_speed(ap)
-    if wanted == 0.0 and motors.is_skid(ap.params):
-        drive.turn(v, stick * math.radians(ap.params.ACRO_TURN_RATE))
+    wanted = pilot.steering_and_speed(ap)
+    if wanted.speed == 0.0 and motors.is_skid(p):
+        motors.set_steering(ap, out_from_rate(ap, wanted.steering * math.radians(p.ACRO_TURN_RATE)))
     else:
-        accel = full_stick_accel(ap, forward) * stick
-        drive.accelerate_sideways(v, -accel if wanted < 0.0 else accel)
-    speed.drive(v, wanted)
+        accel_max = lat_accel_max(p.ATC)
+        accel = full_stick_accel(forward.speed, p.TURN_RADIUS, accel_max) * wanted.steering
+        accel = constrain(-accel if wanted.speed < 0.0 else accel, -accel_max, accel_max)
+        motors.set_steering(ap, out_from_lat_accel(ap, accel))
+    speed.drive(v, wanted.speed)
+
+
+MODE = RoverMode(number=STEERING, name="STEERING", run=run, needs_velocity=True, manual_input=True)

@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+from ....core.algebra import dot2, horizontal
 from ....core.kernels import law, unit
+from ....core.records import Records
+from ....core.vectors import Vec3
 from ... import battery, home
 from .. import arming, crash, failsafe, motor_test, pilot, smart_rtl_path
 from ..control.forward_speed import sense
-from . import acro, auto, circle, guided_drive, hold, loiter, manual, rtl, set_mode, simple, smart_rtl, steering, switch
-from .numbers import ACRO, AUTO, CIRCLE, GUIDED, HOLD, LOITER, MANUAL, RTL, SIMPLE, SMART_RTL, STEERING
+from ..state import Vehicle
+from . import set_mode, switch, table
+from .smart_rtl import SMART_RTL
 
 # Ticks of 2.5 ms; all are multiples of the 8 of a period
 _TENTH = 40
@@ -20,8 +24,17 @@ HOME_MOVES = 0.5
 """Disarmed, home follows a vehicle that is further from it [m]."""
 
 
+@law
+def init(v: Vehicle) -> None:
+    """At boot, on a record of zeros with parameters set: disarmed, in the first mode."""
+    set_mode.enter_first(v)
+    v.autopilot.arming.landed = True
+    v.autopilot.battery.remaining_pct = -1.0
+    pilot.init(v.autopilot)
+
+
 @unit
-def update(fleet, i):
+def update(fleet: Records[Vehicle], i: int) -> None:
     """One period of vehicle ``i``: reads the estimate, writes demands of steering and throttle."""
     v = fleet[i]
     tick = v.tick
@@ -32,7 +45,7 @@ def update(fleet, i):
     if tick % _QUARTER == 0:
         arming.update(v)
     if tick % _THIRD == 0:
-        smart_rtl_path.update(v, 0 if v.autopilot.modes.number == SMART_RTL else 1)
+        smart_rtl_path.update(v, v.autopilot.modes.number != SMART_RTL)
     if tick % _SECOND == 0:
         follow_home(v)
     run_mode(v)
@@ -40,7 +53,7 @@ def update(fleet, i):
 
 
 @law
-def read_transmitter(v):
+def read_transmitter(v: Vehicle) -> None:
     """50 times a second."""
     pilot.read(v)
     failsafe.update_radio(v)
@@ -49,7 +62,7 @@ def read_transmitter(v):
 
 
 @law
-def check_slowly(v):
+def check_slowly(v: Vehicle) -> None:
     """Ten times a second."""
     ap = v.autopilot
     battery.monitor(ap.battery, v.sensors, ap.params.BATT)
@@ -60,46 +73,29 @@ def check_slowly(v):
 
 
 @law
-def follow_home(v):
+def is_away(pos: Vec3, home_pos: Vec3) -> bool:
+    """Whether the vehicle is so far from home that home moves, both NED [m]."""
+    away = horizontal(pos) - horizontal(home_pos)
+    return dot2(away, away) >= HOME_MOVES * HOME_MOVES
+
+
+@law
+def follow_home(v: Vehicle) -> None:
     """Once a second: home is set with the first position; disarmed it moves with the vehicle, unless locked."""
     ap = v.autopilot
-    if ap.home.is_set == 0:
+    if not ap.home.is_set:
         home.set_first(ap.home, ap.estimate)
-    elif ap.arming.armed == 0 and ap.home.locked == 0 and ap.estimate.position_ok != 0:
-        north = ap.estimate.pos[0] - ap.home.pos[0]
-        east = ap.estimate.pos[1] - ap.home.pos[1]
-        if north * north + east * east >= HOME_MOVES * HOME_MOVES:
+    elif not (ap.arming.armed or ap.home.locked) and ap.estimate.position_ok:
+        if is_away(ap.estimate.pos, ap.home.pos):
             home.set_here(ap.home, ap.estimate)
 
 
 @law
-def run_mode(v):
+def run_mode(v: Vehicle) -> None:
     """The mode's own period, then the change that it may have asked for."""
-    ap = v.autopilot
-    number = ap.modes.number
-    if number == GUIDED:
-        guided_drive.run(v)
-    elif number == AUTO:
-        auto.run(v)
-    elif number == MANUAL:
-        manual.run(v)
-    elif number == HOLD:
-        hold.run(v)
-    elif number == RTL:
-        rtl.run(v)
-    elif number == SMART_RTL:
-        smart_rtl.run(v)
-    elif number == LOITER:
-        loiter.run(v)
-    elif number == CIRCLE:
-        circle.run(v)
-    elif number == STEERING:
-        steering.run(v)
-    elif number == ACRO:
-        acro.run(v)
-    elif number == SIMPLE:
-        simple.run(v)
-    if ap.modes.wanted != 0:
-        wanted = int(ap.modes.wanted) - 1
-        ap.modes.wanted = 0
-        set_mode.request(v, wanted, int(ap.modes.wanted_reason))
+    modes = v.autopilot.modes
+    table.run(modes.number, v)
+    if modes.wanted != 0:
+        wanted = modes.wanted - 1
+        modes.wanted = 0
+        set_mode.request(v, wanted, modes.wanted_reason)

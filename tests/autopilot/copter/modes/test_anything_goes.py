@@ -12,8 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter import arming
-from sitl.autopilot.copter.modes import auto, guided, set_mode, takeoff, update
-from sitl.autopilot.copter.modes.numbers import NAMES
+from sitl.autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, update
+from sitl.autopilot.copter.modes.table import NAMES
+from sitl.core.algebra import ZERO
+from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.copter.steady_copter import fly, make
 
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
@@ -41,17 +43,18 @@ def act(v: Any, name: str, *args: Any) -> None:
     elif name == "stick":
         ap.rc.override[args[0]], ap.rc.override_us[args[0]] = args[1], v.time_us
     elif name == "position":
-        guided.set_position(v, *args, 0, 0.0, 0, 0.0, 0)
+        guided_setpoints.set_position(v, Vec3(*args), guided_setpoints.NO_YAW)
     elif name == "velocity":
-        guided.set_velocity(v, *args, 1, 0.5, 0, 0.0, 1)
+        yaw = guided_setpoints.YawSetpoint(True, 0.5, False, 0.0, True)
+        guided_setpoints.set_velocity(v, Vec3(*args), ZERO, yaw)
     elif name == "attitude":
-        guided.set_attitude(v, 1, *args)
+        guided_setpoints.set_attitude(v, True, Quat(*args[:4]), Vec3(*args[4:7]), args[7])
     elif name == "yaw":
-        guided.condition_yaw(v, *args)
+        commands.condition_yaw(ap, *args)
     elif name == "speed":
-        guided.change_speed(v, *args)
+        commands.change_speed(ap, *args)
     elif name == "takeoff":
-        takeoff.start(v, args[0])
+        commands.take_off(ap, args[0])
     elif name == "arm":
         arming.arm(v, 1, args[0])
     elif name == "disarm":
@@ -61,7 +64,7 @@ def act(v: Any, name: str, *args: Any) -> None:
     elif name == "wait":
         v.time_us += int(args[0] * 400) * 2500
     elif name == "start":
-        auto.start(v)
+        auto.start_mission(ap)
 
 
 @pytest.mark.slow

@@ -9,36 +9,28 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.modes import auto_yaw, guided, guided_flight, takeoff
-from sitl.autopilot.copter.modes.guided_state import (
-    ACCEL,
-    LARGEST,
-    NOT_FINITE,
-    NOT_IN_GUIDED,
-    OK,
-    OUT_OF_RANGE,
-    POS_VEL_ACCEL,
-    POSITION,
-    TAKEOFF,
-    VELOCITY_ACCEL,
-)
+from sitl.autopilot.copter.modes import auto_yaw, commands, guided, guided_setpoints
+from sitl.autopilot.copter.modes.commands import LARGEST, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE
+from sitl.autopilot.copter.modes.guided import ACCEL, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
+from sitl.autopilot.copter.modes.guided_setpoints import NO_YAW, YawSetpoint
 from sitl.autopilot.events import GUIDED_TIMEOUT
+from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, make, snapshot, turn_to, wait
 
-NO_YAW = (0, 0.0, 0, 0.0, 0)
-GOOD = (1.0, 2.0, -3.0)
+GOOD = Vec3(1.0, 2.0, -3.0)
+UPRIGHT = Quat(1.0, 0.0, 0.0, 0.0)
+STILL = Vec3(0.0, 0.0, 0.0)
 SETTERS = (
-    (guided.set_position, 3, POSITION),
-    (guided.set_velocity, 3, VELOCITY_ACCEL),
-    (guided.set_velocity_accel, 6, VELOCITY_ACCEL),
-    (guided.set_accel, 3, ACCEL),
-    (guided.set_pos_vel_accel, 9, POS_VEL_ACCEL),
+    (guided_setpoints.set_position, 1, POSITION),
+    (guided_setpoints.set_velocity, 2, VELOCITY_ACCEL),
+    (guided_setpoints.set_accel, 1, ACCEL),
+    (guided_setpoints.set_pos_vel_accel, 3, POS_VEL_ACCEL),
 )
 
 
 @pytest.mark.parametrize(("setter", "count", "submode"), SETTERS)
 def test_a_set_point_selects_its_kind(flying, setter, count, submode):
-    assert setter(flying, *(GOOD * 3)[:count], *NO_YAW) == OK
+    assert setter(flying, *[GOOD] * count, NO_YAW) == OK
     assert flying.autopilot.modes.guided.submode == submode
 
 
@@ -46,7 +38,7 @@ def test_a_set_point_selects_its_kind(flying, setter, count, submode):
 def test_only_in_guided(flying, setter, count, _):
     flying.autopilot.modes.number = 5
     before = snapshot(flying)
-    assert setter(flying, *(GOOD * 3)[:count], *NO_YAW) == NOT_IN_GUIDED
+    assert setter(flying, *[GOOD] * count, NO_YAW) == WRONG_MODE
     assert snapshot(flying) == before
 
 
@@ -60,14 +52,14 @@ def test_only_in_guided(flying, setter, count, _):
 def test_a_number_that_is_none_leaves_everything_as_it_was(case, numbers, place, bad):
     setter, count, _ = case
     v = fly(make())
-    args = numbers[:count]
-    yaw = [1, numbers[9], 1, numbers[10], 0]
-    if place < count:
-        args[place] = bad
+    yaw = YawSetpoint(True, numbers[9], True, numbers[10], False)
+    if place < 3 * count:
+        numbers[place] = bad
     else:
-        yaw[1] = bad
+        yaw = yaw._replace(angle=bad)
+    args = [Vec3(*numbers[3 * k : 3 * k + 3]) for k in range(count)]
     before = snapshot(v)
-    assert setter(v, *args, *yaw) == NOT_FINITE
+    assert setter(v, *args, yaw) == NOT_FINITE
     assert snapshot(v) == before
 
 
@@ -76,7 +68,7 @@ def test_a_number_that_is_none_leaves_everything_as_it_was(case, numbers, place,
 def test_attitude_takes_unit_quaternions_and_finite_numbers_only(numbers):
     v = fly(make())
     before = snapshot(v)
-    code = guided.set_attitude(v, 1, *numbers)
+    code = guided_setpoints.set_attitude(v, True, Quat(*numbers[:4]), Vec3(*numbers[4:7]), numbers[7])
     norm = math.sqrt(sum(x * x for x in numbers[:4])) if not any(map(math.isnan, numbers)) else math.nan
     if math.isnan(norm) or not all(abs(x) <= LARGEST for x in numbers[4:]):
         assert code == NOT_FINITE
@@ -95,43 +87,43 @@ def test_attitude_takes_unit_quaternions_and_finite_numbers_only(numbers):
     ("thrust", "climb"), ((0.5, 0.0), (1.0, 2.5), (0.75, 1.25), (0.0, -1.5), (0.25, -0.75), (7.0, 2.5))
 )
 def test_thrust_is_a_climb_rate(flying, thrust, climb):
-    guided.set_attitude(flying, 1, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, thrust)
+    guided_setpoints.set_attitude(flying, True, UPRIGHT, STILL, thrust)
     assert flying.autopilot.modes.guided.climb_rate == pytest.approx(climb)
     assert flying.autopilot.modes.guided.use_thrust == 0
 
 
 def test_thrust_is_thrust_with_the_option(flying):
     flying.autopilot.params.GUID_OPTIONS = 8.0
-    guided.set_attitude(flying, 1, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.4)
+    guided_setpoints.set_attitude(flying, True, UPRIGHT, STILL, 0.4)
     assert (flying.autopilot.modes.guided.use_thrust, flying.autopilot.modes.guided.thrust) == (1, 0.4)
 
 
 @pytest.mark.parametrize(("seconds", "old"), ((2.9, False), (3.1, True)))
 def test_velocity_becomes_zero_after_the_time_out(flying, seconds, old):
-    guided.set_velocity(flying, 3.0, 0.0, 0.0, 0, 0.0, 1, 0.5, 0)
+    guided_setpoints.set_velocity(flying, Vec3(3.0, 0.0, 0.0), STILL, YawSetpoint(False, 0.0, True, 0.5, False))
     wait(flying, seconds)
-    guided_flight.run(flying)
+    guided.run(flying)
     ap = flying.autopilot
     assert (ap.modes.guided.vel[0] == 0.0) == old
     assert (ap.modes.auto_yaw.mode == auto_yaw.HOLD) == old
     assert codes(flying).count(GUIDED_TIMEOUT) == int(old)
-    guided_flight.run(flying)
+    guided.run(flying)
     assert codes(flying).count(GUIDED_TIMEOUT) == int(old)
 
 
 def test_a_position_does_not_time_out(flying):
-    guided.set_position(flying, 20.0, 0.0, -10.0, *NO_YAW)
+    guided_setpoints.set_position(flying, Vec3(20.0, 0.0, -10.0), NO_YAW)
     wait(flying, 60.0)
-    guided_flight.run(flying)
+    guided.run(flying)
     assert flying.autopilot.modes.guided.pos[0] == 20.0
     assert GUIDED_TIMEOUT not in codes(flying)
 
 
 def test_attitude_levels_off_after_the_time_out_and_keeps_its_heading(flying):
-    q = (math.cos(0.1), math.sin(0.1), 0.0, 0.0)
-    guided.set_attitude(flying, 1, *q, 0.0, 0.0, 0.2, 0.9)
+    q = Quat(math.cos(0.1), math.sin(0.1), 0.0, 0.0)
+    guided_setpoints.set_attitude(flying, True, q, Vec3(0.0, 0.0, 0.2), 0.9)
     wait(flying, 3.1)
-    guided_flight.run(flying)
+    guided.run(flying)
     target = flying.autopilot.modes.guided
     assert [float(x) for x in target.q] == pytest.approx([1.0, 0.0, 0.0, 0.0])
     assert target.climb_rate == 0.0 and target.rates[2] == 0.0
@@ -139,16 +131,17 @@ def test_attitude_levels_off_after_the_time_out_and_keeps_its_heading(flying):
 
 def test_the_time_out_is_a_parameter(flying):
     flying.autopilot.params.GUID_TIMEOUT = 0.5
-    guided.set_velocity(flying, 3.0, 0.0, 0.0, *NO_YAW)
+    guided_setpoints.set_velocity(flying, Vec3(3.0, 0.0, 0.0), STILL, NO_YAW)
     wait(flying, 0.6)
-    assert guided_flight.is_stale(flying)
+    assert guided.is_stale(flying)
 
 
 def test_the_set_point_moves_on_between_messages(flying):
-    guided.set_pos_vel_accel(flying, 0.0, 0.0, -10.0, 4.0, 0.0, 0.0, 0.0, 1.0, 0.0, *NO_YAW)
+    motion = (Vec3(0.0, 0.0, -10.0), Vec3(4.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0))
+    guided_setpoints.set_pos_vel_accel(flying, *motion, NO_YAW)
     for _ in range(40):
         flying.time_us += 2500
-        guided_flight.run(flying)
+        guided.run(flying)
     target = flying.autopilot.modes.guided
     assert target.pos[0] == pytest.approx(0.4)
     assert target.vel[1] == pytest.approx(0.1)
@@ -156,14 +149,14 @@ def test_the_set_point_moves_on_between_messages(flying):
 
 
 def test_pause_keeps_the_target_and_a_new_set_point_ends_it(flying):
-    guided.set_position(flying, 20.0, 0.0, -10.0, *NO_YAW)
-    assert guided.pause(flying) == OK
-    guided_flight.run(flying)
+    guided_setpoints.set_position(flying, Vec3(20.0, 0.0, -10.0), NO_YAW)
+    assert commands.set_paused(flying.autopilot, True) == OK
+    guided.run(flying)
     assert flying.autopilot.control.pos_ne.vel_desired[0] == 0.0
-    guided.resume(flying)
+    commands.set_paused(flying.autopilot, False)
     assert flying.autopilot.modes.guided.paused == 0
-    guided.pause(flying)
-    guided.set_position(flying, 5.0, 0.0, -10.0, *NO_YAW)
+    commands.set_paused(flying.autopilot, True)
+    guided_setpoints.set_position(flying, Vec3(5.0, 0.0, -10.0), NO_YAW)
     assert flying.autopilot.modes.guided.paused == 0
 
 
@@ -171,32 +164,32 @@ def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
     ap = vehicle.autopilot
     ap.modes.number, ap.home.pos = 4, (0.0, 0.0, 1.5)
     ap.estimate.pos = ap.estimate.pos.replace(z=1.5)
-    assert takeoff.start(vehicle, 10.0) == takeoff.NOT_ARMED
+    assert commands.take_off(vehicle.autopilot, 10.0) == commands.NOT_ARMED
     ap.arming.armed = 1
-    assert takeoff.start(vehicle, math.nan) == takeoff.NOT_FINITE
-    assert takeoff.start(vehicle, -1.0) == takeoff.TOO_LOW
-    assert takeoff.start(vehicle, 10.0) == takeoff.OK
+    assert commands.take_off(vehicle.autopilot, math.nan) == commands.NOT_FINITE
+    assert commands.take_off(vehicle.autopilot, -1.0) == commands.TOO_LOW
+    assert commands.take_off(vehicle.autopilot, 10.0) == commands.OK
     assert (ap.modes.guided.submode, ap.modes.takeoff.target_d, ap.arming.auto_armed) == (TAKEOFF, -8.5, 1)
     ap.arming.landed = 0
-    assert takeoff.start(vehicle, 12.0) == takeoff.OK, "repeated in the climb"
+    assert commands.take_off(vehicle.autopilot, 12.0) == commands.OK, "repeated in the climb"
     assert ap.modes.takeoff.target_d == -10.5
     ap.modes.takeoff.complete = 1
-    assert takeoff.start(vehicle, 10.0) == takeoff.ALREADY_FLYING
+    assert commands.take_off(vehicle.autopilot, 10.0) == commands.ALREADY_FLYING
 
 
 @pytest.mark.parametrize(
-    ("mode", "answer"), ((3, takeoff.WRONG_MODE), (6, takeoff.WRONG_MODE), (2, takeoff.OK), (5, takeoff.OK))
+    ("mode", "answer"), ((3, commands.WRONG_MODE), (6, commands.WRONG_MODE), (2, commands.OK), (5, commands.OK))
 )
 def test_take_off_in_other_modes(vehicle, mode, answer):
     vehicle.autopilot.modes.number, vehicle.autopilot.arming.armed = mode, 1
-    assert takeoff.start(vehicle, 10.0) == answer
+    assert commands.take_off(vehicle.autopilot, 10.0) == answer
 
 
 def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
     ap = vehicle.autopilot
     ap.modes.number, ap.arming.armed = 4, 1
-    assert guided.set_position(vehicle, 20.0, 0.0, -10.0, *NO_YAW) == OK
-    guided_flight.run(vehicle)
+    assert guided_setpoints.set_position(vehicle, Vec3(20.0, 0.0, -10.0), NO_YAW) == OK
+    guided.run(vehicle)
     assert ap.control.motors.desired_spool == 1
     assert ap.arming.auto_armed == 0
 
@@ -206,7 +199,7 @@ def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
 )
 def test_change_speed(flying, speed, answer):
     before = float(flying.autopilot.control.pos_ne.speed_max)
-    assert guided.change_speed(flying, guided.HORIZONTAL, speed) == answer
+    assert commands.change_speed(flying.autopilot, commands.HORIZONTAL, speed) == answer
     assert flying.autopilot.control.pos_ne.speed_max == (speed if answer == OK else before)
 
 
@@ -222,5 +215,5 @@ def test_change_speed(flying, speed, answer):
 )
 def test_yaw_of_a_set_point(flying, yaw, mode):
     turn_to(flying, 0.3)
-    guided.set_velocity(flying, 1.0, 0.0, 0.0, *yaw)
+    guided_setpoints.set_velocity(flying, Vec3(1.0, 0.0, 0.0), STILL, YawSetpoint(*yaw))
     assert flying.autopilot.modes.auto_yaw.mode == mode

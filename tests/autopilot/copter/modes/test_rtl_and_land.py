@@ -10,9 +10,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.modes import land, rtl, set_mode
-from sitl.autopilot.copter.modes.numbers import LAND, LOITER, REASON_GCS, RTL
+from sitl.autopilot.copter.modes.land import LAND
+from sitl.autopilot.copter.modes.loiter import LOITER
+from sitl.autopilot.copter.modes.rtl import RTL
+from sitl.autopilot.copter.parameters.flight import Rtl
 from sitl.autopilot.events import DISARMED, LEG_ENDING
+from sitl.autopilot.modes import REASON_GCS
 from tests.autopilot.copter.steady_copter import codes, wait
+
+
+def way_home(wanted: float, climb: float, slope: float) -> Rtl:
+    """Parameters of RTL: heights [m]."""
+    p = Rtl()
+    p.ALT, p.CLIMB_MIN, p.CONE_SLOPE = wanted * 100.0, climb * 100.0, slope
+    return p
 
 
 @pytest.mark.parametrize(
@@ -29,12 +40,12 @@ from tests.autopilot.copter.steady_copter import codes, wait
     ),
 )
 def test_height_of_the_way_home(height, distance, wanted, climb, slope, result):
-    assert rtl.return_height(height, distance, wanted, climb, slope) == pytest.approx(result)
+    assert rtl.return_height(height, distance, way_home(wanted, climb, slope)) == pytest.approx(result)
 
 
 @given(st.floats(-100, 1000), st.floats(0, 1e4), st.floats(0.3, 3000), st.floats(0, 30), st.floats(0, 10))
 def test_the_way_home_is_never_below_the_vehicle(height, distance, wanted, climb, slope):
-    assert rtl.return_height(height, distance, wanted, climb, slope) >= height
+    assert rtl.return_height(height, distance, way_home(wanted, climb, slope)) >= height
 
 
 def test_it_asks_for_both_legs_and_keeps_its_heading(flying):
@@ -65,7 +76,7 @@ def test_over_home_it_waits_then_lands_or_stays(flying, final, state):
 def descent(v, seconds=6.0):
     """Desired descent [m/s] once the shaping has settled."""
     for _ in range(round(seconds * 400)):
-        land.sink(v, 0)
+        land.sink(v.autopilot, False)
     return float(v.autopilot.control.pos_d.vel_desired)
 
 

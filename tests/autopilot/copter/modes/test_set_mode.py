@@ -5,27 +5,27 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.copter.modes import numbers, set_mode
-from sitl.autopilot.copter.modes.numbers import (
+from sitl.autopilot.copter.modes import set_mode
+from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
+from sitl.autopilot.copter.modes.auto import AUTO
+from sitl.autopilot.copter.modes.brake import BRAKE
+from sitl.autopilot.copter.modes.guided import GUIDED
+from sitl.autopilot.copter.modes.land import LAND
+from sitl.autopilot.copter.modes.loiter import LOITER
+from sitl.autopilot.copter.modes.rtl import RTL
+from sitl.autopilot.copter.modes.stabilize import STABILIZE
+from sitl.autopilot.copter.modes.table import NAMES
+from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
+from sitl.autopilot.modes import (
     ACCEPTED,
-    ALT_HOLD,
-    AUTO,
-    BRAKE,
-    GUIDED,
     INIT_FAILED,
-    LAND,
-    LOITER,
     MISSING_TAKEOFF,
-    NAMES,
     NEEDS_ALTITUDE,
     NO_SUCH_MODE,
     REASON_GCS,
     REQUIRES_POSITION,
-    RTL,
-    STABILIZE,
     THROTTLE_TOO_HIGH,
 )
-from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
 ALL = tuple(NAMES)
@@ -108,7 +108,7 @@ def test_a_change_is_told(flying):
 
 
 def test_texts_are_those_that_users_know():
-    assert numbers.refusal_texts(99, NO_SUCH_MODE) == ["No such mode 99"]
-    assert numbers.refusal_texts(AUTO, INIT_FAILED) == ["Mode change to AUTO failed: init failed"]
-    assert numbers.refusal_texts(LOITER, REQUIRES_POSITION) == ["Mode change to LOITER failed: requires position"]
-    assert numbers.refusal_texts(GUIDED, ACCEPTED) == []
+    assert set_mode.refusal_texts(99, NO_SUCH_MODE) == ["No such mode 99"]
+    assert set_mode.refusal_texts(AUTO, INIT_FAILED) == ["Mode change to AUTO failed: init failed"]
+    assert set_mode.refusal_texts(LOITER, REQUIRES_POSITION) == ["Mode change to LOITER failed: requires position"]
+    assert set_mode.refusal_texts(GUIDED, ACCEPTED) == []

@@ -91,7 +91,7 @@ def test_heading_gives_a_rate_that_can_stop_in_time():
     assert steering.turn_rate_from_heading(-2.0, 0.4, atc) == pytest.approx(-0.4)
 
 
-@given(st.floats(-math.pi, math.pi), st.floats(0.0, 3.0), st.floats(0.1, 10.0), st.floats(0.0, 360.0))
+@given(st.floats(-math.pi, math.pi), st.floats(0.0, 3.0), st.floats(0.1, 10.0), st.just(0.0) | st.floats(1e-3, 360.0))
 def test_heading_rate_points_at_the_heading_within_its_limits(error, rate_max, gain, accel):
     atc = Attitude()
     atc.STR_ANG_P, atc.STR_ACC_MAX = gain, accel

@@ -15,13 +15,14 @@ from sitl.autopilot.rover import arming, texts
 from sitl.autopilot.rover.control import update as control
 from sitl.autopilot.rover.control.state import DT, PERIOD_US
 from sitl.autopilot.rover.firmware import power_on
-from sitl.autopilot.rover.modes import guided
+from sitl.autopilot.rover.modes import guided_setpoints
 from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.parameters import TABLE
 from sitl.autopilot.rover.state import Autopilot
 from sitl.core.border import Actuators, Sensors
 from sitl.core.records import Record
+from sitl.core.vectors import Vec2
 
 
 class DrivenRover(Record):
@@ -163,4 +164,9 @@ class Rover:
 def set_velocity(v: Any, north: float, east: float) -> int:
     """A velocity [m/s] as the bridge gives it to GUIDED: its direction is the heading, its length the speed."""
     speed = min(math.hypot(north, east), float(v.autopilot.params.WP_SPEED))
-    return int(guided.set_heading_and_speed(v, math.atan2(east, north), speed))
+    return int(guided_setpoints.set_heading_and_speed(v, math.atan2(east, north), speed))
+
+
+def drive_to(v: Any, north: float, east: float) -> int:
+    """A position [m] for GUIDED."""
+    return guided_setpoints.set_position(v, Vec2(north, east))

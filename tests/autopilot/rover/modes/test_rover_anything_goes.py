@@ -11,20 +11,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.rover import arming, motor_test
-from sitl.autopilot.rover.modes import guided, set_mode
-from sitl.autopilot.rover.modes.change_speed import change_speed
-from sitl.autopilot.rover.modes.numbers import NAMES
-from tests.autopilot.rover.modes.driven_rover import Rover, set_velocity
+from sitl.autopilot.rover.modes import guided_setpoints, set_mode
+from sitl.autopilot.rover.modes.set_mode import change_speed
+from sitl.autopilot.rover.modes.table import NAMES
+from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
 SETTERS = (
-    guided.set_position,
+    drive_to,
     set_velocity,
-    guided.set_heading_and_speed,
-    guided.set_heading_change_and_speed,
-    guided.set_turn_rate_and_speed,
-    guided.set_steering_and_throttle,
-    guided.set_limits,
+    guided_setpoints.set_heading_and_speed,
+    guided_setpoints.set_heading_change_and_speed,
+    guided_setpoints.set_turn_rate_and_speed,
+    guided_setpoints.set_steering_and_throttle,
+    lambda v, x, y: guided_setpoints.set_limits(v.autopilot.modes.guided, x, y),
 )
 ACTIONS = st.one_of(
     st.tuples(st.just("mode"), st.sampled_from((*NAMES, 2, 99))),

@@ -10,14 +10,16 @@ import pytest
 
 from sitl.autopilot.events import COMMAND_COMPLETE, MODE_CHANGED
 from sitl.autopilot.navigation import state as kinds
-from sitl.autopilot.rover.modes import auto_state, guided
-from sitl.autopilot.rover.modes.change_speed import change_speed
-from sitl.autopilot.rover.modes.guided_state import NOT_IN_GUIDED, OK
-from sitl.autopilot.rover.modes.numbers import ACRO, AUTO, GUIDED, MANUAL
-from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.rover.modes import auto, guided_setpoints
+from sitl.autopilot.rover.modes.acro import ACRO
+from sitl.autopilot.rover.modes.auto import AUTO
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.guided_setpoints import NOT_IN_GUIDED, OK
+from sitl.autopilot.rover.modes.manual import MANUAL
+from sitl.autopilot.rover.modes.set_mode import change_speed, request
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.core.vectors import Vec3
-from tests.autopilot.rover.modes.driven_rover import Rover, set_velocity
+from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
 
 @pytest.fixture
@@ -119,18 +121,18 @@ def test_heading_and_speed(rover: Rover) -> None:
 
 def test_guided_until_its_place_or_limit(rover: Rover) -> None:
     assert set_velocity(rover.v, 1.0, 0.0) == NOT_IN_GUIDED
-    guided.set_limits(rover.v, 4.0, 0.0)
+    guided_setpoints.set_limits(rover.ap.modes.guided, 4.0, 0.0)
     give(rover, kinds.GUIDED)
     rover.run(0.1)
     assert set_velocity(rover.v, 2.0, 0.0) == OK
     assert seconds_until_complete(rover, 10.0) == pytest.approx(4.0, abs=0.2)
     assert rover.position[0] > 2.0
-    guided.set_limits(rover.v, 0.0, 0.0)
+    guided_setpoints.set_limits(rover.ap.modes.guided, 0.0, 0.0)
     give(rover, kinds.GUIDED)
     rover.ap.modes.nav.target = (30.0, 0.0, 0.0)
     rover.ap.modes.nav.has_place = 1
     rover.run(0.1)
-    assert guided.set_position(rover.v, 30.0, 0.0) == OK
+    assert drive_to(rover.v, 30.0, 0.0) == OK
     assert seconds_until_complete(rover, 20.0) < 15.0
 
 
@@ -142,7 +144,7 @@ def test_a_command_to_pass_over_is_done_at_once(rover: Rover) -> None:
 def test_change_speed(rover: Rover) -> None:
     give(rover, kinds.WAYPOINT, (60.0, 0.0))
     rover.run(0.1)
-    assert change_speed(rover.v, 1.0) == OK
+    assert change_speed(rover.v, 1.0)
     rover.run(12.0)
     assert abs(rover.speed) < 5.0
     assert rover.ap.modes.nav.speed_ne == 1.0
@@ -150,7 +152,7 @@ def test_change_speed(rover: Rover) -> None:
 
 @pytest.mark.parametrize(
     ("choice", "mode", "submode"),
-    [(0, AUTO, auto_state.STOP), (1, AUTO, auto_state.LOITER), (2, ACRO, -1), (3, MANUAL, -1)],
+    [(0, AUTO, auto.STOPPED), (1, AUTO, auto.LOITERING), (2, ACRO, -1), (3, MANUAL, -1)],
 )
 def test_mission_done(rover: Rover, choice: int, mode: int, submode: int) -> None:
     rover.ap.params.MIS_DONE_BEHAVE = float(choice)

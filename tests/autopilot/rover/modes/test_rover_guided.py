@@ -8,12 +8,12 @@ import math
 import pytest
 
 from sitl.autopilot.events import GUIDED_REACHED, GUIDED_TIMEOUT
-from sitl.autopilot.rover.modes import guided
-from sitl.autopilot.rover.modes.change_speed import change_speed
-from sitl.autopilot.rover.modes.guided_state import NOT_FINITE, NOT_IN_GUIDED, OK, OUT_OF_RANGE, STOP
-from sitl.autopilot.rover.modes.numbers import GUIDED, HOLD
-from sitl.autopilot.rover.modes.set_mode import request
-from tests.autopilot.rover.modes.driven_rover import Rover, set_velocity
+from sitl.autopilot.rover.modes import guided_setpoints
+from sitl.autopilot.rover.modes.guided import GUIDED, STOP
+from sitl.autopilot.rover.modes.guided_setpoints import NOT_FINITE, NOT_IN_GUIDED, OK
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.set_mode import change_speed, request
+from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def test_a_set_point_is_good_for_three_seconds(rover: Rover) -> None:
 
 
 def test_position_as_recorded(rover: Rover) -> None:
-    guided.set_position(rover.v, 0.0, 20.0)
+    drive_to(rover.v, 0.0, 20.0)
     seen: dict[str, float] = {}
     top = 0.0
     for k in range(150):
@@ -78,7 +78,7 @@ def test_position_as_recorded(rover: Rover) -> None:
 
 
 def test_positions_need_no_renewal_and_arrival_is_said_once(rover: Rover) -> None:
-    guided.set_position(rover.v, 10.0, 0.0)
+    drive_to(rover.v, 10.0, 0.0)
     rover.run(20.0)
     assert [e[0] for e in rover.events()].count(GUIDED_REACHED) == 1
     assert rover.position[0] == pytest.approx(10.0, abs=0.5)
@@ -89,7 +89,7 @@ def test_a_position_beside_the_way_is_not_circled_for_ever(rover: Rover, aside: 
     stream(rover, 15.0, set_velocity, 5.0, 0.0)
     assert rover.speed > 4.5
     north, east = rover.position
-    assert guided.set_position(rover.v, north, east + aside) == OK
+    assert drive_to(rover.v, north, east + aside) == OK
     rover.events()
     rover.run(60.0)
     assert (GUIDED_REACHED, 0.0, 0.0) in rover.events()
@@ -98,47 +98,49 @@ def test_a_position_beside_the_way_is_not_circled_for_ever(rover: Rover, aside: 
 
 def test_planned_positions(rover: Rover) -> None:
     rover.ap.params.GUID_OPTIONS = 64.0
-    guided.set_position(rover.v, 10.0, 5.0)
+    drive_to(rover.v, 10.0, 5.0)
     rover.run(15.0)
     assert rover.position == pytest.approx((10.0, 5.0), abs=0.7)
 
 
 def test_heading_and_speed(rover: Rover) -> None:
-    stream(rover, 6.0, guided.set_heading_and_speed, 2.0, 1.5)
+    stream(rover, 6.0, guided_setpoints.set_heading_and_speed, 2.0, 1.5)
     assert rover.speed == pytest.approx(1.5, abs=0.05)
     assert rover.heading == pytest.approx(2.0, abs=0.05)
 
 
 def test_heading_change_counts_from_the_one_under_way(rover: Rover) -> None:
-    assert guided.set_heading_change_and_speed(rover.v, 0.5, 1.0) == OK
-    assert guided.set_heading_change_and_speed(rover.v, 0.5, 1.0) == OK
+    assert guided_setpoints.set_heading_change_and_speed(rover.v, 0.5, 1.0) == OK
+    assert guided_setpoints.set_heading_change_and_speed(rover.v, 0.5, 1.0) == OK
     assert rover.ap.modes.guided.heading == pytest.approx(1.0)
 
 
 def test_backwards(rover: Rover) -> None:
-    stream(rover, 6.0, guided.set_heading_and_speed, 0.0, -1.5)
+    stream(rover, 6.0, guided_setpoints.set_heading_and_speed, 0.0, -1.5)
     assert rover.speed == pytest.approx(-1.5, abs=0.05)
 
 
 def test_turn_rate_and_speed(rover: Rover) -> None:
-    stream(rover, 6.0, guided.set_turn_rate_and_speed, 0.3, 2.0)
+    stream(rover, 6.0, guided_setpoints.set_turn_rate_and_speed, 0.3, 2.0)
     assert float(rover.ap.estimate.rates[2]) == pytest.approx(0.3, abs=0.02)
 
 
 def test_steering_and_throttle(rover: Rover) -> None:
-    stream(rover, 3.0, guided.set_steering_and_throttle, 0.5, 0.1)
+    stream(rover, 3.0, guided_setpoints.set_steering_and_throttle, 0.5, 0.1)
     assert [int(rover.v.actuators.pwm[k]) for k in (0, 2)] == [1750, 1550]
 
 
 def test_stop(rover: Rover) -> None:
     stream(rover, 4.0, set_velocity, 2.0, 0.0)
-    assert guided.stop(rover.v) == OK
+    assert guided_setpoints.stop(rover.v) == OK
     rover.run(3.0)
     assert abs(rover.speed) < 0.1
     assert rover.ap.modes.guided.submode == STOP
 
 
-@pytest.mark.parametrize("setter", [guided.set_position, guided.set_heading_and_speed, guided.set_turn_rate_and_speed])
+@pytest.mark.parametrize(
+    "setter", [drive_to, guided_setpoints.set_heading_and_speed, guided_setpoints.set_turn_rate_and_speed]
+)
 def test_refusals_change_nothing(setter: object) -> None:
     rover = Rover().arm()
     before = bytes(rover.v._bytes)
@@ -148,11 +150,11 @@ def test_refusals_change_nothing(setter: object) -> None:
 
 
 def test_change_speed_is_for_positions(rover: Rover) -> None:
-    assert change_speed(rover.v, 3.0) == OUT_OF_RANGE
-    guided.set_position(rover.v, 50.0, 0.0)
-    assert change_speed(rover.v, -5.0) == OUT_OF_RANGE
-    assert change_speed(rover.v, math.nan) == NOT_FINITE
-    assert change_speed(rover.v, 1.0) == OK
+    assert not change_speed(rover.v, 3.0)
+    drive_to(rover.v, 50.0, 0.0)
+    assert not change_speed(rover.v, -5.0)
+    assert not change_speed(rover.v, math.nan)
+    assert change_speed(rover.v, 1.0)
     rover.run(10.0)
     assert rover.speed == pytest.approx(1.0, abs=0.1)
 

@@ -8,12 +8,14 @@ import math
 import pytest
 
 from sitl.autopilot.events import CIRCLE_ADAPTED
-from sitl.autopilot.rover.modes import circle, guided
-from sitl.autopilot.rover.modes.change_speed import change_speed
-from sitl.autopilot.rover.modes.guided_state import OK
-from sitl.autopilot.rover.modes.numbers import CIRCLE, GUIDED, LOITER, RTL, SMART_RTL
-from sitl.autopilot.rover.modes.set_mode import request
-from tests.autopilot.rover.modes.driven_rover import Rover, set_velocity
+from sitl.autopilot.rover.modes import circle
+from sitl.autopilot.rover.modes.circle import CIRCLE
+from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.loiter import LOITER
+from sitl.autopilot.rover.modes.rtl import RTL
+from sitl.autopilot.rover.modes.set_mode import change_speed, request
+from sitl.autopilot.rover.modes.smart_rtl import SMART_RTL
+from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
 
 def out(way: list[tuple[float, float]], **params: float) -> Rover:
@@ -23,7 +25,7 @@ def out(way: list[tuple[float, float]], **params: float) -> Rover:
     rover.arm()
     request(rover.v, GUIDED, 2)
     for place in way:
-        guided.set_position(rover.v, *place)
+        drive_to(rover.v, *place)
         for _ in range(60):
             rover.run(0.5)
             if math.dist(rover.position, place) < 1.0:
@@ -110,7 +112,7 @@ def test_circle_keeps_its_radius() -> None:
     assert min(away) > 9.3
     assert max(away) < 10.7
     assert rover.speed == pytest.approx(2.0, abs=0.1)
-    assert circle.turns(rover.ap) > 1.0
+    assert circle.turns(rover.ap.modes.circle) > 1.0
     assert float(rover.ap.estimate.rates[2]) > 0.0  # clockwise
 
 
@@ -129,6 +131,6 @@ def test_circle_within_the_vehicles_limits() -> None:
     told = [(a, b) for code, a, b in rover.events() if code == CIRCLE_ADAPTED]
     assert told[0] == (circle.RADIUS_ENLARGED, 3.0)
     assert told[1] == (circle.SPEED_LIMITED, pytest.approx(top))
-    assert change_speed(rover.v, 1.0) == OK
+    assert change_speed(rover.v, 1.0)
     assert rover.ap.modes.circle.speed == 1.0
-    assert change_speed(rover.v, 0.0) != OK
+    assert not change_speed(rover.v, 0.0)

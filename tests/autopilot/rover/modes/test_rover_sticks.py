@@ -9,8 +9,13 @@ import pytest
 
 from sitl.autopilot.rover import pilot
 from sitl.autopilot.rover.modes import steering
-from sitl.autopilot.rover.modes.numbers import ACRO, HOLD, MANUAL, RTL, SIMPLE, STEERING
+from sitl.autopilot.rover.modes.acro import ACRO
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.manual import MANUAL
+from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.rover.modes.simple import SIMPLE
+from sitl.autopilot.rover.modes.steering import STEERING
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
@@ -63,7 +68,7 @@ def test_pilot_steer_type(kind: int, sticks: tuple[int, int], wanted: tuple[floa
     rover = Rover(PILOT_STEER_TYPE=float(kind))
     rover.sticks(*sticks)
     rover.run(0.04)
-    assert pilot.steering_and_throttle(rover.ap) == pytest.approx(wanted, abs=1e-4)
+    assert pilot.sticks(rover.ap) == pytest.approx(wanted, abs=1e-4)
 
 
 def test_hold_does_nothing() -> None:
@@ -93,10 +98,8 @@ def test_acro_and_steering_drive_a_speed() -> None:
 
 
 def test_steering_full_stick_is_the_tightest_turn() -> None:
-    rover = in_mode(STEERING, TURN_RADIUS=2.0)
-    assert steering.full_stick_accel(rover.ap, 1.0) == pytest.approx(0.5)
-    assert steering.full_stick_accel(rover.ap, 10.0) == pytest.approx(0.6 * 9.80665)
-    assert steering.full_stick_accel(rover.ap, 0.0) == pytest.approx(0.1)
+    for speed, accel in ((1.0, 0.5), (10.0, 5.9), (0.0, 0.1)):
+        assert steering.full_stick_accel(speed, 2.0, 5.9) == pytest.approx(accel)
 
 
 def test_steering_turns_right_forwards_and_backwards() -> None:

@@ -10,7 +10,7 @@ from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.notes import ItemReached, Text
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.rover.mission import COMMANDS
-from sitl.autopilot.rover.modes.numbers import AUTO
+from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.core.geodesy import add_offset
 from tests.autopilot.rover.modes.driven_rover import Rover

@@ -14,7 +14,8 @@ from sitl.autopilot.mission.validate import ACCEPTED, check
 from sitl.autopilot.navigation.state import COMPLETE, RUNNING, STOPPED
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
-from sitl.autopilot.rover.modes.numbers import AUTO, MANUAL
+from sitl.autopilot.rover.modes.auto import AUTO
+from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
 from tests.autopilot.rover.navigation.rover_on_mission import ORIGIN, Missionary
 

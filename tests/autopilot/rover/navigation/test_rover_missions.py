@@ -16,8 +16,9 @@ from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.mission.validate import UNSUPPORTED, check
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
-from sitl.autopilot.rover.modes import guided
-from sitl.autopilot.rover.modes.numbers import AUTO, MANUAL
+from sitl.autopilot.rover.modes import guided_setpoints
+from sitl.autopilot.rover.modes.auto import AUTO
+from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
 from tests.autopilot.rover.navigation.rover_on_mission import Missionary, at
 
@@ -116,7 +117,7 @@ def test_guided_within_a_mission() -> None:
         at(WP, 10.0, 0.0),
     )
     p.run(0.1)
-    assert guided.set_heading_and_speed(p.v, 0.0, 1.0) == guided.OK
+    assert guided_setpoints.set_heading_and_speed(p.v, 0.0, 1.0) == guided_setpoints.OK
     begun = p.time
     second = p.until(2)
     assert p.position[0] > 1.0

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sitl.autopilot.events import LEG_ENDING
 from sitl.autopilot.navigation import path
 from sitl.autopilot.navigation.state import SPEED_REQUEST
-from sitl.autopilot.rover.modes.numbers import GUIDED
+from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.navigation import pivot, waypoint
 from sitl.autopilot.rover.navigation.planner import PLANNER

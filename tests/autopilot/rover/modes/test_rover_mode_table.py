@@ -6,28 +6,32 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot import events
+from sitl.autopilot.modes import INIT_FAILED, NO_MISSION, NO_SUCH_MODE
 from sitl.autopilot.rover import failsafe, texts
-from sitl.autopilot.rover.modes import numbers
+from sitl.autopilot.rover.modes import table
+from sitl.autopilot.rover.modes.acro import ACRO
+from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.manual import MANUAL
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
 def test_numbers_are_ardurovers() -> None:
-    assert numbers.NAMES == {
+    assert table.NAMES == {
         0: "MANUAL", 1: "ACRO", 3: "STEERING", 4: "HOLD", 5: "LOITER", 7: "SIMPLE", 9: "CIRCLE", 10: "AUTO", 11: "RTL",
         12: "SMART_RTL", 15: "GUIDED", 16: "INITIALISING",
     }  # fmt: skip
-    assert [n for n in range(30) if numbers.is_known(n)] == sorted(numbers.NAMES)
+    assert [n for n in range(30) if table.is_known(n)] == sorted(table.NAMES)
 
 
 def test_only_hands_and_hold_do_without_a_position() -> None:
-    free = [n for n in numbers.NAMES if not numbers.requires_position(n)]
-    assert [numbers.NAMES[n] for n in free] == ["MANUAL", "ACRO", "STEERING", "HOLD"]
-    assert [n for n in free if not numbers.requires_velocity(n, False)] == [numbers.MANUAL, numbers.HOLD]
-    assert not numbers.requires_velocity(numbers.ACRO, True)  # a skid-steered one turns without a speed
+    free = [n for n in table.NAMES if not table.requires_position(n)]
+    assert [table.NAMES[n] for n in free] == ["MANUAL", "ACRO", "STEERING", "HOLD"]
+    assert [n for n in free if not table.requires_velocity(n, False)] == [MANUAL, HOLD]
+    assert not table.requires_velocity(ACRO, True)  # a skid-steered one turns without a speed
 
 
 def test_ways_home_are_not_for_arming() -> None:
-    refused = [numbers.NAMES[n] for n in numbers.NAMES if not numbers.allows_arming(n)]
+    refused = [table.NAMES[n] for n in table.NAMES if not table.allows_arming(n)]
     assert refused == ["RTL", "SMART_RTL", "INITIALISING"]
 
 
@@ -47,12 +51,12 @@ def test_initial_mode_is_one_that_can_be_entered_at_power_on(wanted: int, got: i
         (events.DISARMED, 1, 0, [(6, "Throttle disarmed")]),
         (events.GUIDED_TIMEOUT, 3, 0, [(4, "target not received last 3secs, stopping")]),
         (events.DESTINATION_REACHED, 11, 0, [(6, "Reached destination")]),
-        (events.MODE_REFUSED, 99, numbers.NO_SUCH_MODE, [(4, "No such mode 99")]),
-        (events.MODE_REFUSED, 11, numbers.INIT_FAILED, [(4, "Flight mode change failed")]),
+        (events.MODE_REFUSED, 99, NO_SUCH_MODE, [(4, "No such mode 99")]),
+        (events.MODE_REFUSED, 11, INIT_FAILED, [(4, "Flight mode change failed")]),
         (
             events.MODE_REFUSED,
             10,
-            numbers.NO_MISSION,
+            NO_MISSION,
             [(5, "No Mission. Can't set AUTO."), (4, "Flight mode change failed")],
         ),
         (events.CRASH_HOLD, 0, 0, [(0, "Crash: Going to HOLD")]),

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a mode of the copter is, and what most of them answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ....core.kernels import law
+from ...modes import Mode
+from ..state import Vehicle
+
+
+@law
+def always_arms(v: Vehicle, method: int) -> bool:
+    """Whether the mode may be armed by ``method``: yes."""
+    return True
+
+
+@law
+def never_arms(v: Vehicle, method: int) -> bool:
+    """Whether the mode may be armed by ``method``: no."""
+    return False
+
+
+@law
+def no(v: Vehicle) -> bool:
+    """The answer of a mode that neither lands nor takes off."""
+    return False
+
+
+@law
+def yes(v: Vehicle) -> bool:
+    """The answer of a mode that does nothing else."""
+    return True
+
+
+@dataclass(frozen=True, kw_only=True)
+class CopterMode(Mode[Vehicle]):
+    """A flight mode."""
+
+    manual_throttle: bool = False
+    """The throttle stick drives the motors directly; every other mode needs a height."""
+    climb_stick: bool = False
+    """The throttle stick is a climb rate: it takes off, and lands when it is closed."""
+    uses_position: bool = False
+    """Controls the position when there is one, but does without."""
+    arms_at_any_throttle: bool = False
+    """A ground station may arm it whatever the throttle stick says."""
+    may_arm: Callable[[Vehicle, int], bool] = always_arms
+    """Law: whether it may be armed by a method (BY_*)."""
+    is_landing: Callable[[Vehicle], bool] = no
+    """Law: whether it is on its way to the ground."""
+    is_taking_off: Callable[[Vehicle], bool] = no
+    """Law: whether it raises the throttle from the ground by itself, and will say when it flies."""

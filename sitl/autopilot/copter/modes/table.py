@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter's flight modes: to add one is a file and a line here.
+
+Numbers: ArduCopter's custom modes (https://ardupilot.org/copter/docs/flight-modes.html, COPTER_MODE of MAVLink).
+"""
+
+from __future__ import annotations
+
+from ....core.dispatch import by_number
+from ....core.kernels import law
+from ...modes import numbers, with_registered
+from . import alt_hold, auto, brake, guided, land, loiter, rtl, stabilize
+from .mode import CopterMode
+
+MODES: tuple[CopterMode, ...] = with_registered(
+    "copter",
+    (stabilize.MODE, alt_hold.MODE, auto.MODE, guided.MODE, loiter.MODE, rtl.MODE, land.MODE, brake.MODE),
+)
+"""In the order of AVAILABLE_MODES."""
+NAMES = {mode.number: mode.name for mode in MODES}
+
+run = by_number("run", {mode.number: mode.run for mode in MODES}, stabilize.MODE.run)
+start = by_number("start", {mode.number: mode.start for mode in MODES}, stabilize.MODE.start)
+may_arm = by_number("may_arm", {mode.number: mode.may_arm for mode in MODES}, stabilize.MODE.may_arm)
+is_landing = by_number("is_landing", {mode.number: mode.is_landing for mode in MODES}, stabilize.MODE.is_landing)
+is_taking_off = by_number(
+    "is_taking_off", {mode.number: mode.is_taking_off for mode in MODES}, stabilize.MODE.is_taking_off
+)
+
+ALL = tuple(NAMES)
+MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
+CLIMB_STICK = numbers(MODES, "climb_stick")
+NEED_POSITION = numbers(MODES, "needs_position")
+AUTONOMOUS = numbers(MODES, "autonomous")
+ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
+
+
+@law
+def is_known(number: int) -> bool:
+    """Whether the firmware has this mode."""
+    return number in ALL
+
+
+@law
+def has_manual_throttle(number: int) -> bool:
+    """Whether the throttle stick drives the motors directly."""
+    return number in MANUAL_THROTTLE
+
+
+@law
+def has_climb_stick(number: int) -> bool:
+    """Whether the throttle stick is a climb rate."""
+    return number in CLIMB_STICK
+
+
+@law
+def requires_position(number: int) -> bool:
+    """Whether the mode needs a horizontal position (LAND does without)."""
+    return number in NEED_POSITION
+
+
+@law
+def is_autonomous(number: int) -> bool:
+    """Whether the mode flies without the pilot's sticks."""
+    return number in AUTONOMOUS
+
+
+@law
+def arms_at_any_throttle(number: int) -> bool:
+    """Whether a ground station may arm the mode whatever the throttle stick says."""
+    return number in ARM_AT_ANY_THROTTLE

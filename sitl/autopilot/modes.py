@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a mode of any firmware is, why modes change or do not, and modes of other packages.
+
+Each mode is a file of its firmware (``FIRMWARE/modes/NAME.py``) that ends with its ``MODE``.
+``FIRMWARE/modes/table.py`` lists them, and all else that depends on the modes there are is made from that list.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from ..core.kernels import law
+from ..core.places import ExtensionError, Places
+
+# Why a mode changed (ArduPilot's ModeReason, the number that its logs carry)
+REASON_RC = 1
+REASON_GCS = 2
+REASON_RADIO_FAILSAFE = 3
+REASON_BATTERY_FAILSAFE = 4
+REASON_GCS_FAILSAFE = 5
+REASON_EKF_FAILSAFE = 6
+REASON_MISSION_END = 8
+REASON_THROTTLE_LAND_ESCAPE = 9
+REASON_CRASH_FAILSAFE = 19
+REASON_FAILSAFE = 25
+REASON_INITIALISED = 26
+
+# Why it did not
+ACCEPTED = 0
+NO_SUCH_MODE = 1
+INIT_FAILED = 2
+REQUIRES_POSITION = 3
+THROTTLE_TOO_HIGH = 4
+NEEDS_ALTITUDE = 5
+MISSING_TAKEOFF = 6
+NO_MISSION = 7
+
+NUMBER_MAX = 2**24 - 1
+"""A command of MAVLink carries the number as a float."""
+_PLACES = Places("SITL_MODES", "mode")
+
+V = TypeVar("V")
+M = TypeVar("M", bound="Mode[Any]")
+
+
+@law
+def accept(v: object) -> int:
+    """Start of a mode that needs no preparation."""
+    return ACCEPTED
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mode(Generic[V]):
+    """A mode: what it is called, what it needs, what it does. Firmwares add what only their modes have."""
+
+    number: int
+    """ArduPilot's custom mode."""
+    name: str
+    run: Callable[[V], None]
+    """Law of one period."""
+    start: Callable[[V], int] = accept
+    """Law that prepares it: ACCEPTED, or why it cannot be entered (then it has changed nothing)."""
+    needs_position: bool = False
+    """Cannot be entered in motion without a position."""
+    autonomous: bool = False
+    """Moves without the pilot's sticks."""
+    standard_mode: int = 0
+    """MAV_STANDARD_MODE"""
+    selectable: bool = True
+    """By the user."""
+
+    @property
+    def description(self) -> str:
+        """What its file says of it behind its name; empty when that begins otherwise."""
+        text = " ".join((sys.modules[self.run.__module__].__doc__ or "").split("\n\n")[0].split())
+        return text.removeprefix(f"{self.name}: ").rstrip(".") if text.startswith(f"{self.name}: ") else ""
+
+
+def numbers(modes: Sequence[M], flag: str) -> tuple[int, ...]:
+    """Numbers of the modes in which ``flag``, one of their attributes, is set."""
+    return tuple(mode.number for mode in modes if getattr(mode, flag))
+
+
+def register_mode(firmware: str, place: str) -> None:
+    """Give a firmware a mode of another package, before the firmware is imported.
+
+    Args:
+        firmware: "copter" or "rover".
+        place: where its ``MODE`` is: "package.module:NAME", importable by that name.
+
+    Raises:
+        ExtensionError: too late, or ``place`` is no such text.
+    """
+    _PLACES.add(firmware, place)
+
+
+def with_registered(firmware: str, modes: tuple[M, ...]) -> tuple[M, ...]:
+    """A firmware's own modes, then those that other packages gave it.
+
+    Raises:
+        ExtensionError: one cannot be imported, is no mode of this firmware, or has a number or name that is taken.
+    """
+    kind = type(modes[0])
+    for _, place, found in _PLACES.of(firmware):
+        if not isinstance(found, kind):
+            raise ExtensionError(f"mode {place}: {found!r} is no {kind.__name__}")
+        if not 0 <= found.number <= NUMBER_MAX:
+            raise ExtensionError(f"mode {place}: number {found.number} is not within 0 .. {NUMBER_MAX}")
+        for mode in modes:
+            if found.number == mode.number or found.name == mode.name:
+                taken = f"{mode.name} ({mode.number})"
+                raise ExtensionError(f"mode {place}: {found.name} ({found.number}) takes the place of {taken}")
+        modes += (found,)
+    return modes

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Set-points of GUIDED, as the MAVLink services write them; a mission's GUIDED_ENABLE takes them, too.
+
+Every law returns OK, or says why it left the record as it was. NE metres from the EKF origin, headings [rad] from
+north, turn rates [rad/s] right positive, speeds [m/s] backward negative.
+"""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+from ....core.scalars import constrain, wrap_pi
+from ....core.vectors import Vec2
+from ..navigation import waypoint
+from ..state import Vehicle
+from .auto import AUTO, GUIDED_IN_MISSION
+from .guided import GUIDED, HEADING_AND_SPEED, POSITION, STEERING_AND_THROTTLE, STOP, TURN_RATE_AND_SPEED
+from .state import GuidedState, Modes
+
+OK = 0
+NOT_FINITE = 1  # NaN, infinite or so large that arithmetic with it would be
+NOT_IN_GUIDED = 2
+OUT_OF_RANGE = 3
+
+LARGEST = 1e7
+"""Metres, metres a second, radians beyond this are refused."""
+PLANNED = 64
+"""GUID_OPTIONS: positions are driven to along planned legs; else the target is shaped, which suits moving ones."""
+
+
+@law
+def are_finite(x: float, y: float) -> bool:
+    """Whether both are usable numbers: neither NaN nor infinite nor absurdly large."""
+    return abs(x) <= LARGEST and abs(y) <= LARGEST
+
+
+@law
+def is_open(modes: Modes) -> bool:
+    """Whether set-points are taken now."""
+    return modes.number == GUIDED or (modes.number == AUTO and modes.auto.submode == GUIDED_IN_MISSION)
+
+
+@law
+def refusal(modes: Modes, x: float, y: float) -> int:
+    """OK, or why a set-point with these numbers is not taken."""
+    if not are_finite(x, y):
+        return NOT_FINITE
+    return OK if is_open(modes) else NOT_IN_GUIDED
+
+
+@law
+def begin(guided: GuidedState, time_us: int, submode: int) -> None:
+    """A set-point of this kind has come."""
+    guided.submode = submode
+    guided.update_us = time_us
+    guided.has_target = True
+
+
+@law
+def set_position(v: Vehicle, point: Vec2) -> int:
+    """Drive to a point and stop there; arrival is GUIDED_REACHED."""
+    ap = v.autopilot
+    code = refusal(ap.modes, point.x, point.y)
+    if code != OK:
+        return code
+    if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0:
+        waypoint.set_destination(ap, v.time_us, point)
+    else:
+        waypoint.set_destination_shaped(ap, v.time_us, point)
+    begin(ap.modes.guided, v.time_us, POSITION)
+    ap.modes.guided.pos = point
+    ap.modes.guided.reached_told = False
+    return OK
+
+
+@law
+def set_heading_and_speed(v: Vehicle, heading: float, speed: float) -> int:
+    """Turn to a heading and drive."""
+    guided = v.autopilot.modes.guided
+    code = refusal(v.autopilot.modes, heading, speed)
+    if code == OK:
+        begin(guided, v.time_us, HEADING_AND_SPEED)
+        guided.heading = wrap_pi(heading)
+        guided.speed = speed
+    return code
+
+
+@law
+def set_heading_change_and_speed(v: Vehicle, change: float, speed: float) -> int:
+    """Turn by an angle [rad] from the heading under way (from the nose when there is none) and drive."""
+    ap = v.autopilot
+    code = refusal(ap.modes, change, speed)
+    if code != OK:
+        return code
+    guided = ap.modes.guided
+    now = guided.heading if guided.submode == HEADING_AND_SPEED else ap.estimate.euler.yaw
+    return set_heading_and_speed(v, now + change, speed)
+
+
+@law
+def set_turn_rate_and_speed(v: Vehicle, turn_rate: float, speed: float) -> int:
+    """Turn steadily and drive."""
+    guided = v.autopilot.modes.guided
+    code = refusal(v.autopilot.modes, turn_rate, speed)
+    if code == OK:
+        begin(guided, v.time_us, TURN_RATE_AND_SPEED)
+        guided.turn_rate = turn_rate
+        guided.speed = speed
+    return code
+
+
+@law
+def set_steering_and_throttle(v: Vehicle, steering: float, throttle: float) -> int:
+    """Steering and throttle -1 .. 1 directly (ArduRover: for scripts on board; no message asks for it)."""
+    guided = v.autopilot.modes.guided
+    code = refusal(v.autopilot.modes, steering, throttle)
+    if code == OK:
+        begin(guided, v.time_us, STEERING_AND_THROTTLE)
+        guided.steering = constrain(steering, -1.0, 1.0)
+        guided.throttle = constrain(throttle, -1.0, 1.0)
+    return code
+
+
+@law
+def stop(v: Vehicle) -> int:
+    """Stop and stay."""
+    modes = v.autopilot.modes
+    if not is_open(modes):
+        return NOT_IN_GUIDED
+    modes.guided.submode = STOP
+    modes.guided.has_target = False
+    return OK
+
+
+@law
+def set_limits(guided: GuidedState, seconds: float, distance: float) -> int:
+    """DO_GUIDED_LIMITS of a mission: guided ends after so long [s] and so far [m] from its beginning; 0 never."""
+    if not are_finite(seconds, distance):
+        return NOT_FINITE
+    if seconds < 0.0 or distance < 0.0:
+        return OUT_OF_RANGE
+    guided.limit_us = int(seconds * 1e6)
+    guided.limit_distance = distance
+    return OK

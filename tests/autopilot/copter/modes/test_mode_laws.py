@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws of the modes on values and on records of their own, without a vehicle."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sitl.autopilot.control.shaping import Motion2
+from sitl.autopilot.copter import pilot
+from sitl.autopilot.copter.control.state import AltitudeState
+from sitl.autopilot.copter.modes import auto_yaw, guided, guided_setpoints, land, loiter
+from sitl.autopilot.copter.modes.state import AutoYaw, GuidedState, LoiterState, PilotState
+from sitl.autopilot.copter.modes.table import MODES, NAMES
+from sitl.autopilot.copter.navigation import circle, waypoint
+from sitl.autopilot.copter.navigation.state import CopterNav
+from sitl.autopilot.copter.parameters.flight import Land, Legs
+from sitl.core.scalars import wrap_pi
+from sitl.core.vectors import Vec2, Vec3
+
+ANGLES = st.floats(-3.1, 3.1)
+
+
+def test_modes_have_numbers_names_and_a_description_of_their_own() -> None:
+    assert len(NAMES) == len({mode.name for mode in MODES}) == len({mode.description for mode in MODES}) == len(MODES)
+    assert all(mode.description and mode.name not in mode.description.split() for mode in MODES)
+
+
+@given(ANGLES, ANGLES, st.sampled_from((-1, 0, 1)))
+def test_a_turn_ends_at_the_angle_in_the_direction_asked_for(start: float, angle: float, direction: int) -> None:
+    turn = auto_yaw.turn_from(start, angle, direction, False)
+    assert wrap_pi(start + turn - angle) == pytest.approx(0.0, abs=1e-9)
+    assert turn * direction >= 0.0
+    assert abs(turn) <= (2.0 * math.pi if direction else math.pi)
+
+
+@given(st.floats(-7.0, 7.0), st.floats(0.01, 2.0))
+def test_a_turn_takes_as_long_as_its_rate_needs(offset: float, slew: float) -> None:
+    yaw = AutoYaw()
+    yaw.mode, yaw.offset, yaw.slew = auto_yaw.FIXED, offset, slew
+    for _ in range(math.ceil(abs(offset) / slew / 0.1) + 1):
+        auto_yaw.advance_turn(yaw, 0.1)
+    assert yaw.offset == 0.0
+    assert auto_yaw.has_turned(yaw, offset)
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(0.1, 1.0), st.floats(0.1, 1.0))
+def test_the_lean_of_sticks_stays_within_the_limit(roll: float, pitch: float, angle_max: float, limit: float) -> None:
+    sticks = PilotState()
+    sticks.roll, sticks.pitch = roll, pitch
+    lean = pilot.lean_angles(sticks, angle_max, limit)
+    assert math.cos(lean.roll) * math.cos(lean.pitch) >= math.cos(min(limit, angle_max)) - 1e-9
+    assert lean.roll * roll >= 0.0 and lean.pitch * pitch >= 0.0
+
+
+@given(st.floats(0.0, 1.0))
+def test_the_climb_of_the_stick_is_continuous_and_within_its_speeds(throttle: float) -> None:
+    climb = pilot.climb_of_stick(throttle, 0.1, 2.5, 1.5)
+    assert -1.5 - 1e-12 <= climb <= 2.5 + 1e-12
+    assert pilot.climb_of_stick(throttle + 1e-6, 0.1, 2.5, 1.5) == pytest.approx(climb, abs=1e-4)
+
+
+@pytest.mark.parametrize(("thrust", "climb"), ((0.0, -1.5), (0.5, 0.0), (1.0, 2.5)))
+def test_thrust_stands_for_a_climb_rate(thrust: float, climb: float) -> None:
+    limits = AltitudeState()
+    limits.speed_up, limits.speed_down = 2.5, 1.5
+    assert guided_setpoints.climb_of_thrust(thrust, limits) == climb
+
+
+def test_a_moving_set_point_moves_as_it_says() -> None:
+    target = GuidedState()
+    target.vel, target.acc = Vec3(4.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0)
+    for _ in range(400):
+        guided.advance(target, 0.0025)
+    assert target.pos == pytest.approx((4.0, 0.5, 0.0))
+    assert target.vel == pytest.approx((4.0, 1.0, 0.0))
+
+
+@given(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
+def test_loiter_comes_to_rest_with_the_sticks_centred(north: float, east: float) -> None:
+    state, path = LoiterState(), Motion2(Vec2(0.0, 0.0), Vec2(north, east), Vec2(0.0, 0.0))
+    limits = loiter.Limits(12.5, 4.0, 0.5, 2.5, 5.0)
+    speed = math.hypot(north, east)
+    for _ in range(400 * 30):
+        path = loiter.advance_path(state, path, limits, True)
+        assert math.hypot(*path.vel) <= speed + 1e-12
+        speed = math.hypot(*path.vel)
+    assert speed < 0.05
+
+
+@given(st.floats(-10.0, 500.0), st.floats(10.0, 300.0), st.floats(0.0, 300.0))
+def test_a_landing_sinks_within_its_speeds_and_slowly_near_the_ground(height: float, slow: float, fast: float) -> None:
+    p, limits = Land(), AltitudeState()
+    p.SPEED, p.SPEED_HIGH, p.ALT_LOW = slow, fast, 1000.0
+    limits.speed_down, limits.accel_max = 1.5, 1.0
+    rate = land.sink_rate(height, limits, p, 1.0)
+    top = 1.5 if fast <= 0.0 else fast * 0.01
+    assert slow * 0.01 <= rate <= max(top, slow * 0.01)
+    if height <= 10.0:
+        assert rate == slow * 0.01
+
+
+@given(st.floats(-50.0, 50.0).filter(lambda r: abs(r) > 0.5), st.floats(-3.0, 3.0))
+def test_a_circle_stays_on_its_radius_and_turns_its_way(radius: float, angle: float) -> None:
+    nav = CopterNav()
+    nav.circle_radius, nav.circle_centre = radius, Vec3(5.0, -7.0, -20.0)
+    circle.start(nav, Vec3(5.0 + math.cos(angle), -7.0 + math.sin(angle), 0.0), 0.0)
+    circle.set_limits(nav, math.radians(20.0), 5.0, 2.5)
+    turns = [circle.advance(nav) for _ in range(400)]
+    away = nav.pos - nav.circle_centre
+    assert math.hypot(away.x, away.y) == pytest.approx(abs(radius))
+    assert turns == sorted(turns) and math.copysign(1.0, nav.circle_total) == math.copysign(1.0, radius)
+    assert math.hypot(nav.vel.x, nav.vel.y) <= 5.0 + 1e-9
+
+
+def test_a_pause_stops_path_time_and_lets_it_run_again() -> None:
+    nav, p = CopterNav(), Legs()
+    p.SPEED, p.ACCEL = 500.0, 250.0
+    nav.pause_scale, nav.paused = 1.0, True
+    for wanted in (0.0, 1.0):
+        nav.paused = wanted == 0.0
+        for _ in range(400 * 10):
+            waypoint.advance_pause(nav, p, 5.0)
+            assert -0.01 <= nav.pause_scale <= 1.01
+        assert (nav.pause_scale, nav.pause_rate) == (wanted, 0.0)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""SPIN: holds its place and turns at 30 degrees a second; a mode of another package."""
+
+from __future__ import annotations
+
+import math
+
+from sitl.autopilot.copter.modes import auto_yaw, brake, ground
+from sitl.autopilot.copter.modes.mode import CopterMode, never_arms
+from sitl.autopilot.copter.state import Vehicle
+from sitl.core.kernels import law
+
+RATE = math.radians(30.0)
+
+
+@law
+def run(v: Vehicle) -> None:
+    """One tick."""
+    if ground.is_grounded(v.autopilot.arming):
+        ground.rest(v.autopilot)
+    else:
+        auto_yaw.turn_at(v.autopilot, RATE)
+        ground.hold(v.autopilot)
+
+
+MODE = CopterMode(
+    number=99,
+    name="SPIN",
+    start=brake.start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    may_arm=never_arms,
+)
