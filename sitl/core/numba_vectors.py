@@ -210,23 +210,3 @@ class _Component(AbstractTemplate):
 @lower_builtin("static_getitem", VectorType, types.Any)
 def _component(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     return builder.extract_value(args[0], args[1])
-
-
-@infer_global(operator.getitem)
-class _AnyComponent(AbstractTemplate):
-    """By an index that is a variable: for laws that loop over a field that has become a value, until they go."""
-
-    def generic(self, args: Any, kws: Any) -> Any:
-        value, index = args
-        if isinstance(value, VectorType) and isinstance(index, types.Integer):
-            return signature(types.float64, *args)
-        return None
-
-
-@lower_builtin(operator.getitem, VectorType, types.Integer)
-def _any_component(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    first, *others = components(builder, sig.args[0], args[0])
-    for k, part in enumerate(others, 1):
-        is_k = builder.icmp_signed("==", args[1], ir.Constant(args[1].type, k))
-        first = builder.select(is_k, part, first)
-    return first

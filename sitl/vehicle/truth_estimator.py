@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ..core.algebra import euler_of
 from ..core.kernels import law
+from .record import Vehicle
 
 # EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
 # predicted relative and absolute position.
@@ -12,7 +13,7 @@ _ALL_WELL = 1 | 2 | 4 | 8 | 16 | 32 | 256 | 512
 
 
 @law
-def observe(v):
+def observe(v: Vehicle) -> None:
     """Copy attitude, rates, velocity, position and acceleration of the body into the autopilot's estimate."""
     body, place, e = v.physics.body, v.physics.place, v.autopilot.estimate
     e.rates, e.vel, e.pos, e.acc_ned, e.q = body.rates, body.vel, body.pos, body.acc_ned, body.q

@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from sitl.core.rotations import quat_from_euler
+from sitl.core.algebra import quat_from_euler
+from sitl.core.vectors import Euler
 from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, ALT_HOLD, Aviator
@@ -20,7 +21,7 @@ def fly_attitude(
     p: Aviator, seconds: float, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0, thrust: float = 0.5
 ) -> None:
     """Attitude [deg] at 20 Hz."""
-    q = list(quat_from_euler(*np.radians((roll, pitch, yaw))))
+    q = list(quat_from_euler(Euler(*np.radians((roll, pitch, yaw)))))
     for _ in range(round(seconds * 20)):
         p.send("SET_ATTITUDE_TARGET", type_mask=0b111, q=q, thrust=thrust)
         p.fly(0.05)

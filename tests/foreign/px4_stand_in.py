@@ -19,7 +19,8 @@ from pathlib import Path
 
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
-from sitl.core.rotations import quat_to_euler
+from sitl.core.algebra import euler_of
+from sitl.core.vectors import Quat
 
 BOOT_TICKS, POSITION_TICKS = 400, 4000
 OFFBOARD, FRESH_US = 6, 500_000
@@ -114,7 +115,7 @@ class Px4:
             vx, vy, vz = (0.01 * v for v in (self.truth.vx, self.truth.vy, self.truth.vz))
             self.link.say(name, time_boot_ms=ms, x=x, y=y, z=z, vx=vx, vy=vy, vz=vz)
         elif self.truth is not None and name == "ATTITUDE":
-            roll, pitch, yaw = quat_to_euler(*self.truth.attitude_quaternion)
+            roll, pitch, yaw = euler_of(Quat(*self.truth.attitude_quaternion))
             self.link.say(name, time_boot_ms=ms, roll=roll, pitch=pitch, yaw=yaw, yawspeed=self.gyro[2])
         elif self.origin is not None and name == "GPS_GLOBAL_ORIGIN":
             self.link.say(name, latitude=self.origin[0], longitude=self.origin[1], altitude=self.origin[2])
@@ -163,7 +164,7 @@ class Px4:
         self.hil.say("HIL_ACTUATOR_CONTROLS", time_usec=self.now, controls=controls, mode=1 | 128 * self.armed, flags=1)
 
     def fly(self) -> list[float]:
-        roll, pitch, yaw = quat_to_euler(*self.truth.attitude_quaternion)
+        roll, pitch, yaw = euler_of(Quat(*self.truth.attitude_quaternion))
         vn, ve, vd = (0.01 * v for v in (self.truth.vx, self.truth.vy, self.truth.vz))
         wanted = self.target
         if self.mode != OFFBOARD or self.now - self.target_us > FRESH_US:

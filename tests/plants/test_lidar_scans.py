@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from sitl import vehicles
+from sitl.core.algebra import quat_from_euler
 from sitl.core.border import LIDAR_SAMPLES as ROOM
-from sitl.core.rotations import quat_from_euler
+from sitl.core.vectors import Euler
 from sitl.simulation import Core, Simulation
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.ranging import LIDAR_SAMPLES
@@ -35,7 +36,7 @@ def stand(simulation: Simulation, down: float, *angles: float) -> np.ndarray:
     b = simulation.v.physics.body
     b.pos = b.pos.replace(z=down)
     if angles:
-        b.q = quat_from_euler(*angles)
+        b.q = quat_from_euler(Euler(*angles))
     assert simulation.plant.rangers is not None
     simulation.v.sensors.lidar_count = simulation.v.sensors.rangefinder_count = 0
     simulation.plant.rangers.find_due()

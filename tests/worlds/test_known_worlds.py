@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from sitl import worlds
-from sitl.core.rotations import quat_from_euler
+from sitl.core.algebra import quat_from_euler
+from sitl.core.vectors import Euler
 from sitl.worlds import contact, planar, raycast
 from sitl.worlds.outline import outline
 from tests.worlds.world_cases import KNOWN, LIDARS
@@ -26,7 +27,7 @@ def start_scan(name: str) -> np.ndarray:
     cast, published, longest, (forward, left, above) = LIDARS[robot]
     start = world.start(robot)
     north, east, down = start.north_east_down
-    attitude = np.array([quat_from_euler(0.0, 0.0, start.heading)])
+    attitude = np.array([quat_from_euler(Euler(0.0, 0.0, start.heading))])
     position = np.array([[north, east, down]])
     mount = np.array([forward, -left, -above - down])  # heights are given above the floor
     rays = planar.rays(cast, math.radians(270.0))
@@ -140,7 +141,7 @@ def test_windows_of_the_office() -> None:
 
 def test_a_lidar_that_tilts_sees_the_floor() -> None:
     world = worlds.load("office_erlecopter")
-    attitude = np.array([quat_from_euler(0.0, math.radians(-20.0), math.pi)])  # nose down, westward
+    attitude = np.array([quat_from_euler(Euler(0.0, math.radians(-20.0), math.pi))])  # nose down, westward
     ray = np.array([[1.0], [0.0], [0.0]])
     position, mount = np.array([[0.0, 0.0, -1.0]]), np.zeros(3)
     found = raycast.scan_from(world.geometry, position, attitude, mount, ray, np.zeros((1, 1)))

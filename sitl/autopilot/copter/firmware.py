@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...core.kernels import law
+from ...core.records import Records
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
 from .control.update import init as init_control
@@ -15,17 +14,18 @@ from .modes.table import NAMES
 from .modes.update import init as init_modes
 from .modes.update import update as decide
 from .parameters import TABLE
+from .state import Vehicle
 
 
 @law
-def update(fleet, index):
+def update(fleet: Records[Vehicle], index: int) -> None:
     """One tick of vehicle ``index``, from ``sensors`` to ``actuators``; 400 times a simulated second."""
     estimate(fleet, index)
     decide(fleet, index)
     control(fleet, index)
 
 
-def power_on(v: Any) -> None:
+def power_on(v: Vehicle) -> None:
     """Start the rooms of the firmware on a cleared record whose parameters are set."""
     init_control(v.autopilot)
     init_modes(v)

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.rotations import quat_from_euler
+from ...core.algebra import quat_from_euler
+from ...core.vectors import Euler
 from ...errors import SitlError
 
 _LIMITS = {"gyro": 1e3, "accel_body": 1e5, "position": 1e7, "velocity": 1e4}
@@ -155,7 +156,7 @@ def _attitude(fields: dict[str, Any]) -> tuple[float, ...]:
         return q if abs(length - 1.0) < 1e-12 else tuple(part / length for part in q)
     if "attitude" in fields:
         roll, pitch, yaw = _vector(fields, "attitude", 3, 1e3)
-        return tuple(float(part) for part in quat_from_euler(roll, pitch, yaw))
+        return tuple(float(part) for part in quat_from_euler(Euler(roll, pitch, yaw)))
     raise MotionError("neither quaternion nor attitude is there")
 
 

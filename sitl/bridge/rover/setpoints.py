@@ -14,7 +14,8 @@ import math
 from typing import TYPE_CHECKING, Any, cast
 
 from ...autopilot.mission.item import MissionItem
-from ...core.rotations import quat_to_euler
+from ...core.algebra import euler_of
+from ...core.vectors import Quat
 from ..autopilot_api import Vector
 from ..channel import Channel
 from ..services.command import GLOBAL, GLOBAL_FRAMES
@@ -109,7 +110,7 @@ class RoverSetpoints(SetpointService):
         norm = math.sqrt(sum(x * x for x in m.q))
         if math.isfinite(norm) and norm > 1e-3:
             w, x, y, z = (value / norm for value in m.q)
-            self._rover.guided_heading(quat_to_euler(w, x, y, z)[2], speed)
+            self._rover.guided_heading(euler_of(Quat(w, x, y, z))[2], speed)
 
     def _height_target(self, item: MissionItem) -> bool:
         """Taken, and nothing to do: a rover has one height."""

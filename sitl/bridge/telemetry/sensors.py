@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import euler_of
 from ...core.constants import GRAVITY
-from ...core.rotations import quat_to_euler
+from ...core.vectors import Quat
 from ...physics.carried import MILLIG
 from ..dialect import message
 from .builder import Build, Builder, Context
@@ -80,7 +81,7 @@ def simstate(context: Context) -> Build:
     def build() -> bytes:
         truth = vehicle.truth()
         fx, fy, fz = truth.acceleration
-        angles = quat_to_euler(*truth.attitude)
+        angles = euler_of(Quat(*truth.attitude))
         return pack(*angles, MILLIG * fx, MILLIG * fy, MILLIG * fz, *truth.rates, truth.lat, truth.lon)
 
     return build

@@ -20,7 +20,8 @@ from sitl.bridge.services.setpoints import (
     YAW_RATE_IGNORED,
     YAWS_IGNORED,
 )
-from sitl.core.rotations import quat_from_euler
+from sitl.core.algebra import quat_from_euler
+from sitl.core.vectors import Euler
 from sitl.worlds.frames import to_heading, to_ned
 
 from .telemetry import StepTelemetry
@@ -67,7 +68,7 @@ def rover_position(row: Sequence[float], heard: StepTelemetry, origin: Sequence[
 def attitude(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: roll, pitch [rad], turn rate [rad/s], climb -1 .. 1."""
     roll, pitch, turn, climb = row
-    q = quat_from_euler(roll, pitch, heard.attitude[3])
+    q = quat_from_euler(Euler(roll, pitch, heard.attitude[3]))
     return TARGET, TARGET.payload(
         target_system=heard.system,
         type_mask=ROLL_RATE_IGNORED | PITCH_RATE_IGNORED,

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.core.rotations import quat_from_euler, quat_to_euler
+from sitl.core.algebra import euler_of, quat_from_euler
+from sitl.core.vectors import Euler, Quat
 from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
 from tests.physics.jsbsim.jsbsim_bench import Bench
 
@@ -71,13 +72,13 @@ def test_takes_off_when_it_can_carry_itself(frame: str) -> None:
 def test_a_fall_is_reported() -> None:
     """From 0.5 m: 3.1 m/s, once; then it stands still, level."""
     b = Bench("erle_copter")
-    b.put(pos=(0.0, 0.0, -0.5), q=quat_from_euler(0.1, 0.0, 1.0))
+    b.put(pos=(0.0, 0.0, -0.5), q=quat_from_euler(Euler(0.1, 0.0, 1.0)))
     b.run(3.0, *(0.0,) * 4)
     g = b.p.ground
     assert (g.state, g.hit_count) == (GROUND_STANDING, 1)
     assert g.hit_speed == pytest.approx(math.sqrt(2.0 * 9.80665 * 0.5), rel=0.05)
     assert np.abs(b.body.vel).max() < 1e-4
-    roll, pitch, yaw = quat_to_euler(*b.body.q)
+    roll, pitch, yaw = euler_of(Quat(*b.body.q))
     assert (roll, pitch) == pytest.approx((0.0, 0.0), abs=1e-4)
     assert yaw == pytest.approx(1.0, abs=0.2)
 
@@ -85,10 +86,10 @@ def test_a_fall_is_reported() -> None:
 def test_falls_over_and_stays_there() -> None:
     """Beyond its tip angle it does not come upright, and its rotors carry it no more."""
     b = Bench("erle_copter")
-    b.put(pos=(0.0, 0.0, -0.3), q=quat_from_euler(math.radians(100.0), 0.0, 0.0))
+    b.put(pos=(0.0, 0.0, -0.3), q=quat_from_euler(Euler(math.radians(100.0), 0.0, 0.0)))
     b.run(4.0, *(0.0,) * 4)
     assert b.p.ground.state == GROUND_LYING
-    assert abs(quat_to_euler(*b.body.q)[0]) > math.radians(60.0)
+    assert abs(euler_of(Quat(*b.body.q))[0]) > math.radians(60.0)
     assert abs(b.body.pos[2]) < 0.3
     place = np.array(b.body.pos)
     b.run(2.0, *(0.8,) * 4)

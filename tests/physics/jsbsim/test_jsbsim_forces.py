@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sitl.core.rotations import quat_rotate
+from sitl.core.algebra import rotate
+from sitl.core.vectors import Quat, Vec3
 from sitl.physics.jsbsim.units import POUND, POUND_FOOT
 from sitl.physics.native import atmosphere
 from sitl.physics.native.copter.wrench import act
@@ -73,7 +74,7 @@ def test_mass_inertia_and_gravity(flying: Any, seed: int) -> None:
     a, rates = flying.p.airframe, np.array(flying.body.rates)
     force = read(flying, *(f"forces/fb{axis}-aero-lbs" for axis in "xyz")) * POUND
     torque = read(flying, *(f"moments/{axis}-aero-lbsft" for axis in "lmn")) * POUND_FOOT
-    turned = quat_rotate(*flying.body.q, *force / a.mass)
+    turned = rotate(Quat(*flying.body.q), Vec3(*force / a.mass))
     before = np.array(flying.body.vel)
     flying.engine.move()
     assert (np.array(flying.body.vel) - before) / TICK_S - turned == pytest.approx([0.0, 0.0, 9.80665], abs=2e-3)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.core.rotations import quat_to_euler
+from sitl.core.algebra import euler_of
+from sitl.core.vectors import Quat
 from sitl.physics.native.rover.steering import curvature
 from tests.physics.jsbsim.jsbsim_bench import Bench
 
@@ -86,7 +87,7 @@ def test_nose_dives_when_it_brakes() -> None:
     lowest = 0.0
     for _ in range(200):
         b.tick(0.0, 0.0, 0.0)
-        lowest = min(lowest, quat_to_euler(*b.body.q)[1])
+        lowest = min(lowest, euler_of(Quat(*b.body.q))[1])
     assert -math.radians(2.0) < lowest < -math.radians(0.02)
     b.run(5.0)
     assert speed(b) < 0.01
