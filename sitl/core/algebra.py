@@ -21,24 +21,6 @@ ZERO = Vec3(0.0, 0.0, 0.0)
 
 
 @law
-def vec2_of(array: Floats) -> Vec2:
-    """The vector that the first two elements of an array are."""
-    return Vec2(array[0], array[1])
-
-
-@law
-def vec3_of(array: Floats) -> Vec3:
-    """The vector that the first three elements of an array are."""
-    return Vec3(array[0], array[1], array[2])
-
-
-@law
-def quat_of(array: Floats) -> Quat:
-    """The quaternion that the first four elements of an array are."""
-    return Quat(array[0], array[1], array[2], array[3])
-
-
-@law
 def dot(a: Vec3, b: Vec3) -> float:
     """Scalar product."""
     return a.x * b.x + a.y * b.y + a.z * b.z

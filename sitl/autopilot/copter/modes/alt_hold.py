@@ -105,11 +105,4 @@ def run(v: Vehicle) -> None:
     run_vertical(ap, doing, climb)
 
 
-MODE = CopterMode(
-    number=ALT_HOLD,
-    name="ALT_HOLD",
-    start=start,
-    run=run,
-    standard_mode=4,
-    climb_stick=True,
-)
+MODE = CopterMode(number=ALT_HOLD, name="ALT_HOLD", start=start, run=run, standard_mode=4, climb_stick=True)

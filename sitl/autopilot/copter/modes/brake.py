@@ -47,11 +47,5 @@ def run(v: Vehicle) -> None:
 
 
 MODE = CopterMode(
-    number=BRAKE,
-    name="BRAKE",
-    start=start,
-    run=run,
-    needs_position=True,
-    autonomous=True,
-    may_arm=never_arms,
+    number=BRAKE, name="BRAKE", start=start, run=run, needs_position=True, autonomous=True, may_arm=never_arms
 )

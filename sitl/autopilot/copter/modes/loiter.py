@@ -171,11 +171,5 @@ def run(v: Vehicle) -> None:
 
 
 MODE = CopterMode(
-    number=LOITER,
-    name="LOITER",
-    start=start,
-    run=run,
-    standard_mode=1,
-    climb_stick=True,
-    needs_position=True,
+    number=LOITER, name="LOITER", start=start, run=run, standard_mode=1, climb_stick=True, needs_position=True
 )

@@ -46,9 +46,4 @@ def run(v: Vehicle) -> None:
     throttle_mix.set_throttle_out(ap, wanted, True, ap.params.PILOT.THR_FILT)
 
 
-MODE = CopterMode(
-    number=STABILIZE,
-    name="STABILIZE",
-    run=run,
-    manual_throttle=True,
-)
+MODE = CopterMode(number=STABILIZE, name="STABILIZE", run=run, manual_throttle=True)

@@ -14,16 +14,7 @@ from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
     "copter",
-    (
-        stabilize.MODE,
-        alt_hold.MODE,
-        auto.MODE,
-        guided.MODE,
-        loiter.MODE,
-        rtl.MODE,
-        land.MODE,
-        brake.MODE,
-    ),
+    (stabilize.MODE, alt_hold.MODE, auto.MODE, guided.MODE, loiter.MODE, rtl.MODE, land.MODE, brake.MODE),
 )
 """In the order of AVAILABLE_MODES."""
 NAMES = {mode.number: mode.name for mode in MODES}
