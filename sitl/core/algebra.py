@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from .kernels import law
+from .kernels import inlined, law
 from .records import Floats
 from .scalars import constrain
 from .vectors import Euler, Quat, Vec2, Vec3
@@ -20,104 +20,104 @@ ZERO2 = Vec2(0.0, 0.0)
 ZERO = Vec3(0.0, 0.0, 0.0)
 
 
-@law
+@inlined
 def dot(a: Vec3, b: Vec3) -> float:
     """Scalar product."""
     return a.x * b.x + a.y * b.y + a.z * b.z
 
 
-@law
+@inlined
 def cross(a: Vec3, b: Vec3) -> Vec3:
     """Vector product."""
     return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
-@law
+@inlined
 def norm(v: Vec3) -> float:
     """Length."""
     return math.sqrt(v.x * v.x + v.y * v.y + v.z * v.z)
 
 
-@law
+@inlined
 def by_component(a: Vec3, b: Vec3) -> Vec3:
     """Product of each component with the other's."""
     return Vec3(a.x * b.x, a.y * b.y, a.z * b.z)
 
 
-@law
+@inlined
 def limit_components(v: Vec3, limit: float) -> Vec3:
     """Each component limited to [-limit, limit]."""
     return Vec3(constrain(v.x, -limit, limit), constrain(v.y, -limit, limit), constrain(v.z, -limit, limit))
 
 
-@law
+@inlined
 def vector_at(numbers: Floats, first: int) -> Vec3:
     """Three numbers of an array, from ``first`` on."""
     return Vec3(numbers[first], numbers[first + 1], numbers[first + 2])
 
 
-@law
+@inlined
 def row_vector(rows: Floats, k: int) -> Vec3:
     """Row ``k`` of an array of three columns."""
     return Vec3(rows[k, 0], rows[k, 1], rows[k, 2])
 
 
-@law
+@inlined
 def set_row_vector(rows: Floats, k: int, v: Vec3) -> None:
     """Write row ``k`` of an array of three columns."""
     rows[k, 0], rows[k, 1], rows[k, 2] = v.x, v.y, v.z
 
 
-@law
+@inlined
 def finite_vector(v: Vec3) -> bool:
     """Whether all components are finite."""
     return v.x - v.x == 0.0 and v.y - v.y == 0.0 and v.z - v.z == 0.0
 
 
-@law
+@inlined
 def finite2(v: Vec2) -> bool:
     """Whether both components are finite."""
     return v.x - v.x == 0.0 and v.y - v.y == 0.0
 
 
-@law
+@inlined
 def horizontal(v: Vec3) -> Vec2:
     """North and east of an NED vector."""
     return Vec2(v.x, v.y)
 
 
-@law
+@inlined
 def with_down(v: Vec2, down: float) -> Vec3:
     """An NED vector from north and east, and down."""
     return Vec3(v.x, v.y, down)
 
 
-@law
+@inlined
 def dot2(a: Vec2, b: Vec2) -> float:
     """Scalar product in the plane."""
     return a.x * b.x + a.y * b.y
 
 
-@law
+@inlined
 def cross2(a: Vec2, b: Vec2) -> float:
     """Vector product in the plane: positive when ``b`` lies clockwise of ``a``, seen from above (NED)."""
     return a.x * b.y - a.y * b.x
 
 
-@law
+@inlined
 def norm2(v: Vec2) -> float:
     """Length in the plane."""
     return math.sqrt(v.x * v.x + v.y * v.y)
 
 
-@law
+@inlined
 def turned(v: Vec2, angle: float) -> Vec2:
     """``v`` turned by ``angle`` [rad] from north towards east."""
     c, s = math.cos(angle), math.sin(angle)
     return Vec2(v.x * c - v.y * s, v.x * s + v.y * c)
 
 
-@law
+@inlined
 def limit_length(v: Vec2, length_max: float) -> Vec2:
     """``v`` shortened to at most ``length_max``."""
     n2 = v.x * v.x + v.y * v.y
@@ -126,7 +126,7 @@ def limit_length(v: Vec2, length_max: float) -> Vec2:
     return v * (length_max / math.sqrt(n2))
 
 
-@law
+@inlined
 def multiply(a: Quat, b: Quat) -> Quat:
     """Hamilton product a b: first the rotation b, then a."""
     return Quat(
@@ -137,19 +137,19 @@ def multiply(a: Quat, b: Quat) -> Quat:
     )
 
 
-@law
+@inlined
 def conjugate(q: Quat) -> Quat:
     """The opposite rotation of a unit quaternion."""
     return Quat(q.w, -q.x, -q.y, -q.z)
 
 
-@law
+@inlined
 def quat_norm_squared(q: Quat) -> float:
     """Square of the length; 1 for a rotation."""
     return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z
 
 
-@law
+@inlined
 def normalise(q: Quat) -> Quat:
     """Unit quaternion; the identity for a zero one."""
     n = math.sqrt(quat_norm_squared(q))
@@ -158,7 +158,7 @@ def normalise(q: Quat) -> Quat:
     return q / n
 
 
-@law
+@inlined
 def rotate(q: Quat, v: Vec3) -> Vec3:
     """``v`` turned by ``q``: from body to NED."""
     tx = 2.0 * (q.y * v.z - q.z * v.y)
@@ -171,7 +171,7 @@ def rotate(q: Quat, v: Vec3) -> Vec3:
     )
 
 
-@law
+@inlined
 def rotate_inverse(q: Quat, v: Vec3) -> Vec3:
     """``v`` turned back by ``q``: from NED to body."""
     return rotate(conjugate(q), v)
@@ -224,7 +224,7 @@ class Matrix3(NamedTuple):
     z: Vec3
 
 
-@law
+@inlined
 def rotation_matrix(q: Quat) -> Matrix3:
     """The matrix that turns from body into NED, as the unit quaternion ``q`` does."""
     w, x, y, z = q.w, q.x, q.y, q.z
@@ -235,13 +235,13 @@ def rotation_matrix(q: Quat) -> Matrix3:
     )
 
 
-@law
+@inlined
 def scaled(m: Matrix3, k: float) -> Matrix3:
     """``k`` times a matrix."""
     return Matrix3(m.x * k, m.y * k, m.z * k)
 
 
-@law
+@inlined
 def apply(m: Matrix3, v: Vec3) -> Vec3:
     """Matrix times vector."""
     return Vec3(dot(m.x, v), dot(m.y, v), dot(m.z, v))

@@ -21,6 +21,8 @@ from typing import Any, TypeVar
 F = TypeVar("F", bound=Callable[..., Any])
 
 LAWS: list[Callable[..., Any]] = []
+INLINED: set[Callable[..., Any]] = set()
+"""Laws that are never calls."""
 UNITS: dict[str, Unit] = {}
 
 
@@ -48,6 +50,12 @@ def law(function: F) -> F:
     """Mark a function as compilable into a unit; it is returned unchanged."""
     LAWS.append(function)
     return function
+
+
+def inlined(function: F) -> F:
+    """Mark a law of a few instructions: in the core it is always compiled into its caller, loops over it stay fast."""
+    INLINED.add(function)
+    return law(function)
 
 
 def unit(function: F) -> F:

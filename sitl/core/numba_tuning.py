@@ -17,9 +17,9 @@ from typing import Any
 _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
-def law_options() -> dict[str, Any]:
+def law_options(inline: bool = False) -> dict[str, Any]:
     """Compiler options of laws: no wrappers, and IEEE division instead of Python's exception."""
-    return {"error_model": "numpy", **_NO_WRAPPERS}
+    return {"error_model": "numpy", **_NO_WRAPPERS, **({"forceinline": True} if inline else {})}
 
 
 @contextlib.contextmanager

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import math
 
-from .kernels import law
+from .kernels import inlined
 
 PI = math.pi
 TWO_PI = 2.0 * math.pi
 
 
-@law
+@inlined
 def constrain(value: float, low: float, high: float) -> float:
     """``value`` limited to [low, high]; NaN gives the middle, as ArduPilot's constrain does."""
     if value != value:
@@ -23,13 +23,13 @@ def constrain(value: float, low: float, high: float) -> float:
     return value
 
 
-@law
+@inlined
 def finite(value: float) -> bool:
     """Whether a float is neither NaN nor infinite (infinity minus itself is NaN)."""
     return value - value == 0.0
 
 
-@law
+@inlined
 def sign(value: float) -> float:
     """-1.0, 0.0 or 1.0."""
     if value > 0.0:
@@ -39,13 +39,13 @@ def sign(value: float) -> float:
     return 0.0
 
 
-@law
+@inlined
 def wrap_pi(angle: float) -> float:
     """``angle`` [rad] wrapped to [-pi, pi), the ends to rounding."""
     return angle - TWO_PI * math.floor((angle + PI) / TWO_PI)
 
 
-@law
+@inlined
 def wrap_2pi(angle: float) -> float:
     """``angle`` [rad] wrapped to [0, 2 pi), the ends to rounding."""
     return angle - TWO_PI * math.floor(angle / TWO_PI)

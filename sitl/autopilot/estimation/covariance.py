@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import apply, cross, rotation_matrix, scaled
-from ...core.kernels import law
+from ...core.kernels import inlined, law
 from ...core.records import Floats
 from ...core.vectors import Quat, Vec3
 from ..params.estimator import Ekf3
@@ -28,17 +28,17 @@ MAX_VARIANCE = (1.0, 1e4, 1e8, 0.1, 25.0, 1.0)  # attitude, velocity, position, 
 MIN_VARIANCE = (1e-9, 1e-6, 1e-6, 1e-13, 1e-9, 1e-11)
 
 
-@law
+@inlined
 def _column(P: Floats, first: int, j: int) -> Vec3:
     return Vec3(P[first, j], P[first + 1, j], P[first + 2, j])
 
 
-@law
+@inlined
 def _set_column(P: Floats, first: int, j: int, v: Vec3) -> None:
     P[first, j], P[first + 1, j], P[first + 2, j] = v.x, v.y, v.z
 
 
-@law
+@inlined
 def _transition(P: Floats, q: Quat, dv: Vec3, dt: float) -> None:
     """P := F P, rows at a time."""
     turn = scaled(rotation_matrix(q), dt)
@@ -51,7 +51,7 @@ def _transition(P: Floats, q: Quat, dv: Vec3, dt: float) -> None:
         _set_column(P, THETA, j, _column(P, THETA, j) - apply(turn, _column(P, BG, j)))
 
 
-@law
+@inlined
 def predict(P: Floats, q: Quat, dv: Vec3, dt: float, params: Ekf3) -> None:
     """Covariance after ``dt`` [s] at attitude ``q`` in which the specific force NED summed up to ``dv`` [m/s]."""
     _transition(P, q, dv, dt)
@@ -71,7 +71,7 @@ def predict(P: Floats, q: Quat, dv: Vec3, dt: float, params: Ekf3) -> None:
     symmetrise(P)
 
 
-@law
+@inlined
 def symmetrise(P: Floats) -> None:
     """Replace P by the mean of P and its transpose."""
     for i in range(N):
@@ -81,7 +81,7 @@ def symmetrise(P: Floats) -> None:
             P[j, i] = mean
 
 
-@law
+@inlined
 def clear(P: Floats, first: int, count: int, variance: float) -> None:
     """Forget what is known of ``count`` states from ``first``: no correlations, the given variance."""
     for i in range(first, first + count):
@@ -119,7 +119,7 @@ def turn_frame(P: Floats, angle: float) -> None:
             P[j, n], P[j, e] = c * a - s * b, s * a + c * b
 
 
-@law
+@inlined
 def bound(P: Floats) -> None:
     """Keep variances within bounds and correlations within +-1."""
     for i in range(N):
