@@ -220,11 +220,5 @@ def change_speed(v: Vehicle, wanted: float) -> bool:
 
 
 MODE = RoverMode(
-    number=AUTO,
-    name="AUTO",
-    start=start,
-    run=run,
-    needs_position=True,
-    autonomous=True,
-    change_speed=change_speed,
+    number=AUTO, name="AUTO", start=start, run=run, needs_position=True, autonomous=True, change_speed=change_speed
 )

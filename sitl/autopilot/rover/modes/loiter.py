@@ -74,11 +74,5 @@ def run(v: Vehicle) -> None:
 
 
 MODE = RoverMode(
-    number=LOITER,
-    name="LOITER",
-    start=start,
-    run=run,
-    needs_position=True,
-    autonomous=True,
-    destination="loiter.place",
+    number=LOITER, name="LOITER", start=start, run=run, needs_position=True, autonomous=True, destination="loiter.place"
 )
