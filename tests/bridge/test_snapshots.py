@@ -52,7 +52,7 @@ def disturb(pilot: Pilot) -> None:
     client.send("MISSION_COUNT", **TARGET, count=3)
     client.send("PARAM_SET", **TARGET, param_id=b"MAV_SYSID", param_value=9, param_type=2)
     pilot.simulation.advance(1.0)
-    pilot.send_command("COMPONENT_ARM_DISARM", 0, 21196, target=9)
+    client.command(400, 0, 21196, target=9)
     pilot.simulation.advance(0.37)
     pilot.connection.endpoint.link.receive()
 
@@ -71,7 +71,7 @@ def test_the_same_bytes_again(flying: Pilot) -> None:
 @pytest.mark.parametrize("wait", [0.0025, 0.02, 0.1])
 def test_in_the_middle_of_everything(flying: Pilot, wait: float) -> None:
     """A parameter list, a mission upload and events half way."""
-    client = flying.client
+    client = flying.connection.endpoint
     client.send("PARAM_REQUEST_LIST", **TARGET)
     client.send("MISSION_COUNT", **TARGET, count=2)
     client.send("PARAM_SET", **TARGET, param_id=b"ANGLE_MAX", param_value=1e9, param_type=4)
@@ -107,11 +107,11 @@ def test_from_power_on(core: Core) -> None:
 def test_across_a_reboot(flying: Pilot) -> None:
     snapshot = flying.simulation.snapshot()
     first = record(flying, set_velocity)
-    flying.client.command(400, 0, 21196)
-    flying.client.command(246, 1)
+    flying.connection.endpoint.command(400, 0, 21196)
+    flying.connection.endpoint.command(246, 1)
     flying.simulation.advance(5.0)
     assert int(flying.simulation.v.time_us) < 6_000_000
-    flying.client.link.receive()
+    flying.connection.endpoint.link.receive()
     flying.simulation.restore(snapshot)
     assert record(flying, set_velocity) == first
 
@@ -145,5 +145,5 @@ def test_another_simulation_goes_on_with_it(flying: Pilot, core: Core) -> None:
     other = Pilot(Simulation(core=core, seed=99))
     other.fly(0.1)  # what its client sent at first is read
     other.simulation.restore(snapshot)
-    other.client.link.receive()
+    other.connection.endpoint.link.receive()
     assert record(other, set_velocity) == first

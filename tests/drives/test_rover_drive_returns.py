@@ -38,7 +38,7 @@ def back_home(d: Driver, seconds: float = 120.0) -> None:
 def go(d: Driver, *places: tuple[float, float]) -> None:
     """To places [m] in GUIDED."""
     for north, east in places:
-        d.reached.clear()
+        d.telemetry.reached.clear()
         d.target(POSITION, x=north, y=east)
         assert d.fly(120.0, lambda: bool(d.reached))
 
@@ -130,7 +130,8 @@ def test_loiter_drives_back(core: Core, frame: str, kind: int) -> None:
     d = Driver(core, frame, LOIT_TYPE=kind, LOIT_RADIUS=0.5).armed_in(LOITER)
     d.fly(2.0)
     away = 6.0 * max(d.radius, d.cruise, 0.3)
-    d.ap.modes.loiter.place[0] = d.ap.estimate.pos[0] - away  # as if it stood so far ahead of it
+    place = d.ap.modes.loiter.place
+    d.ap.modes.loiter.place = (d.ap.estimate.pos.x - away, place.y)  # as if it stood so far ahead of it
     start = d.now
     d.fly(60.0 + 3.0 * away / d.cruise)
     assert d.ap.modes.loiter.distance < max(1.2, 1.2 * d.radius)

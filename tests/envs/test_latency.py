@@ -51,7 +51,7 @@ def places(env, actions):
     out = []
     for action in actions:
         env.step(action)
-        list(out.append(env.robot.simulation(0).v.physics.body.pos))
+        out.append(tuple(env.robot.simulation(0).v.physics.body.pos))
     return out
 
 

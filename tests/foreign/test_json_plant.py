@@ -16,6 +16,7 @@ import pytest
 from sitl.bridge.ardupilot_json import motion
 from sitl.bridge.ardupilot_json.servos import decode
 from sitl.client.endpoint import Endpoint
+from sitl.core.algebra import ZERO
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.physics.engine import EngineError
@@ -113,9 +114,9 @@ def test_the_imu_feels_what_the_line_says():
     for name in ("acc_noise", "gyro_noise"):
         simulation.v.physics.derived[name] = 0.0
     for name in ("acc_bias", "gyro_bias", "acc_walk", "gyro_walk"):
-        simulation.v.physics.sensors[name] = 0.0
+        simulation.v.physics.sensors[name] = ZERO
     for name in ("acc_scale", "gyro_scale"):
-        simulation.v.physics.sensors[name] = 1.0
+        simulation.v.physics.sensors[name] = (1.0, 1.0, 1.0)
     simulation.advance(0.01)
     assert list(simulation.v.sensors.gyro) == pytest.approx([0.1, -0.2, 0.3], abs=1e-6)
     assert list(simulation.v.sensors.acc) == pytest.approx([1.0, 2.0, -9.0], abs=1e-5)
