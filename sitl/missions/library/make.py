@@ -18,7 +18,7 @@ HEAD = """# SPDX-License-Identifier: BSD-3-Clause
 
 def drafts() -> dict[str, dict[str, Draft]]:
     """All, by kind of vehicle and name."""
-    return {"copter": copter_drafts.copter_drafts(), "rover": rover_drafts.rover_drafts()}
+    return {"copter": copter_drafts(), "rover": rover_drafts()}
 
 
 def index() -> str:
