@@ -23,9 +23,8 @@ from .core.record_reader import RecordReader
 from .errors import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
-from .plants.choose import is_remote, remote
 from .plants.local import LocalPlant
-from .plants.plant import Craft, PhysicsLostError, Plant
+from .plants.plant import Craft, PhysicsLostError, Plant, is_remote, remote
 from .scenario import Options, Scenario
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core

@@ -19,12 +19,11 @@ from .links.link import Link
 from .places import Places
 from .profile import load
 from .services import all_services
-from .services.events import EventService
-from .services.grants import Grants
-from .services.listener import Listener
+from .services.commands import Grants
 from .services.log_download import LogStore
-from .services.service import Handler, Service
+from .services.service import Handler, Listener, Service
 from .services.setpoints import SetpointService
+from .services.statustext import EventService
 from .services.streams import StreamService
 from .stream_table import NEVER
 from .switchboard import Switchboard

@@ -6,6 +6,10 @@ Layout, checksum seed, and how to pack and unpack them.
 Everything is taken from pymavlink's generated dialect. Fields are handled in *wire order* (by size,
 extensions last, https://mavlink.io/en/guide/serialization.html#field_reordering), because that is what
 ``struct`` can do in one call.
+
+Messages of common.xml that pymavlink's ``ardupilotmega`` dialect does not have yet.
+
+Described as it describes its own.
 """
 
 from __future__ import annotations
@@ -20,7 +24,30 @@ from fastcrc import crc16
 from pymavlink.dialects.v20 import ardupilotmega
 
 from ..errors import SitlError
-from .newer_messages import NEWER
+
+
+class AvailableModes:
+    """AVAILABLE_MODES (https://mavlink.io/en/messages/common.html#AVAILABLE_MODES)."""
+
+    id = 435
+    msgname = "AVAILABLE_MODES"
+    crc_extra = 134
+    unpacker = struct.Struct("<IIBBB35s")
+    fieldnames = ("number_modes", "mode_index", "standard_mode", "custom_mode", "properties", "mode_name")
+    fieldtypes = ("uint8_t", "uint8_t", "uint8_t", "uint32_t", "uint32_t", "char")
+    ordered_fieldnames = (
+        "custom_mode",
+        "properties",
+        "number_modes",
+        "mode_index",
+        "standard_mode",
+        "mode_name",
+    )
+    array_lengths = (0, 0, 0, 0, 0, 35)
+
+
+NEWER = {AvailableModes.id: AvailableModes}
+
 
 crc_mcrf4xx = cast("Callable[..., int]", crc16.mcrf4xx)
 """CRC-16/MCRF4XX of bytes, optionally going on from an earlier value."""

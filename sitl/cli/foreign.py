@@ -20,8 +20,7 @@ from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
 from ..foreign.session import ArduPilotSession, Px4Session, Session
 from ..logs.tlog import TlogWriter
 from ..physics.engines import BACKENDS
-from ..plants.alone import stand_alone
-from ..plants.local import LocalPlant
+from ..plants.local import LocalPlant, stand_alone
 from ..run import runner
 from ..run.pacing import parse_speedup
 from .options import open_folder, scenario_of

@@ -11,7 +11,7 @@ from pathlib import Path
 from .. import vehicles
 from ..autopilot.params import files
 from ..physics.engines import NATIVE
-from ..plants.choose import FORMS
+from ..plants.plant import FORMS
 from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, checked_home
 from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import DEFAULT, KINDS

@@ -11,8 +11,7 @@ from importlib import import_module
 from ..errors import OptionError
 from ..physics.engines import BACKENDS, NATIVE
 from ..physics.native.power_on import DEFAULT_HOME
-from ..plants.alone import stand_alone
-from ..plants.local import LocalPlant
+from ..plants.local import LocalPlant, stand_alone
 from ..vehicle.kinds import KINDS
 from . import options as shared
 from .progress import CompileProgress
@@ -20,7 +19,7 @@ from .progress import CompileProgress
 Serve = Callable[[LocalPlant, str, int, Callable[[str], None], Callable[[], bool]], None]
 """``serve(plant, address, instance, say, running)``: listens at the address until ``running()`` is false."""
 
-LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_server"}
+LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_host"}
 """Kind of ``--listen`` -> module that has ``serve``."""
 
 

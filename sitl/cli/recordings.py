@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..errors import OptionError
 from ..physics.engines import NATIVE
-from ..recording.error import RecordingError
+from ..recording.entries import RecordingError
 from ..recording.recorder import Recorder
 from ..recording.recording import read
 from ..recording.replay import Replay

@@ -42,7 +42,7 @@ class ByteSocket:
             if self._stream:
                 self._socket.settimeout(5.0)
                 self._socket.connect(address)
-                from ..bridge.links.echo import refuse_echo  # here: only TCP needs it
+                from ..bridge.links.tcp import refuse_echo  # here: only TCP needs it
 
                 refuse_echo(self._socket)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from ..bridge.dialect import message
 from ..bridge.links.inprocess import InProcessLink
-from ..bridge.services.grants import GRANT, RESEED
+from ..bridge.services.commands import GRANT, RESEED
 from ..errors import LinkLostError
 from .byte_socket import ByteSocket
 from .commands import arguments, command_number
-from .endpoint import Endpoint
-from .inbox import Inbox
+from .endpoint import Endpoint, Inbox
 
 if TYPE_CHECKING:
     from ..simulation import Simulation

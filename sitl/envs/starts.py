@@ -17,7 +17,7 @@ from sitl.core.vectors import Vec2
 from sitl.turtlebots.native import full_pose
 from sitl.worlds import WorldError
 from sitl.worlds.contact import Volume, clearance, nearest_of
-from sitl.worlds.frames import to_ned
+from sitl.worlds.shapes import to_ned
 
 from .options import EnvOptionError
 from .robots.robot import Pose, Robot

@@ -11,9 +11,8 @@ from ..bridge.ardupilot_json.physics_end import Asked, Heard, PhysicsEnd, ticks
 from ..bridge.ardupilot_json.servos import controls, is_frame
 from ..core.constants import TICK_US
 from ..errors import OptionError
-from ..plants.alone import restart
-from ..plants.json_link import WAIT_S, wait_in_kernel
-from ..plants.local import LocalPlant
+from ..plants.json_link import LOCAL, PORT, WAIT_S, parse_address, wait_in_kernel
+from ..plants.local import LocalPlant, restart
 from .body import BodyLines
 
 _MAX_DATAGRAM = 65535
@@ -27,7 +26,7 @@ class JsonHost:
     """Serves one plant at a UDP port.
 
     Args:
-        plant: at power-on, as ``sitl.plants.alone.stand_alone`` gives it.
+        plant: at power-on, as ``sitl.plants.local.stand_alone`` gives it.
         address: host and port to listen on; port 0: a free one.
         say: prints a message for the user.
         clock: wall time [s].
@@ -168,3 +167,31 @@ class JsonHost:
     def close(self) -> None:
         """Close the socket; the plant stays open."""
         self._socket.close()
+
+
+def serve(
+    plant: LocalPlant,
+    address: str,
+    instance: int,
+    say: Callable[[str], None],
+    running: Callable[[], bool],
+) -> None:
+    """Listen until ``running()`` is false.
+
+    Args:
+        plant: at power-on.
+        address: "[HOST:]PORT", "HOST", or "" for the default port of the instance on this machine.
+        instance: adds 10 to the default port for each.
+        say: prints a message for the user.
+        running: checked about every 0.1 s.
+
+    Raises:
+        OptionError: the address cannot be had.
+    """
+    where = parse_address(address, "--listen json:[HOST:]PORT") if address else (LOCAL, PORT + 10 * instance)
+    host = JsonHost(plant, where, say)
+    say(f"JSON on udp {host.address[0]}:{host.address[1]}")
+    try:
+        host.serve(running)
+    finally:
+        host.close()

@@ -8,11 +8,13 @@ import contextlib
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from ..bridge.frame import CHECKSUM, HEADER_V1, HEADER_V2, MARK_V1, MARK_V2, SIGNATURE, SIGNED
 from ..errors import OptionError, SitlError
 
 OUTPUT = "output.txt"
@@ -120,3 +122,59 @@ class AutopilotProcess:
     def _forget_folder(self) -> None:
         if self._owned:
             shutil.rmtree(self.folder, ignore_errors=True)
+
+
+_STARTS = bytes((MARK_V1, MARK_V2))
+
+
+class Cutter:
+    """Splits a stream into frames by start mark and length. TCP loses nothing, so that it stays in step; what
+    does not begin with a start mark is left out."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, data: bytes) -> list[bytes]:
+        """The frames completed by ``data``."""
+        buffer = self._rest + data
+        frames: list[bytes] = []
+        at, end = 0, len(buffer)
+        while at < end:
+            if buffer[at] not in _STARTS:
+                at += 1
+                continue
+            header = HEADER_V2 if buffer[at] == MARK_V2 else HEADER_V1
+            if at + header > end:
+                break
+            size = header + buffer[at + 1] + CHECKSUM
+            if header == HEADER_V2 and buffer[at + 2] & SIGNED:
+                size += SIGNATURE
+            if at + size > end:
+                break
+            frames.append(buffer[at : at + size])
+            at += size
+        self._rest = buffer[at:]
+        return frames
+
+
+HOST = "127.0.0.1"
+
+
+def free_tcp_run(length: int) -> int:
+    """The first of ``length`` TCP ports in a row that nobody listens on.
+
+    Raises:
+        OptionError: none are to be had.
+    """
+    for _ in range(64):
+        with contextlib.ExitStack() as stack:
+            first = 0
+            try:
+                for k in range(length):
+                    probe = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
+                    probe.bind((HOST, first + k if first else 0))
+                    first = first or probe.getsockname()[1]
+            except (OSError, OverflowError):
+                continue
+            return first
+    raise OptionError(f"there are no {length} free TCP ports in a row on this machine")

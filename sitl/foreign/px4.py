@@ -14,12 +14,11 @@ import socket
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..bridge.hil.numbers import BASE_PORT
+from ..bridge.hil.protocol import BASE_PORT
 from ..errors import OptionError
 from ..physics.native.power_on import Home
 from ..vehicles import Airframe, CopterAirframe
-from .ports import HOST
-from .process import AutopilotProcess
+from .process import HOST, AutopilotProcess
 
 MODEL = "none_iris"
 PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550

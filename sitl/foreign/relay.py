@@ -14,9 +14,9 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from ..bridge.links.echo import refuse_echo
 from ..bridge.links.link import Link, Peer
-from .cutter import Cutter
+from ..bridge.links.tcp import refuse_echo
+from .process import Cutter
 
 _WAIT_S = 0.1
 _RETRY_S = 0.2

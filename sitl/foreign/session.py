@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from ..bridge.hil.numbers import BASE_PORT
+from ..bridge.hil.protocol import BASE_PORT
 from ..bridge.links.link import Link
 from ..plants.json_link import PORT
 from ..plants.local import LocalPlant
@@ -18,8 +18,7 @@ from ..run.pacing import Pacing
 from . import ardupilot, px4
 from .choice import Choice
 from .json_host import JsonHost
-from .ports import HOST, free_tcp_run
-from .process import AutopilotProcess
+from .process import HOST, AutopilotProcess, free_tcp_run
 from .relay import Relay
 
 Say = Callable[[str], None]

@@ -7,10 +7,10 @@ from sitl import vehicles
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.envs.mavlink.foreign import Foreign, launch
 from sitl.foreign.choice import Choice
-from sitl.foreign.cutter import Cutter
+from sitl.foreign.process import Cutter
 from sitl.physics.engines import NATIVE
 from sitl.physics.native.power_on import Home
-from sitl.plants.alone import stand_alone
+from sitl.plants.local import stand_alone
 from sitl.vehicle.kinds import KINDS
 
 _PATIENCE_S = 30.0

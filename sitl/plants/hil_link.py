@@ -7,7 +7,7 @@ import contextlib
 import socket
 import time
 
-from ..bridge.links.echo import refuse_echo
+from ..bridge.links.tcp import refuse_echo
 from ..errors import OptionError
 from .plant import PhysicsLostError
 

@@ -13,15 +13,14 @@ import time
 from collections.abc import Callable
 
 from ..autopilot.params.table import stored
-from ..bridge.hil.numbers import BASE_PORT
 from ..bridge.hil.physics_end import PhysicsEnd, text_frame
+from ..bridge.hil.protocol import BASE_PORT
 from ..bridge.links.address import LOCAL, LinkAddressError
 from ..core.constants import TICK_S
 from ..physics.carried import Carried
 from ..vehicle.sim_parameters import PREFIX
-from .alone import restart
 from .hil_link import tune
-from .local import LocalPlant
+from .local import LocalPlant, restart
 
 _CATCH_UP_S = 0.05
 

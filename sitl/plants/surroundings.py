@@ -18,8 +18,8 @@ from ..physics.native.records import OBSTACLES_MAX
 from ..scenario import StartPose
 from ..vehicles import Airframe
 from ..worlds import World, contact
-from ..worlds.frames import to_heading, to_ned
 from ..worlds.geometry import BOTTOM, TOP
+from ..worlds.shapes import to_heading, to_ned
 
 REACH = 30.0
 """Solids farther away than this are not listed [m]."""

@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from .error import RecordingError
+from .entries import RecordingError
 
 MARK = b"\x89SITLREC\r\n\x1a"
 VERSION = 1

@@ -3,9 +3,19 @@
 
 from __future__ import annotations
 
+import hashlib
+import struct
+import zlib
 from collections.abc import Iterator
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+from ..errors import SitlError
+from ..simulation import Simulation
+
+
+class RecordingError(SitlError, ValueError):
+    """A recording that cannot be written, read or flown; the message names the file, the place and the reason."""
 
 
 class EntryKind(IntEnum):
@@ -105,3 +115,57 @@ def decode(data: bytes, before_us: int) -> Iterator[Entry]:
         before_us += step
         yield Entry(before_us, kind, number, data[at : at + size])
         at += size
+
+
+_TIME = struct.Struct("<q")
+_LONGEST = 1 << 16
+
+
+class Sent:
+    """Digest of all frames to one client, with their simulated times."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        """Bytes that were sent."""
+        self._hash = hashlib.sha256()
+        self._pending: list[bytes] = []
+        self._size = 0
+        self._last = -1
+
+    def add(self, time_us: int, frames: list[bytes]) -> None:
+        """Frames that go out at ``time_us``."""
+        pending = self._pending
+        if time_us != self._last:
+            self._last = time_us
+            pending.append(_TIME.pack(time_us))
+        pending += frames
+        size = sum(map(len, frames))
+        self.count += size
+        self._size += size
+        if self._size > _LONGEST:
+            self._take()
+
+    def _take(self) -> None:
+        self._hash.update(b"".join(self._pending))
+        self._pending.clear()
+        self._size = 0
+
+    def digest(self) -> bytes:
+        """Digest of all bytes so far."""
+        self._take()
+        return self._hash.digest()
+
+
+def of_state(simulation: Simulation) -> str:
+    """Digest of the vehicle's whole record: body, sensors, autopilot."""
+    record: Any = simulation.fleet.view("u1")
+    return hashlib.sha256(record).hexdigest()
+
+
+def check(simulation: Simulation, sent: dict[int, Sent]) -> bytes:
+    """Four bytes of the record's digest and four of all telemetry's."""
+    state = zlib.crc32(simulation.fleet.view("u1"))  # type: ignore[arg-type]
+    telemetry = 0
+    for number in sorted(sent):
+        telemetry = zlib.crc32(sent[number].digest(), telemetry)
+    return struct.pack("<II", state, telemetry)

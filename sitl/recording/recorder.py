@@ -11,17 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from ..bridge.channel import Channel
-from ..bridge.links.inprocess import InProcessLink
+from ..bridge.links.inprocess import InProcessLink, LogLink
 from ..bridge.links.link import Link, Peer
-from ..bridge.links.log import LogLink
 from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpInLink, UdpOutLink
 from ..logs.track_observer import TrackObserver
 from ..simulation import Simulation
-from . import digests
+from . import entries as digests
 from .blocks import END, ENTRIES, HEADER, LZMA, SECTION, BlockReader, BlockWriter
-from .entries import Entry, EntryKind, encode, varint
-from .error import RecordingError
+from .entries import Entry, EntryKind, RecordingError, encode, varint
 from .identity import describe
 
 CHECK_US = 10_000_000

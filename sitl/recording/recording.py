@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .blocks import END, ENTRIES, HEADER, SECTION, Block, BlockReader
-from .entries import Entry, decode
-from .error import RecordingError
+from .entries import Entry, RecordingError, decode
 
 HEADER_KEYS = frozenset((
     "version", "vehicle", "frame", "airframe", "home", "seed", "estimator", "physics", "world", "start", "params",

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from ..bridge.frame import Splitter
-from ..bridge.links.log import FrameWriter
+from ..bridge.links.inprocess import FrameWriter
 from ..core.compile import Progress
-from ..logs.dataflash.attach import attach
-from ..plants.choose import is_remote
+from ..logs.dataflash.log import attach
+from ..plants.plant import is_remote
 from ..scenario import Scenario
 from ..simulation import Simulation
 from ..vehicle.core_entry import Core
@@ -22,9 +22,7 @@ from ..vehicle.kinds import UnknownKindError
 from ..vehicles import Airframe, AirframeError
 from ..worlds import World, WorldError
 from . import identity
-from .digests import of_state
-from .entries import Entry, EntryKind, read_varint
-from .error import RecordingError
+from .entries import Entry, EntryKind, RecordingError, of_state, read_varint
 from .recorder import LOG, Recorder
 from .recording import Recording
 from .replayed_link import Flip, ReplayedLink, ReplayedPeer

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..bridge.links.inprocess import Clock, FrameWriter
 from ..bridge.links.link import Link, Peer
-from ..bridge.links.log import Clock, FrameWriter
 
 
 class Flip(NamedTuple):

@@ -12,8 +12,7 @@ from ..bridge.links import LogLink
 from ..bridge.links.address import LinkAddressError
 from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpOutLink
-from ..logs.dataflash.attach import attach
-from ..logs.dataflash.log import DataFlash
+from ..logs.dataflash.log import DataFlash, attach
 from ..logs.tlog import LogError, TlogWriter
 from ..simulation import Simulation
 from .standstill import Patience

@@ -24,8 +24,8 @@ from ..physics.native.turtlebot.state import TICK_US
 from ..physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from ..vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
 from ..worlds import World, load, planar
-from ..worlds.frames import from_heading, from_ned, to_heading, to_ned
 from ..worlds.geometry import Solids
+from ..worlds.shapes import from_heading, from_ned, to_heading, to_ned
 
 Pose = Sequence[float]
 """x, y [m], yaw [rad], or x, y, z [m], yaw [rad]."""

@@ -16,8 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.array_kernels import IntLine, Line, Table
-from .frames import to_heading, to_ned
-from .shapes import Box, Cylinder, Solid
+from .shapes import Box, Cylinder, Solid, to_heading, to_ned
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

@@ -40,7 +40,7 @@ from .geometry import (
     Geometry,
     Solids,
 )
-from .rays import INF, TINY, Span, crossing, to_box, to_cylinder, to_floor
+from .planar import INF, TINY, Span, crossing, to_box, to_cylinder, to_floor
 
 MANY = 128
 """From so many solids on a scan walks through the grid: measured, see docs/worlds.md."""

@@ -2,6 +2,11 @@
 """What a world consists of, in the frame of world files.
 
 x forward, y left, z up; metres; yaw counter-clockwise from x, in radians.
+
+From the frame of world files (x forward, y left, z up) to the simulator's NED, and back.
+
+North is x, east is -y, down is -z, heading is -yaw: as in the original, where simulated x was north and y west. Signs
+change and nothing else, so no bit is lost on the way.
 """
 
 from __future__ import annotations
@@ -95,14 +100,12 @@ class Start:
     @property
     def north_east_down(self) -> tuple[float, float, float]:
         """The position in the simulator's frame [m]: north is x, east is -y, down is -z."""
-        from .frames import to_ned
 
         return to_ned(*self.position)
 
     @property
     def heading(self) -> float:
         """In the simulator's frame [rad]: clockwise from north, seen from above."""
-        from .frames import to_heading
 
         return to_heading(self.yaw)
 
@@ -151,3 +154,23 @@ def circle(x: float, y: float, radius: float, corners: int = CIRCLE_CORNERS) -> 
     """Corners of a regular polygon on the circle about (x, y), counter-clockwise, shape (corners, 2) [m]."""
     angles = np.arange(corners) * (2.0 * math.pi / corners)
     return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1) + (x, y)
+
+
+def to_ned(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """North, east, down [m] of a point of a world file [m]."""
+    return x, 0.0 - y, 0.0 - z
+
+
+def from_ned(north: float, east: float, down: float) -> tuple[float, float, float]:
+    """x, y, z [m] of a point in the simulator's frame [m]."""
+    return north, 0.0 - east, 0.0 - down
+
+
+def to_heading(yaw: float) -> float:
+    """Heading [rad], clockwise from north, of a yaw [rad], counter-clockwise from x."""
+    return 0.0 - yaw
+
+
+def from_heading(heading: float) -> float:
+    """Yaw [rad], counter-clockwise from x, of a heading [rad], clockwise from north."""
+    return 0.0 - heading

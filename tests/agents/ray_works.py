@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import signal
 
-from sitl.agents.runs import keeper
+from sitl.agents.runs import folder as keeper
 from sitl.agents.runs.training import train_one
 
 

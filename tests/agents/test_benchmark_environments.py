@@ -14,8 +14,7 @@ from sitl.agents import recipes
 from sitl.agents.cli import benchmark
 from sitl.agents.deep import library
 from sitl.agents.errors import AgentError
-from sitl.agents.recipes.recipe import Recipe
-from sitl.agents.recipes.wanted import check_all, runs_of
+from sitl.agents.recipes.recipe import Recipe, check_all, runs_of
 from sitl.agents.report.driven import Trails, Whereabouts, place_of, whereabouts
 from sitl.agents.report.environments import drive_one, with_range
 from sitl.agents.runs.plan import EvaluationPlan

@@ -11,7 +11,7 @@ import gymnasium as gym
 import pytest
 
 from sitl.agents.tabular.compiled_loop import CompiledLoop
-from sitl.agents.tabular.loop import learn_episode
+from sitl.agents.tabular.learner import learn_episode
 from sitl.agents.tabular.settings import Settings
 from tests.agents.small_runs import CIRCUIT2, learner_for, make
 

@@ -12,7 +12,7 @@ pytest.importorskip("stable_baselines3", reason="deep agents need the extra 'rl'
 from sitl.agents.deep.actions import Actions
 from sitl.agents.deep.features import Features
 from sitl.agents.deep.robots import Robots
-from sitl.agents.deep.tally import Tally
+from sitl.agents.deep.training import Tally
 from tests.agents.deep_runs import CIRCUIT2
 
 SEEDS = [11, 12, 13]

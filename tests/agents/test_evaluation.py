@@ -13,14 +13,13 @@ from pytest import approx
 
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
-from sitl.agents.evaluate import evaluate, evaluate_run, moved_starts
-from sitl.agents.laps import CENTRES, LapCounter
+from sitl.agents.evaluate import CENTRES, LapCounter, evaluate, evaluate_run, moved_starts
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.watch import Watch
 from sitl.agents.tabular import training
-from sitl.agents.tabular.policy import TablePolicy
-from sitl.agents.tabular.slots import slot_of
+from sitl.agents.tabular.exploration import slot_of
 from sitl.agents.tabular.table import Table
+from sitl.agents.tabular.training import TablePolicy
 from sitl.envs.observations import Digits
 from tests.agents.small_runs import make, new
 

@@ -9,7 +9,7 @@ import os
 import pytest
 
 from sitl.agents.errors import AgentError
-from sitl.agents.recipes import recipe_file
+from sitl.agents.recipes import recipe
 from sitl.agents.rehearsal import plan
 from sitl.agents.runs.config import RunConfig
 from sitl.agents.runs.folder import CONFIG, RunFolder
@@ -82,7 +82,7 @@ def test_a_recipe(tmp_path):
     file = tmp_path / "theirs.toml"
     file.write_text(f'env = "{ROVER}"\nalgorithm = "qlearn"\n[options]\nframe = "{marking(tmp_path)}"\n')
     with pytest.raises(AgentError, match="recipe .*theirs.toml: it " + REFUSED.format("frame")):
-        recipe_file.read(file)
+        recipe.read(file)
     assert not (tmp_path / "marker").exists()
 
 

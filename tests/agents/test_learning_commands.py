@@ -7,7 +7,7 @@ import csv
 
 import pytest
 
-from sitl.agents.report.paper_figures import MEAN_REWARDS
+from sitl.agents.report.paper_tables import MEAN_REWARDS
 from sitl.agents.runs import folder as folders
 from tests.agents.small_runs import CHECKS, CIRCUIT2, result
 

@@ -14,7 +14,7 @@ import pytest
 from sitl.agents import algorithms, recipes
 from sitl.agents import cli as agents_cli
 from sitl.agents.errors import AgentError
-from sitl.agents.recipes.recipe_file import KEYS
+from sitl.agents.recipes.recipe import KEYS
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.config import RunConfig
 from sitl.agents.runs.plan import EvaluationPlan

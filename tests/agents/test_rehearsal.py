@@ -12,14 +12,13 @@ import pytest
 
 from sitl.agents import recipes
 from sitl.agents.errors import AgentError
-from sitl.agents.rehearsal import training
+from sitl.agents.rehearsal import rehearse as training
 from sitl.agents.rehearsal.change import Change, is_covered
 from sitl.agents.rehearsal.plan import Plan
 from sitl.agents.rehearsal.rehearse import Rehearsed, Tried, rehearse, trials_of
 from sitl.agents.rehearsal.report import write_report
 from sitl.agents.rehearsal.transfer_ratio import advantage, transfer_ratio
-from sitl.agents.rehearsal.trial import Trial, attempt
-from sitl.agents.rehearsal.truth import is_false_alarm, lidar_distance
+from sitl.agents.rehearsal.trial import Trial, attempt, is_false_alarm, lidar_distance
 from sitl.agents.report.group import Group
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.plan import EvaluationPlan

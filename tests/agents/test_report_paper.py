@@ -7,12 +7,10 @@ import csv
 
 import pytest
 
-from sitl.agents.report.blocks import BLOCK
-from sitl.agents.report.document import Document
+from sitl.agents.report.document import BLOCK, Document
 from sitl.agents.report.paper import SINGLE_CHANGES, STEP_TIMES, VARIANTS
-from sitl.agents.report.paper_figures import MEAN_REWARDS, TITLES
 from sitl.agents.report.paper_reasons import reasons
-from sitl.agents.report.paper_tables import beside_paper, shortfalls
+from sitl.agents.report.paper_tables import MEAN_REWARDS, TITLES, beside_paper, shortfalls
 from tests.agents.written_runs import group
 
 

@@ -10,7 +10,7 @@ import pytest
 from pytest import approx
 from scipy import stats
 
-from sitl.agents.report.blocks import block_means, block_names, moving_mean
+from sitl.agents.report.document import block_means, block_names, moving_mean
 from sitl.agents.report.statistics import (
     difference,
     improvement,

@@ -23,10 +23,10 @@ from sitl.agents.runs.folder import RunFolder
 from sitl.agents.runs.training import is_done, train_all, train_one
 from sitl.agents.runs.watch import Watch
 from sitl.agents.tabular import training
-from sitl.agents.tabular.checks import Checks
 from sitl.agents.tabular.learner import Learner
 from sitl.agents.tabular.settings import Settings
 from sitl.agents.tabular.table import Table
+from sitl.agents.tabular.training import Checks
 from tests.agents import ray_works
 from tests.agents.small_runs import config, new, result
 
@@ -53,7 +53,7 @@ def test_a_run_is_a_folder_that_says_all(tmp_path):
 
 @pytest.mark.parametrize("algorithm", ["qlearn", "sarsa"])
 def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, algorithm, monkeypatch):
-    monkeypatch.setattr("sitl.agents.runs.keeper._REPORT_S", -1.0)  # tells of each episode
+    monkeypatch.setattr("sitl.agents.runs.folder._REPORT_S", -1.0)  # tells of each episode
     whole, parts = new(tmp_path / "whole", algorithm), new(tmp_path / "parts", algorithm)
     train(whole)
     for episodes in (11, 12, 25, None):
@@ -63,7 +63,7 @@ def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, al
 
 
 def test_a_killed_run_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch):
-    monkeypatch.setattr("sitl.agents.runs.keeper._REPORT_S", -1.0)
+    monkeypatch.setattr("sitl.agents.runs.folder._REPORT_S", -1.0)
     whole, killed = new(tmp_path / "whole"), new(tmp_path / "killed")
     train(whole)
     train(killed, 7)

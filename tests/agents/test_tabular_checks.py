@@ -7,9 +7,9 @@ import pytest
 
 from sitl.agents.errors import AgentError
 from sitl.agents.runs.files import read_arrays
-from sitl.agents.tabular.checks import Checks
-from sitl.agents.tabular.outcome import Outcome
+from sitl.agents.tabular.learner import Outcome
 from sitl.agents.tabular.settings import Settings
+from sitl.agents.tabular.training import Checks
 from tests.agents.small_runs import learner_for, make
 
 

@@ -9,11 +9,9 @@ import pytest
 from pytest import approx
 
 from sitl.agents.errors import AgentError
-from sitl.agents.tabular.exploration import epsilon_in
-from sitl.agents.tabular.learner import Learner
-from sitl.agents.tabular.loop import learn_episode
+from sitl.agents.tabular.exploration import epsilon_in, slot_of
+from sitl.agents.tabular.learner import Learner, learn_episode
 from sitl.agents.tabular.settings import Settings
-from sitl.agents.tabular.slots import slot_of
 from sitl.agents.tabular.table import Table
 from tests.agents.small_runs import learner_for
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.agents.errors import AgentError
-from sitl.agents.tabular.slots import EMPTY, slot_of
+from sitl.agents.tabular.exploration import EMPTY, slot_of
 from sitl.agents.tabular.table import Table
 
 

@@ -11,8 +11,8 @@ import pytest
 from sitl.agents import showing
 from sitl.agents.cli import watch
 from sitl.agents.errors import AgentError
-from sitl.agents.film import Reel
 from sitl.agents.runs.watch import Watch
+from sitl.agents.showing import Reel
 from sitl.agents.tabular import training
 from tests.agents.small_runs import new
 

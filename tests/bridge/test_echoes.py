@@ -7,7 +7,7 @@ import socket
 
 import pytest
 
-from sitl.bridge.links.echo import refuse_echo
+from sitl.bridge.links.tcp import refuse_echo
 
 
 def test_a_connection_with_itself_is_refused() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.bridge.telemetry import ranging
+from sitl.bridge.telemetry import sensors
 from sitl.vehicles import load
 from tests.bridge.fakes import Bench
 
@@ -87,12 +87,12 @@ def test_looking_down(bench: Bench) -> None:
 
 
 def test_a_range_beyond_the_message_is_cut() -> None:
-    assert ranging.centimetres(math.inf, 700.0) == 65534, "65535 would mean unknown"
-    assert ranging.centimetres(math.nan, 10.0) == 1001
+    assert sensors.centimetres(math.inf, 700.0) == 65534, "65535 would mean unknown"
+    assert sensors.centimetres(math.nan, 10.0) == 1001
 
 
 def test_one_reading_is_straight_ahead() -> None:
-    assert ranging.sectors((2.5,), 0.0) == ([2.5], 0.0, 0.0)
+    assert sensors.sectors((2.5,), 0.0) == ([2.5], 0.0, 0.0)
 
 
 def test_the_scan_repeats_at_the_interval_asked_for(rover_bench: Bench) -> None:

@@ -19,7 +19,7 @@ from sitl.client import (
     UnknownNameError,
     WaitTimeoutError,
 )
-from sitl.recording.digests import of_state
+from sitl.recording.entries import of_state
 from sitl.simulation import Core
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.plants.alone import stand_alone
 from sitl.plants.json_link import LOCAL
+from sitl.plants.local import stand_alone
 from sitl.scenario import DEFAULT_HOME
 from sitl.simulation import Simulation
 from tests.foreign import arducopter_stand_in, px4_stand_in

@@ -15,8 +15,7 @@ import pytest
 from sitl import vehicles
 from sitl.errors import OptionError
 from sitl.foreign import ardupilot, px4
-from sitl.foreign.ports import HOST, free_tcp_run
-from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
+from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 
 
 def test_ardupilots_command_line():

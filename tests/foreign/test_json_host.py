@@ -9,7 +9,7 @@ import pytest
 
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
-from sitl.plants.alone import stand_alone
+from sitl.plants.local import stand_alone
 from sitl.scenario import DEFAULT_HOME
 from tests.foreign import json_peer
 

@@ -21,8 +21,8 @@ from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.physics.engine import EngineError
 from sitl.plants import json as json_plant
-from sitl.plants.alone import stand_alone
 from sitl.plants.json_link import parse_address
+from sitl.plants.local import stand_alone
 from sitl.plants.plant import PhysicsLostError
 from sitl.scenario import DEFAULT_HOME
 from sitl.simulation import Simulation

@@ -10,7 +10,7 @@ import pytest
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v1, encode_v2
 from sitl.bridge.links.inprocess import InProcessLink
-from sitl.foreign.cutter import Cutter
+from sitl.foreign.process import Cutter
 from sitl.foreign.relay import Relay
 
 HEARTBEAT = message("HEARTBEAT")

@@ -15,7 +15,7 @@ from sitl.cli.recordings import resume
 from sitl.client.endpoint import Endpoint
 from sitl.errors import SitlError
 from sitl.missions.cli import replay
-from sitl.recording.error import RecordingError
+from sitl.recording.entries import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay

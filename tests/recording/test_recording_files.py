@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
-from sitl.recording.entries import Entry, EntryKind, decode, encode, read_varint, varint
-from sitl.recording.error import RecordingError
+from sitl.recording.entries import Entry, EntryKind, RecordingError, decode, encode, read_varint, varint
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from sitl.recording import identity
-from sitl.recording.entries import EntryKind
-from sitl.recording.error import RecordingError
+from sitl.recording.entries import EntryKind, RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay

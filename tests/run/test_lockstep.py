@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.bridge.services.grants import GRANT, RESEED
+from sitl.bridge.services.commands import GRANT, RESEED
 from sitl.client.endpoint import Endpoint
 from sitl.run.lockstep import SLICE_US, serve_lockstep
 from sitl.simulation import Core, Simulation

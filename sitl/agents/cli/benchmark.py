@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..report import paper
 from ..report.group import Group
-from ..report.paper_figures import TITLES
+from ..report.paper_tables import TITLES
 from ..runs.backends import Workers
 from ..runs.bar import Bar
 from ..runs.config import EPISODES

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .. import recipes
-from ..recipes.wanted import check_all, runs_of
-from ..report import environments, plots
+from ..recipes.recipe import check_all, runs_of
+from ..report import curves, environments
 from ..report.driven import Driven
 from ..report.environments import Dish
 from ..report.group import Group
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace, train: Train) -> int:
     pool = workers(options)
     chosen = [recipes.load(name) for name in options.only or recipes.names()]
     check_all(chosen, options.seeds)
-    plots.figure()  # before hours are spent, see that pictures can be drawn
+    curves.figure()  # before hours are spent, see that pictures can be drawn
     runs = [runs_of(options.out, recipe, options.seeds) for recipe in chosen]
     todo = [one for group in runs for one in group if not is_done(one)]
     items = [(one.path, recipe) for recipe, group in zip(chosen, runs) for one in group]

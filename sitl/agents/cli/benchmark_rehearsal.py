@@ -9,11 +9,11 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from ..recipes.wanted import check_all, runs_of
+from ..recipes.recipe import check_all, runs_of
 from ..rehearsal import plan as plans
+from ..rehearsal.rehearse import PLAIN, recipes_of
 from ..rehearsal.report import write_report
-from ..rehearsal.training import PLAIN, recipes_of
-from ..report import plots
+from ..report import curves
 from ..report.group import Group
 from ..runs.backends import Workers
 from ..runs.folder import RunFolder
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace, train: Train) -> int:
     plans.check_names(chosen)
     recipes = {plan.name: recipes_of(plan, options.steps) for plan in chosen}
     check_all([recipe for pair in recipes.values() for recipe in pair.values()], options.seeds)
-    plots.figure()  # before much is trained, see that pictures can be drawn
+    curves.figure()  # before much is trained, see that pictures can be drawn
     runs = {
         plan: {title: runs_of(options.out, recipe, options.seeds) for title, recipe in pair.items()}
         for plan, pair in recipes.items()

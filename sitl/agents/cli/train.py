@@ -1,26 +1,135 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl train``: an agent learns in an environment; its run is a folder."""
+"""``sitl train``: an agent learns in an environment; its run is a folder. Recipes and sweeps say what."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from sitl.core.extras import MissingExtra
 
-from .. import algorithms, environments
+from .. import algorithms, environments, recipes
 from ..errors import AgentError
 from ..report import curves
+from ..report.statistics import scipy_stats
+from ..report.sweep import write_table
 from ..runs import folder as folders
+from ..runs import sweep as sweeps
 from ..runs.bar import Bar
 from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
-from ..runs.sweep import Sweep, is_sweep
+from ..runs.sweep import OPTION, Sweep, is_sweep
 from ..runs.training import is_done, train_all
-from .by_recipe import add_recipe, config_by_recipe, folder_name
-from .by_sweep import add_sweep, runs_of_sweep, tell_sweep
 from .options import add_jobs, assignment, assignments, positive, workers
+
+
+def add_recipe(parser: argparse.ArgumentParser) -> None:
+    """--recipe."""
+    shipped = ", ".join(recipes.names())
+    parser.add_argument(
+        "--recipe", metavar="NAME", help=f"a tuned way to learn: a .toml file, or one of {shipped}; ENV is not needed"
+    )
+
+
+def config_by_recipe(options: argparse.Namespace) -> RunConfig:
+    """The run that ``sitl train --recipe`` asks for.
+
+    Raises:
+        AgentError: no such recipe, or it is of another environment or algorithm than the options.
+        MissingExtra: its algorithm needs what is not installed.
+    """
+    recipe = recipes.load(options.recipe)
+    for given, its, what in (
+        (options.env, recipe.env, "learns in"),
+        (options.algo, recipe.algorithm, "learns by"),
+    ):
+        if given is not None and given != its:
+            raise AgentError(
+                f"recipe {recipe.name} {what} {its}, not {given}; leave that out, or train without --recipe"
+            )
+    return recipe.config(
+        seed=options.seed or 0,
+        episodes=options.episodes,
+        steps=options.steps,
+        max_steps=options.max_steps,
+        options=assignments(options.option),
+        settings=assignments(options.set),
+    )
+
+
+def folder_name(options: argparse.Namespace, config: RunConfig) -> str:
+    """Default folder name of a run."""
+    return config.name if options.recipe is None else recipes.load(options.recipe).name
+
+
+Configure = Callable[[argparse.Namespace], RunConfig]
+Open = Callable[[Path, RunConfig, argparse.Namespace], RunFolder]
+
+
+def add_sweep(parser: argparse.ArgumentParser) -> None:
+    """--sweep."""
+    parser.add_argument(
+        "--sweep",
+        type=_axis,
+        action="append",
+        metavar="NAME=V1,V2,...",
+        help=f"runs with each of these values of a setting, or of an option as {OPTION}world=maze,circuit; repeatable: "
+        "each combination",
+    )
+
+
+def runs_of_sweep(options: argparse.Namespace, path: Path, configure: Configure, open_: Open) -> list[RunFolder]:
+    """The runs of all combinations and seeds.
+
+    Args:
+        options: with ``sweep``.
+        path: path of the sweep's folder.
+        configure: makes a run of options.
+        open_: makes its folder, or opens it.
+
+    Raises:
+        AgentError: a name or a value that cannot be; then no folder was made.
+        MissingExtra: no SciPy, which the sweep's table needs at the end.
+    """
+    scipy_stats()
+    found = sweeps.combinations(options.sweep)
+    configs = [configure(_with(options, values)) for values in found]
+    environments.try_all(configs)
+    Sweep.begin(path, found)
+    runs = []
+    for values, config in zip(found, configs):
+        for seed in range(config.seed, config.seed + options.seeds):
+            folder = folders.seed_folder(path / sweeps.folder_name(values), seed)
+            runs.append(open_(folder, config.with_(seed=seed), options))
+    return runs
+
+
+def tell_sweep(path: Path) -> None:
+    """Write the table of a sweep, and print it."""
+    file, text = write_table(Sweep.load(path))
+    print(f"{text}\n{file}")
+
+
+def _with(options: argparse.Namespace, values: sweeps.Values) -> argparse.Namespace:
+    changed = argparse.Namespace(**vars(options))
+    changed.set, changed.option = [*(options.set or ())], [*(options.option or ())]
+    for name, value in values.items():
+        if name.startswith(OPTION):
+            changed.option.append((name.removeprefix(OPTION), value))
+        else:
+            changed.set.append((name, value))
+    return changed
+
+
+def _axis(text: str) -> tuple[str, list[Any]]:
+    try:
+        return sweeps.axis(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
 
 RUNS = Path("runs")
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from .recipe import Recipe
-from .shelf import load, names
+from .recipe import Recipe, load, names
 
 __all__ = ["Recipe", "load", "names"]

@@ -1,15 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A recipe: what is trained where, by which settings, for how long, and how what was learnt is played."""
+"""Recipes: what they hold, their files, and the runs that they want."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
-from .. import algorithms
+from sitl.core import code_in_files
+from sitl.core.extras import MissingExtra
+from sitl.errors import did_you_mean
+
+from .. import algorithms, environments
 from ..errors import AgentError
-from ..runs.config import MAX_STEPS, RunConfig, versions
+from ..runs import folder as folders
+from ..runs.config import MAX_STEPS, RunConfig, code_of, versions
+from ..runs.folder import RunFolder
 from ..runs.plan import EvaluationPlan
 
 
@@ -83,3 +92,121 @@ class Recipe:
             evaluation=self.evaluation,
             **length,
         )
+
+
+KEYS: dict[str, tuple[type, str]] = {
+    "summary": (str, "text"),
+    "env": (str, "text"),
+    "algorithm": (str, "text"),
+    "episodes": (int, "a whole number"),
+    "steps": (int, "a whole number"),
+    "max_steps": (int, "a whole number"),
+    "options": (dict, "a table"),
+    "settings": (dict, "a table"),
+    "evaluation": (dict, "a table"),
+}
+"""Key -> type of its value, and what that is called."""
+_REQUIRED = ("env", "algorithm")
+
+
+def read(path: Path) -> Recipe:
+    """The recipe in a file.
+
+    Raises:
+        AgentError: there is none, or it cannot be used; the message names file, key and value.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise AgentError(f"there is no recipe {path}") from None
+    except (OSError, ValueError) as error:
+        raise AgentError(f"recipe {path} cannot be read: {error}") from None
+    try:
+        return _recipe(path.stem, tomllib.loads(text))
+    except (tomllib.TOMLDecodeError, AgentError) as error:
+        raise AgentError(f"recipe {path}: {error}") from None
+
+
+def _recipe(name: str, values: dict[str, Any]) -> Recipe:
+    for key, value in values.items():
+        if key not in KEYS:
+            hint = did_you_mean(key, KEYS)
+            raise AgentError(
+                f"key {key!r} is not known; it is one of {', '.join(KEYS)}{hint} (settings of the algorithm stand "
+                "under [settings], options of the environment under [options])"
+            )
+        kind, called = KEYS[key]
+        if not isinstance(value, kind) or isinstance(value, bool):
+            raise AgentError(f"{key} = {value!r}; it must be {called}")
+        try:
+            json.dumps(value)
+        except TypeError:
+            raise AgentError(f"{key} has a date or a time, which no option or setting takes") from None
+    for key in _REQUIRED:
+        if key not in values:
+            raise AgentError(f"key {key!r} is missing")
+    plan = EvaluationPlan.of(values.pop("evaluation", {}))
+    refused = code_in_files.refusal("it", code_of(values["env"], values.get("options", {}), plan.options))
+    if refused is not None:
+        raise AgentError(refused)
+    return Recipe(name=name, evaluation=plan, **values)
+
+
+_FOLDER = Path(__file__).parent
+
+
+def names() -> tuple[str, ...]:
+    """Names of the recipes that come with the program."""
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def load(name: str | Path) -> Recipe:
+    """A recipe by its name, or by the path of a .toml file.
+
+    Raises:
+        AgentError: no recipe of that name (the message lists those there are), or the file cannot be used.
+    """
+    if isinstance(name, Path) or name.endswith(".toml"):
+        return read(Path(name))
+    known = names()
+    if name not in known:
+        hint = did_you_mean(name, known)
+        raise AgentError(f"recipe {name!r} is not known; it is a .toml file or one of {', '.join(known)}{hint}")
+    return read(_FOLDER / f"{name}.toml")
+
+
+def check_all(recipes: Sequence[Recipe], seeds: int) -> None:
+    """Check that all recipes can be trained, before any training starts.
+
+    Raises:
+        MissingExtra: some need what is not installed; the message says which do not.
+        AgentError: a recipe that cannot be used, or two of one name.
+    """
+    chosen = [recipe.name for recipe in recipes]
+    for name in chosen:
+        if chosen.count(name) > 1:
+            raise AgentError(f"there are two recipes {name!r}; each needs a folder of its own")
+    missing: dict[str, MissingExtra] = {}
+    for recipe in recipes:
+        try:
+            config = recipe.config(seeds - 1)
+            try:
+                environments.try_all([config])
+            except AgentError as error:
+                raise AgentError(f"recipe {recipe.name}: {error}") from None
+        except MissingExtra as error:
+            missing[recipe.name] = error
+    if missing:
+        rest = [name for name in chosen if name not in missing]
+        hint = f"; without: --only {' '.join(rest)}" if rest else ""
+        raise MissingExtra(f"recipes {', '.join(missing)}: {next(iter(missing.values()))}{hint}")
+
+
+def runs_of(out: Path, recipe: Recipe, seeds: int) -> list[RunFolder]:
+    """The runs of a recipe, made where they are not there yet, and at least as long as it says.
+
+    Raises:
+        AgentError: there are other runs in their place.
+    """
+    place = out / "runs" / recipe.name
+    return [RunFolder.ensure(folders.seed_folder(place, seed), recipe.config(seed)) for seed in range(seeds)]

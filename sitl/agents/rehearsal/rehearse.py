@@ -4,16 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from .. import environments, recipes
+from ..errors import AgentError
+from ..recipes import Recipe
 from ..report.group import Group
 from ..runs import folder as folders
 from ..runs.folder import RunFolder
 from ..runs.local import OnProgress, each
 from .change import Change
+from .plan import Plan
 from .transfer_ratio import Floats, Ratio, advantage, transfer_ratio
 from .trial import Result, Trial, attempt
 
@@ -138,3 +142,40 @@ def rehearse(
         home, *tried = [Tried.of(results[k : k + size]) for k in range(0, len(some), size)]
         out.append(Rehearsed(group.name, group.runs, home, list(changes), tried))
     return out
+
+
+PLAIN, RANDOMISED = "plain", "randomised"
+
+
+def recipes_of(plan: Plan, steps: int | None = None) -> dict[str, Recipe]:
+    """The plan's recipe as it is, and with its domain randomisation; both as long.
+
+    Args:
+        plan: with a recipe.
+        steps: steps of a training; None: as the plan says, or else the recipe.
+
+    Raises:
+        AgentError: the plan says no recipe, or its randomisation is none of the robot's.
+        MissingExtra: the algorithm needs what is not installed.
+    """
+    if "recipe" not in plan.training or not plan.randomise:
+        raise AgentError(f"plan {plan.name}: a benchmark needs training.recipe and randomise")
+    recipe = recipes.load(plan.training["recipe"])
+    length: dict[str, Any] = {key: plan.training.get(key) for key in ("episodes", "steps")}
+    if steps is not None:
+        length = {"episodes": None, "steps": steps}
+    if any(length.values()):
+        recipe = replace(recipe, **length)
+    env = environments.make(recipe.config())
+    try:
+        drawn = plan.randomisation(env.unwrapped.robot)  # type: ignore[attr-defined]
+    finally:
+        env.close()
+    own = recipe.options.get("randomise") or {}
+    name = f"{plan.name}-{{}}"
+    return {
+        PLAIN: replace(recipe, name=name.format(PLAIN)),
+        RANDOMISED: replace(
+            recipe, name=name.format(RANDOMISED), options={**recipe.options, "randomise": {**own, **drawn}}
+        ),
+    }

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.worlds import World
-from sitl.worlds.frames import from_ned
+from sitl.worlds.shapes import from_ned
 
 from .. import environments
 from ..evaluate import Evaluation, Played, evaluate, stage

@@ -18,7 +18,7 @@ from . import curves
 from .document import Document
 from .driven import Driven, drive
 from .group import Group
-from .paper_figures import REAL_TIME_FACTOR
+from .paper_tables import REAL_TIME_FACTOR
 from .sections import write_csv
 from .trails import draw_trails
 

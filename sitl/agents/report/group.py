@@ -13,7 +13,7 @@ from ..errors import AgentError
 from ..runs import folder as folders
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
-from .blocks import BLOCK, Floats, block_means, rewards_of
+from .document import BLOCK, Floats, block_means, rewards_of
 
 
 class Group:

@@ -14,12 +14,10 @@ from ..runs.backends import Workers
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
 from ..runs.plan import EvaluationPlan
-from .blocks import BLOCK
-from .document import Document
+from .document import BLOCK, Document
 from .group import Group
-from .paper_figures import ENVIRONMENT, MEAN_REWARDS, TITLES
 from .paper_reasons import reasons
-from .paper_tables import beside_paper, changes, shortfalls, times
+from .paper_tables import ENVIRONMENT, MEAN_REWARDS, TITLES, beside_paper, changes, shortfalls, times
 from .sections import aggregates, blocks_csv, curves_text, draw_curves, greedy_play, interval_text
 
 JITTER = 0.1

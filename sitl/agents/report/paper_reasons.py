@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from .blocks import BLOCK, Floats
+from .document import BLOCK, Floats
 from .group import Group
-from .paper_figures import MEAN_REWARDS, TITLES
+from .paper_tables import MEAN_REWARDS, TITLES
 from .sections import with_interval
 from .statistics import difference, mean_interval
 

@@ -18,10 +18,9 @@ from ..evaluations import evaluate_groups
 from ..runs.backends import Workers
 from ..runs.files import write_bytes
 from ..runs.plan import EvaluationPlan
-from . import plots
-from .blocks import BLOCK, block_names
+from . import curves
 from .curves import draw_means, draw_raw
-from .document import Document
+from .document import BLOCK, Document, block_names
 from .group import Group
 from .statistics import improvement_interval, iqm_interval, mean_interval, profile_interval
 
@@ -91,7 +90,7 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
         block: episodes of an average.
         paper: name -> means of its blocks, to be drawn beside ours.
     """
-    made, axes = plots.figure(14.0, 4.2 * ((len(groups) + 2) // 2), (len(groups) + 2) // 2, 2)
+    made, axes = curves.figure(14.0, 4.2 * ((len(groups) + 2) // 2), (len(groups) + 2) // 2, 2)
     flat = list(axes.flat)
     for place, group in zip(flat, groups):
         draw_raw(place, group.rewards[0], f"{group.name}, seed {group.runs[0].config.seed}", block)
@@ -102,11 +101,11 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
     draw_means(last, {group.name: group.rewards for group in groups}, block)
     for style, (name, means) in zip(("--", ":", "-."), paper.items()):
         last.plot((np.arange(len(means)) + 1) * block, means, style, color="black", label=name)
-    plots.fit_to_lines(last)
+    curves.fit_to_lines(last)
     last.legend(loc="upper left")
     for unused in flat[len(groups) + 1 :]:
         unused.set_visible(False)
-    return plots.save(made, path)
+    return curves.save(made, path)
 
 
 def curves_text(block: int) -> str:
@@ -124,8 +123,8 @@ def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> 
     lowest, highest = min(s.min() for s in scores), max(s.max() for s in scores)
     around = 0.05 * (highest - lowest) or 0.05 * abs(highest) or 1.0
     levels = np.linspace(lowest - around, highest + around, 400)
-    made, axes = plots.figure(9.0, 4.5)
-    for (colour, style), group, score in zip(plots.styles(), groups, scores):
+    made, axes = curves.figure(9.0, 4.5)
+    for (colour, style), group, score in zip(curves.styles(), groups, scores):
         shares, low, high = profile_interval(score, levels)
         axes[0, 0].step(levels, shares, color=colour, linestyle=style, label=group.name, where="post")
         if len(score) > 1:
@@ -133,7 +132,7 @@ def draw_profile(path: Path, groups: Sequence[Group], block: int, over: str) -> 
     axes[0, 0].set(xlabel=f"mean reward of {over}", ylabel="share of runs above", ylim=(-0.02, 1.02))
     axes[0, 0].grid(alpha=0.3)
     axes[0, 0].legend()
-    return plots.save(made, path)
+    return curves.save(made, path)
 
 
 def aggregates(document: Document, folder: Path, groups: Sequence[Group], block: int) -> None:

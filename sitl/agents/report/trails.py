@@ -10,7 +10,7 @@ import numpy as np
 
 from sitl.worlds import World
 
-from . import plots
+from . import curves
 from .driven import Floats
 
 _PAPER, _WALL, _OTHER = "#fafaf7", "#3e444c", "#d5d9dd"
@@ -40,7 +40,7 @@ def draw_trails(path: Path, world: World, trails: Sequence[Floats], crashed: Seq
     low, high = _extent(world, trails)
     wide, tall = (high - low).tolist()
     width = min(max(_HEIGHT * wide / tall, 4.0), _WIDEST)
-    made, axes = plots.figure(width, width * tall / wide + 0.3)
+    made, axes = curves.figure(width, width * tall / wide + 0.3)
     place = axes[0, 0]
     place.set_facecolor(_PAPER)
     at = world.plan_height
@@ -59,7 +59,7 @@ def draw_trails(path: Path, world: World, trails: Sequence[Floats], crashed: Seq
     place.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x [m]", ylabel="y [m]", aspect="equal")
     place.set_title(title, loc="left", fontsize=11)
     place.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, borderaxespad=0.2)
-    return plots.save(made, path)
+    return curves.save(made, path)
 
 
 def _extent(world: World, trails: Sequence[Floats]) -> tuple[Floats, Floats]:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The folder of a run, and folders of several runs.
+"""Run folders, and what is kept while a run is trained.
+
+The folder of a run, and folders of several runs.
 
 A run has config.json (what it is), episodes.csv (what came of it), a model, curve.png. A folder whose subfolders are
 runs is a group: the same run with several seeds.
@@ -7,15 +9,17 @@ runs is a group: the same run with several seeds.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from sitl.core import code_in_files
 
 from ..errors import AgentError
 from .config import RunConfig
-from .episodes import EpisodeLog
+from .episodes import Episode, EpisodeLog
 from .files import make_folder
+from .watch import Watch
 
 CONFIG = "config.json"
 
@@ -127,3 +131,52 @@ def common(runs: Iterable[RunFolder]) -> RunConfig:
         if different:
             raise AgentError(f"{first.path} and {other.path} are not one group: they differ in {', '.join(different)}")
     return first.config
+
+
+PERIOD_S = 5.0
+"""Wall time between checkpoints [s]."""
+_FIRST_S = 0.5
+"""Wall time until the first checkpoint [s]."""
+_REPORT_S = 0.1
+"""Wall time between reports to ``watch`` [s]."""
+
+
+class Keeper:
+    """Collects episodes as they are done.
+
+    Args:
+        folder: folder of the run.
+        watch: receives them.
+        checkpoint: saves the model; called when it has learnt from all episodes collected so far.
+    """
+
+    def __init__(self, folder: RunFolder, watch: Watch, checkpoint: Callable[[], None]) -> None:
+        self._folder, self._watch, self._checkpoint = folder, watch, checkpoint
+        self._unwritten: list[Episode] = []
+        self._unreported: list[Episode] = []
+        self._reported_at = time.monotonic()
+        self._saved = self._reported_at - PERIOD_S + _FIRST_S
+
+    def take(self, row: Episode) -> None:
+        """An episode is done."""
+        self._unwritten.append(row)
+        self._unreported.append(row)
+        now = time.monotonic()
+        if now - self._reported_at > _REPORT_S:
+            self._report()
+        if now - self._saved > PERIOD_S:
+            self.save()
+
+    def save(self) -> None:
+        """Write new episodes to the log, then the checkpoint: a log may be ahead of its model, never behind."""
+        if self._unreported:
+            self._report()
+        self._folder.episodes.append(self._unwritten)
+        self._unwritten = []
+        self._checkpoint()
+        self._saved = time.monotonic()
+
+    def _report(self) -> None:
+        self._watch.on_progress(self._unreported)
+        self._unreported = []
+        self._reported_at = time.monotonic()

@@ -28,11 +28,9 @@ from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from sitl.turtlebots.native import Turtlebots, ticks_in
 from sitl.worlds.geometry import Solids
 
+from .exploration import LearnerState, Memory, key_of
 from .learn import Move, choose_first, learn_first
-from .learner import Learner
-from .outcome import Outcome
-from .slots import Memory, key_of
-from .state import LearnerState
+from .learner import Learner, Outcome
 
 _TRANSPARENT = (TimeLimit, OrderEnforcing, PassiveEnvChecker)
 """Wrappers that change nothing but when an episode is truncated."""

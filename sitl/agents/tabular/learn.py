@@ -12,11 +12,7 @@ from sitl.core.array_kernels import Kernel
 from sitl.core.kernels import law
 from sitl.core.records import Records
 
-from .exploration import choose
-from .qlearn import best_value
-from .sarsa import value_taken
-from .slots import EMPTY, Memory, slot_of
-from .state import SARSA, LearnerState
+from .exploration import EMPTY, SARSA, LearnerState, Memory, best_value, choose, slot_of, value_taken
 
 
 class Move(NamedTuple):

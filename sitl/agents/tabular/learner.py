@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
+import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
@@ -14,11 +15,9 @@ from sitl.core.records import Records
 from sitl.core.rng import seed as seed_rng
 
 from ..errors import AgentError
-from .exploration import epsilon_in
+from .exploration import LearnerState, Memory, epsilon_in
 from .learn import Move, choose_action, learn_step
 from .settings import EXPLORATIONS, RULES, Settings
-from .slots import Memory
-from .state import LearnerState
 from .table import Table
 
 
@@ -112,3 +111,36 @@ class Learner:
         self.table = table
         self._view.states = len(table)
         self.record["rng"]["s"][0] = stored
+
+
+class Outcome(NamedTuple):
+    """Result of one episode."""
+
+    steps: int
+    reward: float
+    """Sum."""
+    terminated: bool
+    """The episode ended by itself (a crash, in the paper's environments), not by the limit of steps."""
+
+
+def learn_episode(
+    env: gym.Env[Any, Any], learner: Learner, seed: int, options: dict[str, Any] | None = None
+) -> Outcome:
+    """Learn from an episode, after ``learner.begin``.
+
+    Args:
+        env: it must truncate its episodes (``gym.make(..., max_episode_steps=...)``).
+        learner: the learner.
+        seed: seed of the reset.
+        options: options of the reset.
+    """
+    observation, _ = env.reset(seed=seed, options=options)
+    key = learner.first_key(observation)
+    action, steps, total = learner.choose(key), 0, 0.0
+    while True:
+        observation, reward, terminated, truncated, _ = env.step(action)
+        after = learner.table.key(observation)
+        following = learner.learn(key, action, float(reward), after, bool(terminated))
+        key, action, steps, total = after, following, steps + 1, total + float(reward)
+        if terminated or truncated:
+            return Outcome(steps, total, bool(terminated))

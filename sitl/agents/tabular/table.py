@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ..errors import AgentError
 from ..runs.files import read_arrays, write_arrays
-from .slots import EMPTY, Memory, key_of, move_rows, slot_of
+from .exploration import EMPTY, Memory, key_of, move_rows, slot_of
 
 _LEAST_ROWS = 4096
 _FIRST_KEY_LIMIT = 2**62

@@ -10,10 +10,10 @@ import math
 from typing import TYPE_CHECKING, cast
 
 from ..channel import Channel
-from ..services import commands_system, commands_vehicle
+from ..services import command_table
 from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry
-from ..services.commands_vehicle import set_mode
-from ..services.results import ACCEPTED, DENIED, FAILED
+from ..services.command_table import set_mode
+from ..services.service import ACCEPTED, DENIED, FAILED
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
@@ -115,8 +115,8 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 COMMANDS: dict[int, Entry] = {
-    **commands_vehicle.COMMANDS,
-    **commands_system.COMMANDS,
+    **command_table.COMMANDS,
+    **command_table.COMMANDS,
     17: Entry(loiter),
     21: Entry(land),
     22: Entry(takeoff, required=(7,)),

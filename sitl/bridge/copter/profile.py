@@ -9,8 +9,8 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ..profile import Controllers, Profile, Stick
-from ..services.results import CRITICAL, INFO
-from ..telemetry.identity import CAPABILITIES, TERMINATION
+from ..services.service import CRITICAL, INFO
+from ..telemetry.status import CAPABILITIES, TERMINATION
 from . import telemetry
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS

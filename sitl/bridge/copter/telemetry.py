@@ -10,7 +10,7 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.table import MODES, NEED_POSITION
 from ...core.geodesy import add_offset
 from ..dialect import message
-from ..telemetry import position
+from ..telemetry import motion
 from ..telemetry.builder import Build, Builder, Context
 from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW
 from ..telemetry.units import DEG, int16, int32, uint16
@@ -81,7 +81,7 @@ def extended_sys_state(context: Context) -> Build:
 
 def vfr_hud(context: Context) -> Build:
     """VFR_HUD: ground speed in both speeds [m/s], heading [deg], throttle [%], altitude above sea level [m]."""
-    return position.vfr_hud(context, C + "motors.throttle_out")
+    return motion.vfr_hud(context, C + "motors.throttle_out")
 
 
 STEERED_MODES = frozenset((3, 4, 6))

@@ -17,10 +17,9 @@ from ...core.record_reader import RecordReader
 from ..dialect import message
 from ..frame import Frame, Splitter
 from . import controls, truth
-from .inbox import Inbox
-from .numbers import ARDUPILOTMEGA, AUTOPILOT, REBOOT, REQUEST_MESSAGE, RESEED, RefusedError
-from .sender import Sender
-from .sensor import KIND as SENSOR
+from .measurements import Inbox
+from .protocol import ARDUPILOTMEGA, AUTOPILOT, REBOOT, REQUEST_MESSAGE, RESEED, RefusedError, Sender
+from .sensor import SENSOR_KIND as SENSOR
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, TEXT = (
     message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "STATUSTEXT")
@@ -115,7 +114,7 @@ class AutopilotEnd:
 
     def ask_truth(self) -> bytes:
         """Ask where the vehicle is."""
-        return self._command(REQUEST_MESSAGE, truth.KIND.id)
+        return self._command(REQUEST_MESSAGE, truth.TRUTH_KIND.id)
 
     def _command(self, number: int, first: float) -> bytes:
         return self._frame(COMMAND, COMMAND.payload(command=number, param1=first))
@@ -151,7 +150,7 @@ class AutopilotEnd:
             return self._tick(frame.payload)
         if self._inbox.keep(kind.id, frame.payload):
             return WAITING
-        if kind is truth.KIND:
+        if kind is truth.TRUTH_KIND:
             self.truth_us, self.truth = truth.read_truth(frame.payload)
         elif kind is ACK:
             if kind.decode(frame.payload).command == self._until_ack:

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What physics sends for a tick: the samples that are new, and HIL_SENSOR, which ends it."""
+"""The samples of a tick: what physics sends, HIL_SENSOR last, and what the autopilot takes of it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
 
 from ...core.record_reader import RecordReader
 from ..dialect import MessageType
-from . import battery, gps, hits, sensor, wheels
-from .numbers import PHYSICS
+from . import gps, ranging, sensor, sticks, truth
+from .protocol import PHYSICS, RefusedError, Sender
 from .ranging import RangeWriter, ScanWriter
-from .sender import Sender
 
 
 class Source(Protocol):
@@ -54,14 +54,14 @@ class Measurements:
         self._imu = sensor.SensorWriter(reader)
         sources: list[Source] = [
             _Plain(gps.KIND, gps.GpsWriter(reader)),
-            _Plain(battery.KIND, battery.BatteryWriter(reader)),
-            _Plain(wheels.KIND, wheels.WheelWriter(reader)),
+            _Plain(sensor.BATTERY_KIND, sensor.BatteryWriter(reader)),
+            _Plain(sensor.WHEELS_KIND, sensor.WheelWriter(reader)),
             ScanWriter(reader, v),
             RangeWriter(reader, v),
-            _Plain(hits.KIND, hits.HitWriter(reader, "physics.obstacles", hits.SOLID)),
+            _Plain(truth.HITS_KIND, truth.HitWriter(reader, "physics.obstacles", truth.SOLID)),
         ]
         if hasattr(v.physics, "ground"):
-            sources.append(_Plain(hits.KIND, hits.HitWriter(reader, "physics.ground", hits.GROUND)))
+            sources.append(_Plain(truth.HITS_KIND, truth.HitWriter(reader, "physics.ground", truth.GROUND)))
         self._read = reader.fields(*(mark for source in sources for mark in source.marks))
         self._slots: list[tuple[slice, Source]] = []
         at = 0
@@ -74,16 +74,90 @@ class Measurements:
         """All that is known now, as new: for an autopilot that has just come."""
         self._seen = self._read()
         frames = [self._frames(source) for _, source in self._slots]
-        return b"".join(frames) + self.sender.frame(sensor.KIND, self._imu.payload(True))
+        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self._imu.payload(True))
 
     def tick(self) -> bytes:
         """What is new since the last call."""
         marks = self._read()
         if marks == self._seen:
-            return self.sender.frame(sensor.KIND, self._imu.payload())
+            return self.sender.frame(sensor.SENSOR_KIND, self._imu.payload())
         seen, self._seen = self._seen, marks
         frames = [self._frames(source) for place, source in self._slots if marks[place] != seen[place]]
-        return b"".join(frames) + self.sender.frame(sensor.KIND, self._imu.payload())
+        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self._imu.payload())
 
     def _frames(self, source: Source) -> bytes:
         return b"".join([self.sender.frame(kind, payload) for kind, payload in source.messages()])
+
+
+Readers = tuple[Any, ...]
+
+
+class Inbox:
+    """Writes one vehicle's ``sensors``.
+
+    Args:
+        fleet, index: the record, whose memory stays in place; it has the figures of its airframe.
+        v: view of it.
+    """
+
+    def __init__(self, fleet: np.ndarray[Any, Any], index: int, v: Any) -> None:
+        self._imu = sensor.SensorReader(fleet, index)
+        self._readers: dict[int, Readers] = {
+            gps.KIND.id: (gps.GpsReader(v),),
+            sensor.BATTERY_KIND.id: (sensor.BatteryReader(v),),
+            sensor.WHEELS_KIND.id: (sensor.WheelReader(v),),
+            sticks.KIND.id: (sticks.SticksReader(v),),
+            ranging.VECTOR.id: (ranging.RangeReader(v), truth.HitReader(v)),
+            ranging.DISTANCE.id: (ranging.DistanceReader(v),),
+            ranging.SCAN.id: (ranging.ScanReader(v, int(v.physics.airframe.lidar_samples)),),
+        }
+        self._kept: list[tuple[Callable[[Any], None], Any]] = []
+        self._is_spoilt = False
+
+    def keep(self, number: int, payload: bytes) -> bool:
+        """Check a message and keep it for its tick; False when it is none of these.
+
+        Raises:
+            RefusedError: the tick cannot be taken any more.
+        """
+        readers = self._readers.get(number)
+        if readers is None:
+            return False
+        try:
+            for reader in readers:
+                values = reader.read(payload)
+                if values is not None:
+                    self._kept.append((reader.write, values))
+        except RefusedError:
+            self._is_spoilt = True
+            raise
+        return True
+
+    def end(self, payload: bytes) -> sensor.Values | None:
+        """Check the HIL_SENSOR that ends a tick; None when an earlier message has spoilt the tick.
+
+        Raises:
+            RefusedError: the tick cannot be taken.
+        """
+        try:
+            values = self._imu.read(payload)
+        except RefusedError:
+            self.forget()
+            raise
+        if self._is_spoilt:
+            self.forget()
+            return None
+        return values
+
+    def take(self, values: sensor.Values, is_all: bool = False) -> None:
+        """Put a tick into the record; ``is_all``: all its samples are new to us."""
+        if self._kept:
+            for write, kept in self._kept:
+                write(kept)
+            self._kept.clear()
+        self._imu.write(values, is_all)
+
+    def forget(self) -> None:
+        """Leave what was kept: it belongs to a tick that is not taken."""
+        self._kept.clear()
+        self._is_spoilt = False

@@ -18,12 +18,12 @@ from ...core.constants import TICK_US
 from ...physics.carried import Carried
 from ..dialect import message
 from ..frame import Frame, Splitter
-from ..services.results import ACCEPTED, DENIED, UNSUPPORTED
+from ..services.service import ACCEPTED, DENIED, UNSUPPORTED
 from . import controls, sticks, truth
-from .foreign_clock import ForeignClock
+from .controls import ForeignClock
 from .measurements import Measurements
-from .numbers import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
-from .sensor import KIND as SENSOR
+from .protocol import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
+from .sensor import SENSOR_KIND as SENSOR
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, PARAM_VALUE, TEXT = (
     message(name)
@@ -182,7 +182,7 @@ class PhysicsEnd:
         return self._tick
 
     def _truth(self) -> bytes:
-        return self._frame(truth.KIND, truth.truth_payload(self._now, self._simulated.truth()))
+        return self._frame(truth.TRUTH_KIND, truth.truth_payload(self._now, self._simulated.truth()))
 
     def _parameter(self, fields: Any) -> bytes:
         name = fields.param_id.decode("ascii", "replace")
@@ -214,11 +214,11 @@ class PhysicsEnd:
             more = self._tick
         elif number == RESEED and frame.kind is COMMAND_INT:
             self._simulated.reseed((fields.x & 0xFFFFFFFF) | (fields.y & 0xFFFFFFFF) << 32)
-        elif number == REQUEST_MESSAGE and fields.param1 == truth.KIND.id:
+        elif number == REQUEST_MESSAGE and fields.param1 == truth.TRUTH_KIND.id:
             more = self._truth()
         elif number == REQUEST_MESSAGE and fields.param1 == SENSOR.id:
             more = self.measurements.everything()
-        elif number == SET_MESSAGE_INTERVAL and fields.param1 == truth.KIND.id:
+        elif number == SET_MESSAGE_INTERVAL and fields.param1 == truth.TRUTH_KIND.id:
             if not abs(fields.param2) < 1e12:
                 result = DENIED
             else:

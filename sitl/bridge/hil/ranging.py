@@ -15,10 +15,10 @@ import numpy as np
 
 from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..telemetry import ranging
+from ..telemetry import sensors
 from ..telemetry.builder import Context
-from ..telemetry.ranging import PART, SCAN_NAME
-from .numbers import LATEST_US, RefusedError
+from ..telemetry.sensors import PART, SCAN_NAME
+from .protocol import LATEST_US, RefusedError
 
 SCAN, VECTOR = message("DEBUG_FLOAT_ARRAY"), message("DEBUG_VECT")
 DISTANCE, OBSTACLES = message("DISTANCE_SENSOR"), message("OBSTACLE_DISTANCE")
@@ -42,7 +42,7 @@ class ScanWriter:
 
     def __init__(self, reader: RecordReader, v: Any) -> None:
         context = _context(reader, v)
-        self._sectors, self._scan = ranging.obstacle_distance(context), ranging.scan(context)
+        self._sectors, self._scan = sensors.obstacle_distance(context), sensors.scan(context)
 
     def messages(self) -> list[tuple[Any, bytes]]:
         """Nothing without a lidar or a world."""
@@ -56,7 +56,7 @@ class RangeWriter:
     marks = ("sensors.rangefinder_count",)
 
     def __init__(self, reader: RecordReader, v: Any) -> None:
-        self._distance = ranging.distance_sensor(_context(reader, v))
+        self._distance = sensors.distance_sensor(_context(reader, v))
         self._read = reader.fields("time_us", "sensors.rangefinder_range")
 
     def messages(self) -> list[tuple[Any, bytes]]:
@@ -151,7 +151,7 @@ class DistanceReader:
     def read(payload: bytes) -> float | None:
         """The reading [m], inf beyond the range; None when it does not look down."""
         fields = DISTANCE.decode(payload)
-        if fields.orientation != ranging.FACING_DOWN:
+        if fields.orientation != sensors.FACING_DOWN:
             return None
         return math.inf if fields.current_distance > fields.max_distance else 0.01 * fields.current_distance
 

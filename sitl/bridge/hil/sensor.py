@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""HIL_SENSOR: IMU, magnetometer and barometer, one a tick; it also carries the clock.
+"""What is measured every tick or at a rate of its own: HIL_SENSOR, BATTERY_STATUS, WHEEL_DISTANCE.
+
+HIL_SENSOR: IMU, magnetometer and barometer, one a tick; it also carries the clock.
 
 The record's float32 values go over the wire as they are. ``fields_updated`` says which samples are new.
+
+BATTERY_STATUS: voltage [mV] and current [10 mA] at the power module.
+
+One cell stands for the whole battery up to 65.534 V; more is spread over several.
 """
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Callable
 from typing import Any
@@ -15,21 +22,13 @@ import numpy as np
 from ...core.constants import TICK_US
 from ...core.record_reader import RecordReader, locate
 from ..dialect import message
-from .numbers import (
-    BARO_UPDATED,
-    IMU_UPDATED,
-    LATEST_US,
-    MAG_UPDATED,
-    RefusedError,
-    culprit,
-    within,
-)
+from .protocol import BARO_UPDATED, IMU_UPDATED, LATEST_US, MAG_UPDATED, RefusedError, culprit, within
 
-KIND = message("HIL_SENSOR")
-S = "sensors."
+SENSOR_KIND = message("HIL_SENSOR")
+SENSOR_S = "sensors."
 COUNTS = 56
 """Of the samples of magnetometer and barometer: bytes behind ``sensors.time_us``."""
-_LIMITS = (*(5e3,) * 3, *(500.0,) * 3, *(100.0,) * 3, 2e3, 2e3, 1e5, 300.0)
+_SENSOR_LIMITS = (*(5e3,) * 3, *(500.0,) * 3, *(100.0,) * 3, 2e3, 2e3, 1e5, 300.0)
 """Sizes beyond which a sensor's value is absurd [m/s^2, rad/s, gauss, hPa, hPa, m, degC]."""
 
 Values = tuple[Any, ...]
@@ -46,7 +45,7 @@ class SensorWriter:
 
     def __init__(self, reader: RecordReader) -> None:
         names = ("time_us", "acc", "gyro", "mag", "abs_pressure", "temperature", "mag_count", "baro_count")
-        self._read = reader.fields(*(S + name for name in names))
+        self._read = reader.fields(*(SENSOR_S + name for name in names))
         self._mag = self._baro = 0
         self._altitude = 0.0
 
@@ -61,7 +60,9 @@ class SensorWriter:
             self._baro = baro
             self._altitude = pressure_altitude(pressure)
             updated |= BARO_UPDATED
-        return KIND.pack(t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, self._altitude, temperature, updated, 0)
+        return SENSOR_KIND.pack(
+            t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, self._altitude, temperature, updated, 0
+        )
 
 
 class SensorReader:
@@ -69,8 +70,8 @@ class SensorReader:
 
     def __init__(self, fleet: np.ndarray[Any, Any], index: int) -> None:
         dtype, start = fleet.dtype, index * fleet.dtype.itemsize
-        clock, first = locate(dtype, "time_us")[0], locate(dtype, S + "time_us")[0]
-        if locate(dtype, "tick")[0] != clock + 8 or locate(dtype, S + "mag_count")[0] != first + COUNTS:
+        clock, first = locate(dtype, "time_us")[0], locate(dtype, SENSOR_S + "time_us")[0]
+        if locate(dtype, "tick")[0] != clock + 8 or locate(dtype, SENSOR_S + "mag_count")[0] != first + COUNTS:
             raise TypeError("HIL_SENSOR is written in one piece: the record's fields have been moved")
         memory = fleet.view("u1").data
         clock, first = start + clock, start + first
@@ -97,9 +98,117 @@ class SensorReader:
         Raises:
             RefusedError: one of them is not finite or absurd.
         """
-        values: Values = KIND.unpack_from(payload.ljust(KIND.size, b"\0"))
-        if not within(values[1:14], _LIMITS):
-            raise culprit(KIND.name, KIND.fields[1:14], values[1:14], _LIMITS)
+        values: Values = SENSOR_KIND.unpack_from(payload.ljust(SENSOR_KIND.size, b"\0"))
+        if not within(values[1:14], _SENSOR_LIMITS):
+            raise culprit(SENSOR_KIND.name, SENSOR_KIND.fields[1:14], values[1:14], _SENSOR_LIMITS)
         if values[0] >= LATEST_US:
-            raise RefusedError(f"{KIND.name}.time_usec = {values[0]}")
+            raise RefusedError(f"{SENSOR_KIND.name}.time_usec = {values[0]}")
         return values
+
+
+BATTERY_KIND = message("BATTERY_STATUS")
+VOLTS, AMPERES = "sensors.battery_voltage", "sensors.battery_current"
+CELLS, MORE_CELLS = 10, 4
+_UNKNOWN, _MOST, _UNKNOWN_TEMPERATURE = 65535, 65534, 32767
+_FIRST = BATTERY_KIND.fields.index("voltages")
+
+
+def spread(millivolts: int) -> list[int]:
+    """Cells whose sum is the voltage; those that are not needed are unknown."""
+    whole, rest = divmod(min(max(millivolts, 0), CELLS * _MOST), _MOST)
+    cells = [_MOST] * whole + ([rest] if rest or not whole else [])
+    return cells + [_UNKNOWN] * (CELLS - len(cells))
+
+
+class BatteryWriter:
+    """From a record to payloads."""
+
+    marks = (VOLTS, AMPERES)
+
+    def __init__(self, reader: RecordReader) -> None:
+        self._read = reader.fields(VOLTS, AMPERES)
+
+    def payloads(self) -> list[bytes]:
+        """The last sample."""
+        volts, amperes = self._read()
+        cells = spread(math.floor(1000.0 * volts + 0.5))
+        current = min(max(math.floor(100.0 * amperes + 0.5), 0), 32767)
+        return [
+            BATTERY_KIND.pack(
+                -1, -1, _UNKNOWN_TEMPERATURE, *cells, current, 0, 0, 0, -1, 0, 0, *(0,) * MORE_CELLS, 0, 0
+            )
+        ]
+
+
+class BatteryReader:
+    """From payloads into a record."""
+
+    def __init__(self, v: Any) -> None:
+        self._sensors = v.sensors
+
+    @staticmethod
+    def read(payload: bytes) -> tuple[int, int]:
+        """Voltage [mV], current [10 mA] (0 when it is not measured).
+
+        Raises:
+            RefusedError: no cell has a voltage.
+        """
+        values = BATTERY_KIND.unpack_from(payload.ljust(BATTERY_KIND.size, b"\0"))
+        cells = [cell for cell in values[_FIRST : _FIRST + CELLS] if cell != _UNKNOWN]
+        if not cells:
+            raise RefusedError(f"{BATTERY_KIND.name} has no voltage")
+        more = BATTERY_KIND.fields.index("voltages_ext") + CELLS - 1
+        return sum(cells) + sum(values[more : more + MORE_CELLS]), max(values[_FIRST + CELLS], 0)
+
+    def write(self, values: tuple[int, int]) -> None:
+        """Put a sample into the record, by the same products as ``physics.native.sensors.power``."""
+        self._sensors.battery_voltage = 0.001 * values[0]
+        self._sensors.battery_current = 0.01 * values[1]
+
+
+WHEELS_KIND = message("WHEEL_DISTANCE")
+WHEELS_S = "sensors.wheel_"
+WHEELS, PLACES = 2, 16
+_WHEELS_LIMITS = (1e9,) * WHEELS
+_NAMES = ("distance[0]", "distance[1]")
+
+
+class WheelWriter:
+    """From a record to payloads."""
+
+    marks = (WHEELS_S + "count",)
+
+    def __init__(self, reader: RecordReader) -> None:
+        self._read = reader.fields("time_us", WHEELS_S + "count", WHEELS_S + "distance")
+
+    def payloads(self) -> list[bytes]:
+        """The last sample, at the present time; nothing without encoders."""
+        t, count, left, right = self._read()
+        return [WHEELS_KIND.pack(t, left, right, *(0.0,) * (PLACES - WHEELS), WHEELS)] if count else []
+
+
+class WheelReader:
+    """From payloads into a record."""
+
+    def __init__(self, v: Any) -> None:
+        self._sensors = v.sensors
+
+    @staticmethod
+    def read(payload: bytes) -> tuple[float, float]:
+        """What both wheels have rolled.
+
+        Raises:
+            RefusedError: not finite or absurd, or not of two wheels.
+        """
+        values = WHEELS_KIND.unpack_from(payload.ljust(WHEELS_KIND.size, b"\0"))
+        if not within(values[1:3], _WHEELS_LIMITS):
+            raise culprit(WHEELS_KIND.name, _NAMES, values[1:3], _WHEELS_LIMITS)
+        if values[-1] < WHEELS or values[0] >= LATEST_US:
+            raise RefusedError(f"{WHEELS_KIND.name}: count {values[-1]}, time_usec {values[0]}")
+        return values[1], values[2]
+
+    def write(self, values: tuple[float, float]) -> None:
+        """Put a sample into the record."""
+        s = self._sensors
+        s.wheel_distance = values
+        s.wheel_count += 1

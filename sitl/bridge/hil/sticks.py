@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.border import RC_INPUTS
 from ..dialect import MessageType, message
-from .numbers import LATEST_US, RefusedError
+from .protocol import LATEST_US, RefusedError
 
 KIND, CHANNELS = message("HIL_RC_INPUTS_RAW"), message("RC_CHANNELS")
 UNUSED = 65535

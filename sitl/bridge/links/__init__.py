@@ -2,9 +2,8 @@
 """Ways for bytes to reach a client: in process, UDP, TCP."""
 
 from .address import LinkAddressError, open_link
-from .inprocess import InProcessLink
+from .inprocess import InProcessLink, LogLink
 from .link import Link, Peer
-from .log import LogLink
 from .tcp import TcpServerLink
 from .udp import UdpInLink, UdpOutLink
 

@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink over TCP: the vehicle listens, up to 64 clients connect; none of them can stall it."""
+"""MAVLink over TCP: the vehicle listens, up to 64 clients connect; none of them can stall it.
+
+A TCP connection that leads back to itself.
+
+Who tries to connect to a port of this machine where nobody listens yet gets, once in some ten thousand times, that very
+port as its own, and is connected with itself: it would hear its own words, and keep the port from whom it waits for.
+"""
 
 from __future__ import annotations
 
@@ -180,3 +186,14 @@ class TcpServerLink(Link):
             self._reserve = -1
         self._socket.close()
         super().close()
+
+
+def refuse_echo(connection: socket.socket) -> None:
+    """Check a connection that was just made.
+
+    Raises:
+        ConnectionRefusedError: it leads to itself: nobody listens there. It is closed.
+    """
+    if connection.getsockname() == connection.getpeername():
+        connection.close()
+        raise ConnectionRefusedError(errno.ECONNREFUSED, os.strerror(errno.ECONNREFUSED))

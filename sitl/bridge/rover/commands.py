@@ -10,9 +10,9 @@ import math
 from typing import TYPE_CHECKING, cast
 
 from ..channel import Channel
-from ..services import commands_system, commands_vehicle
+from ..services import command_table
 from ..services.command import Command, Entry
-from ..services.results import ACCEPTED, DENIED, FAILED
+from ..services.service import ACCEPTED, DENIED, FAILED
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
@@ -62,8 +62,8 @@ def yaw_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 COMMANDS: dict[int, Entry] = {
-    **commands_vehicle.COMMANDS,
-    **commands_system.COMMANDS,
+    **command_table.COMMANDS,
+    **command_table.COMMANDS,
     178: Entry(change_speed, required=(1, 2)),
     194: Entry(set_reverse, required=(1,)),
     195: Entry(roi),

@@ -9,7 +9,7 @@ from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES
 from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
 from ..profile import Controllers, Profile, Stick
-from ..telemetry.identity import CAPABILITIES
+from ..telemetry.status import CAPABILITIES
 from . import targets, telemetry
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS

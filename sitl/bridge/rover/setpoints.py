@@ -19,8 +19,7 @@ from ...core.vectors import Quat
 from ..autopilot_api import Vector
 from ..channel import Channel
 from ..services.command import GLOBAL, GLOBAL_FRAMES
-from ..services.results import INFO
-from ..services.service import Sender
+from ..services.service import INFO, Sender
 from ..services.setpoints import (
     BODY_YAW_RATE_IGNORED,
     THRUST_IGNORED,

@@ -8,7 +8,7 @@ from ...autopilot.rover.modes.hold import HOLD
 from ...autopilot.rover.modes.initialising import INITIALISING
 from ...autopilot.rover.modes.table import AUTONOMOUS, MODES
 from ..dialect import message
-from ..telemetry import position
+from ..telemetry import motion
 from ..telemetry.builder import Build, Builder, Context
 from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW
 from ..telemetry.units import boot_ms, int16
@@ -63,7 +63,7 @@ def extended_sys_state(context: Context) -> Build:
 
 def vfr_hud(context: Context) -> Build:
     """VFR_HUD: ground speed in both speeds [m/s], heading [deg], throttle without sign [%], altitude [m]."""
-    return position.vfr_hud(context, C + "motors.throttle")
+    return motion.vfr_hud(context, C + "motors.throttle")
 
 
 def rc_channels_scaled(context: Context) -> Build:

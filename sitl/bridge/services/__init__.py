@@ -2,21 +2,17 @@
 """MAVLink's microservices, one file each (https://mavlink.io/en/services/)."""
 
 from .commands import CommandService
-from .events import EventService
 from .ftp import FtpService
-from .heartbeat import HeartbeatService
 from .home import HomeService
+from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
 from .parameters import ParameterService
-from .ping import PingService
-from .prearm import PreArmService
 from .rc import RcService
 from .service import Service
 from .setpoints import SetpointService
-from .statustext import StatusTextService
+from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
-from .timesync import TimesyncService
 
 ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,

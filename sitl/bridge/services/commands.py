@@ -1,19 +1,31 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command protocol: every command is answered by exactly one COMMAND_ACK (https://mavlink.io/en/services/command.html).
+"""Commands of clients: COMMAND_LONG and COMMAND_INT, and grants of simulated time.
+
+The command protocol: every command is answered by exactly one COMMAND_ACK (https://mavlink.io/en/services/command.html).
 
 A repeated command (MAVSDK sends up to four times) is carried out and answered again, as ArduPilot does.
+
+Lockstep over a link: time stands until a client grants it (COMMAND_INT 31010, MAV_CMD_USER_1).
+
+A client sends what the vehicle is to hear, then a grant; the vehicle hears both at the same simulated instant, goes up
+to the time granted, sends all telemetry that falls due on the way, and only then answers. Only ``sitl run --lockstep``
+has grants; elsewhere the commands are UNSUPPORTED.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..channel import Channel
 from ..dialect import message
-from . import commands_vehicle
+from ..links.link import Peer
+from . import command_table
 from .command import Command, Entry, from_int, from_long
-from .results import DENIED, UNSUPPORTED
-from .service import Handler, Sender, Service
+from .service import ACCEPTED, DENIED, UNSUPPORTED, Handler, Sender, Service
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+
 
 ACK = message("COMMAND_ACK")
 DO_SET_MODE = 176
@@ -52,7 +64,7 @@ class CommandService(Service):
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
         as_command = Command(DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)
-        result = commands_vehicle.do_set_mode(self.bridge, channel, as_command)
+        result = command_table.do_set_mode(self.bridge, channel, as_command)
         self._ack(channel, message("SET_MODE").id, result, sender)
 
     @staticmethod
@@ -60,3 +72,51 @@ class CommandService(Service):
         system, component = sender
         fields = {"command": number, "result": result, "target_system": system, "target_component": component}
         channel.send(ACK, ACK.payload(**fields))
+
+
+GRANT, RESEED = 31010, 31011
+"""MAV_CMD_USER_1: x = simulated time since the start of the simulation [ms] up to which the vehicle may go; the
+answer's ``result_param2`` is the time reached [ms]. An older or repeated grant gets only its answer, so that x = 0 asks
+for the time. MAV_CMD_USER_2: x (32 bits) = seed of all sensor noise from now on; answered at once."""
+
+
+class Grants:
+    """How far clients let the vehicle go, and which of them wait for an answer."""
+
+    def __init__(self) -> None:
+        self.until_us = 0
+        """Simulated time since the start that has been granted [us]."""
+        self._asked: list[tuple[Peer, Sender, int]] = []
+
+    def command(self, bridge: Bridge, channel: Channel, fields: Any, sender: Sender) -> bool:
+        """Take a COMMAND_INT; False when it is none of these."""
+        if fields.command == GRANT:
+            if fields.x < 0:
+                _ack(channel, GRANT, DENIED, sender, 0)
+            else:
+                self.until_us = max(self.until_us, 1000 * fields.x)
+                self._asked.append((channel.peer, sender, 1000 * fields.x))
+        elif fields.command == RESEED:
+            bridge.vehicle.reseed(fields.x & 0xFFFFFFFF)
+            _ack(channel, RESEED, ACCEPTED, sender, 0)
+        return fields.command in (GRANT, RESEED)
+
+    def answer(self, bridge: Bridge) -> None:
+        """Answer all grants whose time has been reached."""
+        now = bridge.elapsed_us
+        journal = bridge.board.journal
+        if journal is not None and any(wanted <= now for _, _, wanted in self._asked):
+            journal.answered()
+        for peer, sender, wanted in self._asked:
+            if wanted <= now:
+                for channel in bridge.channels:  # a reboot in between has made new ones
+                    if channel.peer is peer:
+                        _ack(channel, GRANT, ACCEPTED, sender, now // 1000)
+        self._asked = [asked for asked in self._asked if asked[2] > now]
+        bridge.flush()
+
+
+def _ack(channel: Channel, number: int, result: int, sender: Sender, time_ms: int) -> None:
+    system, component = sender
+    fields = {"command": number, "result": result, "target_system": system, "target_component": component}
+    channel.send(ACK, ACK.payload(result_param2=time_ms, **fields))

@@ -13,8 +13,7 @@ from typing import Any
 from ..channel import Channel
 from ..dialect import message
 from ..stream_table import NEVER
-from .param_pck import pack_parameters
-from .parameters import ParameterService
+from .parameters import ParameterService, pack_parameters
 from .service import Handler, Sender, Service
 
 KIND = message("FILE_TRANSFER_PROTOCOL")

@@ -14,8 +14,7 @@ from ...autopilot.mission.validate import MAX_ITEMS
 from ..channel import Channel
 from ..dialect import message
 from ..stream_table import NEVER
-from .mission_item import from_float, from_int, to_float, to_int
-from .mission_results import (
+from .mission_upload import (
     ACCEPTED,
     CANCELLED,
     DENIED,
@@ -24,10 +23,13 @@ from .mission_results import (
     INVALID_SEQUENCE,
     NO_SPACE,
     UNSUPPORTED,
+    Upload,
+    from_float,
+    from_int,
+    to_float,
+    to_int,
 )
-from .mission_upload import Upload
-from .results import INFO, WARNING
-from .service import Handler, Sender, Service
+from .service import INFO, WARNING, Handler, Sender, Service
 from .setpoints import SetpointService
 from .statustext import StatusTextService
 

@@ -1,13 +1,77 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One mission upload under way."""
+"""A mission on its way in: items as messages, results, the upload itself.
+
+Numbers of MAV_MISSION_RESULT that the protocol itself gives.
+
+(those of items are in ``autopilot.mission.validate``).
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Container
 from typing import Any
 
-from ...autopilot.mission.item import MissionItem
+from ...autopilot.mission.item import COMMANDS, MissionItem
+from ...autopilot.mission.validate import INVALID_PARAM5_X, INVALID_PARAM6_Y, check
 from ..channel import Channel
+from ..dialect import MessageType, message
 from .service import Sender
+
+ITEM_INT, ITEM = message("MISSION_ITEM_INT"), message("MISSION_ITEM")
+_SAME_FRAME = {5: 0, 6: 3, 11: 10}
+"""The _INT frames mean the same as the frames without; they are kept (and given back) as those."""
+
+
+def from_int(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
+    """Item of a MISSION_ITEM_INT and its MAV_MISSION_RESULT; ``taken`` are the commands that missions may hold."""
+    return _checked(fields, fields.x, fields.y, taken)
+
+
+def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
+    """Item of a MISSION_ITEM (degrees) and its MAV_MISSION_RESULT."""
+    known = COMMANDS.get(fields.command)
+    scale = 1e7 if known is not None and known.has_place else 1.0
+    whole = []
+    for value, refusal in ((fields.x, INVALID_PARAM5_X), (fields.y, INVALID_PARAM6_Y)):
+        scaled = value * scale
+        if not (math.isfinite(scaled) and abs(scaled) < 2.0**31):
+            return _checked(fields, 0, 0, taken)[0], refusal
+        whole.append(round(scaled))
+    return _checked(fields, whole[0], whole[1], taken)
+
+
+def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[MissionItem, int]:
+    frame = _SAME_FRAME.get(fields.frame, fields.frame)
+    p1, p2, p3, p4 = fields.param1, fields.param2, fields.param3, fields.param4
+    item = MissionItem(fields.command, frame, p1, p2, p3, p4, x, y, fields.z, fields.autocontinue)
+    return item, check(item, taken)
+
+
+def _common(item: MissionItem, seq: int, is_current: bool, target: Sender) -> dict[str, Any]:
+    return {
+        "param1": item.p1, "param2": item.p2, "param3": item.p3, "param4": item.p4, "z": item.z, "seq": seq,
+        "command": item.command, "frame": item.frame, "autocontinue": item.autocontinue,
+        "current": int(is_current),
+        "target_system": target[0], "target_component": target[1],
+    }  # fmt: skip
+
+
+def to_int(item: MissionItem, seq: int, is_current: bool, target: Sender) -> tuple[MessageType, bytes]:
+    """MISSION_ITEM_INT of an item."""
+    return ITEM_INT, ITEM_INT.payload(x=item.x, y=item.y, **_common(item, seq, is_current, target))
+
+
+def to_float(item: MissionItem, seq: int, is_current: bool, target: Sender) -> tuple[MessageType, bytes]:
+    """MISSION_ITEM of an item."""
+    known = COMMANDS.get(item.command)
+    scale = 1e-7 if known is None or known.has_place else 1.0
+    return ITEM, ITEM.payload(x=item.x * scale, y=item.y * scale, **_common(item, seq, is_current, target))
+
+
+ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID = range(6)
+INVALID_SEQUENCE, DENIED, CANCELLED = 13, 14, 15
+
 
 TIMEOUT_US = 8_000_000
 """Without an item for so long [simulated us] the upload is given up (ArduPilot's figure)."""

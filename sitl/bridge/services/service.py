@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a MAVLink microservice is."""
+"""What a MAVLink microservice is, who listens to it, and the results that it gives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ..channel import Channel
 from ..stream_table import NEVER
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
+
 
 Sender = tuple[int, int]
 """(system id, component id) of who sent a message."""
@@ -45,3 +46,23 @@ class Service:
 
     def restore(self, state: Any) -> None:
         """Go on from a snapshot. The record has been put back already."""
+
+
+class Listener(Protocol):
+    """Hears of texts, parameters and progress when they happen; it changes nothing."""
+
+    def said(self, severity: int, text: str) -> None:
+        """A text goes out to all clients, with its MAV_SEVERITY."""
+        ...
+
+    def parameter_set(self, name: str) -> None:
+        """A client has set a parameter; the record has the new value."""
+        ...
+
+    def reached(self, seq: int) -> None:
+        """A mission item was reached (MISSION_ITEM_REACHED)."""
+        ...
+
+
+ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
+CRITICAL, ERROR, WARNING, NOTICE, INFO = range(2, 7)

@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""STATUSTEXT: words for the pilot, to every client."""
+"""Texts for the pilot (STATUSTEXT), and the events of the core that give them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+from ...autopilot import events as core
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, Text
 from ..channel import Channel
 from ..dialect import message
-from .service import Service
+from ..stream_table import NEVER
+from .home import HomeService
+from .service import INFO, WARNING, Service
 
 TEXT_BYTES = 50
 KIND = message("STATUSTEXT")
@@ -48,3 +55,121 @@ class StatusTextService(Service):
     def _send(channel: Channel, pieces: list[bytes]) -> None:
         for payload in pieces if channel.version == 2 else pieces[:1]:
             channel.send(KIND, payload)
+
+
+BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Ready"))
+"""(simulated us after boot, text)"""
+
+TEXTS = {
+    core.EKF_INITIALISED: (INFO, "EKF3 IMU0 initialised"),
+    core.EKF_TILT_ALIGNED: (INFO, "EKF3 IMU0 tilt alignment complete"),
+    core.EKF_YAW_ALIGNED: (INFO, "EKF3 IMU0 MAG0 initial yaw alignment complete"),
+    core.EKF_YAW_ALIGNED_IN_FLIGHT: (INFO, "EKF3 IMU0 MAG0 in-flight yaw alignment complete"),
+    core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
+    core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
+    core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
+}
+"""Event code -> (severity, text with the event's numbers a and b), of every firmware."""
+
+HEARTBEAT = message("HEARTBEAT").id
+MISSION_CURRENT = message("MISSION_CURRENT").id
+REACHED = message("MISSION_ITEM_REACHED")
+E = "autopilot.events."
+
+
+class EventService(Service):
+    """Reads the ring of events; says texts; tells of home, origin and the mission's progress."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._texts = {**TEXTS, **bridge.profile.texts}
+        self._count = bridge.reader.field(E + "count")
+        self._seen = 0
+        self._boot_text = 0
+
+    def channel_added(self, channel: Any) -> None:
+        self._find_due()
+
+    def channel_removed(self, channel: Any) -> None:
+        self._find_due()
+
+    def _find_due(self) -> None:
+        """Events stop the core; only the texts of booting come by the clock, once somebody listens."""
+        more = self._boot_text < len(BOOT_TEXTS) and self.bridge.channels
+        self.due_us = BOOT_TEXTS[self._boot_text][0] if more else NEVER
+
+    def service(self, now_us: int) -> None:
+        self.bridge.get(StatusTextService).say(INFO, BOOT_TEXTS[self._boot_text][1])
+        self._boot_text += 1
+        self._find_due()
+
+    def snapshot(self) -> tuple[int, int]:
+        return (self._seen, self._boot_text)
+
+    def restore(self, state: tuple[int, int]) -> None:
+        self._seen, self._boot_text = state
+        self._find_due()
+
+    def read(self) -> None:
+        """Tell of every event since the last call."""
+        count = int(self._count())
+        if count == self._seen:
+            return
+        ring = self.bridge.vehicle.v.autopilot.events
+        for k in range(max(self._seen, count - core.EVENT_RING), count):
+            at = k % core.EVENT_RING
+            self._tell(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
+        self._seen = count
+        self.bridge.get(HomeService).tell_changes()
+
+    def _tell(self, code: int, a: float, b: float) -> None:
+        say = self.bridge.get(StatusTextService).say
+        if code in self._texts:
+            severity, text = self._texts[code]
+            say(severity, text.format(a=a, b=b))
+        if code == core.EKF_INITIALISED:
+            say(INFO, "AHRS: EKF3 active")
+        elif code == core.EKF_ORIGIN_SET:
+            altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
+            say(INFO, f"Field Elevation Set: {altitude:.0f}m")
+        elif code == core.MODE_CHANGED:
+            for channel in self.bridge.channels:
+                self.bridge.send_now(channel, HEARTBEAT)
+        else:
+            self.notes(self.bridge.autopilot.texts_of(code, a, b))
+
+    def notes(self, notes: Sequence[Any]) -> None:
+        """Texts and progress that the mission's sequencer or a law gave back."""
+        for note in notes:
+            if isinstance(note, Text):
+                self.bridge.get(StatusTextService).say(note.severity, note.text)
+            elif isinstance(note, ItemReached):
+                self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
+                for listener in self.bridge.listeners:
+                    listener.reached(note.seq)
+            elif isinstance(note, CurrentChanged):
+                for channel in self.bridge.channels:
+                    self.bridge.send_now(channel, MISSION_CURRENT)
+
+
+EVERY_US = 30_000_000
+"""ArduPilot's period; on whole multiples of it since boot."""
+
+
+class PreArmService(Service):
+    """https://ardupilot.org/copter/docs/common-prearm-safety-checks.html"""
+
+    due_us = EVERY_US
+
+    def service(self, now_us: int) -> None:
+        self.due_us = (now_us // EVERY_US + 1) * EVERY_US
+        if not self.bridge.autopilot.armed():
+            self.bridge.autopilot.run_prearm_checks()
+            self.bridge.say_pending()
+
+    def snapshot(self) -> int:
+        return self.due_us
+
+    def restore(self, state: Any) -> None:
+        self.due_us = state

@@ -13,8 +13,7 @@ from ..dialect import message
 from .command import Command
 from .modes import KIND as MODES
 from .modes import send_modes
-from .results import ACCEPTED, DENIED, FAILED, WARNING
-from .service import Handler, Sender, Service
+from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
 
 ALL_STREAMS = 0

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the vehicle is: SYS_STATUS, EKF_STATUS_REPORT, power, memory, time."""
+"""The vehicle's state: system, battery, mission, channels, and who it is."""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 
 from ..dialect import message
@@ -133,6 +134,110 @@ def system_time(context: Context) -> Build:
     return build
 
 
+NO_MISSION, NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 1, 2, 3, 4, 5
+
+
+def mission_current(context: Context) -> Build:
+    """MISSION_CURRENT: number of the item, number of items without home, state."""
+    read = context.fields(
+        M + "number", M + "nav.mission_state", M + "nav.mission_current",
+        "autopilot.params.MIS.TOTAL",
+    )  # fmt: skip
+    pack, auto = message("MISSION_CURRENT").pack, context.profile.auto
+
+    def build() -> bytes:
+        mode, state, seq, total = read()
+        if total <= 1.0:
+            shown = NO_MISSION
+        elif state == 2:
+            shown = COMPLETE
+        elif state == 1:
+            shown = ACTIVE
+        else:
+            shown = PAUSED if seq > 0 else NOT_STARTED
+        return pack(uint16(seq), uint16(total - 1.0), shown, 1 if mode == auto else 0)
+
+    return build
+
+
+MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, FTP = 0x1, 0x2, 0x4, 0x8, 0x20
+SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = (
+    0x40,
+    0x80,
+    0x100,
+    0x800,
+    0x2000,
+)
+CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
+CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2
+"""What every firmware can; ArduPilot's 0xF1EF without what does not exist here (compass calibration, fence, rally)."""
+
+FLIGHT_VERSION = (4, 7, 0, 0)
+"""Major, minor, patch, type (0: development).
+
+The ArduPilot whose behaviour and parameter names this firmware follows.
+"""
+
+
+def autopilot_version(context: Context) -> Build:
+    """AUTOPILOT_VERSION: capabilities and version."""
+    major, minor, patch, kind = FLIGHT_VERSION
+    version = major << 24 | minor << 16 | patch << 8 | kind
+    payload = message("AUTOPILOT_VERSION").payload(
+        capabilities=context.profile.capabilities,
+        flight_sw_version=version,
+        flight_custom_version=tuple(b"gym-sitl"),
+        uid=1,
+    )
+    return lambda: payload
+
+
+def timesync(context: Context) -> Build:
+    """TIMESYNC: our request; ts1 is simulated time [ns]."""
+    read, kind = context.fields("time_us"), message("TIMESYNC")
+    rest = (0,) * (len(kind.fields) - 2)
+    return lambda: kind.pack(0, read()[0] * 1000 + 1, *rest)
+
+
+CHANNELS = 16
+"""chancount of a receiver, as ArduPilot tells it."""
+
+
+def rc_channels(context: Context) -> Build:
+    """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
+    read = context.fields("time_us", "autopilot.rc.channels")
+    read_heard = context.fields("autopilot.rc.receiver_us")
+    timeout = context.profile.receiver_timeout
+    read_timeout = context.fields(f"autopilot.params.{timeout}") if isinstance(timeout, str) else lambda: (timeout,)
+    pack = message("RC_CHANNELS").pack
+
+    def build() -> bytes:
+        t, *pulses = read()
+        count = CHANNELS if any(pulses) and t - read_heard()[0] < read_timeout()[0] * 1e6 else 0
+        try:
+            return pack(t // 1000 & 0xFFFFFFFF, *pulses, count, 255)
+        except struct.error:  # not a pulse: rare, so that the usual case need not look at each
+            return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), count, 255)
+
+    return build
+
+
+def servo_output_raw(context: Context) -> Build:
+    """SERVO_OUTPUT_RAW: pulses to motors and servos [us]."""
+    read = context.fields("time_us", "actuators.pwm")
+    pack = message("SERVO_OUTPUT_RAW").pack
+
+    def build() -> bytes:
+        t, *pulses = read()
+        try:
+            return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
+        except struct.error:
+            pulses = [uint16(p) for p in pulses]
+            return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
+
+    return build
+
+
 BUILDERS: dict[str, Builder] = {
     "SYS_STATUS": sys_status,
     "EKF_STATUS_REPORT": ekf_status_report,
@@ -140,4 +245,9 @@ BUILDERS: dict[str, Builder] = {
     "POWER_STATUS": power_status,
     "MEMINFO": meminfo,
     "SYSTEM_TIME": system_time,
+    "MISSION_CURRENT": mission_current,
+    "AUTOPILOT_VERSION": autopilot_version,
+    "TIMESYNC": timesync,
+    "RC_CHANNELS": rc_channels,
+    "SERVO_OUTPUT_RAW": servo_output_raw,
 }

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from sitl.bridge.hil.numbers import BASE_PORT
+from sitl.bridge.hil.protocol import BASE_PORT
 from sitl.client.byte_socket import ByteSocket
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Connection
@@ -22,15 +22,13 @@ from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
-from sitl.foreign.ports import HOST, free_tcp_run
-from sitl.foreign.process import AutopilotEndedError, AutopilotProcess
+from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT
 
-from .errors import LinkLostError, NotReadyError
 from .preparation import FORCE
-from .telemetry import StepTelemetry
+from .telemetry import LinkLostError, NotReadyError, StepTelemetry
 
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 _SLICE_US = 20_000

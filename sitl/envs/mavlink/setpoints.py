@@ -22,7 +22,7 @@ from sitl.bridge.services.setpoints import (
 )
 from sitl.core.algebra import quat_from_euler
 from sitl.core.vectors import Euler
-from sitl.worlds.frames import to_heading, to_ned
+from sitl.worlds.shapes import to_heading, to_ned
 
 from .telemetry import StepTelemetry
 

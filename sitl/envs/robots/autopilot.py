@@ -26,12 +26,11 @@ from sitl.simulation import OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
-from sitl.worlds.frames import from_heading, from_ned
+from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import Action
-from ..mavlink.errors import LinkLostError
-from ..mavlink.preparation import ALIGN_US, hear_again, set_intervals, set_mode
-from ..mavlink.simulator import RESETS, SIMULATOR
+from ..mavlink.preparation import ALIGN_US, RESETS, SIMULATOR, hear_again, set_intervals, set_mode
+from ..mavlink.telemetry import LinkLostError
 from ..options import EnvOptionError, unknown
 from ..setpoints import Setpoint
 from .by_socket import SocketVehicles

@@ -10,8 +10,7 @@ from gymnasium import logger
 from sitl.client.connection import Lockstep, connect
 from sitl.errors import OptionError
 
-from ..mavlink.preparation import reboot
-from ..mavlink.simulator import REBOOT, is_simulator, refusal
+from ..mavlink.preparation import REBOOT, is_simulator, reboot, refusal
 from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .robot import Pose

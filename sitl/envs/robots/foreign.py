@@ -10,11 +10,11 @@ from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.foreign.choice import Choice
 from sitl.physics.engine import EngineError
-from sitl.plants.alone import stand_alone
+from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
 from ..mavlink.foreign import Foreign, launch
-from ..mavlink.simulator import REBOOT, is_simulator, refusal
+from ..mavlink.preparation import REBOOT, is_simulator, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup

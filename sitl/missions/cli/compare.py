@@ -9,7 +9,7 @@ from pathlib import Path
 from sitl.cli.options import open_folder
 from sitl.cli.progress import CompileProgress
 from sitl.errors import OptionError
-from sitl.recording.error import RecordingError
+from sitl.recording.entries import RecordingError
 
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     except RecordingError as error:
         raise OptionError(str(error)) from None
     comparison = compare(golden, new, options.tolerance)
-    written = report.write(comparison, options.report) if options.report is not None else None
+    written = report.report_write(comparison, options.report) if options.report is not None else None
     print("\n".join(report.lines(comparison, options.all)))
     if written is not None:
         print(f"report: {written}")

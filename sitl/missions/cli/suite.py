@@ -38,7 +38,7 @@ def _jobs(text: str) -> int:
 def run(options: argparse.Namespace) -> int:
     """Fly them; 0 when all are like golden."""
     from ..suite import cases as suite_cases
-    from ..suite import table
+    from ..suite import run as table
     from ..suite.result import Result
     from ..suite.run import run as fly_all
 

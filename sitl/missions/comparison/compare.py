@@ -16,8 +16,7 @@ from sitl.recording import identity
 from . import words
 from .alignment import Pair, pair
 from .events import SHIFTED, Event, compare_events
-from .flight import Flight
-from .series import Differences, Series, measure
+from .flight import Differences, Flight, Series, measure
 from .tolerance import EVENTS, Tolerance, load
 
 _DECIDED = ("vehicle", "seed", "estimator", "physics", "home", "start")

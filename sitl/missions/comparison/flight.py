@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from sitl.core.compile import Progress
 from sitl.logs import track_bin, track_tlog
 from sitl.logs.tlog import LogError
@@ -16,6 +18,8 @@ from sitl.recording.blocks import is_recording
 from sitl.recording.recording import Recording
 from sitl.recording.recording import read as read_recording
 from sitl.recording.replay import Replay
+
+from .alignment import MOVING, Matched, Pair, match
 
 SECTION = "track"
 """Name of a recording's section that holds its track."""
@@ -74,3 +78,100 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     notes += [f"not as recorded: {text}" for text in replay.differences]
     notes += [f"the flight is another one: {text}" for text in astray]
     return Flight(str(recording.path), track, recording.header, recording.end, notes=tuple(notes))
+
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Series:
+    """One difference over the time of the new flight; NaN where there is nothing to compare."""
+
+    name: str
+    """Name as in tolerance files."""
+    title: str
+    unit: str
+    quantum: float
+    """Largest difference that rounding explains."""
+    t: Array
+    """Times since the common start, shape (n,) [s]."""
+    values: Array
+    """New minus golden, shape (n,); distances have no sign."""
+    gap: Array | None = None
+    """Vector from golden to the new flight, north, east, down, shape (n, 3) [m]; distances only."""
+
+    @property
+    def size(self) -> Array:
+        """Magnitudes, shape (n,); NaN as 0."""
+        return np.nan_to_num(np.abs(self.values))
+
+    @property
+    def max(self) -> float:
+        """The largest magnitude."""
+        return float(self.size.max(initial=0.0))
+
+    @property
+    def rms(self) -> float:
+        """Root mean square."""
+        known = self.values[np.isfinite(self.values)]
+        return float(np.sqrt(np.mean(known * known))) if len(known) else 0.0
+
+    def worst(self) -> int:
+        """Index of the largest magnitude."""
+        return int(np.argmax(self.size)) if len(self.values) else 0
+
+    def first_over(self, limit: float) -> int | None:
+        """Index of the first sample larger than ``limit``; None: there is none."""
+        over = np.flatnonzero(self.size > limit + 1e-9)
+        return int(over[0]) if len(over) else None
+
+
+@dataclass(frozen=True)
+class Differences:
+    """All differences of two flights."""
+
+    series: tuple[Series, ...]
+    matched: Matched
+    """Matching position on golden's way of each sample of the new flight."""
+    missed: Array
+    """Horizontal distance from each sample of golden to the new flight's way, which shows what was left out [m]."""
+
+    def __getitem__(self, name: str) -> Series:
+        return next(series for series in self.series if series.name == name)
+
+
+def measure(pair: Pair) -> Differences:
+    """Compare two aligned flights sample by sample."""
+    golden, new = pair.golden, pair.new
+    t, place = new.t, new.data[:, 1:4]
+    matched, back = match(new, golden), match(golden, new)
+
+    def of(name: str) -> Array:
+        return matched.of(golden[name])
+
+    at_time = np.stack([np.interp(t, golden.t, golden[name]) for name in ("north", "east", "down")], axis=1)
+    both = (t <= golden.t[-1] + 1e-6) & (t >= golden.t[0] - 1e-6)
+    drift = np.where(both[:, None], place - at_time, np.nan)
+    way = np.stack([of(name) for name in ("north", "east", "down")], axis=1)
+    aside = place - way
+    flat = aside * (1.0, 1.0, 0.0)
+    speed = np.hypot(golden["vn"], golden["ve"])
+    fast = np.sqrt(matched.of(speed * speed + golden["vd"] ** 2))
+    then = np.stack([of(name) for name in ("vn", "ve", "vd")], axis=1)
+    ahead = (new.data[:, 4:7] * then).sum(axis=1) / np.maximum(np.linalg.norm(then, axis=1), 1e-9)
+    # where ways come close (a climb's end and the leg that follows) the nearer one may be another part of golden's
+    delay = np.where(np.minimum(fast, ahead) > MOVING, matched.delay, np.nan)
+    tilt = np.hypot(*(new[name] - of(name) for name in ("roll", "pitch")))
+    yaw = np.interp(matched.index, np.arange(len(golden)), np.unwrap(golden["yaw"]))
+    heading = (new["yaw"] - yaw + np.pi) % (2.0 * np.pi) - np.pi
+    found = (
+        Series("position", "place at the same time", "m", 0.0175, t, np.linalg.norm(drift, axis=1), drift),
+        Series("cross_track", "cross-track", "m", 0.015, t, matched.cross, flat),
+        Series("altitude", "altitude", "m", 0.0101, t, -aside[:, 2]),
+        Series("delay", "delay along the way", "s", 0.05, t, delay),
+        Series("speed", "ground speed", "m/s", 0.015, t, np.hypot(new["vn"], new["ve"]) - matched.of(speed)),
+        Series("climb", "climb rate", "m/s", 0.0101, t, of("vd") - new["vd"]),
+        Series("tilt", "roll and pitch", "deg", 0.15, t, np.degrees(tilt)),
+        Series("heading", "heading", "deg", 0.101, t, np.degrees(heading)),
+    )
+    return Differences(found, matched, back.cross)

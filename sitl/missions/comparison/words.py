@@ -9,7 +9,7 @@ import numpy as np
 
 from .alignment import START_NAMES, Pair
 from .events import ADDED, MISSING, Event
-from .series import Series
+from .flight import Series
 
 _NED = (("north", "south"), ("east", "west"), ("below", "above"))
 

@@ -5,8 +5,7 @@ https://mavlink.io/en/file_formats/,
 https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
 """
 
-from .document import Complex, FenceCircle, FencePolygon, MissionFile, RallyPoint
-from .mistakes import MissionFileError
+from .document import Complex, FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint
 from .splines import straightened
 from .store import load, save
 

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a mission file holds."""
+"""A mission as a document: its items, geometry on a plane, and the mistakes of files."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from sitl.autopilot.mission.item import NAV_LAND, NAV_TAKEOFF
+from sitl.autopilot.mission import validate
+from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_TAKEOFF, MissionItem
 from sitl.autopilot.mission.mission import Mission
+from sitl.autopilot.mission.validate import HIGHEST, PLACE_FRAMES
+from sitl.core.geodesy import add_offset, offset_ne
+from sitl.errors import OptionError
 from sitl.vehicle.kinds import KINDS
 
 FIXED_WING, QUADROTOR, GROUND_ROVER, BOAT = 1, 2, 10, 11
@@ -117,3 +122,126 @@ class MissionFile:
     def simple(self) -> MissionFile:
         """A copy in which complex items are replaced by their simple items."""
         return replace(self, complexes=())
+
+
+class MissionFileError(OptionError):
+    """A mission file that cannot be read or written; names the file, the line or item, the value, what is allowed."""
+
+
+FRAME_NAMES = {
+    0: "global", 2: "mission", 3: "relative", 5: "global int", 6: "relative int", 10: "terrain", 11: "terrain int",
+}  # fmt: skip
+
+LARGEST = 3.4028234663852886e38
+"""Parameters travel in single precision."""
+
+
+def has_degrees(command: int) -> bool:
+    """Whether parameters 5 and 6 are latitude and longitude."""
+    return command not in COMMANDS or COMMANDS[command].has_place
+
+
+def make(
+    command: int, frame: int, values: tuple[float, ...], autocontinue: int, where: str, current: int = 0
+) -> MissionItem:
+    """An item of its seven parameters (places in degrees).
+
+    Raises:
+        MissionFileError: says ``where``, which value, and what is allowed.
+    """
+    p1, p2, p3, p4, x, y, z = values
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise MissionFileError(f"{where}: place {x}, {y} is not a pair of numbers")
+    if command not in COMMANDS:
+        known = ", ".join(f"{number} {c.name}" for number, c in COMMANDS.items())
+        raise MissionFileError(f"{where}: command {command} is not known here; known are {known}")
+    for k in (0, 1, 2, 3, 6):
+        if math.isfinite(values[k]) and abs(values[k]) > LARGEST:
+            raise MissionFileError(
+                f"{where}: parameter {k + 1} is {values[k]}: it is within +-{LARGEST:.2g}, MAVLink's single precision"
+            )
+    scale = 1e7 if COMMANDS[command].has_place else 1.0
+    item = MissionItem(command, frame, p1, p2, p3, p4, round(x * scale), round(y * scale), z, autocontinue, current)
+    result = validate.check(item)
+    if result != validate.ACCEPTED:
+        raise MissionFileError(f"{where}: {_reason(result, command, frame, values)}")
+    return item
+
+
+def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) -> str:
+    """Reason for the refusal of an item, in words."""
+    of = f" (command {command} {COMMANDS[command].name})"
+    if result == validate.UNSUPPORTED_FRAME:
+        known = ", ".join(f"{number} {FRAME_NAMES[number]}" for number in PLACE_FRAMES)
+        return f"frame {frame} is not known for places; known are {known}{of}"
+    k = result - validate.INVALID_PARAM1
+    value = values[k] if 0 <= k < 7 else math.nan
+    if not COMMANDS[command].has_place or k < 4:
+        return f"parameter {k + 1} is {value}: a finite number is needed{of}"
+    if result == validate.INVALID_PARAM5_X:
+        return f"latitude {value} is not within -90 .. 90 degrees{of}"
+    if result == validate.INVALID_PARAM6_Y:
+        return f"longitude {value} is not within -180 .. 180 degrees{of}"
+    return f"altitude {value} is not a number of metres within +-{HIGHEST:g}{of}"
+
+
+def numbers(item: MissionItem) -> tuple[float, ...]:
+    """The seven parameters of an item, places in degrees."""
+    if has_degrees(item.command):
+        return (item.p1, item.p2, item.p3, item.p4, round(item.x * 1e-7, 8), round(item.y * 1e-7, 8), item.z)
+    return (item.p1, item.p2, item.p3, item.p4, item.x, item.y, item.z)
+
+
+Point = tuple[float, float]
+"""North, east [m]."""
+
+
+class Plane:
+    """Flat earth around an origin, as the vehicle's own navigation has it."""
+
+    def __init__(self, origin: Place) -> None:
+        self._lat, self._lon = origin[0] * 1e7, origin[1] * 1e7
+
+    def point(self, place: Place) -> Point:
+        """Metres of a place."""
+        north, east = offset_ne(self._lat, self._lon, place[0] * 1e7, place[1] * 1e7)
+        return (float(north), float(east))
+
+    def place(self, point: Point) -> Place:
+        """Degrees of a point."""
+        lat, lon = add_offset(self._lat, self._lon, point[0], point[1])
+        return (float(lat) * 1e-7, float(lon) * 1e-7)
+
+
+def along(a: Point, b: Point) -> Point:
+    """Unit vector from ``a`` to ``b``; zero when they are the same."""
+    north, east = b[0] - a[0], b[1] - a[1]
+    length = math.hypot(north, east)
+    return (north / length, east / length) if length > 0.0 else (0.0, 0.0)
+
+
+def moved(p: Point, direction: Point, distance: float) -> Point:
+    """``p`` moved by a distance [m] along a unit vector."""
+    return (p[0] + direction[0] * distance, p[1] + direction[1] * distance)
+
+
+def shifted(line: list[Point], distance: float, closed: bool = False) -> list[Point]:
+    """A line (or the corners of a polygon) moved to its right by a distance [m], corners mitred, at most threefold."""
+    count = len(line)
+    moved_points = []
+    for k, p in enumerate(line):
+        before = line[k - 1] if closed or k > 0 else None
+        after = line[(k + 1) % count] if closed or k < count - 1 else None
+        into = along(before, p) if before is not None else along(p, line[k + 1])
+        out = along(p, after) if after is not None else into
+        right_in, right_out = (-into[1], into[0]), (-out[1], out[0])
+        north, east = right_in[0] + right_out[0], right_in[1] + right_out[1]
+        half = math.hypot(north, east) / 2.0  # cosine of half the turn
+        reach = distance / max(half, 1.0 / 3.0)
+        moved_points.append(moved(p, along((0.0, 0.0), (north, east)), reach))
+    return moved_points
+
+
+def area(polygon: list[Point]) -> float:
+    """Area [m^2]; positive when its corners go round clockwise, seen from above."""
+    return 0.5 * sum(polygon[k - 1][0] * polygon[k][1] - polygon[k][0] * polygon[k - 1][1] for k in range(len(polygon)))

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from .mistakes import MissionFileError
+from .document import MissionFileError
 
 _KINDS = {dict: "an object", list: "a list", str: "a text", bool: "true or false"}
 

@@ -6,17 +6,29 @@ https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
 
 from __future__ import annotations
 
+import copy
 import json
 import math
+from typing import Any
 
 from sitl.autopilot.mission.item import COMMANDS, DO_JUMP, GLOBAL, NAV_WAYPOINT, RELATIVE, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
 
 from . import complex_items
-from .document import ARDUPILOT, Complex, FenceCircle, FencePolygon, MissionFile, RallyPoint
-from .items import make
+from .document import (
+    ARDUPILOT,
+    QUADROTOR,
+    Complex,
+    FenceCircle,
+    FencePolygon,
+    MissionFile,
+    MissionFileError,
+    RallyPoint,
+    has_degrees,
+    make,
+    numbers,
+)
 from .json_reader import Node
-from .mistakes import MissionFileError
 
 FARTHEST = 1e6
 """Greatest radius of a fence, greatest height of a rally point [m]."""
@@ -104,7 +116,7 @@ def _mission(found: Node) -> tuple[list[MissionItem], list[Complex]]:
 
 def _add(items: list[MissionItem], entry: Node, numbers: dict[int, int], jumps: list[tuple[int, Node]]) -> None:
     """The next item, of an entry of type SimpleItem."""
-    item = simple(entry)
+    item = plan_simple(entry)
     if "doJumpId" in entry:
         numbers.setdefault(entry["doJumpId"].whole(), len(items))
     else:
@@ -114,7 +126,7 @@ def _add(items: list[MissionItem], entry: Node, numbers: dict[int, int], jumps: 
     items.append(item)
 
 
-def simple(entry: Node) -> MissionItem:
+def plan_simple(entry: Node) -> MissionItem:
     """Item of an entry of type SimpleItem.
 
     A place or a parameter of a do-command that is null counts as 0, as a parameter of a navigation command as NaN,
@@ -152,3 +164,87 @@ def _point(entry: Node) -> tuple[float, float, float]:
         raise entry.fail("expected [latitude, longitude, height]")
     height = list(entry)[2]
     return (*entry.place(), height.number(-FARTHEST, FARTHEST))
+
+
+CRUISE_SPEED, HOVER_SPEED = 10.0, 5.0
+"""Default speeds in a plan [m/s]."""
+RELATIVE_MODE, ABSOLUTE_MODE, TERRAIN_MODE = 1, 2, 4
+"""AltitudeMode"""
+_MODES = {3: RELATIVE_MODE, 6: RELATIVE_MODE, 10: TERRAIN_MODE, 11: TERRAIN_MODE}
+
+
+def write(file: MissionFile) -> str:
+    """The JSON of a plan. Complex items are written as such, with the items that they stand for."""
+    items = file.mission.items
+    home = file.home or (0.0, 0.0, 0.0)
+    plan = {
+        "fileType": "Plan",
+        "geoFence": _fence(file),
+        "groundStation": "QGroundControl",
+        "mission": {
+            "cruiseSpeed": CRUISE_SPEED if file.cruise_speed is None else file.cruise_speed,
+            "firmwareType": file.firmware_type,
+            "globalPlanAltitudeMode": RELATIVE_MODE,
+            "hoverSpeed": HOVER_SPEED if file.hover_speed is None else file.hover_speed,
+            "items": _entries(items, {c.first: c for c in file.complexes}),
+            "plannedHomePosition": [round(home[0], 8), round(home[1], 8), home[2]],
+            "vehicleType": QUADROTOR if file.vehicle_type is None else file.vehicle_type,
+            "version": 2,
+        },
+        "rallyPoints": {"points": [[*point.place, point.height] for point in file.rally], "version": 2},
+        "version": 1,
+    }
+    return json.dumps(plan, indent=4) + "\n"
+
+
+def _entries(items: tuple[MissionItem, ...], complexes: dict[int, Complex]) -> list[dict[str, Any]]:
+    entries: list[dict[str, Any]] = []
+    seq = 1
+    while seq < len(items):
+        found = complexes.get(seq)
+        if found is None or found.count == 0:
+            entries.append(plan_writer_simple(seq, items[seq]))
+            seq += 1
+            continue
+        entry = copy.deepcopy(dict(found.entry))
+        style = entry.get("TransectStyleComplexItem")
+        if isinstance(style, dict):
+            style["Items"] = [
+                plan_writer_simple(seq + k, item) for k, item in enumerate(items[seq : seq + found.count])
+            ]
+        entries.append(entry)
+        seq += found.count
+    return entries
+
+
+def plan_writer_simple(seq: int, item: MissionItem) -> dict[str, Any]:
+    """An entry of type SimpleItem."""
+    entry: dict[str, Any] = {
+        "autoContinue": bool(item.autocontinue),
+        "command": item.command,
+        "doJumpId": seq,
+        "frame": item.frame,
+        "params": [None if math.isnan(v) else v for v in numbers(item)],
+        "type": "SimpleItem",
+    }
+    if has_degrees(item.command) and item.command != DO_JUMP:
+        mode = _MODES.get(item.frame, ABSOLUTE_MODE)
+        entry = {"AMSLAltAboveTerrain": None, "Altitude": item.z, "AltitudeMode": mode, **entry}
+    return entry
+
+
+def _fence(file: MissionFile) -> dict[str, Any]:
+    fence: dict[str, Any] = {
+        "circles": [
+            {"circle": {"center": list(c.centre), "radius": c.radius}, "inclusion": c.inclusion, "version": 1}
+            for c in file.circles
+        ],
+        "polygons": [
+            {"inclusion": p.inclusion, "polygon": [list(corner) for corner in p.corners], "version": 1}
+            for p in file.polygons
+        ],
+        "version": 2,
+    }
+    if file.breach_return is not None:
+        fence["breachReturn"] = list(file.breach_return)
+    return fence

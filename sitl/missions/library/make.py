@@ -7,8 +7,9 @@ import json
 from pathlib import Path
 
 from ..files import save
-from . import FOLDER, copter_drafts, rover_drafts
+from . import FOLDER
 from .draft import Draft
+from .drafts import copter_drafts, rover_drafts
 
 HEAD = """# SPDX-License-Identifier: BSD-3-Clause
 # Made by `python -m sitl.missions.library.make`: each mission, its file, and the vehicle and world it is flown with.
@@ -17,7 +18,7 @@ HEAD = """# SPDX-License-Identifier: BSD-3-Clause
 
 def drafts() -> dict[str, dict[str, Draft]]:
     """All, by kind of vehicle and name."""
-    return {"copter": copter_drafts.drafts(), "rover": rover_drafts.drafts()}
+    return {"copter": copter_drafts(), "rover": rover_drafts()}
 
 
 def index() -> str:

@@ -14,7 +14,7 @@ from sitl import vehicles
 from sitl.errors import SitlError
 from sitl.logs.tlog import LogError
 from sitl.physics.engines import NATIVE
-from sitl.recording.error import RecordingError
+from sitl.recording.entries import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.simulation import Simulation
@@ -103,7 +103,7 @@ def _judged(
             folder.mkdir(parents=True, exist_ok=True)
             kept = shutil.copyfile(path, folder / path.name).as_posix()
             if comparison is not None:
-                written = str(report.write(comparison, folder, case.name))
+                written = str(report.report_write(comparison, folder, case.name))
         wall = time.perf_counter() - began
         return Result(case.name, status, words, simulated, wall, shown, kept, written, note)
 

@@ -13,8 +13,8 @@ from typing import Any
 
 from sitl.errors import OptionError
 from sitl.logs.tlog import LogError
-from sitl.plants.choose import is_remote
-from sitl.recording.error import RecordingError
+from sitl.plants.plant import is_remote
+from sitl.recording.entries import RecordingError
 
 from ..comparison.alignment import AlignmentError
 from .logs import NOT_AGAIN, fly_again
@@ -138,7 +138,7 @@ class Golden(Forking):
             return []
         lines = [f"golden {path}", *report.lines(found)]
         if self.golden.reports is not None:
-            lines.append(f"  report: {report.write(found, self.golden.reports / path.stem)}")
+            lines.append(f"  report: {report.report_write(found, self.golden.reports / path.stem)}")
         return lines
 
 

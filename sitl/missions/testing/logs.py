@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sitl.logs.track_observer import TrackObserver
-from sitl.plants.choose import is_remote
-from sitl.recording.digests import of_state
+from sitl.plants.plant import is_remote
+from sitl.recording.entries import of_state
 from sitl.recording.recorder import Recorder
 from sitl.run import runner
 from sitl.simulation import Simulation
 
+from .missions import Said, repeat
 from .moments import Forking
-from .script import Said, repeat
 
 SUFFIXES = (".tlog", ".bin", ".rec")
 NOT_AGAIN = (

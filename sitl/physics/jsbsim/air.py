@@ -8,8 +8,7 @@ floor under the vehicle, and its atmosphere has there the pressure and temperatu
 from __future__ import annotations
 
 from ..native.atmosphere import SEA_LEVEL_TEMPERATURE, pressure, temperature
-from .properties import Properties
-from .units import FOOT, PASCALS, RANKINE
+from .craft import FOOT, PASCALS, RANKINE, Properties
 
 _NONE, _MILSPEC = 0.0, 3.0
 

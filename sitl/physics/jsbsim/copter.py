@@ -10,12 +10,11 @@ from ..engine import Seat
 from ..native.copter.ground import upright
 from ..native.obstacles import HIT_PAUSE_US
 from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
-from . import copter_aircraft, memory
+from . import copter_aircraft, craft
 from .copter_aircraft import GOES
-from .craft import Craft
+from .craft import Craft, Properties
 from .engine import JsbsimEngine
-from .model import NAME
-from .properties import Properties
+from .formula import NAME
 
 
 class CopterCraft(Craft):
@@ -27,7 +26,7 @@ class CopterCraft(Craft):
         self._rotors, self._ground, self._battery, self._body = p.rotors, p.ground, p.battery, p.body
         self._commands = p.rotors.command
         self._efficiency = p.rotors.efficiency
-        self._write_power = memory.writer(seat, "physics.rotors.power", 1)
+        self._write_power = craft.writer(seat, "physics.rotors.power", 1)
 
     def frames(self, a: Any) -> int:
         return int(a.substeps)
@@ -50,8 +49,8 @@ class CopterCraft(Craft):
         self._thrusts = [properties.reader(f"rotor/thrust{k}") for k in numbers]
         self._power = properties.reader("rotor/power")
         self._touches = properties.reader("forces/fbz-gear-lbs")
-        self._write_speeds = memory.writer(self.seat, "physics.rotors.speed", count)
-        self._write_thrusts = memory.writer(self.seat, "physics.rotors.thrust", count)
+        self._write_speeds = craft.writer(self.seat, "physics.rotors.speed", count)
+        self._write_thrusts = craft.writer(self.seat, "physics.rotors.thrust", count)
         self._upright = math.cos(float(a.tip_angle))
         self._hit_speed = float(a.hit_speed)
         self._health: list[float] = []

@@ -19,13 +19,12 @@ from ...core.algebra import euler_of, quat_from_euler, rotate
 from ...core.vectors import Euler, Quat, Vec3
 from ..engine import Engine, EngineError, Seat
 from ..native.tick import TICK_S
-from . import memory, start
+from . import craft as memory
+from . import start
 from .air import Air
 from .aircraft import RADIUS
-from .craft import Craft
-from .model import library, load
-from .properties import Properties
-from .units import FOOT
+from .craft import FOOT, Craft, Properties
+from .formula import library, load
 
 _STATE = (
     "position/lat-gc-rad",

@@ -12,12 +12,10 @@ from ..engine import Seat
 from ..native.rover.steering import curvature
 from ..native.tick import TICK_S
 from . import rover_aircraft
-from .craft import Craft
+from .craft import FOOT, Craft, Properties
 from .engine import JsbsimEngine
-from .model import NAME
-from .properties import Properties
+from .formula import NAME
 from .rover_aircraft import FRONT_LEFT, FRONT_RIGHT
-from .units import FOOT
 
 
 class RoverCraft(Craft):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from ...core.vectors import Euler, Vec3
 from .aircraft import RADIUS
-from .units import FOOT
+from .craft import FOOT
 
 _EULER, _BUSS2 = 1.0, 7.0
 _INTEGRATORS = (

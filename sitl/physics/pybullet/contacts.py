@@ -12,6 +12,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from ...core.vectors import Vec3
 from ..native.copter.ground import upright
 from ..native.obstacles import report_hit
 from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
@@ -19,7 +20,7 @@ from .worlds import Surfaces
 
 CLEAR = 0.01
 """A copter is in the air again when it touches nothing this high over the floor [m]."""
-_OTHER, _LINK, _NORMAL, _FORCE = 2, 3, 7, 9
+_OTHER, _LINK, _CONTACTS_NORMAL, _CONTACTS_FORCE = 2, 3, 7, 9
 """Columns of pybullet's contacts: the other body, the link of this one, from the other to this, how hard [N]."""
 BODY = -1
 """The link with the rigid outline."""
@@ -27,7 +28,7 @@ BODY = -1
 Row = Sequence[Any]
 
 
-def report(v: Any, surfaces: Surfaces, rows: Sequence[Row], before: Sequence[float]) -> bool:
+def contacts_report(v: Any, surfaces: Surfaces, rows: Sequence[Row], before: Sequence[float]) -> bool:
     """Write what the contacts of a step are into ``physics.ground`` and ``physics.obstacles``.
 
     Args:
@@ -42,14 +43,14 @@ def report(v: Any, surfaces: Surfaces, rows: Sequence[Row], before: Sequence[flo
     p = v.physics
     into, on_floor, in_solid, is_hard = 0.0, False, False, False
     for row in rows:
-        if row[_FORCE] <= 0.0:
+        if row[_CONTACTS_FORCE] <= 0.0:
             continue
         is_hard = is_hard or row[_LINK] == BODY
         if row[_OTHER] == surfaces.floor:
             on_floor = True
         else:
             in_solid = True
-            x, y, z = row[_NORMAL]
+            x, y, z = row[_CONTACTS_NORMAL]
             into = max(into, y * before[1] + z * before[2] - x * before[0])
     o = p.obstacles
     if in_solid or o.touching:
@@ -70,3 +71,37 @@ def touch(v: Any, speed: float) -> None:
         g.hit_speed = speed
         g.hit_time_us = v.time_us
     g.state = GROUND_STANDING if upright(q) >= math.cos(float(a.tip_angle)) else GROUND_LYING
+
+
+_PLACE, _HITS_NORMAL, _HITS_FORCE = 5, 7, 9
+"""Columns of pybullet's contacts: where on this body, from the other body to this one, how hard [N]."""
+
+Vector = tuple[float, float, float]
+
+
+def hits_report(
+    v: Any, rows: Sequence[Sequence[Any]], centre: Vector, velocity: Vector, spin: Vector, gain: float
+) -> None:
+    """Write what the contacts of a step are into ``physics.obstacles`` and ``physics.motion.contact``.
+
+    Args:
+        v: the vehicle.
+        rows: pybullet's contacts of its outline.
+        centre, velocity, spin: of its chassis before the step, in Bullet's frame [m, m/s, rad/s].
+        gain: change of velocity by force in a step [m/s/N].
+    """
+    o, motion = v.physics.obstacles, v.physics.motion
+    fastest, is_touching = 0.0, False
+    ox, oy, oz = spin
+    for row in rows:
+        force = row[_HITS_FORCE]
+        if force <= 0.0:
+            continue
+        is_touching = True
+        nx, ny, nz = row[_HITS_NORMAL]
+        x, y, z = (at - mid for at, mid in zip(row[_PLACE], centre))
+        vx, vy, vz = velocity[0] + oy * z - oz * y, velocity[1] + oz * x - ox * z, velocity[2] + ox * y - oy * x
+        fastest = max(fastest, -(nx * vx + ny * vy + nz * vz))
+        motion.contact += Vec3(gain * force * nx, -(gain * force * ny), -(gain * force * nz))
+    o.touching = is_touching
+    report_hit(o, fastest, v.time_us)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...worlds import World
 from ..native.tick import TICK_S
-from . import state, urdf
+from . import client, urdf
 from .client import Client
 from .copter_model import CopterModel, model, sag
 from .worlds import BODY_GROUP, FLOOR_GROUP, SOLID_GROUP, Surfaces, build
@@ -57,7 +57,7 @@ class CopterBody:
         """Everything as it was built, but the body at a pose, at rest; in Bullet's frame."""
         p, id_ = self.client.p, self.client.id
         p.restoreState(self._as_built, physicsClientId=id_)
-        state.forget(self.client, self.number)
+        client.forget(self.client, self.number)
         p.resetBasePositionAndOrientation(self.number, position, attitude, physicsClientId=id_)
         p.resetBaseVelocity(self.number, _NOWHERE, _NOWHERE, physicsClientId=id_)
 

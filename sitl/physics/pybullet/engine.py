@@ -20,8 +20,10 @@ from ..native.body import GRAVITY
 from ..native.obstacles import settle
 from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
 from ..record import offset
-from . import lidar, state, urdf
-from .contacts import CLEAR, Row, report
+from . import client as state
+from . import urdf, worlds
+from .contacts import CLEAR, Row
+from .contacts import contacts_report as report
 from .copter_body import ALL, BODY, CopterBody
 from .picture import Camera, Picture
 
@@ -156,7 +158,7 @@ class BulletEngine(Engine):
     # ------------------------------------------------------------------ the rest
 
     def cast(self, origin: Array, directions: Array, ranges: Array, reach: float) -> bool:
-        lidar.cast(self.body.client, origin, directions, ranges, reach)
+        worlds.cast(self.body.client, origin, directions, ranges, reach)
         return True
 
     def render(self, width: int, height: int, camera: Camera | None = None) -> Array:

@@ -16,9 +16,8 @@ from ...worlds import World
 from ...worlds.raycast import scan
 from ...worlds.shapes import Box, Marking, Solid
 from .client import Client
-from .lidar import NED_SIGNS
 from .urdf import Colour
-from .worlds import attitude, half_size
+from .worlds import NED_SIGNS, attitude, half_size
 
 TILE = 1.0
 """Side of the floor's tiles [m]."""

@@ -18,9 +18,10 @@ from ..engine import Array, Engine, EngineError, Seat
 from ..native.body import GRAVITY
 from ..native.tick import TICK_S
 from ..record import offset
-from . import lidar, state, worlds
+from . import client as state
+from . import worlds
 from .client import Client
-from .hits import report
+from .contacts import hits_report as report
 from .picture import Camera, Picture
 from .rover_model import Model, build
 from .tyres import scrub_all
@@ -239,7 +240,7 @@ class BulletRover(Engine):
         self._target = (math.nan,)
 
     def cast(self, origin: Array, directions: Array, ranges: Array, reach: float) -> bool:
-        lidar.cast(self._fit(), origin, directions, ranges, reach)
+        worlds.cast(self._fit(), origin, directions, ranges, reach)
         return True
 
     def render(self, width: int, height: int, camera: Camera | None = None) -> Array:

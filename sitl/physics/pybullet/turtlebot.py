@@ -14,8 +14,9 @@ from ...worlds import World, planar
 from ..native.turtlebot.init import place as place_record
 from ..native.turtlebot.state import TICK_S, TICK_US
 from ..native.turtlebot.step import wheel_speeds
-from . import lidar as rays_of_bullet
-from . import state, worlds
+from . import client as state
+from . import worlds
+from . import worlds as rays_of_bullet
 from .client import Client
 from .picture import Camera, Picture
 from .turtlebot_model import TORQUE, build

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from ...worlds import World
 from ...worlds.shapes import Box, Solid
@@ -91,3 +94,17 @@ def _fixed(
     p.changeDynamics(body, -1, lateralFriction=friction, restitution=0.0, physicsClientId=id_)
     p.setCollisionFilterGroupMask(body, -1, group, RAY_GROUP | BODY_GROUP, physicsClientId=id_)
     return body
+
+
+Array = np.ndarray[Any, Any]
+NED_SIGNS = np.array([1.0, -1.0, -1.0])
+"""From NED to Bullet's x, y, z, and back."""
+
+
+def cast(client: Client, origin: Array, directions: Array, ranges: Array, reach: float) -> None:
+    """See ``sitl.physics.engine.Engine.cast``."""
+    start = np.repeat((NED_SIGNS * origin)[None, :], ranges.shape[0], axis=0)
+    ends = start + reach * (NED_SIGNS[:, None] * directions).T
+    met = client.p.rayTestBatch(start, ends, collisionFilterMask=FLOOR_GROUP | SOLID_GROUP, physicsClientId=client.id)
+    for k, (body, _, share, _, _) in enumerate(met):
+        ranges[k] = share * reach if body >= 0 else np.inf

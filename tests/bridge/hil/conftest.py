@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from sitl.physics.native.power_on import DEFAULT_HOME
-from sitl.plants.alone import stand_alone
+from sitl.plants.local import stand_alone
 from sitl.plants.physics_server import PhysicsServer
 from tests.bridge.hil.hil_peers import PhysicsProcess
 

@@ -10,7 +10,7 @@ import numpy as np
 from sitl.bridge.dialect import message
 from sitl.bridge.hil.autopilot_end import AutopilotEnd
 from sitl.bridge.hil.physics_end import PhysicsEnd
-from sitl.bridge.hil.sender import Sender
+from sitl.bridge.hil.protocol import Sender
 from sitl.core.constants import TICK_US
 from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.bridge.dialect import message
-from sitl.bridge.hil.sender import Sender
+from sitl.bridge.hil.protocol import Sender
 from tests.bridge.hil.hil_bench import Bench
 
 FROM_AUTOPILOT = ("HEARTBEAT", "HIL_ACTUATOR_CONTROLS", "COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "SYSTEM_TIME")

@@ -12,8 +12,8 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor, truth
 from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
-from sitl.bridge.hil.foreign_clock import LATE
-from sitl.bridge.hil.sender import Sender
+from sitl.bridge.hil.controls import LATE
+from sitl.bridge.hil.protocol import Sender
 from sitl.core.records import first_difference
 from tests.bridge.hil.hil_bench import Bench
 
@@ -121,7 +121,7 @@ def test_the_autopilot_refuses_absurd_sensors_and_holds_time(bench: Bench, field
     good = bench.there.feed(bench.here.controls())
     before = bench.autopilot.fleet.copy()
     spoilt = Sender(1, 158).frame(
-        sensor.KIND, sensor.KIND.payload(**{**decoded(good, "HIL_SENSOR")[0]._asdict(), field: bad})
+        sensor.SENSOR_KIND, sensor.SENSOR_KIND.payload(**{**decoded(good, "HIL_SENSOR")[0]._asdict(), field: bad})
     )
     assert bench.here.feed(spoilt) == WAITING
     assert bench.here.refused == 1 and field in bench.here.notes[0]
@@ -173,7 +173,7 @@ def test_px4_time_goes_by_itself_until_it_drives() -> None:
     bench.there.greet()
     assert not bench.there.freewheels  # silent so far
     command = message("COMMAND_LONG")
-    bench.say("COMMAND_LONG", command=511, param1=truth.KIND.id, param2=5000)
+    bench.say("COMMAND_LONG", command=511, param1=truth.TRUTH_KIND.id, param2=5000)
     bench.say("HEARTBEAT", autopilot=PX4)
     assert bench.there.freewheels
     assert "COMMAND_ACK" not in names(bench.there.go_on())
@@ -244,6 +244,6 @@ def test_unknown_commands_and_parameters(bench: Bench) -> None:
     assert decoded(bench.say("COMMAND_LONG", command=22), "COMMAND_ACK")[0].result == 3
     assert decoded(bench.say("COMMAND_LONG", command=512, param1=30), "COMMAND_ACK")[0].result == 2
     assert bench.say("PARAM_SET", param_id=b"ATC_RAT_RLL_P", param_value=9.0) == b""
-    nan = bench.say("COMMAND_LONG", command=511, param1=truth.KIND.id, param2=math.nan)
+    nan = bench.say("COMMAND_LONG", command=511, param1=truth.TRUTH_KIND.id, param2=math.nan)
     assert decoded(nan, "COMMAND_ACK")[0].result == 2
     assert controls.KIND.id == 93

@@ -11,10 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.bridge.frame import Splitter
-from sitl.bridge.hil import battery, controls, gps, hits, ranging, sensor, sticks, truth, wheels
-from sitl.bridge.hil.inbox import Inbox
-from sitl.bridge.hil.measurements import Measurements
-from sitl.bridge.hil.numbers import RefusedError
+from sitl.bridge.hil import controls, gps, ranging, sensor, sticks, truth
+from sitl.bridge.hil.measurements import Inbox, Measurements
+from sitl.bridge.hil.protocol import RefusedError
 from sitl.core.record_reader import RecordReader
 from sitl.core.records import first_difference
 from sitl.physics.carried import Carried
@@ -105,7 +104,7 @@ def test_battery(millivolts: int, centiamperes: int) -> None:
 
 def test_a_battery_without_cells_is_refused() -> None:
     with pytest.raises(RefusedError):
-        battery.BatteryReader.read(battery.KIND.payload(voltages=(65535,) * 10))
+        sensor.BatteryReader.read(sensor.BATTERY_KIND.payload(voltages=(65535,) * 10))
 
 
 @given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6))
@@ -119,7 +118,7 @@ def test_wheels(left: float, right: float) -> None:
 @pytest.mark.parametrize("distance", [(math.nan, 0.0), (0.0, math.inf)])
 def test_wheels_that_roll_nowhere_are_refused(distance: tuple[float, float]) -> None:
     with pytest.raises(RefusedError, match="distance"):
-        wheels.WheelReader.read(wheels.KIND.payload(distance=distance, count=2))
+        sensor.WheelReader.read(sensor.WHEELS_KIND.payload(distance=distance, count=2))
 
 
 def test_a_whole_scan_and_a_range() -> None:
@@ -166,7 +165,7 @@ def test_hits_in_this_tick_only() -> None:
     assert other.v.physics.ground.hit_time_us == 5000
     ground.hit_time_us = 2500
     assert across(source).v.physics.ground.hit_count == 0
-    assert hits.HitReader(other.v).read(hits.KIND.payload(name=b"WHATEVER", x=math.nan)) is None
+    assert truth.HitReader(other.v).read(truth.HITS_KIND.payload(name=b"WHATEVER", x=math.nan)) is None
 
 
 @given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=16, max_size=16), st.booleans())

@@ -16,9 +16,8 @@ import pytest
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
 from sitl.bridge.hil.autopilot_end import TAKEN, AutopilotEnd
-from sitl.bridge.hil.numbers import PX4
 from sitl.bridge.hil.physics_end import HEARTBEAT
-from sitl.bridge.hil.sender import Sender
+from sitl.bridge.hil.protocol import PX4, Sender
 from sitl.cli import main
 from sitl.client.endpoint import Endpoint
 from sitl.core.records import first_difference
@@ -340,7 +339,7 @@ def test_px4_on_a_real_socket(beside) -> None:
             times: list[int] = []
             while len(times) < count:
                 for frame in splitter.feed(link.recv(65536)):
-                    if frame.kind is sensor.KIND:
+                    if frame.kind is sensor.SENSOR_KIND:
                         times.append(frame.kind.decode(frame.payload).time_usec)
             return times
 

@@ -10,7 +10,7 @@ import pytest
 
 from sitl.logs.track import Track
 from sitl.missions.comparison.alignment import AlignmentError, match, pair
-from sitl.missions.comparison.series import measure
+from sitl.missions.comparison.flight import measure
 from tests.missions.comparison.compared_flights import straight
 
 

@@ -11,7 +11,7 @@ from xml.etree import ElementTree as xml
 import pytest
 
 from sitl.cli import main
-from sitl.missions.comparison import junit, report
+from sitl.missions.comparison import report
 from sitl.missions.comparison.compare import Comparison, compare
 from sitl.missions.comparison.flight import read
 from tests.missions.comparison.compared_flights import fly_square
@@ -26,7 +26,7 @@ def differing(squares: Path, tmp_path_factory: pytest.TempPathFactory) -> Compar
 
 def test_the_page_needs_nothing_else(differing: Comparison, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
-    text = report.write(differing, tmp_path).read_text()
+    text = report.report_write(differing, tmp_path).read_text()
     assert "Does not fly like golden" in text
     assert text.count("data:image/png;base64,") == 3
     assert not re.search(r'(src|href)="(?!data:)', text)
@@ -40,13 +40,13 @@ def test_without_matplotlib_it_says_what_is_missing(
     for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    text = report.write(differing, tmp_path).read_text()
+    text = report.report_write(differing, tmp_path).read_text()
     assert "gym-sitl[viz]" in text
     assert "<img" not in text
 
 
 def test_junit_has_a_case_for_each_figure(differing: Comparison, tmp_path: Path) -> None:
-    report.write(differing, tmp_path)
+    report.report_write(differing, tmp_path)
     suite = xml.parse(tmp_path / report.JUNIT).getroot().find("testsuite")
     assert suite is not None
     cases = suite.findall("testcase")
@@ -57,7 +57,7 @@ def test_junit_has_a_case_for_each_figure(differing: Comparison, tmp_path: Path)
 
 
 def test_junit_takes_any_text(tmp_path: Path) -> None:
-    junit.write(tmp_path / "j.xml", [junit.Case("s", "n", failure="a\0b <&> \x1b[1m", output="é")])
+    report.junit_write(tmp_path / "j.xml", [report.Case("s", "n", failure="a\0b <&> \x1b[1m", output="é")])
     case = xml.parse(tmp_path / "j.xml").getroot().find("testsuite/testcase")
     assert case is not None
     failure = case.find("failure")

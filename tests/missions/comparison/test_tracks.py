@@ -14,7 +14,7 @@ from sitl.logs.tlog import LogError
 from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
 from sitl.logs.track_observer import TrackObserver
 from sitl.missions.comparison.flight import read
-from sitl.recording.digests import of_state
+from sitl.recording.entries import of_state
 from sitl.simulation import Core, Simulation
 from tests.missions.comparison.compared_flights import straight
 

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from sitl.missions.files import MissionFileError, plan
-from sitl.missions.files import plan_writer as writer
-from sitl.missions.files.plane import Plane, area, shifted
-from sitl.missions.files.transects import FROM_END, FROM_RIGHT, across_polygon, count_of, there_and_back
+from sitl.missions.files import plan as writer
+from sitl.missions.files.complex_items import FROM_END, FROM_RIGHT, across_polygon, count_of, there_and_back
+from sitl.missions.files.document import Plane, area, shifted
 from sitl.missions.library.draft import LAT, LON, degrees, survey, transects
 
 PLANE = Plane((LAT, LON))

@@ -25,9 +25,9 @@ from sitl.missions.files import (
     load,
     plan,
     save,
-    wpl,
+    store,
 )
-from sitl.missions.files import plan_writer as writer
+from sitl.missions.files import plan as writer
 
 HOME = home_item(-353632621, 1491652371, 584.0)
 SQUARE = Mission.of(
@@ -87,7 +87,7 @@ items = st.builds(
 def test_any_mission_there_and_back(listed: list[MissionItem]) -> None:
     """Both formats keep every item."""
     file = MissionFile(Mission.of([HOME, *listed, MissionItem(c.DO_JUMP, p1=1.0, p2=2.0), MissionItem(20)]))
-    assert wpl.parse(wpl.write(file)).mission.items[1:] == file.mission.items[1:]
+    assert store.parse(store.write(file)).mission.items[1:] == file.mission.items[1:]
     assert plan.parse(writer.write(file)).mission.items == file.mission.items
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from sitl.autopilot.mission import item as c
 from sitl.missions.files import MissionFileError, straightened
-from sitl.missions.files.plane import Plane
+from sitl.missions.files.document import Plane
 from sitl.missions.library.draft import LAT, LON, Draft
 
 PLANE = Plane((LAT, LON))

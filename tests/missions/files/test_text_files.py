@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.mission import item as c
-from sitl.missions.files import MissionFileError, load, save, wpl
+from sitl.missions.files import MissionFileError, load, save, store
 
 ROW0 = "0\t1\t0\t16\t0\t0\t0\t0\t-35.0\t149.0\t584.0\t1\n"
 
@@ -20,7 +20,7 @@ def test_ground_station_text() -> None:
     """A file as ground stations write it: tabs, carriage returns, item 0 current."""
     text = "QGC WPL 110\r\n0\t1\t0\t16\t0\t0\t0\t0\t-35.3632621\t149.1652371\t584.0\t1\r\n"
     text += "1\t0\t3\t22\t0.0\t0\t0\t0\t0\t0\t10\t1\r\n\r\n"
-    file = wpl.parse(text)
+    file = store.parse(text)
     assert len(file.mission) == 2
     assert file.mission.items[0].x == -353632621
     assert file.mission.items[1].command == c.NAV_TAKEOFF
@@ -51,7 +51,7 @@ def test_ground_station_text() -> None:
 def test_text_refused(text: str, message: str) -> None:
     """Each mistake is told with file, line, value and what is allowed."""
     with pytest.raises(MissionFileError, match=message):
-        wpl.parse(text, "m")
+        store.parse(text, "m")
 
 
 def test_files_that_are_none(tmp_path: Path) -> None:
@@ -62,7 +62,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
     with pytest.raises(MissionFileError, match=r"picture\.txt: byte 4 is no text"):
         load(tmp_path / "picture.txt")
     with pytest.raises(MissionFileError, match=r"suffix '\.kml' is not one of \.plan, \.waypoints, \.txt"):
-        save(wpl.parse("QGC WPL 110\n" + ROW0), tmp_path / "m.kml")
+        save(store.parse("QGC WPL 110\n" + ROW0), tmp_path / "m.kml")
 
 
 def test_a_mark_at_the_begin_is_passed_over(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_a_mark_at_the_begin_is_passed_over(tmp_path: Path) -> None:
 def test_too_many_items_are_refused() -> None:
     rows = "".join(f"{k}\t0\t3\t20\t0\t0\t0\t0\t0\t0\t0\t1\n" for k in range(725))
     with pytest.raises(MissionFileError, match="too many items"):
-        wpl.parse("QGC WPL 110\n" + rows, "m")
+        store.parse("QGC WPL 110\n" + rows, "m")
 
 
 @given(st.text(alphabet="QGC WPL110\n\t-.0123456789naif", max_size=200))
@@ -82,4 +82,4 @@ def test_no_text_breaks_it(text: str) -> None:
     """Any text is a mission or a MissionFileError."""
     for head in ("", "QGC WPL 110\n"):
         with contextlib.suppress(MissionFileError):
-            wpl.parse(head + text)
+            store.parse(head + text)

@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("pybullet")
 
 from sitl.physics.native.records import GROUND_AIRBORNE, GROUND_STANDING
-from sitl.physics.pybullet.contacts import report
+from sitl.physics.pybullet.contacts import contacts_report as report
 from sitl.physics.pybullet.worlds import Surfaces
 from sitl.worlds import Box, Start, World
 from tests.physics.pybullet.bullet_copters import copter, put, run

@@ -10,10 +10,10 @@ from sitl.bridge.autopilot_api import Note, Vector, Yaw
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.dialect import message
 from sitl.bridge.profile import Controllers, Profile
-from sitl.bridge.services import commands_system, commands_vehicle
+from sitl.bridge.services import command_table
 from sitl.bridge.services.setpoints import SetpointService
 from sitl.bridge.telemetry.builder import Build, Context
-from sitl.bridge.telemetry.identity import CAPABILITIES
+from sitl.bridge.telemetry.status import CAPABILITIES
 
 from .firmware import AHEAD, MODES
 
@@ -69,7 +69,7 @@ def no_controllers(mode: int, armed: bool) -> int:
     return 0
 
 
-_VEHICLE: dict[int, Any] = {**commands_vehicle.COMMANDS, **commands_system.COMMANDS}
+_VEHICLE: dict[int, Any] = {**command_table.COMMANDS, **command_table.COMMANDS}
 PROFILE = Profile(
     firmware="Boat",
     mav_type=SURFACE_BOAT,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Position and velocity as estimated: GLOBAL_POSITION_INT, LOCAL_POSITION_NED, home and origin; half of VFR_HUD."""
+"""Attitude, position, home and origin."""
 
 from __future__ import annotations
 
@@ -132,10 +132,64 @@ def gps_raw_int(context: Context) -> Build:
     return build
 
 
+def attitude(context: Context) -> Build:
+    """ATTITUDE: Euler angles [rad], body rates [rad/s]."""
+    read = context.fields("time_us", E + "euler", E + "rates")
+    pack = message("ATTITUDE").pack
+
+    def build() -> bytes:
+        t, roll, pitch, yaw, p, q, r = read()
+        return pack(t // 1000 & 0xFFFFFFFF, roll, pitch, yaw, p, q, r)
+
+    return build
+
+
+def attitude_quaternion(context: Context) -> Build:
+    """ATTITUDE_QUATERNION: body to NED as (w, x, y, z)."""
+    read = context.fields("time_us", E + "q", E + "rates")
+    pack = message("ATTITUDE_QUATERNION").pack
+
+    def build() -> bytes:
+        t, *rest = read()
+        return pack(t // 1000 & 0xFFFFFFFF, *rest, 0.0, 0.0, 0.0, 0.0)
+
+    return build
+
+
+def ahrs(context: Context) -> Build:
+    """AHRS: gyro drift [rad/s]; the DCM figures of the message have no counterpart here and are zero."""
+    read = context.fields(E + "gyro_bias")
+    pack = message("AHRS").pack
+
+    def build() -> bytes:
+        x, y, z = read()
+        return pack(-x, -y, -z, 0.0, 0.0, 0.0, 0.0)
+
+    return build
+
+
+def ahrs2(context: Context) -> Build:
+    """AHRS2: the second attitude source; this firmware has one estimator and reports it again."""
+    read = context.fields(E + "euler")
+    where = global_position(context)
+    pack = message("AHRS2").pack
+
+    def build() -> bytes:
+        roll, pitch, yaw = read()
+        lat, lon, alt = where()
+        return pack(roll, pitch, yaw, alt, lat, lon)
+
+    return build
+
+
 BUILDERS: dict[str, Builder] = {
     "GLOBAL_POSITION_INT": global_position_int,
     "LOCAL_POSITION_NED": local_position_ned,
     "HOME_POSITION": home_position,
     "GPS_GLOBAL_ORIGIN": gps_global_origin,
     "GPS_RAW_INT": gps_raw_int,
+    "ATTITUDE": attitude,
+    "ATTITUDE_QUATERNION": attitude_quaternion,
+    "AHRS": ahrs,
+    "AHRS2": ahrs2,
 }

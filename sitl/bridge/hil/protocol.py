@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What both ends agree on: addresses on the link, flags, and which numbers cannot be right."""
+"""What both ends agree on: addresses on the link, flags, which numbers cannot be right, and frames."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from operator import lt
 
 from ...errors import SitlError
+from ..dialect import MessageType
+from ..frame import encode_v2
 
 BASE_PORT = 4560
 """Where physics listens; instance N at 4560 + N, as PX4 expects."""
@@ -48,3 +50,16 @@ def culprit(name: str, fields: Iterable[str], values: Iterable[float], limits: I
         if not abs(value) < limit:
             return RefusedError(f"{name}.{field} = {value}: less than {limit:g} in size is needed")
     return RefusedError(f"{name} cannot be read")
+
+
+class Sender:
+    """Makes the frames of one end, counted."""
+
+    def __init__(self, system: int, component: int) -> None:
+        self._system, self._component = system, component
+        self._sequence = 255
+
+    def frame(self, kind: MessageType, payload: bytes) -> bytes:
+        """A MAVLink 2 frame."""
+        self._sequence = self._sequence + 1 & 255
+        return encode_v2(kind, payload, self._sequence, self._system, self._component)

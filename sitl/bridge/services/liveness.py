@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""HEARTBEAT, PING and TIMESYNC: who is there, and what time it is.
+
+TIMESYNC: answers with simulated nanoseconds (https://mavlink.io/en/services/timesync.html).
+
+Our own requests are a stream.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..channel import Channel
+from ..dialect import message
+from .service import Handler, Sender, Service
+
+
+class HeartbeatService(Service):
+    """Heartbeats of ground stations (https://mavlink.io/en/services/heartbeat.html); our own is a stream."""
+
+    def handlers(self) -> dict[str, Handler]:
+        return {"HEARTBEAT": self._heartbeat}
+
+    def _heartbeat(self, channel: Channel, message: Any, sender: Sender) -> None:
+        if sender[0] == self.bridge.ground_station:
+            self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
+
+
+PING_KIND = message("PING")
+
+
+class PingService(Service):
+    """Ping: a request has target 0/0; the answer carries its time and number back to the sender."""
+
+    def handlers(self) -> dict[str, Handler]:
+        return {"PING": self._ping}
+
+    def _ping(self, channel: Channel, m: Any, sender: Sender) -> None:
+        if m.target_system == 0 and m.target_component == 0:
+            channel.send(PING_KIND, PING_KIND.pack(m.time_usec, m.seq, *sender))
+
+
+TIMESYNC_KIND = message("TIMESYNC")
+
+
+class TimesyncService(Service):
+    """Time: a request has tc1 = 0; the answer repeats its ts1 and gives simulated nanoseconds in tc1."""
+
+    def handlers(self) -> dict[str, Handler]:
+        return {"TIMESYNC": self._timesync}
+
+    def _timesync(self, channel: Channel, m: Any, sender: Sender) -> None:
+        if m.tc1 == 0:
+            extension = (
+                {"target_system": sender[0], "target_component": sender[1]}
+                if "target_system" in TIMESYNC_KIND.fields
+                else {}
+            )
+            channel.send(TIMESYNC_KIND, TIMESYNC_KIND.payload(tc1=self.bridge.now_us * 1000, ts1=m.ts1, **extension))

@@ -1,5 +1,0 @@
-# SPDX-License-Identifier: BSD-3-Clause
-"""Numbers of MAV_RESULT and MAV_SEVERITY that are sent."""
-
-ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
-CRITICAL, ERROR, WARNING, NOTICE, INFO = range(2, 7)
