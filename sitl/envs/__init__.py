@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-from .mavlink.telemetry import LinkLostError, NotASimulatorError, NotReadyError
+from .mavlink.errors import LinkLostError, NotASimulatorError, NotReadyError
 from .options import EnvOptionError
 
 __all__ = [

@@ -27,8 +27,9 @@ from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT
 
+from .errors import LinkLostError, NotReadyError
 from .preparation import FORCE
-from .telemetry import LinkLostError, NotReadyError, StepTelemetry
+from .telemetry import StepTelemetry
 
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 _SLICE_US = 20_000

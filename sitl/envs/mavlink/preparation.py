@@ -17,7 +17,8 @@ from typing import Any
 
 from sitl.client.connection import ACCEPTED, PROOF, Connection
 
-from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN, SECTORS, NotASimulatorError, NotReadyError
+from .errors import NotASimulatorError, NotReadyError
+from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN, SECTORS
 
 FORCE = 21196
 """Second parameter of arming: even in the air."""

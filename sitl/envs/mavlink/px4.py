@@ -16,9 +16,10 @@ from sitl.bridge.services.setpoints import (
 )
 from sitl.client.connection import ACCEPTED, Connection
 
+from .errors import NotReadyError
 from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
-from .telemetry import NotReadyError, StepTelemetry
+from .telemetry import StepTelemetry
 
 OFFBOARD = 6
 """Main mode of PX4's, in param2 of DO_SET_MODE with MAV_MODE_FLAG_CUSTOM_MODE_ENABLED in param1."""

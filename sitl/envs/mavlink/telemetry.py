@@ -13,7 +13,6 @@ import numpy.typing as npt
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
 from sitl.client.endpoint import AUTOPILOT, HEARTBEAT, TEXT, Inbox
-from sitl.errors import LinkLostError, VehicleError
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
@@ -148,14 +147,3 @@ class StepTelemetry(Inbox):
         self._splitter = Splitter()
         self._fresh.clear()
         self.acks.clear()
-
-
-__all__ = ["LinkLostError", "NotASimulatorError", "NotReadyError"]
-
-
-class NotReadyError(VehicleError, RuntimeError):
-    """A vehicle that does not become ready for an episode; the message says which texts it sent."""
-
-
-class NotASimulatorError(NotReadyError):
-    """A vehicle that is not reset, because nothing proves that it is a simulator; nothing was sent that changes it."""

@@ -29,8 +29,8 @@ from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import Action
+from ..mavlink.errors import LinkLostError
 from ..mavlink.preparation import ALIGN_US, RESETS, SIMULATOR, hear_again, set_intervals, set_mode
-from ..mavlink.telemetry import LinkLostError
 from ..options import EnvOptionError, unknown
 from ..setpoints import Setpoint
 from .by_socket import SocketVehicles

@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
-from sitl.bridge.links.inprocess import InProcessLink
 from sitl.client import Client, ClientError
 from sitl.errors import OptionError
-from sitl.simulation import Simulation
 
 from .. import library
 from ..files import load, straightened
@@ -70,50 +67,3 @@ class MissionFlier(Client):
         if self.mode != "AUTO" or last not in (*self.reached, *self.telemetry.items):
             name = mission.items[last].name
             self.raise_error(ClientError("the mission", f"was not flown to its end, item {last} {name}"))
-
-
-class Said(NamedTuple):
-    """Bytes of the client."""
-
-    time_us: int
-    data: bytes
-
-
-class Script:
-    """The client's end of the vehicle's link; it keeps what goes through."""
-
-    def __init__(self, simulation: Simulation, link: InProcessLink) -> None:
-        self._simulation, self._link = simulation, link
-        self.said: list[Said] = []
-
-    def send(self, data: bytes) -> None:
-        """To the vehicle."""
-        self.said.append(Said(self._simulation.time_us, bytes(data)))
-        self._link.send(data)
-
-    def receive(self) -> bytes:
-        """From the vehicle."""
-        return self._link.receive()
-
-
-def repeat(
-    simulation: Simulation,
-    said: list[Said],
-    end_us: int,
-    prepare: Callable[[Simulation], None] = lambda simulation: None,
-) -> None:
-    """Fly a script once more, from power-on until ``end_us``.
-
-    Args:
-        simulation: at power-on, made as the first one was.
-        prepare: called when the client's link is there, as it was in the test; it may add logs.
-    """
-    link = InProcessLink()
-    simulation.bridge.add_link(link)
-    prepare(simulation)
-    for time_us, data in said:
-        if time_us > simulation.time_us:
-            simulation.advance_to(time_us)
-            link.receive()  # nobody reads it
-        link.send(data)
-    simulation.advance_to(end_us)

@@ -13,7 +13,7 @@ from sitl.client.connection import InProcess
 from sitl.client.errors import ClientError
 from sitl.simulation import Simulation
 
-from .missions import Said, Script
+from .script import Said, Script
 
 __tracebackhide__ = True  # failures show the line of the test
 

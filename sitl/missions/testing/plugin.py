@@ -8,15 +8,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any, Literal, overload
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from . import setup as boots
-from .golden import GoldenBook
-from .logs import keep
-from .setup import Defaults, setup
-from .vehicle import Copter, Rover, Vehicle
+if TYPE_CHECKING:
+    from .factory import VehicleFactory
+    from .vehicle import Copter, Rover
 
 FACTORY = pytest.StashKey["VehicleFactory"]()
 TAKEN = pytest.StashKey[dict[Path, str]]()
@@ -60,6 +58,7 @@ def vehicle_factory(request: pytest.FixtureRequest) -> Iterator[VehicleFactory]:
     """Makes vehicles that are ready to arm: ``vehicle_factory("rover", world="maze", seed=3)``."""
     __tracebackhide__ = True
     from . import setup
+    from .factory import VehicleFactory
 
     config, node = request.config, request.node
     if setup.compiling is None:
@@ -190,59 +189,3 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
             for name, value in getattr(report, "user_properties", ()):
                 if name == WRITTEN and report.when == "call":
                     terminalreporter.write_line(f"golden flight written: {value}")
-
-
-__tracebackhide__ = True
-
-
-class VehicleFactory:
-    """``vehicle_factory("rover", world="maze")``: it is ready to arm; ``setup.setup`` says what is taken."""
-
-    def __init__(self, defaults: Defaults, golden: GoldenBook, logs: Path) -> None:
-        self.defaults, self.golden, self.logs = defaults, golden, logs
-        self.vehicles: list[Vehicle] = []
-
-    @overload
-    def __call__(self, kind: Literal["copter"], **options: Any) -> Copter: ...
-    @overload
-    def __call__(self, kind: Literal["rover"], **options: Any) -> Rover: ...
-    @overload
-    def __call__(self, kind: str | None = None, **options: Any) -> Vehicle: ...
-    def __call__(
-        self,
-        kind: str | None = None,
-        *,
-        ready: bool = True,
-        after: boots.Prepare | None = None,
-        name: str | None = None,
-        **options: Any,
-    ) -> Vehicle:
-        """A vehicle of this test's own.
-
-        Args:
-            kind: "copter" or "rover".
-            ready: wait until it is ready to arm; else it is at power-on.
-            after: a function of the vehicle, flown before the test begins: once a process; all tests that name the same
-                function begin from its end. It uses nothing but the vehicle.
-            name: for messages and logs.
-            options: frame, home, seed, estimator, params, world, start, physics, wind, mission.
-        """
-        wanted = setup(self.defaults, kind, **options)
-        name = name or wanted.kind
-        taken = sum(vehicle.name == name or vehicle.name.startswith(f"{name}-") for vehicle in self.vehicles)
-        name = f"{name}-{taken + 1}" if taken else name
-        vehicle = boots.new(wanted, name)
-        vehicle.golden, vehicle.folders = self.golden, self.defaults.folders
-        self.vehicles.append(vehicle)
-        if ready or after is not None:
-            boots.begin(vehicle, wanted, after)
-        return vehicle
-
-    def keep_logs(self, error: BaseException | None) -> list[tuple[str, list[str]]]:
-        """Logs of all vehicles: (vehicle, what there is to say)."""
-        return [(vehicle.name, keep(vehicle, self.logs, vehicle.name, error)) for vehicle in self.vehicles]
-
-    def close(self) -> None:
-        """Close all vehicles."""
-        for vehicle in self.vehicles:
-            vehicle.simulation.close()

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import FlightChanged, GoldenBook
-from sitl.missions.testing.plugin import VehicleFactory
 from sitl.missions.testing.vehicle import Copter
 from sitl.recording.recording import read
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from sitl.missions.testing import setup as boots
+from sitl.missions.testing import boots
+from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.logs import fly_again, keep
-from sitl.missions.testing.plugin import VehicleFactory
 from sitl.missions.testing.vehicle import Copter
 from sitl.recording.entries import of_state
 from sitl.recording.recording import read

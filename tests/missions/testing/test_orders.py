@@ -10,7 +10,7 @@ import pytest
 
 from sitl.errors import OptionError
 from sitl.missions.library import entries
-from sitl.missions.testing.plugin import VehicleFactory
+from sitl.missions.testing.factory import VehicleFactory
 
 
 def test_a_velocity_stays_until_another_order(make: VehicleFactory) -> None:

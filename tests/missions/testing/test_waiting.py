@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from sitl.client.waits import turn
+from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.logs import fly_again
-from sitl.missions.testing.plugin import VehicleFactory
 
 
 def test_a_vehicle_begins_ready_to_arm(make: VehicleFactory) -> None:
