@@ -17,9 +17,8 @@ from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpInLink, UdpOutLink
 from ..logs.track_observer import TrackObserver
 from ..simulation import Simulation
-from . import entries as digests
 from .blocks import END, ENTRIES, HEADER, LZMA, SECTION, BlockReader, BlockWriter
-from .entries import Entry, EntryKind, RecordingError, encode, varint
+from .entries import Entry, EntryKind, RecordingError, Sent, check, encode, of_state, varint
 from .identity import describe
 
 CHECK_US = 10_000_000
@@ -66,7 +65,7 @@ class Recorder:
         self.path = Path(path) if path is not None else None
         self.stopped = "ended"
         """Reason for the end of the run, in a word or two."""
-        self.channels: dict[int, digests.Sent] = {}
+        self.channels: dict[int, Sent] = {}
         """Channel number -> digest of what it was sent."""
         self.checks: dict[int, bytes] | None = None
         """Time [us] -> digests at that time; kept only for a replay."""
@@ -151,7 +150,7 @@ class Recorder:
         self._note(EntryKind.UNLINK, self._links.pop(link))
 
     def came(self, channel: Channel) -> None:
-        self.channels[channel.number] = digests.Sent()
+        self.channels[channel.number] = Sent()
         number = next(number for link, number in self._links.items() if channel.peer in link.peers)
         self._note(EntryKind.CONNECTED, channel.number, varint(number))
 
@@ -210,7 +209,7 @@ class Recorder:
         now = self.simulation.time_us
         if now >= self._check_us:  # at times that do not depend on how often it is written
             self._check_us = (now // CHECK_US + 1) * CHECK_US
-            found = digests.check(self.simulation, self.channels)
+            found = check(self.simulation, self.channels)
             if self.checks is not None:
                 self.checks[now] = found
             self._note(EntryKind.CHECK, 0, found)
@@ -226,7 +225,7 @@ class Recorder:
         return {
             "time_us": self.simulation.time_us,
             "stopped": self.stopped,
-            "state": digests.of_state(self.simulation),
+            "state": of_state(self.simulation),
             "channels": {str(number): sent.digest().hex() for number, sent in sorted(self.channels.items())},
         }
 

@@ -101,7 +101,7 @@ def test_importing_the_package_loads_no_compiler():
         "sitl",
         "sitl.envs",
         "sitl.envs.mavlink",
-        "sitl.envs.mavlink.telemetry",
+        "sitl.envs.mavlink.errors",
         "sitl.envs.options",
         "sitl.errors",
     ]

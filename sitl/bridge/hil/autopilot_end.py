@@ -19,7 +19,7 @@ from ..frame import Frame, Splitter
 from . import controls, truth
 from .measurements import Inbox
 from .protocol import ARDUPILOTMEGA, AUTOPILOT, REBOOT, REQUEST_MESSAGE, RESEED, RefusedError, Sender
-from .sensor import SENSOR_KIND as SENSOR
+from .sensor import SENSOR_KIND
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, TEXT = (
     message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "STATUSTEXT")
@@ -100,7 +100,7 @@ class AutopilotEnd:
     def ask_state(self) -> bytes:
         """Ask for all that the physics knows: to begin where it is."""
         self._begin(0)
-        return self._command(REQUEST_MESSAGE, SENSOR.id)
+        return self._command(REQUEST_MESSAGE, SENSOR_KIND.id)
 
     def ask_reboot(self) -> bytes:
         """Ask the physics to begin anew."""
@@ -146,7 +146,7 @@ class AutopilotEnd:
 
     def _take(self, frame: Frame) -> int:
         kind = frame.kind
-        if kind is SENSOR:
+        if kind is SENSOR_KIND:
             return self._tick(frame.payload)
         if self._inbox.keep(kind.id, frame.payload):
             return WAITING

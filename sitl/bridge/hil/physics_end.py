@@ -23,7 +23,7 @@ from . import controls, sticks, truth
 from .controls import ForeignClock
 from .measurements import Measurements
 from .protocol import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
-from .sensor import SENSOR_KIND as SENSOR
+from .sensor import SENSOR_KIND
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, PARAM_VALUE, TEXT = (
     message(name)
@@ -216,7 +216,7 @@ class PhysicsEnd:
             self._simulated.reseed((fields.x & 0xFFFFFFFF) | (fields.y & 0xFFFFFFFF) << 32)
         elif number == REQUEST_MESSAGE and fields.param1 == truth.TRUTH_KIND.id:
             more = self._truth()
-        elif number == REQUEST_MESSAGE and fields.param1 == SENSOR.id:
+        elif number == REQUEST_MESSAGE and fields.param1 == SENSOR_KIND.id:
             more = self.measurements.everything()
         elif number == SET_MESSAGE_INTERVAL and fields.param1 == truth.TRUTH_KIND.id:
             if not abs(fields.param2) < 1e12:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink's microservices, one file each (https://mavlink.io/en/services/)."""
+"""MAVLink's microservices (https://mavlink.io/en/services/)."""
 
 from .commands import CommandService
 from .ftp import FtpService

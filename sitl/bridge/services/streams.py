@@ -11,7 +11,7 @@ from typing import Any
 from ..channel import Channel
 from ..dialect import message
 from .command import Command
-from .modes import KIND as MODES
+from .modes import KIND as AVAILABLE_MODES
 from .modes import send_modes
 from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
@@ -120,6 +120,6 @@ class StreamService(Service):
 
     def request_message(self, channel: Channel, command: Command) -> int:
         """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
-        if int(command.p1) == MODES.id:
+        if int(command.p1) == AVAILABLE_MODES.id:
             return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
         return ACCEPTED if self.bridge.send_now(channel, int(command.p1)) else FAILED

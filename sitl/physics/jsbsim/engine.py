@@ -19,11 +19,10 @@ from ...core.algebra import euler_of, quat_from_euler, rotate
 from ...core.vectors import Euler, Quat, Vec3
 from ..engine import Engine, EngineError, Seat
 from ..native.tick import TICK_S
-from . import craft as memory
 from . import start
 from .air import Air
 from .aircraft import RADIUS
-from .craft import FOOT, Craft, Properties
+from .craft import FOOT, Craft, Properties, writer
 from .formula import library, load
 
 _STATE = (
@@ -69,7 +68,7 @@ class JsbsimEngine(Engine):
         self._figures = b""
         self._physics = seat.v.physics
         self._wind = seat.v.physics.wind
-        self._write_body = memory.writer(seat, "physics.body.pos", 13)
+        self._write_body = writer(seat, "physics.body.pos", 13)
 
     # ------------------------------------------------------------------ starting
 

@@ -20,10 +20,9 @@ from ..native.body import GRAVITY
 from ..native.obstacles import settle
 from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
 from ..record import offset
-from . import client as state
 from . import urdf, worlds
-from .contacts import CLEAR, Row
-from .contacts import contacts_report as report
+from .client import load, save
+from .contacts import CLEAR, Row, contacts_report
 from .copter_body import ALL, BODY, CopterBody
 from .picture import Camera, Picture
 
@@ -123,7 +122,7 @@ class BulletEngine(Engine):
     def _touch(self, body: CopterBody, rows: Sequence[Row], before: Sequence[float], force: Sequence[float]) -> None:
         """After a step with contacts, or the first without: what they mean, and what hard ones did to the velocity."""
         v = self.seat.v
-        is_hard = report(v, body.surfaces, rows, before)
+        is_hard = contacts_report(v, body.surfaces, rows, before)
         if not (is_hard or (rows and body.has_hard_feet)):
             return
         b, motion, dt = v.physics.body, v.physics.motion, body.step_s
@@ -133,15 +132,15 @@ class BulletEngine(Engine):
     # ------------------------------------------------------------------ snapshots
 
     def snapshot(self) -> bytes:
-        """See ``Engine``. A vehicle that has something near goes on as if it had been restored (``state``)."""
-        saved = state.save(self.body.client)
+        """See ``Engine``. A vehicle that has something near goes on as if it had been restored (``client.save``)."""
+        saved = save(self.body.client)
         if self._is_near():
             self.restore(saved)
         return saved
 
     def restore(self, state_: bytes) -> None:
         body = self.body
-        state.load(body.client, state_, body.number)
+        load(body.client, state_, body.number)
 
     def _is_near(self) -> bool:
         """Whether floor or solids are so near that Bullet may have something about them in mind."""

@@ -18,10 +18,9 @@ from ..engine import Array, Engine, EngineError, Seat
 from ..native.body import GRAVITY
 from ..native.tick import TICK_S
 from ..record import offset
-from . import client as state
 from . import worlds
-from .client import Client
-from .contacts import hits_report as report
+from .client import Client, forget, load, save
+from .contacts import hits_report
 from .picture import Camera, Picture
 from .rover_model import Model, build
 from .tyres import scrub_all
@@ -120,7 +119,7 @@ class BulletRover(Engine):
         ahead = self.model.layout.origin
         c, s = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
         p.restoreState(self._as_built, physicsClientId=client.id)
-        state.forget(client, self._number, self._zero)
+        forget(client, self._number, self._zero)
         p.resetBasePositionAndOrientation(
             self._number, (n - ahead * c, ahead * s - e, self._zero), (x, -y, -z, w), client.id
         )
@@ -196,7 +195,7 @@ class BulletRover(Engine):
             rows = p.getContactPoints(number, -1, -1, _LINKS, id_)
             if rows or self.seat.v.physics.obstacles.touching:
                 before = self._state
-                report(self.seat.v, rows, before[:3], before[3:6], self._spin, self._gain)
+                hits_report(self.seat.v, rows, before[:3], before[3:6], self._spin, self._gain)
         # Axes of the body, forward and left and up, in the world's frame.
         a, b, c = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qw * qz), 2.0 * (qx * qz - qw * qy)
         d, e, f = 2.0 * (qx * qy - qw * qz), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz + qw * qx)
@@ -227,14 +226,14 @@ class BulletRover(Engine):
     # ------------------------------------------------------------------ the rest
 
     def snapshot(self) -> bytes:
-        """See ``Engine``. Among solids it goes on as if it had been restored (``state``)."""
-        saved = _LAST.pack(*self._state, *self._spin, *self._speeds) + state.save(self._fit())
+        """See ``Engine``. Among solids it goes on as if it had been restored (``client.save``)."""
+        saved = _LAST.pack(*self._state, *self._spin, *self._speeds) + save(self._fit())
         if self._has_solids:
             self.restore(saved)
         return saved
 
     def restore(self, state_: bytes) -> None:
-        state.load(self._fit(), state_[_LAST.size :], self._number, self._zero)
+        load(self._fit(), state_[_LAST.size :], self._number, self._zero)
         last = _LAST.unpack_from(state_)
         self._state, self._spin, self._speeds = last[:13], last[13:16], last[16:]
         self._target = (math.nan,)

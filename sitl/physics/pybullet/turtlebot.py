@@ -14,13 +14,12 @@ from ...worlds import World, planar
 from ..native.turtlebot.init import place as place_record
 from ..native.turtlebot.state import TICK_S, TICK_US
 from ..native.turtlebot.step import wheel_speeds
-from . import client as state
 from . import worlds
-from . import worlds as rays_of_bullet
-from .client import Client
+from .client import Client, forget, load, save
 from .picture import Camera, Picture
 from .turtlebot_model import TORQUE, build
 from .wheels import filter_by_both
+from .worlds import cast
 
 _ITERATIONS, _RESIDUAL = 50, 1e-14
 _FORCE = 9
@@ -74,7 +73,7 @@ class BulletTurtlebot:
         p, id_, number = client.p, client.id, self.model.body
         half = -0.5 * b.heading
         p.restoreState(self._as_built, physicsClientId=id_)
-        state.forget(client, number, self._zero)
+        forget(client, number, self._zero)
         at = (b.north, 0.0 - b.east, self._zero)
         p.resetBasePositionAndOrientation(number, at, (0.0, 0.0, math.sin(half), math.cos(half)), id_)
         p.resetBaseVelocity(number, _NOTHING, _NOTHING, id_)
@@ -130,7 +129,7 @@ class BulletTurtlebot:
         directions = np.stack([c * x - s * y, s * x + c * y, np.zeros_like(x)])
         ahead, longest = float(f.lidar_ahead), float(f.range_max)
         origin = np.array([b.north + c * ahead, b.east + s * ahead, b.down - float(f.lidar_height)])
-        rays_of_bullet.cast(client, origin, directions, self._ranges, longest)
+        cast(client, origin, directions, self._ranges, longest)
         readings[:] = planar.publish(self._ranges, longest, self._readings)
         if f.range_noise > 0.0:
             for k in range(len(readings)):
@@ -148,8 +147,8 @@ class BulletTurtlebot:
         return self._picture.render(place, attitude, width, height, camera)
 
     def snapshot(self) -> bytes:
-        """What the record does not hold. Among solids it goes on as if it had been restored (``state``)."""
-        saved = state.save(self._fit())
+        """What the record does not hold. Among solids it goes on as if it had been restored (``client.save``)."""
+        saved = save(self._fit())
         if self.surfaces.solids:
             self.restore(saved)
         return saved
@@ -161,7 +160,7 @@ class BulletTurtlebot:
             EngineError: it is of another robot or world.
         """
         client = self._fit()
-        state.load(client, state_, self.model.body, self._zero)
+        load(client, state_, self.model.body, self._zero)
         self._rates = (math.nan, math.nan)
 
     def close(self) -> None:
