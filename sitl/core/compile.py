@@ -76,7 +76,7 @@ def unit_folder(unit: Unit, path: str) -> Path:
     """Where the unit's current machine code for the record type at ``path`` is or will be."""
     key = (unit.name, path)
     if key not in _fingerprints:
-        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), f"{toolchain()} {path}")
+        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), f"{toolchain()} {path} {unit.inline}")
     return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
 
 
@@ -85,14 +85,19 @@ def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
     return [u for u in reached(entry) if not is_built(unit_folder(u, path))]
 
 
-def make_jitable() -> None:
-    """Let Numba compile laws into their callers (the functions themselves stay plain Python)."""
+def make_jitable(inline: bool = False) -> None:
+    """Let Numba compile laws into their callers (the functions themselves stay plain Python).
+
+    Args:
+        inline: no law stays a call. What is compiled in one process is compiled in one way: each unit has a worker of
+            its own.
+    """
     from numba.extending import register_jitable
 
     for function in LAWS:
         if id(function) not in _jitable:
             _jitable.add(id(function))
-            register_jitable(**law_options(function in INLINED))(function)
+            register_jitable(**law_options(inline or function in INLINED))(function)
     for unit in UNITS.values():
         if unit.name not in _linked:
             _linked.add(unit.name)
@@ -151,7 +156,7 @@ def load_unit(unit: Unit, path: str) -> Any:
     import numba
     from numba import types
 
-    make_jitable()
+    make_jitable(unit.inline)
     from .numba_records import numba_type
 
     record = numba_type(record_class(path))

@@ -34,6 +34,8 @@ class Unit:
     function: Callable[..., Any]
     integers: int
     """Number of int64 arguments after ``(fleet, index)``."""
+    inline: bool = False
+    """All its laws are compiled into one function: faster, where that does not take much longer to compile."""
 
     @property
     def symbol(self) -> str:
@@ -60,7 +62,15 @@ def inlined(function: F) -> F:
 
 def unit(function: F) -> F:
     """Mark ``function(fleet, index, *integers)`` as a separately compiled unit; it is returned unchanged."""
+    return _unit(function, False)
+
+
+def inline_unit(function: F) -> F:
+    """The same for a unit that runs every tick and is small: all its laws are compiled into one function."""
+    return _unit(function, True)
+
+
+def _unit(function: F, inline: bool) -> F:
     name = function.__module__.removeprefix("sitl.") + "." + function.__name__
-    code = function.__code__
-    UNITS[name] = Unit(name, function, code.co_argcount - 2)
+    UNITS[name] = Unit(name, function, function.__code__.co_argcount - 2, inline)
     return function

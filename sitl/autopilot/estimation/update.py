@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.algebra import IDENTITY
-from ...core.kernels import law, unit
+from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events
 from ..state import Autopilot, Vehicle
@@ -56,7 +56,7 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         alignment.restart(ekf)
 
 
-@unit
+@inline_unit
 def step(fleet: Records[Vehicle], i: int) -> None:
     """Prediction of the covariance over the last ticks, then fusion of what the sensors brought."""
     v = fleet[i]
@@ -92,7 +92,7 @@ def _boot(ap: Autopilot) -> None:
     estimate.rates = ekf.good_gyro
 
 
-@unit
+@inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick: ``sensors`` to ``autopilot.estimate``."""
     v = fleet[i]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.kernels import law, unit
+from ....core.kernels import inline_unit, law
 from ....core.records import Records
 from ...state import Actuators
 from ..state import Autopilot, Vehicle
@@ -47,7 +47,7 @@ def drive(ap: Autopilot, actuators: Actuators, time_us: int) -> None:
     ap.control.tick += 1
 
 
-@unit
+@inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """The same for vehicle ``i``."""
     v = fleet[i]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.kernels import law, unit
+from ....core.kernels import inline_unit, law
 from ....core.records import Records
 from ..state import Autopilot, Vehicle
 from . import forward_speed, motors, position, servos
@@ -23,7 +23,7 @@ def init(ap: Autopilot) -> None:
         position.set_limits(ap.control.position, p.CRUISE.SPEED, decel, lat_accel_max(p.ATC), decel)
 
 
-@unit
+@inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """Carry out what the mode of vehicle ``i`` asked for and write its actuators."""
     v = fleet[i]

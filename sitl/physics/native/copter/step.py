@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.algebra import ZERO, rotate, rotate_inverse
-from ....core.kernels import law, unit
+from ....core.kernels import inline_unit, law
 from ....core.records import Records
 from ....core.vectors import Vec3
 from .. import battery, obstacles, wind
@@ -70,7 +70,7 @@ def end(v: Vehicle[Physics]) -> None:
     sense(v)
 
 
-@unit
+@inline_unit
 def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
     v = fleet[i]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.kernels import law, unit
+from ....core.kernels import inline_unit, law
 from ....core.records import Floats, Records
 from ....core.vectors import Vec2
 from ....vehicles.figures.rover import STEERING_SKID
@@ -79,7 +79,7 @@ def end(v: Vehicle[Physics]) -> None:
     encoders.sample(p, v.sensors, v.tick)
 
 
-@unit
+@inline_unit
 def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Advance vehicle ``i`` by one tick of 2500 us: actuators in, sensors out."""
     v = fleet[i]
