@@ -26,8 +26,10 @@ several bases follow each other, where a field of two of them is at its place in
 from __future__ import annotations
 
 import inspect
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Annotated, Any, ClassVar, Protocol, Self, TypeVar, get_args, get_origin, get_type_hints, overload
 
 import numpy as np
@@ -214,6 +216,10 @@ def _values() -> tuple[type[Value], ...]:
     return VALUES
 
 
+_REFERENCES = tuple(f"_reference_{k}" for k in range(64))
+"""Where a record keeps its arrays, records and rows of records, in the order of its fields."""
+
+
 class _RecordMeta(type):
     """Gives record classes no dictionary, so that a misspelt field is an error."""
 
@@ -224,11 +230,12 @@ class _RecordMeta(type):
 class Record(metaclass=_RecordMeta):
     """Base of all records (see the module)."""
 
-    __slots__ = ("_bytes", "_f4", "_f8", "_i4", "_i8", "_references")
+    __slots__ = ("_bytes", "_f4", "_f8", "_i4", "_i8", *_REFERENCES)
     dtype: ClassVar[np.dtype[Any]]
     """NumPy's type of the record, aligned as C does it."""
     fields: ClassVar[dict[str, Field]] = {}
     """Name -> field, in the order of memory."""
+    _places: ClassVar[tuple[tuple[str, Field], ...]] = ()
     keeps_places: ClassVar[bool] = True
     """Whether a field that a subclass declares again stays where the base has it; else it goes where it is declared."""
     _bytes: Any
@@ -236,7 +243,6 @@ class Record(metaclass=_RecordMeta):
     _i8: Any
     _f4: Any
     _i4: Any
-    _references: dict[str, Any]
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -244,7 +250,7 @@ class Record(metaclass=_RecordMeta):
         hints = {
             name: hint
             for name, hint in get_type_hints(cls, include_extras=True).items()
-            if not name.startswith("_") and get_origin(hint) is not ClassVar and name not in ("dtype", "fields")
+            if not name.startswith("_") and get_origin(hint) is not ClassVar
         }
         inherited_fields: dict[str, Field] = {}
         for base in cls.__bases__:
@@ -264,8 +270,15 @@ class Record(metaclass=_RecordMeta):
         cls.dtype = np.dtype([(f.name, f.numpy) for f in declared], align=True)
         offsets: Any = cls.dtype.fields or {}
         cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
+        references = [f for f in cls.fields.values() if f.value is None]
+        if len(references) > len(_REFERENCES):
+            raise TypeError(f"{cls.__name__}: {len(references)} arrays and records; at most {len(_REFERENCES)}")
+        cls._places = tuple(zip(_REFERENCES, references))
+        for place, field in cls._places:
+            setattr(cls, field.name, _reference_access(place))
         for field in cls.fields.values():
-            setattr(cls, field.name, _access(field))
+            if field.value is not None:
+                setattr(cls, field.name, _access(field, field.value))
 
     def __init__(self, memory: Any = None) -> None:
         """A record on ``memory`` (a memoryview of its size), or of zeros in memory of its own."""
@@ -276,7 +289,8 @@ class Record(metaclass=_RecordMeta):
         for code, store, letter in (("f8", "_f8", "d"), ("i8", "_i8", "q"), ("f4", "_f4", "f"), ("i4", "_i4", "i")):
             if code in codes:
                 setattr(self, store, memory.cast(letter))
-        self._references = {f.name: _reference(f, memory[f.offset :]) for f in self.fields.values() if f.value is None}
+        for place, f in self._places:
+            setattr(self, place, _reference(f, memory[f.offset :]))
 
     @classmethod
     def of(cls, fleet: np.ndarray[Any, Any], index: int) -> Self:
@@ -347,14 +361,15 @@ def _reference(field: Field, memory: Any) -> Any:
 _STORES = {"f8": ("_f8", 8), "i8": ("_i8", 8), "f4": ("_f4", 4), "i4": ("_i4", 4)}
 
 
-def _access(field: Field) -> property:
-    if field.value is None:
-        return _reference_access(field)
+_LETTERS = {"f8": "d", "i8": "q", "f4": "f", "i4": "i"}
+"""NumPy's code of a number -> that of ``struct``."""
+
+
+def _access(field: Field, value: type) -> property:
+    if issubclass(value, Value):
+        return _value_access(value, field)
     store, size = _STORES[field.code]
-    k = field.offset // size
-    if issubclass(field.value, Value):
-        return _value_access(field.value, store, k)
-    return _number_access(field, store, k)
+    return _number_access(field, store, field.offset // size)
 
 
 def _number_access(field: Field, store: str, k: int) -> property:
@@ -384,33 +399,30 @@ def _number_access(field: Field, store: str, k: int) -> property:
     return property(reads[store], writes.get(store, write_narrow))
 
 
-def _value_access(cls: type[Value], store: str, k: int) -> property:
-    count = len(cls.NAMES)
-    new = tuple.__new__
-    whole = store in ("_i8", "_i4")
+def _value_access(cls: type[Value], field: Field) -> property:
+    count, offset, new = len(cls.NAMES), field.offset, tuple.__new__
+    layout = struct.Struct(f"<{count}{_LETTERS[field.code]}")
+    unpack, pack = layout.unpack_from, layout.pack_into
+    whole = field.code in ("i8", "i4")
 
     def read(self: Any) -> Any:
-        numbers = getattr(self, store)[k : k + count].tolist()
+        numbers = unpack(self._bytes, offset)
         return new(cls, map(float, numbers) if whole else numbers)
 
     def write(self: Any, value: Any) -> None:
-        numbers = getattr(self, store)
-        for j, number in enumerate(np.asarray(value, float).tolist() if not isinstance(value, tuple) else value):
-            if j >= count:
-                raise TypeError(f"{value!r} does not have the {count} components of a {cls.__name__}")
-            numbers[k + j] = int(number) if whole else number
+        numbers = value if isinstance(value, tuple) else np.asarray(value, float).tolist()
+        if len(numbers) != count:
+            raise TypeError(f"{value!r} does not have the {count} components of a {cls.__name__}")
+        pack(self._bytes, offset, *(map(int, numbers) if whole else numbers))
 
     return property(read, write)
 
 
-def _reference_access(field: Field) -> property:
-    name = field.name
-
-    def read(self: Any) -> Any:
-        return self._references[name]
+def _reference_access(place: str) -> property:
+    read = attrgetter(place)  # no Python frame for a read
 
     def write(self: Any, value: Any) -> None:
-        held = self._references[name]
+        held = read(self)
         if isinstance(held, Record):
             held.assign(value)
         elif isinstance(held, tuple):

@@ -10,6 +10,7 @@ Conventions: NED world frame, FRD body frame, Hamilton quaternions that turn bod
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import Any, ClassVar, Self
 
 
@@ -51,7 +52,7 @@ class Value(tuple[float, ...]):
 
 
 def _component(k: int) -> Any:
-    return property(lambda self: self[k])
+    return property(itemgetter(k))  # no Python frame for a read
 
 
 class Vec2(Value):

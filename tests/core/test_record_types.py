@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pytest
 
 from sitl.core.numba_records import numba_type
-from sitl.core.records import Float32, Ints, Record, array, as_dict
-from sitl.core.vectors import Value
+from sitl.core.records import Float32, Ints, Record, Records, Stored, array, as_dict, repeat
+from sitl.core.vectors import Quat, Value, Vec3
 from sitl.vehicle.copter import Copter
 from sitl.vehicle.rover import Rover
 
@@ -103,3 +103,37 @@ def test_symbols_of_compiled_laws_name_their_records():
     """The copter's and the rover's cores are compiled in separate processes and loaded into one."""
     for cls in (Copter, Rover, Small):
         assert numba_type(cls).mangling_args == (numba_type(cls).name, ())
+
+
+class Vectors(Record):
+    narrow: Annotated[Vec3, Stored("f4")]
+    whole: Annotated[Vec3, Stored("i4")]
+    attitude: Quat
+    ready: bool
+    rows: Records[Small] = repeat(Small, 2)
+
+
+def test_values_are_kept_as_wide_as_they_are_declared() -> None:
+    v = Vectors()
+    v.narrow, v.whole, v.attitude, v.ready = Vec3(0.1, 0, 0), Vec3(1.9, -1.9, 3.0), (1, 0, 0, 0), 7
+    assert v.narrow == (float(np.float32(0.1)), 0.0, 0.0) and isinstance(v.narrow, Vec3)
+    assert v.whole == (1.0, -1.0, 3.0), "the fraction is cut off, as in the core"
+    assert v.attitude.w == 1.0 and v.ready is True
+    v.rows[1].c = 4
+    assert [row.c for row in v.rows] == [0, 4]
+    v.zero("narrow", "rows")
+    assert v.narrow == (0.0, 0.0, 0.0) and v.rows[1].c == 0 and v.attitude.w == 1.0
+
+
+def test_a_vector_of_another_length_is_refused() -> None:
+    v = Vectors()
+    with pytest.raises(TypeError, match=r"\(1, 2\) does not have the 3 components of a Vec3"):
+        v.narrow = (1, 2)
+    assert v.narrow == (0.0, 0.0, 0.0)
+
+
+def test_a_field_that_no_record_can_hold_is_refused() -> None:
+    with pytest.raises(TypeError, match="field 'x' is a <class 'str'>; a record holds float, int, bool, Vec2"):
+        type("Odd", (Record,), {"__annotations__": {"x": str}})
+    with pytest.raises(TypeError, match="attributes of records themselves"):
+        type("Odd", (Record,), {"__annotations__": {"fields": float}})
