@@ -16,12 +16,11 @@ import pytest
 pytest.importorskip("stable_baselines3", reason="deep agents need the extra 'rl'")
 pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 
-from deep_runs import new, train, weights
-
 from sitl.agents.deep import checkpoint, plain, training
 from sitl.agents.deep.library import torch
 from sitl.agents.errors import AgentError
 from sitl.agents.runs.folder import RunFolder
+from tests.agents.deep_runs import new, train, weights
 
 
 class Marks:
