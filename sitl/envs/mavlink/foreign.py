@@ -129,7 +129,7 @@ class Foreign(Connection):
                     raise
                 time.sleep(0.05)  # wall time; the vehicle has none yet
             else:
-                self.streampoint = Endpoint(self.stream)
+                self.endpoint = Endpoint(self.stream)
                 return
 
     def find(self) -> None:
