@@ -18,7 +18,7 @@ import struct
 from collections import namedtuple
 from collections.abc import Callable
 from functools import partial
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from fastcrc import crc16
 from pymavlink.dialects.v20 import ardupilotmega
@@ -93,6 +93,27 @@ def _base_size(cls: Any, types: list[str]) -> int:
     return int(found)
 
 
+class PayloadLayout(NamedTuple):
+    """What frames of a message depend on."""
+
+    id: int
+    size: int
+    base_size: int
+    crc_extra: int
+
+
+def layout_of(number: int) -> PayloadLayout:
+    """Sizes and checksum seed of a message of the dialect."""
+    cls = _CLASSES[number]
+    return PayloadLayout(cls.id, cls.unpacker.size, _base_size(cls, _wire_types(cls)), cls.crc_extra)
+
+
+def _wire_types(cls: Any) -> list[str]:
+    """Types of the fields in wire order."""
+    types = [cls.fieldtypes[cls.fieldnames.index(name)] for name in cls.ordered_fieldnames]
+    return ["uint8_t" if t == "uint8_t_mavlink_version" else t for t in types]
+
+
 def _allowed(code: str, length: int) -> str:
     """What a field of this struct code takes, in words; ``length`` 0 is no array."""
     bits = _INTEGER_BITS.get(code.lower())
@@ -112,15 +133,14 @@ class MessageType:
     """One message of the dialect."""
 
     __slots__ = (
-        "_arrays", "_codes", "_is_text", "_make", "_zeros",
-        "base_size", "crc_extra", "fields", "id", "name", "pack", "size",
+        "_arrays", "_is_text", "_make", "_zeros",
+        "base_size", "codes", "crc_extra", "fields", "id", "name", "pack", "size",
         "tuple_type", "unpack_from", "wire_id",
     )  # fmt: skip
 
     def __init__(self, cls: Any) -> None:
         order = cls.ordered_fieldnames
-        types = [cls.fieldtypes[cls.fieldnames.index(name)] for name in order]
-        types = ["uint8_t" if t == "uint8_t_mavlink_version" else t for t in types]
+        types = _wire_types(cls)
         self.id: int = cls.id
         self.wire_id = self.id.to_bytes(3, "little")
         """As MAVLink 2 frames carry it."""
@@ -138,10 +158,11 @@ class MessageType:
         self._is_text = [t == "char" and n > 0 for t, n in zip(types, cls.array_lengths, strict=True)]
         lengths = [1 if text else max(n, 1) for text, n in zip(self._is_text, cls.array_lengths, strict=True)]
         self._arrays = lengths if any(n > 1 for n in cls.array_lengths) else None
-        self._codes = [
+        self.codes = [
             (f"{n}s" if text else _CODES[t], n)
             for t, text, n in zip(types, self._is_text, cls.array_lengths, strict=True)
         ]
+        """Of each field: (``struct`` code of one number, or of the whole text; length of the array, 0 for none)."""
         self._zeros = {name: b"" if text else 0 for name, text in zip(self.fields, self._is_text, strict=True)}
 
     def decode(self, payload: bytes) -> Any:
@@ -192,7 +213,7 @@ class MessageType:
 
     def _culprit(self, given: dict[str, Any]) -> FieldError:
         """The first field whose value does not pack, for the error message."""
-        for (name, value), (code, length) in zip(given.items(), self._codes, strict=True):
+        for (name, value), (code, length) in zip(given.items(), self.codes, strict=True):
             is_array = length > 1 and not code.endswith("s")
             try:
                 values = (tuple(value) if value else ()) if is_array else (value,)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from .kernels import UNITS, Unit
+from .records import Record
 
 
 def _code(function: types.FunctionType) -> str:
@@ -56,6 +57,8 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
             lines.append(f"{name} = {value!r}")
         elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector
             lines.append(f"{name} of {getattr(value, '_fields', ())}")
+        elif isinstance(value, type) and issubclass(value, Record):  # memory that the law looks at as this record
+            lines.append(f"{name} of {value.layout()}")
         elif isinstance(value, np.ndarray):
             lines.append(f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}")
 

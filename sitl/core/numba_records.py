@@ -14,20 +14,26 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numba import carray
 from numba.core import cgutils, types
 from numba.core.datamodel import register_default
-from numba.core.datamodel.models import RecordModel
-from numba.core.imputils import lower_getattr_generic, lower_setattr_generic
+from numba.core.datamodel.models import OpaqueModel, RecordModel
+from numba.core.imputils import lower_constant, lower_getattr_generic, lower_setattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import typeof_impl
+from numba.extending import intrinsic, overload, typeof_impl
 from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
+from .memory import bytes_at, record_at
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record
 from .vectors import Value
 
-_NUMBERS = {"f8": types.float64, "i8": types.int64, "f4": types.float32, "i4": types.int32}
+_NUMBERS = {
+    "f8": types.float64, "f4": types.float32,
+    "i8": types.int64, "i4": types.int32, "i2": types.int16, "i1": types.int8,
+    "u8": types.uint64, "u4": types.uint32, "u2": types.uint16, "u1": types.uint8,
+}  # fmt: skip
 _SCALARS: dict[type, Any] = {float: types.float64, int: types.int64, bool: types.boolean}
 
 
@@ -37,7 +43,7 @@ class RecordType(types.Record):
     def __init__(self, cls: type[Record]) -> None:
         self._numpy = cls.dtype
         listed: Any = [(f.name, {"type": _memory_type(f), "offset": f.offset}) for f in cls.fields.values()]
-        super().__init__(listed, cls.dtype.itemsize, True)
+        super().__init__(listed, cls.dtype.itemsize, cls.dtype.isalignedstruct)
         self.values: dict[str, Any] = {f.name: _value_type(f) for f in cls.fields.values() if f.value is not None}
         """Field that reads as a value -> what it reads as."""
         # Numba takes types of one name for the same: classes that are made by a function may share theirs.
@@ -116,7 +122,7 @@ def _read(context: Any, builder: Any, kind: RecordType, memory: Any, name: str) 
         return record_getattr(context, builder, kind, memory, name)
     place, number, count = _place(builder, context, kind, memory, name)
     if value in (types.float64, types.int64):
-        return context.cast(builder, builder.load(place), number, value)
+        return context.cast(builder, builder.load(place, align=_alignment(kind)), number, value)
     if value is types.boolean:
         return builder.icmp_signed("!=", builder.load(place), context.get_constant(types.int64, 0))
     numbers = [builder.load(cgutils.gep_inbounds(builder, place, k)) for k in range(count)]
@@ -138,4 +144,57 @@ def _write(context: Any, builder: Any, sig: Any, args: Any, name: str) -> None:
         return
     if value is types.boolean:
         what, given = context.cast(builder, what, given, types.boolean), types.boolean
-    builder.store(context.cast(builder, what, given, number), place)
+    builder.store(context.cast(builder, what, given, number), place, align=_alignment(kind))
+
+
+def _alignment(kind: RecordType) -> int | None:
+    """Of a number in memory; None: as the machine likes it."""
+    return None if kind.aligned else 1
+
+
+class RecordClass(types.Opaque):
+    """The type of a record class itself, as an argument of ``record_at``."""
+
+    def __init__(self, cls: type[Record]) -> None:
+        self.record = numba_type(cls)
+        super().__init__(name=f"class {self.record.name}")
+
+
+@typeof_impl.register(type(Record))
+def _typeof_class(cls: Any, context: Any) -> Any:
+    return RecordClass(cls)
+
+
+@lower_constant(RecordClass)
+def _constant_class(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    return context.get_dummy_value()
+
+
+register_default(RecordClass)(OpaqueModel)
+
+
+@intrinsic
+def _as_record(typing_context, cls, address):  # type: ignore[no-untyped-def]
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.inttoptr(args[1], context.get_value_type(sig.return_type))
+
+    return cls.record(cls, types.int64), generate
+
+
+@intrinsic
+def _as_pointer(typing_context, address):  # type: ignore[no-untyped-def]
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.inttoptr(args[0], context.get_value_type(sig.return_type))
+
+    return types.CPointer(types.uint8)(types.int64), generate
+
+
+# No annotations here: Numba compares these signatures with those of the functions.
+@overload(record_at)
+def _record_at(cls, address):  # type: ignore[no-untyped-def]
+    return lambda cls, address: _as_record(cls, address)
+
+
+@overload(bytes_at)
+def _bytes_at(address, count):  # type: ignore[no-untyped-def]
+    return lambda address, count: carray(_as_pointer(address), (count,))

@@ -223,7 +223,7 @@ _REFERENCES = tuple(f"_reference_{k}" for k in range(64))
 class _RecordMeta(type):
     """Gives record classes no dictionary, so that a misspelt field is an error."""
 
-    def __new__(mcs, name: str, bases: tuple[type, ...], space: dict[str, Any], **options: Any) -> Any:
+    def __new__(mcs, name: str, bases: tuple[type, ...], space: dict[str, Any], /, **options: Any) -> Any:
         return super().__new__(mcs, name, bases, {"__slots__": (), **space}, **options)
 
 
@@ -236,6 +236,8 @@ class Record(metaclass=_RecordMeta):
     fields: ClassVar[dict[str, Field]] = {}
     """Name -> field, in the order of memory."""
     _places: ClassVar[tuple[tuple[str, Field], ...]] = ()
+    _stores: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Views of the memory as numbers of one size: (attribute, letter of the numbers)."""
     keeps_places: ClassVar[bool] = True
     """Whether a field that a subclass declares again stays where the base has it; else it goes where it is declared."""
     _bytes: Any
@@ -270,25 +272,29 @@ class Record(metaclass=_RecordMeta):
         cls.dtype = np.dtype([(f.name, f.numpy) for f in declared], align=True)
         offsets: Any = cls.dtype.fields or {}
         cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
-        references = [f for f in cls.fields.values() if f.value is None]
+        cls.lay_out([f for f in cls.fields.values() if f.value is None])
+        values = [field for field in cls.fields.values() if field.value is not None]
+        codes = {field.code for field in values}
+        cls._stores = tuple((store, _LETTERS[code]) for code, (store, _) in _STORES.items() if code in codes)
+        for field in values:
+            setattr(cls, field.name, _access(field))
+
+    @classmethod
+    def lay_out(cls, references: list[Field]) -> None:
+        """Give each array, record and row of records a place of its own in the object."""
         if len(references) > len(_REFERENCES):
             raise TypeError(f"{cls.__name__}: {len(references)} arrays and records; at most {len(_REFERENCES)}")
         cls._places = tuple(zip(_REFERENCES, references))
         for place, field in cls._places:
             setattr(cls, field.name, _reference_access(place))
-        for field in cls.fields.values():
-            if field.value is not None:
-                setattr(cls, field.name, _access(field, field.value))
 
     def __init__(self, memory: Any = None) -> None:
         """A record on ``memory`` (a memoryview of its size), or of zeros in memory of its own."""
         if memory is None:
             memory = memoryview(bytearray(self.dtype.itemsize))
         self._bytes = memory
-        codes = {f.code for f in self.fields.values() if f.value is not None}
-        for code, store, letter in (("f8", "_f8", "d"), ("i8", "_i8", "q"), ("f4", "_f4", "f"), ("i4", "_i4", "i")):
-            if code in codes:
-                setattr(self, store, memory.cast(letter))
+        for store, letter in self._stores:
+            setattr(self, store, memory.cast(letter))
         for place, f in self._places:
             setattr(self, place, _reference(f, memory[f.offset :]))
 
@@ -365,9 +371,9 @@ _LETTERS = {"f8": "d", "i8": "q", "f4": "f", "i4": "i"}
 """NumPy's code of a number -> that of ``struct``."""
 
 
-def _access(field: Field, value: type) -> property:
-    if issubclass(value, Value):
-        return _value_access(value, field)
+def _access(field: Field) -> property:
+    if field.value is not None and issubclass(field.value, Value):
+        return _value_access(field.value, field)
     store, size = _STORES[field.code]
     return _number_access(field, store, field.offset // size)
 

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A message's payload as a record, so that laws fill it in and read it as they do any other record::
+
+    class Attitude(Message, name="ATTITUDE"):
+        time_boot_ms: int
+        roll: float  # [rad]
+        ...
+
+Places and types are the dialect's (``dialect.py``): a class names the fields that its users need and says which of
+them are whole numbers, numbers or arrays. Fields that a class does not name stay zero.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any, ClassVar, get_type_hints
+
+import numpy as np
+
+from ...core.records import Field, Floats, Ints, Record
+from ..dialect import MessageType, message
+
+_NUMPY = {"b": "i1", "B": "u1", "h": "i2", "H": "u2", "i": "i4", "I": "u4", "q": "i8", "Q": "u8", "f": "f4", "d": "f8"}
+"""Code of ``struct`` -> NumPy's."""
+
+
+class Message(Record):
+    """Base of all messages: the payload in wire order, at full length."""
+
+    kind: ClassVar[MessageType]
+
+    def __init_subclass__(cls, name: str) -> None:
+        """Take the layout from the dialect.
+
+        Args:
+            name: of the message, as MAVLink has it.
+
+        Raises:
+            TypeError: a field that the message does not have, or that is of another sort there.
+        """
+        cls.kind = message(name)
+        hints = {field: hint for field, hint in get_type_hints(cls).items() if field in cls.__annotations__}
+        cls.fields = {}
+        offset = 0
+        for field, (code, length) in zip(cls.kind.fields, cls.kind.codes, strict=True):
+            if code.endswith("s"):
+                number, shape, expected = "u1", (length,), Ints
+                size = length
+            else:
+                number, shape = _NUMPY[code], (length,) if length else ()
+                whole = number[0] != "f"
+                expected = (Ints if shape else int) if whole else (Floats if shape else float)
+                size = struct.calcsize(code) * max(length, 1)
+            hint = hints.pop(field, None)
+            if hint is not None:
+                if hint is not expected:
+                    raise TypeError(f"{cls.__name__}.{field}: {name} has {expected.__name__} there, not {hint}")
+                cls.fields[field] = Field(field, offset, number, shape, None if shape else expected)
+            offset += size
+        if hints:
+            raise TypeError(f"{cls.__name__}: {name} has no fields {sorted(hints)}; it has {cls.kind.fields}")
+        cls.dtype = np.dtype(
+            {
+                "names": list(cls.fields),
+                "formats": [f.numpy for f in cls.fields.values()],
+                "offsets": [f.offset for f in cls.fields.values()],
+                "itemsize": cls.kind.size,
+            }
+        )
+        arrays = [f for f in cls.fields.values() if f.shape]
+        cls.lay_out(arrays)
+        for f in cls.fields.values():
+            if not f.shape:
+                setattr(cls, f.name, _number(f))
+
+
+def _number(field: Field) -> property:
+    layout = struct.Struct("<" + next(code for code, numpy in _NUMPY.items() if numpy == field.code))
+    offset, narrow = field.offset, field.code == "f4"
+    unpack, pack = layout.unpack_from, layout.pack_into
+
+    def read(self: Any) -> Any:
+        return unpack(self._bytes, offset)[0]
+
+    def write(self: Any, value: Any) -> None:
+        # As the core does: what single precision cannot hold is infinite.
+        pack(self._bytes, offset, float(np.float32(value)) if narrow else value)
+
+    return property(read, write)

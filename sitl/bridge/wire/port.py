@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a link to one client keeps in the core: bytes on their way in and out, sequence numbers, what is sent when.
+
+A port is a record beside the vehicle's. The core reads and writes it while it runs; the shell hands it the client's
+bytes, takes away the frames, and acts on messages that the core leaves to it.
+"""
+
+from __future__ import annotations
+
+from ...core.kernels import law
+from ...core.records import Ints, Record, array
+
+NEVER = 1 << 62
+"""A time that does not come [us]."""
+STREAMS = 96
+"""Messages that a client can be sent regularly."""
+SENDERS = 32
+"""Senders whose sequence numbers are followed."""
+OUT_BYTES, OUT_FRAMES = 6144, 160
+IN_BYTES = 1024
+PAYLOAD_BYTES = 256
+
+
+class Port(Record):
+    """One client's link."""
+
+    system: int  # our system id in outgoing frames
+    sequence: int  # of the next frame
+    version: int  # of MAVLink in outgoing frames: 1 or 2
+    heard_v2: bool  # the client speaks MAVLink 2
+    congested: bool  # the client reads too slowly: regular messages are left out
+    stops_at_frames: bool  # the shell wants to see every frame that comes in
+    # counts
+    received: int
+    sent: int
+    lost: int
+    epoch_us: int  # Unix time at boot
+    part: int  # of a message that is sent in several parts: the next one, 0 when there is none
+    # what is sent regularly, in order of interval, then of request
+    stream_count: int
+    next_us: int  # when the first of it is due
+    shell_next_us: int  # when the first of it is due that the shell builds
+    stream_number: Ints = array(STREAMS, stored="i8")
+    stream_us: Ints = array(STREAMS, stored="i8")  # interval
+    stream_due_us: Ints = array(STREAMS, stored="i8")
+    stream_by_shell: Ints = array(STREAMS, stored="i8")
+    # sequence numbers of senders
+    sender_count: int
+    sender_id: Ints = array(SENDERS, stored="i8")  # system << 8 | component
+    sender_next: Ints = array(SENDERS, stored="i8")
+    # out: frames, one behind the other
+    out_count: int  # frames
+    out_size: int  # bytes
+    out_end: Ints = array(OUT_FRAMES, stored="i4")  # where each frame ends
+    out_us: Ints = array(OUT_FRAMES, stored="i8")  # when it was sent, since boot
+    out: Ints = array(OUT_BYTES, stored="u1")
+    # in: what has come and is not acted on yet
+    in_at: int
+    in_size: int
+    bad_checksums: int
+    frame_start: int  # of the frame that the core stopped at, in ``incoming``
+    frame_end: int
+    frame_number: int  # of its message
+    frame_payload: int  # where its payload starts
+    frame_payload_size: int
+    frame_sender: int  # system << 8 | component
+    frame_sequence: int
+    frame_version: int
+    payload: Ints = array(PAYLOAD_BYTES, stored="u1")  # of the frame, with the zeros that the sender left out
+    incoming: Ints = array(IN_BYTES, stored="u1")
+
+
+OUT = Port.fields["out"].offset
+PAYLOAD = Port.fields["payload"].offset
+INCOMING = Port.fields["incoming"].offset
+SIZE = Port.dtype.itemsize
+
+
+@law
+def find_next(port: Port) -> None:
+    """Note when the first regular message is due."""
+    soonest, by_shell = NEVER, NEVER
+    for k in range(port.stream_count):
+        due = port.stream_due_us[k]
+        soonest = min(soonest, due)
+        if port.stream_by_shell[k] != 0:
+            by_shell = min(by_shell, due)
+    port.next_us = soonest
+    port.shell_next_us = by_shell
+
+
+@law
+def note_sender(port: Port, sender: int, sequence: int) -> None:
+    """Count frames that the client sent and that did not arrive."""
+    for k in range(port.sender_count):
+        if port.sender_id[k] == sender:
+            port.lost += (sequence - port.sender_next[k]) & 0xFF
+            port.sender_next[k] = (sequence + 1) & 0xFF
+            return
+    if port.sender_count < SENDERS:
+        port.sender_id[port.sender_count] = sender
+        port.sender_next[port.sender_count] = (sequence + 1) & 0xFF
+        port.sender_count += 1
