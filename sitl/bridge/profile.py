@@ -73,6 +73,8 @@ class Profile:
     controllers: Controllers
     builders: Mapping[str, Builder]
     """Telemetry that only this firmware has, or has in its own way."""
+    core: CoreUnits
+    """Units that hear and tell clients."""
     autopilot: Callable[[Any], Autopilot]
     """The firmware's laws behind the services."""
 

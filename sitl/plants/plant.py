@@ -48,6 +48,8 @@ class Plant(ABC):
     """
 
     name: ClassVar[str] = ""
+    runs_in_core = False
+    """Whether physics and autopilot are one compiled piece, so that the core goes on by itself."""
 
     def __init__(self, craft: Craft) -> None:
         self.craft = craft

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter with its clients in the compiled core."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...core.kernels import unit
+from ...vehicle.copter import Copter, advance
+from ..wire.choose import choose_builder, choose_taker, choose_targets
+from ..wire.link import Links, hear_port, run_vehicle, tell_links
+
+MESSAGES = ()
+TAKES = ()
+build, take, target = choose_builder(MESSAGES), choose_taker(TAKES), choose_targets(TAKES)
+
+
+@unit
+def hear(fleet: Sequence[Copter], index: int, port: int) -> None:
+    """Act on what the client at ``port`` sent."""
+    hear_port(fleet[index], port, take, target)
+
+
+@unit
+def tell(fleet: Sequence[Copter], index: int, ports: int, count: int, number: int) -> None:
+    """Send the regular messages that are due, or one message."""
+    tell_links(fleet[index], Links(ports, count), number, build)
+
+
+@unit
+def run(fleet: Sequence[Copter], index: int, ports: int, count: int, until_us: int, shell_us: int) -> None:
+    """Advance, and send what falls due."""
+    run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
