@@ -13,6 +13,7 @@ them are whole numbers, numbers or arrays. Fields that a class does not name sta
 from __future__ import annotations
 
 import struct
+from ctypes import c_float
 from typing import Any, ClassVar, get_type_hints
 
 import numpy as np
@@ -81,6 +82,6 @@ def _number(field: Field) -> property:
 
     def write(self: Any, value: Any) -> None:
         # As the core does: what single precision cannot hold is infinite.
-        pack(self._bytes, offset, float(np.float32(value)) if narrow else value)
+        pack(self._bytes, offset, c_float(value).value if narrow else value)
 
     return property(read, write)
