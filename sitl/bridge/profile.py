@@ -15,23 +15,10 @@ from ..vehicle.kinds import KINDS
 from .autopilot_api import Autopilot
 from .services.command import Entry
 from .telemetry.builder import Builder
+from .wire.choose import Taker
 
 if TYPE_CHECKING:
     from .services.setpoints import SetpointService
-
-
-class Stick(NamedTuple):
-    """Where one axis of MANUAL_CONTROL goes."""
-
-    parameter: str
-    """RCMAP_ parameter that names the channel."""
-    channel: int
-    """The channel if that means none."""
-    axis: str
-    """Field of the message."""
-    lowest: int = -1000
-    """The field's value that means the channel's least pulse; 1000 means its greatest."""
-    is_reversed: bool = False
 
 
 class Controllers(NamedTuple):
@@ -67,7 +54,8 @@ class Profile:
     set_points: type[SetpointService]
     texts: Mapping[int, tuple[int, str]]
     """Code of an event -> (severity, text with the event's numbers ``a`` and ``b``)."""
-    sticks: tuple[Stick, ...]
+    takes: tuple[Taker, ...]
+    """Laws of the messages that the core takes."""
     receiver_timeout: str | float
     """Silence of the receiver [s] after which it counts as lost, or the parameter that says so."""
     controllers: Controllers

@@ -8,11 +8,9 @@ from collections.abc import Sequence
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, table
-from ...autopilot.copter.modes.guided_setpoints import YawSetpoint
 from ...autopilot.mission.notes import Text
-from ...core.algebra import IDENTITY
-from ...core.vectors import Quat, Vec3
-from ..autopilot_api import NO_YAW, Note, Vector, Yaw
+from ...core.vectors import Vec3
+from ..autopilot_api import Note, Vector
 from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
 
@@ -64,25 +62,8 @@ class CopterAutopilot(BaseAutopilot):
 
     # ------------------------------------------------------------------ GUIDED
 
-    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
-        return int(guided_setpoints.set_position(self._v, Vec3(*place), _laws_yaw(yaw))) == 0
-
-    def guided_position_velocity(self, pos: Vector, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
-        motion = (Vec3(*pos), Vec3(*vel), Vec3(*acc))
-        return int(guided_setpoints.set_pos_vel_accel(self._v, *motion, _laws_yaw(yaw))) == 0
-
-    def guided_velocity(self, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided_setpoints.set_velocity(self._v, Vec3(*vel), Vec3(*acc), _laws_yaw(yaw))) == 0
-
-    def guided_acceleration(self, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided_setpoints.set_accel(self._v, Vec3(*acc), _laws_yaw(yaw))) == 0
-
-    def guided_attitude(self, q: tuple[float, ...] | None, rates: Vector, thrust: float) -> bool:
-        attitude = IDENTITY if q is None else Quat(*q)
-        return int(guided_setpoints.set_attitude(self._v, q is not None, attitude, Vec3(*rates), thrust)) == 0
-
-    def guided_stop(self) -> bool:
-        return int(guided_setpoints.stop(self._v)) == 0
+    def guided_position(self, place: Vector) -> bool:
+        return int(guided_setpoints.set_position(self._v, Vec3(*place), guided_setpoints.NO_YAW)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
         kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
@@ -103,11 +84,3 @@ class CopterAutopilot(BaseAutopilot):
             commands.clear_roi(self._v.autopilot)
         else:
             commands.set_roi(self._v.autopilot, Vec3(*place))
-
-
-def _laws_yaw(yaw: Yaw | None) -> YawSetpoint:
-    """Yaw argument of the GUIDED laws: a field that is not used must still be a number."""
-    if yaw is None or yaw is NO_YAW:
-        return guided_setpoints.NO_YAW
-    use_yaw, angle, use_rate, rate, relative = yaw
-    return YawSetpoint(use_yaw, angle if use_yaw else 0.0, use_rate, rate if use_rate else 0.0, relative)

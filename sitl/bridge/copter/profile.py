@@ -8,13 +8,15 @@ from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
-from ..profile import Controllers, Profile, Stick
+from ..profile import Controllers, Profile
+from ..services.rc import rc_channels_override
 from ..services.service import CRITICAL, INFO
 from ..telemetry.status import CAPABILITIES, TERMINATION
 from . import telemetry
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
-from .setpoints import CopterSetpoints
+from .setpoints import CopterSetpoints, attitude_target, position_target_global, position_target_local
+from .sticks import manual_control
 
 PROFILE = Profile(
     firmware="ArduCopter",
@@ -46,12 +48,7 @@ PROFILE = Profile(
         events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
         events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
     },
-    sticks=(
-        Stick("RCMAP_ROLL", 1, "y"),
-        Stick("RCMAP_PITCH", 2, "x", is_reversed=True),
-        Stick("RCMAP_THROTTLE", 3, "z", lowest=0),
-        Stick("RCMAP_YAW", 4, "r"),
-    ),
+    takes=(position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control),
     receiver_timeout="RC_FS_TIMEOUT",
     controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=True),
     builders=telemetry.BUILDERS,

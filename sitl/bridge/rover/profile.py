@@ -8,12 +8,14 @@ from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES
 from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
-from ..profile import Controllers, Profile, Stick
+from ..profile import Controllers, Profile
+from ..services.rc import rc_channels_override
 from ..telemetry.status import CAPABILITIES
 from . import targets, telemetry
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
-from .setpoints import RoverSetpoints
+from .setpoints import RoverSetpoints, attitude_target, position_target_global, position_target_local
+from .sticks import manual_control
 
 PROFILE = Profile(
     firmware="ArduRover",
@@ -43,7 +45,7 @@ PROFILE = Profile(
     commands=COMMANDS,
     set_points=RoverSetpoints,
     texts={},
-    sticks=(Stick("RCMAP_ROLL", 1, "y"), Stick("RCMAP_THROTTLE", 3, "z")),
+    takes=(position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control),
     receiver_timeout=RECEIVER_TIMEOUT_S,
     controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=False),
     builders={**telemetry.BUILDERS, **targets.BUILDERS},

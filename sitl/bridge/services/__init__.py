@@ -8,11 +8,11 @@ from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
 from .parameters import ParameterService
-from .rc import RcService
 from .service import Service
 from .setpoints import SetpointService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
+from .taken import TakerService
 
 ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,
@@ -22,7 +22,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     ParameterService,
     MissionService,
     SetpointService,
-    RcService,
+    TakerService,
     HomeService,
     TimesyncService,
     PingService,

@@ -6,11 +6,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from sitl.bridge.autopilot_api import Note, Vector, Yaw
+from sitl.bridge.autopilot_api import Note, Vector
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.dialect import message
 from sitl.bridge.profile import Controllers, Profile
 from sitl.bridge.services import command_table
+from sitl.bridge.services.rc import rc_channels_override
 from sitl.bridge.services.setpoints import SetpointService
 from sitl.bridge.telemetry.builder import Build, Context
 from sitl.bridge.telemetry.status import CAPABILITIES
@@ -45,10 +46,7 @@ class BoatAutopilot(BaseAutopilot):
     def change_speed(self, kind: int, speed: float) -> bool:
         return False
 
-    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
-        return False
-
-    def guided_stop(self) -> bool:
+    def guided_position(self, place: Vector) -> bool:
         return False
 
 
@@ -82,7 +80,7 @@ PROFILE = Profile(
     commands=_VEHICLE,
     set_points=SetpointService,
     texts={},
-    sticks=(),
+    takes=(rc_channels_override,),
     receiver_timeout=1.0,
     controllers=Controllers(0, no_controllers, healthy_at_rest=True),
     builders={"HEARTBEAT": heartbeat},
