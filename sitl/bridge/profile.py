@@ -14,7 +14,7 @@ from ..autopilot.modes import Mode
 from ..vehicle.kinds import KINDS
 from .autopilot_api import Autopilot
 from .services.command import Entry
-from .telemetry.builder import Builder
+from .wire.choose import Builder
 
 if TYPE_CHECKING:
     from .services.setpoints import SetpointService
@@ -32,16 +32,6 @@ class Stick(NamedTuple):
     lowest: int = -1000
     """The field's value that means the channel's least pulse; 1000 means its greatest."""
     is_reversed: bool = False
-
-
-class Controllers(NamedTuple):
-    """Bits of SYS_STATUS (MAV_SYS_STATUS_SENSOR) that stand for controllers, not sensors."""
-
-    present: int
-    enabled: Callable[[int, bool], int]
-    """Those at work in a mode, armed or not."""
-    healthy_at_rest: bool
-    """Whether those that are not at work are told as healthy."""
 
 
 @dataclass(frozen=True)
@@ -68,11 +58,8 @@ class Profile:
     texts: Mapping[int, tuple[int, str]]
     """Code of an event -> (severity, text with the event's numbers ``a`` and ``b``)."""
     sticks: tuple[Stick, ...]
-    receiver_timeout: str | float
-    """Silence of the receiver [s] after which it counts as lost, or the parameter that says so."""
-    controllers: Controllers
-    builders: Mapping[str, Builder]
-    """Telemetry that only this firmware has, or has in its own way."""
+    messages: tuple[Builder, ...]
+    """Laws that build the telemetry that only this firmware has, or has in its own way."""
     autopilot: Callable[[Any], Autopilot]
     """The firmware's laws behind the services."""
 

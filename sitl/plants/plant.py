@@ -48,6 +48,8 @@ class Plant(ABC):
     """
 
     name: ClassVar[str] = ""
+    has_truth_in_record: ClassVar[bool] = True
+    """Whether ``truth`` is what the record says (``sitl.physics.carried``)."""
 
     def __init__(self, craft: Craft) -> None:
         self.craft = craft

@@ -8,9 +8,10 @@ from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
-from ..profile import Controllers, Profile, Stick
+from ...vehicle.copter import QUADROTOR
+from ..profile import Profile, Stick
 from ..services.service import CRITICAL, INFO
-from ..telemetry.status import CAPABILITIES, TERMINATION
+from ..telemetry.shell import CAPABILITIES, TERMINATION
 from . import telemetry
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
@@ -18,7 +19,7 @@ from .setpoints import CopterSetpoints
 
 PROFILE = Profile(
     firmware="ArduCopter",
-    mav_type=telemetry.QUADROTOR,
+    mav_type=QUADROTOR,
     capabilities=CAPABILITIES | TERMINATION,
     modes=MODES,
     auto=AUTO,
@@ -52,8 +53,6 @@ PROFILE = Profile(
         Stick("RCMAP_THROTTLE", 3, "z", lowest=0),
         Stick("RCMAP_YAW", 4, "r"),
     ),
-    receiver_timeout="RC_FS_TIMEOUT",
-    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=True),
-    builders=telemetry.BUILDERS,
+    messages=telemetry.MESSAGES,
     autopilot=CopterAutopilot,
 )  # fmt: skip

@@ -7,17 +7,17 @@ from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES
-from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
-from ..profile import Controllers, Profile, Stick
-from ..telemetry.status import CAPABILITIES
-from . import targets, telemetry
+from ...vehicle.rover import GROUND_ROVER
+from ..profile import Profile, Stick
+from ..telemetry.shell import CAPABILITIES
+from . import telemetry
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
 from .setpoints import RoverSetpoints
 
 PROFILE = Profile(
     firmware="ArduRover",
-    mav_type=telemetry.GROUND_ROVER,
+    mav_type=GROUND_ROVER,
     capabilities=CAPABILITIES,
     modes=MODES,
     auto=AUTO,
@@ -44,8 +44,6 @@ PROFILE = Profile(
     set_points=RoverSetpoints,
     texts={},
     sticks=(Stick("RCMAP_ROLL", 1, "y"), Stick("RCMAP_THROTTLE", 3, "z")),
-    receiver_timeout=RECEIVER_TIMEOUT_S,
-    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=False),
-    builders={**telemetry.BUILDERS, **targets.BUILDERS},
+    messages=telemetry.MESSAGES,
     autopilot=RoverAutopilot,
 )  # fmt: skip
