@@ -280,6 +280,11 @@ class Simulation:
         """Another seed for the noise of all sensors from now on."""
         self.plant.reseed(seed)
 
+    @property
+    def has_truth_in_record(self) -> bool:
+        """Whether ``truth`` is what the record says: the physics runs in this process."""
+        return self.plant.has_truth_in_record
+
     def truth(self) -> Carried:
         """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
         return self.plant.truth()

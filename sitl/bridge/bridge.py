@@ -30,7 +30,6 @@ from .switchboard import Switchboard
 from .telemetry.builder import shell_messages
 from .vehicle import Vehicle
 from .wire import streams
-from .wire.frames import COMPONENT
 from .wire.link import REGULAR
 from .wire.port import NEVER
 
@@ -75,6 +74,7 @@ class Bridge:
         """Get every frame, in and out: ``taps.append(writer)``."""
         self._system = self.reader.field("autopilot.params.MAV.SYSID")
         self._time_us: Callable[[], int] = self.reader.field("time_us")
+        self._event_count: Callable[[], int] = self.reader.field("autopilot.events.count")
         self._parameters: dict[str, Callable[[], float]] = {}
         self.listeners: list[Listener] = []
         """Are told of texts and parameters: ``listeners.append(logger)``."""
@@ -211,11 +211,11 @@ class Bridge:
 
     def _hear(self, channel: Channel, data: bytes) -> None:
         """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
-        port, hear, taps = channel.port, self.core.hear, self.taps
+        port, taps = channel.port, self.taps
         port.stops_at_frames = bool(taps)
         while data:
             data = channel.feed(data)
-            hear(channel.address)
+            self._hear_port(channel)
             while port.frame_end:
                 frame = channel.frame()
                 for tap in taps:
@@ -223,7 +223,13 @@ class Bridge:
                 if not port.frame_taken:
                     self._dispatch(channel, frame)
                 port = channel.port
-                hear(channel.address)
+                self._hear_port(channel)
+
+    def _hear_port(self, channel: Channel) -> None:
+        events = self._event_count()
+        self.core.hear(channel.address)
+        if self._event_count() != events:  # the law of a message had something to say
+            self.get(EventService).read()
 
     def _dispatch(self, channel: Channel, frame: Frame) -> None:
         """Act on a frame that the core does not take; our own words and messages to other systems do not come here."""

@@ -11,16 +11,17 @@ from ..core import compile as compiler
 from ..core.compile import Progress
 from ..vehicle.core_entry import bind_unit
 from ..vehicle.kinds import KINDS
+from .wire.choose import Builder, Taker, message_of
 
 
 class CoreUnits(NamedTuple):
-    """Units of a firmware that hear and tell clients (``wire/link.py``)."""
+    """Units of a firmware that hear and tell clients (``wire/link.py``), and the laws that they are made of."""
 
     hear: Callable[..., None]
     tell: Callable[..., None]
     run: Callable[..., None]
-    numbers: frozenset[int]
-    """Messages that ``tell`` can build."""
+    builders: tuple[Builder, ...]
+    takers: tuple[Taker, ...]
 
 
 class CoreLink:
@@ -28,7 +29,8 @@ class CoreLink:
 
     def __init__(self, vehicle: Any, units: CoreUnits) -> None:
         self._vehicle, self._units = vehicle, units
-        self.numbers = units.numbers
+        self.numbers = frozenset(message_of(builder).kind.id for builder in units.builders)
+        """Messages that the core can send."""
 
     def load(self, runs_in_core: bool, progress: Progress | None = None) -> None:
         """Compile what is needed now: ``run`` only for a vehicle whose physics is in the core, too."""

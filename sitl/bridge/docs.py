@@ -75,7 +75,7 @@ def commands() -> str:
 class _Nobody:
     """A vehicle that only a bridge without links can have."""
 
-    index, time_us = 0, 0
+    index, time_us, has_truth_in_record = 0, 0, True
 
     def __init__(self, kind: Kind) -> None:
         self.firmware = kind.firmware

@@ -8,27 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ..autopilot.modes import Mode
 from ..vehicle.kinds import KINDS
 from .autopilot_api import Autopilot
+from .core_link import CoreUnits
 from .services.command import Entry
-from .telemetry.builder import Builder
-from .wire.choose import Taker
 
 if TYPE_CHECKING:
     from .services.setpoints import SetpointService
-
-
-class Controllers(NamedTuple):
-    """Bits of SYS_STATUS (MAV_SYS_STATUS_SENSOR) that stand for controllers, not sensors."""
-
-    present: int
-    enabled: Callable[[int, bool], int]
-    """Those at work in a mode, armed or not."""
-    healthy_at_rest: bool
-    """Whether those that are not at work are told as healthy."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +43,8 @@ class Profile:
     set_points: type[SetpointService]
     texts: Mapping[int, tuple[int, str]]
     """Code of an event -> (severity, text with the event's numbers ``a`` and ``b``)."""
-    takes: tuple[Taker, ...]
-    """Laws of the messages that the core takes."""
-    receiver_timeout: str | float
-    """Silence of the receiver [s] after which it counts as lost, or the parameter that says so."""
-    controllers: Controllers
-    builders: Mapping[str, Builder]
-    """Telemetry that only this firmware has, or has in its own way."""
     core: CoreUnits
-    """Units that hear and tell clients."""
+    """Units that hear and tell clients, with what they can build and take."""
     autopilot: Callable[[Any], Autopilot]
     """The firmware's laws behind the services."""
 

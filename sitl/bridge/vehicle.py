@@ -27,6 +27,11 @@ class Vehicle(Protocol):
         """Simulated time since the start of the simulation [us]; the record's counts from the last boot."""
         ...
 
+    @property
+    def has_truth_in_record(self) -> bool:
+        """Whether ``truth`` is what the record says (``sitl.physics.carried``): its physics runs in this process."""
+        ...
+
     def truth(self) -> Carried:
         """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
         ...

@@ -8,14 +8,17 @@ autopilot's process or behind a link.
 from __future__ import annotations
 
 import math
-import struct
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
 
 from ..core.geodesy import add_offset
+from ..core.kernels import law
+from ..core.scalars import finite
+from .native.records import Physics, Vehicle
 
 MILLIG = 9.80665e-3
 """[m/s^2]"""
-_SINGLES = struct.Struct("<7f")
 
 
 class Carried(NamedTuple):
@@ -37,25 +40,44 @@ class Carried(NamedTuple):
     """What a perfect accelerometer shows, body [mG]."""
 
 
+@law
+def _single(value: float) -> float:
+    """A number at float32 precision."""
+    return float(np.float32(value))
+
+
+@law
 def _whole(value: float, low: int, high: int) -> int:
-    return min(max(math.floor(value + 0.5), low), high) if math.isfinite(value) else 0
+    """Rounded and limited; 0 for what is not finite."""
+    if not finite(value):
+        return 0
+    if value >= high:
+        return high
+    return int(math.floor(value + 0.5)) if value > low else low
 
 
-def carried(v: Any) -> Carried:
-    """The truth of a vehicle (a view of its record) as the message carries it."""
-    p = v.physics
-    b, place = p.body, p.place
-    pos, vel, force = b.pos, b.vel, b.specific_force
-    singles = _SINGLES.unpack(_SINGLES.pack(*b.q, *b.rates))
-    lat, lon = add_offset(place.lat, place.lon, pos.x, pos.y)
-    vn, ve, vd = (_whole(100.0 * c, -32768, 32767) for c in vel)
-    ax, ay, az = (_whole(c / MILLIG, -32768, 32767) for c in force)
+@law
+def _short(value: float) -> int:
+    return _whole(value, -32768, 32767)
+
+
+@law
+def _long(value: float) -> int:
+    return _whole(value, -2147483648, 2147483647)
+
+
+@law
+def carried(v: Vehicle[Physics]) -> Carried:
+    """The truth of a vehicle as the message carries it."""
+    b, place = v.physics.body, v.physics.place
+    q, rates, pos, vel, force = b.q, b.rates, b.pos, b.vel, b.specific_force
+    at = add_offset(place.lat, place.lon, pos.x, pos.y)
     return Carried(
-        singles[:4],
-        singles[4:],
-        _whole(lat, -(1 << 31), (1 << 31) - 1),
-        _whole(lon, -(1 << 31), (1 << 31) - 1),
-        _whole(1000.0 * (place.alt - pos.z), -(1 << 31), (1 << 31) - 1),
-        (vn, ve, vd),
-        (ax, ay, az),
+        (_single(q.w), _single(q.x), _single(q.y), _single(q.z)),
+        (_single(rates.x), _single(rates.y), _single(rates.z)),
+        _long(at.lat),
+        _long(at.lon),
+        _long(1000.0 * (place.alt - pos.z)),
+        (_short(100.0 * vel.x), _short(100.0 * vel.y), _short(100.0 * vel.z)),
+        (_short(force.x / MILLIG), _short(force.y / MILLIG), _short(force.z / MILLIG)),
     )

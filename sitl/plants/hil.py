@@ -41,6 +41,7 @@ class HilPlant(Plant):
     """
 
     name = "hil"
+    has_truth_in_record = False
 
     def __init__(self, craft: Craft, link: HilLink, patience_s: float) -> None:
         super().__init__(craft)

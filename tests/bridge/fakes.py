@@ -31,6 +31,7 @@ class FakeVehicle:
 
     firmware: Firmware = COPTER
     record: Any = Copter
+    has_truth_in_record = True
 
     def __init__(self) -> None:
         self.fleet = self.record.fleet(2)

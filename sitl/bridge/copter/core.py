@@ -7,12 +7,18 @@ from collections.abc import Sequence
 
 from ...core.kernels import unit
 from ...vehicle.copter import Copter, advance
+from ..core_link import CoreUnits
+from ..services.rc import rc_channels_override
+from ..telemetry.builder import compiled
 from ..wire.choose import choose_builder, choose_taker, choose_targets
 from ..wire.link import Links, hear_port, run_vehicle, tell_links
+from .setpoints import attitude_target, position_target_global, position_target_local
+from .sticks import manual_control
+from .telemetry import MESSAGES
 
-MESSAGES = ()
-TAKES = ()
-build, take, target = choose_builder(MESSAGES), choose_taker(TAKES), choose_targets(TAKES)
+BUILDERS = compiled(MESSAGES)
+TAKERS = (position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control)
+build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
 
 
 @unit
@@ -31,3 +37,6 @@ def tell(fleet: Sequence[Copter], index: int, ports: int, count: int, number: in
 def run(fleet: Sequence[Copter], index: int, ports: int, count: int, until_us: int, shell_us: int) -> None:
     """Advance, and send what falls due."""
     run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
+
+
+UNITS = CoreUnits(hear, tell, run, BUILDERS, TAKERS)

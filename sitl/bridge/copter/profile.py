@@ -8,19 +8,18 @@ from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
-from ..profile import Controllers, Profile
-from ..services.rc import rc_channels_override
+from ...vehicle.copter import QUADROTOR
+from ..profile import Profile
 from ..services.service import CRITICAL, INFO
-from ..telemetry.status import CAPABILITIES, TERMINATION
-from . import telemetry
+from ..telemetry.shell import CAPABILITIES, TERMINATION
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
-from .setpoints import CopterSetpoints, attitude_target, position_target_global, position_target_local
-from .sticks import manual_control
+from .core import UNITS
+from .setpoints import CopterSetpoints
 
 PROFILE = Profile(
     firmware="ArduCopter",
-    mav_type=telemetry.QUADROTOR,
+    mav_type=QUADROTOR,
     capabilities=CAPABILITIES | TERMINATION,
     modes=MODES,
     auto=AUTO,
@@ -48,9 +47,6 @@ PROFILE = Profile(
         events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
         events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
     },
-    takes=(position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control),
-    receiver_timeout="RC_FS_TIMEOUT",
-    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=True),
-    builders=telemetry.BUILDERS,
+    core=UNITS,
     autopilot=CopterAutopilot,
 )  # fmt: skip

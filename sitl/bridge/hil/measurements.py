@@ -56,7 +56,7 @@ class Measurements:
             _Plain(gps.KIND, gps.GpsWriter(reader)),
             _Plain(sensor.BATTERY_KIND, sensor.BatteryWriter(reader)),
             _Plain(sensor.WHEELS_KIND, sensor.WheelWriter(reader)),
-            ScanWriter(reader, v),
+            ScanWriter(v),
             RangeWriter(reader, v),
             _Plain(truth.HITS_KIND, truth.HitWriter(reader, "physics.obstacles", truth.SOLID)),
         ]

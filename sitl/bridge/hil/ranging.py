@@ -8,16 +8,15 @@ DEBUG_FLOAT_ARRAY "LASER", the whole scan in parts of 58, and DEBUG_VECT "RANGE"
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..telemetry import sensors
-from ..telemetry.builder import Context
-from ..telemetry.sensors import PART, SCAN_NAME
+from ..telemetry.builder import build
+from ..telemetry.ranging import FACING_DOWN, PART, SCAN_NAME, distance_sensor, obstacle_distance, scan
+from ..wire.port import Port
 from .protocol import LATEST_US, RefusedError
 
 SCAN, VECTOR = message("DEBUG_FLOAT_ARRAY"), message("DEBUG_VECT")
@@ -31,23 +30,24 @@ Part = tuple[int, int, np.ndarray[Any, Any]]
 """Time of the scan [us], number of the part, its readings [m]."""
 
 
-def _context(reader: RecordReader, v: Any) -> Context:
-    return Context(reader, SimpleNamespace(v=v), None, 0)  # type: ignore[arg-type]
-
-
 class ScanWriter:
     """The last scan of a lidar: (kind of message, payload)."""
 
     marks = ("sensors.lidar_count",)
 
-    def __init__(self, reader: RecordReader, v: Any) -> None:
-        context = _context(reader, v)
-        self._sectors, self._scan = sensors.obstacle_distance(context), sensors.scan(context)
+    def __init__(self, v: Any) -> None:
+        self._v = v
+        self._port = Port()  # for the parts of the scan
 
     def messages(self) -> list[tuple[Any, bytes]]:
         """Nothing without a lidar or a world."""
-        sectors = self._sectors()
-        return [(OBSTACLES, sectors), *((SCAN, part) for part in self._scan())] if sectors else []  # type: ignore[list-item]
+        sectors = build(obstacle_distance, self._v, self._port)
+        if not sectors:
+            return []
+        found = [(OBSTACLES, sectors), (SCAN, build(scan, self._v, self._port))]
+        while self._port.part != 0:
+            found.append((SCAN, build(scan, self._v, self._port)))
+        return found
 
 
 class RangeWriter:
@@ -56,16 +56,17 @@ class RangeWriter:
     marks = ("sensors.rangefinder_count",)
 
     def __init__(self, reader: RecordReader, v: Any) -> None:
-        self._distance = sensors.distance_sensor(_context(reader, v))
+        self._v = v
+        self._port = Port()
         self._read = reader.fields("time_us", "sensors.rangefinder_range")
 
     def messages(self) -> list[tuple[Any, bytes]]:
         """Nothing without a range-finder or a world."""
-        distance = self._distance()
+        distance = build(distance_sensor, self._v, self._port)
         if not distance:
             return []
         t, reading = self._read()
-        return [(DISTANCE, distance), (VECTOR, VECTOR.pack(t, reading, 0.0, 0.0, RANGE.encode()))]  # type: ignore[list-item]
+        return [(DISTANCE, distance), (VECTOR, VECTOR.pack(t, reading, 0.0, 0.0, RANGE.encode()))]
 
 
 class ScanReader:
@@ -151,7 +152,7 @@ class DistanceReader:
     def read(payload: bytes) -> float | None:
         """The reading [m], inf beyond the range; None when it does not look down."""
         fields = DISTANCE.decode(payload)
-        if fields.orientation != sensors.FACING_DOWN:
+        if fields.orientation != FACING_DOWN:
             return None
         return math.inf if fields.current_distance > fields.max_distance else 0.01 * fields.current_distance
 

@@ -7,19 +7,17 @@ from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES
-from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
-from ..profile import Controllers, Profile
-from ..services.rc import rc_channels_override
-from ..telemetry.status import CAPABILITIES
-from . import targets, telemetry
+from ...vehicle.rover import GROUND_ROVER
+from ..profile import Profile
+from ..telemetry.shell import CAPABILITIES
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
-from .setpoints import RoverSetpoints, attitude_target, position_target_global, position_target_local
-from .sticks import manual_control
+from .core import UNITS
+from .setpoints import RoverSetpoints
 
 PROFILE = Profile(
     firmware="ArduRover",
-    mav_type=telemetry.GROUND_ROVER,
+    mav_type=GROUND_ROVER,
     capabilities=CAPABILITIES,
     modes=MODES,
     auto=AUTO,
@@ -45,9 +43,6 @@ PROFILE = Profile(
     commands=COMMANDS,
     set_points=RoverSetpoints,
     texts={},
-    takes=(position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control),
-    receiver_timeout=RECEIVER_TIMEOUT_S,
-    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=False),
-    builders={**telemetry.BUILDERS, **targets.BUILDERS},
+    core=UNITS,
     autopilot=RoverAutopilot,
 )  # fmt: skip

@@ -1,102 +1,168 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Telemetry that the rover has in its own way: HEARTBEAT, EXTENDED_SYS_STATE, VFR_HUD, outputs and wheels."""
+"""Telemetry that the rover has in its own way: HEARTBEAT, SYS_STATUS, EXTENDED_SYS_STATE, VFR_HUD, channels, wheels."""
 
 from __future__ import annotations
 
+from ...autopilot.modes import numbers
 from ...autopilot.rover.control.servos import LEFT, OUTPUTS, RIGHT
+from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.hold import HOLD
 from ...autopilot.rover.modes.initialising import INITIALISING
-from ...autopilot.rover.modes.table import AUTONOMOUS, MODES
-from ..dialect import message
-from ..telemetry import motion
-from ..telemetry.builder import Build, Builder, Context
-from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW
+from ...autopilot.rover.modes.table import MODES, is_autonomous
+from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
+from ...core.kernels import law
+from ...core.records import Floats
+from ...vehicle.rover import GROUND_ROVER, Rover
+from ..telemetry import channels, motion, status
+from ..telemetry.channels import RcChannels
+from ..telemetry.heartbeat import (
+    ACTIVE,
+    ARMED,
+    CALIBRATING,
+    CRITICAL,
+    CUSTOM_MODE,
+    IS_GUIDED,
+    MANUAL_INPUT,
+    STANDBY,
+    Heartbeat,
+    fill_heartbeat,
+)
+from ..telemetry.motion import VfrHud
+from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
 from ..telemetry.units import boot_ms, int16
+from ..wire.message import Message
+from . import targets
 
-A, M, C = "autopilot.arming.", "autopilot.modes.", "autopilot.control."
-GROUND_ROVER, ARDUPILOTMEGA = 10, 3
-CUSTOM_MODE, IS_GUIDED, MANUAL_INPUT, ARMED = 1, 8, 64, 128
-CALIBRATING, STANDBY, ACTIVE, CRITICAL = 2, 3, 4, 5
-
-_BASE_MODES = {
-    mode.number: CUSTOM_MODE
-    | (IS_GUIDED if mode.autonomous else 0)
-    | (MANUAL_INPUT if mode.manual_input or mode.number == INITIALISING else 0)
-    for mode in MODES
-}
-_STATES = {INITIALISING: CALIBRATING, HOLD: STANDBY}
+MANUAL_MODES = (*numbers(MODES, "manual_input"), INITIALISING)
 
 
-def heartbeat(context: Context) -> Build:
+@law
+def heartbeat(m: Heartbeat, v: Rover) -> bool:
     """HEARTBEAT: ground rover, ArduPilot, mode number, armed bit; STANDBY in HOLD, CRITICAL in a failsafe."""
-    read = context.fields(
-        A + "armed", M + "number", M + "links.acted", M + "failsafe.ekf", "autopilot.params.STICK_MIXING"
-    )
-    pack = message("HEARTBEAT").pack
-
-    def build() -> bytes:
-        armed, mode, links, ekf, mixing = read()
-        base = _BASE_MODES.get(mode, CUSTOM_MODE) | (ARMED if armed and mode != INITIALISING else 0)
-        base |= MANUAL_INPUT if mixing > 0.0 and mode != INITIALISING else 0
-        state = CRITICAL if links or ekf else _STATES.get(mode, ACTIVE)
-        return pack(mode & 0xFFFFFFFF, GROUND_ROVER, ARDUPILOTMEGA, base, state, 3)
-
-    return build
+    ap, mode = v.autopilot, v.autopilot.modes.number
+    base, state = CUSTOM_MODE, ACTIVE
+    if is_autonomous(mode):
+        base |= IS_GUIDED
+    if mode in MANUAL_MODES or ap.params.STICK_MIXING > 0.0:
+        base |= MANUAL_INPUT
+    if ap.arming.armed and mode != INITIALISING:
+        base |= ARMED
+    if mode == INITIALISING:
+        state = CALIBRATING
+    elif mode == HOLD:
+        state = STANDBY
+    if ap.modes.links.acted != 0 or ap.modes.failsafe.ekf != 0:
+        state = CRITICAL
+    return fill_heartbeat(m, v, GROUND_ROVER, base, state)
 
 
 CONTROLLERS = RATE | ATTITUDE | YAW | POSITION | MOTORS
 """Bits of SYS_STATUS"""
-CONTROLLED_MODES = frozenset(mode.number for mode in MODES if mode.controlled)
+CONTROLLED_MODES = numbers(MODES, "controlled")
 
 
+@law
 def controllers_at_work(mode: int, armed: bool) -> int:
     """Bits of the controllers that a mode uses."""
-    bits = RATE | ATTITUDE if mode in CONTROLLED_MODES else 0
-    return bits | (YAW | POSITION if mode in AUTONOMOUS else 0) | (MOTORS if armed else 0)
+    bits = 0
+    if mode in CONTROLLED_MODES:
+        bits |= RATE | ATTITUDE
+    if is_autonomous(mode):
+        bits |= YAW | POSITION
+    if armed:
+        bits |= MOTORS
+    return bits
 
 
-def extended_sys_state(context: Context) -> Build:
+@law
+def sys_status(m: SysStatus, v: Rover) -> bool:
+    """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
+    at_work = controllers_at_work(v.autopilot.modes.number, v.autopilot.arming.armed)
+    return status.sys_status(m, v, CONTROLLERS, at_work, at_work)
+
+
+@law
+def mission_current(m: MissionCurrent, v: Rover) -> bool:
+    """MISSION_CURRENT: number of the item, number of items without home, state."""
+    return status.mission_current(m, v, AUTO)
+
+
+@law
+def rc_channels(m: RcChannels, v: Rover) -> bool:
+    """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
+    return channels.rc_channels(m, v, RECEIVER_TIMEOUT_S)
+
+
+class ExtendedSysState(Message, name="EXTENDED_SYS_STATE"):
+    pass
+
+
+@law
+def extended_sys_state(m: ExtendedSysState, v: Rover) -> bool:
     """EXTENDED_SYS_STATE: both states undefined, a rover does not fly."""
-    payload = message("EXTENDED_SYS_STATE").pack(0, 0)
-    return lambda: payload
+    return True
 
 
-def vfr_hud(context: Context) -> Build:
+@law
+def vfr_hud(m: VfrHud, v: Rover) -> bool:
     """VFR_HUD: ground speed in both speeds [m/s], heading [deg], throttle without sign [%], altitude [m]."""
-    return motion.vfr_hud(context, C + "motors.throttle")
+    return motion.vfr_hud(m, v, v.autopilot.control.motors.throttle)
 
 
-def rc_channels_scaled(context: Context) -> Build:
+class RcChannelsScaled(Message, name="RC_CHANNELS_SCALED"):
+    time_boot_ms: int
+    chan1_scaled: int
+    chan2_scaled: int
+    chan3_scaled: int
+    chan4_scaled: int
+    chan5_scaled: int
+    chan6_scaled: int
+    chan7_scaled: int
+    chan8_scaled: int
+    rssi: int
+
+
+@law
+def is_assigned(v: Rover, function: int) -> bool:
+    """Whether an output has this function (SERVOn_FUNCTION)."""
+    for k in range(OUTPUTS):
+        if function == v.autopilot.params.SERVO[k].FUNCTION:
+            return True
+    return False
+
+
+@law
+def rc_channels_scaled(m: RcChannelsScaled, v: Rover) -> bool:
     """RC_CHANNELS_SCALED: outputs to steering (1) and throttle (3), skid-steered to left and right, -10000 .. 10000."""
-    names = ("steering", "throttle", "left", "right")
-    functions = (f"autopilot.params.SERVO[{k}].FUNCTION" for k in range(OUTPUTS))
-    read = context.fields("time_us", *(C + "motors.out_" + name for name in names), *functions)
-    pack = message("RC_CHANNELS_SCALED").pack
+    motors = v.autopilot.control.motors
+    first, third = motors.out_steering, motors.out_throttle
+    if is_assigned(v, LEFT) and is_assigned(v, RIGHT):
+        first, third = motors.out_left, motors.out_right
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.chan1_scaled = int16(first * 1e4)
+    m.chan3_scaled = int16(third * 1e4)
+    m.chan2_scaled = m.chan4_scaled = m.chan5_scaled = m.chan6_scaled = m.chan7_scaled = m.chan8_scaled = -1
+    m.rssi = 255
+    return True
 
-    def build() -> bytes:
-        t, steering, throttle, left, right, *assigned = read()
-        first, third = (left, right) if LEFT in assigned and RIGHT in assigned else (steering, throttle)
-        return pack(boot_ms(t), int16(first * 1e4), -1, int16(third * 1e4), -1, -1, -1, -1, -1, 0, 255)
 
-    return build
+class WheelDistance(Message, name="WHEEL_DISTANCE"):
+    time_usec: int
+    distance: Floats
+    count: int
 
 
-def wheel_distance(context: Context) -> Build:
+@law
+def wheel_distance(m: WheelDistance, v: Rover) -> bool:
     """WHEEL_DISTANCE: rolled by the left and right driven wheel [m]; nothing without encoders."""
-    read = context.fields("time_us", "sensors.wheel_count", "sensors.wheel_distance")
-    pack = message("WHEEL_DISTANCE").pack
-
-    def build() -> bytes:
-        t, count, left, right = read()
-        return pack(t, left, right, *(0.0,) * 14, 2) if count > 0 else b""
-
-    return build
+    m.time_usec = v.time_us
+    m.distance[0] = v.sensors.wheel_distance.x
+    m.distance[1] = v.sensors.wheel_distance.y
+    m.count = 2
+    return v.sensors.wheel_count > 0
 
 
-BUILDERS: dict[str, Builder] = {
-    "HEARTBEAT": heartbeat,
-    "EXTENDED_SYS_STATE": extended_sys_state,
-    "VFR_HUD": vfr_hud,
-    "RC_CHANNELS_SCALED": rc_channels_scaled,
-    "WHEEL_DISTANCE": wheel_distance,
-}
+MESSAGES = (
+    heartbeat, sys_status, mission_current, rc_channels, extended_sys_state, vfr_hud, rc_channels_scaled,
+    wheel_distance, *targets.MESSAGES,
+)  # fmt: skip

@@ -12,7 +12,6 @@ from .service import Service
 from .setpoints import SetpointService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
-from .taken import TakerService
 
 ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,
@@ -22,7 +21,6 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     ParameterService,
     MissionService,
     SetpointService,
-    TakerService,
     HomeService,
     TimesyncService,
     PingService,

@@ -1,66 +1,80 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a telemetry builder is, and the table of all of them."""
+"""The laws that build a vehicle's telemetry, and what they build in plain Python."""
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
-from ...core.record_reader import RecordReader
-from ..dialect import MessageType, message
+from ...core.records import as_bytes
+from ...vehicle.record import Vehicle
+from ..dialect import message
+from ..wire.choose import Builder, message_of
+from ..wire.message import Message
+from ..wire.port import Port
+from . import channels, motion, ranging, sensors, status
+from .shell import shell_builders
 
 if TYPE_CHECKING:
-    from ..profile import Profile
+    from ..bridge import Bridge
 
-Build = Callable[[], bytes | tuple[bytes, ...]]
-"""Gives the payload now: empty when the vehicle has nothing to say (no position yet), several when one is too small."""
-Builder = Callable[["Context"], Build]
-
-
-@dataclass
-class Context:
-    """What builders may read."""
-
-    reader: RecordReader
-    vehicle: Any
-    profile: Profile
-    epoch_us: int
-    """Unix time at boot [us]; the bridge moves it when the vehicle reboots."""
-
-    def fields(self, *paths: str) -> Callable[[], tuple[Any, ...]]:
-        """As :meth:`RecordReader.fields`."""
-        return self.reader.fields(*paths)
+_MODULES = (motion, sensors, ranging, status, channels)
+_registered: dict[int, Builder] = {}
 
 
-_registered: dict[str, Builder] = {}
-
-
-def register_builder(name: str, builder: Builder) -> None:
+def register_message(builder: Builder) -> Builder:
     """Make a message of another package known in this process: every bridge made from now on can send it.
 
     Args:
-        name: of the message, as the dialect has it.
-        builder: called once for each vehicle; what it returns gives the payload whenever the message is due.
+        builder: the law (``sitl.bridge.wire.choose``); it comes before another one for the same message.
+
+    Raises:
+        TypeError: its first argument is no Message.
     """
-    message(name)  # refuses a name that there is not
-    _registered[name] = builder
+    _registered[message_of(builder).kind.id] = builder
+    return builder
 
 
-def builders(profile: Profile) -> dict[str, Builder]:
-    """All builders by message name: this package's (each module lists its own in ``BUILDERS``) and the firmware's."""
-    package = importlib.import_module(__package__)
-    found: dict[str, Builder] = {}
-    for module in sorted(m.name for m in pkgutil.iter_modules(package.__path__)):
-        found.update(getattr(importlib.import_module(f"{__package__}.{module}"), "BUILDERS", {}))
-    return found | dict(profile.builders) | _registered
+def compiled(own: tuple[Builder, ...]) -> tuple[Builder, ...]:
+    """The laws that build a firmware's telemetry in the core, one a message, in the order of the messages' numbers.
+
+    Args:
+        own: telemetry that only this firmware has, or has in its own way: it comes before what all firmwares share.
+    """
+    found: dict[int, Builder] = {}
+    for module in _MODULES:
+        found |= by_number(module.MESSAGES)
+    found |= by_number(own)
+    return tuple(found[number] for number in sorted(found))
 
 
-def build_all(context: Context) -> dict[int, tuple[MessageType, Build]]:
-    """Every builder bound to ``context``, by message number."""
-    return {
-        message(name).id: (message(name), builder(context))
-        for name, builder in sorted(builders(context.profile).items())
+def shell_messages(bridge: Bridge) -> dict[int, Callable[[], bytes]]:
+    """What the shell builds for a vehicle: message number -> function that gives the payload now.
+
+    It comes before a law of the core for the same message.
+    """
+    vehicle, port = bridge.vehicle, Port()
+    found: dict[int, Callable[[], bytes]] = {
+        message(name).id: partial(shell, vehicle, bridge.profile) for name, shell in shell_builders(vehicle).items()
     }
+    return found | {number: partial(build, builder, vehicle.v, port) for number, builder in _registered.items()}
+
+
+def by_number(builders: tuple[Builder, ...]) -> dict[int, Builder]:
+    """Laws by the number of the message that each builds."""
+    return {message_of(builder).kind.id: builder for builder in builders}
+
+
+@cache
+def _kind(builder: Builder) -> tuple[type[Message], bool]:
+    """(The message that a law builds, whether it takes the port.)"""
+    return message_of(builder), builder.__code__.co_argcount == 3  # type: ignore[attr-defined]
+
+
+def build(builder: Builder, v: Vehicle, port: Port) -> bytes:
+    """The payload that a law builds now, in plain Python; empty when the vehicle has nothing to say."""
+    cls, takes_port = _kind(builder)
+    m: Any = cls()
+    said = builder(m, v, port) if takes_port else builder(m, v)
+    return bytes(as_bytes(m, cls.dtype)) if said else b""

@@ -4,192 +4,289 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from typing import NamedTuple
 
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale
-from ..dialect import message
-from .builder import Build, Builder, Context
-from .units import DEG, heading_cdeg, int16, int32, uint16
+from ...core.kernels import law
+from ...core.records import Floats
+from ...vehicle.record import Vehicle
+from ..wire.message import Message
+from .units import DEG, boot_ms, heading_cdeg, int16, int32, uint16
 
-E = "autopilot.estimate."
-H = "autopilot.home."
-S = "sensors."
-
-
-def global_position(context: Context) -> Callable[[], tuple[int, int, float]]:
-    """(lat [degE7], lon [degE7], alt above mean sea level [m]).
-
-    The GPS fix until the origin is known, then the estimate.
-    """
-    read = context.fields(E + "pos", E + "origin_set", E + "origin_lat", E + "origin_lon", E + "origin_alt")
-    read_gps = context.fields(S + "gps_fix", S + "gps_lat", S + "gps_lon", S + "gps_alt")
-    scaled_at = 1 << 62  # nowhere
-    scale = 1.0
-
-    def where() -> tuple[int, int, float]:
-        nonlocal scaled_at, scale
-        n, e, d, is_set, lat0, lon0, alt0 = read()
-        if not is_set:
-            fix, lat, lon, alt_mm = read_gps()
-            return (lat, lon, alt_mm * 1e-3) if fix >= 3 else (0, 0, 0.0)
-        north = n / METRES_PER_DEGE7
-        middle = int32(lat0 + 0.5 * north) >> 12  # the cosine is worked out anew every 0.4 mdeg of latitude
-        if middle != scaled_at:
-            scaled_at, scale = middle, longitude_scale(float(middle << 12)) * METRES_PER_DEGE7
-        return int32(lat0 + north), int32(lon0 + e / scale), alt0 - d
-
-    return where
+UNKNOWN = 65535
 
 
-def global_position_int(context: Context) -> Build:
+class GlobalPosition(NamedTuple):
+    """A place on the globe."""
+
+    lat: int  # [degE7]
+    lon: int  # [degE7]
+    alt: float  # above mean sea level [m]
+
+
+@law
+def global_position(v: Vehicle) -> GlobalPosition:
+    """Where the vehicle is: the GPS fix until the origin is known, then the estimate."""
+    estimate, gps = v.autopilot.estimate, v.sensors
+    if estimate.origin_set:
+        north = estimate.pos.x / METRES_PER_DEGE7
+        middle = int32(estimate.origin_lat + 0.5 * north) >> 12 << 12  # the same cosine for 0.4 mdeg of latitude
+        scale = longitude_scale(float(middle)) * METRES_PER_DEGE7
+        lat, lon = int32(estimate.origin_lat + north), int32(estimate.origin_lon + estimate.pos.y / scale)
+        return GlobalPosition(lat, lon, estimate.origin_alt - estimate.pos.z)
+    if gps.gps_fix >= 3:
+        return GlobalPosition(gps.gps_lat, gps.gps_lon, gps.gps_alt * 1e-3)
+    return GlobalPosition(0, 0, 0.0)
+
+
+class GlobalPositionInt(Message, name="GLOBAL_POSITION_INT"):
+    time_boot_ms: int
+    lat: int
+    lon: int
+    alt: int
+    relative_alt: int
+    vx: int
+    vy: int
+    vz: int
+    hdg: int
+
+
+@law
+def global_position_int(m: GlobalPositionInt, v: Vehicle) -> bool:
     """GLOBAL_POSITION_INT: degE7, mm above sea level and above home, cm/s, heading in centidegrees."""
-    where = global_position(context)
-    read = context.fields("time_us", E + "euler", E + "vel")
-    read_home = context.fields(H + "is_set", H + "alt")
-    pack = message("GLOBAL_POSITION_INT").pack
-
-    def build() -> bytes:
-        t, _, _, yaw, vn, ve, vd = read()
-        lat, lon, alt = where()
-        home_set, home_alt = read_home()
-        relative = int32((alt - home_alt) * 1e3) if home_set else 0
-        v = (int16(vn * 100.0), int16(ve * 100.0), int16(vd * 100.0))
-        return pack(t // 1000 & 0xFFFFFFFF, lat, lon, int32(alt * 1e3), relative, *v, heading_cdeg(yaw))
-
-    return build
+    estimate, home = v.autopilot.estimate, v.autopilot.home
+    here = global_position(v)
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.lat = here.lat
+    m.lon = here.lon
+    m.alt = int32(here.alt * 1e3)
+    m.relative_alt = int32((here.alt - home.alt) * 1e3) if home.is_set else 0
+    m.vx = int16(estimate.vel.x * 100.0)
+    m.vy = int16(estimate.vel.y * 100.0)
+    m.vz = int16(estimate.vel.z * 100.0)
+    m.hdg = heading_cdeg(estimate.euler.yaw)
+    return True
 
 
-def local_position_ned(context: Context) -> Build:
+class LocalPositionNed(Message, name="LOCAL_POSITION_NED"):
+    time_boot_ms: int
+    x: float
+    y: float
+    z: float
+    vx: float
+    vy: float
+    vz: float
+
+
+@law
+def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
     """LOCAL_POSITION_NED: metres from the EKF origin, m/s; nothing until the origin is set."""
-    read = context.fields("time_us", E + "vel", E + "pos", E + "origin_set")
-    pack = message("LOCAL_POSITION_NED").pack
-
-    def build() -> bytes:
-        t, vn, ve, vd, n, e, d, is_set = read()
-        return pack(t // 1000 & 0xFFFFFFFF, n, e, d, vn, ve, vd) if is_set else b""
-
-    return build
-
-
-def vfr_hud(context: Context, throttle: str) -> Build:
-    """VFR_HUD of a firmware whose throttle -1 .. 1 is the field ``throttle``."""
-    where = global_position(context)
-    read = context.fields(E + "euler", E + "vel", throttle)
-    pack = message("VFR_HUD").pack
-
-    def build() -> bytes:
-        _, _, yaw, vn, ve, vd, share = read()
-        speed = math.hypot(vn, ve)
-        alt = where()[2]
-        return pack(speed, speed, alt, -vd, heading_cdeg(yaw) // 100, uint16(abs(share) * 100.0 + 0.5))
-
-    return build
+    estimate = v.autopilot.estimate
+    pos, vel = estimate.pos, estimate.vel
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.x = pos.x
+    m.y = pos.y
+    m.z = pos.z
+    m.vx = vel.x
+    m.vy = vel.y
+    m.vz = vel.z
+    return estimate.origin_set
 
 
-def home_position(context: Context) -> Build:
+class VfrHud(Message, name="VFR_HUD"):
+    airspeed: float
+    groundspeed: float
+    alt: float
+    climb: float
+    heading: int
+    throttle: int
+
+
+@law
+def vfr_hud(m: VfrHud, v: Vehicle, throttle: float) -> bool:
+    """VFR_HUD of a firmware whose throttle is -1 .. 1."""
+    estimate = v.autopilot.estimate
+    m.airspeed = m.groundspeed = math.hypot(estimate.vel.x, estimate.vel.y)
+    m.alt = global_position(v).alt
+    m.climb = -estimate.vel.z
+    m.heading = heading_cdeg(estimate.euler.yaw) // 100
+    m.throttle = uint16(abs(throttle) * 100.0 + 0.5)
+    return True
+
+
+class HomePosition(Message, name="HOME_POSITION"):
+    latitude: int
+    longitude: int
+    altitude: int
+    x: float
+    y: float
+    z: float
+    q: Floats
+    time_usec: int
+
+
+@law
+def home_position(m: HomePosition, v: Vehicle) -> bool:
     """HOME_POSITION: degE7, mm, and NED metres from the origin; nothing until home is set."""
-    read = context.fields("time_us", H + "is_set", H + "lat", H + "lon", H + "alt", H + "pos")
-    pack = message("HOME_POSITION").pack
+    home = v.autopilot.home
+    m.latitude = home.lat
+    m.longitude = home.lon
+    m.altitude = int32(home.alt * 1e3)
+    m.x = home.pos.x
+    m.y = home.pos.y
+    m.z = home.pos.z
+    m.q[0] = 1.0
+    m.time_usec = v.time_us
+    return home.is_set
 
-    def build() -> bytes:
-        t, is_set, lat, lon, alt, n, e, d = read()
-        if not is_set:
-            return b""
-        return pack(lat, lon, int32(alt * 1e3), n, e, d, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t)
 
-    return build
+class GpsGlobalOrigin(Message, name="GPS_GLOBAL_ORIGIN"):
+    latitude: int
+    longitude: int
+    altitude: int
+    time_usec: int
 
 
-def gps_global_origin(context: Context) -> Build:
+@law
+def gps_global_origin(m: GpsGlobalOrigin, v: Vehicle) -> bool:
     """GPS_GLOBAL_ORIGIN: degE7, mm; nothing until the origin is set."""
-    read = context.fields("time_us", E + "origin_set", E + "origin_lat", E + "origin_lon", E + "origin_alt")
-    pack = message("GPS_GLOBAL_ORIGIN").pack
-
-    def build() -> bytes:
-        t, is_set, lat, lon, alt = read()
-        return pack(lat, lon, int32(alt * 1e3), t) if is_set else b""
-
-    return build
+    estimate = v.autopilot.estimate
+    m.latitude = estimate.origin_lat
+    m.longitude = estimate.origin_lon
+    m.altitude = int32(estimate.origin_alt * 1e3)
+    m.time_usec = v.time_us
+    return estimate.origin_set
 
 
-def gps_raw_int(context: Context) -> Build:
+class GpsRawInt(Message, name="GPS_RAW_INT"):
+    time_usec: int
+    lat: int
+    lon: int
+    alt: int
+    eph: int
+    epv: int
+    vel: int
+    cog: int
+    fix_type: int
+    satellites_visible: int
+    alt_ellipsoid: int
+    h_acc: int
+    v_acc: int
+
+
+@law
+def gps_raw_int(m: GpsRawInt, v: Vehicle) -> bool:
     """GPS_RAW_INT: the receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] are 0.3 m x HDOP
     and 0.5 m x VDOP, other accuracies are not known (0).
     """
-    names = ("fix", "lat", "lon", "alt", "eph", "epv", "vel", "satellites")
-    read = context.fields(S + "gps_time_us", *(S + "gps_" + name for name in names))
-    pack = message("GPS_RAW_INT").pack
+    s = v.sensors
+    vel = s.gps_vel
+    m.time_usec = s.gps_time_us
+    m.lat = s.gps_lat
+    m.lon = s.gps_lon
+    m.alt = m.alt_ellipsoid = s.gps_alt
+    m.vel = uint16(math.hypot(vel.x, vel.y))
+    m.cog = uint16(math.atan2(vel.y, vel.x) * DEG * 100.0 % 36000.0)
+    m.fix_type = s.gps_fix & 0xFF
+    m.satellites_visible = min(max(s.gps_satellites, 0), 255)
+    m.eph = m.epv = UNKNOWN
+    if s.gps_fix >= 2:
+        m.eph = uint16(s.gps_eph)
+        m.epv = uint16(s.gps_epv)
+        m.h_acc = m.eph * 3
+        m.v_acc = m.epv * 5
+    return True
 
-    def build() -> bytes:
-        t, fix, lat, lon, alt, eph, epv, vn, ve, _, satellites = read()
-        speed = uint16(math.hypot(vn, ve))
-        course = uint16(math.atan2(ve, vn) * DEG * 100.0 % 36000.0)
-        has_fix = fix >= 2
-        eph, epv = (uint16(eph), uint16(epv)) if has_fix else (65535, 65535)
-        accuracies = (alt, eph * 3, epv * 5, 0, 0, 0) if has_fix else (alt, 0, 0, 0, 0, 0)
-        return pack(t, lat, lon, alt, eph, epv, speed, course, fix & 0xFF, min(max(satellites, 0), 255), *accuracies)
 
-    return build
+class Attitude(Message, name="ATTITUDE"):
+    time_boot_ms: int
+    roll: float
+    pitch: float
+    yaw: float
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
 
 
-def attitude(context: Context) -> Build:
+@law
+def attitude(m: Attitude, v: Vehicle) -> bool:
     """ATTITUDE: Euler angles [rad], body rates [rad/s]."""
-    read = context.fields("time_us", E + "euler", E + "rates")
-    pack = message("ATTITUDE").pack
+    euler, rates = v.autopilot.estimate.euler, v.autopilot.estimate.rates
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.roll = euler.roll
+    m.pitch = euler.pitch
+    m.yaw = euler.yaw
+    m.rollspeed = rates.x
+    m.pitchspeed = rates.y
+    m.yawspeed = rates.z
+    return True
 
-    def build() -> bytes:
-        t, roll, pitch, yaw, p, q, r = read()
-        return pack(t // 1000 & 0xFFFFFFFF, roll, pitch, yaw, p, q, r)
 
-    return build
+class AttitudeQuaternion(Message, name="ATTITUDE_QUATERNION"):
+    time_boot_ms: int
+    q1: float
+    q2: float
+    q3: float
+    q4: float
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
 
 
-def attitude_quaternion(context: Context) -> Build:
+@law
+def attitude_quaternion(m: AttitudeQuaternion, v: Vehicle) -> bool:
     """ATTITUDE_QUATERNION: body to NED as (w, x, y, z)."""
-    read = context.fields("time_us", E + "q", E + "rates")
-    pack = message("ATTITUDE_QUATERNION").pack
+    q, rates = v.autopilot.estimate.q, v.autopilot.estimate.rates
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.q1 = q.w
+    m.q2 = q.x
+    m.q3 = q.y
+    m.q4 = q.z
+    m.rollspeed = rates.x
+    m.pitchspeed = rates.y
+    m.yawspeed = rates.z
+    return True
 
-    def build() -> bytes:
-        t, *rest = read()
-        return pack(t // 1000 & 0xFFFFFFFF, *rest, 0.0, 0.0, 0.0, 0.0)
 
-    return build
+class Ahrs(Message, name="AHRS"):
+    omegaIx: float
+    omegaIy: float
+    omegaIz: float
 
 
-def ahrs(context: Context) -> Build:
+@law
+def ahrs(m: Ahrs, v: Vehicle) -> bool:
     """AHRS: gyro drift [rad/s]; the DCM figures of the message have no counterpart here and are zero."""
-    read = context.fields(E + "gyro_bias")
-    pack = message("AHRS").pack
-
-    def build() -> bytes:
-        x, y, z = read()
-        return pack(-x, -y, -z, 0.0, 0.0, 0.0, 0.0)
-
-    return build
+    bias = v.autopilot.estimate.gyro_bias
+    m.omegaIx = -bias.x
+    m.omegaIy = -bias.y
+    m.omegaIz = -bias.z
+    return True
 
 
-def ahrs2(context: Context) -> Build:
+class Ahrs2(Message, name="AHRS2"):
+    roll: float
+    pitch: float
+    yaw: float
+    altitude: float
+    lat: int
+    lng: int
+
+
+@law
+def ahrs2(m: Ahrs2, v: Vehicle) -> bool:
     """AHRS2: the second attitude source; this firmware has one estimator and reports it again."""
-    read = context.fields(E + "euler")
-    where = global_position(context)
-    pack = message("AHRS2").pack
-
-    def build() -> bytes:
-        roll, pitch, yaw = read()
-        lat, lon, alt = where()
-        return pack(roll, pitch, yaw, alt, lat, lon)
-
-    return build
+    euler, here = v.autopilot.estimate.euler, global_position(v)
+    m.roll = euler.roll
+    m.pitch = euler.pitch
+    m.yaw = euler.yaw
+    m.altitude = here.alt
+    m.lat = here.lat
+    m.lng = here.lon
+    return True
 
 
-BUILDERS: dict[str, Builder] = {
-    "GLOBAL_POSITION_INT": global_position_int,
-    "LOCAL_POSITION_NED": local_position_ned,
-    "HOME_POSITION": home_position,
-    "GPS_GLOBAL_ORIGIN": gps_global_origin,
-    "GPS_RAW_INT": gps_raw_int,
-    "ATTITUDE": attitude,
-    "ATTITUDE_QUATERNION": attitude_quaternion,
-    "AHRS": ahrs,
-    "AHRS2": ahrs2,
-}
+MESSAGES = (
+    global_position_int, local_position_ned, home_position, gps_global_origin, gps_raw_int, attitude,
+    attitude_quaternion, ahrs, ahrs2,
+)  # fmt: skip

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The vehicle's state: system, battery, mission, channels, and who it is."""
+"""The vehicle's state: system, battery, mission, time."""
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Callable
-
-from ..dialect import message
-from .builder import Build, Builder, Context
+from ...core.kernels import law
+from ...core.records import Ints
+from ...vehicle.record import Vehicle
+from ..wire.message import Message
+from ..wire.port import Port
 from .units import boot_ms, int16, int32, percent, uint16
-
-E = "autopilot.estimate."
-A = "autopilot.arming."
-M = "autopilot.modes."
-B = "autopilot.battery."
 
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
@@ -26,228 +21,192 @@ GPS_US = 4_000_000
 """So for the GPS receiver's messages."""
 VOLTAGE_MONITOR, CURRENT_MONITOR = 3, 4
 """BATT_MONITOR: what is measured from this number on; the rest is unknown."""
+UNKNOWN = 65535
 
 
-def sensor_health(context: Context) -> Callable[[], int]:
+@law
+def sensor_health(v: Vehicle) -> int:
     """Health bits of IMU, compass, barometer, GPS and attitude, as the firmware knows them.
 
     Samples must have come; once the filter is aligned, sane ones must keep coming.
     """
-    ekf, s = "autopilot.ekf.", "sensors."
-    read = context.fields(
-        "time_us", s + "time_us", s + "mag_count", s + "baro_count", s + "gps_fix", s + "gps_time_us",
-        ekf + "use_external", ekf + "yaw_aligned", ekf + "bad_imu", ekf + "mag_us", ekf + "baro_us",
-        E + "attitude_ok",
-    )  # fmt: skip
-
-    def build() -> int:
-        t, imu_us, mags, baros, fix, gps_us, external, aligned, bad_imu, mag_us, baro_us, attitude_ok = read()
-        watched = aligned and not external
-        health = GYRO | ACCEL if imu_us > 0 and (external or bad_imu == 0) else 0
-        health |= MAG if mags > 0 and not (watched and t - mag_us > SAMPLE_US) else 0
-        health |= BARO if baros > 0 and not (watched and t - baro_us > SAMPLE_US) else 0
-        health |= GPS if fix >= 3 and t - gps_us <= GPS_US else 0
-        return health | (AHRS if attitude_ok else 0)
-
-    return build
+    t, s, ekf = v.time_us, v.sensors, v.autopilot.ekf
+    watched = ekf.yaw_aligned and not ekf.use_external
+    health = GEOFENCE  # no fence is not a breached one
+    if s.time_us > 0 and (ekf.use_external or ekf.bad_imu == 0):
+        health |= GYRO | ACCEL
+    if s.mag_count > 0 and not (watched and t - ekf.mag_us > SAMPLE_US):
+        health |= MAG
+    if s.baro_count > 0 and not (watched and t - ekf.baro_us > SAMPLE_US):
+        health |= BARO
+    if s.gps_fix >= 3 and t - s.gps_time_us <= GPS_US:
+        health |= GPS
+    if v.autopilot.estimate.attitude_ok:
+        health |= AHRS
+    return health
 
 
-def sys_status(context: Context) -> Build:
-    """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
-    read = context.fields(
-        B + "voltage", B + "current", B + "remaining_pct", M + "number", A + "armed", A + "prearm_ok",
-        "autopilot.rc.receiver_ok", M + "failsafe.battery", "autopilot.params.BATT.MONITOR",
-    )  # fmt: skip
-    sensors = sensor_health(context)
-    controllers, at_work, healthy_at_rest = context.profile.controllers
-    pack = message("SYS_STATUS").pack
-
-    def build() -> bytes:
-        voltage, current, remaining, mode, armed, prearm, receiver, battery_low, monitor = read()
-        common = PRESENT | (RECEIVER if receiver else 0) | (BATTERY if monitor >= VOLTAGE_MONITOR else 0)
-        enabled = at_work(mode, armed)
-        health = (controllers if healthy_at_rest else enabled) | (common & RECEIVER)  # cannot fail
-        health |= GEOFENCE | sensors()  # no fence is not a breached one
-        present, enabled = common | controllers, common | enabled
-        health |= 0 if battery_low else present & BATTERY
-        health |= PREARM if prearm or armed else 0
-        millivolts = uint16(voltage * 1e3) if monitor >= VOLTAGE_MONITOR else 65535
-        centiamperes = int16(current * 100.0) if monitor >= CURRENT_MONITOR else -1
-        # the extension fields (three more words of sensor bits) stay zero
-        power = (0, millivolts, centiamperes, 0, 0, 0, 0, 0, 0, percent(remaining))
-        return pack(present, enabled, health, *power, 0, 0, 0)
-
-    return build
+class SysStatus(Message, name="SYS_STATUS"):
+    onboard_control_sensors_present: int
+    onboard_control_sensors_enabled: int
+    onboard_control_sensors_health: int
+    voltage_battery: int
+    current_battery: int
+    battery_remaining: int
 
 
-def ekf_status_report(context: Context) -> Build:
+@law
+def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy: int) -> bool:
+    """SYS_STATUS of a firmware with these controllers, of which some are at work and healthy (bits)."""
+    ap, battery, monitor = v.autopilot, v.autopilot.battery, v.autopilot.params.BATT.MONITOR
+    common = PRESENT
+    health = healthy | sensor_health(v)
+    if ap.rc.receiver_ok:
+        common |= RECEIVER
+        health |= RECEIVER  # cannot fail
+    if monitor >= VOLTAGE_MONITOR:
+        common |= BATTERY
+        if ap.modes.failsafe.battery == 0:
+            health |= BATTERY
+    if ap.arming.prearm_ok or ap.arming.armed:
+        health |= PREARM
+    m.onboard_control_sensors_present = common | controllers
+    m.onboard_control_sensors_enabled = common | at_work
+    m.onboard_control_sensors_health = health
+    m.voltage_battery = uint16(battery.voltage * 1e3) if monitor >= VOLTAGE_MONITOR else UNKNOWN
+    m.current_battery = int16(battery.current * 100.0) if monitor >= CURRENT_MONITOR else -1
+    m.battery_remaining = percent(battery.remaining_pct)
+    return True
+
+
+class EkfStatusReport(Message, name="EKF_STATUS_REPORT"):
+    velocity_variance: float
+    pos_horiz_variance: float
+    pos_vert_variance: float
+    compass_variance: float
+    flags: int
+
+
+@law
+def ekf_status_report(m: EkfStatusReport, v: Vehicle) -> bool:
     """EKF_STATUS_REPORT: flags and normalised innovation test ratios."""
-    read = context.fields(*(E + "variance_" + x for x in ("vel", "pos", "hgt", "mag")), E + "status_flags")
-    pack = message("EKF_STATUS_REPORT").pack
+    estimate = v.autopilot.estimate
+    m.velocity_variance = estimate.variance_vel
+    m.pos_horiz_variance = estimate.variance_pos
+    m.pos_vert_variance = estimate.variance_hgt
+    m.compass_variance = estimate.variance_mag
+    m.flags = estimate.status_flags & 0xFFFF
+    return True
 
-    def build() -> bytes:
-        velocity, position, height, compass, flags = read()
-        return pack(velocity, position, height, compass, 0.0, flags & 0xFFFF, 0.0)
 
-    return build
+class BatteryStatus(Message, name="BATTERY_STATUS"):
+    current_consumed: int
+    energy_consumed: int
+    temperature: int
+    voltages: Ints
+    current_battery: int
+    battery_remaining: int
+    charge_state: int
 
 
-def battery_status(context: Context) -> Build:
+CHARGE_OK, NO_TEMPERATURE = 1, 32767
+
+
+@law
+def battery_status(m: BatteryStatus, v: Vehicle) -> bool:
     """BATTERY_STATUS: mV, cA, mAh, hJ, %; what BATT_MONITOR does not measure is 65535 (cells, too) or -1."""
-    names = ("voltage", "current", "consumed_mah", "consumed_wh", "remaining_pct")
-    read = context.fields(*(B + name for name in names), "autopilot.params.BATT.MONITOR")
-    pack = message("BATTERY_STATUS").pack
+    battery, monitor = v.autopilot.battery, v.autopilot.params.BATT.MONITOR
+    m.current_consumed = m.energy_consumed = m.current_battery = -1
+    m.temperature = NO_TEMPERATURE
+    for k in range(len(m.voltages)):
+        m.voltages[k] = UNKNOWN
+    if monitor >= VOLTAGE_MONITOR:
+        m.voltages[0] = uint16(battery.voltage * 1e3)
+    if monitor >= CURRENT_MONITOR:
+        m.current_consumed = int32(battery.consumed_mah)
+        m.energy_consumed = int32(battery.consumed_wh * 36.0)
+        m.current_battery = int16(battery.current * 100.0)
+    m.battery_remaining = percent(battery.remaining_pct)
+    m.charge_state = CHARGE_OK
+    return True
 
-    def build() -> bytes:
-        voltage, current, mah, wh, remaining, monitor = read()
-        millivolts = uint16(voltage * 1e3) if monitor >= VOLTAGE_MONITOR else 65535
-        used, centiamperes = (-1, -1), -1
-        if monitor >= CURRENT_MONITOR:
-            used, centiamperes = (int32(mah), int32(wh * 36.0)), int16(current * 100.0)
-        rest = (centiamperes, 0, 0, 0, percent(remaining), 0, 1, 0, 0, 0, 0, 0, 0)
-        return pack(*used, 32767, millivolts, *(65535,) * 9, *rest)
 
-    return build
+class PowerStatus(Message, name="POWER_STATUS"):
+    Vcc: int
 
 
-def power_status(context: Context) -> Build:
+@law
+def power_status(m: PowerStatus, v: Vehicle) -> bool:
     """POWER_STATUS: the board's 5 V rail [mV]."""
-    payload = message("POWER_STATUS").payload(Vcc=5000)
-    return lambda: payload
+    m.Vcc = 5000
+    return True
 
 
-def meminfo(context: Context) -> Build:
+class MemInfo(Message, name="MEMINFO"):
+    freemem: int
+    freemem32: int
+
+
+@law
+def meminfo(m: MemInfo, v: Vehicle) -> bool:
     """MEMINFO: a process has memory enough; the figure of ArduPilot's SITL."""
-    payload = message("MEMINFO").payload(freemem=65535, freemem32=131072)
-    return lambda: payload
+    m.freemem = 65535
+    m.freemem32 = 131072
+    return True
 
 
-def system_time(context: Context) -> Build:
+class SystemTime(Message, name="SYSTEM_TIME"):
+    time_unix_usec: int
+    time_boot_ms: int
+
+
+@law
+def system_time(m: SystemTime, v: Vehicle, port: Port) -> bool:
     """SYSTEM_TIME: Unix time in simulated microseconds, milliseconds since boot."""
-    read = context.fields("time_us")
-    pack = message("SYSTEM_TIME").pack
+    m.time_unix_usec = port.epoch_us + v.time_us
+    m.time_boot_ms = boot_ms(v.time_us)
+    return True
 
-    def build() -> bytes:
-        t = read()[0]
-        return pack(context.epoch_us + t, boot_ms(t))
 
-    return build
+class TimeSync(Message, name="TIMESYNC"):
+    ts1: int
+
+
+@law
+def timesync(m: TimeSync, v: Vehicle) -> bool:
+    """TIMESYNC: our request; ts1 is simulated time [ns]."""
+    m.ts1 = v.time_us * 1000 + 1
+    return True
+
+
+class MissionCurrent(Message, name="MISSION_CURRENT"):
+    seq: int
+    total: int
+    mission_state: int
+    mission_mode: int
 
 
 NO_MISSION, NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 1, 2, 3, 4, 5
 
 
-def mission_current(context: Context) -> Build:
-    """MISSION_CURRENT: number of the item, number of items without home, state."""
-    read = context.fields(
-        M + "number", M + "nav.mission_state", M + "nav.mission_current",
-        "autopilot.params.MIS.TOTAL",
-    )  # fmt: skip
-    pack, auto = message("MISSION_CURRENT").pack, context.profile.auto
-
-    def build() -> bytes:
-        mode, state, seq, total = read()
-        if total <= 1.0:
-            shown = NO_MISSION
-        elif state == 2:
-            shown = COMPLETE
-        elif state == 1:
-            shown = ACTIVE
-        else:
-            shown = PAUSED if seq > 0 else NOT_STARTED
-        return pack(uint16(seq), uint16(total - 1.0), shown, 1 if mode == auto else 0)
-
-    return build
+@law
+def mission_current(m: MissionCurrent, v: Vehicle, auto: int) -> bool:
+    """MISSION_CURRENT of a firmware in which the mode ``auto`` runs missions."""
+    modes, total = v.autopilot.modes, v.autopilot.params.MIS.TOTAL
+    m.seq = uint16(modes.nav.mission_current)
+    m.total = uint16(total - 1.0)
+    if total <= 1.0:
+        m.mission_state = NO_MISSION
+    elif modes.nav.mission_state == 2:
+        m.mission_state = COMPLETE
+    elif modes.nav.mission_state == 1:
+        m.mission_state = ACTIVE
+    else:
+        m.mission_state = PAUSED if modes.nav.mission_current > 0 else NOT_STARTED
+    m.mission_mode = 1 if modes.number == auto else 0
+    return True
 
 
-MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, FTP = 0x1, 0x2, 0x4, 0x8, 0x20
-SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = (
-    0x40,
-    0x80,
-    0x100,
-    0x800,
-    0x2000,
-)
-CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
-CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2
-"""What every firmware can; ArduPilot's 0xF1EF without what does not exist here (compass calibration, fence, rally)."""
-
-FLIGHT_VERSION = (4, 7, 0, 0)
-"""Major, minor, patch, type (0: development).
-
-The ArduPilot whose behaviour and parameter names this firmware follows.
-"""
-
-
-def autopilot_version(context: Context) -> Build:
-    """AUTOPILOT_VERSION: capabilities and version."""
-    major, minor, patch, kind = FLIGHT_VERSION
-    version = major << 24 | minor << 16 | patch << 8 | kind
-    payload = message("AUTOPILOT_VERSION").payload(
-        capabilities=context.profile.capabilities,
-        flight_sw_version=version,
-        flight_custom_version=tuple(b"gym-sitl"),
-        uid=1,
-    )
-    return lambda: payload
-
-
-def timesync(context: Context) -> Build:
-    """TIMESYNC: our request; ts1 is simulated time [ns]."""
-    read, kind = context.fields("time_us"), message("TIMESYNC")
-    rest = (0,) * (len(kind.fields) - 2)
-    return lambda: kind.pack(0, read()[0] * 1000 + 1, *rest)
-
-
-CHANNELS = 16
-"""chancount of a receiver, as ArduPilot tells it."""
-
-
-def rc_channels(context: Context) -> Build:
-    """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
-    read = context.fields("time_us", "autopilot.rc.channels")
-    read_heard = context.fields("autopilot.rc.receiver_us")
-    timeout = context.profile.receiver_timeout
-    read_timeout = context.fields(f"autopilot.params.{timeout}") if isinstance(timeout, str) else lambda: (timeout,)
-    pack = message("RC_CHANNELS").pack
-
-    def build() -> bytes:
-        t, *pulses = read()
-        count = CHANNELS if any(pulses) and t - read_heard()[0] < read_timeout()[0] * 1e6 else 0
-        try:
-            return pack(t // 1000 & 0xFFFFFFFF, *pulses, count, 255)
-        except struct.error:  # not a pulse: rare, so that the usual case need not look at each
-            return pack(t // 1000 & 0xFFFFFFFF, *map(uint16, pulses), count, 255)
-
-    return build
-
-
-def servo_output_raw(context: Context) -> Build:
-    """SERVO_OUTPUT_RAW: pulses to motors and servos [us]."""
-    read = context.fields("time_us", "actuators.pwm")
-    pack = message("SERVO_OUTPUT_RAW").pack
-
-    def build() -> bytes:
-        t, *pulses = read()
-        try:
-            return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
-        except struct.error:
-            pulses = [uint16(p) for p in pulses]
-            return pack(t & 0xFFFFFFFF, *pulses[:8], 0, *pulses[8:])
-
-    return build
-
-
-BUILDERS: dict[str, Builder] = {
-    "SYS_STATUS": sys_status,
-    "EKF_STATUS_REPORT": ekf_status_report,
-    "BATTERY_STATUS": battery_status,
-    "POWER_STATUS": power_status,
-    "MEMINFO": meminfo,
-    "SYSTEM_TIME": system_time,
-    "MISSION_CURRENT": mission_current,
-    "AUTOPILOT_VERSION": autopilot_version,
-    "TIMESYNC": timesync,
-    "RC_CHANNELS": rc_channels,
-    "SERVO_OUTPUT_RAW": servo_output_raw,
-}
+MESSAGES = (
+    ekf_status_report, battery_status, power_status, meminfo, system_time, timesync,
+)  # fmt: skip

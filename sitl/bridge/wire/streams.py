@@ -104,7 +104,9 @@ def time_was_set(port: Port, now_us: int) -> None:
 
 def put_off(port: Port, number: int, now_us: int) -> None:
     """A message that was due has been dealt with."""
-    _write(port, [(n, every, (now_us // every + 1) * every if n == number else due, s) for n, every, due, s in _rows(port)])
+    _write(
+        port, [(n, every, (now_us // every + 1) * every if n == number else due, s) for n, every, due, s in _rows(port)]
+    )
 
 
 def first_due(port: Port, now_us: int) -> tuple[int, bool]:

@@ -22,7 +22,7 @@ from ..state import Vehicle
 from . import circle, drive, guided, loiter, rtl
 from .acro import ACRO
 from .manual import MANUAL
-from .mode import RoverMode
+from .mode import Destination, RoverMode, end_of_path, no_destination
 from .state import AutoState
 
 AUTO = 10
@@ -219,6 +219,26 @@ def change_speed(v: Vehicle, wanted: float) -> bool:
     return auto.submode != LOITERING and drive.change_path_speed(v, wanted)
 
 
+@law
+def destination(v: Vehicle) -> Destination:
+    """That of what it is doing."""
+    submode = v.autopilot.modes.auto.submode
+    if submode == ON_PATH or submode == RETURNING:
+        return end_of_path(v)
+    if submode == CIRCLING:
+        return circle.destination(v)
+    if submode == LOITERING:
+        return loiter.destination(v)
+    return guided.destination(v) if submode == GUIDED_IN_MISSION else no_destination(v)
+
+
 MODE = RoverMode(
-    number=AUTO, name="AUTO", start=start, run=run, needs_position=True, autonomous=True, change_speed=change_speed
+    number=AUTO,
+    name="AUTO",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    destination=destination,
+    change_speed=change_speed,
 )

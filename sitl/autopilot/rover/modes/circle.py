@@ -23,7 +23,7 @@ from ..control.steering import lat_accel_max
 from ..parameters import Parameters
 from ..state import Autopilot, Vehicle
 from . import drive
-from .mode import RoverMode
+from .mode import PLACE_ON_CIRCLE, Destination, RoverMode
 from .state import CircleState
 
 CIRCLE = 9
@@ -217,6 +217,12 @@ def change_speed(v: Vehicle, wanted: float) -> bool:
     return True
 
 
+@law
+def destination(v: Vehicle) -> Destination:
+    """The target that goes round."""
+    return Destination(PLACE_ON_CIRCLE, v.autopilot.modes.circle.target)
+
+
 MODE = RoverMode(
     number=CIRCLE,
     name="CIRCLE",
@@ -224,6 +230,6 @@ MODE = RoverMode(
     run=run,
     needs_position=True,
     autonomous=True,
-    destination="circle.target",
+    destination=destination,
     change_speed=change_speed,
 )

@@ -16,7 +16,7 @@ from ..control import motors, speed
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import drive
-from .mode import RoverMode
+from .mode import Destination, RoverMode, end_of_path, no_destination
 from .state import GuidedState
 
 GUIDED = 15
@@ -106,6 +106,12 @@ def start_in_mission(v: Vehicle) -> None:
     ap.modes.guided.limit_from = horizontal(ap.estimate.pos)
 
 
+@law
+def destination(v: Vehicle) -> Destination:
+    """The set-point, when it is a position."""
+    return end_of_path(v) if v.autopilot.modes.guided.submode == POSITION else no_destination(v)
+
+
 MODE = RoverMode(
     number=GUIDED,
     name="GUIDED",
@@ -113,6 +119,6 @@ MODE = RoverMode(
     run=run,
     needs_position=True,
     autonomous=True,
-    destination="nav.target",
+    destination=destination,
     change_speed=change_speed,
 )

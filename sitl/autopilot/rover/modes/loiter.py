@@ -16,7 +16,7 @@ from ..navigation import waypoint
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import drive
-from .mode import RoverMode
+from .mode import PLACE_TO_STAY, Destination, RoverMode
 from .state import LoiterState
 
 LOITER = 5
@@ -73,6 +73,12 @@ def run(v: Vehicle) -> None:
     speed.drive(v, loiter.speed)
 
 
+@law
+def destination(v: Vehicle) -> Destination:
+    """The place to stay at."""
+    return Destination(PLACE_TO_STAY, v.autopilot.modes.loiter.place)
+
+
 MODE = RoverMode(
-    number=LOITER, name="LOITER", start=start, run=run, needs_position=True, autonomous=True, destination="loiter.place"
+    number=LOITER, name="LOITER", start=start, run=run, needs_position=True, autonomous=True, destination=destination
 )

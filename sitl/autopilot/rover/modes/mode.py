@@ -5,10 +5,35 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
+from ....core.algebra import horizontal
 from ....core.kernels import law
+from ....core.vectors import Vec2
 from ...modes import Mode
 from ..state import Vehicle
+
+NO_PLACE, END_OF_PATH, PLACE_TO_STAY, PLACE_ON_CIRCLE = 0, 1, 2, 3
+"""Kinds of destination."""
+
+
+class Destination(NamedTuple):
+    """Where a mode drives to."""
+
+    kind: int
+    place: Vec2  # NE [m]
+
+
+@law
+def no_destination(v: Vehicle) -> Destination:
+    """Of a mode that drives to no place."""
+    return Destination(NO_PLACE, Vec2(0.0, 0.0))
+
+
+@law
+def end_of_path(v: Vehicle) -> Destination:
+    """Of a mode that drives along planned legs."""
+    return Destination(END_OF_PATH, horizontal(v.autopilot.modes.nav.target))
 
 
 @law
@@ -31,7 +56,7 @@ class RoverMode(Mode[Vehicle]):
     """Steering is a controller's, not the pilot's."""
     armable: bool = True
     """The vehicle may be armed in it."""
-    destination: str = ""
-    """Field of ``modes`` with the place that it drives to, for telemetry; "" none."""
+    destination: Callable[[Vehicle], Destination] = no_destination
+    """Law: where it drives to, for telemetry."""
     change_speed: Callable[[Vehicle, float], bool] = refuses_speed
     """Law of DO_CHANGE_SPEED [m/s] until the mode changes: whether it is taken."""

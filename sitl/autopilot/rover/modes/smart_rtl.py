@@ -17,7 +17,7 @@ from ..control import speed
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import drive
-from .mode import RoverMode
+from .mode import RoverMode, end_of_path
 from .state import PathState
 
 SMART_RTL = 12
@@ -94,6 +94,6 @@ MODE = RoverMode(
     needs_position=True,
     autonomous=True,
     armable=False,
-    destination="nav.target",
+    destination=end_of_path,
     change_speed=drive.change_path_speed,
 )

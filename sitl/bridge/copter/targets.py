@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the copter is going, and what its controllers follow."""
+
+from __future__ import annotations
+
+import math
+
+from ...autopilot.copter.modes.auto import AUTO
+from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.rtl import RTL
+from ...core.geodesy import add_offset
+from ...core.kernels import law
+from ...core.records import Floats
+from ...vehicle.copter import Copter
+from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
+from ..wire.message import Message
+
+
+class NavControllerOutput(Message, name="NAV_CONTROLLER_OUTPUT"):
+    nav_roll: float
+    nav_pitch: float
+    alt_error: float
+    nav_bearing: int
+    target_bearing: int
+    wp_dist: int
+
+
+@law
+def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
+    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m]."""
+    modes, control, pos = v.autopilot.modes, v.autopilot.control, v.autopilot.estimate.pos
+    euler = control.attitude.target_euler
+    if modes.number == AUTO:
+        to = modes.nav.target
+    elif modes.number == GUIDED:
+        to = modes.guided.pos
+    else:
+        to = v.autopilot.home.pos
+    if modes.number == AUTO or modes.number == GUIDED or modes.number == RTL:
+        m.target_bearing = int16(math.atan2(to.y - pos.y, to.x - pos.x) * DEG)
+        m.wp_dist = uint16(math.hypot(to.x - pos.x, to.y - pos.y))
+    m.nav_roll = euler.roll * DEG
+    m.nav_pitch = euler.pitch * DEG
+    m.nav_bearing = int16(euler.yaw * DEG)
+    m.alt_error = -control.pos_d.pos_error
+    return True
+
+
+IGNORE_POS, IGNORE_VEL, IGNORE_ACC, IGNORE_YAW, IGNORE_YAW_RATE = 0x007, 0x038, 0x1C0, 0x400, 0x800
+PLACE = IGNORE_VEL | IGNORE_ACC | IGNORE_YAW | IGNORE_YAW_RATE
+TARGET_MASKS = (
+    PLACE,  # TAKEOFF
+    PLACE,  # POSITION
+    IGNORE_YAW | IGNORE_YAW_RATE,  # POS_VEL_ACCEL
+    IGNORE_POS | IGNORE_YAW | IGNORE_YAW_RATE,  # VELOCITY_ACCEL
+    IGNORE_POS | IGNORE_VEL | IGNORE_YAW | IGNORE_YAW_RATE,  # ACCEL
+)
+"""By GUIDED's submode: what of the target does not count; others have no such target."""
+LOCAL_NED = 1
+
+
+class PositionTargetLocalNed(Message, name="POSITION_TARGET_LOCAL_NED"):
+    time_boot_ms: int
+    x: float
+    y: float
+    z: float
+    vx: float
+    vy: float
+    vz: float
+    afx: float
+    afy: float
+    afz: float
+    type_mask: int
+    coordinate_frame: int
+
+
+@law
+def position_target_local(m: PositionTargetLocalNed, v: Copter) -> bool:
+    """POSITION_TARGET_LOCAL_NED: the target of GUIDED; nothing in other modes."""
+    guided = v.autopilot.modes.guided
+    if v.autopilot.modes.number != GUIDED or not 0 <= guided.submode < len(TARGET_MASKS):
+        return False
+    pos, vel, acc = guided.pos, guided.vel, guided.acc
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.x = pos.x
+    m.y = pos.y
+    m.z = pos.z
+    m.vx = vel.x
+    m.vy = vel.y
+    m.vz = vel.z
+    m.afx = acc.x
+    m.afy = acc.y
+    m.afz = acc.z
+    m.type_mask = TARGET_MASKS[guided.submode]
+    m.coordinate_frame = LOCAL_NED
+    return True
+
+
+class PositionTargetGlobalInt(Message, name="POSITION_TARGET_GLOBAL_INT"):
+    time_boot_ms: int
+    lat_int: int
+    lon_int: int
+    alt: float
+    type_mask: int
+
+
+@law
+def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
+    """POSITION_TARGET_GLOBAL_INT: where GUIDED and AUTO fly to (degE7, m above sea level); nothing in other modes."""
+    modes, estimate = v.autopilot.modes, v.autopilot.estimate
+    if not estimate.origin_set or (modes.number != AUTO and modes.number != GUIDED):
+        return False
+    to = modes.guided.pos if modes.number == GUIDED else modes.nav.target
+    place = add_offset(estimate.origin_lat, estimate.origin_lon, to.x, to.y)
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.lat_int = int32(place.lat)
+    m.lon_int = int32(place.lon)
+    m.alt = estimate.origin_alt - to.z
+    m.type_mask = PLACE
+    return True
+
+
+class AttitudeTarget(Message, name="ATTITUDE_TARGET"):
+    time_boot_ms: int
+    q: Floats
+    body_roll_rate: float
+    body_pitch_rate: float
+    body_yaw_rate: float
+    thrust: float
+
+
+@law
+def attitude_target(m: AttitudeTarget, v: Copter) -> bool:
+    """ATTITUDE_TARGET: quaternion, body rates [rad/s], throttle 0..1 that the controllers follow."""
+    control = v.autopilot.control
+    q, rates = control.attitude.target_q, control.attitude.rate_target
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.q[0] = q.w
+    m.q[1] = q.x
+    m.q[2] = q.y
+    m.q[3] = q.z
+    m.body_roll_rate = rates.x
+    m.body_pitch_rate = rates.y
+    m.body_yaw_rate = rates.z
+    m.thrust = control.motors.throttle_in
+    return True
+
+
+MESSAGES = (nav_controller_output, position_target_local, position_target_global, attitude_target)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""HEARTBEAT: who is there. What a vehicle of this type says is its firmware's."""
+
+from __future__ import annotations
+
+from ...core.kernels import law
+from ...vehicle.record import Vehicle
+from ..wire.message import Message
+
+ARDUPILOTMEGA, MAVLINK_VERSION = 3, 3
+CUSTOM_MODE, IS_GUIDED, STABILIZED, MANUAL_INPUT, ARMED = 1, 8, 16, 64, 128
+"""base_mode"""
+CALIBRATING, STANDBY, ACTIVE, CRITICAL = 2, 3, 4, 5
+"""system_status"""
+
+
+class Heartbeat(Message, name="HEARTBEAT"):
+    custom_mode: int
+    type: int
+    autopilot: int
+    base_mode: int
+    system_status: int
+    mavlink_version: int
+
+
+@law
+def fill_heartbeat(m: Heartbeat, v: Vehicle, mav_type: int, base_mode: int, state: int) -> bool:
+    """HEARTBEAT of a vehicle of this MAV_TYPE."""
+    m.custom_mode = v.autopilot.modes.number & 0xFFFFFFFF
+    m.type = mav_type
+    m.autopilot = ARDUPILOTMEGA
+    m.base_mode = base_mode
+    m.system_status = state
+    m.mavlink_version = MAVLINK_VERSION
+    return True

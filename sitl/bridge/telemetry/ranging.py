@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lidar and range-finder."""
+
+from __future__ import annotations
+
+import math
+
+from ...core.border import LIDAR_SAMPLES
+from ...core.kernels import law
+from ...core.records import Floats, Ints
+from ...vehicle.record import Vehicle
+from ..wire.message import Message
+from ..wire.port import Port
+from .units import DEG, boot_ms, uint16
+
+SECTORS = 72
+"""Elements of OBSTACLE_DISTANCE."""
+UNKNOWN = 65535
+LASER, BODY_FRD, FACING_DOWN, COVARIANCE_UNKNOWN = 0, 12, 25, 255
+PART = 58
+"""Elements of DEBUG_FLOAT_ARRAY."""
+SCAN_NAME = b"LASER"
+_LETTERS = tuple(SCAN_NAME)
+
+
+@law
+def centimetres(reading: float, longest: float) -> int:
+    """A reading [m] in whole centimetres; nothing in range is a centimetre more than the range."""
+    if reading < longest:
+        return uint16(reading * 100.0 + 0.5)
+    return min(uint16(longest * 100.0 + 0.5) + 1, UNKNOWN - 1)
+
+
+class ObstacleDistance(Message, name="OBSTACLE_DISTANCE"):
+    time_usec: int
+    distances: Ints
+    min_distance: int
+    max_distance: int
+    increment: int
+    increment_f: float
+    angle_offset: float
+    frame: int
+
+
+@law
+def obstacle_distance(m: ObstacleDistance, v: Vehicle) -> bool:
+    """OBSTACLE_DISTANCE: the nearest reading of the lidar in each of up to 72 sectors [cm], clockwise, on the body;
+    the range + 1 where there is none; nothing without a lidar or a world.
+
+    One reading is one sector, up to 72; of more readings each sector has the nearest.
+    """
+    s, lidar = v.sensors, v.physics.airframe
+    samples = min(lidar.lidar_samples, LIDAR_SAMPLES)
+    if s.lidar_count == 0 or samples <= 0:
+        return False
+    fov, longest = lidar.lidar_fov, lidar.lidar_max
+    for k in range(SECTORS):
+        m.distances[k] = UNKNOWN
+    sector, nearest = -1, math.inf
+    for k in range(samples):
+        place = k if samples <= SECTORS else min(k * SECTORS // (samples - 1), SECTORS - 1)
+        if place != sector:
+            sector, nearest = place, math.inf
+        nearest = min(nearest, float(s.lidar_ranges[samples - 1 - k]))
+        m.distances[sector] = centimetres(nearest, longest)
+    if samples <= SECTORS:
+        step = fov / max(samples - 1, 1)
+        first = -0.5 * fov if samples > 1 else 0.0
+    else:
+        step = fov / SECTORS
+        first = 0.5 * step - 0.5 * fov
+    m.time_usec = s.lidar_time_us
+    m.min_distance = uint16(lidar.lidar_min * 100.0 + 0.5)
+    m.max_distance = uint16(longest * 100.0 + 0.5)
+    m.increment = min(uint16(step * DEG + 0.5), 255)
+    m.increment_f = step * DEG
+    m.angle_offset = first * DEG
+    m.frame = BODY_FRD
+    return True
+
+
+class DistanceSensor(Message, name="DISTANCE_SENSOR"):
+    time_boot_ms: int
+    min_distance: int
+    max_distance: int
+    current_distance: int
+    type: int
+    orientation: int
+    covariance: int
+
+
+@law
+def distance_sensor(m: DistanceSensor, v: Vehicle) -> bool:
+    """DISTANCE_SENSOR: the range-finder that looks down [cm]; the range + 1 where it meets nothing; nothing without a
+    range-finder or a world.
+    """
+    s, figures = v.sensors, v.physics.airframe
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.min_distance = uint16(figures.rangefinder_min * 100.0 + 0.5)
+    m.max_distance = uint16(figures.rangefinder_max * 100.0 + 0.5)
+    m.current_distance = centimetres(float(s.rangefinder_range[0]), figures.rangefinder_max)
+    m.type = LASER
+    m.orientation = FACING_DOWN
+    m.covariance = COVARIANCE_UNKNOWN
+    return s.rangefinder_count != 0
+
+
+class DebugFloatArray(Message, name="DEBUG_FLOAT_ARRAY"):
+    time_usec: int
+    array_id: int
+    name: Ints
+    data: Floats
+
+
+@law
+def scan(m: DebugFloatArray, v: Vehicle, port: Port) -> bool:
+    """DEBUG_FLOAT_ARRAY: the whole scan of the lidar [m], "LASER", in parts of 58 counted by array_id from 0, from
+    right to left; inf where it meets nothing, nan after the last reading; time of the scan; nothing without a lidar
+    or a world.
+    """
+    s = v.sensors
+    samples = min(v.physics.airframe.lidar_samples, LIDAR_SAMPLES)
+    part = port.part
+    first = part * PART
+    port.part = 0
+    if s.lidar_count == 0 or first >= samples:
+        return False
+    m.time_usec = s.lidar_time_us
+    m.array_id = part
+    for k in range(len(_LETTERS)):
+        m.name[k] = _LETTERS[k]
+    for k in range(PART):
+        m.data[k] = s.lidar_ranges[first + k] if first + k < samples else math.nan
+    if first + PART < samples:
+        port.part = part + 1
+    return True
+
+
+MESSAGES = (obstacle_distance, distance_sensor, scan)

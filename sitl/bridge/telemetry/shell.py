@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages that the core cannot build: with texts, or of what is not in the vehicle's record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ...core.records import as_bytes
+from ..dialect import message
+from .sensors import SimState, fill_simstate
+
+if TYPE_CHECKING:
+    from ..profile import Profile
+    from ..vehicle import Vehicle
+
+ShellBuilder = Callable[["Vehicle", "Profile"], bytes]
+"""``build(vehicle, profile)``: the payload now; empty when there is nothing to say."""
+
+MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, FTP = 0x1, 0x2, 0x4, 0x8, 0x20
+SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = 0x40, 0x80, 0x100, 0x800, 0x2000
+CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
+CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2
+"""What every firmware can; ArduPilot's 0xF1EF without what does not exist here (compass calibration, fence, rally)."""
+
+FLIGHT_VERSION = (4, 7, 0, 0)
+"""Major, minor, patch, type (0: development).
+
+The ArduPilot whose behaviour and parameter names this firmware follows.
+"""
+
+
+def autopilot_version(vehicle: Vehicle, profile: Profile) -> bytes:
+    """AUTOPILOT_VERSION: capabilities and version."""
+    major, minor, patch, kind = FLIGHT_VERSION
+    return message("AUTOPILOT_VERSION").payload(
+        capabilities=profile.capabilities,
+        flight_sw_version=major << 24 | minor << 16 | patch << 8 | kind,
+        flight_custom_version=tuple(b"gym-sitl"),
+        uid=1,
+    )
+
+
+def simstate(vehicle: Vehicle, profile: Profile) -> bytes:
+    """SIMSTATE of a vehicle whose physics is at the other end of a link: it is asked."""
+    m = SimState()
+    fill_simstate(m, vehicle.truth())
+    return bytes(as_bytes(m, m.dtype))
+
+
+def shell_builders(vehicle: Vehicle) -> dict[str, ShellBuilder]:
+    """What the shell builds for a vehicle, by the message's name; it comes before a law for the same message."""
+    found: dict[str, ShellBuilder] = {"AUTOPILOT_VERSION": autopilot_version}
+    if not vehicle.has_truth_in_record:
+        found["SIMSTATE"] = simstate
+    return found
