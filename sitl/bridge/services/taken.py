@@ -14,7 +14,10 @@ from .statustext import EventService
 
 
 class TakerService(Service):
-    """Hands the messages of ``Profile.takes`` to their laws, and tells what these have to say."""
+    """Set-points for GUIDED, and the ground station's sticks, which the firmware forgets after RC_OVERRIDE_TIME.
+
+    Laws take these messages (``Profile.takes``).
+    """
 
     def handlers(self) -> dict[str, Handler]:
         messages = {law: message_of(law) for law in self.bridge.profile.takes}
