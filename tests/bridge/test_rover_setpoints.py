@@ -123,7 +123,8 @@ def test_body_frames_turn_velocities_and_yaws(v: Rover) -> None:
 
 @pytest.mark.parametrize("message", [
     local(ONLY_POSITION, frame=2), place(910_000_000, 3), place(HOME[0], 1), attitude(0x47, 0.5),
-    attitude(3, math.nan), attitude(3, 0.5, rate=math.inf), attitude(7, 1.0, yaw=math.nan), attitude(7, 1.0, yaw=math.inf),
+    attitude(3, math.nan), attitude(3, 0.5, rate=math.inf),
+    attitude(7, 1.0, yaw=math.nan), attitude(7, 1.0, yaw=math.inf),
 ])  # fmt: skip
 def test_what_is_ignored(v: Rover, message: Any) -> None:
     assert driven(v, message) == ()
