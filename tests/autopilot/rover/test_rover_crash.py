@@ -37,7 +37,7 @@ def blocked(**params: float) -> Stuck:
 
 def run_into_wall(rover: Stuck, seconds: float) -> None:
     for _ in range(round(seconds / 0.5)):
-        guided_setpoints.set_heading_and_speed(rover.v, 0.0, 2.0)
+        guided_setpoints.set_heading_and_speed(rover.ap.modes, rover.v.time_us, 0.0, 2.0)
         rover.run(0.5)
 
 

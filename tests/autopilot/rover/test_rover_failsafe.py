@@ -34,7 +34,7 @@ def lose_radio(rover: Rover, seconds: float) -> None:
 def test_a_lost_radio_centres_the_sticks_at_once_and_acts_later() -> None:
     rover = driving()
     lose_radio(rover, 0.04)
-    assert pilot.sticks(rover.ap) == (0.0, 0.0)
+    assert pilot.sticks(rover.ap.modes.pilot, rover.ap.params) == (0.0, 0.0)
     rover.run(0.5)
     assert rover.ap.control.motors.throttle == 0.0
     assert rover.ap.modes.number == MANUAL

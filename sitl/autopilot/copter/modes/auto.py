@@ -128,10 +128,11 @@ def run(v: Vehicle) -> None:
     elif auto.submode == RTL:
         rtl.run(v)
         if ap.arming.landed and ap.modes.rtl.state == rtl.LANDING:
-            complete(ap, v.time_us)
+            complete(ap.modes.nav, ap.events, v.time_us)
     else:
         run_path(v)
-    check_condition(ap, v.time_us, auto_yaw.has_turned(ap.modes.auto_yaw, ap.estimate.euler.yaw))
+    turned = auto_yaw.has_turned(ap.modes.auto_yaw, ap.estimate.euler.yaw)
+    check_condition(ap.modes.nav, ap.events, v.time_us, ap.estimate.pos, turned)
 
 
 @law
@@ -158,7 +159,7 @@ def run_takeoff(v: Vehicle) -> None:
         ap.arming.auto_armed = True
     takeoff.run(v)
     if ap.modes.takeoff.complete:
-        complete(ap, v.time_us)
+        complete(ap.modes.nav, ap.events, v.time_us)
 
 
 @law
@@ -167,7 +168,7 @@ def run_land(v: Vehicle) -> None:
     ap = v.autopilot
     land.finish(v)
     if ap.arming.landed and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
-        complete(ap, v.time_us)
+        complete(ap.modes.nav, ap.events, v.time_us)
     if ground.is_grounded(ap.arming):
         ground.rest(ap)
         return

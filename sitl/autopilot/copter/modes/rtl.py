@@ -57,7 +57,7 @@ def begin(v: Vehicle) -> None:
     auto_yaw.set_mode(ap, auto_yaw.HOLD)
     above = with_down(position_start.stopping_point_ne(ap), rtl.return_d)
     if ap.arming.armed and not ap.arming.landed:
-        path.request_legs(ap, v.time_us, above, with_down(rtl.home, rtl.return_d))
+        path.request_legs(ap.modes.nav, ap.events, v.time_us, above, with_down(rtl.home, rtl.return_d))
 
 
 @law
@@ -119,7 +119,7 @@ def run_way(v: Vehicle) -> None:
         if reached:
             rtl.state = RETURN
             auto_yaw.set_default(ap, True)
-            path.request_leg(ap, v.time_us, with_down(rtl.home, rtl.return_d))
+            path.request_leg(ap.modes.nav, ap.events, v.time_us, with_down(rtl.home, rtl.return_d))
     elif rtl.state == RETURN:
         if reached:
             rtl.state = LOITER

@@ -38,10 +38,10 @@ def run(ap: Autopilot, time_us: int) -> None:
     if kind == LOITER_TURNS and (nav.circle_running or nav.reached):
         nav.active_us = time_us
         if circle.run(ap) >= nav.turns:
-            complete(ap, time_us)
+            complete(nav, ap.events, time_us)
     elif waypoint.advance(ap, time_us):
         if nav.since_us == 0:
             nav.since_us = time_us
         waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
         if waited and kind in (WAYPOINT, LOITER_TIME, DELAY):
-            complete(ap, time_us)
+            complete(nav, ap.events, time_us)

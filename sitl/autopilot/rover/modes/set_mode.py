@@ -8,7 +8,7 @@ from ...events import MODE_CHANGED, MODE_REFUSED, emit, emit_and_return
 from ...modes import ACCEPTED, NO_MISSION, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION
 from ..control.motors import is_skid
 from ..navigation import waypoint
-from ..state import Autopilot, Vehicle
+from ..state import Vehicle
 from . import table
 from .auto import AUTO
 from .initialising import INITIALISING
@@ -17,7 +17,6 @@ SPEED_MAX = 1e7
 """Speeds beyond this are refused [m/s]."""
 
 
-@law
 def enter_first(v: Vehicle) -> None:
     """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a place, home, a mission)."""
     modes = v.autopilot.modes
@@ -29,16 +28,16 @@ def enter_first(v: Vehicle) -> None:
 
 
 @law
-def refusal(ap: Autopilot, number: int) -> int:
-    """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
+def refusal(number: int, free: bool, speed_known: bool, skid: bool) -> int:
+    """ACCEPTED, or why the mode cannot be entered, its own conditions aside.
+
+    ``free``: any mode may be, disarmed or with a good position; ``skid``: the vehicle is skid-steered.
+    """
     if not table.is_known(number):
         return NO_SUCH_MODE
-    good = ap.estimate.position_ok and not ap.modes.failsafe.ekf
-    if not ap.arming.armed or good:
+    if free:
         return ACCEPTED
-    if table.requires_position(number):
-        return REQUIRES_POSITION
-    if table.requires_velocity(number, is_skid(ap.params)) and not ap.control.speed.forward_ok:
+    if table.requires_position(number) or (table.requires_velocity(number, skid) and not speed_known):
         return REQUIRES_POSITION
     return ACCEPTED
 
@@ -55,7 +54,8 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     if number == modes.number:
         return ACCEPTED
     pending = modes.nav.request_pending
-    cause = refusal(ap, number)
+    free = not ap.arming.armed or (ap.estimate.position_ok and modes.failsafe.ekf == 0)
+    cause = refusal(number, free, ap.control.speed.forward_ok, is_skid(ap.params))
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = table.start(number, v)
@@ -63,7 +63,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
-    waypoint.set_reversed(ap, False)
+    waypoint.set_reversed(modes.nav, ap.estimate, False, ap.params)
     modes.previous = modes.number
     modes.number = number
     modes.reason = reason
@@ -75,10 +75,9 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     return cause
 
 
-@law
 def change_speed(v: Vehicle, speed: float) -> bool:
     """MAV_CMD_DO_CHANGE_SPEED [m/s] until the mode or its destination's kind changes; whether it was taken."""
-    return abs(speed) <= SPEED_MAX and table.change_speed(v.autopilot.modes.number, v, speed)
+    return abs(speed) <= SPEED_MAX and table.CHANGE_SPEED[v.autopilot.modes.number](v, speed)
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:

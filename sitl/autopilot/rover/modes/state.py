@@ -106,6 +106,7 @@ class AutoState(Record):
 class PilotState(Record):
     """The pilot's sticks and switch."""
 
+    lost: bool  # the radio is: the sticks say nothing
     steering: float  # stick with dead zone, right positive
     throttle: float
     left: float  # the same sticks as the paddles of a tank, without dead zone

@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pilot's transmitter commands: the mode switch, and arming with the steering stick."""
+"""Arming and disarming with the steering stick of the pilot's transmitter (ARMING_RUDDER)."""
 
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...arming_checks import BY_RUDDER
-from ...mode_switch import moved_to
-from ...modes import REASON_RC
-from .. import arming
-from ..control.motors import is_moving
-from ..state import Autopilot, Vehicle
-from .set_mode import request
+from .state import PilotState
 from .table import allows_arming_by_stick
 
 HELD_US = 2_000_000
@@ -19,43 +13,26 @@ FULL_STICK = 4000.0 / 4500.0
 
 
 @law
-def read_mode(v: Vehicle) -> None:
-    """After each frame: a new position of the switch changes the mode."""
-    ap = v.autopilot
-    if ap.modes.failsafe.radio:
-        return
-    now = moved_to(ap.modes.pilot, ap.rc, int(ap.params.MODE_CH), v.time_us)
-    if now >= 0:
-        request(v, int(ap.params.MODE[now]), REASON_RC)
+def rudder_command(pilot: PilotState, mode: int, armed: bool, moving: bool, enabled: float) -> int:
+    """What the steering stick asks for: 1 to arm, -1 to disarm, 0 nothing.
 
-
-@law
-def rudder_command(ap: Autopilot) -> int:
-    """What the steering stick asks for: 1 to arm, -1 to disarm, 0 nothing (ARMING_RUDDER)."""
-    pilot = ap.modes.pilot
-    if ap.params.ARMING.RUDDER < 1.0 or not allows_arming_by_stick(ap.modes.number):
+    ``moving``: the motors turn; ``enabled``: ARMING_RUDDER, 1 arms only.
+    """
+    if enabled < 1.0 or pilot.throttle != 0.0 or pilot.lost or not allows_arming_by_stick(mode):
         return 0
-    if pilot.throttle != 0.0 or not ap.rc.receiver_ok or ap.modes.failsafe.radio:
-        return 0
-    if pilot.steering > FULL_STICK and not ap.arming.armed:
+    if pilot.steering > FULL_STICK and not armed:
         return 1
-    if pilot.steering < -FULL_STICK and ap.arming.armed and ap.params.ARMING.RUDDER >= 2.0 and not is_moving(ap):
-        return -1
-    return 0
+    return -1 if pilot.steering < -FULL_STICK and armed and enabled >= 2.0 and not moving else 0
 
 
 @law
-def read_rudder(v: Vehicle) -> None:
-    """After each frame: steering right arms, left disarms."""
-    pilot = v.autopilot.modes.pilot
-    wanted = rudder_command(v.autopilot)
+def held(pilot: PilotState, wanted: int, time_us: int) -> int:
+    """``wanted``, of every frame of the receiver, once the stick has asked for it long enough; else 0."""
     if wanted == 0:
         pilot.rudder_us = 0
     elif pilot.rudder_us == 0:
-        pilot.rudder_us = v.time_us
-    elif v.time_us - pilot.rudder_us >= HELD_US:
+        pilot.rudder_us = time_us
+    elif time_us - pilot.rudder_us >= HELD_US:
         pilot.rudder_us = 0
-        if wanted > 0:
-            arming.try_arm(v, BY_RUDDER, False)
-        else:
-            arming.disarm(v, BY_RUDDER, False)
+        return wanted
+    return 0

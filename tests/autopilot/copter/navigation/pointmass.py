@@ -79,7 +79,7 @@ class PointMass:
         kind = int(nav.command_kind)
         if kind == TAKEOFF:
             self._jump_to(nav.target)
-            complete(ap, now)
+            complete(ap.modes.nav, ap.events, now)
         elif kind in (NONE, LAND):
             self.acc = [0.0, 0.0, 0.0]
         elif command.follows_path(kind):
@@ -89,7 +89,7 @@ class PointMass:
                 self._move()
             elif not self.stuck:
                 ap.estimate.pos, ap.estimate.vel = nav.pos, nav.vel
-        check_condition(ap, now, True)
+        check_condition(ap.modes.nav, ap.events, now, ap.estimate.pos, True)
         self.note(self.sequencer.attend())
         ap.events.attention = 0
 

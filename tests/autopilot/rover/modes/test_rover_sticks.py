@@ -68,7 +68,7 @@ def test_pilot_steer_type(kind: int, sticks: tuple[int, int], wanted: tuple[floa
     rover = Rover(PILOT_STEER_TYPE=float(kind))
     rover.sticks(*sticks)
     rover.run(0.04)
-    assert pilot.sticks(rover.ap) == pytest.approx(wanted, abs=1e-4)
+    assert pilot.sticks(rover.ap.modes.pilot, rover.ap.params) == pytest.approx(wanted, abs=1e-4)
 
 
 def test_hold_does_nothing() -> None:
@@ -161,4 +161,4 @@ def test_stick_mixing_adds_to_the_autopilots_steering() -> None:
     rover = Rover(STICK_MIXING=1.0)
     rover.sticks(steering=1750)
     rover.run(0.04)
-    assert pilot.mixed(rover.ap, 0.4) == pytest.approx(0.5 * 0.4 + 220 / 470)
+    assert pilot.mixed(rover.ap.modes.pilot, rover.ap.rc, 0.4, rover.ap.params) == pytest.approx(0.5 * 0.4 + 220 / 470)
