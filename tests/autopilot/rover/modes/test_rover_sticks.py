@@ -8,13 +8,14 @@ import math
 import pytest
 
 from sitl.autopilot.rover import pilot
-from sitl.autopilot.rover.modes import steering
+from sitl.autopilot.rover.modes import steering, switch
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.modes.simple import SIMPLE
+from sitl.autopilot.rover.modes.state import PilotState
 from sitl.autopilot.rover.modes.steering import STEERING
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -162,3 +163,33 @@ def test_stick_mixing_adds_to_the_autopilots_steering() -> None:
     rover.sticks(steering=1750)
     rover.run(0.04)
     assert pilot.mixed(rover.ap.modes.pilot, rover.ap.rc, 0.4, rover.ap.params) == pytest.approx(0.5 * 0.4 + 220 / 470)
+
+
+@pytest.mark.parametrize(
+    ("stick", "armed", "moving", "enabled", "command"),
+    [
+        (1.0, False, False, 1.0, 1),
+        (1.0, False, False, 0.0, 0),
+        (1.0, True, False, 2.0, 0),
+        (0.8, False, False, 2.0, 0),
+        (-1.0, True, False, 2.0, -1),
+        (-1.0, True, True, 2.0, 0),
+        (-1.0, True, False, 1.0, 0),
+    ],
+)
+def test_arming_by_stick(stick: float, armed: bool, moving: bool, enabled: float, command: int) -> None:
+    sticks = PilotState()
+    sticks.steering = stick
+    assert switch.rudder_command(sticks, MANUAL, armed, moving, enabled) == command
+    assert switch.rudder_command(sticks, RTL, armed, moving, enabled) == 0
+    sticks.throttle = 0.1
+    assert switch.rudder_command(sticks, MANUAL, armed, moving, enabled) == 0
+    sticks.throttle, sticks.lost = 0.0, True
+    assert switch.rudder_command(sticks, MANUAL, armed, moving, enabled) == 0
+
+
+def test_the_stick_must_be_held_for_two_seconds_without_a_break() -> None:
+    sticks = PilotState()
+    assert [switch.held(sticks, 1, t) for t in (1_000_000, 2_999_999, 3_000_000)] == [0, 0, 1]
+    assert [switch.held(sticks, c, t) for c, t in ((-1, 4_000_000), (0, 5_000_000), (-1, 6_500_000))] == [0, 0, 0]
+    assert switch.held(sticks, -1, 8_500_000) == -1
