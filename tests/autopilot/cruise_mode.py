@@ -14,7 +14,7 @@ from sitl.core.kernels import law
 def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    drive.turn(ap, 0.0)
+    drive.turn(ap.control, ap.estimate, ap.modes.pilot, 0.0, ap.params)
     speed.drive(ap.control, ap.arming.armed, ap.params.WP.SPEED, ap.params)
 
 

@@ -64,6 +64,8 @@ def read(pilot: PilotState, rc: Radio, sensors: Sensors, params: Parameters, tim
     receive(rc, sensors, params, time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
     pilot.steering = stick_position(rc, params, ROLL)
     pilot.throttle = stick_position(rc, params, THROTTLE)
+    channel = stick_channel(params.RCMAP, ROLL)
+    pilot.steering_pulse = min(abs(rc.channels[channel] - params.RC[channel].TRIM), MIXING_RANGE)
     pilot.left = paddle(rc, params, ROLL)
     pilot.right = paddle(rc, params, THROTTLE)
 
@@ -149,16 +151,15 @@ def heading_and_speed(pilot: PilotState, params: Parameters) -> HeadingAndSpeed:
 
 
 @law
-def mixed(pilot: PilotState, rc: Radio, demand: float, params: Parameters) -> float:
-    """``demand`` -1 .. 1 and the steering stick (STICK_MIXING); the further it is out, the less of ``demand`` is left.
+def mixed(pilot: PilotState, demand: float, enabled: float) -> float:
+    """``demand`` -1 .. 1 and the steering stick; the further it is out, the less of ``demand`` is left.
 
-    ``demand`` alone is not cut at -1 .. 1: the motors shrink it with speed first, as recorded ArduRovers do.
+    ``enabled``: STICK_MIXING. Without the stick, ``demand`` is not cut at -1 .. 1: the motors shrink it with speed
+    first, as recorded ArduRovers do.
     """
-    if pilot.lost or not params.STICK_MIXING > 0.0:
+    if pilot.lost or not enabled > 0.0:
         return demand
-    channel = stick_channel(params.RCMAP, ROLL)
-    out = min(abs(rc.channels[channel] - params.RC[channel].TRIM), MIXING_RANGE)
-    return constrain(demand * (1.0 - out / MIXING_RANGE) + pilot.steering, -1.0, 1.0)
+    return constrain(demand * (1.0 - pilot.steering_pulse / MIXING_RANGE) + pilot.steering, -1.0, 1.0)
 
 
 @law

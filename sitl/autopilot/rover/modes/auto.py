@@ -143,7 +143,7 @@ def run_command(v: Vehicle) -> None:
     elif submode == GUIDED_IN_MISSION:
         guided.run(v)
     elif submode == TURNING and not auto.heading_reached:
-        drive.turn_to(ap, auto.heading)
+        drive.turn_to(control, ap.estimate, ap.modes.pilot, auto.heading, p)
         speed.drive(control, armed, pilot.nudged(ap.modes.pilot, auto.speed, p), p)
         auto.heading_reached = abs(wrap_pi(auto.heading - ap.estimate.euler.yaw)) < HEADING_REACHED
     else:

@@ -204,7 +204,7 @@ def run(v: Vehicle) -> None:
     if follow(circle, control.position, ap.estimate, p.TURN_RADIUS):
         emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(FELL_BEHIND), circle.speed)
     position.follow_target(control, ap.estimate, armed, p)
-    drive.turn(ap, control.position.desired_turn_rate)
+    drive.turn(control, ap.estimate, ap.modes.pilot, control.position.desired_turn_rate, p)
     speed.drive(control, armed, control.position.desired_speed, p)
 
 

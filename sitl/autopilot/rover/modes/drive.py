@@ -10,35 +10,29 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...events import LEG_ENDING, emit_and_return
 from ...navigation.state import SPEED_REQUEST
-from ...state import Radio
+from ...state import Estimate
 from .. import pilot
 from ..control import motors, speed, steering
-from ..control.state import MotorsState, PositionState
+from ..control.state import Control, PositionState
 from ..navigation import waypoint
 from ..navigation.state import RoverNav
 from ..parameters import Parameters
-from ..state import Autopilot, Vehicle
+from ..state import Vehicle
 from .state import PilotState
 
 
 @law
-def steer(m: MotorsState, sticks: PilotState, rc: Radio, demand: float, params: Parameters) -> None:
-    """Steering demand of a control loop, mixed with the stick's."""
-    motors.set_steering(m, pilot.mixed(sticks, rc, demand, params))
+def turn(control: Control, estimate: Estimate, sticks: PilotState, rate: float, params: Parameters) -> None:
+    """Turn at ``rate`` [rad/s], right positive; the stick may add to it."""
+    demand = steering.out_from_rate(control, estimate, rate, params.ATC)
+    motors.set_steering(control.motors, pilot.mixed(sticks, demand, params.STICK_MIXING))
 
 
 @law
-def turn(ap: Autopilot, rate: float) -> None:
-    """Turn at ``rate`` [rad/s], right positive."""
-    demand = steering.out_from_rate(ap.control, ap.estimate, rate, ap.params.ATC)
-    steer(ap.control.motors, ap.modes.pilot, ap.rc, demand, ap.params)
-
-
-@law
-def turn_to(ap: Autopilot, heading: float) -> None:
-    """Turn towards ``heading`` [rad]."""
-    demand = steering.out_from_heading(ap.control, ap.estimate, heading, ap.params.ATC)
-    steer(ap.control.motors, ap.modes.pilot, ap.rc, demand, ap.params)
+def turn_to(control: Control, estimate: Estimate, sticks: PilotState, heading: float, params: Parameters) -> None:
+    """Turn towards ``heading`` [rad]; the stick may add to it."""
+    demand = steering.out_from_heading(control, estimate, heading, params.ATC)
+    motors.set_steering(control.motors, pilot.mixed(sticks, demand, params.STICK_MIXING))
 
 
 @law
@@ -51,7 +45,7 @@ def follow_path(v: Vehicle) -> None:
     if waypoint.follow(nav, ap.control, ap.estimate, armed, v.time_us, ap.params):
         emit_and_return(ap.events, v.time_us, LEG_ENDING, SPEED_REQUEST, 0.0)
     speed.drive(ap.control, armed, path.desired_speed, ap.params)
-    turn(ap, path.desired_turn_rate)
+    turn(ap.control, ap.estimate, ap.modes.pilot, path.desired_turn_rate, ap.params)
 
 
 @law

@@ -77,9 +77,9 @@ def run(v: Vehicle) -> None:
         motors.set_throttle(control.motors, armed, guided.throttle, p.MOT)
     else:
         if kind == TURN_RATE_AND_SPEED:
-            drive.turn(ap, guided.turn_rate)
+            drive.turn(control, ap.estimate, ap.modes.pilot, guided.turn_rate, p)
         elif kind == HEADING_AND_SPEED:
-            drive.turn_to(ap, guided.heading)
+            drive.turn_to(control, ap.estimate, ap.modes.pilot, guided.heading, p)
         speed.drive(control, armed, pilot.nudged(ap.modes.pilot, guided.speed, p), p)
 
 

@@ -69,7 +69,7 @@ def run(v: Vehicle) -> None:
         loiter.speed = speed.accel_limited(ap.control, 0.0, ap.params.ATC)
     else:
         aim(loiter, pos, ap.estimate.euler.yaw, ap.params)
-    drive.turn_to(ap, loiter.heading)
+    drive.turn_to(ap.control, ap.estimate, ap.modes.pilot, loiter.heading, ap.params)
     speed.drive(ap.control, ap.arming.armed, loiter.speed, ap.params)
 
 

@@ -109,6 +109,7 @@ class PilotState(Record):
     lost: bool  # the radio is: the sticks say nothing
     steering: float  # stick with dead zone, right positive
     throttle: float
+    steering_pulse: float  # how far the steering stick's pulse is from the middle, at most half its travel [us]
     left: float  # the same sticks as the paddles of a tank, without dead zone
     right: float
     switch_position: int  # of the mode channel 0 .. 5, -1 none

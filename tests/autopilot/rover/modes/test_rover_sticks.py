@@ -162,7 +162,8 @@ def test_stick_mixing_adds_to_the_autopilots_steering() -> None:
     rover = Rover(STICK_MIXING=1.0)
     rover.sticks(steering=1750)
     rover.run(0.04)
-    assert pilot.mixed(rover.ap.modes.pilot, rover.ap.rc, 0.4, rover.ap.params) == pytest.approx(0.5 * 0.4 + 220 / 470)
+    assert pilot.mixed(rover.ap.modes.pilot, 0.4, 1.0) == pytest.approx(0.5 * 0.4 + 220 / 470)
+    assert pilot.mixed(rover.ap.modes.pilot, 0.4, 0.0) == 0.4
 
 
 @pytest.mark.parametrize(
