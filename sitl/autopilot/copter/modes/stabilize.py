@@ -9,17 +9,19 @@ from ....core.kernels import law
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
-from ..state import Autopilot, Vehicle
+from ..parameters.control import Motors
+from ..state import Vehicle
 from . import ground
 from .mode import CopterMode
+from .state import PilotState
 
 STABILIZE = 0
 
 
 @law
-def throttle(ap: Autopilot) -> float:
+def throttle(sticks: PilotState, p: Motors) -> float:
     """Motor throttle 0 .. 1 that the stick asks for."""
-    return pilot.throttle_out(ap.modes.pilot.throttle_filtered, hover_throttle(ap.params.MOT))
+    return pilot.throttle_out(sticks.throttle_filtered, hover_throttle(p))
 
 
 @law
@@ -33,7 +35,7 @@ def run(v: Vehicle) -> None:
         motors.desired_spool = ground.GROUND_IDLE
     else:
         motors.desired_spool = ground.UNLIMITED
-    wanted = throttle(ap)
+    wanted = throttle(ap.modes.pilot, ap.params.MOT)
     state = motors.spool_state
     if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
         attitude.reset_yaw_target(ap)
