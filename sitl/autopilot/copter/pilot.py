@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from ...core.algebra import norm2
 from ...core.kernels import law
@@ -23,6 +22,7 @@ from ..radio import (
     stick_channel,
     stick_position,
 )
+from .control.attitude import Lean
 from .modes.state import PilotState
 from .parameters.flight import Pilot
 from .state import Autopilot, Vehicle
@@ -30,13 +30,6 @@ from .state import Autopilot, Vehicle
 THROTTLE_ZERO_US = 400_000
 """The throttle counts as zero when it was low for so long."""
 _THROTTLE_LOW = RECEIVER_PULSES[2]
-
-
-class Lean(NamedTuple):
-    """A lean, [rad]."""
-
-    roll: float
-    pitch: float
 
 
 @law
