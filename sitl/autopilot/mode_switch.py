@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pilot's transmitter commands: the mode switch, six positions on one channel, and arming with the yaw stick."""
+"""What the pilot's transmitter commands: the mode switch (six positions on one channel), arming with the yaw stick."""
 
 from __future__ import annotations
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from ...core.algebra import norm2
 from ...core.kernels import law
@@ -24,6 +23,7 @@ from ..radio import (
     stick_position,
 )
 from ..state import Failsafe, Radio
+from .control.attitude import Lean
 from .modes.state import Modes, PilotState
 from .parameters import Parameters
 from .parameters.flight import Pilot
@@ -32,13 +32,6 @@ from .state import Vehicle
 THROTTLE_ZERO_US = 400_000
 """The throttle counts as zero when it was low for so long."""
 _THROTTLE_LOW = RECEIVER_PULSES[2]
-
-
-class Lean(NamedTuple):
-    """A lean, [rad]."""
-
-    roll: float
-    pitch: float
 
 
 @law

@@ -37,7 +37,7 @@ def start_vertical(ap: Autopilot) -> None:
     """Limits of the throttle stick: PILOT_SPEED_UP, PILOT_SPEED_DN, PILOT_ACCEL_Z."""
     set_limits(ap)
     if not altitude_start.is_active_d(ap.control):
-        altitude_start.init_d(ap)
+        altitude_start.init_d(ap.control, ap.estimate, ap.params)
     ap.modes.takeoff.user_active = False
 
 
@@ -45,7 +45,9 @@ def start_vertical(ap: Autopilot) -> None:
 def set_limits(ap: Autopilot) -> None:
     """Vertical limits of modes that the pilot flies."""
     p = ap.params.PILOT
-    altitude_start.set_max_speed_accel_d(ap, pilot.speed_down(p), p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
+    altitude_start.set_max_speed_accel_d(
+        ap.control.pos_d, ap.params.PSC, pilot.speed_down(p), p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01
+    )
 
 
 @law
@@ -82,12 +84,12 @@ def run_vertical(ap: Autopilot, doing: int, climb: float) -> None:
         if ap.control.motors.spool_state == ground.IS_UNLIMITED:
             takeoff.run_user(ap, climb)
             return
-        altitude_start.relax_d(ap, 0.0)
+        altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
     elif doing == FLYING:
         altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
     else:
-        altitude_start.relax_d(ap, 0.0)
-    altitude.update_d(ap)
+        altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
 
 
 @law
@@ -98,10 +100,10 @@ def run(v: Vehicle) -> None:
     climb = climb_rate(ap)
     doing = decide(ap, climb)
     if doing in (STOPPED, LANDED_IDLE):
-        attitude.reset_yaw_target(ap)
+        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
     lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
     lean = pilot.lean_angles(ap.modes.pilot, lean_max, min(lean_max, lean_limit(ap.control.attitude)))
-    attitude.input_euler_roll_pitch_yaw_rate(ap, lean.roll, lean.pitch, ap.modes.pilot.yaw_rate)
+    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, lean, ap.modes.pilot.yaw_rate)
     run_vertical(ap, doing, climb)
 
 

@@ -86,7 +86,7 @@ def begin(v: Vehicle) -> None:
     auto.submode = nav.command_kind
     auto.land_state = FLYING
     ap.arming.landed_maybe = ap.arming.landed
-    command.begin(ap, v.time_us)
+    command.begin(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us)
     if auto.submode == TAKEOFF:
         takeoff.begin(ap, nav.target.z)
     elif auto.submode == RTL:
@@ -128,10 +128,11 @@ def run(v: Vehicle) -> None:
     elif auto.submode == RTL:
         rtl.run(v)
         if ap.arming.landed and ap.modes.rtl.state == rtl.LANDING:
-            complete(ap, v.time_us)
+            complete(ap.modes.nav, ap.events, v.time_us)
     else:
         run_path(v)
-    check_condition(ap, v.time_us, auto_yaw.has_turned(ap.modes.auto_yaw, ap.estimate.euler.yaw))
+    turned = auto_yaw.has_turned(ap.modes.auto_yaw, ap.estimate.euler.yaw)
+    check_condition(ap.modes.nav, ap.events, v.time_us, ap.estimate.pos, turned)
 
 
 @law
@@ -144,7 +145,8 @@ def run_path(v: Vehicle) -> None:
             ground.disarm(v, BY_MISSION_EXIT)
     elif command.follows_path(ap.modes.auto.submode):
         ap.control.motors.desired_spool = ground.UNLIMITED
-        command.run(ap, v.time_us)
+        if command.run(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us):
+            complete(ap.modes.nav, ap.events, v.time_us)
         ground.fly(ap)
     else:
         ground.hold(ap)
@@ -158,7 +160,7 @@ def run_takeoff(v: Vehicle) -> None:
         ap.arming.auto_armed = True
     takeoff.run(v)
     if ap.modes.takeoff.complete:
-        complete(ap, v.time_us)
+        complete(ap.modes.nav, ap.events, v.time_us)
 
 
 @law
@@ -167,13 +169,13 @@ def run_land(v: Vehicle) -> None:
     ap = v.autopilot
     land.finish(v)
     if ap.arming.landed and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
-        complete(ap, v.time_us)
+        complete(ap.modes.nav, ap.events, v.time_us)
     if ground.is_grounded(ap.arming):
         ground.rest(ap)
         return
     ap.control.motors.desired_spool = ground.UNLIMITED
     if ap.modes.auto.land_state == FLYING:
-        reached = waypoint.advance(ap, v.time_us)
+        reached = waypoint.advance(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us)
         ground.fly(ap)
         if reached:
             begin_descent(v)

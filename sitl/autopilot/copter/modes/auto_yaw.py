@@ -7,13 +7,13 @@ Sources: ArduPilot's WP_YAW_BEHAVIOR, ATC_SLEW_YAW, MAV_CMD_CONDITION_YAW, MAV_C
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from ....core.algebra import cross2, dot2, horizontal
 from ....core.kernels import law
 from ....core.scalars import TWO_PI, constrain, wrap_pi
 from ....core.vectors import Vec2, Vec3
 from ..control import attitude
+from ..control.attitude import Heading
 from ..control.state import DT
 from ..state import Autopilot
 from .state import AutoYaw
@@ -28,14 +28,6 @@ ANGLE_RATE = 6  # angle that moves at a rate, from a set-point
 PILOT_RATE = 9
 
 _COURSE_SPEED = 1.0  # slower than this the course says nothing [m/s]
-
-
-class Heading(NamedTuple):
-    """What the attitude controller is asked for."""
-
-    angle: float  # [rad]
-    rate: float  # [rad/s]
-    absolute: bool  # the angle counts; else the rate alone
 
 
 @law
@@ -195,6 +187,6 @@ def point(ap: Autopilot, thrust: Vec3) -> None:
     """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
     heading = advance(ap, DT)
     if heading.absolute:
-        attitude.input_thrust_vector_heading(ap, thrust, heading.angle, heading.rate)
+        attitude.input_thrust_vector_heading(ap.control, ap.estimate, ap.params, thrust, heading)
     else:
-        attitude.input_thrust_vector_heading_rate(ap, thrust, heading.rate)
+        attitude.input_thrust_vector_heading_rate(ap.control, ap.estimate, ap.params, thrust, heading.rate)

@@ -25,10 +25,14 @@ def start(v: Vehicle) -> int:
     """Enter."""
     ap = v.autopilot
     vel = ap.estimate.vel
-    position_start.set_max_speed_accel_ne(ap, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION)
-    position_start.init_ne(ap)
-    altitude_start.set_max_speed_accel_d(ap, max(SPEED_D, vel.z), max(SPEED_D, -vel.z), DECELERATION)
-    altitude_start.init_d(ap)
+    position_start.set_max_speed_accel_ne(
+        ap.control.pos_ne, ap.params, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION
+    )
+    position_start.init_ne(ap.control, ap.estimate, ap.params)
+    altitude_start.set_max_speed_accel_d(
+        ap.control.pos_d, ap.params.PSC, max(SPEED_D, vel.z), max(SPEED_D, -vel.z), DECELERATION
+    )
+    altitude_start.init_d(ap.control, ap.estimate, ap.params)
     return ACCEPTED
 
 
@@ -41,9 +45,11 @@ def run(v: Vehicle) -> None:
         return
     ap.control.motors.desired_spool = ground.UNLIMITED
     ground.brake(ap)
-    position.update_ne(ap)
-    altitude.update_d(ap)
-    attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
+    position.update_ne(ap.control, ap.estimate, ap.params)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
+    attitude.input_thrust_vector_heading_rate(
+        ap.control, ap.estimate, ap.params, position.thrust_vector(ap.control.pos_ne), 0.0
+    )
 
 
 MODE = CopterMode(

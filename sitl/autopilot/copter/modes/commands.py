@@ -110,11 +110,11 @@ def change_speed(ap: Autopilot, kind: int, speed: float) -> int:
         return OUT_OF_RANGE
     path = ap.control.pos_d
     if kind == HORIZONTAL:
-        position_start.set_max_speed_accel_ne(ap, speed, ap.control.pos_ne.accel_max)
+        position_start.set_max_speed_accel_ne(ap.control.pos_ne, ap.params, speed, ap.control.pos_ne.accel_max)
     elif kind == CLIMB:
-        altitude_start.set_max_speed_accel_d(ap, path.speed_down, speed, path.accel_max)
+        altitude_start.set_max_speed_accel_d(ap.control.pos_d, ap.params.PSC, path.speed_down, speed, path.accel_max)
     elif kind == DESCENT:
-        altitude_start.set_max_speed_accel_d(ap, speed, path.speed_up, path.accel_max)
+        altitude_start.set_max_speed_accel_d(ap.control.pos_d, ap.params.PSC, speed, path.speed_up, path.accel_max)
     else:
         return OUT_OF_RANGE
     return OK

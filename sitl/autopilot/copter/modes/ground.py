@@ -58,19 +58,19 @@ def rest(ap: Autopilot) -> None:
     motors = ap.control.motors
     motors.desired_spool = GROUND_IDLE if ap.arming.armed else SHUT_DOWN
     if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
-        attitude.reset_yaw_target(ap)
-    position_start.relax_ne(ap)
-    position.update_ne(ap)
-    altitude_start.relax_d(ap, 0.0)
-    altitude.update_d(ap)
-    attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, 0.0)
+        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
+    position_start.relax_ne(ap.control, ap.estimate, ap.params)
+    position.update_ne(ap.control, ap.estimate, ap.params)
+    altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
+    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, attitude.Lean(0.0, 0.0), 0.0)
 
 
 @law
 def fly(ap: Autopilot) -> None:
     """Position controllers, then the attitude that they ask for with the heading of auto_yaw."""
-    position.update_ne(ap)
-    altitude.update_d(ap)
+    position.update_ne(ap.control, ap.estimate, ap.params)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
     auto_yaw.point(ap, position.thrust_vector(ap.control.pos_ne))
 
 
@@ -93,22 +93,24 @@ def hold(ap: Autopilot) -> None:
 def set_waypoint_limits(ap: Autopilot) -> None:
     """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
     p = ap.params.WPNAV
-    position_start.set_max_speed_accel_ne(ap, p.SPEED * 0.01, p.ACCEL * 0.01)
-    altitude_start.set_max_speed_accel_d(ap, p.SPEED_DN * 0.01, p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01)
+    position_start.set_max_speed_accel_ne(ap.control.pos_ne, ap.params, p.SPEED * 0.01, p.ACCEL * 0.01)
+    altitude_start.set_max_speed_accel_d(
+        ap.control.pos_d, ap.params.PSC, p.SPEED_DN * 0.01, p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01
+    )
 
 
 @law
 def start_position_control(ap: Autopilot) -> None:
     """Take over position control from whatever flew before, without a jump."""
     set_waypoint_limits(ap)
-    position_start.init_ne(ap)
-    altitude_start.init_d(ap)
+    position_start.init_ne(ap.control, ap.estimate, ap.params)
+    altitude_start.init_d(ap.control, ap.estimate, ap.params)
 
 
 @law
 def continue_position_control(ap: Autopilot) -> None:
     """Go on with position control, which starts anew only where the mode before did not have it."""
     if not position_start.is_active_ne(ap.control):
-        position_start.init_ne(ap)
+        position_start.init_ne(ap.control, ap.estimate, ap.params)
     if not altitude_start.is_active_d(ap.control):
-        altitude_start.init_d(ap)
+        altitude_start.init_d(ap.control, ap.estimate, ap.params)

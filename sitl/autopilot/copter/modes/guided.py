@@ -181,24 +181,24 @@ def run_angle(v: Vehicle) -> None:
         leave_ground(ap)
         return
     if guided.use_attitude:
-        attitude.input_quaternion(ap, guided.q, guided.rates)
+        attitude.input_quaternion(ap.control, ap.estimate, ap.params, guided.q, guided.rates)
     else:
-        attitude.input_rates(ap, guided.rates)
+        attitude.input_rates(ap.control, ap.estimate, ap.params, guided.rates)
     if guided.use_thrust:
-        throttle_mix.set_throttle_out(ap, guided.thrust, True, 0.0)
+        throttle_mix.set_throttle_out(ap.control, ap.params, guided.thrust, True, 0.0)
     else:
         altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
-        altitude.update_d(ap)
+        altitude.update_d(ap.control, ap.estimate, ap.params)
 
 
 @law
 def leave_ground(ap: Autopilot) -> None:
     """One tick of a landed vehicle that is asked to climb: it flies as soon as the motors have spooled up."""
-    throttle_mix.set_throttle_out(ap, 0.0, False, 0.0)
-    attitude.relax(ap)
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.0, False, 0.0)
+    attitude.relax(ap.control, ap.estimate)
     if ap.control.motors.spool_state == ground.IS_UNLIMITED:
         ground.set_landed(ap.arming, False)
-        altitude_start.init_d(ap)
+        altitude_start.init_d(ap.control, ap.estimate, ap.params)
 
 
 @law
@@ -211,7 +211,7 @@ def level_off(ap: Autopilot) -> None:
     guided.rates = ZERO
     if guided.use_thrust:
         guided.use_thrust = False
-        altitude_start.init_d(ap)
+        altitude_start.init_d(ap.control, ap.estimate, ap.params)
     guided.climb_rate = 0.0
 
 

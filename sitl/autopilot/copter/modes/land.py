@@ -109,13 +109,13 @@ def descend(ap: Autopilot, pause: bool) -> None:
 @law
 def descend_blind(ap: Autopilot, pause: bool) -> None:
     """One tick of a landing without a position: the sticks lean the vehicle."""
-    lean = pilot.Lean(0.0, 0.0)
+    lean = attitude.Lean(0.0, 0.0)
     if ap.params.LAND.REPOSITION != 0.0:
         lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
         lean = pilot.lean_angles(ap.modes.pilot, lean_max, lean_max)
     sink(ap, pause)
-    altitude.update_d(ap)
-    attitude.input_euler_roll_pitch_yaw_rate(ap, lean.roll, lean.pitch, ap.modes.pilot.yaw_rate)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
+    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, lean, ap.modes.pilot.yaw_rate)
 
 
 @law

@@ -75,7 +75,7 @@ def start(v: Vehicle) -> int:
     loiter = ap.modes.loiter
     set_limits(ap)
     if not position_start.is_active_ne(ap.control):
-        position_start.init_ne(ap)
+        position_start.init_ne(ap.control, ap.estimate, ap.params)
     target = ap.control.attitude.target_euler
     loiter.predicted_euler = Vec2(target.roll, target.pitch)
     loiter.predicted_acc = position_start.lean_accel(target.roll, target.pitch, ap.estimate.euler.yaw)
@@ -90,11 +90,13 @@ def start(v: Vehicle) -> int:
 def set_limits(ap: Autopilot) -> None:
     """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
     p = ap.params.LOIT
-    position_start.set_max_speed_accel_ne(ap, max(p.SPEED * 0.01, _SPEED_MIN), p.ACC_MAX * 0.01)
+    position_start.set_max_speed_accel_ne(
+        ap.control.pos_ne, ap.params, max(p.SPEED * 0.01, _SPEED_MIN), p.ACC_MAX * 0.01
+    )
 
 
 @law
-def predict_accel(loiter: LoiterState, lean: pilot.Lean, yaw: float, p: Attitude) -> None:
+def predict_accel(loiter: LoiterState, lean: attitude.Lean, yaw: float, p: Attitude) -> None:
     """Accelerations that the sticks (``lean``) ask for, and that a vehicle which follows them would have."""
     loiter.acc = (
         ZERO2 if lean.roll == 0.0 and lean.pitch == 0.0 else position_start.lean_accel(lean.roll, lean.pitch, yaw)
@@ -155,18 +157,20 @@ def run(v: Vehicle) -> None:
     climb = alt_hold.climb_rate(ap)
     doing = alt_hold.decide(ap, climb)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
-        attitude.reset_yaw_target(ap)
+        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
-        position_start.relax_ne(ap)
+        position_start.relax_ne(ap.control, ap.estimate, ap.params)
         ap.modes.loiter.brake_acc = 0.0
-        position.update_ne(ap)
-        attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, yaw_rate)
+        position.update_ne(ap.control, ap.estimate, ap.params)
+        attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, attitude.Lean(0.0, 0.0), yaw_rate)
     else:
         if ap.arming.landed_maybe:
             position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
         advance(v)
-        position.update_ne(ap)
-        attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), yaw_rate)
+        position.update_ne(ap.control, ap.estimate, ap.params)
+        attitude.input_thrust_vector_heading_rate(
+            ap.control, ap.estimate, ap.params, position.thrust_vector(ap.control.pos_ne), yaw_rate
+        )
     alt_hold.run_vertical(ap, doing, climb)
 
 

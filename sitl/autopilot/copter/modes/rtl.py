@@ -55,9 +55,9 @@ def begin(v: Vehicle) -> None:
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(ap, auto_yaw.HOLD)
-    above = with_down(position_start.stopping_point_ne(ap), rtl.return_d)
+    above = with_down(position_start.stopping_point_ne(ap.control.pos_ne, ap.estimate, ap.params.PSC), rtl.return_d)
     if ap.arming.armed and not ap.arming.landed:
-        path.request_legs(ap, v.time_us, above, with_down(rtl.home, rtl.return_d))
+        path.request_legs(ap.modes.nav, ap.events, v.time_us, above, with_down(rtl.home, rtl.return_d))
 
 
 @law
@@ -113,13 +113,13 @@ def run_way(v: Vehicle) -> None:
     if ap.modes.nav.request_pending != 0:
         ground.brake(ap)
     else:
-        reached = waypoint.advance(ap, v.time_us)
+        reached = waypoint.advance(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us)
     ground.fly(ap)
     if rtl.state == CLIMB:
         if reached:
             rtl.state = RETURN
             auto_yaw.set_default(ap, True)
-            path.request_leg(ap, v.time_us, with_down(rtl.home, rtl.return_d))
+            path.request_leg(ap.modes.nav, ap.events, v.time_us, with_down(rtl.home, rtl.return_d))
     elif rtl.state == RETURN:
         if reached:
             rtl.state = LOITER

@@ -38,14 +38,14 @@ def run(v: Vehicle) -> None:
     wanted = throttle(ap.modes.pilot, ap.params.MOT)
     state = motors.spool_state
     if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
-        attitude.reset_yaw_target(ap)
+        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
         wanted = 0.0
     elif state == ground.IS_UNLIMITED and not motors.limit_throttle_lower and ap.arming.landed:
         ground.set_landed(ap.arming, False)
     lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
     lean = pilot.lean_angles(ap.modes.pilot, lean_max, lean_max)
-    attitude.input_euler_roll_pitch_yaw_rate(ap, lean.roll, lean.pitch, ap.modes.pilot.yaw_rate)
-    throttle_mix.set_throttle_out(ap, wanted, True, ap.params.PILOT.THR_FILT)
+    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, lean, ap.modes.pilot.yaw_rate)
+    throttle_mix.set_throttle_out(ap.control, ap.params, wanted, True, ap.params.PILOT.THR_FILT)
 
 
 MODE = CopterMode(number=STABILIZE, name="STABILIZE", run=run, manual_throttle=True)

@@ -31,8 +31,8 @@ def begin(ap: Autopilot, target_d: float) -> None:
     takeoff.no_nav_d = ap.estimate.pos.z - ap.params.WP.NAVALT_MIN
     takeoff.no_nav_active = ap.params.WP.NAVALT_MIN > 0.0 and ap.arming.landed
     ground.set_waypoint_limits(ap)
-    altitude_start.init_d(ap)
-    position_start.init_ne(ap)
+    altitude_start.init_d(ap.control, ap.estimate, ap.params)
+    position_start.init_ne(ap.control, ap.estimate, ap.params)
 
 
 @law
@@ -59,19 +59,19 @@ def run(v: Vehicle) -> None:
 @law
 def spool_up(ap: Autopilot) -> None:
     """One tick while the motors spool up."""
-    position_start.relax_ne(ap)
-    position.update_ne(ap)
-    altitude_start.relax_d(ap, 0.0)
-    altitude.update_d(ap)
-    attitude.reset_yaw_target(ap)
+    position_start.relax_ne(ap.control, ap.estimate, ap.params)
+    position.update_ne(ap.control, ap.estimate, ap.params)
+    altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
+    attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
     keep_heading(ap)
 
 
 @law
 def lift_off(ap: Autopilot) -> None:
     """One tick of raising the throttle on the ground."""
-    position_start.relax_ne(ap)
-    position.update_ne(ap)
+    position_start.relax_ne(ap.control, ap.estimate, ap.params)
+    position.update_ne(ap.control, ap.estimate, ap.params)
     throttle = raise_throttle(ap)
     keep_heading(ap)
     lifted = ap.estimate.vel.z <= -_LIFT_SPEED * ap.control.pos_d.speed_up
@@ -86,7 +86,7 @@ def climb(ap: Autopilot) -> None:
     if takeoff.no_nav_active:
         if ap.estimate.pos.z <= takeoff.no_nav_d:
             takeoff.no_nav_active = False
-        position_start.relax_ne(ap)
+        position_start.relax_ne(ap.control, ap.estimate, ap.params)
     else:
         position.brake_ne(ap.control.pos_ne)
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.target_d, 0.0, 0.0))
@@ -96,7 +96,9 @@ def climb(ap: Autopilot) -> None:
 @law
 def keep_heading(ap: Autopilot) -> None:
     """Thrust as the position controller says, nose as it is."""
-    attitude.input_thrust_vector_heading_rate(ap, position.thrust_vector(ap.control.pos_ne), 0.0)
+    attitude.input_thrust_vector_heading_rate(
+        ap.control, ap.estimate, ap.params, position.thrust_vector(ap.control.pos_ne), 0.0
+    )
 
 
 @law
@@ -104,8 +106,8 @@ def raise_throttle(ap: Autopilot) -> float:
     """Raise the throttle by one tick of TKOFF_SLEW_TIME, the vertical controller following; the throttle 0 .. 1."""
     slew_time = max(ap.params.TKOFF.SLEW_TIME, 0.1)
     throttle = constrain(ap.control.attitude.throttle_in + DT / slew_time, 0.0, 1.0)
-    throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
-    altitude_start.init_d(ap)
+    throttle_mix.set_throttle_out(ap.control, ap.params, throttle, True, 0.0)
+    altitude_start.init_d(ap.control, ap.estimate, ap.params)
     return throttle
 
 
@@ -131,7 +133,7 @@ def begin_user(ap: Autopilot, height: float) -> None:
     takeoff.user_active = True
     takeoff.user_start_d = ap.estimate.pos.z
     takeoff.user_alt = height
-    altitude_start.init_d(ap)
+    altitude_start.init_d(ap.control, ap.estimate, ap.params)
 
 
 @law
@@ -152,9 +154,9 @@ def run_user(ap: Autopilot, climb: float) -> None:
         fast = -ap.estimate.vel.z >= constrain(climb, 0.1 * top, 0.5 * top)
         if has_thrust(ap, throttle) or fast or (rise > 0.0 and risen > 0.5 * rise):
             ground.set_landed(ap.arming, False)
-            altitude_start.init_d(ap)
+            altitude_start.init_d(ap.control, ap.estimate, ap.params)
         return
     altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(takeoff.user_start_d - rise, -climb, 0.0))
-    altitude.update_d(ap)
+    altitude.update_d(ap.control, ap.estimate, ap.params)
     if climb < 0.0 or rise * 0.999 <= takeoff.user_start_d - ap.control.pos_d.pos_desired:
         takeoff.user_active = False

@@ -107,8 +107,8 @@ def run(v: Vehicle) -> None:
         finish(v)
     run_command(v)
     if not nav.completed and is_done(v):
-        command.complete(ap, v.time_us)
-    command.check_condition(ap, v.time_us, True)
+        command.complete(ap.modes.nav, ap.events, v.time_us)
+    command.check_condition(ap.modes.nav, ap.events, v.time_us, ap.estimate.pos, True)
 
 
 @law
@@ -163,7 +163,7 @@ def is_done(v: Vehicle) -> bool:
         return False
     if kind == kinds.WAYPOINT or kind == kinds.LOITER_TIME or kind == kinds.LOITER_UNLIMITED:
         if nav.since_us == 0 and waypoint.reached(ap):
-            command.arrive(ap, v.time_us)
+            command.arrive(ap.modes.nav, ap.events, v.time_us)
         return kind != kinds.LOITER_UNLIMITED and nav.since_us != 0 and (v.time_us - nav.since_us) * 1e-6 >= nav.delay
     if kind == kinds.DELAY:
         return (v.time_us - nav.since_us) * 1e-6 >= nav.delay

@@ -128,13 +128,13 @@ def stop(ap: Autopilot) -> None:
 @law
 def set_destination(ap: Autopilot, time_us: int, point: Vec2) -> None:
     """Drive to a point along a planned leg and stop there."""
-    path.request_leg(ap, time_us, with_down(point, 0.0))
+    path.request_leg(ap.modes.nav, ap.events, time_us, with_down(point, 0.0))
 
 
 @law
 def set_destinations(ap: Autopilot, time_us: int, point: Vec2, following: Vec2) -> None:
     """Drive to a point along a planned leg, without a stop if the following point is to come after it."""
-    path.request_legs(ap, time_us, with_down(point, 0.0), with_down(following, 0.0))
+    path.request_legs(ap.modes.nav, ap.events, time_us, with_down(point, 0.0), with_down(following, 0.0))
 
 
 @law
