@@ -164,7 +164,6 @@ def act_on_estimate(v: Vehicle) -> None:
     ap.modes.land.with_position = False
 
 
-@law
 def terminate(v: Vehicle) -> None:
     """MAV_CMD_DO_FLIGHTTERMINATION: stop the motors."""
     ground.disarm(v, BY_TERMINATION)

@@ -30,13 +30,11 @@ _PLUS_ORDER = (2, 0, 3, 1)
 _X_ORDER = (0, 3, 1, 2)
 
 
-@law
 def motor_in_order(frame_type: int, position: int) -> int:
     """Motor 0 .. 3 at ``position`` 0 .. 3 clockwise from the front (front right for X)."""
     return _PLUS_ORDER[position] if frame_type == 0 else _X_ORDER[position]
 
 
-@law
 def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float, seconds: float) -> int:
     """OK, or why motor 0 .. 3 is not turned so."""
     if not arming.landed:
@@ -50,7 +48,6 @@ def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float, se
     return OK if 0.0 <= seconds <= LONGEST_S else BAD_TIME
 
 
-@law
 def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
     """Turn motor 0 .. 3 at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
 

@@ -34,7 +34,6 @@ THROTTLE_ZERO_US = 400_000
 _THROTTLE_LOW = RECEIVER_PULSES[2]
 
 
-@law
 def init(rc: Radio, pilot: PilotState) -> None:
     """A receiver is fitted; channels are not known yet."""
     rc.has_receiver = True

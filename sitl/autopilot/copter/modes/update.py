@@ -24,7 +24,6 @@ _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
 
 
-@law
 def init(v: Vehicle) -> None:
     """At boot, on a record of zeros with parameters set: on the ground, disarmed, in INITIAL_MODE."""
     ap = v.autopilot
