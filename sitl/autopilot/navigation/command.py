@@ -65,7 +65,7 @@ def is_condition_met(nav: Nav, time_us: int, pos: Vec3, yaw_reached: bool) -> bo
 def check_condition(nav: Nav, events: Events, time_us: int, pos: Vec3, yaw_reached: bool) -> None:
     """Tell the shell, once, that the condition which holds back do-commands is met; AUTO calls it every tick.
 
-    ``pos`` NED [m]; ``yaw_reached``: the turn of CONDITION_YAW is done.
+    ``pos``: NED [m]; ``yaw_reached``: the turn of CONDITION_YAW is done.
     """
     if is_condition_met(nav, time_us, pos, yaw_reached):
         nav.condition_kind = CONDITION_NONE

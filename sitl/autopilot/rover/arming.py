@@ -6,11 +6,14 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..arming_checks import BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, DISARMED, Events, emit, emit_and_return
+from ..mode_switch import rudder_command
 from ..state import Arming
 from . import smart_rtl_path
 from .arming_checks import check, method_checks
 from .control.motors import is_moving
 from .modes.simple import note_heading
+from .modes.state import PilotState
+from .modes.table import allows_arming_by_stick
 from .state import Vehicle
 
 __all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
@@ -57,6 +60,18 @@ def disarm(v: Vehicle, method: int, force: bool) -> bool:
         return False
     set_disarmed(ap.arming, ap.events, v.time_us, method)
     return True
+
+
+@law
+def stick_command(pilot: PilotState, mode: int, armed: bool, moving: bool, permission: float) -> int:
+    """What the steering stick asks for: 1 to arm, -1 to disarm, 0 nothing; with the throttle at rest.
+
+    ``moving``: the motors turn; ``permission``: ARMING_RUDDER.
+    """
+    if pilot.throttle != 0.0 or pilot.lost or not allows_arming_by_stick(mode):
+        return 0
+    command = rudder_command(pilot.steering, armed, permission)
+    return 0 if command < 0 and moving else command
 
 
 def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:

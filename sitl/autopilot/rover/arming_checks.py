@@ -15,19 +15,17 @@ from ..arming_checks import (
     MODE_BY_RUDDER,
     NO_OUTPUTS,
     NOT_INITIALISED,
-    RC_MISSING,
     RUDDER_DISABLED,
     STEERING_OFF_CENTRE,
-    THROTTLE_FAILSAFE,
     THROTTLE_OFF_CENTRE,
     WAYPOINT_SPEED,
     battery_checks,
+    radio_checks,
     sensor_checks,
     wants,
 )
 from ..params.system import Arming
-from ..radio import THROTTLE, stick_pulse
-from ..state import Estimate, Radio
+from ..state import Estimate
 from .control import servos
 from .control.motors import is_skid
 from .modes.state import Modes, PilotState
@@ -52,17 +50,6 @@ def estimate_checks(modes: Modes, estimate: Estimate, gps_fix: int, params: Para
 
 
 @law
-def radio_checks(rc: Radio, p: Parameters) -> int:
-    """Failed checks of the radio."""
-    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
-        if not rc.receiver_ok:
-            return RC_MISSING
-        if stick_pulse(rc, p.RCMAP, THROTTLE) < p.FS.THR_VALUE:
-            return THROTTLE_FAILSAFE
-    return 0
-
-
-@law
 def parameter_checks(p: Parameters) -> int:
     """Failed checks of outputs and parameters."""
     failed = 0
@@ -82,8 +69,10 @@ def check(v: Vehicle) -> int:
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
-    equipment = battery_checks(ap.battery, modes.failsafe.battery, p) | radio_checks(ap.rc, p) | parameter_checks(p)
-    return sensors | estimate | equipment | (0 if allows_arming(modes.number) else MODE)
+    failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
+    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
+        failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    return failed if allows_arming(modes.number) else failed | MODE
 
 
 @law

@@ -11,8 +11,7 @@ from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
 from ..failsafe_checks import EKF, GCS, RADIO, is_estimate_bad, report
 from ..modes import ACCEPTED, REASON_EKF_FAILSAFE, REASON_FAILSAFE
-from ..radio import THROTTLE, stick_pulse
-from ..state import Estimate, Failsafe, Radio
+from ..state import Estimate, Failsafe
 from . import motor_test
 from .arming import set_disarmed
 from .control.state import MotorsState
@@ -24,7 +23,6 @@ from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
 from .modes.state import LinksState, Modes
 from .modes.table import requires_position
-from .parameters import Parameters
 from .parameters.safety import Battery, Failsafes
 from .state import Vehicle
 
@@ -78,14 +76,6 @@ def act(v: Vehicle, action: int, reason: int) -> None:
         if set_mode.request(v, LOITER, reason) == ACCEPTED:
             return
     set_mode.request(v, HOLD, reason)
-
-
-@law
-def is_radio_bad(rc: Radio, params: Parameters) -> bool:
-    """After each frame of the receiver: whether the radio is lost, or its throttle says so (FS_THR_VALUE)."""
-    fitted = rc.receiver_us > 0 or rc.has_receiver
-    pulse = stick_pulse(rc, params.RCMAP, THROTTLE)
-    return params.FS.THR_ENABLE > 0.0 and fitted and (not rc.receiver_ok or pulse < params.FS.THR_VALUE)
 
 
 @law

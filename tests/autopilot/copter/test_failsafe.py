@@ -88,7 +88,7 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
         pilot.read(flying)
         failsafe.watch_radio(flying)
     assert ap.modes.failsafe.radio == 1
-    assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap)) == (RTL, 0.0, 0.0)
+    assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap.modes, ap.rc, ap.params)) == (RTL, 0.0, 0.0)
     ap.rc.has_receiver = 1
     for _ in range(4):
         pilot.read(flying)

@@ -117,7 +117,7 @@ def test_throttle_priority(flying, mode, throttle, descent, mix):
         1.0,
     )
     landing.detect(flying)
-    landing.set_priority(flying)
+    landing.set_priority(ap.control, ap.arming, ap.modes, ap.estimate.vel.z, ap.params.ATC)
     assert ap.control.attitude.mix_desired == pytest.approx(float(ap.params[mix]))
 
 

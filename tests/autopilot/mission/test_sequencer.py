@@ -76,16 +76,17 @@ class Vehicle:
 
     def complete(self) -> int:
         """The command under way is done; returns the number of the next."""
-        path_command.begin(self.v.autopilot, int(self.v.time_us))
-        command.complete(self.nav, self.v.autopilot.events, int(self.v.time_us))
+        ap, now = self.v.autopilot, int(self.v.time_us)
+        path_command.begin(ap.modes.nav, ap.control, ap.estimate, ap.params, now)
+        command.complete(ap.modes.nav, ap.events, now)
         self.told += self.sequencer.attend()
         return int(self.nav.command_seq) if self.nav.mission_state == RUNNING else 0
 
     def wait(self, seconds: float) -> None:
         """Let time pass for conditions."""
-        self.v.time_us += round(seconds * 1e6)
         ap = self.v.autopilot
-        command.check_condition(self.nav, ap.events, int(self.v.time_us), ap.estimate.pos, True)
+        self.v.time_us += round(seconds * 1e6)
+        command.check_condition(ap.modes.nav, ap.events, int(self.v.time_us), ap.estimate.pos, True)
         self.told += self.sequencer.attend()
 
     def order(self, most: int = 20) -> list[int]:

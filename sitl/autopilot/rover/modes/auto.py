@@ -13,7 +13,7 @@ from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
-from ...modes import ACCEPTED, NO_MISSION, REASON_MISSION_END
+from ...modes import ACCEPTED, NO_MISSION, REASON_MISSION_END, ask
 from ...navigation import command
 from ...navigation import state as kinds
 from .. import pilot
@@ -187,8 +187,7 @@ def finish(modes: Modes, wanted: float) -> None:
     modes.auto.complete = True
     modes.auto.submode = STOPPED
     if wanted in (ACRO_WHEN_DONE, MANUAL_WHEN_DONE):
-        modes.wanted = 1 + (ACRO if wanted == ACRO_WHEN_DONE else MANUAL)
-        modes.wanted_reason = REASON_MISSION_END
+        ask(modes, ACRO if wanted == ACRO_WHEN_DONE else MANUAL, REASON_MISSION_END)
 
 
 def change_speed(v: Vehicle, wanted: float) -> bool:

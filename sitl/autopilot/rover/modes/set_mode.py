@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...events import MODE_CHANGED, MODE_REFUSED, emit, emit_and_return
-from ...modes import ACCEPTED, NO_MISSION, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION
+from ... import modes as all_modes
+from ...events import MODE_REFUSED, emit
+from ...modes import ACCEPTED, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
 from ..control.motors import is_skid
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -64,14 +65,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     waypoint.set_reversed(modes.nav, ap.estimate, False, ap.params)
-    modes.previous = modes.number
-    modes.number = number
-    modes.reason = reason
-    modes.wanted = 0
-    if number == AUTO or modes.previous == AUTO:
-        emit_and_return(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
-    else:
-        emit(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
+    enter(modes, ap.events, v.time_us, number, reason, AUTO)
     return cause
 
 
@@ -82,9 +76,4 @@ def change_speed(v: Vehicle, speed: float) -> bool:
 
 def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
-    if cause == ACCEPTED:
-        return []
-    if cause == NO_SUCH_MODE:
-        return [f"No such mode {number}"]
-    first = ["No Mission. Can't set AUTO."] if cause == NO_MISSION else []
-    return [*first, "Flight mode change failed"]
+    return all_modes.refusal_texts(number, cause, "Flight mode change failed")

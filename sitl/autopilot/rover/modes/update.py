@@ -10,18 +10,18 @@ from ....core.vectors import Vec3
 from ... import battery, home
 from ...arming_checks import BY_RUDDER
 from ...events import Events
-from ...failsafe_checks import battery_fell_to, is_gcs_lost
-from ...mode_switch import moved_to
-from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC
+from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad
+from ...mode_switch import is_rudder_held, moved_to
+from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
 from ...state import Estimate, HomeState
 from .. import crash, failsafe, motor_test, pilot, smart_rtl_path
-from ..arming import set_disarmed, try_arm
+from ..arming import set_disarmed, stick_command, try_arm
 from ..arming_checks import check
 from ..control.forward_speed import sense
 from ..control.motors import is_moving
 from ..parameters.driving import SmartRtl
 from ..state import Vehicle
-from . import set_mode, switch, table
+from . import set_mode, table
 from .smart_rtl import SMART_RTL
 from .state import Modes
 
@@ -61,9 +61,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     if tick % _SECOND == 0:
         follow_home(ap.home, ap.estimate, ap.arming.armed)
     table.run(modes.number, v)
-    if modes.wanted != 0:
-        wanted = modes.wanted - 1
-        modes.wanted = 0
+    wanted = take_asked(modes)
+    if wanted >= 0:
         set_mode.request(v, wanted, modes.wanted_reason)
     motor_test.control(ap.control.motors, ap.arming, ap.events, v.time_us)
 
@@ -74,7 +73,7 @@ def read_transmitter(v: Vehicle) -> None:
     ap = v.autopilot
     sticks, modes, p = ap.modes.pilot, ap.modes, ap.params
     pilot.read(sticks, ap.rc, v.sensors, p, v.time_us)
-    lost = failsafe.is_radio_bad(ap.rc, p)
+    lost = p.FS.THR_ENABLE > 0.0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     modes.failsafe.radio = lost
     sticks.lost = lost or not ap.rc.receiver_ok
     failsafe.watch(v, failsafe.BIT_RADIO, lost)
@@ -84,12 +83,13 @@ def read_transmitter(v: Vehicle) -> None:
             set_mode.request(v, int(p.MODE[now]), REASON_RC)
     armed = ap.arming.armed
     moving = is_moving(ap.control.motors, armed, p)
-    command = switch.rudder_command(sticks, modes.number, armed, moving, p.ARMING.RUDDER)
-    command = switch.held(sticks, command, v.time_us)
-    if command > 0:
-        try_arm(v, BY_RUDDER, False)
-    elif command < 0:
-        set_disarmed(ap.arming, ap.events, v.time_us, BY_RUDDER)
+    command = stick_command(sticks, modes.number, armed, moving, p.ARMING.RUDDER)
+    if is_rudder_held(sticks, command, v.time_us):
+        sticks.rudder_us = 0
+        if command > 0:
+            try_arm(v, BY_RUDDER, False)
+        else:
+            set_disarmed(ap.arming, ap.events, v.time_us, BY_RUDDER)
 
 
 @law

@@ -31,7 +31,7 @@ def test_modes_have_numbers_names_and_a_description_of_their_own() -> None:
 
 @given(ANGLES, ANGLES, st.sampled_from((-1, 0, 1)))
 def test_a_turn_ends_at_the_angle_in_the_direction_asked_for(start: float, angle: float, direction: int) -> None:
-    turn = auto_yaw.turn_from(start, angle, direction, False)
+    turn = auto_yaw.turn_from(start, auto_yaw.Turn(angle, 0.0, direction, False))
     assert wrap_pi(start + turn - angle) == pytest.approx(0.0, abs=1e-9)
     assert turn * direction >= 0.0
     assert abs(turn) <= (2.0 * math.pi if direction else math.pi)

@@ -75,7 +75,7 @@ class PointMass:
         now = int(v.time_us)
         if self.begun != nav.command_count:
             self.begun = int(nav.command_count)
-            command.begin(ap, now)
+            command.begin(ap.modes.nav, ap.control, ap.estimate, ap.params, now)
         kind = int(nav.command_kind)
         if kind == TAKEOFF:
             self._jump_to(nav.target)
@@ -83,9 +83,10 @@ class PointMass:
         elif kind in (NONE, LAND):
             self.acc = [0.0, 0.0, 0.0]
         elif command.follows_path(kind):
-            command.run(ap, now)
+            if command.run(nav, ap.control, ap.estimate, ap.params, now):
+                complete(nav, ap.events, now)
             if self.follow and not self.stuck:
-                position.update_ne(ap)
+                position.update_ne(ap.control, ap.estimate, ap.params)
                 self._move()
             elif not self.stuck:
                 ap.estimate.pos, ap.estimate.vel = nav.pos, nav.vel

@@ -7,8 +7,8 @@ import math
 
 import pytest
 
-from sitl.autopilot.rover import pilot
-from sitl.autopilot.rover.modes import steering, switch
+from sitl.autopilot.rover import arming, pilot
+from sitl.autopilot.rover.modes import steering
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.manual import MANUAL
@@ -181,16 +181,9 @@ def test_stick_mixing_adds_to_the_autopilots_steering() -> None:
 def test_arming_by_stick(stick: float, armed: bool, moving: bool, enabled: float, command: int) -> None:
     sticks = PilotState()
     sticks.steering = stick
-    assert switch.rudder_command(sticks, MANUAL, armed, moving, enabled) == command
-    assert switch.rudder_command(sticks, RTL, armed, moving, enabled) == 0
+    assert arming.stick_command(sticks, MANUAL, armed, moving, enabled) == command
+    assert arming.stick_command(sticks, RTL, armed, moving, enabled) == 0
     sticks.throttle = 0.1
-    assert switch.rudder_command(sticks, MANUAL, armed, moving, enabled) == 0
+    assert arming.stick_command(sticks, MANUAL, armed, moving, enabled) == 0
     sticks.throttle, sticks.lost = 0.0, True
-    assert switch.rudder_command(sticks, MANUAL, armed, moving, enabled) == 0
-
-
-def test_the_stick_must_be_held_for_two_seconds_without_a_break() -> None:
-    sticks = PilotState()
-    assert [switch.held(sticks, 1, t) for t in (1_000_000, 2_999_999, 3_000_000)] == [0, 0, 1]
-    assert [switch.held(sticks, c, t) for c, t in ((-1, 4_000_000), (0, 5_000_000), (-1, 6_500_000))] == [0, 0, 0]
-    assert switch.held(sticks, -1, 8_500_000) == -1
+    assert arming.stick_command(sticks, MANUAL, armed, moving, enabled) == 0
