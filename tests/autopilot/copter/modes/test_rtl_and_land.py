@@ -13,6 +13,7 @@ from sitl.autopilot.copter.modes import land, rtl, set_mode
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.rtl import RTL
+from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters.flight import Rtl
 from sitl.autopilot.events import DISARMED, LEG_ENDING
 from sitl.autopilot.modes import REASON_GCS
