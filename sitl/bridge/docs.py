@@ -18,7 +18,9 @@ from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.streams import RATE_PREFIX
-from .telemetry.builder import builders
+from .telemetry.builder import by_number
+from .telemetry.shell import AUTOPILOT_VERSION_BUILDERS
+from .wire.choose import message_of
 
 
 def page(text: str) -> str:

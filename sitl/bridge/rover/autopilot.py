@@ -11,6 +11,7 @@ from ...autopilot.rover import arming, failsafe, motor_test, texts
 from ...autopilot.rover.control import servos
 from ...autopilot.rover.modes import guided_setpoints, set_mode
 from ...autopilot.rover.modes.auto import AUTO
+from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
 from ...core.vectors import Vec2
 from ..autopilot_api import Note, Vector
@@ -43,20 +44,27 @@ class RoverAutopilot(BaseAutopilot):
 
     # ------------------------------------------------------------------ GUIDED
 
+    @property
+    def _modes(self) -> Modes:
+        modes: Modes = self._v.autopilot.modes
+        return modes
+
     def is_guided_in_auto(self) -> bool:
         """Whether a mission waits for set-points (NAV_GUIDED_ENABLE)."""
-        return self.mode() == AUTO and bool(guided_setpoints.is_open(self._v.autopilot.modes))
+        return self.mode() == AUTO and bool(guided_setpoints.is_open(self._modes))
 
     def guided_position(self, place: Vector) -> bool:
         """Drive to a place; its height means nothing to a rover."""
         return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
 
     def guided_heading(self, heading: float, speed: float) -> bool:
-        return int(guided_setpoints.set_heading_and_speed(self._v, heading, speed)) == 0
+        return int(guided_setpoints.set_heading_and_speed(self._modes, self._v.time_us, heading, speed)) == 0
 
     def guided_heading_change(self, change: float, speed: float) -> bool:
         """Turn by an angle [rad] from the heading asked for last."""
-        return int(guided_setpoints.set_heading_change_and_speed(self._v, change, speed)) == 0
+        yaw = self._v.autopilot.estimate.euler.yaw
+        code = guided_setpoints.set_heading_change_and_speed(self._modes, self._v.time_us, yaw, change, speed)
+        return int(code) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
         """Airspeed (0) is ground speed (1); there are no others."""
@@ -64,7 +72,8 @@ class RoverAutopilot(BaseAutopilot):
 
     def set_reversed(self, backward: bool) -> None:
         """Drive paths backwards, until the mode changes."""
-        waypoint.set_reversed(self._v.autopilot, backward)
+        ap = self._v.autopilot
+        waypoint.set_reversed(ap.modes.nav, ap.estimate, backward, ap.params)
 
     # ------------------------------------------------------------------ home
 

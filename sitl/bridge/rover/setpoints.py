@@ -78,22 +78,23 @@ def follow(v: Rover, target: Target, backward: bool, message: int) -> None:
         backward: the velocity is backward where only the speed of it counts.
         message: number of the message.
     """
+    modes = v.autopilot.modes
     if target.use_acc:
         emit(v.autopilot.events, v.time_us, SETPOINT_IGNORED, float(message), 0.0)
         return
     speed = speed_of(v, target.vel)
     if not is_finite(target):
-        stop(v)
+        stop(modes)
     elif target.use_pos:
         set_position(v, horizontal(target.pos))
     elif target.use_yaw_rate:
         if not target.use_yaw:
-            set_turn_rate_and_speed(v, target.yaw_rate, -speed if target.use_vel and backward else speed)
+            set_turn_rate_and_speed(modes, v.time_us, target.yaw_rate, -speed if target.use_vel and backward else speed)
     elif target.use_yaw:
         heading = target.yaw + v.autopilot.estimate.euler.yaw if target.relative_yaw else target.yaw
-        set_heading_and_speed(v, heading, -speed if target.use_vel and backward else speed)
+        set_heading_and_speed(modes, v.time_us, heading, -speed if target.use_vel and backward else speed)
     elif target.use_vel:
-        set_heading_and_speed(v, math.atan2(target.vel.y, target.vel.x), speed)
+        set_heading_and_speed(modes, v.time_us, math.atan2(target.vel.y, target.vel.x), speed)
 
 
 @law
@@ -120,16 +121,17 @@ def full_speed(v: Rover) -> float:
 @law
 def attitude_target(m: SetAttitudeTarget, v: Rover, sender: int) -> None:
     """Thrust -1 .. 1 is a share of WP_SPEED; the heading is that of the quaternion, or turns with body_yaw_rate."""
-    if not is_open(v.autopilot.modes) or (m.type_mask & THRUST_IGNORED) != 0 or not finite(m.thrust):
+    modes = v.autopilot.modes
+    if not is_open(modes) or (m.type_mask & THRUST_IGNORED) != 0 or not finite(m.thrust):
         return
     speed = constrain(m.thrust, -1.0, 1.0) * full_speed(v)
     if (m.type_mask & BODY_YAW_RATE_IGNORED) == 0:
         if finite(m.body_yaw_rate):
-            set_turn_rate_and_speed(v, m.body_yaw_rate, speed)
+            set_turn_rate_and_speed(modes, v.time_us, m.body_yaw_rate, speed)
         return
     given = rotation(m.q)
     if given.is_given:
-        set_heading_and_speed(v, euler_of(given.q).yaw, speed)
+        set_heading_and_speed(modes, v.time_us, euler_of(given.q).yaw, speed)
 
 
 class RoverSetpoints(SetpointService):

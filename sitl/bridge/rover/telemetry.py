@@ -125,7 +125,7 @@ class RcChannelsScaled(Message, name="RC_CHANNELS_SCALED"):
 @law
 def is_assigned(v: Rover, function: int) -> bool:
     """Whether an output has this function (SERVOn_FUNCTION)."""
-    for k in range(OUTPUTS):
+    for k in range(OUTPUTS):  # noqa: SIM110 - laws know no generators
         if function == v.autopilot.params.SERVO[k].FUNCTION:
             return True
     return False

@@ -6,8 +6,8 @@ A law that builds a message takes the message and the vehicle, and says whether 
     @law
     def attitude(m: Attitude, v: Vehicle) -> bool: ...
 
-It may take the port as a third argument (``port.epoch_us``, ``port.part``). A law that takes a message gets the message,
-the vehicle and the sender's system id.
+It may take the port as a third argument (``port.epoch_us``, ``port.part``). A law that takes a message gets the
+message, the vehicle and the sender's system id.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle and its clients in the core: bytes that came in are acted on, ticks go by, messages go out when they are due.
+"""A vehicle and its clients in the core: bytes are acted on, ticks go by, messages go out when they are due.
 
 A firmware makes three units of these laws (``copter/core.py``): ``hear``, ``tell`` and ``run``. All take the address of
 the vehicle's ports, which lie side by side.
@@ -81,7 +81,7 @@ class Links(NamedTuple):
 
     address: int
     """Of the first; the others follow."""
-    count: int
+    clients: int
 
 
 @law
@@ -106,14 +106,14 @@ def run_vehicle(
     events = v.autopilot.events
     told = events.count
     while True:
-        stop = min(until_us, next_due(links.address, links.count))
+        stop = min(until_us, next_due(links.address, links.clients))
         ticks = (stop - v.time_us + TICK_US - 1) // TICK_US
         advance(fleet, index, max(ticks, 1))
         if events.attention or events.count != told or v.time_us >= shell_us:
             return
-        if next_due(links.address, links.count) <= v.time_us:
-            tell(fleet, index, links.address, links.count, REGULAR)
-            if next_due(links.address, links.count) <= v.time_us:
+        if next_due(links.address, links.clients) <= v.time_us:
+            tell(fleet, index, links.address, links.clients, REGULAR)
+            if next_due(links.address, links.clients) <= v.time_us:
                 return
         if v.time_us >= until_us:
             return
@@ -123,6 +123,6 @@ def run_vehicle(
 def tell_links(v: V, links: Links, number: int, build: Builder) -> None:
     """Send all that is due to every client, or the message ``number`` to the first."""
     if number == REGULAR:
-        send_all_due(v, links.address, links.count, build)
+        send_all_due(v, links.address, links.clients, build)
     else:
         send(v, record_at(Port, links.address), links.address, number, build)
