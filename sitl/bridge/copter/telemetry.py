@@ -11,14 +11,22 @@ from ...core.kernels import law
 from ...vehicle.copter import QUADROTOR, Copter
 from ..telemetry import channels, motion, status
 from ..telemetry.channels import RcChannels
-from ..telemetry.motion import VfrHud
 from ..telemetry.heartbeat import (
-    ACTIVE, ARMED, CRITICAL, CUSTOM_MODE, IS_GUIDED, MANUAL_INPUT, STABILIZED, STANDBY, Heartbeat, fill_heartbeat,
+    ACTIVE,
+    ARMED,
+    CRITICAL,
+    CUSTOM_MODE,
+    IS_GUIDED,
+    MANUAL_INPUT,
+    STABILIZED,
+    STANDBY,
+    Heartbeat,
+    fill_heartbeat,
 )
+from ..telemetry.motion import VfrHud
 from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
 from ..wire.message import Message
 from . import targets
-
 
 
 @law

@@ -16,7 +16,16 @@ from ...vehicle.rover import GROUND_ROVER, Rover
 from ..telemetry import channels, motion, status
 from ..telemetry.channels import RcChannels
 from ..telemetry.heartbeat import (
-    ACTIVE, ARMED, CALIBRATING, CRITICAL, CUSTOM_MODE, IS_GUIDED, MANUAL_INPUT, STANDBY, Heartbeat, fill_heartbeat,
+    ACTIVE,
+    ARMED,
+    CALIBRATING,
+    CRITICAL,
+    CUSTOM_MODE,
+    IS_GUIDED,
+    MANUAL_INPUT,
+    STANDBY,
+    Heartbeat,
+    fill_heartbeat,
 )
 from ..telemetry.motion import VfrHud
 from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
@@ -116,10 +125,10 @@ class RcChannelsScaled(Message, name="RC_CHANNELS_SCALED"):
 @law
 def is_assigned(v: Rover, function: int) -> bool:
     """Whether an output has this function (SERVOn_FUNCTION)."""
+    found = False
     for k in range(OUTPUTS):
-        if v.autopilot.params.SERVO[k].FUNCTION == function:
-            return True
-    return False
+        found = found or function == v.autopilot.params.SERVO[k].FUNCTION
+    return found
 
 
 @law

@@ -8,16 +8,17 @@ from typing import Any
 
 from sitl.bridge.autopilot_api import Note, Vector, Yaw
 from sitl.bridge.base_autopilot import BaseAutopilot
-from sitl.bridge.dialect import message
-from sitl.bridge.profile import Controllers, Profile
+from sitl.bridge.profile import Profile
 from sitl.bridge.services import command_table
 from sitl.bridge.services.setpoints import SetpointService
-from sitl.bridge.telemetry.builder import Build, Context
-from sitl.bridge.telemetry.status import CAPABILITIES
+from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
+from sitl.bridge.telemetry.shell import CAPABILITIES
+from sitl.core.kernels import law
+from sitl.vehicle.record import Vehicle
 
 from .firmware import AHEAD, MODES
 
-SURFACE_BOAT, ARDUPILOTMEGA, ACTIVE, ARMED = 11, 3, 4, 128
+SURFACE_BOAT = 11
 
 
 class BoatAutopilot(BaseAutopilot):
@@ -52,21 +53,11 @@ class BoatAutopilot(BaseAutopilot):
         return False
 
 
-def heartbeat(context: Context) -> Build:
+@law
+def heartbeat(m: Heartbeat, v: Vehicle) -> bool:
     """HEARTBEAT: a boat, its mode, armed or not."""
-    read = context.fields("autopilot.arming.armed", "autopilot.modes.number")
-    pack = message("HEARTBEAT").pack
-
-    def build() -> bytes:
-        armed, mode = read()
-        return pack(mode, SURFACE_BOAT, ARDUPILOTMEGA, 1 | (ARMED if armed else 0), ACTIVE, 3)
-
-    return build
-
-
-def no_controllers(mode: int, armed: bool) -> int:
-    """Bits of SYS_STATUS."""
-    return 0
+    base = CUSTOM_MODE | (ARMED if v.autopilot.arming.armed else 0)
+    return fill_heartbeat(m, v, SURFACE_BOAT, base, ACTIVE)
 
 
 _VEHICLE: dict[int, Any] = {**command_table.COMMANDS, **command_table.COMMANDS}
@@ -83,8 +74,6 @@ PROFILE = Profile(
     set_points=SetpointService,
     texts={},
     sticks=(),
-    receiver_timeout=1.0,
-    controllers=Controllers(0, no_controllers, healthy_at_rest=True),
-    builders={"HEARTBEAT": heartbeat},
+    messages=(heartbeat,),
     autopilot=BoatAutopilot,
 )

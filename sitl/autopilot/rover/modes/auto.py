@@ -223,7 +223,7 @@ def change_speed(v: Vehicle, wanted: float) -> bool:
 def destination(v: Vehicle) -> Destination:
     """That of what it is doing."""
     submode = v.autopilot.modes.auto.submode
-    if submode == ON_PATH or submode == RETURNING:
+    if submode in (ON_PATH, RETURNING):
         return end_of_path(v)
     if submode == CIRCLING:
         return circle.destination(v)

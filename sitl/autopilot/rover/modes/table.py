@@ -37,9 +37,7 @@ start = by_number("start", {mode.number: mode.start for mode in MODES}, initiali
 change_speed = by_number(
     "change_speed", {mode.number: mode.change_speed for mode in MODES}, initialising.MODE.change_speed
 )
-destination = by_number(
-    "destination", {mode.number: mode.destination for mode in MODES}, initialising.MODE.destination
-)
+destination = by_number("destination", {mode.number: mode.destination for mode in MODES}, initialising.MODE.destination)
 
 ALL = tuple(NAMES)
 AUTONOMOUS = numbers(MODES, "autonomous")
