@@ -18,8 +18,7 @@ from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.streams import RATE_PREFIX
-from .telemetry.builder import by_number
-from .telemetry.shell import AUTOPILOT_VERSION_BUILDERS
+from .telemetry.shell import SHELL_BUILDERS
 from .wire.choose import message_of
 
 
@@ -55,10 +54,10 @@ def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> str:
 def _by_firmware(tables: dict[str, Any]) -> Iterable[tuple[Any, Any, str]]:
     """(key, value, whose) of tables by firmware; what all of them have alike comes once, as "both"."""
     for key in sorted({key for table in tables.values() for key in table}):
-        owners: dict[int, list[str]] = {}
+        owners: dict[Any, list[str]] = {}
         for name, table in tables.items():
             if key in table:
-                owners.setdefault(id(table[key]), []).append(name)
+                owners.setdefault(table[key], []).append(name)
         for names in owners.values():
             yield key, tables[names[0]][key], "both" if len(names) == len(BUILT_IN) else ", ".join(names)
 
@@ -95,8 +94,16 @@ def received() -> str:
     """Messages from clients, by the service that acts on them."""
     found = handled()
     names = {s: [f"{name} ({message(name).id})" for name in sorted(found) if found[name] is s] for s in ALL_SERVICES}
-    rows = [(first_sentence(service), ", ".join(names[service])) for service in ALL_SERVICES if names[service]]
+    taken = sorted({message_of(law).kind.name for profile in profiles().values() for law in profile.core.takers})
+    rows = [("Set-points and sticks: taken in the core", ", ".join(f"{name} ({message(name).id})" for name in taken))]
+    rows += [(first_sentence(service), ", ".join(names[service])) for service in ALL_SERVICES if names[service]]
     return _table(("service", "messages"), rows)
+
+
+def telemetry(profile: Profile) -> dict[str, str]:
+    """Content of every message of telemetry, by name."""
+    laws: dict[str, Callable[..., Any]] = {message_of(law).kind.name: law for law in profile.core.builders}
+    return {name: _content(builder, name) for name, builder in (SHELL_BUILDERS | laws).items()}
 
 
 def sent() -> str:
@@ -108,10 +115,9 @@ def sent() -> str:
         for name in names
     }
     rows = []
-    for name, builder, whose in _by_firmware({vehicle: builders(p) for vehicle, p in profiles().items()}):
+    for name, content, whose in _by_firmware({vehicle: telemetry(p) for vehicle, p in profiles().items()}):
         vehicle = DEFAULT if whose == "both" else whose
-        group = group_of.get((vehicle, name), "-")
-        rows.append((message(name).id, name, whose, group, _content(builder, name)))
+        rows.append((message(name).id, name, whose, group_of.get((vehicle, name), "-"), content))
     return _table(("id", "message", "vehicle", "stream group", "content"), rows)
 
 

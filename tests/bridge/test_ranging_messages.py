@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.bridge.telemetry import sensors
+from sitl.bridge.telemetry import ranging
 from sitl.vehicles import load
 from tests.bridge.fakes import Bench
 
@@ -87,12 +87,16 @@ def test_looking_down(bench: Bench) -> None:
 
 
 def test_a_range_beyond_the_message_is_cut() -> None:
-    assert sensors.centimetres(math.inf, 700.0) == 65534, "65535 would mean unknown"
-    assert sensors.centimetres(math.nan, 10.0) == 1001
+    assert ranging.centimetres(math.inf, 700.0) == 65534, "65535 would mean unknown"
+    assert ranging.centimetres(math.nan, 10.0) == 1001
 
 
-def test_one_reading_is_straight_ahead() -> None:
-    assert sensors.sectors((2.5,), 0.0) == ([2.5], 0.0, 0.0)
+def test_one_reading_is_straight_ahead(bench: Bench) -> None:
+    measured(bench, "erle_copter", [2.5])
+    bench.vehicle.v.physics.airframe.lidar_samples = 1
+    (m,) = get(bench, SECTORS)
+    assert (m.distances[0], set(m.distances[1:])) == (250, {65535})
+    assert (m.angle_offset, m.increment) == (0.0, 255)
 
 
 def test_the_scan_repeats_at_the_interval_asked_for(rover_bench: Bench) -> None:

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws that build telemetry, on records filled in by hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sitl.bridge.copter import telemetry as copter
+from sitl.bridge.dialect import message
+from sitl.bridge.profile import load
+from sitl.bridge.rover import telemetry as rover
+from sitl.bridge.telemetry import build, builder, messages, register_message
+from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
+from sitl.bridge.telemetry.ranging import PART, scan
+from sitl.bridge.telemetry.sensors import simstate
+from sitl.bridge.telemetry.shell import shell_builders
+from sitl.bridge.telemetry.status import RECEIVER, system_time
+from sitl.bridge.telemetry.units import boot_ms, heading_cdeg, int16, int32, percent, uint16
+from sitl.bridge.wire.choose import message_of
+from sitl.bridge.wire.port import Port
+from sitl.core.geodesy import METRES_PER_DEGE7, longitude_scale
+from sitl.core.kernels import law
+from sitl.physics.carried import Carried, carried
+from sitl.vehicle.copter import Copter
+from sitl.vehicle.record import Vehicle
+from sitl.vehicle.rover import Rover
+
+HOME = (-353632620, 1491652370, 584.0)
+
+
+def says(law: Any, v: Vehicle, port: Port | None = None) -> Any:
+    """What a law builds, decoded; None when it has nothing to say."""
+    payload = build(law, v, port or Port())
+    return message_of(law).kind.decode(payload) if payload else None
+
+
+@pytest.fixture
+def v() -> Copter:
+    found = Copter()
+    found.time_us = 12_345_678
+    estimate = found.autopilot.estimate
+    estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = HOME
+    return found
+
+
+@pytest.mark.parametrize(
+    ("unit", "x", "expected"),
+    [
+        (int16, -1.9, -1), (int16, 1e30, 32767), (int16, -math.inf, -32768), (int16, math.nan, -32768),
+        (uint16, 65534.9, 65534), (uint16, math.inf, 65535), (uint16, -0.1, 0), (uint16, math.nan, 0),
+        (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647), (int32, math.nan, -2147483648),
+        (percent, 99.9, 99), (percent, 1e30, 100), (percent, -0.1, -1), (percent, math.nan, -1),
+        (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
+        (boot_ms, (1 << 32) * 1000 + 5999, 5),
+    ],
+)  # fmt: skip
+def test_numbers_become_integers(unit: Any, x: float, expected: int) -> None:
+    assert unit(x) == expected
+
+
+def test_the_place_is_the_fix_until_there_is_an_origin(v: Copter) -> None:
+    assert global_position(v) == (0, 0, 0.0)
+    v.sensors.gps_fix, v.sensors.gps_lat, v.sensors.gps_lon, v.sensors.gps_alt = 3, 10, 20, 30_000
+    assert global_position(v) == (10, 20, 30.0)
+    v.autopilot.estimate.origin_set = True
+    v.autopilot.estimate.pos = v.autopilot.estimate.pos.replace(x=100.0, y=200.0, z=-5.0)
+    here = global_position(v)
+    scale = METRES_PER_DEGE7 * longitude_scale(HOME[0])
+    assert here.lat == pytest.approx(HOME[0] + 100.0 / METRES_PER_DEGE7, abs=1)
+    assert here.lon == pytest.approx(HOME[1] + 200.0 / scale, abs=2)
+    assert here.alt == 589.0
+
+
+def test_attitude(v: Copter) -> None:
+    v.autopilot.estimate.euler = v.autopilot.estimate.euler.replace(roll=0.5, pitch=1e300, yaw=math.nan)
+    with np.errstate(over="ignore"):
+        m = says(attitude, v)
+    assert (m.time_boot_ms, m.roll, m.pitch) == (12_345, 0.5, math.inf)
+    assert math.isnan(m.yaw)
+
+
+def test_the_controllers_of_a_firmware_that_rests() -> None:
+    """The copter tells all of them as healthy, the rover those at work."""
+    for record, status, idle in (
+        (Copter(), copter.sys_status, copter.CONTROLLERS),
+        (Rover(), rover.sys_status, rover.controllers_at_work(0, False)),
+    ):
+        v: Any = record
+        v.autopilot.rc.receiver_ok = True
+        m = says(status, v)
+        assert m.onboard_control_sensors_health & copter.CONTROLLERS == idle
+        assert m.onboard_control_sensors_present & m.onboard_control_sensors_health & RECEIVER
+        assert (m.voltage_battery, m.current_battery, m.battery_remaining) == (65535, -1, 0)
+
+
+def test_channels_count_while_the_receiver_is_heard(v: Copter) -> None:
+    v.autopilot.params.RC_FS_TIMEOUT = 1.0
+    v.autopilot.rc.receiver_us = v.time_us - 999_999
+    assert says(copter.rc_channels, v).chancount == 0, "no pulses"
+    v.autopilot.rc.channels[17] = 1500
+    v.autopilot.rc.channels[0] = 70_000
+    m = says(copter.rc_channels, v)
+    assert (m.chancount, m.chan18_raw, m.chan1_raw, m.rssi) == (16, 1500, 65535, 255)
+    v.time_us += 1
+    assert says(copter.rc_channels, v).chancount == 0
+
+
+def test_time_of_day_is_the_ports(v: Copter) -> None:
+    port = Port()
+    port.epoch_us = 1_700_000_000_000_000
+    assert says(system_time, v, port).time_unix_usec == 1_700_000_012_345_678
+
+
+def test_a_scan_goes_on_where_the_port_says(v: Copter) -> None:
+    port = Port()
+    v.physics.airframe.lidar_samples = PART + 2
+    assert says(scan, v, port) is None, "no scan yet"
+    v.sensors.lidar_count, v.sensors.lidar_time_us = 1, 600
+    v.sensors.lidar_ranges[: PART + 2] = np.arange(PART + 2)
+    first = says(scan, v, port)
+    assert (first.array_id, first.name, first.time_usec, port.part) == (0, b"LASER", 600, 1)
+    second = says(scan, v, port)
+    assert (second.array_id, second.data[:2], port.part) == (1, (PART, PART + 1), 0)
+    assert all(map(math.isnan, second.data[2:]))
+
+
+def test_the_truth_is_that_of_hil(v: Copter) -> None:
+    body = v.physics.body
+    body.q, body.rates = (0.6, 0.8, 0.0, 0.0), (0.1, 0.2, math.nan)
+    body.vel, body.specific_force = (1.004, -400.0, math.nan), (0.0, 0.0, -9.80665)
+    found = carried(v)
+    assert found.attitude == tuple(float(np.float32(c)) for c in (0.6, 0.8, 0.0, 0.0))
+    assert found.velocity == (100, -32768, 0) and found.acceleration == (0, 0, -1000)
+    m = says(simstate, v)
+    assert m.roll == pytest.approx(2.0 * math.atan2(0.8, 0.6))
+    assert (m.xgyro, m.zacc) == (np.float32(0.1), np.float32(-9.80665))
+
+
+def test_the_shell_asks_physics_that_is_elsewhere() -> None:
+    truth = Carried((1.0, 0.0, 0.0, 0.0), (0.25, 0.0, 0.0), 7, 8, 9, (0, 0, 0), (0, 0, -1000))
+    here: Any = SimpleNamespace(has_truth_in_record=True)
+    there: Any = SimpleNamespace(has_truth_in_record=False, truth=lambda: truth)
+    assert set(shell_builders(here)) == {"AUTOPILOT_VERSION"}
+    m = message("SIMSTATE").decode(shell_builders(there)["SIMSTATE"](there, load("copter")))
+    assert (m.xgyro, m.lat, m.lng) == (0.25, 7, 8)
+
+
+@pytest.fixture
+def registered() -> Iterator[Any]:
+    @law
+    def level(m: Attitude, v: Vehicle) -> bool:
+        """ATTITUDE: always level."""
+        return v.time_us > 0
+
+    yield register_message(level)
+    del builder._registered[Attitude.kind.id]
+
+
+def test_a_registered_law_comes_before_others(registered: Any, v: Copter) -> None:
+    laws = messages(load("copter"))
+    assert registered in laws and attitude not in laws
+    numbers = [message_of(law).kind.id for law in laws]
+    assert numbers == sorted(set(numbers))
+    assert says(registered, v).roll == 0.0 and says(registered, Copter()) is None
+
+
+def test_what_builds_no_message_is_refused() -> None:
+    with pytest.raises(TypeError, match="no Message"):
+        register_message(carried)  # type: ignore[arg-type]
