@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink in the core: messages as records, frames, streams. As plain Python; the compiled laws have the same source."""
+"""MAVLink in the core: messages as records, frames, streams; here as plain Python, of the same source."""
 
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
@@ -112,7 +113,7 @@ def test_a_field_that_the_message_does_not_have_is_an_error() -> None:
 
 
 def test_a_field_of_another_sort_is_an_error() -> None:
-    with pytest.raises(TypeError, match="Narrow.roll: ATTITUDE has float there"):
+    with pytest.raises(TypeError, match=r"Narrow\.roll: ATTITUDE has float there"):
 
         class Narrow(Message, name="ATTITUDE"):
             roll: int
@@ -227,7 +228,8 @@ frame = st.builds(
     lambda name, payload, sequence, system, version: (encode_v1 if version == 1 else encode_v2)(
         message(name), payload[: message(name).size], sequence, system, 190
     ),
-    st.sampled_from(KINDS), st.binary(min_size=60, max_size=80), st.integers(0, 255), st.integers(1, 255), st.integers(1, 2),
+    st.sampled_from(KINDS), st.binary(min_size=60, max_size=80),
+    st.integers(0, 255), st.integers(1, 255), st.integers(1, 2),
 )  # fmt: skip
 rubbish = st.one_of(st.binary(max_size=20), st.just(b"\xfd"), st.just(b"\xfe\x09"), st.just(b"\xfd\x09\x04"))
 
@@ -235,7 +237,7 @@ rubbish = st.one_of(st.binary(max_size=20), st.just(b"\xfd"), st.just(b"\xfe\x09
 def heard(channel: Channel, data: bytes, pieces: list[int]) -> list[tuple[object, ...]]:
     found = []
     cuts = [0, *sorted(min(p, len(data)) for p in pieces), len(data)]
-    for start, end in zip(cuts, cuts[1:], strict=False):
+    for start, end in pairwise(cuts):
         piece = data[start:end]
         while piece:
             piece = channel.feed(piece)

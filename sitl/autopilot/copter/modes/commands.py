@@ -6,6 +6,7 @@ Each function returns OK, or says why it left the record as it was.
 
 from __future__ import annotations
 
+from ....core.kernels import law
 from ....core.vectors import Vec3
 from ..control import altitude_start, position_start
 from ..control.state import Control
@@ -34,11 +35,13 @@ HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
 """Kinds of speed that change_speed knows."""
 
 
+@law
 def is_usable(x: float) -> bool:
     """Whether a number is neither NaN nor infinite nor absurdly large."""
     return abs(x) <= LARGEST
 
 
+@law
 def is_usable_vector(x: Vec3) -> bool:
     """Whether all of them are usable numbers."""
     return is_usable(x.x) and is_usable(x.y) and is_usable(x.z)
