@@ -128,11 +128,13 @@ class Simulation:
             self.home = scenario.home_or_default
         else:
             plant = LocalPlant(craft, scenario, core, progress)
-            plant.load()
             self.plant, self.world, self.home = plant, plant.world, plant.home
         self.mission = Mission()
         self._power_on()
         self.bridge = Bridge(self)
+        self.bridge.core.load(self.plant.runs_in_core, progress)
+        if isinstance(self.plant, LocalPlant):
+            self.plant.load()
 
     @property
     def resolved(self) -> Scenario:
@@ -189,23 +191,30 @@ class Simulation:
             if now >= stop:
                 return
             plant.prepare()
-            due = bridge.next_due_us()
-            until = min(stop, due, plant.due_us)
+            shell_us = min(bridge.shell_due_us(), plant.due_us)
+            if not (plant.runs_in_core and bridge.goes_by_itself()):
+                shell_us = min(shell_us, bridge.next_due_us())
+            until = min(stop, shell_us)
             for observer in self.observers:
                 until = min(until, observer.due_us - self.before_boot_us)
-            ticks = (until - now + TICK_US - 1) // TICK_US
             lost = None
             try:
-                plant.run(ticks if ticks > 1 else 1)
+                if plant.runs_in_core:
+                    bridge.run(until, shell_us)
+                else:
+                    plant.run(max((until - now + TICK_US - 1) // TICK_US, 1))
             except PhysicsLostError as error:
                 lost = error
-            if plant.due_us <= self._clock():
+            now = self._clock()
+            if plant.due_us <= now:
                 plant.measure()
             told = self._event_count() != self._events_seen
             if told:
                 self._follow_events()
-            if told or due <= self._clock():  # not when only an observer wants to look
+            if told or shell_us <= now or bridge.next_due_us() <= now:  # not when only an observer wants to look
                 bridge.service()
+            else:
+                bridge.flush()
             for observer in self.observers:
                 if observer.due_us <= self.time_us:
                     observer.observe()

@@ -37,6 +37,7 @@ PATH_LOST = 25  # rover: SMART_RTL has no path any more; a: reason (smart_rtl_pa
 CIRCLE_ADAPTED = 26  # rover; a: what (circle.py), b: the value now
 COMMAND_ARRIVED = 27  # rover: the navigation command under way is at its place, b: its count (nav.command_count)
 HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
+SETPOINT_IGNORED = 29  # rover: it has an acceleration; a: number of the MAVLink message
 
 
 class Events(Record):

@@ -8,25 +8,12 @@ autopilot did it; what it wants to tell the pilot meanwhile waits in ``take_note
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from ..autopilot.mission.item import MissionItem
 from ..autopilot.mission.notes import CurrentChanged, ItemReached, Text
 
 Vector = tuple[float, float, float]
-
-
-class Yaw(NamedTuple):
-    """Heading that goes with a set-point."""
-
-    use_yaw: bool
-    yaw: float
-    use_rate: bool
-    rate: float
-    relative: bool
-
-
-NO_YAW = Yaw(False, 0.0, False, 0.0, False)
 Note = Text | ItemReached | CurrentChanged
 
 
@@ -46,8 +33,7 @@ class Autopilot(Protocol):
     def set_origin(self, lat: int, lon: int, alt: float) -> bool: ...
     def parameter_changed(self, name: str) -> None: ...
 
-    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool: ...
-    def guided_stop(self) -> bool: ...
+    def guided_position(self, place: Vector) -> bool: ...
 
     def mission_items(self) -> tuple[MissionItem, ...]: ...
     def current_item(self) -> int: ...

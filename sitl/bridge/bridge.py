@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot
-from .channel import COMPONENT, Channel, ChannelState
-from .dialect import MessageType, message
+from .channel import Channel, ChannelState
+from .core_link import CoreLink
+from .dialect import MessageType, message, message_by_id
 from .frame import Frame
 from .links.link import Link
 from .places import Places
@@ -25,10 +26,12 @@ from .services.service import Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.statustext import EventService
 from .services.streams import StreamService
-from .stream_table import NEVER
 from .switchboard import Switchboard
-from .telemetry import Build, Context, build_all
+from .telemetry.builder import shell_messages
 from .vehicle import Vehicle
+from .wire import streams
+from .wire.link import REGULAR
+from .wire.port import NEVER
 
 _HEARTBEAT = message("HEARTBEAT").id
 EPOCH_US = 1_767_225_600_000_000
@@ -57,8 +60,11 @@ class Bridge:
         self.profile = load(vehicle.firmware.name)
         self._given_autopilot = autopilot
         self.autopilot: Autopilot = autopilot if autopilot is not None else self.profile.autopilot(vehicle)
-        self._context = Context(self.reader, vehicle, self.profile, epoch_us)
-        self.telemetry = build_all(self._context)
+        self.core = CoreLink(vehicle, self.profile.core)
+        self.by_shell = shell_messages(self)
+        """Messages that the shell builds: number -> function that gives the payload."""
+        self.telemetry = {number: message_by_id(number) for number in self.core.numbers | self.by_shell.keys()}
+        """Every message that can be sent by its number."""
         self._left_out: set[str] = set()
         self.board = Switchboard(
             lambda: self.system, lambda: self.elapsed_us, self._channel_added, self._channel_removed
@@ -68,6 +74,7 @@ class Bridge:
         """Get every frame, in and out: ``taps.append(writer)``."""
         self._system = self.reader.field("autopilot.params.MAV.SYSID")
         self._time_us: Callable[[], int] = self.reader.field("time_us")
+        self._event_count: Callable[[], int] = self.reader.field("autopilot.events.count")
         self._parameters: dict[str, Callable[[], float]] = {}
         self.listeners: list[Listener] = []
         """Are told of texts and parameters: ``listeners.append(logger)``."""
@@ -75,7 +82,7 @@ class Bridge:
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
         """Set by who lets clients push the clock (``sitl.run.lockstep``)."""
-        self.places = Places(self.reader)
+        self.places = Places(vehicle.v.autopilot)
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}
         """By message number: place of the field target_system, -1 when there is none, and what is to be done."""
@@ -109,7 +116,8 @@ class Bridge:
 
     def _match_clocks(self) -> None:
         self._before_boot_us = self.vehicle.time_us - self.now_us
-        self._context.epoch_us = self.epoch_us + self._before_boot_us
+        for channel in self.channels:
+            channel.port.epoch_us = self.epoch_us + self._before_boot_us
 
     @property
     def system(self) -> int:
@@ -124,7 +132,7 @@ class Bridge:
     def refresh_identity(self) -> None:
         """Take over a changed MAV_SYSID."""
         for channel in self.channels:
-            channel.system = self.system
+            channel.port.system = self.system
 
     def parameter(self, name: str) -> float | None:
         """Present value of a parameter, None when the firmware has none of this name."""
@@ -152,6 +160,7 @@ class Bridge:
         return self.board.dropped
 
     def _channel_added(self, channel: Channel) -> None:
+        channel.port.epoch_us = self.epoch_us + self._before_boot_us
         for service in self.services.values():
             service.channel_added(channel)
 
@@ -185,38 +194,82 @@ class Bridge:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
         return self.board.wait(seconds)
 
-    def receive(self) -> int:
-        """Read all links and act on every frame. Returns the number of frames acted on."""
-        acted = 0
-        for channel, frames in self.board.receive():
-            for frame in frames:
-                acted += self._dispatch(channel, frame)
-        self.board.flush()
-        return acted
+    def receive(self) -> None:
+        """Read all links and act on every frame."""
+        board = self.board
+        board.read()
+        journal = board.journal
+        for channel in self.channels:
+            data = channel.peer.take()
+            if data:
+                if journal is not None:
+                    journal.heard(channel, data)
+                self._hear(channel, data)
+        if journal is not None:
+            journal.acted()
+        board.flush()
 
-    def _dispatch(self, channel: Channel, frame: Frame) -> int:
-        kind, system, component = frame.kind, frame.system, frame.component
-        if kind.id not in self._handlers or (system == channel.system and component == COMPONENT):
-            return 0
-        target, handler = self._handlers[kind.id]
-        fields = kind.decode(frame.payload)
-        if target >= 0 and fields[target] not in (0, channel.system):
-            return 0
-        handler(channel, fields, (system, component))
-        return 1
+    def _hear(self, channel: Channel, data: bytes) -> None:
+        """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
+        port, taps = channel.port, self.taps
+        port.stops_at_frames = bool(taps)
+        while data:
+            data = channel.feed(data)
+            self._hear_port(channel)
+            while port.frame_end:
+                frame = channel.frame()
+                for tap in taps:
+                    tap.frame(self.elapsed_us, frame.raw)
+                if not port.frame_taken:
+                    self._dispatch(channel, frame)
+                port = channel.port
+                self._hear_port(channel)
+
+    def _hear_port(self, channel: Channel) -> None:
+        events = self._event_count()
+        self.core.hear(channel.address)
+        if self._event_count() != events:  # the law of a message had something to say
+            self.get(EventService).read()
+
+    def _dispatch(self, channel: Channel, frame: Frame) -> None:
+        """Act on a frame that the core does not take; our own words and messages to other systems do not come here."""
+        kind = frame.kind
+        if kind.id in self._handlers:
+            target, handler = self._handlers[kind.id]
+            fields = kind.decode(frame.payload)
+            if target < 0 or fields[target] in (0, channel.system):
+                handler(channel, fields, (frame.system, frame.component))
 
     # ------------------------------------------------------------------ out
 
-    def next_due_us(self) -> int:
-        """Earliest simulated time (since boot) at which something has to be sent."""
+    def shell_due_us(self) -> int:
+        """Earliest simulated time (since boot) at which a service has something to do."""
         due = NEVER
-        for channel in self.channels:
-            if channel.streams.next_us < due:
-                due = channel.streams.next_us
         for service in self._timed:
             if service.due_us < due:
                 due = service.due_us
         return due
+
+    def next_due_us(self) -> int:
+        """Earliest simulated time (since boot) at which something has to be sent."""
+        due = self.shell_due_us()
+        for channel in self.channels:
+            next_us = channel.port.next_us
+            if next_us < due:
+                due = next_us
+        return due
+
+    def goes_by_itself(self) -> bool:
+        """Whether the core may send for several times in one run: nobody looks at the time of each frame."""
+        return not self.board.is_watched() and all(channel.peer.waits for channel in self.channels)
+
+    def run(self, until_us: int, shell_us: int) -> None:
+        """Advance the vehicle in the core to the first tick at or after ``until_us`` and send what falls due.
+
+        Back early when something happened that the shell must know, and at ``shell_us``, before messages are sent.
+        """
+        ports = self.board.ports
+        self.core.run(ports.address, ports.count, until_us, shell_us)
 
     def service(self) -> None:
         """Send what has fallen due by now."""
@@ -225,33 +278,48 @@ class Bridge:
             if service.due_us <= now:
                 service.service(now)
         for channel in self.channels:
-            if channel.streams.next_us <= now:
-                due = channel.streams.take_due(now)
-                if not channel.peer.congested:
-                    for kind, build in due:
-                        self._emit(channel, kind, build)
+            if channel.port.next_us <= now:
+                self._send_due(channel, now)
         self.board.flush()
 
-    def _emit(self, channel: Channel, kind: MessageType, build: Build) -> None:
+    def _send_due(self, channel: Channel, now: int) -> None:
+        port = channel.port
+        port.congested = channel.peer.congested
+        while True:
+            self.core.tell(channel.address, 1, REGULAR)
+            if port.next_us > now:
+                return
+            if port.out_count:  # there was no more room, or it is the shell's turn
+                channel.collect()
+            number, by_shell = streams.first_due(port, now)
+            if by_shell:
+                self._build(channel, number)
+                streams.put_off(port, number, now)
+
+    def _build(self, channel: Channel, number: int) -> None:
+        kind = self.telemetry[number]
         try:
-            payload = build()
+            payload = self.by_shell[number]()
         except (OverflowError, ValueError, struct.error):  # a number that the wire cannot carry: leave it out
             if kind.name not in self._left_out:
                 self._left_out.add(kind.name)
                 self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
             return
-        if isinstance(payload, tuple):
-            for part in payload:
-                channel.send(kind, part)
-        elif payload:
+        if payload:
             channel.send(kind, payload)
 
     def send_now(self, channel: Channel, number: int) -> bool:
         """Send one telemetry message to one channel; False when there is none of this number."""
-        entry = self.telemetry.get(number)
-        if entry is not None:
-            self._emit(channel, *entry)
-        return entry is not None
+        if number in self.by_shell:
+            self._build(channel, number)
+        elif number in self.core.numbers:
+            while True:
+                if channel.port.out_count:
+                    channel.collect()
+                self.core.tell(channel.address, 1, number)
+                if channel.port.part == 0:  # all parts of it are sent: many need the room several times
+                    break
+        return number in self.telemetry
 
     def broadcast(self, kind: MessageType, payload: bytes) -> None:
         """Send to every channel."""
@@ -323,8 +391,12 @@ class Bridge:
         known = {channel.number: channel for channel in state.channels}
         system = self.system
         for channel in self.channels:
-            channel.system = system
-            channel.restore(known.get(channel.number), self.telemetry, now)
+            held = known.get(channel.number)
+            if held is not None:
+                channel.restore(held)
+            else:
+                streams.time_was_set(channel.port, now)
+            channel.port.system = system
         for service, of_service in zip(self._stateful, state.services, strict=True):
             service.restore(of_service)
 

@@ -1,39 +1,53 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One client as the bridge sees it: its own sequence numbers, MAVLink version, streams and statistics."""
+"""One client as the bridge sees it: its own sequence numbers, MAVLink version, streams and counts.
+
+What the core needs of it is in its port, a record (``wire/port.py``).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any, NamedTuple
 
-from .dialect import MessageType
-from .frame import Frame, Splitter, encode_v1, encode_v2
+import numpy as np
+
+from .dialect import MessageType, message_by_id
+from .frame import Frame, encode_v1, encode_v2
 from .links.link import Peer
-from .stream_table import Entry, Layout, StreamTable
+from .wire.frames import COMPONENT
+from .wire.port import IN_BYTES, INCOMING, NEVER, OUT, STATE, Port
 
-COMPONENT = 1
-"""MAV_COMP_ID_AUTOPILOT1."""
+_FIRST = 4
 
 
-@dataclass
-class Statistics:
-    """Counts of one channel."""
+class Ports:
+    """The ports of a vehicle's clients, side by side in memory."""
 
-    received: int = 0
-    sent: int = 0
-    lost: int = 0
-    """Gaps in the client's sequence numbers."""
+    def __init__(self) -> None:
+        self._memory = np.zeros(_FIRST, Port.dtype)
+        self.count = 0
+        self.address = int(self._memory.ctypes.data)
+        """Of the first one; it changes when clients come."""
+
+    def arrange(self, channels: list[Channel]) -> None:
+        """Give each channel its port, in their order; what the ports hold is kept."""
+        held = [bytes(channel.port._bytes) for channel in channels]
+        if len(channels) > len(self._memory):
+            self._memory = np.zeros(2 * len(channels), Port.dtype)
+            self.address = int(self._memory.ctypes.data)
+        self.count = len(channels)
+        for k, (channel, content) in enumerate(zip(channels, held, strict=True)):
+            channel.port = Port.of(self._memory, k)
+            channel.port._bytes[:] = content
+            channel.address = self.address + k * Port.dtype.itemsize
 
 
 class ChannelState(NamedTuple):
     """What a channel needs to go on from a snapshot."""
 
     number: int
-    sequence: int
-    version: int
-    heard_v2: bool
-    streams: Layout
+    port: bytes
 
 
 class Channel:
@@ -42,64 +56,86 @@ class Channel:
     It speaks MAVLink 2, except to a client that has only ever been heard in MAVLink 1.
     """
 
-    def __init__(self, peer: Peer, number: int, system: int) -> None:
+    def __init__(self, peer: Peer, number: int, system: int, is_watched: Callable[[], bool]) -> None:
         self.peer = peer
         self.number = number
-        self.system = system
-        """Our system id in outgoing frames."""
-        self.version = 2
-        self.heard_v2 = False
-        self.sequence = 0
-        self.splitter = Splitter()
-        self.streams = StreamTable()
-        self.statistics = Statistics()
-        self._expected: dict[tuple[int, int], int] = {}
+        self._is_watched = is_watched
+        self.port = Port()
+        self.address = 0
+        """Of the port in memory, once the bridge has given it its place."""
+        self.port.version, self.port.system, self.port.next_us = 2, system, NEVER
 
     @property
     def name(self) -> str:
         """Link and address, for people."""
         return self.peer.name
 
+    @property
+    def system(self) -> int:
+        """Our system id in outgoing frames."""
+        return self.port.system
+
+    @property
+    def version(self) -> int:
+        """Version of MAVLink that the client is sent."""
+        return self.port.version
+
     def snapshot(self) -> ChannelState:
         """Everything that later frames depend on; what is in transit is the client's."""
-        return ChannelState(self.number, self.sequence, self.version, self.heard_v2, self.streams.snapshot())
+        return ChannelState(self.number, bytes(self.port._bytes[:STATE]))
 
-    def restore(self, state: ChannelState | None, entries: Mapping[int, Entry], now_us: int) -> None:
-        """Go on from a snapshot; None: the channel is newer than the snapshot, only time has changed."""
-        if state is None:
-            self.streams.restore(None, entries, now_us)
-            return
-        _, self.sequence, self.version, self.heard_v2, streams = state
-        self.streams.restore(streams, entries, now_us)
+    def restore(self, state: ChannelState) -> None:
+        """Go on from a snapshot of this channel."""
+        self.port._bytes[:STATE] = state.port
+
+    # ------------------------------------------------------------------ out
 
     def send(self, kind: MessageType, payload: bytes) -> None:
         """Queue one message; the bridge flushes all channels when it is done."""
-        encode = encode_v2 if self.version == 2 else encode_v1
-        frame = encode(kind, payload, self.sequence, self.system, COMPONENT)
+        port = self.port
+        if port.out_count:
+            self.collect()
+        encode = encode_v2 if port.version == 2 else encode_v1
+        frame = encode(kind, payload, port.sequence, port.system, COMPONENT)
         if frame:
-            self.sequence = (self.sequence + 1) & 0xFF
-            self.statistics.sent += 1
+            port.sequence = (port.sequence + 1) & 0xFF
+            port.sent += 1
             self.peer.outbox.append(frame)
 
-    def receive(self, heard: Callable[[Channel, bytes], None] | None = None) -> list[Frame]:
-        """Frames that came in since the last call; ``heard`` is told of the bytes."""
-        data = self.peer.take()
-        if not data:
-            return []
-        if heard is not None:
-            heard(self, data)
-        frames = self.splitter.feed(data)
-        self.statistics.received += len(frames)
-        expected = self._expected
-        for frame in frames:
-            sender, sequence = (frame.system, frame.component), frame.sequence
-            if sender in expected:
-                self.statistics.lost += (sequence - expected[sender]) & 0xFF
-                expected[sender] = (sequence + 1) & 0xFF
-            elif len(expected) < 256:
-                expected[sender] = (sequence + 1) & 0xFF
-            if frame.version == 2:
-                self.heard_v2, self.version = True, 2
-            elif not self.heard_v2:
-                self.version = 1
-        return frames
+    def collect(self) -> None:
+        """Queue the frames that the core made."""
+        port = self.port
+        data = bytes(port._bytes[OUT : OUT + port.out_size])
+        if port.out_count == 1 or (self.peer.joins_frames and not self._is_watched()):
+            self.peer.outbox.append(data)
+        else:
+            ends = port.out_end[: port.out_count].tolist()
+            self.peer.outbox.extend(data[start:end] for start, end in pairwise((0, *ends)))
+        port.out_count = port.out_size = 0
+
+    # ------------------------------------------------------------------ in
+
+    def feed(self, data: bytes) -> bytes:
+        """Hand bytes from the client to the port; returns those for which there is no room yet."""
+        port = self.port
+        size = port.in_size
+        now, later = data[: IN_BYTES - size], data[IN_BYTES - size :]
+        port._bytes[INCOMING + size : INCOMING + size + len(now)] = now
+        port.in_size = size + len(now)
+        return later
+
+    def frame(self) -> Frame:
+        """The frame that the core stopped at."""
+        port = self.port
+        memory: Any = port._bytes
+        start, end, payload = port.frame_start, port.frame_end, port.frame_payload
+        raw = bytes(memory[INCOMING + start : INCOMING + end])
+        return Frame(
+            message_by_id(port.frame_number),
+            raw[payload - start : payload - start + port.frame_payload_size],
+            port.frame_sequence,
+            port.frame_sender >> 8,
+            port.frame_sender & 0xFF,
+            port.frame_version,
+            raw,
+        )

@@ -185,6 +185,11 @@ class MessageType:
             at += length
         return self._make(out)
 
+    def offset_of(self, field: str) -> int:
+        """Where a field begins in the payload [bytes]."""
+        sizes = [struct.calcsize("<" + code) * (1 if code.endswith("s") else max(n, 1)) for code, n in self.codes]
+        return sum(sizes[: self.fields.index(field)])
+
     def payload(self, **values: Any) -> bytes:
         """Payload from named fields; those not given are zero.
 

@@ -18,8 +18,8 @@ from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.streams import RATE_PREFIX
-from .telemetry.builder import messages
-from .telemetry.shell import SHELL_BUILDERS
+from .telemetry.builder import by_number
+from .telemetry.shell import AUTOPILOT_VERSION_BUILDERS
 from .wire.choose import message_of
 
 
@@ -55,10 +55,10 @@ def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> str:
 def _by_firmware(tables: dict[str, Any]) -> Iterable[tuple[Any, Any, str]]:
     """(key, value, whose) of tables by firmware; what all of them have alike comes once, as "both"."""
     for key in sorted({key for table in tables.values() for key in table}):
-        owners: dict[Any, list[str]] = {}
+        owners: dict[int, list[str]] = {}
         for name, table in tables.items():
             if key in table:
-                owners.setdefault(table[key], []).append(name)
+                owners.setdefault(id(table[key]), []).append(name)
         for names in owners.values():
             yield key, tables[names[0]][key], "both" if len(names) == len(BUILT_IN) else ", ".join(names)
 
@@ -99,12 +99,6 @@ def received() -> str:
     return _table(("service", "messages"), rows)
 
 
-def telemetry(profile: Profile) -> dict[str, str]:
-    """Content of every message of telemetry, by name."""
-    laws: dict[str, Callable[..., Any]] = {message_of(law).kind.name: law for law in messages(profile)}
-    return {name: _content(builder, name) for name, builder in (SHELL_BUILDERS | laws).items()}
-
-
 def sent() -> str:
     """Telemetry by name: stream group and content."""
     group_of = {
@@ -114,9 +108,10 @@ def sent() -> str:
         for name in names
     }
     rows = []
-    for name, content, whose in _by_firmware({vehicle: telemetry(p) for vehicle, p in profiles().items()}):
+    for name, builder, whose in _by_firmware({vehicle: builders(p) for vehicle, p in profiles().items()}):
         vehicle = DEFAULT if whose == "both" else whose
-        rows.append((message(name).id, name, whose, group_of.get((vehicle, name), "-"), content))
+        group = group_of.get((vehicle, name), "-")
+        rows.append((message(name).id, name, whose, group, _content(builder, name)))
     return _table(("id", "message", "vehicle", "stream group", "content"), rows)
 
 

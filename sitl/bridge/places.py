@@ -3,40 +3,70 @@
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
+from ..autopilot.state import Autopilot, Estimate
+from ..core.algebra import ZERO
 from ..core.geodesy import offset_ne
-from ..core.record_reader import RecordReader
+from ..core.kernels import law
+from ..core.scalars import finite
+from ..core.vectors import Vec3
 from .autopilot_api import Vector
 from .services.command import FRAMES_AMSL
 
-_ORIGIN, _HOME = "autopilot.estimate.origin_", "autopilot.home."
+LAT_MAX, LON_MAX = 900_000_000, 1_800_000_000
+"""[degE7]"""
+
+
+class LocalPlace(NamedTuple):
+    """A place on the globe, as the autopilot sees it."""
+
+    is_known: bool  # False before there is an origin, and for what is not on the globe
+    pos: Vec3  # NED from the origin [m]
+
+
+@law
+def home_alt(ap: Autopilot) -> float:
+    """Altitude [m above sea level] that relative heights count from: of home, else of the origin."""
+    return ap.home.alt if ap.home.is_set else ap.estimate.origin_alt
+
+
+@law
+def local_place(ap: Autopilot, lat: int, lon: int, z: float, frame: int) -> LocalPlace:
+    """NED of a place [degE7, m in a MAV_FRAME]; terrain frames count from home: the ground is flat."""
+    estimate = ap.estimate
+    if not (estimate.origin_set and abs(lat) <= LAT_MAX and abs(lon) <= LON_MAX and finite(z)):
+        return LocalPlace(False, ZERO)
+    ne = offset_ne(estimate.origin_lat, estimate.origin_lon, lat, lon)
+    alt = z if frame in FRAMES_AMSL else home_alt(ap) + z
+    return over_origin(estimate, ne.x, ne.y, alt)
+
+
+@law
+def over_origin(estimate: Estimate, north: float, east: float, alt: float) -> LocalPlace:
+    """NED of a point at ``alt`` [m above sea level], ``north`` and ``east`` [m] of the origin."""
+    return LocalPlace(estimate.origin_set, Vec3(north, east, estimate.origin_alt - alt))
 
 
 class Places:
-    """Reads origin and home from the record whenever it is asked."""
+    """The same for services: reads origin and home from the record whenever it is asked."""
 
-    def __init__(self, reader: RecordReader) -> None:
-        self._origin = reader.fields(*(_ORIGIN + x for x in ("set", "lat", "lon", "alt")))
-        self._heights = reader.fields(_HOME + "is_set", _HOME + "alt", _ORIGIN + "alt")
+    def __init__(self, autopilot: Autopilot) -> None:
+        self._autopilot = autopilot
 
     def home_alt(self) -> float:
         """Altitude [m above sea level] that relative heights count from: of home, else of the origin."""
-        is_set, alt, origin_alt = self._heights()
-        return float(alt if is_set else origin_alt)
+        return home_alt(self._autopilot)
 
     def ned(self, lat: int, lon: int, z: float, frame: int) -> Vector | None:
-        """NED [m] of a place [degE7, m in a MAV_FRAME]; None before there is an origin or off the globe.
-
-        Terrain frames count from home: the ground is flat.
-        """
-        is_set, lat0, lon0, _ = self._origin()
-        if not is_set or not (abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000 and math.isfinite(z)):
-            return None
-        n, e = offset_ne(lat0, lon0, lat, lon)
-        return self.over_origin(n, e, z if frame in FRAMES_AMSL else self.home_alt() + z)
+        """NED [m] of a place [degE7, m in a MAV_FRAME]; None before there is an origin or off the globe."""
+        return _vector(local_place(self._autopilot, lat, lon, z, frame))
 
     def over_origin(self, north: float, east: float, alt: float) -> Vector | None:
         """NED [m] of a point at ``alt`` [m above sea level]; None before there is an origin."""
-        is_set, _, _, origin_alt = self._origin()
-        return (north, east, origin_alt - alt) if is_set else None
+        return _vector(over_origin(self._autopilot.estimate, north, east, alt))
+
+
+def _vector(place: LocalPlace) -> Vector | None:
+    pos = place.pos
+    return (pos.x, pos.y, pos.z) if place.is_known else None

@@ -8,30 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ..autopilot.modes import Mode
 from ..vehicle.kinds import KINDS
 from .autopilot_api import Autopilot
+from .core_link import CoreUnits
 from .services.command import Entry
-from .wire.choose import Builder
 
 if TYPE_CHECKING:
     from .services.setpoints import SetpointService
-
-
-class Stick(NamedTuple):
-    """Where one axis of MANUAL_CONTROL goes."""
-
-    parameter: str
-    """RCMAP_ parameter that names the channel."""
-    channel: int
-    """The channel if that means none."""
-    axis: str
-    """Field of the message."""
-    lowest: int = -1000
-    """The field's value that means the channel's least pulse; 1000 means its greatest."""
-    is_reversed: bool = False
 
 
 @dataclass(frozen=True)
@@ -57,9 +43,8 @@ class Profile:
     set_points: type[SetpointService]
     texts: Mapping[int, tuple[int, str]]
     """Code of an event -> (severity, text with the event's numbers ``a`` and ``b``)."""
-    sticks: tuple[Stick, ...]
-    messages: tuple[Builder, ...]
-    """Laws that build the telemetry that only this firmware has, or has in its own way."""
+    core: CoreUnits
+    """Units that hear and tell clients, with what they can build and take."""
     autopilot: Callable[[Any], Autopilot]
     """The firmware's laws behind the services."""
 

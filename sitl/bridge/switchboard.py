@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import selectors
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from .channel import Channel
-from .frame import Frame
+from .channel import Channel, Ports
 from .links.link import Link, Peer
 
 
@@ -88,6 +87,7 @@ class Switchboard:
     ) -> None:
         self.links: list[Link] = []
         self.channels: list[Channel] = []
+        self.ports = Ports()
         self.dropped: list[str] = []
         """Why channels were lost or refused, for people."""
         self.taps: list[Tap] = []
@@ -108,6 +108,10 @@ class Switchboard:
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
             link.reattach(self._add_channel)
+
+    def is_watched(self) -> bool:
+        """Whether someone wants to see every frame."""
+        return bool(self.taps) or self.journal is not None
 
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
@@ -130,8 +134,9 @@ class Switchboard:
         is_new = peer not in self._kept
         number = self._kept.pop(peer, self._numbers)
         self._numbers = max(self._numbers, number + 1)
-        channel = Channel(peer, number, self._system())
+        channel = Channel(peer, number, self._system(), self.is_watched)
         self.channels.append(channel)
+        self.ports.arrange(self.channels)
         if self.journal is not None and is_new:
             self.journal.came(channel)
         self._added(channel)
@@ -139,6 +144,7 @@ class Switchboard:
     def _forget_closed(self) -> None:
         for channel in [c for c in self.channels if c.peer.closed]:
             self.channels.remove(channel)
+            self.ports.arrange(self.channels)
             if channel.peer.why_closed:
                 self.dropped.append(f"{channel.name}: {channel.peer.why_closed}")
             if self.journal is not None:
@@ -149,8 +155,8 @@ class Switchboard:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
         return bool(self._selector.select(seconds))
 
-    def receive(self) -> Iterator[tuple[Channel, list[Frame]]]:
-        """Read all links; channel by channel, the frames that came in."""
+    def read(self) -> None:
+        """Read all sockets."""
         if self._sockets:
             for key, _ in self._selector.select(0):
                 key.data()
@@ -158,21 +164,14 @@ class Switchboard:
                 if link.refusals:
                     self.dropped += link.refusals
                     link.refusals.clear()
-        heard = self.journal.heard if self.journal is not None else None
-        for channel in self.channels:
-            frames = channel.receive(heard)
-            for tap in self.taps:
-                for frame in frames:
-                    tap.frame(self._clock(), frame.raw)
-            yield channel, frames
-        if self.journal is not None:
-            self.journal.acted()
 
     def flush(self) -> None:
         """Hand everything queued to the links; notice who is gone."""
         closed = False
         for channel in self.channels:
             peer = channel.peer
+            if channel.port.out_count:
+                channel.collect()
             if self.taps and peer.outbox:
                 now = self._clock()
                 for tap in self.taps:

@@ -64,4 +64,4 @@ def describe(simulation: Simulation, factor: float) -> str:
 
 def clients(simulation: Simulation) -> int:
     """Number of clients that have sent messages."""
-    return sum(channel.statistics.received > 0 for channel in simulation.bridge.channels)
+    return sum(channel.port.received > 0 for channel in simulation.bridge.channels)

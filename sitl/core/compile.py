@@ -115,16 +115,16 @@ def _link(unit: Unit) -> None:
         name = symbol(unit, _records[fleet.dtype])
         return types.ExternalFunction(name, types.void(types.uintp, types.int64, types.int64, *integers))
 
-    # No annotations here: Numba compares these signatures with those of the lambdas.
-    def plain(fleet, index):  # type: ignore[no-untyped-def]
-        call = external(fleet)
-        return lambda fleet, index: call(fleet.ctypes.data, len(fleet), index)
-
-    def with_integer(fleet, index, n):  # type: ignore[no-untyped-def]
-        call = external(fleet)
-        return lambda fleet, index, n: call(fleet.ctypes.data, len(fleet), index, n)
-
-    overload(unit.function)(with_integer if unit.integers else plain)
+    # Numba compares the parameters of both functions, so they are written out for this number of integers.
+    more = "".join(f", n{k}" for k in range(unit.integers))
+    space: dict[str, Any] = {"external": external}
+    exec(
+        f"def called(fleet, index{more}):\n"
+        f"    call = external(fleet)\n"
+        f"    return lambda fleet, index{more}: call(fleet.ctypes.data, len(fleet), index{more})\n",
+        space,
+    )
+    overload(unit.function)(space["called"])
 
 
 def _body(unit: Unit) -> Any:

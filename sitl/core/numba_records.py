@@ -186,7 +186,7 @@ def _as_pointer(typing_context, address):  # type: ignore[no-untyped-def]
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], context.get_value_type(sig.return_type))
 
-    return types.CPointer(types.uint8)(types.int64), generate
+    return types.CPointer(types.uint8)(types.int64), generate  # type: ignore[attr-defined]
 
 
 # No annotations here: Numba compares these signatures with those of the functions.

@@ -57,6 +57,7 @@ class LocalPlant(Plant):
         self.engine: Engine | None = None
         if backend != NATIVE:
             self.engine = find(backend, craft.kind.name, craft.kind.engines)(self._seat())
+        self.runs_in_core = self.engine is None
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
         self._told = craft.reader.field("autopilot.events.count")

@@ -48,6 +48,8 @@ class Plant(ABC):
     """
 
     name: ClassVar[str] = ""
+    runs_in_core = False
+    """Whether physics and autopilot are one compiled piece, so that the core goes on by itself."""
     has_truth_in_record: ClassVar[bool] = True
     """Whether ``truth`` is what the record says (``sitl.physics.carried``)."""
 

@@ -57,7 +57,7 @@ class Recorder:
 
     def __init__(self, simulation: Simulation, path: str | Path | None = None, flush_us: int = CHECK_US) -> None:
         board = simulation.bridge.board
-        if simulation.time_us or any(channel.statistics.received for channel in board.channels):
+        if simulation.time_us or any(channel.port.received for channel in board.channels):
             raise RecordingError(f"a recording begins at power-on; {simulation.time_us * 1e-6:.3f} s have passed")
         if board.journal is not None:
             raise RecordingError("the simulation is being recorded already")

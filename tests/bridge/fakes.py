@@ -6,7 +6,7 @@ And a client that is pymavlink.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -17,6 +17,7 @@ from sitl.autopilot.mission.validate import check_all
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
+from sitl.bridge.wire.message import Message
 from sitl.core import rng
 from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
@@ -69,6 +70,17 @@ class FakeRover(FakeVehicle):
 
     firmware: Firmware = ROVER
     record: Any = Rover
+
+
+M = TypeVar("M", bound=Message)
+
+
+def filled(cls: type[M], **fields: Any) -> M:
+    """A message with these fields; the others are zero."""
+    message = cls()
+    for name, value in fields.items():
+        setattr(message, name, value)
+    return message
 
 
 class FakeAutopilot:

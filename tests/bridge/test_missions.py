@@ -245,7 +245,7 @@ def test_dronekit_goto(bench: Bench) -> None:
     bench.vehicle.v.autopilot.modes.number = 4
     (ack,) = bench.ask(goto, "MISSION_ACK")
     assert ack.type == ACCEPTED
-    name, place, _ = bench.autopilot.calls[-1]
+    name, place = bench.autopilot.calls[-1]
     assert name == "guided_position" and place == pytest.approx((11.1, 0.0, -7.0), abs=0.7)
 
 

@@ -10,7 +10,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.profile import Profile, load
-from sitl.bridge.telemetry.builder import messages
+from sitl.bridge.telemetry.builder import builders
 from sitl.bridge.wire.choose import message_of
 from sitl.vehicle.kinds import KINDS
 
@@ -27,7 +27,7 @@ def test_it_says_the_type_of_its_kind(name: str, profile: Profile) -> None:
 def test_streams(profile: Profile) -> None:
     sent = Counter(name for _, names in profile.groups.values() for name in names)
     assert sent and max(sent.values()) == 1, "a message has one group"
-    assert set(sent) <= {message_of(law).kind.name for law in messages(profile)}
+    assert set(sent) <= set(builders(profile))
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
@@ -43,6 +43,14 @@ def test_modes(name: str, profile: Profile) -> None:
     names = {mode.number: mode.name for mode in profile.modes}
     assert names == dict(KINDS[name].firmware.mode_names)
     assert [names[number] for number in (profile.auto, profile.guided, profile.rtl)] == ["AUTO", "GUIDED", "RTL"]
-    for stick in profile.sticks:
-        assert stick.parameter in KINDS[name].firmware.table
-        assert stick.axis in mavlink.MAVLink_manual_control_message.fieldnames
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
+def test_messages_that_laws_take(profile: Profile) -> None:
+    assert {message_of(law).kind.name for law in profile.takes} == {
+        "SET_POSITION_TARGET_LOCAL_NED",
+        "SET_POSITION_TARGET_GLOBAL_INT",
+        "SET_ATTITUDE_TARGET",
+        "RC_CHANNELS_OVERRIDE",
+        "MANUAL_CONTROL",
+    }

@@ -1,139 +1,191 @@
 # SPDX-License-Identifier: BSD-3-Clause
+"""What the copter makes of set-points."""
+
 from __future__ import annotations
 
 import math
 from typing import Any
 
 import pytest
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from tests.bridge.fakes import HOME, Bench
+from sitl.autopilot.copter.modes import auto_yaw
+from sitl.autopilot.copter.modes.guided import ACCEL, ANGLE, GUIDED, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
+from sitl.bridge.copter.setpoints import attitude_target, position_target_global, position_target_local
+from sitl.bridge.services.setpoints import SetAttitudeTarget, SetPositionTargetGlobalInt, SetPositionTargetLocalNed
+from sitl.vehicle.copter import Copter
+from tests.bridge.fakes import HOME, FakeVehicle, filled
 
-POSITION, VELOCITY, ACCELERATION, POS_VEL = 0xDF8, 0xDC7, 0xC3F, 0xDC0
+ONLY_POSITION, ONLY_VELOCITY, ONLY_ACCELERATION, POS_VEL = 0xDF8, 0xDC7, 0xC3F, 0xDC0
+VELOCITY_AND_YAW, VELOCITY_AND_RATE = 0x9C7, 0x5C7
+NOW = 5_000_000
+ZERO = (0.0, 0.0, 0.0)
+NAN3 = (math.nan,) * 3
 
 
 @pytest.fixture
-def guided(bench: Bench) -> Bench:
-    bench.vehicle.locate()
-    bench.vehicle.v.autopilot.modes.number = 4
-    estimate = bench.vehicle.v.autopilot.estimate
-    estimate.euler, estimate.pos = (0.0, 0.0, math.pi / 2), (100.0, 200.0, -10.0)
-    return bench
+def v() -> Copter:
+    """In GUIDED, 100 m north, 200 m east and 10 m above the origin, facing east."""
+    vehicle = FakeVehicle()
+    vehicle.locate()
+    copter: Copter = vehicle.v
+    copter.time_us = NOW
+    copter.autopilot.modes.number = GUIDED
+    copter.autopilot.estimate.euler = (0.0, 0.0, math.pi / 2)
+    copter.autopilot.estimate.pos = (100.0, 200.0, -10.0)
+    return copter
 
 
-def local(
-    mask: int,
-    frame: int = 1,
-    p: Any = (1, 2, -3),
-    v: Any = (4, 5, 6),
-    a: Any = (7, 8, 9),
-    yaw: Any = (0.5, 0.25),
-) -> Any:
-    return mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, frame, mask, *p, *v, *a, *yaw)
+def local(mask: int, frame: int = 1, p: Any = (1, 2, -3), vel: Any = (4, 5, 6), a: Any = (7, 8, 9), **more: Any) -> Any:
+    numbers = dict(zip(("x", "y", "z", "vx", "vy", "vz", "afx", "afy", "afz"), (*p, *vel, *a), strict=True))
+    fields = {"yaw": 0.5, "yaw_rate": 0.25, **numbers, **more}
+    return filled(SetPositionTargetLocalNed, coordinate_frame=frame, type_mask=mask, **fields)
 
 
-def call(bench: Bench, message: Any) -> tuple[Any, ...]:
-    """What the autopilot was asked to do by one set-point."""
-    bench.autopilot.calls.clear()
-    assert bench.ask(message) == []
-    assert len(bench.autopilot.calls) <= 1
-    return tuple(bench.autopilot.calls[0]) if bench.autopilot.calls else ()
+def place(frame: int, lat: int, alt: float, mask: int = ONLY_POSITION, lon: int = HOME[1]) -> Any:
+    fields = {"lat_int": lat, "lon_int": lon, "alt": alt}
+    return filled(SetPositionTargetGlobalInt, coordinate_frame=frame, type_mask=mask, **fields)
 
 
-def test_kinds(guided: Bench) -> None:
-    no_yaw = (False, 0.0, False, 0.0, False)
-    assert call(guided, local(POSITION)) == ("guided_position", (1, 2, -3), no_yaw)
-    assert call(guided, local(VELOCITY)) == ("guided_velocity", (4, 5, 6), (0, 0, 0), no_yaw)
-    assert call(guided, local(0xC07)) == ("guided_velocity", (4, 5, 6), (7, 8, 9), no_yaw)
-    assert call(guided, local(POS_VEL)) == (
-        "guided_position_velocity",
-        (1, 2, -3),
-        (4, 5, 6),
-        (0, 0, 0),
-        no_yaw,
-    )
-    assert call(guided, local(0xC00)) == (
-        "guided_position_velocity",
-        (1, 2, -3),
-        (4, 5, 6),
-        (7, 8, 9),
-        no_yaw,
-    )
-    assert call(guided, local(ACCELERATION)) == ("guided_acceleration", (7, 8, 9), no_yaw)
+def attitude(mask: int, q: Any = (2, 0, 0, 0), thrust: float = 0.5) -> Any:
+    rates = {"body_roll_rate": 0.1, "body_pitch_rate": 0.2, "body_yaw_rate": 0.3}
+    return filled(SetAttitudeTarget, type_mask=mask, q=q, thrust=thrust, **rates)
 
 
-def test_mavsdk_masks(guided: Bench) -> None:
-    assert call(guided, local(2503)) == (
-        "guided_velocity",
-        (4, 5, 6),
-        (0, 0, 0),
-        (True, 0.5, False, 0.25, False),
-    )
-    assert call(guided, local(2552))[0] == "guided_position"
-    name, velocity, _, yaw = call(guided, local(1479, frame=8))
-    assert name == "guided_velocity" and velocity == pytest.approx((-5.0, 4.0, 6.0))
-    assert yaw == (False, 0.5, True, 0.25, True)
+LAWS: dict[type, Any] = {
+    SetPositionTargetLocalNed: position_target_local,
+    SetPositionTargetGlobalInt: position_target_global,
+    SetAttitudeTarget: attitude_target,
+}
 
 
-@pytest.mark.parametrize(("frame", "place"), [
-    (1, (1, 2, -3)), (7, (101, 202, -13)), (8, (98, 201, -13)), (9, (98, 201, -13))
+def is_taken(v: Copter, message: Any) -> bool:
+    """Whether the vehicle's record is another one afterwards."""
+    before = bytes(v._bytes)
+    LAWS[type(message)](message, v, 255)
+    return bytes(v._bytes) != before
+
+
+def flown(v: Copter, message: Any) -> tuple[Any, ...]:
+    """(submode, position, velocity, acceleration) of GUIDED after a set-point."""
+    assert is_taken(v, message)
+    guided = v.autopilot.modes.guided
+    assert guided.update_us == NOW
+    return (guided.submode, tuple(guided.pos), tuple(guided.vel), tuple(guided.acc))
+
+
+@pytest.mark.parametrize(("mask", "submode", "pos", "vel", "acc"), [
+    (ONLY_POSITION, POSITION, (1, 2, -3), ZERO, ZERO),
+    (ONLY_VELOCITY, VELOCITY_ACCEL, ZERO, (4, 5, 6), ZERO),
+    (0xC07, VELOCITY_ACCEL, ZERO, (4, 5, 6), (7, 8, 9)),
+    (POS_VEL, POS_VEL_ACCEL, (1, 2, -3), (4, 5, 6), ZERO),
+    (0xC00, POS_VEL_ACCEL, (1, 2, -3), (4, 5, 6), (7, 8, 9)),
+    (ONLY_ACCELERATION, ACCEL, ZERO, ZERO, (7, 8, 9)),
+    (0xDF9, VELOCITY_ACCEL, ZERO, ZERO, ZERO),  # one ignored component ignores all three: nothing is left
 ])  # fmt: skip
-def test_local_frames(guided: Bench, frame: int, place: tuple[float, ...]) -> None:
-    assert call(guided, local(POSITION, frame))[1] == pytest.approx(place)
+def test_kinds(v: Copter, mask: int, submode: int, pos: Any, vel: Any, acc: Any) -> None:
+    assert flown(v, local(mask)) == (submode, pos, vel, acc)
+
+
+@pytest.mark.parametrize(("mask", "mode", "yaw", "rate"), [
+    (VELOCITY_AND_YAW, auto_yaw.ANGLE_RATE, 0.5, 0.0),
+    (0x1C7, auto_yaw.ANGLE_RATE, 0.5, 0.25),
+])  # fmt: skip
+def test_yaws(v: Copter, mask: int, mode: int, yaw: float, rate: float) -> None:
+    flown(v, local(mask))
+    heading = v.autopilot.modes.auto_yaw
+    assert (heading.mode, heading.yaw, heading.rate) == (mode, yaw, rate)
+
+
+def test_a_yaw_rate_alone(v: Copter) -> None:
+    flown(v, local(VELOCITY_AND_RATE))
+    assert (v.autopilot.modes.auto_yaw.mode, v.autopilot.modes.auto_yaw.rate) == (auto_yaw.RATE, 0.25)
+
+
+@pytest.mark.parametrize("frame", [8, 9])
+def test_yaws_of_body_frames_count_from_the_nose(v: Copter, frame: int) -> None:
+    v.autopilot.control.attitude.target_euler = (0.0, 0.0, 1.5)
+    flown(v, local(VELOCITY_AND_YAW, frame))
+    heading = v.autopilot.modes.auto_yaw
+    assert (heading.mode, heading.yaw, heading.offset) == (auto_yaw.FIXED, 1.5, 0.5)
+
+
+@pytest.mark.parametrize(("frame", "pos", "vel"), [
+    (1, (1, 2, -3), (4, 5, 6)),
+    (7, (101, 202, -13), (4, 5, 6)),
+    (8, (98, 201, -13), (-5, 4, 6)),
+    (9, (98, 201, -13), (-5, 4, 6)),
+])  # fmt: skip
+def test_local_frames(v: Copter, frame: int, pos: Any, vel: Any) -> None:
+    target = flown(v, local(0xC00, frame, a=(-5, 4, 3)))
+    assert target[1] == pytest.approx(pos) and target[2] == pytest.approx(vel)
+    assert target[3] == pytest.approx((-5, 4, 3) if frame in (1, 7) else (-4, -5, 3))
 
 
 @pytest.mark.parametrize("message", [
-    local(POSITION, frame=0), local(POSITION, frame=12), local(0xFFF), local(0xC38),
-    local(VELOCITY, v=(math.nan, 0, 0)), local(POSITION, p=(0, math.inf, 0)), local(2503, yaw=(math.nan, 0)),
+    local(ONLY_POSITION, frame=0), local(ONLY_POSITION, frame=12), local(0xFFF), local(0xC38),
+    local(ONLY_VELOCITY, vel=(math.nan, 0, 0)), local(ONLY_POSITION, p=(0, math.inf, 0)),
+    local(POS_VEL, p=(0, math.inf, 0), vel=(0, -math.inf, 0)), local(VELOCITY_AND_YAW, yaw=math.nan),
+    local(VELOCITY_AND_RATE, yaw_rate=-math.inf),
+    place(1, HOME[0], 10.0), place(6, HOME[0], math.nan), place(6, HOME[0], math.inf),
 ])  # fmt: skip
-def test_what_cannot_be_flown_stops(guided: Bench, message: Any) -> None:
-    assert call(guided, message) == ("guided_stop",)
+def test_what_cannot_be_flown_stops(v: Copter, message: Any) -> None:
+    assert flown(v, message) == (VELOCITY_ACCEL, ZERO, ZERO, ZERO)
 
 
-def test_numbers_that_are_ignored_may_be_anything(guided: Bench) -> None:
-    bad = (math.nan,) * 3
-    assert call(guided, local(POSITION, v=bad, a=bad, yaw=bad[:2]))[0] == "guided_position"
+@pytest.mark.parametrize("message", [
+    local(ONLY_ACCELERATION | 0x200),  # a force is not an acceleration
+    local(ONLY_ACCELERATION | 0x200, a=NAN3),
+    local(ONLY_POSITION, p=(2e7, 0, 0)),  # too far for the firmware
+    place(6, 2_000_000_000, 10.0), place(6, HOME[0], 10.0, lon=1_800_000_001),
+    attitude(7 | 64), attitude(0, (0, 0, 0, 0)), attitude(0, (1e-4, 0, 0, 0)), attitude(0, (math.nan, 0, 0, 0)),
+    attitude(0, (math.inf, 0, 0, 0)), attitude(7, thrust=math.inf), attitude(7, thrust=math.nan),
+])  # fmt: skip
+def test_what_is_ignored(v: Copter, message: Any) -> None:
+    assert not is_taken(v, message)
 
 
-def test_a_force_is_not_flown(guided: Bench) -> None:
-    assert call(guided, local(ACCELERATION | 0x200)) == ()
+def test_numbers_that_the_mask_ignores_may_be_anything(v: Copter) -> None:
+    bad = {"vel": NAN3, "a": NAN3, "yaw": math.nan, "yaw_rate": math.inf}
+    assert flown(v, local(ONLY_POSITION, **bad))[:2] == (POSITION, (1, 2, -3))
+    assert flown(v, local(ONLY_VELOCITY, 9, p=NAN3, a=NAN3))[3] == ZERO
 
 
 @pytest.mark.parametrize("mode", [0, 3, 5, 6, 9])
-def test_other_modes_ignore_set_points(guided: Bench, mode: int) -> None:
-    guided.vehicle.v.autopilot.modes.number = mode
-    assert call(guided, local(POSITION)) == ()
-    assert call(guided, mavlink.MAVLink_set_attitude_target_message(0, 1, 1, 0, [1, 0, 0, 0], 0, 0, 0, 0.5)) == ()
+@pytest.mark.parametrize("message", [
+    local(ONLY_POSITION), local(ONLY_POSITION, frame=0), place(3, HOME[0], 10.0), place(1, HOME[0], 10.0), attitude(0),
+], ids=["local", "no frame", "global", "no global frame", "attitude"])  # fmt: skip
+def test_other_modes_ignore_set_points(v: Copter, mode: int, message: Any) -> None:
+    v.autopilot.modes.number = mode
+    assert not is_taken(v, message)
 
 
 @pytest.mark.parametrize(("frame", "z"), [(0, 594.0), (5, 594.0), (3, 10.0), (6, 10.0), (10, 10.0), (11, 10.0)])
-def test_global_frames(guided: Bench, frame: int, z: float) -> None:
-    message = mavlink.MAVLink_set_position_target_global_int_message(
-        0, 1, 1, frame, POSITION, HOME[0] + 1000, HOME[1], z, 0, 0, 0, 0, 0, 0, 0, 0
-    )
-    name, place, _ = call(guided, message)
-    assert name == "guided_position" and place == pytest.approx((11.132, 0.0, -10.0), abs=0.01)
+def test_global_frames(v: Copter, frame: int, z: float) -> None:
+    submode, pos, _, _ = flown(v, place(frame, HOME[0] + 1000, z))
+    assert submode == POSITION and pos == pytest.approx((11.132, 0.0, -10.0), abs=0.01)
 
 
-def test_global_places_that_do_not_exist(guided: Bench) -> None:
-    def at(frame: int, lat: int, alt: float) -> Any:
-        return mavlink.MAVLink_set_position_target_global_int_message(
-            0, 1, 1, frame, POSITION, lat, HOME[1], alt, 0, 0, 0, 0, 0, 0, 0, 0
-        )
-
-    assert call(guided, at(1, HOME[0], 10.0)) == ("guided_stop",)
-    assert call(guided, at(6, HOME[0], math.nan)) == ("guided_stop",)
-    assert call(guided, at(6, 2_000_000_000, 10.0)) == ()
+def test_heights_count_from_home_else_from_the_origin(v: Copter) -> None:
+    v.autopilot.home.alt = HOME[2] - 4.0
+    assert flown(v, place(3, HOME[0], 10.0))[1][2] == pytest.approx(-6.0)
+    v.autopilot.home.is_set = False
+    assert flown(v, place(3, HOME[0], 10.0))[1][2] == pytest.approx(-10.0)
 
 
-def test_attitude(guided: Bench) -> None:
-    def target(mask: int, q: Any = (2, 0, 0, 0), thrust: float = 0.5) -> Any:
-        return mavlink.MAVLink_set_attitude_target_message(0, 1, 1, mask, list(q), 0.1, 0.2, 0.3, thrust)
+def test_without_an_origin_only_velocities_are_flown(v: Copter) -> None:
+    v.autopilot.estimate.origin_set = False
+    assert not is_taken(v, place(3, HOME[0], 10.0))
+    message = filled(SetPositionTargetGlobalInt, coordinate_frame=3, type_mask=ONLY_VELOCITY, alt=math.nan, vx=1.0)
+    assert flown(v, message) == (VELOCITY_ACCEL, ZERO, (1.0, 0.0, 0.0), ZERO)
 
-    name, q, rates, thrust = call(guided, target(7))
-    assert (name, q, rates, thrust) == ("guided_attitude", (1, 0, 0, 0), (0, 0, 0), 0.5)
-    name, q, rates, _ = call(guided, target(128))
-    assert q is None and rates == pytest.approx((0.1, 0.2, 0.3))
-    assert call(guided, target(7 | 64)) == ()
-    for bad in (target(0, (0, 0, 0, 0)), target(0, (math.nan, 0, 0, 0)), target(7, thrust=math.inf)):
-        assert call(guided, bad) == ()
+
+@pytest.mark.parametrize(("mask", "q", "rates"), [
+    (7, (1, 0, 0, 0), ZERO), (128, None, (0.1, 0.2, 0.3)), (2, (1, 0, 0, 0), (0.1, 0.0, 0.3)),
+])  # fmt: skip
+def test_attitude(v: Copter, mask: int, q: Any, rates: Any) -> None:
+    assert flown(v, attitude(mask))[0] == ANGLE
+    target = v.autopilot.modes.guided
+    assert target.use_attitude == (q is not None) and target.thrust == 0.5
+    assert tuple(target.rates) == pytest.approx(rates)
+    if q is not None:
+        assert tuple(target.q) == q, "of length 1"

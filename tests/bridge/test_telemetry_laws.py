@@ -15,7 +15,7 @@ from sitl.bridge.copter import telemetry as copter
 from sitl.bridge.dialect import message
 from sitl.bridge.profile import load
 from sitl.bridge.rover import telemetry as rover
-from sitl.bridge.telemetry import build, builder, messages, register_message
+from sitl.bridge.telemetry import build, builder, register_message
 from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
 from sitl.bridge.telemetry.ranging import PART, scan
 from sitl.bridge.telemetry.sensors import simstate
@@ -151,23 +151,31 @@ def test_the_shell_asks_physics_that_is_elsewhere() -> None:
     assert (m.xgyro, m.lat, m.lng) == (0.25, 7, 8)
 
 
+@law
+def always_level(m: Attitude, v: Vehicle) -> bool:
+    """ATTITUDE: always level."""
+    return v.time_us > 0
+
+
 @pytest.fixture
 def registered() -> Iterator[Any]:
-    @law
-    def level(m: Attitude, v: Vehicle) -> bool:
-        """ATTITUDE: always level."""
-        return v.time_us > 0
-
-    yield register_message(level)
+    yield register_message(always_level)
     del builder._registered[Attitude.kind.id]
 
 
 def test_a_registered_law_comes_before_others(registered: Any, v: Copter) -> None:
-    laws = messages(load("copter"))
-    assert registered in laws and attitude not in laws
+    bridge: Any = SimpleNamespace(vehicle=SimpleNamespace(v=v, has_truth_in_record=True), profile=load("copter"))
+    made = builder.shell_messages(bridge)
+    assert Attitude.kind.decode(made[Attitude.kind.id]()).roll == 0.0
+    v.time_us = 0
+    assert made[Attitude.kind.id]() == b""
+
+
+def test_a_firmwares_own_laws_come_before_shared_ones() -> None:
+    laws = builder.compiled((copter.heartbeat, always_level))
+    assert always_level in laws and attitude not in laws
     numbers = [message_of(law).kind.id for law in laws]
     assert numbers == sorted(set(numbers))
-    assert says(registered, v).roll == 0.0 and says(registered, Copter()) is None
 
 
 def test_what_builds_no_message_is_refused() -> None:

@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, table
-from ...autopilot.copter.modes.guided_setpoints import YawSetpoint
+from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.mission.notes import Text
-from ...core.algebra import IDENTITY
-from ...core.vectors import Quat, Vec3
-from ..autopilot_api import NO_YAW, Note, Vector, Yaw
+from ...core.vectors import Vec3
+from ..autopilot_api import Note, Vector
 from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
 
@@ -30,7 +29,7 @@ class CopterAutopilot(BaseAutopilot):
     def start_mission(self) -> bool:
         if not super().start_mission():
             return False
-        auto.start_mission(self._v.autopilot)
+        auto.start_mission(self._v.autopilot.modes.auto, self._v.autopilot.arming)
         return True
 
     # ------------------------------------------------------------------ take-off and motors
@@ -64,25 +63,8 @@ class CopterAutopilot(BaseAutopilot):
 
     # ------------------------------------------------------------------ GUIDED
 
-    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
-        return int(guided_setpoints.set_position(self._v, Vec3(*place), _laws_yaw(yaw))) == 0
-
-    def guided_position_velocity(self, pos: Vector, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
-        motion = (Vec3(*pos), Vec3(*vel), Vec3(*acc))
-        return int(guided_setpoints.set_pos_vel_accel(self._v, *motion, _laws_yaw(yaw))) == 0
-
-    def guided_velocity(self, vel: Vector, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided_setpoints.set_velocity(self._v, Vec3(*vel), Vec3(*acc), _laws_yaw(yaw))) == 0
-
-    def guided_acceleration(self, acc: Vector, yaw: Yaw) -> bool:
-        return int(guided_setpoints.set_accel(self._v, Vec3(*acc), _laws_yaw(yaw))) == 0
-
-    def guided_attitude(self, q: tuple[float, ...] | None, rates: Vector, thrust: float) -> bool:
-        attitude = IDENTITY if q is None else Quat(*q)
-        return int(guided_setpoints.set_attitude(self._v, q is not None, attitude, Vec3(*rates), thrust)) == 0
-
-    def guided_stop(self) -> bool:
-        return int(guided_setpoints.stop(self._v)) == 0
+    def guided_position(self, place: Vector) -> bool:
+        return int(guided_setpoints.set_position(self._v, Vec3(*place), guided_setpoints.NO_YAW)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
         kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
@@ -90,24 +72,17 @@ class CopterAutopilot(BaseAutopilot):
             return False
         if self.mode() == auto.AUTO:
             return bool(self._sequencer().change_speed(self._v, kind, speed))
-        return int(commands.change_speed(self._v.autopilot, kinds[kind], speed)) == 0
+        ap = self._v.autopilot
+        return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
-        return int(commands.condition_yaw(self._v.autopilot, angle, rate, direction, relative)) == 0
+        return commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:
-        return int(commands.set_paused(self._v.autopilot, on)) == 0
+        return commands.set_paused(self._v.autopilot.modes, on) == 0
 
     def set_roi(self, place: Vector | None) -> None:
         if place is None:
             commands.clear_roi(self._v.autopilot)
         else:
             commands.set_roi(self._v.autopilot, Vec3(*place))
-
-
-def _laws_yaw(yaw: Yaw | None) -> YawSetpoint:
-    """Yaw argument of the GUIDED laws: a field that is not used must still be a number."""
-    if yaw is None or yaw is NO_YAW:
-        return guided_setpoints.NO_YAW
-    use_yaw, angle, use_rate, rate, relative = yaw
-    return YawSetpoint(use_yaw, angle if use_yaw else 0.0, use_rate, rate if use_rate else 0.0, relative)

@@ -9,12 +9,12 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ...vehicle.copter import QUADROTOR
-from ..profile import Profile, Stick
+from ..profile import Profile
 from ..services.service import CRITICAL, INFO
 from ..telemetry.shell import CAPABILITIES, TERMINATION
-from . import telemetry
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
+from .core import UNITS
 from .setpoints import CopterSetpoints
 
 PROFILE = Profile(
@@ -47,12 +47,6 @@ PROFILE = Profile(
         events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
         events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
     },
-    sticks=(
-        Stick("RCMAP_ROLL", 1, "y"),
-        Stick("RCMAP_PITCH", 2, "x", is_reversed=True),
-        Stick("RCMAP_THROTTLE", 3, "z", lowest=0),
-        Stick("RCMAP_YAW", 4, "r"),
-    ),
-    messages=telemetry.MESSAGES,
+    core=UNITS,
     autopilot=CopterAutopilot,
 )  # fmt: skip

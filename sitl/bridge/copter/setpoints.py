@@ -6,96 +6,128 @@ A combination, frame or number that cannot be flown stops the vehicle where it i
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
+from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.guided_setpoints import (
+    NO_YAW,
+    YawSetpoint,
+    set_accel,
+    set_attitude,
+    set_pos_vel_accel,
+    set_position,
+    set_velocity,
+    stop,
+)
 from ...autopilot.mission.item import MissionItem
-from ..autopilot_api import NO_YAW, Vector, Yaw
-from ..channel import Channel
+from ...core.algebra import IDENTITY
+from ...core.kernels import law
+from ...core.scalars import finite
+from ...core.vectors import Vec3
+from ...vehicle.copter import Copter
+from ..places import local_place
 from ..services.command import GLOBAL_FRAMES
-from ..services.service import Sender
 from ..services.setpoints import (
     ATTITUDE_IGNORED,
     BODY_YAW_RATE_IGNORED,
     FORCE,
+    LOCAL_FRAMES,
     PITCH_RATE_IGNORED,
+    POSITION_IGNORED,
     ROLL_RATE_IGNORED,
     THRUST_IGNORED,
-    YAW_IGNORED,
-    YAW_RATE_IGNORED,
-    YAWS_IGNORED,
+    SetAttitudeTarget,
     SetpointService,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
+    Target,
+    global_target,
+    local_target,
+    rotation,
 )
 
-if TYPE_CHECKING:
-    from .autopilot import CopterAutopilot
 
-ZERO: Vector = (0.0, 0.0, 0.0)
+@law
+def position_target_local(m: SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
+    """Fly to a place, with a velocity or an acceleration, in a local frame."""
+    if v.autopilot.modes.number != GUIDED:
+        return
+    if m.coordinate_frame not in LOCAL_FRAMES:
+        stop(v)
+        return
+    follow(v, local_target(m, v.autopilot.estimate), (m.type_mask & FORCE) != 0)
+
+
+@law
+def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
+    """The same with a place on the globe; one that is not there is ignored."""
+    if v.autopilot.modes.number != GUIDED:
+        return
+    frame, use_pos = m.coordinate_frame, (m.type_mask & POSITION_IGNORED) == 0
+    if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt)):
+        stop(v)
+        return
+    place = local_place(v.autopilot, m.lat_int, m.lon_int, m.alt, frame)
+    if place.is_known or not use_pos:
+        follow(v, global_target(m, place.pos), (m.type_mask & FORCE) != 0)
+
+
+@law
+def follow(v: Copter, target: Target, is_force: bool) -> None:
+    """Fly what a target asks for; ``is_force``: its acceleration is a force, which is left alone."""
+    if is_force and target.use_acc:
+        return
+    yaw = NO_YAW
+    if target.use_yaw or target.use_yaw_rate:
+        yaw = YawSetpoint(target.use_yaw, target.yaw, target.use_yaw_rate, target.yaw_rate, target.relative_yaw)
+    if not is_finite(target):
+        stop(v)
+    elif target.use_vel and target.use_pos:
+        set_pos_vel_accel(v, target.pos, target.vel, target.acc, yaw)
+    elif target.use_vel:
+        set_velocity(v, target.vel, target.acc, yaw)
+    elif target.use_acc and not target.use_pos:
+        set_accel(v, target.acc, yaw)
+    elif target.use_pos and not target.use_acc:
+        set_position(v, target.pos, yaw)
+    else:
+        stop(v)
+
+
+@law
+def is_finite(target: Target) -> bool:
+    """Whether all numbers that are asked for are."""
+    numbers = target.pos + target.vel + target.acc
+    return finite(numbers.x + numbers.y + numbers.z + target.yaw + target.yaw_rate)
+
+
+@law
+def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
+    """Fly an attitude, or body rates."""
+    mask = m.type_mask
+    if v.autopilot.modes.number != GUIDED or (mask & THRUST_IGNORED) != 0:
+        return
+    rates = Vec3(
+        0.0 if (mask & ROLL_RATE_IGNORED) != 0 else m.body_roll_rate,
+        0.0 if (mask & PITCH_RATE_IGNORED) != 0 else m.body_pitch_rate,
+        0.0 if (mask & BODY_YAW_RATE_IGNORED) != 0 else m.body_yaw_rate,
+    )
+    use_attitude = (mask & ATTITUDE_IGNORED) == 0
+    given = rotation(m.q)
+    if use_attitude and not given.is_given:
+        return
+    if finite(rates.x + rates.y + rates.z + m.thrust):
+        set_attitude(v, use_attitude, given.q if use_attitude else IDENTITY, rates, m.thrust)
 
 
 class CopterSetpoints(SetpointService):
-    """Set-points for GUIDED, and mission items with ``current`` 2 or 3."""
+    """Mission items with ``current`` 2 or 3."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._copter = cast("CopterAutopilot", bridge.autopilot)
-
-    def _unknown_frame(self) -> None:
-        self.bridge.autopilot.guided_stop()
-
-    def _place(self, m: Any) -> Vector | None:
-        if m.coordinate_frame not in GLOBAL_FRAMES or not math.isfinite(m.alt):
-            self.bridge.autopilot.guided_stop()
-            return None
-        return self.bridge.places.ned(m.lat_int, m.lon_int, m.alt, m.coordinate_frame)
-
-    def _set(self, m: Any, pos: Vector | None, vel: Vector | None, acc: Vector | None, body: bool) -> None:
-        autopilot, mask = self._copter, m.type_mask
-        yaw = NO_YAW
-        if mask & YAWS_IGNORED != YAWS_IGNORED:
-            yaw = Yaw(not mask & YAW_IGNORED, m.yaw, not mask & YAW_RATE_IGNORED, m.yaw_rate, body)
-        total = (yaw.yaw if yaw.use_yaw else 0.0) + (yaw.rate if yaw.use_rate else 0.0)
-        for vector in (pos, vel, acc):
-            if vector is not None:
-                total += vector[0] + vector[1] + vector[2]
-        if mask & FORCE and acc is not None:
-            return  # a force is not an acceleration
-        if not math.isfinite(total):
-            autopilot.guided_stop()
-        elif vel is not None:
-            if pos is not None:
-                autopilot.guided_position_velocity(pos, vel, acc or ZERO, yaw)
-            else:
-                autopilot.guided_velocity(vel, acc or ZERO, yaw)
-        elif acc is not None:
-            if pos is None:
-                autopilot.guided_acceleration(acc, yaw)
-            else:
-                autopilot.guided_stop()
-        elif pos is not None:
-            autopilot.guided_position(pos, yaw)
-        else:
-            autopilot.guided_stop()
-
-    def _attitude(self, channel: Channel, m: Any, sender: Sender) -> None:
-        mask = m.type_mask
-        if not self._listens() or mask & THRUST_IGNORED:
-            return
-        rates = (
-            0.0 if mask & ROLL_RATE_IGNORED else m.body_roll_rate,
-            0.0 if mask & PITCH_RATE_IGNORED else m.body_pitch_rate,
-            0.0 if mask & BODY_YAW_RATE_IGNORED else m.body_yaw_rate,
-        )
-        q: tuple[float, ...] | None = None
-        if not mask & ATTITUDE_IGNORED:
-            norm = math.sqrt(sum(x * x for x in m.q))
-            if not (math.isfinite(norm) and norm > 1e-3):
-                return  # not a rotation
-            q = tuple(x / norm for x in m.q)
-        if math.isfinite(sum(rates) + m.thrust):
-            self._copter.guided_attitude(q, rates, m.thrust)
+        self._pos = bridge.reader.fields("autopilot.estimate.pos")
 
     def _height_target(self, item: MissionItem) -> bool:
-        _, _, _, n, e, _ = self._pose()
-        place = self.bridge.places.over_origin(n, e, self._height(item))
-        return place is not None and self.bridge.autopilot.guided_position(place, None)
+        north, east, _ = self._pos()
+        place = self.bridge.places.over_origin(north, east, self._height(item))
+        return place is not None and self.bridge.autopilot.guided_position(place)

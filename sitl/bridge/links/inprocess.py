@@ -17,6 +17,7 @@ class _VehicleEnd(Peer):
         super().__init__(name)
         self.drop = drop
         self.sent: list[bytes] = []
+        self.joins_frames = self.waits = drop is None
 
     def flush(self) -> None:
         if self.outbox:

@@ -12,6 +12,11 @@ Selector = selectors.BaseSelector
 class Peer:
     """One client at the other end of a link: a TCP connection, a UDP address, the other half of a pair."""
 
+    joins_frames = False
+    """Whether frames of the same time may be queued as one piece of bytes."""
+    waits = False
+    """Whether frames may be queued at any later time: nothing that the peer does depends on when they are."""
+
     def __init__(self, name: str) -> None:
         self.name = name
         self.closed = False

@@ -38,6 +38,8 @@ def _reserve() -> int:
 
 
 class _TcpPeer(Peer):
+    joins_frames = True
+
     def __init__(self, name: str, sock: socket.socket, link: TcpServerLink) -> None:
         super().__init__(name)
         self._socket = sock

@@ -8,11 +8,11 @@ from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES
 from ...vehicle.rover import GROUND_ROVER
-from ..profile import Profile, Stick
+from ..profile import Profile
 from ..telemetry.shell import CAPABILITIES
-from . import telemetry
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
+from .core import UNITS
 from .setpoints import RoverSetpoints
 
 PROFILE = Profile(
@@ -43,7 +43,6 @@ PROFILE = Profile(
     commands=COMMANDS,
     set_points=RoverSetpoints,
     texts={},
-    sticks=(Stick("RCMAP_ROLL", 1, "y"), Stick("RCMAP_THROTTLE", 3, "z")),
-    messages=telemetry.MESSAGES,
+    core=UNITS,
     autopilot=RoverAutopilot,
 )  # fmt: skip

@@ -11,105 +11,134 @@ number that is not finite stops the vehicle.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
+from ...autopilot.events import SETPOINT_IGNORED, emit
 from ...autopilot.mission.item import MissionItem
-from ...core.algebra import euler_of
-from ...core.vectors import Quat
-from ..autopilot_api import Vector
-from ..channel import Channel
+from ...autopilot.rover.modes.guided_setpoints import (
+    is_open,
+    set_heading_and_speed,
+    set_position,
+    set_turn_rate_and_speed,
+    stop,
+)
+from ...core.algebra import euler_of, horizontal
+from ...core.kernels import law
+from ...core.scalars import constrain, finite, hypotenuse
+from ...core.vectors import Vec3
+from ...vehicle.rover import Rover
+from ..places import local_place
 from ..services.command import GLOBAL, GLOBAL_FRAMES
-from ..services.service import INFO, Sender
 from ..services.setpoints import (
     BODY_YAW_RATE_IGNORED,
+    LOCAL_FRAMES,
+    POSITION_IGNORED,
     THRUST_IGNORED,
-    YAW_IGNORED,
-    YAW_RATE_IGNORED,
+    SetAttitudeTarget,
     SetpointService,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
+    Target,
+    global_target,
+    local_target,
+    rotation,
 )
-from ..services.statustext import StatusTextService
 
 if TYPE_CHECKING:
     from .autopilot import RoverAutopilot
 
+LOCAL_NUMBER, GLOBAL_NUMBER = SetPositionTargetLocalNed.kind.id, SetPositionTargetGlobalInt.kind.id
+
+
+@law
+def position_target_local(m: SetPositionTargetLocalNed, v: Rover, sender: int) -> None:
+    """Drive to a place or with a velocity in a local frame."""
+    estimate = v.autopilot.estimate
+    if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in LOCAL_FRAMES:
+        follow(v, local_target(m, estimate), m.vx < 0.0, LOCAL_NUMBER)
+
+
+@law
+def position_target_global(m: SetPositionTargetGlobalInt, v: Rover, sender: int) -> None:
+    """The same with a place on the globe, whose height means nothing."""
+    if m.coordinate_frame not in GLOBAL_FRAMES or not is_open(v.autopilot.modes):
+        return
+    place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, GLOBAL)
+    if place.is_known or (m.type_mask & POSITION_IGNORED) != 0:
+        follow(v, global_target(m, place.pos), m.vx < 0.0, GLOBAL_NUMBER)
+
+
+@law
+def follow(v: Rover, target: Target, backward: bool, message: int) -> None:
+    """Drive what a target asks for.
+
+    Args:
+        v: the vehicle.
+        target: what is asked for.
+        backward: the velocity is backward where only the speed of it counts.
+        message: number of the message.
+    """
+    modes = v.autopilot.modes
+    if target.use_acc:
+        emit(v.autopilot.events, v.time_us, SETPOINT_IGNORED, float(message), 0.0)
+        return
+    speed = speed_of(v, target.vel)
+    if not is_finite(target):
+        stop(modes)
+    elif target.use_pos:
+        set_position(v, horizontal(target.pos))
+    elif target.use_yaw_rate:
+        if not target.use_yaw:
+            set_turn_rate_and_speed(modes, v.time_us, target.yaw_rate, -speed if target.use_vel and backward else speed)
+    elif target.use_yaw:
+        heading = target.yaw + v.autopilot.estimate.euler.yaw if target.relative_yaw else target.yaw
+        set_heading_and_speed(modes, v.time_us, heading, -speed if target.use_vel and backward else speed)
+    elif target.use_vel:
+        set_heading_and_speed(modes, v.time_us, math.atan2(target.vel.y, target.vel.x), speed)
+
+
+@law
+def is_finite(target: Target) -> bool:
+    """Whether all numbers that are asked for are; down does not count."""
+    numbers = target.pos + target.vel
+    return finite(target.yaw + target.yaw_rate + numbers.x + numbers.y)
+
+
+@law
+def speed_of(v: Rover, vel: Vec3) -> float:
+    """Speed [m/s] of a velocity, within WP_SPEED."""
+    speed, fastest = hypotenuse(vel.x, vel.y), full_speed(v)
+    return fastest if speed > fastest else speed
+
+
+@law
+def full_speed(v: Rover) -> float:
+    """Speed [m/s] that stands for full speed."""
+    speed = v.autopilot.params.WP.SPEED
+    return 0.0 if speed < 0.0 else speed
+
+
+@law
+def attitude_target(m: SetAttitudeTarget, v: Rover, sender: int) -> None:
+    """Thrust -1 .. 1 is a share of WP_SPEED; the heading is that of the quaternion, or turns with body_yaw_rate."""
+    modes = v.autopilot.modes
+    if not is_open(modes) or (m.type_mask & THRUST_IGNORED) != 0 or not finite(m.thrust):
+        return
+    speed = constrain(m.thrust, -1.0, 1.0) * full_speed(v)
+    if (m.type_mask & BODY_YAW_RATE_IGNORED) == 0:
+        if finite(m.body_yaw_rate):
+            set_turn_rate_and_speed(modes, v.time_us, m.body_yaw_rate, speed)
+        return
+    given = rotation(m.q)
+    if given.is_given:
+        set_heading_and_speed(modes, v.time_us, euler_of(given.q).yaw, speed)
+
 
 class RoverSetpoints(SetpointService):
-    """Set-points for GUIDED, and mission items with ``current`` 2 or 3."""
-
-    def __init__(self, bridge: Any) -> None:
-        super().__init__(bridge)
-        self._rover = cast("RoverAutopilot", bridge.autopilot)
-        self._origin_set = bridge.reader.field("autopilot.estimate.origin_set")
-        self._wp_speed = bridge.reader.field("autopilot.params.WP.SPEED")
+    """Mission items with ``current`` 2 or 3."""
 
     def _listens(self) -> bool:
-        return self._mode() == self._guided or self._rover.is_guided_in_auto()
-
-    def _unknown_frame(self) -> None:
-        pass
-
-    def _local(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if self._origin_set():
-            super()._local(channel, m, sender)
-
-    def _global(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if m.coordinate_frame in GLOBAL_FRAMES:
-            super()._global(channel, m, sender)
-
-    def _place(self, m: Any) -> Vector | None:
-        return self.bridge.places.ned(m.lat_int, m.lon_int, 0.0, GLOBAL)
-
-    def _set(self, m: Any, pos: Vector | None, vel: Vector | None, acc: Vector | None, body: bool) -> None:
-        rover, mask = self._rover, m.type_mask
-        if acc is not None:
-            say = self.bridge.get(StatusTextService).say
-            say(INFO, f"Ignoring {type(m).__name__}; set ACC_IGNORE in mask")
-            return
-        yaw = None if mask & YAW_IGNORED else m.yaw
-        rate = None if mask & YAW_RATE_IGNORED else m.yaw_rate
-        used = (yaw or 0.0) + (rate or 0.0)
-        for vector in (pos, vel):
-            if vector is not None:
-                used += vector[0] + vector[1]
-        if not math.isfinite(used):
-            rover.guided_stop()
-        elif pos is not None:
-            rover.guided_position(pos, None)
-        elif rate is not None:
-            if yaw is None:
-                rover.guided_turn_rate(rate, self._speed(vel, m.vx < 0.0))
-        elif yaw is not None:
-            heading = yaw + self._pose()[2] if body else yaw
-            rover.guided_heading(heading, self._speed(vel, m.vx < 0.0))
-        elif vel is not None:
-            rover.guided_heading(math.atan2(vel[1], vel[0]), self._speed(vel, False))
-
-    def _speed(self, vel: Vector | None, backward: bool) -> float:
-        """Speed [m/s] of a velocity, within WP_SPEED; 0 without one."""
-        if vel is None:
-            return 0.0
-        speed, fastest = math.hypot(vel[0], vel[1]), self._fastest()
-        if speed > fastest:
-            speed = fastest
-        return -speed if backward else speed
-
-    def _fastest(self) -> float:
-        """Speed [m/s] that stands for full speed."""
-        return max(float(self._wp_speed()), 0.0)
-
-    def _attitude(self, channel: Channel, m: Any, sender: Sender) -> None:
-        """Thrust -1 .. 1 is a share of WP_SPEED; the heading is that of the quaternion, or turns with body_yaw_rate."""
-        if not self._listens() or m.type_mask & THRUST_IGNORED or not math.isfinite(m.thrust):
-            return
-        speed = min(max(m.thrust, -1.0), 1.0) * self._fastest()
-        if not m.type_mask & BODY_YAW_RATE_IGNORED:
-            if math.isfinite(m.body_yaw_rate):
-                self._rover.guided_turn_rate(m.body_yaw_rate, speed)
-            return
-        norm = math.sqrt(sum(x * x for x in m.q))
-        if math.isfinite(norm) and norm > 1e-3:
-            w, x, y, z = (value / norm for value in m.q)
-            self._rover.guided_heading(euler_of(Quat(w, x, y, z))[2], speed)
+        return super()._listens() or cast("RoverAutopilot", self.bridge.autopilot).is_guided_in_auto()
 
     def _height_target(self, item: MissionItem) -> bool:
         """Taken, and nothing to do: a rover has one height."""

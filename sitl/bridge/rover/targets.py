@@ -31,7 +31,7 @@ def nav_controller_output(m: NavControllerOutput, v: Rover) -> bool:
     modes, pos = v.autopilot.modes, v.autopilot.estimate.pos
     if not is_autonomous(modes.number):
         return False
-    to = destination(modes.number, v)
+    to = destination(modes.number, modes)
     if to.kind != NO_PLACE:
         steered_to = to.place if to.kind == PLACE_TO_STAY else v.autopilot.control.position.pos_target
         m.wp_dist = uint16(math.hypot(to.place.x - pos.x, to.place.y - pos.y))
@@ -56,7 +56,7 @@ class PositionTargetGlobalInt(Message, name="POSITION_TARGET_GLOBAL_INT"):
 def position_target_global(m: PositionTargetGlobalInt, v: Rover) -> bool:
     """POSITION_TARGET_GLOBAL_INT: where it drives to (degE7, m above sea level); nothing when it drives to no place."""
     estimate = v.autopilot.estimate
-    to = destination(v.autopilot.modes.number, v)
+    to = destination(v.autopilot.modes.number, v.autopilot.modes)
     if to.kind == NO_PLACE or not estimate.origin_set:
         return False
     place = add_offset(estimate.origin_lat, estimate.origin_lon, to.place.x, to.place.y)

@@ -8,7 +8,6 @@ from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
 from .parameters import ParameterService
-from .rc import RcService
 from .service import Service
 from .setpoints import SetpointService
 from .statustext import EventService, PreArmService, StatusTextService
@@ -22,7 +21,6 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     ParameterService,
     MissionService,
     SetpointService,
-    RcService,
     HomeService,
     TimesyncService,
     PingService,

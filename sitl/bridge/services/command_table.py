@@ -167,7 +167,7 @@ def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
         return FAILED
     if not in_guided and set_mode(bridge, bridge.profile.guided) != ACCEPTED:
         return FAILED
-    if not bridge.autopilot.guided_position(place, None):
+    if not bridge.autopilot.guided_position(place):
         return FAILED
     if command.p1 > 0.0:  # after the target: a new kind of set-point begins with the default speed
         bridge.autopilot.change_speed(1, command.p1)

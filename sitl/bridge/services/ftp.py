@@ -12,7 +12,7 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import message
-from ..stream_table import NEVER
+from ..wire.port import NEVER
 from .parameters import ParameterService, pack_parameters
 from .service import Handler, Sender, Service
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Protocol
 
 from ..channel import Channel
 from ..dialect import message
-from ..stream_table import NEVER
+from ..wire.port import NEVER
 from .service import Handler, Sender, Service
 
 ENTRY, DATA = message("LOG_ENTRY"), message("LOG_DATA")

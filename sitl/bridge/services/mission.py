@@ -13,7 +13,7 @@ from ...autopilot.mission.item import MissionItem, home_item
 from ...autopilot.mission.validate import MAX_ITEMS
 from ..channel import Channel
 from ..dialect import message
-from ..stream_table import NEVER
+from ..wire.port import NEVER
 from .mission_upload import (
     ACCEPTED,
     CANCELLED,

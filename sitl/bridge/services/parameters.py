@@ -20,7 +20,7 @@ from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter
 from ...autopilot.params.table import stored
 from ..channel import Channel
 from ..dialect import message
-from ..stream_table import NEVER
+from ..wire.port import NEVER
 from .service import WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
 from .streams import StreamService

@@ -1,79 +1,130 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The ground station's sticks.
 
-RC_CHANNELS_OVERRIDE and MANUAL_CONTROL, only from the system named by MAV_GCS_SYSID.
+RC_CHANNELS_OVERRIDE and MANUAL_CONTROL, only from the system named by MAV_GCS_SYSID. The firmware forgets them after
+RC_OVERRIDE_TIME.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
-from ..channel import Channel
-from ..dialect import message
-from .service import Handler, Sender, Service
+from ...core.kernels import law
+from ...vehicle.record import Vehicle
+from ..wire.message import Message
 
 RELEASE_EXTENDED = 65534
 """Channels 1..8: 0 gives the channel back; channels 9..18: 65534 does, and 0 means nothing. 65535 leaves a channel."""
-CHANNELS = 18
-FIRST_EXTENDED = message("RC_CHANNELS_OVERRIDE").fields.index("chan9_raw")
-"""Place of channel 9 in the message as it is on the wire; the others follow."""
+FIRST_CHANNELS, CHANNELS = 8, 18
 INVALID = 32767
 FULL = 1000
 """Axes of MANUAL_CONTROL: greatest value."""
-DEFAULT_RANGE = (1100.0, 1900.0)
+DEFAULT_MIN, DEFAULT_MAX = 1100.0, 1900.0
+"""Of channels without parameters [us]."""
 LOWEST, HIGHEST = 800, 2200
 """Pulses outside cannot come from a receiver and are ignored [us]."""
 
 
-class RcService(Service):
-    """The ground station's sticks; the firmware forgets them after RC_OVERRIDE_TIME."""
+class RcChannelsOverride(Message, name="RC_CHANNELS_OVERRIDE"):
+    """Pulses [us]."""
 
-    def __init__(self, bridge: Any) -> None:
-        super().__init__(bridge)
-        rc = bridge.vehicle.v.autopilot.rc
-        self._pulses, self._times = rc.override, rc.override_us  # of the record: they stay in place
+    chan1_raw: int
+    chan2_raw: int
+    chan3_raw: int
+    chan4_raw: int
+    chan5_raw: int
+    chan6_raw: int
+    chan7_raw: int
+    chan8_raw: int
+    chan9_raw: int
+    chan10_raw: int
+    chan11_raw: int
+    chan12_raw: int
+    chan13_raw: int
+    chan14_raw: int
+    chan15_raw: int
+    chan16_raw: int
+    chan17_raw: int
+    chan18_raw: int
 
-    def handlers(self) -> dict[str, Handler]:
-        return {"RC_CHANNELS_OVERRIDE": self._override, "MANUAL_CONTROL": self._manual}
 
-    def _put(self, channel: int, pulse: int) -> None:
-        """Override channel 0.. with a pulse [us]; 0 gives it back."""
-        self._pulses[channel] = pulse
-        self._times[channel] = self.bridge.now_us
+class ManualControl(Message, name="MANUAL_CONTROL"):
+    """Axes of a joystick, -1000 .. 1000; ``INVALID``: there is none."""
 
-    def _heard(self) -> None:
-        self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
+    target: int
+    x: int
+    y: int
+    z: int
+    r: int
 
-    def _override(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if sender[0] != self.bridge.ground_station:
-            return
-        for k, pulse in enumerate(m[:8]):  # these come first on the wire
-            if pulse == 0 or LOWEST <= pulse <= HIGHEST:
-                self._put(k, pulse)
-        extended = m[FIRST_EXTENDED:]
-        if any(extended):
-            for k, pulse in enumerate(extended, 8):
-                if pulse == RELEASE_EXTENDED:
-                    self._put(k, 0)
-                elif LOWEST <= pulse <= HIGHEST:
-                    self._put(k, pulse)
-        self._heard()
 
-    def _manual(self, channel: Channel, m: Any, sender: Sender) -> None:
-        """The firmware's profile says which axis drives which channel."""
-        if sender[0] != self.bridge.ground_station or m.target != channel.system:
-            return
-        for stick in self.bridge.profile.sticks:
-            value = getattr(m, stick.axis)
-            number = int(self.bridge.parameter(stick.parameter) or stick.channel)
-            if value == INVALID or not 1 <= number <= CHANNELS:
-                continue
-            value = min(max(value, stick.lowest), FULL)
-            share = (FULL - value if stick.is_reversed else value - stick.lowest) / (FULL - stick.lowest)
-            low, high = self._range(number)
-            self._put(number - 1, int(low + (high - low) * share))
-        self._heard()
+@law
+def rc_channels_override(m: RcChannelsOverride, v: Vehicle, sender: int) -> None:
+    """Override channels of the radio."""
+    if not is_ground_station(v, sender):
+        return
+    first = (
+        m.chan1_raw, m.chan2_raw, m.chan3_raw, m.chan4_raw, m.chan5_raw, m.chan6_raw, m.chan7_raw, m.chan8_raw,
+    )  # fmt: skip
+    for k in range(FIRST_CHANNELS):
+        pulse = first[k]
+        if pulse == 0 or LOWEST <= pulse <= HIGHEST:
+            override(v, k, pulse)
+    extended = (
+        m.chan9_raw, m.chan10_raw, m.chan11_raw, m.chan12_raw, m.chan13_raw,
+        m.chan14_raw, m.chan15_raw, m.chan16_raw, m.chan17_raw, m.chan18_raw,
+    )  # fmt: skip
+    for k in range(CHANNELS - FIRST_CHANNELS):
+        pulse = extended[k]
+        if pulse == RELEASE_EXTENDED:
+            override(v, FIRST_CHANNELS + k, 0)
+        elif LOWEST <= pulse <= HIGHEST:
+            override(v, FIRST_CHANNELS + k, pulse)
+    note_ground_station(v)
 
-    def _range(self, number: int) -> tuple[float, float]:
-        low, high = self.bridge.parameter(f"RC{number}_MIN"), self.bridge.parameter(f"RC{number}_MAX")
-        return (low, high) if low is not None and high is not None else DEFAULT_RANGE
+
+@law
+def is_ground_station(v: Vehicle, sender: int) -> bool:
+    """Whether a system is the pilot's ground station (MAV_GCS_SYSID)."""
+    return sender == int(v.autopilot.params.MAV.GCS_SYSID)
+
+
+@law
+def is_driver(m: ManualControl, v: Vehicle, sender: int) -> bool:
+    """Whether the axes are the ground station's, for us: MANUAL_CONTROL names its target in a field of its own."""
+    return is_ground_station(v, sender) and m.target == min(max(int(v.autopilot.params.MAV.SYSID), 1), 255)
+
+
+@law
+def note_ground_station(v: Vehicle) -> None:
+    """The ground station is there."""
+    v.autopilot.modes.failsafe.gcs_us = v.time_us
+
+
+@law
+def override(v: Vehicle, k: int, pulse: int) -> None:
+    """Override channel ``k`` (from 0) with a pulse [us]; 0 gives it back."""
+    v.autopilot.rc.override[k] = pulse
+    v.autopilot.rc.override_us[k] = v.time_us
+
+
+@law
+def move_stick(v: Vehicle, channel: float, default: int, axis: int, lowest: int, is_reversed: bool) -> None:
+    """Override the channel of a stick.
+
+    Args:
+        v: the vehicle.
+        channel: value of the RCMAP_ parameter, 1 ..
+        default: the channel if that is 0.
+        axis: value of the axis.
+        lowest: the axis' value that means the channel's least pulse; ``FULL`` means its greatest.
+        is_reversed: the other way round.
+    """
+    number = int(channel) if channel != 0.0 else default
+    if axis == INVALID or not 1 <= number <= CHANNELS:
+        return
+    low, high = DEFAULT_MIN, DEFAULT_MAX
+    if number <= len(v.autopilot.params.RC):
+        calibration = v.autopilot.params.RC[number - 1]
+        low, high = calibration.MIN, calibration.MAX
+    value = min(max(axis, lowest), FULL)
+    share = (FULL - value if is_reversed else value - lowest) / (FULL - lowest)
+    override(v, number - 1, int(low + (high - low) * share))

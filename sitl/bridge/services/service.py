@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from ..channel import Channel
-from ..stream_table import NEVER
+from ..wire.port import NEVER
 
 if TYPE_CHECKING:
     from ..bridge import Bridge

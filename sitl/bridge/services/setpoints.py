@@ -11,13 +11,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...autopilot.mission.item import MissionItem
-from ..autopilot_api import Vector
-from ..channel import Channel
+from ...autopilot.state import Estimate
+from ...core.algebra import IDENTITY, ZERO, horizontal, quat_norm_squared, turned, with_down
+from ...core.kernels import law
+from ...core.records import Floats
+from ...core.vectors import Quat, Vec3
+from ..wire.message import Message
 from .command import FRAMES_AMSL, GLOBAL_FRAMES
-from .service import Handler, Sender, Service
+from .service import Service
 
 POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
 FORCE, YAW_IGNORED, YAW_RATE_IGNORED = 0x200, 0x400, 0x800
@@ -31,88 +35,148 @@ ROLL_RATE_IGNORED, PITCH_RATE_IGNORED, BODY_YAW_RATE_IGNORED = 0x01, 0x02, 0x04
 THRUST_IGNORED, ATTITUDE_IGNORED = 0x40, 0x80
 """ATTITUDE_TARGET_TYPEMASK"""
 
-E_ = "autopilot.estimate."
+SMALLEST_NORM = 1e-3
+"""Of a quaternion that is taken for a rotation."""
+
+
+class SetPositionTargetLocalNed(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
+    """Position [m], velocity [m/s], acceleration [m/s^2] in a local frame, yaw [rad], yaw rate [rad/s]."""
+
+    coordinate_frame: int
+    type_mask: int
+    x: float
+    y: float
+    z: float
+    vx: float
+    vy: float
+    vz: float
+    afx: float
+    afy: float
+    afz: float
+    yaw: float
+    yaw_rate: float
+
+
+class SetPositionTargetGlobalInt(Message, name="SET_POSITION_TARGET_GLOBAL_INT"):
+    """The same with the position on the globe [degE7, m]; velocity and acceleration are north, east, down."""
+
+    coordinate_frame: int
+    type_mask: int
+    lat_int: int
+    lon_int: int
+    alt: float
+    vx: float
+    vy: float
+    vz: float
+    afx: float
+    afy: float
+    afz: float
+    yaw: float
+    yaw_rate: float
+
+
+class SetAttitudeTarget(Message, name="SET_ATTITUDE_TARGET"):
+    """Attitude (body to NED), body rates [rad/s], thrust."""
+
+    type_mask: int
+    q: Floats
+    body_roll_rate: float
+    body_pitch_rate: float
+    body_yaw_rate: float
+    thrust: float
+
+
+class Target(NamedTuple):
+    """What a message's mask does not ignore, north, east, down; the rest is zero. Any number may be NaN or infinite."""
+
+    use_pos: bool
+    pos: Vec3  # from the origin [m]
+    use_vel: bool
+    vel: Vec3  # [m/s]
+    use_acc: bool
+    acc: Vec3  # [m/s^2]
+    use_yaw: bool
+    yaw: float  # [rad]
+    use_yaw_rate: bool
+    yaw_rate: float  # [rad/s]
+    relative_yaw: bool  # the yaw counts from the vehicle's
+
+
+class Rotation(NamedTuple):
+    """A quaternion of a message."""
+
+    is_given: bool  # False: its numbers are none of a rotation
+    q: Quat  # of length 1
+
+
+@law
+def to_ned(vector: Vec3, frame: int, yaw: float) -> Vec3:
+    """A vector of a local frame as north, east, down; ``yaw`` [rad] of the vehicle."""
+    if frame in BODY_FRAMES:
+        return with_down(turned(horizontal(vector), yaw), vector.z)
+    return vector
+
+
+@law
+def local_target(m: SetPositionTargetLocalNed, estimate: Estimate) -> Target:
+    """The target of a message whose frame is one of ``LOCAL_FRAMES``."""
+    frame, yaw = m.coordinate_frame, estimate.euler.yaw
+    pos = to_ned(Vec3(m.x, m.y, m.z), frame, yaw)
+    if frame != LOCAL_NED:
+        pos = pos + estimate.pos
+    vel = to_ned(Vec3(m.vx, m.vy, m.vz), frame, yaw)
+    acc = to_ned(Vec3(m.afx, m.afy, m.afz), frame, yaw)
+    return masked(m.type_mask, pos, vel, acc, m.yaw, m.yaw_rate, frame in BODY_FRAMES)
+
+
+@law
+def global_target(m: SetPositionTargetGlobalInt, pos: Vec3) -> Target:
+    """The target of a message whose place on the globe is ``pos`` (NED from the origin [m])."""
+    vel, acc = Vec3(m.vx, m.vy, m.vz), Vec3(m.afx, m.afy, m.afz)
+    return masked(m.type_mask, pos, vel, acc, m.yaw, m.yaw_rate, False)
+
+
+@law
+def masked(mask: int, pos: Vec3, vel: Vec3, acc: Vec3, yaw: float, yaw_rate: float, relative: bool) -> Target:
+    """A target without what the mask ignores; one ignored component of a vector ignores all of it."""
+    use_pos, use_vel = (mask & POSITION_IGNORED) == 0, (mask & VELOCITY_IGNORED) == 0
+    use_acc = (mask & ACCELERATION_IGNORED) == 0
+    use_yaw, use_yaw_rate = (mask & YAW_IGNORED) == 0, (mask & YAW_RATE_IGNORED) == 0
+    return Target(
+        use_pos, pos if use_pos else ZERO,
+        use_vel, vel if use_vel else ZERO,
+        use_acc, acc if use_acc else ZERO,
+        use_yaw, yaw if use_yaw else 0.0,
+        use_yaw_rate, yaw_rate if use_yaw_rate else 0.0,
+        relative,
+    )  # fmt: skip
+
+
+@law
+def rotation(numbers: Floats) -> Rotation:
+    """The rotation that four numbers (w, x, y, z) of a message stand for."""
+    q = Quat(float(numbers[0]), float(numbers[1]), float(numbers[2]), float(numbers[3]))
+    norm = math.sqrt(quat_norm_squared(q))
+    if not SMALLEST_NORM < norm < math.inf:  # NaN, too
+        return Rotation(False, IDENTITY)
+    return Rotation(True, q / norm)
 
 
 class SetpointService(Service):
-    """Set-points for GUIDED, and mission items with ``current`` 2 or 3."""
+    """Mission items with ``current`` 2 or 3: places to go to at once, in GUIDED."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self._mode: Callable[[], int] = bridge.reader.field("autopilot.modes.number")
-        self._pose = bridge.reader.fields(E_ + "euler", E_ + "pos")
         self._guided: int = bridge.profile.guided
-
-    def handlers(self) -> dict[str, Handler]:
-        return {
-            "SET_POSITION_TARGET_LOCAL_NED": self._local,
-            "SET_POSITION_TARGET_GLOBAL_INT": self._global,
-            "SET_ATTITUDE_TARGET": self._attitude,
-        }
-
-    # ------------------------------------------------------------------ what a firmware makes of it
 
     def _listens(self) -> bool:
         """Whether set-points count now."""
         return self._mode() == self._guided
 
-    def _unknown_frame(self) -> None:
-        """A position in a frame that there is not."""
-        raise NotImplementedError
-
-    def _place(self, m: Any) -> Vector | None:
-        """NED [m] of a position on the globe; None: leave the message alone."""
-        raise NotImplementedError
-
-    def _set(self, m: Any, pos: Vector | None, vel: Vector | None, acc: Vector | None, body: bool) -> None:
-        """Follow what of a message its mask does not ignore (north, east, down).
-
-        ``body``: it came in a body frame, so that its yaw counts from the vehicle's.
-        """
-        raise NotImplementedError
-
-    def _attitude(self, channel: Channel, m: Any, sender: Sender) -> None:
-        raise NotImplementedError
-
     def _height_target(self, item: MissionItem) -> bool:
         """Go to the height of a mission item (``current`` = 3)."""
         raise NotImplementedError
-
-    # ------------------------------------------------------------------ position, velocity, acceleration
-
-    def _local(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if not self._listens():
-            return
-        mask, frame = m.type_mask, m.coordinate_frame
-        if frame not in LOCAL_FRAMES:
-            self._unknown_frame()
-            return
-        pos = None if mask & POSITION_IGNORED else (m.x, m.y, m.z)
-        vel = None if mask & VELOCITY_IGNORED else (m.vx, m.vy, m.vz)
-        acc = None if mask & ACCELERATION_IGNORED else (m.afx, m.afy, m.afz)
-        if frame != LOCAL_NED:
-            _, _, yaw, n, e, d = self._pose()
-            if frame in BODY_FRAMES:
-                c, s = math.cos(yaw), math.sin(yaw)
-                pos, vel, acc = _turn(pos, c, s), _turn(vel, c, s), _turn(acc, c, s)
-            if pos is not None:
-                pos = (pos[0] + n, pos[1] + e, pos[2] + d)
-        self._set(m, pos, vel, acc, frame in BODY_FRAMES)
-
-    def _global(self, channel: Channel, m: Any, sender: Sender) -> None:
-        if not self._listens():
-            return
-        mask = m.type_mask
-        pos: Vector | None = None
-        if not mask & POSITION_IGNORED:
-            pos = self._place(m)
-            if pos is None:
-                return
-        vel = None if mask & VELOCITY_IGNORED else (m.vx, m.vy, m.vz)
-        acc = None if mask & ACCELERATION_IGNORED else (m.afx, m.afy, m.afz)
-        self._set(m, pos, vel, acc, False)
-
-    # ------------------------------------------------------------------ mission items as targets
 
     def mission_item_target(self, item: MissionItem, altitude_only: bool) -> bool:
         """Go to a mission item's place (``current`` = 2).
@@ -124,13 +188,8 @@ class SetpointService(Service):
         if altitude_only:
             return self._height_target(item)
         place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
-        return place is not None and self.bridge.autopilot.guided_position(place, None)
+        return place is not None and self.bridge.autopilot.guided_position(place)
 
     def _height(self, item: MissionItem) -> float:
         """Height of a mission item [m above sea level]."""
         return item.z if item.frame in FRAMES_AMSL else self.bridge.places.home_alt() + item.z
-
-
-def _turn(v: Vector | None, c: float, s: float) -> Vector | None:
-    """A vector forward, right, down to north, east, down."""
-    return None if v is None else (v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2])

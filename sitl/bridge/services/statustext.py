@@ -10,7 +10,7 @@ from ...autopilot import events as core
 from ...autopilot.mission.notes import CurrentChanged, ItemReached, Text
 from ..channel import Channel
 from ..dialect import message
-from ..stream_table import NEVER
+from ..wire.port import NEVER
 from .home import HomeService
 from .service import INFO, WARNING, Service
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import message
+from ..wire.streams import interval_of, set_interval
 from .command import Command
 from .modes import KIND as AVAILABLE_MODES
 from .modes import send_modes
@@ -64,9 +65,9 @@ class StreamService(Service):
             self._set(channel, message(name).id, 1_000_000 // rate_hz if rate_hz > 0 else 0)
 
     def _set(self, channel: Channel, number: int, interval_us: int) -> None:
-        entry = self.bridge.telemetry.get(number)
-        if entry is not None:
-            channel.streams.set(entry, interval_us, self.bridge.now_us)
+        bridge = self.bridge
+        if number in bridge.telemetry:
+            set_interval(channel.port, number, interval_us, bridge.now_us, number in bridge.by_shell)
 
     def _loop_rate(self) -> int:
         return max(int(self.bridge.parameter("SCHED_LOOP_RATE") or 400), 1)
@@ -85,9 +86,9 @@ class StreamService(Service):
     def set_interval(self, channel: Channel, command: Command) -> int:
         """MAV_CMD_SET_MESSAGE_INTERVAL: p1 message id, p2 interval [us], -1 off, 0 default."""
         number, interval = int(command.p1), command.p2
-        entry = self.bridge.telemetry.get(number)
+        kind = self.bridge.telemetry.get(number)
         say = self.bridge.get(StatusTextService).say
-        if entry is None or entry[0].name in ON_REQUEST_ONLY:
+        if kind is None or kind.name in ON_REQUEST_ONLY:
             say(WARNING, f"No ap_message for mavlink id ({number})")
             return DENIED
         if interval == 0.0:
@@ -113,7 +114,7 @@ class StreamService(Service):
         """MAV_CMD_GET_MESSAGE_INTERVAL: answers MESSAGE_INTERVAL; 0 not available, -1 not sent."""
         number = int(command.p1)
         known = number in self.bridge.telemetry
-        interval = (channel.streams.interval(number) or -1) if known else 0
+        interval = (interval_of(channel.port, number) or -1) if known else 0
         if 0 <= number <= 0xFFFF:
             channel.send(INTERVAL, INTERVAL.payload(message_id=number, interval_us=interval))
         return ACCEPTED if known else FAILED

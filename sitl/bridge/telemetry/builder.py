@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from ...core.records import as_bytes
 from ...vehicle.record import Vehicle
-from ..dialect import MessageType, message
+from ..dialect import message
 from ..wire.choose import Builder, message_of
 from ..wire.message import Message
 from ..wire.port import Port
@@ -18,7 +17,7 @@ from . import channels, motion, ranging, sensors, status
 from .shell import shell_builders
 
 if TYPE_CHECKING:
-    from ..profile import Profile
+    from ..bridge import Bridge
 
 _MODULES = (motion, sensors, ranging, status, channels)
 _registered: dict[int, Builder] = {}
@@ -37,16 +36,29 @@ def register_message(builder: Builder) -> Builder:
     return builder
 
 
-def messages(profile: Profile) -> tuple[Builder, ...]:
-    """The laws that build a firmware's telemetry, one a message, in the order of the messages' numbers.
+def compiled(own: tuple[Builder, ...]) -> tuple[Builder, ...]:
+    """The laws that build a firmware's telemetry in the core, one a message, in the order of the messages' numbers.
 
-    A registered law comes before the firmware's own, and that before the one that all firmwares share.
+    Args:
+        own: telemetry that only this firmware has, or has in its own way: it comes before what all firmwares share.
     """
     found: dict[int, Builder] = {}
     for module in _MODULES:
         found |= by_number(module.MESSAGES)
-    found |= by_number(profile.messages) | _registered
+    found |= by_number(own)
     return tuple(found[number] for number in sorted(found))
+
+
+def shell_messages(bridge: Bridge) -> dict[int, Callable[[], bytes]]:
+    """What the shell builds for a vehicle: message number -> function that gives the payload now.
+
+    It comes before a law of the core for the same message.
+    """
+    vehicle, port = bridge.vehicle, Port()
+    found: dict[int, Callable[[], bytes]] = {
+        message(name).id: partial(shell, vehicle, bridge.profile) for name, shell in shell_builders(vehicle).items()
+    }
+    return found | {number: partial(build, builder, vehicle.v, port) for number, builder in _registered.items()}
 
 
 def by_number(builders: tuple[Builder, ...]) -> dict[int, Builder]:
@@ -66,39 +78,3 @@ def build(builder: Builder, v: Vehicle, port: Port) -> bytes:
     m: Any = cls()
     said = builder(m, v, port) if takes_port else builder(m, v)
     return bytes(as_bytes(m, cls.dtype)) if said else b""
-
-
-@dataclass
-class Context:
-    """A bridge that asks for payloads by functions without arguments."""
-
-    reader: Any
-    vehicle: Any
-    profile: Profile
-    epoch_us: int
-
-
-Build = Callable[[], bytes | tuple[bytes, ...]]
-
-
-def build_all(context: Context) -> dict[int, tuple[MessageType, Build]]:
-    """The functions, by message number."""
-    port, vehicle = Port(), context.vehicle
-
-    def parts(builder: Builder) -> Build:
-        def built() -> bytes | tuple[bytes, ...]:
-            port.epoch_us = context.epoch_us
-            found = [build(builder, vehicle.v, port)]
-            while port.part != 0:
-                found.append(build(builder, vehicle.v, port))
-            return found[0] if len(found) == 1 else tuple(found)
-
-        return built
-
-    found: dict[int, tuple[MessageType, Build]] = {}
-    for builder in messages(context.profile):
-        kind = message_of(builder).kind
-        found[kind.id] = (kind, parts(builder))
-    for name, shell in shell_builders(vehicle).items():
-        found[message(name).id] = (message(name), partial(shell, vehicle, context.profile))
-    return found

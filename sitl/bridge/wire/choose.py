@@ -6,8 +6,8 @@ A law that builds a message takes the message and the vehicle, and says whether 
     @law
     def attitude(m: Attitude, v: Vehicle) -> bool: ...
 
-It may take the port as a third argument (``port.epoch_us``, ``port.part``). A law that takes a message gets the message,
-the vehicle and the sender's system id.
+It may take the port as a third argument (``port.epoch_us``, ``port.part``). A law that takes a message gets the
+message, the vehicle and the sender's system id.
 """
 
 from __future__ import annotations
@@ -55,8 +55,18 @@ def choose_taker(takers: Iterable[Taker]) -> Callable[[int, Any, int, int], bool
     return _choose("take", "sender", takers, "", "    return False\n")
 
 
+def choose_targets(takers: Iterable[Taker]) -> Callable[[int], int]:
+    """A law ``target(number)``: place of target_system in the payload of a message that ``takers`` take; -1: none."""
+    lines = ["def target(number):\n"]
+    for function in takers:
+        kind = message_of(function).kind
+        if "target_system" in kind.fields:
+            lines += [f"    if number == {kind.id}:\n", f"        return {kind.offset_of('target_system')}\n"]
+    return _made("target", [*lines, "    return -1\n"], {})
+
+
 def _choose(name: str, third: str, laws: Iterable[Callable[..., Any]], result: str, end: str) -> Any:
-    names: dict[str, Any] = {"record_at": record_at, "__name__": __name__}
+    names: dict[str, Any] = {"record_at": record_at}
     lines = [f"def {name}(number, v, {third}, address):\n"]
     for function in laws:
         cls = message_of(function)
@@ -67,9 +77,13 @@ def _choose(name: str, third: str, laws: Iterable[Callable[..., Any]], result: s
         lines.append(f"        {result}law_{number}(record_at(message_{number}, address), v{more})\n")
         if not result:
             lines.append("        return True\n")
-    lines.append(end)
+    return _made(name, [*lines, end], names)
+
+
+def _made(name: str, lines: list[str], names: dict[str, Any]) -> Any:
     text = "".join(lines)
     file = f"<{name} {abs(hash(text))}>"
     linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)  # for Numba's messages
+    names["__name__"] = __name__
     exec(compile(text, file, "exec"), names)
     return law(names[name])

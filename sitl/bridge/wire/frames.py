@@ -59,7 +59,7 @@ def open_frame(port: Port, address: int) -> int:
 
 
 @law
-def close_frame(port: Port, address: int, number: int, time_us: int) -> None:
+def close_frame(port: Port, address: int, number: int) -> None:
     """Send the message ``number`` whose payload has been written to ``open_frame``'s address."""
     row = row_of(number)
     start = port.out_size
@@ -95,7 +95,6 @@ def close_frame(port: Port, address: int, number: int, time_us: int) -> None:
     data[end + 1] = crc >> 8
     port.out_size += end + CHECKSUM
     port.out_end[port.out_count] = port.out_size
-    port.out_us[port.out_count] = time_us
     port.out_count += 1
     port.sequence = (port.sequence + 1) & 0xFF
     port.sent += 1

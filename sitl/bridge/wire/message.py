@@ -13,6 +13,7 @@ them are whole numbers, numbers or arrays. Fields that a class does not name sta
 from __future__ import annotations
 
 import struct
+from ctypes import c_float
 from typing import Any, ClassVar, get_type_hints
 
 import numpy as np
@@ -22,6 +23,8 @@ from ..dialect import MessageType, message
 
 _NUMPY = {"b": "i1", "B": "u1", "h": "i2", "H": "u2", "i": "i4", "I": "u4", "q": "i8", "Q": "u8", "f": "f4", "d": "f8"}
 """Code of ``struct`` -> NumPy's."""
+_SORTS = {(False, False): int, (True, False): float, (False, True): Ints, (True, True): Floats}
+"""(Not whole numbers, an array) -> what a class says of the field."""
 
 
 class Message(Record):
@@ -41,22 +44,17 @@ class Message(Record):
         cls.kind = message(name)
         hints = {field: hint for field, hint in get_type_hints(cls).items() if field in cls.__annotations__}
         cls.fields = {}
-        offset = 0
         for field, (code, length) in zip(cls.kind.fields, cls.kind.codes, strict=True):
-            if code.endswith("s"):
-                number, shape, expected = "u1", (length,), Ints
-                size = length
-            else:
-                number, shape = _NUMPY[code], (length,) if length else ()
-                whole = number[0] != "f"
-                expected = (Ints if shape else int) if whole else (Floats if shape else float)
-                size = struct.calcsize(code) * max(length, 1)
             hint = hints.pop(field, None)
-            if hint is not None:
-                if hint is not expected:
-                    raise TypeError(f"{cls.__name__}.{field}: {name} has {expected.__name__} there, not {hint}")
-                cls.fields[field] = Field(field, offset, number, shape, None if shape else expected)
-            offset += size
+            if hint is None:
+                continue
+            text = code.endswith("s")
+            number = "u1" if text else _NUMPY[code]
+            expected = _SORTS[number[0] == "f", length > 0]
+            if hint is not expected:
+                raise TypeError(f"{cls.__name__}.{field}: {name} has {expected.__name__} there, not {hint}")
+            shape, value = ((length,), None) if length else ((), expected)
+            cls.fields[field] = Field(field, cls.kind.offset_of(field), number, shape, value)
         if hints:
             raise TypeError(f"{cls.__name__}: {name} has no fields {sorted(hints)}; it has {cls.kind.fields}")
         cls.dtype = np.dtype(
@@ -84,6 +82,6 @@ def _number(field: Field) -> property:
 
     def write(self: Any, value: Any) -> None:
         # As the core does: what single precision cannot hold is infinite.
-        pack(self._bytes, offset, float(np.float32(value)) if narrow else value)
+        pack(self._bytes, offset, c_float(value).value if narrow else value)
 
     return property(read, write)

@@ -24,26 +24,28 @@ PAYLOAD_BYTES = 256
 class Port(Record):
     """One client's link."""
 
-    system: int  # our system id in outgoing frames
+    # what a snapshot keeps of it (``STATE``)
     sequence: int  # of the next frame
     version: int  # of MAVLink in outgoing frames: 1 or 2
     heard_v2: bool  # the client speaks MAVLink 2
-    congested: bool  # the client reads too slowly: regular messages are left out
-    stops_at_frames: bool  # the shell wants to see every frame that comes in
-    # counts
-    received: int
-    sent: int
-    lost: int
-    epoch_us: int  # Unix time at boot
     part: int  # of a message that is sent in several parts: the next one, 0 when there is none
-    # what is sent regularly, in order of interval, then of request
+    # regular messages, in order of interval, then of request
     stream_count: int
-    next_us: int  # when the first of it is due
-    shell_next_us: int  # when the first of it is due that the shell builds
+    next_us: int  # when the first of them is due [since boot]
     stream_number: Ints = array(STREAMS, stored="i8")
     stream_us: Ints = array(STREAMS, stored="i8")  # interval
-    stream_due_us: Ints = array(STREAMS, stored="i8")
-    stream_by_shell: Ints = array(STREAMS, stored="i8")
+    stream_due_us: Ints = array(STREAMS, stored="i8")  # [since boot]
+    stream_by_shell: Ints = array(STREAMS, stored="i8")  # the core cannot build it
+    # who we are, and how the client listens
+    system: int  # our system id in outgoing frames
+    epoch_us: int  # Unix time at boot
+    congested: bool  # the client reads too slowly: regular messages are left out
+    # counts
+    received: int  # frames
+    taken: int  # messages that the core acted on
+    sent: int
+    lost: int  # gaps in sequence numbers
+    bad_checksums: int
     # sequence numbers of senders
     sender_count: int
     sender_id: Ints = array(SENDERS, stored="i8")  # system << 8 | component
@@ -52,14 +54,14 @@ class Port(Record):
     out_count: int  # frames
     out_size: int  # bytes
     out_end: Ints = array(OUT_FRAMES, stored="i4")  # where each frame ends
-    out_us: Ints = array(OUT_FRAMES, stored="i8")  # when it was sent, since boot
     out: Ints = array(OUT_BYTES, stored="u1")
     # in: what has come and is not acted on yet
+    stops_at_frames: bool  # the shell wants to see every frame
     in_at: int
     in_size: int
-    bad_checksums: int
     frame_start: int  # of the frame that the core stopped at, in ``incoming``
-    frame_end: int
+    frame_end: int  # 0: it did not stop at one
+    frame_taken: bool  # it has been acted on
     frame_number: int  # of its message
     frame_payload: int  # where its payload starts
     frame_payload_size: int
@@ -70,6 +72,8 @@ class Port(Record):
     incoming: Ints = array(IN_BYTES, stored="u1")
 
 
+STATE = Port.fields["system"].offset
+"""So many bytes at the beginning are what later frames depend on."""
 OUT = Port.fields["out"].offset
 PAYLOAD = Port.fields["payload"].offset
 INCOMING = Port.fields["incoming"].offset
@@ -79,14 +83,10 @@ SIZE = Port.dtype.itemsize
 @law
 def find_next(port: Port) -> None:
     """Note when the first regular message is due."""
-    soonest, by_shell = NEVER, NEVER
+    soonest = NEVER
     for k in range(port.stream_count):
-        due = port.stream_due_us[k]
-        soonest = min(soonest, due)
-        if port.stream_by_shell[k] != 0:
-            by_shell = min(by_shell, due)
+        soonest = min(soonest, port.stream_due_us[k])
     port.next_us = soonest
-    port.shell_next_us = by_shell
 
 
 @law

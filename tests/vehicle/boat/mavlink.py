@@ -6,19 +6,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from sitl.bridge.autopilot_api import Note, Vector, Yaw
+from sitl.bridge.autopilot_api import Note, Vector
 from sitl.bridge.base_autopilot import BaseAutopilot
-from sitl.bridge.profile import Profile
+from sitl.bridge.dialect import message
+from sitl.bridge.profile import Controllers, Profile
 from sitl.bridge.services import command_table
+from sitl.bridge.services.rc import rc_channels_override
 from sitl.bridge.services.setpoints import SetpointService
-from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
-from sitl.bridge.telemetry.shell import CAPABILITIES
-from sitl.core.kernels import law
-from sitl.vehicle.record import Vehicle
+from sitl.bridge.telemetry.builder import Build, Context
+from sitl.bridge.telemetry.status import CAPABILITIES
 
 from .firmware import AHEAD, MODES
 
-SURFACE_BOAT = 11
+SURFACE_BOAT, ARDUPILOTMEGA, ACTIVE, ARMED = 11, 3, 4, 128
 
 
 class BoatAutopilot(BaseAutopilot):
@@ -46,18 +46,25 @@ class BoatAutopilot(BaseAutopilot):
     def change_speed(self, kind: int, speed: float) -> bool:
         return False
 
-    def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
-        return False
-
-    def guided_stop(self) -> bool:
+    def guided_position(self, place: Vector) -> bool:
         return False
 
 
-@law
-def heartbeat(m: Heartbeat, v: Vehicle) -> bool:
+def heartbeat(context: Context) -> Build:
     """HEARTBEAT: a boat, its mode, armed or not."""
-    base = CUSTOM_MODE | (ARMED if v.autopilot.arming.armed else 0)
-    return fill_heartbeat(m, v, SURFACE_BOAT, base, ACTIVE)
+    read = context.fields("autopilot.arming.armed", "autopilot.modes.number")
+    pack = message("HEARTBEAT").pack
+
+    def build() -> bytes:
+        armed, mode = read()
+        return pack(mode, SURFACE_BOAT, ARDUPILOTMEGA, 1 | (ARMED if armed else 0), ACTIVE, 3)
+
+    return build
+
+
+def no_controllers(mode: int, armed: bool) -> int:
+    """Bits of SYS_STATUS."""
+    return 0
 
 
 _VEHICLE: dict[int, Any] = {**command_table.COMMANDS, **command_table.COMMANDS}
@@ -73,7 +80,9 @@ PROFILE = Profile(
     commands=_VEHICLE,
     set_points=SetpointService,
     texts={},
-    sticks=(),
-    messages=(heartbeat,),
+    takes=(rc_channels_override,),
+    receiver_timeout=1.0,
+    controllers=Controllers(0, no_controllers, healthy_at_rest=True),
+    builders={"HEARTBEAT": heartbeat},
     autopilot=BoatAutopilot,
 )

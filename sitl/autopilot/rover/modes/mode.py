@@ -12,6 +12,7 @@ from ....core.kernels import law
 from ....core.vectors import Vec2
 from ...modes import Mode
 from ..state import Vehicle
+from .state import Modes
 
 NO_PLACE, END_OF_PATH, PLACE_TO_STAY, PLACE_ON_CIRCLE = 0, 1, 2, 3
 """Kinds of destination."""
@@ -25,18 +26,17 @@ class Destination(NamedTuple):
 
 
 @law
-def no_destination(v: Vehicle) -> Destination:
+def no_destination(modes: Modes) -> Destination:
     """Of a mode that drives to no place."""
     return Destination(NO_PLACE, Vec2(0.0, 0.0))
 
 
 @law
-def end_of_path(v: Vehicle) -> Destination:
+def end_of_path(modes: Modes) -> Destination:
     """Of a mode that drives along planned legs."""
-    return Destination(END_OF_PATH, horizontal(v.autopilot.modes.nav.target))
+    return Destination(END_OF_PATH, horizontal(modes.nav.target))
 
 
-@law
 def refuses_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED in a mode whose speed is not set so."""
     return False
@@ -56,7 +56,7 @@ class RoverMode(Mode[Vehicle]):
     """Steering is a controller's, not the pilot's."""
     armable: bool = True
     """The vehicle may be armed in it."""
-    destination: Callable[[Vehicle], Destination] = no_destination
+    destination: Callable[[Modes], Destination] = no_destination
     """Law: where it drives to, for telemetry."""
     change_speed: Callable[[Vehicle, float], bool] = refuses_speed
-    """Law of DO_CHANGE_SPEED [m/s] until the mode changes: whether it is taken."""
+    """DO_CHANGE_SPEED [m/s] until the mode changes, from the shell: whether it is taken."""

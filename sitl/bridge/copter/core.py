@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter with its clients in the compiled core."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...core.kernels import unit
+from ...vehicle.copter import Copter, advance
+from ..core_link import CoreUnits
+from ..services.rc import rc_channels_override
+from ..telemetry.builder import compiled
+from ..wire.choose import choose_builder, choose_taker, choose_targets
+from ..wire.link import Links, hear_port, run_vehicle, tell_links
+from .setpoints import attitude_target, position_target_global, position_target_local
+from .sticks import manual_control
+from .telemetry import MESSAGES
+
+BUILDERS = compiled(MESSAGES)
+TAKERS = (position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control)
+build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
+
+
+@unit
+def hear(fleet: Sequence[Copter], index: int, port: int) -> None:
+    """Act on what the client at ``port`` sent."""
+    hear_port(fleet[index], port, take, target)
+
+
+@unit
+def tell(fleet: Sequence[Copter], index: int, ports: int, count: int, number: int) -> None:
+    """Send the regular messages that are due, or one message."""
+    tell_links(fleet[index], Links(ports, count), number, build)
+
+
+@unit
+def run(fleet: Sequence[Copter], index: int, ports: int, count: int, until_us: int, shell_us: int) -> None:
+    """Advance, and send what falls due."""
+    run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
+
+
+UNITS = CoreUnits(hear, tell, run, BUILDERS, TAKERS)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The compiled side of a vehicle's links, bound to one vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from ..core import compile as compiler
+from ..core.compile import Progress
+from ..vehicle.core_entry import bind_unit
+from ..vehicle.kinds import KINDS
+from .wire.choose import Builder, Taker, message_of
+
+
+class CoreUnits(NamedTuple):
+    """Units of a firmware that hear and tell clients (``wire/link.py``), and the laws that they are made of."""
+
+    hear: Callable[..., None]
+    tell: Callable[..., None]
+    run: Callable[..., None]
+    builders: tuple[Builder, ...]
+    takers: tuple[Taker, ...]
+
+
+class CoreLink:
+    """A firmware's units for one vehicle; each is compiled or loaded when it is first called."""
+
+    def __init__(self, vehicle: Any, units: CoreUnits) -> None:
+        self._vehicle, self._units = vehicle, units
+        self.numbers = frozenset(message_of(builder).kind.id for builder in units.builders)
+        """Messages that the core can send."""
+
+    def load(self, runs_in_core: bool, progress: Progress | None = None) -> None:
+        """Compile what is needed now: ``run`` only for a vehicle whose physics is in the core, too."""
+        kind, units = KINDS[self._vehicle.firmware.name], self._units
+        for unit in (units.run, units.hear) if runs_in_core else (units.tell, units.hear):
+            compiler.load(unit, kind.record_path, progress)
+
+    def _bind(self, unit: Callable[..., None]) -> Callable[..., None]:
+        vehicle = self._vehicle
+        return bind_unit(unit, KINDS[vehicle.firmware.name], vehicle.fleet, vehicle.index)
+
+    @cached_property
+    def hear(self) -> Callable[[int], None]:
+        """``hear(address of a port)``: act on what its client sent, up to a frame that is the shell's."""
+        return self._bind(self._units.hear)
+
+    @cached_property
+    def tell(self) -> Callable[[int, int, int], None]:
+        """``tell(address of ports, count, number)``: send the message ``number``, or all that is due (REGULAR)."""
+        return self._bind(self._units.tell)
+
+    @cached_property
+    def run(self) -> Callable[[int, int, int, int], None]:
+        """``run(address of ports, count, until_us, shell_us)``: advance, and send what falls due."""
+        return self._bind(self._units.run)

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A vehicle and its clients in the core: bytes are acted on, ticks go by, messages go out when they are due.
+
+A firmware makes three units of these laws (``copter/core.py``): ``hear``, ``tell`` and ``run``. All take the address of
+the vehicle's ports, which lie side by side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeVar
+
+from ...core.constants import TICK_US
+from ...core.kernels import law
+from ...core.memory import bytes_at, record_at
+from ...vehicle.record import Vehicle
+from .frames import COMPONENT, next_frame
+from .port import INCOMING, PAYLOAD, PAYLOAD_BYTES, Port
+from .streams import Builder, next_due, send, send_all_due
+
+V = TypeVar("V", bound=Vehicle)
+Advance = Callable[[Sequence[V], int, int], None]
+Tell = Callable[[Sequence[V], int, int, int, int], None]
+REGULAR = -1
+"""In place of a message's number: all that is due."""
+Taker = Callable[[int, V, int, int], bool]
+
+
+@law
+def hear_port(v: V, address: int, take: Taker[V], targets: Callable[[int], int]) -> None:
+    """Act on what a client sent, up to a frame that is the shell's: ``frame_end`` is 0 when there is none.
+
+    Args:
+        v: the vehicle.
+        address: of the port.
+        take: law that acts on a message by its number (``choose.choose_taker``); False: it is the shell's.
+        targets: place of target_system in a message that ``take`` knows, -1: it has none.
+    """
+    port = record_at(Port, address)
+    port.frame_end = 0
+    while next_frame(port, address):
+        taken = port.frame_sender == (port.system << 8 | COMPONENT)  # our own words
+        if not taken:
+            copy_payload(port, address)
+            target = targets(port.frame_number)
+            system = port.payload[target] if target >= 0 else 0
+            if system == 0 or system == port.system:
+                taken = take(port.frame_number, v, port.frame_sender >> 8, address + PAYLOAD)
+                port.taken += 1 if taken else 0
+            else:
+                taken = True
+        port.frame_taken = taken
+        if not taken or port.stops_at_frames:
+            return
+        port.frame_end = 0
+    keep_rest(port, address)
+
+
+@law
+def copy_payload(port: Port, address: int) -> None:
+    """The frame's payload, at full length."""
+    incoming = bytes_at(address + INCOMING, port.in_size)
+    payload = bytes_at(address + PAYLOAD, PAYLOAD_BYTES)
+    for k in range(PAYLOAD_BYTES):
+        payload[k] = incoming[port.frame_payload + k] if k < port.frame_payload_size else 0
+
+
+@law
+def keep_rest(port: Port, address: int) -> None:
+    """Move what is left of the bytes that came in to the beginning."""
+    incoming = bytes_at(address + INCOMING, port.in_size)
+    left = port.in_size - port.in_at
+    for k in range(left):
+        incoming[k] = incoming[port.in_at + k]
+    port.in_size = left
+    port.in_at = 0
+
+
+class Links(NamedTuple):
+    """The ports of a vehicle's clients."""
+
+    address: int
+    """Of the first; the others follow."""
+    clients: int
+
+
+@law
+def run_vehicle(
+    fleet: Sequence[V], index: int, links: Links, until_us: int, shell_us: int, advance: Advance[V], tell: Tell[V]
+) -> None:
+    """Advance to the first tick at or after ``until_us``, sending what falls due.
+
+    Back early, at the end of the tick, when something happened that the shell must know, and when a message is due that
+    the core cannot send.
+
+    Args:
+        fleet: the vehicle's fleet.
+        index: of the vehicle.
+        links: its clients.
+        until_us: since boot [us].
+        shell_us: when the shell has to act before messages are sent [us since boot].
+        advance: unit that goes on by some ticks.
+        tell: unit that sends what is due.
+    """
+    v = fleet[index]
+    events = v.autopilot.events
+    told = events.count
+    while True:
+        stop = min(until_us, next_due(links.address, links.clients))
+        ticks = (stop - v.time_us + TICK_US - 1) // TICK_US
+        advance(fleet, index, max(ticks, 1))
+        if events.attention or events.count != told or v.time_us >= shell_us:
+            return
+        if next_due(links.address, links.clients) <= v.time_us:
+            tell(fleet, index, links.address, links.clients, REGULAR)
+            if next_due(links.address, links.clients) <= v.time_us:
+                return
+        if v.time_us >= until_us:
+            return
+
+
+@law
+def tell_links(v: V, links: Links, number: int, build: Builder) -> None:
+    """Send all that is due to every client, or the message ``number`` to the first."""
+    if number == REGULAR:
+        send_all_due(v, links.address, links.clients, build)
+    else:
+        send(v, record_at(Port, links.address), links.address, number, build)
