@@ -31,7 +31,7 @@ from .telemetry.builder import shell_messages
 from .vehicle import Vehicle
 from .wire import streams
 from .wire.link import REGULAR
-from .wire.port import NEVER
+from .wire.port import NEVER, Port
 
 _HEARTBEAT = message("HEARTBEAT").id
 EPOCH_US = 1_767_225_600_000_000
@@ -61,6 +61,8 @@ class Bridge:
         self._given_autopilot = autopilot
         self.autopilot: Autopilot = autopilot if autopilot is not None else self.profile.autopilot(vehicle)
         self.core = CoreLink(vehicle, self.profile.core)
+        self.shell_port = Port()
+        """In place of a client's, for messages that the shell builds."""
         self.by_shell = shell_messages(self)
         """Messages that the shell builds: number -> function that gives the payload."""
         self.telemetry = {number: message_by_id(number) for number in self.core.numbers | self.by_shell.keys()}
@@ -116,8 +118,8 @@ class Bridge:
 
     def _match_clocks(self) -> None:
         self._before_boot_us = self.vehicle.time_us - self.now_us
-        for channel in self.channels:
-            channel.port.epoch_us = self.epoch_us + self._before_boot_us
+        for port in (self.shell_port, *(channel.port for channel in self.channels)):
+            port.epoch_us = self.epoch_us + self._before_boot_us
 
     @property
     def system(self) -> int:

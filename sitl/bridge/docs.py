@@ -18,8 +18,7 @@ from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.streams import RATE_PREFIX
-from .telemetry.builder import by_number
-from .telemetry.shell import AUTOPILOT_VERSION_BUILDERS
+from .telemetry.shell import SHELL_BUILDERS
 from .wire.choose import message_of
 
 
@@ -95,8 +94,16 @@ def received() -> str:
     """Messages from clients, by the service that acts on them."""
     found = handled()
     names = {s: [f"{name} ({message(name).id})" for name in sorted(found) if found[name] is s] for s in ALL_SERVICES}
-    rows = [(first_sentence(service), ", ".join(names[service])) for service in ALL_SERVICES if names[service]]
+    taken = sorted({message_of(law).kind.name for profile in profiles().values() for law in profile.core.takers})
+    rows = [("Set-points and sticks: taken in the core", ", ".join(f"{name} ({message(name).id})" for name in taken))]
+    rows += [(first_sentence(service), ", ".join(names[service])) for service in ALL_SERVICES if names[service]]
     return _table(("service", "messages"), rows)
+
+
+def telemetry(profile: Profile) -> dict[str, str]:
+    """Content of every message of telemetry, by name."""
+    laws: dict[str, Callable[..., Any]] = {message_of(law).kind.name: law for law in profile.core.builders}
+    return {name: _content(builder, name) for name, builder in (SHELL_BUILDERS | laws).items()}
 
 
 def sent() -> str:

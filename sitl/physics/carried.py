@@ -53,7 +53,7 @@ def _whole(value: float, low: int, high: int) -> int:
         return 0
     if value >= high:
         return high
-    return int(math.floor(value + 0.5)) if value > low else low  # noqa: RUF046 - in the core it is a float
+    return math.floor(value + 0.5) if value > low else low
 
 
 @law

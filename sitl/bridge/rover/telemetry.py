@@ -125,10 +125,10 @@ class RcChannelsScaled(Message, name="RC_CHANNELS_SCALED"):
 @law
 def is_assigned(v: Rover, function: int) -> bool:
     """Whether an output has this function (SERVOn_FUNCTION)."""
-    for k in range(OUTPUTS):  # noqa: SIM110 - laws know no generators
-        if function == v.autopilot.params.SERVO[k].FUNCTION:
-            return True
-    return False
+    found = False
+    for k in range(OUTPUTS):
+        found = found or function == v.autopilot.params.SERVO[k].FUNCTION
+    return found
 
 
 @law

@@ -54,7 +54,7 @@ def shell_messages(bridge: Bridge) -> dict[int, Callable[[], bytes]]:
 
     It comes before a law of the core for the same message.
     """
-    vehicle, port = bridge.vehicle, Port()
+    vehicle, port = bridge.vehicle, bridge.shell_port
     found: dict[int, Callable[[], bytes]] = {
         message(name).id: partial(shell, vehicle, bridge.profile) for name, shell in shell_builders(vehicle).items()
     }

@@ -32,7 +32,7 @@ def uint16(x: float) -> int:
 def int32(x: float) -> int:
     """Rounded to the nearest and limited to 32 bits."""
     if -2147483648.0 < x < 2147483647.0:
-        return int(math.floor(x + 0.5))  # noqa: RUF046 - in the core it is a float
+        return math.floor(x + 0.5)
     return 2147483647 if x >= 2147483647.0 else -2147483648
 
 

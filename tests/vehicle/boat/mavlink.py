@@ -8,15 +8,21 @@ from typing import Any
 
 from sitl.bridge.autopilot_api import Note, Vector
 from sitl.bridge.base_autopilot import BaseAutopilot
-from sitl.bridge.dialect import message
-from sitl.bridge.profile import Controllers, Profile
+from sitl.bridge.core_link import CoreUnits
+from sitl.bridge.profile import Profile
 from sitl.bridge.services import command_table
 from sitl.bridge.services.rc import rc_channels_override
 from sitl.bridge.services.setpoints import SetpointService
-from sitl.bridge.telemetry.builder import Build, Context
-from sitl.bridge.telemetry.status import CAPABILITIES
+from sitl.bridge.telemetry.builder import compiled
+from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
+from sitl.bridge.telemetry.shell import CAPABILITIES
+from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
+from sitl.bridge.wire.link import Links, hear_port, run_vehicle, tell_links
+from sitl.core.kernels import law, unit
+from sitl.vehicle.record import Vehicle
 
 from .firmware import AHEAD, MODES
+from .kind import Boat, advance
 
 SURFACE_BOAT, ARDUPILOTMEGA, ACTIVE, ARMED = 11, 3, 4, 128
 
@@ -67,6 +73,27 @@ def no_controllers(mode: int, armed: bool) -> int:
     return 0
 
 
+BUILDERS = compiled((heartbeat,))
+TAKERS = (rc_channels_override,)
+build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
+
+
+@unit
+def hear(fleet: Sequence[Boat], index: int, port: int) -> None:
+    hear_port(fleet[index], port, take, target)
+
+
+@unit
+def tell(fleet: Sequence[Boat], index: int, ports: int, count: int, number: int) -> None:
+    tell_links(fleet[index], Links(ports, count), number, build)
+
+
+@unit
+def run(fleet: Sequence[Boat], index: int, ports: int, count: int, until_us: int, shell_us: int) -> None:
+    run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
+
+
+UNITS = CoreUnits(hear, tell, run, BUILDERS, TAKERS)
 _VEHICLE: dict[int, Any] = {**command_table.COMMANDS, **command_table.COMMANDS}
 PROFILE = Profile(
     firmware="Boat",
@@ -80,9 +107,6 @@ PROFILE = Profile(
     commands=_VEHICLE,
     set_points=SetpointService,
     texts={},
-    takes=(rc_channels_override,),
-    receiver_timeout=1.0,
-    controllers=Controllers(0, no_controllers, healthy_at_rest=True),
-    builders={"HEARTBEAT": heartbeat},
+    core=UNITS,
     autopilot=BoatAutopilot,
 )
