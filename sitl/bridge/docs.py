@@ -54,10 +54,10 @@ def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> str:
 def _by_firmware(tables: dict[str, Any]) -> Iterable[tuple[Any, Any, str]]:
     """(key, value, whose) of tables by firmware; what all of them have alike comes once, as "both"."""
     for key in sorted({key for table in tables.values() for key in table}):
-        owners: dict[int, list[str]] = {}
+        owners: dict[Any, list[str]] = {}
         for name, table in tables.items():
             if key in table:
-                owners.setdefault(id(table[key]), []).append(name)
+                owners.setdefault(table[key], []).append(name)
         for names in owners.values():
             yield key, tables[names[0]][key], "both" if len(names) == len(BUILT_IN) else ", ".join(names)
 
@@ -115,10 +115,9 @@ def sent() -> str:
         for name in names
     }
     rows = []
-    for name, builder, whose in _by_firmware({vehicle: builders(p) for vehicle, p in profiles().items()}):
+    for name, content, whose in _by_firmware({vehicle: telemetry(p) for vehicle, p in profiles().items()}):
         vehicle = DEFAULT if whose == "both" else whose
-        group = group_of.get((vehicle, name), "-")
-        rows.append((message(name).id, name, whose, group, _content(builder, name)))
+        rows.append((message(name).id, name, whose, group_of.get((vehicle, name), "-"), content))
     return _table(("id", "message", "vehicle", "stream group", "content"), rows)
 
 

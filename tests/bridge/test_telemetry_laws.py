@@ -164,7 +164,8 @@ def registered() -> Iterator[Any]:
 
 
 def test_a_registered_law_comes_before_others(registered: Any, v: Copter) -> None:
-    bridge: Any = SimpleNamespace(vehicle=SimpleNamespace(v=v, has_truth_in_record=True), profile=load("copter"))
+    vehicle = SimpleNamespace(v=v, has_truth_in_record=True)
+    bridge: Any = SimpleNamespace(vehicle=vehicle, profile=load("copter"), shell_port=Port())
     made = builder.shell_messages(bridge)
     assert Attitude.kind.decode(made[Attitude.kind.id]()).roll == 0.0
     v.time_us = 0

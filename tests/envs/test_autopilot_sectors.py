@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
-from sitl.bridge.telemetry import sensors
+from sitl.bridge.telemetry import ranging
 from sitl.envs.mavlink.telemetry import SECTORS, StepTelemetry
 
 COPTER = "GazeboOfficeErleCopterLIDAR-v0"
@@ -17,7 +17,7 @@ COPTER = "GazeboOfficeErleCopterLIDAR-v0"
 def test_sectors_are_spread_over_the_readings(monkeypatch):
     whole = gym.make(COPTER, observation="scan")
     seen, _ = whole.reset(seed=2)
-    monkeypatch.delitem(sensors.BUILDERS, "DEBUG_FLOAT_ARRAY")
+    monkeypatch.setattr(ranging, "MESSAGES", (ranging.obstacle_distance, ranging.distance_sensor))
     sectors = gym.make(COPTER, observation="scan")
     rough, _ = sectors.reset(seed=2)
     assert sectors.unwrapped.robot.link(0).inbox.scan_kind is SECTORS

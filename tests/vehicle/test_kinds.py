@@ -11,7 +11,8 @@ import pytest
 
 from sitl import vehicles
 from sitl.bridge.profile import Profile
-from sitl.bridge.telemetry.builder import builders
+from sitl.bridge.telemetry.builder import messages
+from sitl.bridge.wire.choose import message_of
 from sitl.client import Endpoint
 from sitl.errors import OptionError
 from sitl.logs.kind import logs_of
@@ -136,4 +137,4 @@ def test_every_part_of_a_built_in_kind_is_there(name: str) -> None:
     assert {"mavlink", "logs", "environments"} <= set(kind.parts)
     for part in kind.parts:
         assert kind.part(part, object) is not None
-    assert "HEARTBEAT" in builders(kind.part("mavlink", Profile))
+    assert "HEARTBEAT" in {message_of(law).kind.name for law in messages(kind.part("mavlink", Profile))}

@@ -48,9 +48,10 @@ def simstate(vehicle: Vehicle, profile: Profile) -> bytes:
     return bytes(as_bytes(m, m.dtype))
 
 
+SHELL_BUILDERS: dict[str, ShellBuilder] = {"AUTOPILOT_VERSION": autopilot_version}
+"""What the shell builds for every vehicle, by the message's name."""
+
+
 def shell_builders(vehicle: Vehicle) -> dict[str, ShellBuilder]:
     """What the shell builds for a vehicle, by the message's name; it comes before a law for the same message."""
-    found: dict[str, ShellBuilder] = {"AUTOPILOT_VERSION": autopilot_version}
-    if not vehicle.has_truth_in_record:
-        found["SIMSTATE"] = simstate
-    return found
+    return SHELL_BUILDERS if vehicle.has_truth_in_record else {**SHELL_BUILDERS, "SIMSTATE": simstate}

@@ -24,7 +24,7 @@ from sitl.vehicle.record import Vehicle
 from .firmware import AHEAD, MODES
 from .kind import Boat, advance
 
-SURFACE_BOAT, ARDUPILOTMEGA, ACTIVE, ARMED = 11, 3, 4, 128
+SURFACE_BOAT = 11
 
 
 class BoatAutopilot(BaseAutopilot):
@@ -56,21 +56,11 @@ class BoatAutopilot(BaseAutopilot):
         return False
 
 
-def heartbeat(context: Context) -> Build:
+@law
+def heartbeat(m: Heartbeat, v: Vehicle) -> bool:
     """HEARTBEAT: a boat, its mode, armed or not."""
-    read = context.fields("autopilot.arming.armed", "autopilot.modes.number")
-    pack = message("HEARTBEAT").pack
-
-    def build() -> bytes:
-        armed, mode = read()
-        return pack(mode, SURFACE_BOAT, ARDUPILOTMEGA, 1 | (ARMED if armed else 0), ACTIVE, 3)
-
-    return build
-
-
-def no_controllers(mode: int, armed: bool) -> int:
-    """Bits of SYS_STATUS."""
-    return 0
+    base = CUSTOM_MODE | (ARMED if v.autopilot.arming.armed else 0)
+    return fill_heartbeat(m, v, SURFACE_BOAT, base, ACTIVE)
 
 
 BUILDERS = compiled((heartbeat,))
