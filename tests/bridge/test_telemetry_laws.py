@@ -30,7 +30,6 @@ from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
 from sitl.vehicle.record import Vehicle
 from sitl.vehicle.rover import Rover
-from tests.bridge.fakes import Bench
 
 HOME = (-353632620, 1491652370, 584.0)
 
@@ -152,22 +151,32 @@ def test_the_shell_asks_physics_that_is_elsewhere() -> None:
     assert (m.xgyro, m.lat, m.lng) == (0.25, 7, 8)
 
 
+@law
+def always_level(m: Attitude, v: Vehicle) -> bool:
+    """ATTITUDE: always level."""
+    return v.time_us > 0
+
+
 @pytest.fixture
 def registered() -> Iterator[Any]:
-    @law
-    def level(m: Attitude, v: Vehicle) -> bool:
-        """ATTITUDE: always level."""
-        return v.time_us > 0
-
-    yield register_message(level)
+    yield register_message(always_level)
     del builder._registered[Attitude.kind.id]
 
 
-def test_a_registered_law_comes_before_others(registered: Any, bench: Bench) -> None:
-    number = Attitude.kind.id
-    assert number in bench.bridge.by_shell and bench.bridge.by_shell[number]() == b""
-    bench.vehicle.v.time_us = 1
-    assert message("ATTITUDE").decode(bench.bridge.by_shell[number]()).roll == 0.0
+def test_a_registered_law_comes_before_others(registered: Any, v: Copter) -> None:
+    vehicle = SimpleNamespace(v=v, has_truth_in_record=True)
+    bridge: Any = SimpleNamespace(vehicle=vehicle, profile=load("copter"), shell_port=Port())
+    made = builder.shell_messages(bridge)
+    assert Attitude.kind.decode(made[Attitude.kind.id]()).roll == 0.0
+    v.time_us = 0
+    assert made[Attitude.kind.id]() == b""
+
+
+def test_a_firmwares_own_laws_come_before_shared_ones() -> None:
+    laws = builder.compiled((copter.heartbeat, always_level))
+    assert always_level in laws and attitude not in laws
+    numbers = [message_of(law).kind.id for law in laws]
+    assert numbers == sorted(set(numbers))
 
 
 def test_what_builds_no_message_is_refused() -> None:
