@@ -13,10 +13,7 @@ from tests.bridge.fakes import HOME, Bench
 
 def get(bench: Bench, name: str) -> object:
     """One message, as a client decodes it."""
-    number = next(n for n, (kind, _) in bench.bridge.telemetry.items() if kind.name == name)
-    bench.bridge.send_now(bench.bridge.channels[0], number)
-    bench.bridge.flush()
-    found = bench.client.receive(name)
+    found = bench.telemetry(name)
     assert len(found) == 1
     return found[0]
 

@@ -9,8 +9,20 @@ import numpy as np
 import pytest
 
 from sitl.simulation import Core
-from tests.drives.rover_driver import ACRO, AIRFRAMES, AUTO, GUIDED, HOLD, MANUAL, VELOCITY, Driver, path_error
-from tests.drives.rover_figures import SIDE, outside, square
+from tests.drives.rover_driver import (
+    ACRO,
+    AIRFRAMES,
+    AUTO,
+    GUIDED,
+    HOLD,
+    MANUAL,
+    SIDE,
+    VELOCITY,
+    Driver,
+    outside,
+    path_error,
+    square,
+)
 from tests.pilots.witness import (
     CHANGE_SPEED,
     CONDITION_DELAY,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same commands give the same bytes: again, in another process, from a snapshot, in a fork."""
+"""The same commands give the same bytes: again, elsewhere, from a snapshot; and INITIAL_MODE at power-on."""
 
 from __future__ import annotations
 
@@ -12,7 +12,19 @@ import pytest
 
 from sitl.simulation import Core, load_core
 from sitl.vehicle.kinds import KINDS
-from tests.drives.rover_driver import AIRFRAMES, CIRCLE, GUIDED, HOLD, LOITER, MANUAL, RTL, SMART_RTL, VELOCITY, Driver
+from tests.drives.rover_driver import (
+    AIRFRAMES,
+    AUTO,
+    CIRCLE,
+    GUIDED,
+    HOLD,
+    LOITER,
+    MANUAL,
+    RTL,
+    SMART_RTL,
+    VELOCITY,
+    Driver,
+)
 from tests.pilots.witness import WAYPOINT, Item
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
@@ -92,3 +104,25 @@ def test_forks(core: Core, frame: str) -> None:
     children[1].stream(3.0, VELOCITY, vy=children[1].cruise)
     assert children[0].simulation.fleet.tobytes() != children[1].simulation.fleet.tobytes()
     assert parent.simulation.time_us < children[0].simulation.time_us
+
+
+INITIALISING = 16
+NO_RADIO = {"SIM_RC_FAIL": 1.0, "FS_THR_ENABLE": 0.0}
+
+
+def test_a_stored_mission_may_start_with_the_vehicle(core: Core) -> None:
+    d = Driver(core, "ardupilot_rover", **NO_RADIO).ready()
+    assert d.upload(Item(WAYPOINT, (10.0, 0.0)), Item(WAYPOINT, (10.0, 10.0))) == 0
+    d.set_parameter("INITIAL_MODE", AUTO)
+    d.simulation.request_reboot()
+    d.simulation.advance(5.0)
+    assert d.mode == AUTO
+    assert d.ap.modes.nav.mission_current == 0  # no place means anything yet
+    d.simulation.advance(45.0)
+    assert d.mode == AUTO and d.ap.modes.nav.mission_current == 1
+
+
+def test_a_mode_that_cannot_begin_yet_is_not_entered(core: Core) -> None:
+    d = Driver(core, "ardupilot_rover", INITIAL_MODE=float(LOITER), **NO_RADIO)
+    d.simulation.advance(1.0)
+    assert d.mode == INITIALISING

@@ -6,9 +6,8 @@ from __future__ import annotations
 import pytest
 
 from sitl.simulation import Core
-from tests.drives.rover_chaos import RoverChaos
 from tests.drives.rover_driver import AIRFRAMES
-from tests.drives.rover_soak import RoverSoak
+from tests.drives.rover_soak import RoverChaos, RoverSoak
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 

@@ -10,8 +10,20 @@ import numpy as np
 import pytest
 
 from sitl.simulation import Core
-from tests.flights.aviator import AIRFRAMES, GUIDED, LAND, LOITER, TAKEOFF_ITEM, Aviator
-from tests.flights.guided_targets import POSITION, POSITION_YAW, VELOCITY, estimate, stream, target
+from tests.flights.aviator import (
+    AIRFRAMES,
+    GUIDED,
+    LAND,
+    LOITER,
+    POSITION,
+    POSITION_YAW,
+    TAKEOFF_ITEM,
+    VELOCITY,
+    Aviator,
+    estimate,
+    stream,
+    target,
+)
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 DENIED = 2

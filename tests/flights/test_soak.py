@@ -7,8 +7,7 @@ import pytest
 
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES
-from tests.flights.chaos import Chaos
-from tests.flights.soak import Soak
+from tests.flights.soak import Chaos, Soak
 
 
 @pytest.mark.parametrize("frame", AIRFRAMES)

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+import random
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -183,3 +185,22 @@ class Witness(Pilot):
     def reached_at(self, seq: int) -> float:
         """When MISSION_ITEM_REACHED first came for an item [s]; NaN when it did not."""
         return next((time for time, number in self.telemetry.reached if number == seq), math.nan)
+
+
+class ByDice(Witness):
+    """Acts by dice; mixed into a test pilot of some vehicle."""
+
+    def __init__(self, core: Core, frame: str, seed: int) -> None:
+        super().__init__(core, frame, seed=seed)
+        self.dice = random.Random(seed)
+        self.log: list[str] = []
+
+    def do_one_of(self, deeds: Sequence[Callable[[], None]]) -> None:
+        """One of these, noted."""
+        deed = self.dice.choice(deeds)
+        self.log.append(f"{self.now:.1f} {deed.__name__}")
+        deed()
+
+    def story(self) -> str:
+        """What was done last."""
+        return f"at {self.now:.1f} s in mode {self.mode}: {self.log[-12:]} {self.texts[-4:]} {self.track[-1]}"

@@ -29,8 +29,7 @@ from sitl.plants.plant import PhysicsLostError
 from sitl.run.standstill import Patience
 from sitl.simulation import Simulation
 from tests.bridge.hil.hil_bench import Vehicle
-from tests.bridge.hil.hil_cuts import CutWire
-from tests.bridge.hil.hil_peers import ROOT, PhysicsProcess, WatchedPilot
+from tests.bridge.hil.hil_peers import ROOT, CutWire, PhysicsProcess, WatchedPilot
 
 
 def go_on(simulation: Simulation, time_us: int, tries: int = 1000) -> int:
