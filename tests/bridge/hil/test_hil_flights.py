@@ -8,7 +8,7 @@ import pytest
 from sitl.bridge.dialect import message
 from sitl.missions import copter, rover
 from sitl.simulation import Simulation
-from tests.bridge.hil.hil_peers import WatchedPilot
+from tests.bridge.hil.conftest import WatchedPilot
 
 SIMSTATE, SCAN, DISTANCE = (message(n).id for n in ("SIMSTATE", "DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR"))
 WHEELS = message("WHEEL_DISTANCE").id

@@ -28,8 +28,8 @@ from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
 from sitl.run.standstill import Patience
 from sitl.simulation import Simulation
+from tests.bridge.hil.conftest import ROOT, CutWire, PhysicsProcess, WatchedPilot
 from tests.bridge.hil.hil_bench import Vehicle
-from tests.bridge.hil.hil_peers import ROOT, CutWire, PhysicsProcess, WatchedPilot
 
 
 def go_on(simulation: Simulation, time_us: int, tries: int = 1000) -> int:

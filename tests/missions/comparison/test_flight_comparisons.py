@@ -13,7 +13,7 @@ from sitl.missions.comparison.compare import Comparison, compare, default_tolera
 from sitl.missions.comparison.flight import Flight, of_recording, read
 from sitl.recording.entries import EntryKind
 from sitl.recording.recording import read as read_recording
-from tests.missions.comparison.compared_flights import fly_square
+from tests.missions.comparison.conftest import fly_square
 
 
 @pytest.fixture(scope="module")
