@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from sitl.autopilot.mission import item as c
 from sitl.client import Moment
 from sitl.simulation import Core
-from tests.pilots.witness import KEEP, MIDDLE, WAYPOINT, Item, Witness
+from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
 
 MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED = 0, 1, 3, 4, 5, 7, 9, 10, 11, 12, 15
 MODES = (MANUAL, ACRO, STEERING, HOLD, LOITER, SIMPLE, CIRCLE, AUTO, RTL, SMART_RTL, GUIDED)
@@ -164,7 +165,7 @@ def drive_along(core: Core, frame: str, places: list[tuple[float, float]], estim
     """What a mission through these places drove."""
     d = Driver(core, frame, estimator=estimator).armed_in()
     start = d.now
-    d.start_mission(*(Item(WAYPOINT, place) for place in places))
+    d.start_mission(*(Item(c.NAV_WAYPOINT, place) for place in places))
     d.finish_mission(60.0 + 3.0 * sum(map(math.dist, places, places[1:])) / d.cruise)
     d.wait_until_it_stands()
     return d.since(start)
@@ -196,7 +197,7 @@ def figures(core: Core, frame: str) -> dict[str, float]:
         d.wait_until_it_stands(60.0)
         stops.append(float(np.hypot(*(d.place - place))))
     return {
-        "cuts a corner by": max(float(np.hypot(*(rows[:, 1:3] - c).T).min()) for c in corners[1:4]),
+        "cuts a corner by": max(float(np.hypot(*(rows[:, 1:3] - corner).T).min()) for corner in corners[1:4]),
         "runs wide by": outside(rows, side),
         "runs wide by, with GPS": outside(by_gps, side),
         "off the eight, RMS": float(

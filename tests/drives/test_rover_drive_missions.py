@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.simulation import Core
 from tests.drives.rover_driver import (
     ACRO,
@@ -23,26 +24,7 @@ from tests.drives.rover_driver import (
     path_error,
     square,
 )
-from tests.pilots.witness import (
-    CHANGE_SPEED,
-    CONDITION_DELAY,
-    CONDITION_DISTANCE,
-    DELAY,
-    GUIDED_ENABLE,
-    GUIDED_LIMITS,
-    JUMP,
-    LAND_ITEM,
-    LOITER_TIME,
-    LOITER_TURNS,
-    LOITER_UNLIMITED,
-    RETURN,
-    REVERSE,
-    ROI,
-    TAKEOFF_ITEM,
-    WAYPOINT,
-    YAW_SPEED,
-    Item,
-)
+from tests.pilots.witness import Item
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 CARS = pytest.mark.parametrize("frame", AIRFRAMES[:3])
@@ -56,7 +38,7 @@ def corners(frame: str) -> list[tuple[float, float]]:
 
 
 def way(*places: tuple[float, float]) -> list[Item]:
-    return [Item(WAYPOINT, place) for place in places]
+    return [Item(c.NAV_WAYPOINT, place) for place in places]
 
 
 def driver(core: Core, frame: str, **params: float) -> Driver:
@@ -126,7 +108,7 @@ def test_backwards(core: Core, frame: str) -> None:
     side = SIDE[frame]
     d = driver(core, frame)
     start = d.now
-    d.start_mission(Item(REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
+    d.start_mission(Item(c.DO_SET_REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
     d.finish_mission(100.0 + 4.0 * side / d.cruise)
     d.wait_until_it_stands()
     rows = d.since(start)
@@ -144,7 +126,7 @@ def test_backwards(core: Core, frame: str) -> None:
 def test_delay_at_a_waypoint(core: Core, frame: str) -> None:
     side = SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
+    d.start_mission(Item(c.NAV_WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Reached waypoint #1. Loiter for 5 seconds"))
     d.fly(4.9)
     assert abs(d.speed) < 0.05 and d.said("Mission: 1") and not d.said("Mission: 2")
@@ -158,8 +140,8 @@ def test_stays(core: Core, frame: str) -> None:
     """NAV_DELAY, LOITER_TIME, then LOITER_UNLIMITED for good."""
     side = SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(DELAY, None, 0.0, (4.0, -1, -1, -1)), Item(LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
-                    Item(LOITER_UNLIMITED, (side, side)), *way((0.0, 0.0)))  # fmt: skip
+    d.start_mission(Item(c.NAV_DELAY, None, 0.0, (4.0, -1, -1, -1)), Item(c.NAV_LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
+                    Item(c.NAV_LOITER_UNLIM, (side, side)), *way((0.0, 0.0)))  # fmt: skip
     d.fly(3.8)
     assert d.stands() and np.hypot(*d.place) < 0.01
     assert d.fly(60.0 + 3.0 * side / d.cruise, lambda: d.said("Finished active loiter"))
@@ -174,7 +156,7 @@ def test_turns(core: Core, frame: str, side: float) -> None:
     """LOITER_TURNS: a negative radius goes anticlockwise."""
     radius = 0.25 * SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
+    d.start_mission(Item(c.NAV_LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
     assert d.fly(60.0 + 30.0 * radius / d.cruise, lambda: d.said("Mission Complete"))
     rows = d.since(d.now - 2.0 * math.pi * radius / d.cruise)
     distance = np.hypot(rows[:, 1], rows[:, 2] - 2.0 * radius)
@@ -188,9 +170,9 @@ def test_speed_and_conditions(core: Core, frame: str) -> None:
     side = SIDE[frame]
     d = driver(core, frame)
     d.start_mission(
-        *way((side, 0.0)), Item(CONDITION_DELAY, None, 0.0, (6.0,)),
-        Item(CHANGE_SPEED, None, 0.0, (1, 0.5 * d.cruise)), Item(CONDITION_DISTANCE, None, 0.0, (0.4 * side,)),
-        Item(CHANGE_SPEED, None, 0.0, (1, d.cruise)), *way((3.0 * side, 0.0)),
+        *way((side, 0.0)), Item(c.CONDITION_DELAY, None, 0.0, (6.0,)),
+        Item(c.DO_CHANGE_SPEED, None, 0.0, (1, 0.5 * d.cruise)), Item(c.CONDITION_DISTANCE, None, 0.0, (0.4 * side,)),
+        Item(c.DO_CHANGE_SPEED, None, 0.0, (1, d.cruise)), *way((3.0 * side, 0.0)),
     )  # fmt: skip
     d.finish_mission(100.0 + 8.0 * side / d.cruise)
     assert d.reached_at(3) - d.reached_at(1) == pytest.approx(6.0, abs=0.3)
@@ -209,7 +191,7 @@ def test_jump(core: Core, frame: str) -> None:
     """Twice back to the first of two places."""
     side = SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(*way((side, 0.0), (side, side)), Item(JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
+    d.start_mission(*way((side, 0.0), (side, side)), Item(c.DO_JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
     d.finish_mission(200.0 + 16.0 * side / d.cruise)
     assert list(d.reached) == [1, 2, 1, 2, 1, 2, 4]
 
@@ -218,7 +200,7 @@ def test_jump(core: Core, frame: str) -> None:
 def test_heading_and_speed_item(core: Core, frame: str) -> None:
     """NAV_SET_YAW_SPEED turns while it drives, and is done at the heading."""
     d = driver(core, frame)
-    d.start_mission(Item(YAW_SPEED, None, 0.0, (90.0, 0.6 * d.cruise, 0.0)))
+    d.start_mission(Item(c.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.6 * d.cruise, 0.0)))
     d.finish_mission(60.0)
     d.wait_until_it_stands()
     assert d.heading == pytest.approx(90.0, abs=12.0)
@@ -227,7 +209,7 @@ def test_heading_and_speed_item(core: Core, frame: str) -> None:
 @ALL
 def test_return_item(core: Core, frame: str) -> None:
     d = driver(core, frame)
-    d.start_mission(*way((SIDE[frame], 0.0)), Item(RETURN))
+    d.start_mission(*way((SIDE[frame], 0.0)), Item(c.NAV_RETURN_TO_LAUNCH))
     d.finish_mission(100.0 + 4.0 * SIDE[frame] / d.cruise)
     d.wait_until_it_stands()
     home = np.array(d.ap.home.pos)[:2]
@@ -239,8 +221,8 @@ def test_guided_within_a_mission(core: Core, frame: str) -> None:
     """GUIDED_ENABLE takes set-points until DO_GUIDED_LIMITS ends it; then the mission goes on."""
     side = SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(*way((side, 0.0)), Item(GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
-                    Item(GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
+    d.start_mission(*way((side, 0.0)), Item(c.DO_GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
+                    Item(c.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Mission: 3"))
     start = d.now
     while not d.said("Mission: 4"):
@@ -280,9 +262,9 @@ def test_a_mission_goes_on_where_it_was_left(core: Core) -> None:
 
 def test_what_only_copters_fly_is_refused(core: Core) -> None:
     d = driver(core, "erle_rover")
-    assert d.upload(Item(TAKEOFF_ITEM, None, 10.0), *way((10.0, 0.0))) != 0
-    assert d.upload(*way((10.0, 0.0)), Item(LAND_ITEM)) != 0
-    assert d.upload(Item(ROI, (5.0, 5.0)), *way((10.0, 0.0))) == 0
+    assert d.upload(Item(c.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) != 0
+    assert d.upload(*way((10.0, 0.0)), Item(c.NAV_LAND)) != 0
+    assert d.upload(Item(c.DO_SET_ROI_LOCATION, (5.0, 5.0)), *way((10.0, 0.0))) == 0
     assert d.mode == GUIDED
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.core import records
 from sitl.simulation import Core
 from tests.drives.rover_driver import (
@@ -28,7 +29,7 @@ from tests.drives.rover_driver import (
     VELOCITY_YAW_RATE,
     Driver,
 )
-from tests.pilots.witness import DELAY, LOITER_TURNS, REVERSE, WAYPOINT, YAW_SPEED, Item
+from tests.pilots.witness import Item
 
 TICKS = 88
 """Eleven periods of modes and control."""
@@ -94,7 +95,7 @@ def motor_test(d: Driver) -> None:
 
 
 def corner(d: Driver) -> None:
-    d.start_mission(Item(WAYPOINT, (6.0 * d.cruise, 0.0)), Item(WAYPOINT, (6.0 * d.cruise, 6.0 * d.cruise)))
+    d.start_mission(Item(c.NAV_WAYPOINT, (6.0 * d.cruise, 0.0)), Item(c.NAV_WAYPOINT, (6.0 * d.cruise, 6.0 * d.cruise)))
     assert d.fly(40.0, lambda: d.said("Mission: 2"))
     d.fly(0.5)
 
@@ -115,10 +116,12 @@ PHASES: dict[str, Callable[[Driver], None]] = {
     "guided, timed out": timed_out,
     "guided, backwards": backwards,
     "auto, corner": corner,
-    "auto, circling": mission(Item(LOITER_TURNS, (0.0, 0.0), 0.0, (3.0, 0.0, 5.0)), seconds=8.0),
-    "auto, backwards": mission(Item(REVERSE, None, 0.0, (1,)), Item(WAYPOINT, (-20.0, 5.0)), seconds=6.0),
-    "auto, heading": mission(Item(YAW_SPEED, None, 0.0, (90.0, 0.2, 0.0)), seconds=1.0),
-    "auto, delay": mission(Item(DELAY, None, 0.0, (9.0, -1, -1, -1)), seconds=1.0),
+    "auto, circling": mission(Item(c.NAV_LOITER_TURNS, (0.0, 0.0), 0.0, (3.0, 0.0, 5.0)), seconds=8.0),
+    "auto, backwards": mission(
+        Item(c.DO_SET_REVERSE, None, 0.0, (1,)), Item(c.NAV_WAYPOINT, (-20.0, 5.0)), seconds=6.0
+    ),
+    "auto, heading": mission(Item(c.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.2, 0.0)), seconds=1.0),
+    "auto, delay": mission(Item(c.NAV_DELAY, None, 0.0, (9.0, -1, -1, -1)), seconds=1.0),
     "without gps": without_gps,
     "motor test": motor_test,
 }

@@ -8,28 +8,11 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.drives.rover_driver import AIRFRAMES, AUTO, GUIDED, HOLD, MODES, VELOCITY, Driver
-from tests.pilots.witness import (
-    CHANGE_SPEED,
-    CONDITION_DELAY,
-    CONDITION_DISTANCE,
-    DELAY,
-    GUIDED_ENABLE,
-    GUIDED_LIMITS,
-    JUMP,
-    LOITER_TIME,
-    LOITER_TURNS,
-    LOITER_UNLIMITED,
-    RETURN,
-    REVERSE,
-    ROI,
-    WAYPOINT,
-    YAW_SPEED,
-    ByDice,
-    Item,
-)
+from tests.pilots.witness import ByDice, Item
 
 ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 
@@ -158,9 +141,9 @@ class RoverSoak(ByDice, Driver):
     def command(self) -> None:
         d, v = self.dice, self.cruise
         number, params = d.choice(
-            ((CHANGE_SPEED, (d.choice((0, 1, 2)), d.uniform(-0.5, 2.0 * v))),
+            ((c.DO_CHANGE_SPEED, (d.choice((0, 1, 2)), d.uniform(-0.5, 2.0 * v))),
              (YAW_AND_SPEED, (d.uniform(-180, 360), d.uniform(-v, v), d.choice((0, 1)))),
-             (REVERSE, (d.choice((0, 1)),)),
+             (c.DO_SET_REVERSE, (d.choice((0, 1)),)),
              (ARM, (d.choice((0, 1, 1)),)),
              (MISSION_CURRENT, (d.randint(0, 5),)),
              (MOTOR_TEST, (d.randint(0, 5), 0, d.uniform(-20, 20), d.uniform(0, 2))),
@@ -171,7 +154,7 @@ class RoverSoak(ByDice, Driver):
         self.send_command(number, *params)
 
     def load_mission(self) -> None:
-        items = [Item(WAYPOINT, (self.dice.uniform(0.0, self.size), 0.0))]
+        items = [Item(c.NAV_WAYPOINT, (self.dice.uniform(0.0, self.size), 0.0))]
         items += [self.item() for _ in range(self.dice.randint(1, 8))]
         assert self.upload(*items) == 0, self.story()
         if self.dice.random() < 0.5:
@@ -181,17 +164,19 @@ class RoverSoak(ByDice, Driver):
         d, v, far = self.dice, self.cruise, self.size
         place = (d.uniform(-far, far), d.uniform(-far, far))
         return d.choice(
-            (Item(WAYPOINT, place), Item(WAYPOINT, place), Item(WAYPOINT, place, 0, (d.randint(0, 3),)),
-             Item(WAYPOINT, (0.0, 0.0)), Item(LOITER_TIME, place, 0, (d.randint(0, 5),)),
-             Item(LOITER_TURNS, place, 0, (d.randint(1, 2), 0, 0.3 * d.uniform(-far, far))),
-             Item(LOITER_UNLIMITED, place), Item(DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
-             Item(CHANGE_SPEED, None, 0, (1, d.uniform(0.1, 2 * v))),
-             Item(YAW_SPEED, None, 0, (d.uniform(0, 360), d.uniform(-v, v), d.choice((0, 1)))),
-             Item(CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
-             Item(CONDITION_DISTANCE, None, 0, (d.uniform(0, far),)),
-             Item(REVERSE, None, 0, (d.choice((0, 1)),)), Item(ROI, place),
-             Item(GUIDED_ENABLE, None, 0, (d.choice((0, 1)),)), Item(GUIDED_LIMITS, None, 0, (d.uniform(1, 9),)),
-             Item(JUMP, None, 0, (d.randint(1, 3), d.randint(1, 2))), Item(RETURN))
+            (Item(c.NAV_WAYPOINT, place), Item(c.NAV_WAYPOINT, place),
+             Item(c.NAV_WAYPOINT, place, 0, (d.randint(0, 3),)),
+             Item(c.NAV_WAYPOINT, (0.0, 0.0)), Item(c.NAV_LOITER_TIME, place, 0, (d.randint(0, 5),)),
+             Item(c.NAV_LOITER_TURNS, place, 0, (d.randint(1, 2), 0, 0.3 * d.uniform(-far, far))),
+             Item(c.NAV_LOITER_UNLIM, place), Item(c.NAV_DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
+             Item(c.DO_CHANGE_SPEED, None, 0, (1, d.uniform(0.1, 2 * v))),
+             Item(c.NAV_SET_YAW_SPEED, None, 0, (d.uniform(0, 360), d.uniform(-v, v), d.choice((0, 1)))),
+             Item(c.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
+             Item(c.CONDITION_DISTANCE, None, 0, (d.uniform(0, far),)),
+             Item(c.DO_SET_REVERSE, None, 0, (d.choice((0, 1)),)), Item(c.DO_SET_ROI_LOCATION, place),
+             Item(c.NAV_GUIDED_ENABLE, None, 0, (d.choice((0, 1)),)),
+             Item(c.DO_GUIDED_LIMITS, None, 0, (d.uniform(1, 9),)),
+             Item(c.DO_JUMP, None, 0, (d.randint(1, 3), d.randint(1, 2))), Item(c.NAV_RETURN_TO_LAUNCH))
         )  # fmt: skip
 
 

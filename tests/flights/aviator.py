@@ -5,37 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from sitl.autopilot.mission import item as c
 from sitl.physics.native import truth
 from sitl.simulation import Core
-from tests.pilots.witness import (
-    ABSOLUTE,
-    CHANGE_SPEED,
-    CONDITION_DELAY,
-    CONDITION_DISTANCE,
-    CONDITION_YAW,
-    DELAY,
-    JUMP,
-    LAND_ITEM,
-    LOITER_TIME,
-    LOITER_TURNS,
-    LOITER_UNLIMITED,
-    LOW,
-    MIDDLE,
-    RETURN,
-    ROI,
-    ROI_NONE,
-    TAKEOFF_ITEM,
-    TERRAIN,
-    WAYPOINT,
-    Item,
-    Witness,
-)
-
-__all__ = [
-    "ABSOLUTE", "CHANGE_SPEED", "CONDITION_DELAY", "CONDITION_DISTANCE", "CONDITION_YAW", "DELAY", "JUMP", "LAND_ITEM",
-    "LOITER_TIME", "LOITER_TURNS", "LOITER_UNLIMITED", "LOW", "MIDDLE", "RETURN", "ROI", "ROI_NONE", "TAKEOFF_ITEM",
-    "TERRAIN", "WAYPOINT", "Aviator", "Item",
-]  # fmt: skip
+from tests.pilots.witness import MIDDLE, Item, Witness
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
@@ -72,7 +45,7 @@ class Aviator(Witness):
 
     def take_off(self, height: float) -> None:
         """Take off, armed in GUIDED."""
-        assert self.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, height) == 0
+        assert self.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.fly(30.0 + height, lambda: self.height > height - 0.5), f"at {self.height} m, {self.texts}"
         self.fly(4.0)
 

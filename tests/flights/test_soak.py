@@ -8,12 +8,11 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.missions.pilot import ARM
 from sitl.simulation import Core
-from tests.flights import aviator
 from tests.flights.aviator import AIRFRAMES, ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
-from tests.pilots.witness import CONDITION_YAW, ByDice
-from tests.pilots.witness import TAKEOFF_ITEM as TAKEOFF
+from tests.pilots.witness import LOW, MIDDLE, ByDice
 
 MODES = (STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 CHANGE_SPEED, PAUSE, MISSION_CURRENT, REBOOT = 178, 193, 224, 246
@@ -63,7 +62,7 @@ class Soak(ByDice, Aviator):
 
     def lift(self) -> None:
         """Arm and take off in GUIDED or AUTO."""
-        self.hold(throttle=aviator.LOW)
+        self.hold(throttle=LOW)
         self.fly(1.0)
         assert self.set_mode(GUIDED), self.story()
         self.arm()
@@ -142,10 +141,10 @@ class Soak(ByDice, Aviator):
     def command(self) -> None:
         d = self.dice
         number, params = d.choice(
-            ((CONDITION_YAW, (d.uniform(0, 360), d.uniform(0, 60), d.choice((-1, 0, 1)), d.choice((0, 1)))),
+            ((c.CONDITION_YAW, (d.uniform(0, 360), d.uniform(0, 60), d.choice((-1, 0, 1)), d.choice((0, 1)))),
              (CHANGE_SPEED, (d.choice((0, 1, 2, 3)), d.uniform(0.5, 8))),
              (PAUSE, (d.choice((0, 1)),)),
-             (TAKEOFF, (0, 0, 0, 0, 0, 0, d.uniform(1, 20))),
+             (c.NAV_TAKEOFF, (0, 0, 0, 0, 0, 0, d.uniform(1, 20))),
              (ARM, (d.choice((0, 1)),)),
              (MISSION_CURRENT, (d.randint(0, 5),)),
              (300, (0, 0)))
@@ -159,7 +158,7 @@ class Soak(ByDice, Aviator):
         self.set_parameter("SIM_WIND_TURB", self.dice.uniform(0, 1.5))
 
     def load_mission(self) -> None:
-        items = [Item(aviator.TAKEOFF_ITEM, None, 8.0), *(self.item() for _ in range(self.dice.randint(1, 8)))]
+        items = [Item(c.NAV_TAKEOFF, None, 8.0), *(self.item() for _ in range(self.dice.randint(1, 8)))]
         assert self.upload(*items) == 0, self.story()
 
     def item(self) -> Item:
@@ -167,16 +166,16 @@ class Soak(ByDice, Aviator):
         place = (d.uniform(-50, 50), d.uniform(-50, 50))
         height = d.uniform(3, 25)
         return d.choice(
-            (Item(aviator.WAYPOINT, place, height), Item(aviator.WAYPOINT, place, height, (d.randint(0, 3),)),
-             Item(aviator.LOITER_TIME, place, height, (d.randint(0, 5),)),
-             Item(aviator.LOITER_TURNS, place, height, (d.randint(1, 2), 0, d.uniform(-12, 12), 1)),
-             Item(aviator.DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
-             Item(aviator.CHANGE_SPEED, None, 0, (1, d.uniform(1, 10), -1)),
-             Item(aviator.CONDITION_YAW, None, 0, (d.uniform(0, 360), d.uniform(10, 60), d.choice((-1, 0, 1)), 0)),
-             Item(aviator.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
-             Item(aviator.ROI, place, 0), Item(aviator.ROI_NONE),
-             Item(aviator.JUMP, None, 0, (d.randint(1, 3), d.randint(1, 2))),
-             Item(aviator.RETURN), Item(aviator.LAND_ITEM), Item(aviator.LAND_ITEM, place))
+            (Item(c.NAV_WAYPOINT, place, height), Item(c.NAV_WAYPOINT, place, height, (d.randint(0, 3),)),
+             Item(c.NAV_LOITER_TIME, place, height, (d.randint(0, 5),)),
+             Item(c.NAV_LOITER_TURNS, place, height, (d.randint(1, 2), 0, d.uniform(-12, 12), 1)),
+             Item(c.NAV_DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
+             Item(c.DO_CHANGE_SPEED, None, 0, (1, d.uniform(1, 10), -1)),
+             Item(c.CONDITION_YAW, None, 0, (d.uniform(0, 360), d.uniform(10, 60), d.choice((-1, 0, 1)), 0)),
+             Item(c.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
+             Item(c.DO_SET_ROI_LOCATION, place, 0), Item(c.DO_SET_ROI_NONE),
+             Item(c.DO_JUMP, None, 0, (d.randint(1, 3), d.randint(1, 2))),
+             Item(c.NAV_RETURN_TO_LAUNCH), Item(c.NAV_LAND), Item(c.NAV_LAND, place))
         )  # fmt: skip
 
 
@@ -231,7 +230,7 @@ class Chaos(Soak):
         """Everything works again; the estimate is back at the truth by the end."""
         for name, value in (("SIM_GPS1_ENABLE", 1), ("SIM_RC_FAIL", 0), ("FS_GCS_ENABLE", 0), ("WPNAV_SPEED_DN", 150)):
             self.set_parameter(name, value)
-        self.hold(throttle=aviator.MIDDLE)
+        self.hold(throttle=MIDDLE)
         self.fly(12.0)
         super().land()
         assert np.linalg.norm(np.array(self.ap.estimate.pos) - self.pos) < 6.0, self.story()

@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sitl.autopilot.mission import item as c
+
 pytest.importorskip("pybullet")
 
 from sitl import vehicles
@@ -13,7 +15,7 @@ from sitl.core.records import first_difference
 from sitl.missions.pilot import Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Simulation
-from tests.pilots.witness import KEEP, LAND_ITEM, MIDDLE, TAKEOFF_ITEM, WAYPOINT, Item, Witness
+from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
 
 AUTO = 3
 MISSIONS = {
@@ -37,8 +39,8 @@ def square(physics: str, frame: str, world: str | None, side: float, height: flo
     flyer = Flyer(physics, frame, world)
     flyer.boot()
     flyer.fly(0.1)
-    ways = [Item(WAYPOINT, corner, height) for corner in ((side, 0.0), (side, side), (0.0, side), (0.0, 0.0))]
-    assert flyer.upload(Item(TAKEOFF_ITEM, None, height), *ways, Item(LAND_ITEM, (0.0, 0.0))) == 0
+    ways = [Item(c.NAV_WAYPOINT, corner, height) for corner in ((side, 0.0), (side, side), (0.0, side), (0.0, 0.0))]
+    assert flyer.upload(Item(c.NAV_TAKEOFF, None, height), *ways, Item(c.NAV_LAND, (0.0, 0.0))) == 0
     flyer.arm()
     assert flyer.set_mode(AUTO)
     assert flyer.ask(300, 0, 0) == 0
@@ -114,7 +116,7 @@ def test_square_and_return(frame: str) -> None:
     r, side = Rover(frame).ready(), SIDES[frame]
     limit = 60.0 + 6.0 * side / float(r.ap.params.WP_SPEED)
     corners = [(side, 0.0), (side, side), (0.0, side)]
-    assert r.upload(*(Item(WAYPOINT, corner) for corner in corners)) == 0
+    assert r.upload(*(Item(c.NAV_WAYPOINT, corner) for corner in corners)) == 0
     start = r.now
     assert r.set_mode(ROVER_AUTO)
     assert r.fly(limit, lambda: r.said("Mission Complete")), r.texts
