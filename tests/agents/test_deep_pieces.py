@@ -75,8 +75,8 @@ def test_continuous_actions_fill_the_box_and_stay_in_it(numbers):
 def test_the_tally_makes_a_row_of_each_episode_that_ends():
     tally = Tally(2, 0.5)
     tally.count(np.array([1.0, 2.0]), np.array([False, False]), np.array([False, False]))
-    told = tally.count(np.array([1.0, -200.0]), np.array([False, True]), np.array([False, True]))
-    assert told == [(-198.0, 2)]
+    reported = tally.count(np.array([1.0, -200.0]), np.array([False, True]), np.array([False, True]))
+    assert reported == [(-198.0, 2)]
     kept = tally.memory()
     other = Tally(2, 0.5)
     other.recall(kept)

@@ -32,9 +32,9 @@ def rows_of(run):
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_a_run_learns_to_its_end_and_plays(tmp_path, algorithm):
     run = new(tmp_path / "run", algorithm)
-    told = train(run)
+    reported = train(run)
     rows = run.episodes.rows()
-    assert [row.episode for row in rows] == [row.episode for row in told] == list(range(len(rows)))
+    assert [row.episode for row in rows] == [row.episode for row in reported] == list(range(len(rows)))
     assert sum(row.steps for row in rows) >= 400 and is_done(run)
     assert all(row.steps == 50 or (row.steps < 50 and row.terminated) for row in rows)
     assert all(row.simulated_s == pytest.approx(environments.make(run.config).unwrapped.step_time * row.steps)

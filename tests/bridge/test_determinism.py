@@ -23,7 +23,7 @@ def session(seed: int) -> bytes:
     bench.vehicle.locate()
     bench.vehicle.v.autopilot.modes.number = 4
     other = bench.connect(system=250)
-    heard = b""
+    received = b""
     for _ in range(200):
         client = rng.choice((bench.client, other))
         client.send(rng.choice((
@@ -36,8 +36,8 @@ def session(seed: int) -> bytes:
         )))  # fmt: skip
         bench.vehicle.v.autopilot.estimate.pos = [rng.uniform(-100, 100) for _ in range(3)]
         bench.run(rng.choice((0.0025, 0.05, 0.3)))
-        heard += bench.client.link.receive() + other.link.receive()
-    return heard
+        received += bench.client.link.receive() + other.link.receive()
+    return received
 
 
 def test_repeats_are_identical() -> None:
@@ -100,15 +100,15 @@ def test_every_byte_of_a_flight_has_its_time_whatever_the_step(core: Core) -> No
     pilot.fly(0.1)
     listener.link.receive()
     start = pilot.simulation.snapshot()
-    heard = []
+    received = []
     for step in (0.0025, 0.13, 20.0):
         pilot.simulation.restore(start)
         stop = pilot.simulation.time_us + 20_000_000
         while pilot.simulation.time_us < stop:
             pilot.simulation.advance_to(min(stop, pilot.simulation.time_us + round(step * 1e6)))
-        heard.append(listener.link.receive())
-    assert heard[0] == heard[1] == heard[2]
-    assert b"Disarming motors" in heard[0] and b"SIM Hit ground" in heard[0]
+        received.append(listener.link.receive())
+    assert received[0] == received[1] == received[2]
+    assert b"Disarming motors" in received[0] and b"SIM Hit ground" in received[0]
 
 
 TARGET = {"target_system": 1, "target_component": 1}
@@ -129,12 +129,12 @@ def flying(core: Core) -> Pilot:
 
 def record(pilot: Pilot, script: Script, seconds: float = 3.0) -> bytes:
     """Every byte that the client gets from now on, in steps of 0.1 s with the script at each."""
-    heard = b""
+    received = b""
     for _ in range(round(seconds * 10)):
         script(pilot.connection.endpoint)
         pilot.simulation.advance(0.1)
-        heard += pilot.connection.endpoint.link.receive()
-    return heard
+        received += pilot.connection.endpoint.link.receive()
+    return received
 
 
 def set_velocity(client: Endpoint) -> None:

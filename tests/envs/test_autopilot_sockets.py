@@ -190,11 +190,11 @@ def test_sectors_are_spread_over_the_readings(monkeypatch):
 
 
 def test_a_sector_that_was_not_measured_is_out_of_range():
-    heard = StepTelemetry(3)
-    heard.scan_kind, heard.angles = SECTORS, np.radians([-90.0, 0.0, 90.0])
+    telemetry = StepTelemetry(3)
+    telemetry.scan_kind, telemetry.angles = SECTORS, np.radians([-90.0, 0.0, 90.0])
     distances = [65535] * 72
     distances[0], distances[18], distances[54] = 150, 250, 1001  # ahead, right, left: beyond the range
     fields = SECTORS.decode(SECTORS.payload(distances=distances, max_distance=1000, increment=5))
-    heard._sectors(fields)
-    assert heard.scan[:3].tolist() == [2.5, 1.5, np.inf]
-    assert heard.scans == 1
+    telemetry._sectors(fields)
+    assert telemetry.scan[:3].tolist() == [2.5, 1.5, np.inf]
+    assert telemetry.scans == 1

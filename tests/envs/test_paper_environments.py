@@ -23,6 +23,11 @@ START = {
     "GazeboMazeTurtlebotLIDAR-v0": [0, 4, 1, 1, 0],
     "GazeboRoundTurtlebotLIDAR-v0": [2, 1, 3, 1, 1],
 }
+START_OF_ALL = {
+    **START,
+    "GazeboMazeErleRoverLIDAR-v0": [6, 4, 10, 13, 4, 6],
+    "GazeboOfficeErleCopterLIDAR-v0": [5, 4, 9, 7, 10],
+}
 """Computed from gym-gazebo's world files, without this simulator."""
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 MOVES = {  # forward and turning speed [m/s]
@@ -63,15 +68,16 @@ def drive(env, corners, near=0.3, most=600):
     return steps, total, [way for way, _ in turns]
 
 
-@pytest.mark.parametrize("name", START)
+@pytest.mark.parametrize("name", START_OF_ALL)
 def test_start_observations_are_those_of_the_world_files(name):
-    env = gym.make(name)
-    observation, _ = env.reset(seed=1)
-    assert observation.tolist() == START[name]
-    assert env.observation_space.contains(observation)
+    for spelling in (name, name.replace("LIDAR", "Lidar")):
+        env = gym.make(spelling)
+        observation, _ = env.reset(seed=1)
+        assert observation.tolist() == START_OF_ALL[name]
+        assert env.observation_space.contains(observation)
 
 
-@pytest.mark.parametrize("name", START)
+@pytest.mark.parametrize("name", START_OF_ALL)
 def test_environments_pass_gymnasiums_checker(name, recwarn):
     check_env(gym.make(name).unwrapped, skip_render_check=True)
     assert [str(w.message) for w in recwarn] == []

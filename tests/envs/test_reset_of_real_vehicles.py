@@ -52,7 +52,7 @@ class RealVehicle:
 
     def __init__(self, simulation: Simulation, hidden: bool = True) -> None:
         self.simulation, self.hidden = simulation, hidden
-        self.heard: list[tuple[str, Any]] = []
+        self.received: list[tuple[str, Any]] = []
         """Name and fields of each message that came from the client."""
         self._client, self._splitter, self._sequence = Endpoint(), Splitter(), 0
         simulation.bridge.add_link(self._client.link)
@@ -86,7 +86,7 @@ class RealVehicle:
 
     def _take(self, frame: Any) -> None:
         fields = frame.kind.decode(frame.payload)
-        self.heard.append((frame.kind.name, fields))
+        self.received.append((frame.kind.name, fields))
         if self.hidden and frame.kind.name == "PARAM_REQUEST_READ" and fields.param_id.startswith(b"SIM_"):
             return
         self._client.link.send(encode_v2(frame.kind, frame.payload, self._sequence, 255, 190))
@@ -94,7 +94,7 @@ class RealVehicle:
 
     def commands(self) -> set[int]:
         """Numbers of the commands that came."""
-        return {int(fields.command) for name, fields in self.heard if name in ("COMMAND_LONG", "COMMAND_INT")}
+        return {int(fields.command) for name, fields in self.received if name in ("COMMAND_LONG", "COMMAND_INT")}
 
 
 def test_an_airborne_vehicle_that_may_be_real_hears_only_questions_and_flies_on():
@@ -111,7 +111,7 @@ def test_an_airborne_vehicle_that_may_be_real_hears_only_questions_and_flies_on(
             ):
                 env.reset(seed=1)
         env.close()
-    assert {name for name, _ in vehicle.heard} == QUESTIONS
+    assert {name for name, _ in vehicle.received} == QUESTIONS
     assert vehicle.commands() == {REQUEST_MESSAGE}
     assert simulation.v.autopilot.arming.armed == 1
     assert int(simulation.v.autopilot.modes.number) == mode

@@ -134,8 +134,8 @@ def test_battery_and_receiver_are_optional():
     plain = decode_motion(json.dumps(GOOD).encode())
     assert plain.battery is None and plain.receiver == ()
     more = {**GOOD, "battery": {"voltage": 12.1, "current": 3}, "rc": {"rc_1": 1500, "rc_2": 1100, "rc_4": 1}}
-    told = decode_motion(json.dumps(more).encode())
-    assert told.battery == (12.1, 3.0) and told.receiver == (1500, 1100)
+    reported = decode_motion(json.dumps(more).encode())
+    assert reported.battery == (12.1, 3.0) and reported.receiver == (1500, 1100)
 
 
 @pytest.mark.parametrize(

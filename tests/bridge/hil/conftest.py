@@ -62,7 +62,7 @@ class PhysicsProcess:
         return self._process.returncode, out
 
 
-class Heard:
+class ReceivedFrames:
     """A tap: every frame with its simulated time, in and out."""
 
     def __init__(self, simulation: Simulation) -> None:
@@ -81,7 +81,7 @@ class WatchedPilot(Pilot):
     """A pilot who asks for all streams and writes down every byte."""
 
     def __init__(self, simulation: Simulation, rate: int = 4) -> None:
-        self.heard = Heard(simulation)
+        self.received = ReceivedFrames(simulation)
         super().__init__(simulation)
         for number in (1, 2, 3, 6, 10, 11, 12):  # stream groups of REQUEST_DATA_STREAM
             self.send("REQUEST_DATA_STREAM", req_stream_id=number, req_message_rate=rate, start_stop=1)

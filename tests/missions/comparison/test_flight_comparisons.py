@@ -102,8 +102,8 @@ def test_a_lost_item_a_new_mode_and_a_late_text_are_named(golden: Flight) -> Non
 
 def test_a_message_of_the_client_that_is_lost_is_seen_and_located(squares: Path, golden: Flight) -> None:
     recording = read_recording(squares / "copter.rec")
-    heard = [entry for entry in recording.entries if entry.kind is EntryKind.RECEIVED]
-    start = heard[-1]  # MISSION_START
+    received = [entry for entry in recording.entries if entry.kind is EntryKind.RECEIVED]
+    start = received[-1]  # MISSION_START
     assert start.time_us == pytest.approx(42.6e6, abs=0.5e6)
     entries = [entry for entry in recording.entries if entry is not start]
     lost = of_recording(replace(recording, entries=entries, sections={}))
