@@ -24,12 +24,7 @@ def guided(bench: Bench) -> Bench:
 
 
 def local(
-    mask: int,
-    frame: int = 1,
-    p: Any = (1, 2, -3),
-    v: Any = (4, 5, 6),
-    a: Any = (7, 8, 9),
-    yaw: Any = (0.5, 0.25),
+    mask: int, frame: int = 1, p: Any = (1, 2, -3), v: Any = (4, 5, 6), a: Any = (7, 8, 9), yaw: Any = (0.5, 0.25)
 ) -> Any:
     return mavlink.MAVLink_set_position_target_local_ned_message(0, 1, 1, frame, mask, *p, *v, *a, *yaw)
 
@@ -47,30 +42,13 @@ def test_kinds(guided: Bench) -> None:
     assert call(guided, local(POSITION)) == ("guided_position", (1, 2, -3), no_yaw)
     assert call(guided, local(VELOCITY)) == ("guided_velocity", (4, 5, 6), (0, 0, 0), no_yaw)
     assert call(guided, local(0xC07)) == ("guided_velocity", (4, 5, 6), (7, 8, 9), no_yaw)
-    assert call(guided, local(POS_VEL)) == (
-        "guided_position_velocity",
-        (1, 2, -3),
-        (4, 5, 6),
-        (0, 0, 0),
-        no_yaw,
-    )
-    assert call(guided, local(0xC00)) == (
-        "guided_position_velocity",
-        (1, 2, -3),
-        (4, 5, 6),
-        (7, 8, 9),
-        no_yaw,
-    )
+    assert call(guided, local(POS_VEL)) == ("guided_position_velocity", (1, 2, -3), (4, 5, 6), (0, 0, 0), no_yaw)
+    assert call(guided, local(0xC00)) == ("guided_position_velocity", (1, 2, -3), (4, 5, 6), (7, 8, 9), no_yaw)
     assert call(guided, local(ACCELERATION)) == ("guided_acceleration", (7, 8, 9), no_yaw)
 
 
 def test_mavsdk_masks(guided: Bench) -> None:
-    assert call(guided, local(2503)) == (
-        "guided_velocity",
-        (4, 5, 6),
-        (0, 0, 0),
-        (True, 0.5, False, 0.25, False),
-    )
+    assert call(guided, local(2503)) == ("guided_velocity", (4, 5, 6), (0, 0, 0), (True, 0.5, False, 0.25, False))
     assert call(guided, local(2552))[0] == "guided_position"
     name, velocity, _, yaw = call(guided, local(1479, frame=8))
     assert name == "guided_velocity" and velocity == pytest.approx((-5.0, 4.0, 6.0))

@@ -60,9 +60,7 @@ def test_is_the_gradient_of_the_potential(lat: float, lon: float) -> None:
 
     def at(x: np.ndarray) -> float:
         return _potential(
-            float(np.linalg.norm(x)),
-            math.acos(x[2] / np.linalg.norm(x)),
-            math.radians(lon) + math.atan2(x[1], x[0]),
+            float(np.linalg.norm(x)), math.acos(x[2] / np.linalg.norm(x)), math.radians(lon) + math.atan2(x[1], x[0])
         )
 
     h = 0.5

@@ -70,8 +70,7 @@ def test_a_changed_height_is_told_as_such(golden: Flight, tmp_path: Path) -> Non
     found = compare(
         golden,
         fly_square(
-            tmp_path / "high.rec",
-            change=lambda items: (*items[:4], items[4]._replace(z=items[4].z + 1.0), *items[5:]),
+            tmp_path / "high.rec", change=lambda items: (*items[:4], items[4]._replace(z=items[4].z + 1.0), *items[5:])
         ),
     )
     assert found.differences["altitude"].max == pytest.approx(1.0, abs=0.4)
