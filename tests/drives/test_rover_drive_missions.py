@@ -10,31 +10,19 @@ import pytest
 
 from sitl.autopilot.mission import item as c
 from sitl.simulation import Core
-from tests.drives.rover_driver import (
-    ACRO,
-    AIRFRAMES,
-    AUTO,
-    GUIDED,
-    HOLD,
-    MANUAL,
-    SIDE,
-    VELOCITY,
-    Driver,
-    outside,
-    path_error,
-    square,
-)
+from tests.drives import rover_driver as rover
+from tests.drives.rover_driver import Driver, outside, path_error, square
 from tests.pilots.witness import Item
 
-ALL = pytest.mark.parametrize("frame", AIRFRAMES)
-CARS = pytest.mark.parametrize("frame", AIRFRAMES[:3])
+ALL = pytest.mark.parametrize("frame", rover.AIRFRAMES)
+CARS = pytest.mark.parametrize("frame", rover.AIRFRAMES[:3])
 OUTSIDE = {"erle_rover": 0.20, "erle_rover_small": 0.16, "ardupilot_rover": 0.20, "skid_rover": 0.08}
 """Furthest that the square is left to its outside [m]."""
 
 
 def corners(frame: str) -> list[tuple[float, float]]:
     """The square of docs/vehicles.md, without its start."""
-    return square(SIDE[frame])[1:]
+    return square(rover.SIDE[frame])[1:]
 
 
 def way(*places: tuple[float, float]) -> list[Item]:
@@ -50,7 +38,7 @@ def driver(core: Core, frame: str, **params: float) -> Driver:
 def test_square(core: Core, frame: str) -> None:
     """Corners are rounded within WP_RADIUS, or turned on the spot, and hardly left to the outside."""
     d = driver(core, frame)
-    side, start = SIDE[frame], d.now
+    side, start = rover.SIDE[frame], d.now
     d.start_mission(*way(*corners(frame)))
     d.finish_mission(60.0 + 6.0 * side / d.cruise)
     d.wait_until_it_stands()
@@ -63,14 +51,14 @@ def test_square(core: Core, frame: str) -> None:
     assert np.sqrt(np.mean(legs**2)) < 0.25 * float(d.ap.params.WP_RADIUS)
     assert list(d.reached) == [1, 2, 3, 4]
     assert d.away(0.0, 0.0) < 0.5 * float(d.ap.params.WP_RADIUS)
-    assert d.mode == AUTO and d.armed
+    assert d.mode == rover.AUTO and d.armed
 
 
 @ALL
 def test_square_by_the_real_estimator(core: Core, frame: str) -> None:
     """GPS wanders by half a metre: so does the path."""
     d = Driver(core, frame).armed_in()
-    side, start = SIDE[frame], d.now
+    side, start = rover.SIDE[frame], d.now
     d.start_mission(*way(*corners(frame)))
     d.finish_mission(60.0 + 6.0 * side / d.cruise)
     place = d.since(start)[:, 1:3]
@@ -83,7 +71,7 @@ def test_square_by_the_real_estimator(core: Core, frame: str) -> None:
 @pytest.mark.parametrize("angle", [30, 60, 120, 175])
 def test_corners(core: Core, frame: str, angle: int) -> None:
     """Of any angle; both legs are driven, the second to its end."""
-    leg = SIDE[frame]
+    leg = rover.SIDE[frame]
     d = driver(core, frame)
     turn = math.radians(angle)
     end = (leg + leg * math.cos(turn), leg * math.sin(turn))
@@ -105,7 +93,7 @@ def test_corners(core: Core, frame: str, angle: int) -> None:
 @ALL
 def test_backwards(core: Core, frame: str) -> None:
     """DO_SET_REVERSE 1: tail first round the corner, nearly as exact as forwards."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     start = d.now
     d.start_mission(Item(c.DO_SET_REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
@@ -124,7 +112,7 @@ def test_backwards(core: Core, frame: str) -> None:
 
 @ALL
 def test_delay_at_a_waypoint(core: Core, frame: str) -> None:
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(Item(c.NAV_WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Reached waypoint #1. Loiter for 5 seconds"))
@@ -138,7 +126,7 @@ def test_delay_at_a_waypoint(core: Core, frame: str) -> None:
 @ALL
 def test_stays(core: Core, frame: str) -> None:
     """NAV_DELAY, LOITER_TIME, then LOITER_UNLIMITED for good."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(Item(c.NAV_DELAY, None, 0.0, (4.0, -1, -1, -1)), Item(c.NAV_LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
                     Item(c.NAV_LOITER_UNLIM, (side, side)), *way((0.0, 0.0)))  # fmt: skip
@@ -154,7 +142,7 @@ def test_stays(core: Core, frame: str) -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_turns(core: Core, frame: str, side: float) -> None:
     """LOITER_TURNS: a negative radius goes anticlockwise."""
-    radius = 0.25 * SIDE[frame]
+    radius = 0.25 * rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(Item(c.NAV_LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
     assert d.fly(60.0 + 30.0 * radius / d.cruise, lambda: d.said("Mission Complete"))
@@ -167,7 +155,7 @@ def test_turns(core: Core, frame: str, side: float) -> None:
 @ALL
 def test_speed_and_conditions(core: Core, frame: str) -> None:
     """Do-commands run once the waypoint before them is reached, those behind a condition when it is met."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(
         *way((side, 0.0)), Item(c.CONDITION_DELAY, None, 0.0, (6.0,)),
@@ -189,7 +177,7 @@ def test_speed_and_conditions(core: Core, frame: str) -> None:
 @ALL
 def test_jump(core: Core, frame: str) -> None:
     """Twice back to the first of two places."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(*way((side, 0.0), (side, side)), Item(c.DO_JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
     d.finish_mission(200.0 + 16.0 * side / d.cruise)
@@ -209,8 +197,8 @@ def test_heading_and_speed_item(core: Core, frame: str) -> None:
 @ALL
 def test_return_item(core: Core, frame: str) -> None:
     d = driver(core, frame)
-    d.start_mission(*way((SIDE[frame], 0.0)), Item(c.NAV_RETURN_TO_LAUNCH))
-    d.finish_mission(100.0 + 4.0 * SIDE[frame] / d.cruise)
+    d.start_mission(*way((rover.SIDE[frame], 0.0)), Item(c.NAV_RETURN_TO_LAUNCH))
+    d.finish_mission(100.0 + 4.0 * rover.SIDE[frame] / d.cruise)
     d.wait_until_it_stands()
     home = np.array(d.ap.home.pos)[:2]
     assert d.away(*home) < 0.6 * float(d.ap.params.WP_RADIUS)
@@ -219,22 +207,22 @@ def test_return_item(core: Core, frame: str) -> None:
 @ALL
 def test_guided_within_a_mission(core: Core, frame: str) -> None:
     """GUIDED_ENABLE takes set-points until DO_GUIDED_LIMITS ends it; then the mission goes on."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(*way((side, 0.0)), Item(c.DO_GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
                     Item(c.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Mission: 3"))
     start = d.now
     while not d.said("Mission: 4"):
-        d.target(VELOCITY, vx=0.5 * d.cruise)
+        d.target(rover.VELOCITY, vx=0.5 * d.cruise)
         d.fly(0.1)
         assert d.now < start + 12.0
     assert d.now - start == pytest.approx(8.0, abs=1.0)
-    assert d.speed > 0.3 * d.cruise and d.mode == AUTO
+    assert d.speed > 0.3 * d.cruise and d.mode == rover.AUTO
     d.finish_mission(100.0 + 4.0 * side / d.cruise)
 
 
-@pytest.mark.parametrize(("choice", "mode"), [(0, AUTO), (1, AUTO), (2, ACRO), (3, MANUAL)])
+@pytest.mark.parametrize(("choice", "mode"), [(0, rover.AUTO), (1, rover.AUTO), (2, rover.ACRO), (3, rover.MANUAL)])
 def test_after_the_last_item(core: Core, choice: int, mode: int) -> None:
     """MIS_DONE_BEHAVE: hold, loiter, ACRO or MANUAL."""
     d = Driver(core, "erle_rover", MIS_DONE_BEHAVE=choice).armed_in()
@@ -251,9 +239,9 @@ def test_a_mission_goes_on_where_it_was_left(core: Core) -> None:
     d.start_mission(*way(*corners("erle_rover")))
     assert d.fly(60.0, lambda: d.said("Mission: 2"))
     d.fly(3.0)
-    d.set_mode(HOLD)
+    d.set_mode(rover.HOLD)
     d.fly(4.0)
-    d.set_mode(AUTO)
+    d.set_mode(rover.AUTO)
     d.fly(0.5)
     assert int(d.ap.modes.nav.mission_current) == 2
     d.finish_mission(200.0)
@@ -265,7 +253,7 @@ def test_what_only_copters_fly_is_refused(core: Core) -> None:
     assert d.upload(Item(c.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) != 0
     assert d.upload(*way((10.0, 0.0)), Item(c.NAV_LAND)) != 0
     assert d.upload(Item(c.DO_SET_ROI_LOCATION, (5.0, 5.0)), *way((10.0, 0.0))) == 0
-    assert d.mode == GUIDED
+    assert d.mode == rover.GUIDED
 
 
 @CARS
