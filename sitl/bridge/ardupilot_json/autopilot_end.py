@@ -64,4 +64,4 @@ class AutopilotEnd:
     def _refuse(self, why: str) -> None:
         self.refused += 1
         if not self._has_complained:
-            self.note, self._has_complained = f"physics sent no motion that can be used: {why}", True
+            self.note, self._has_complained = f"physics sent no motion, and is not believed: {why}", True
