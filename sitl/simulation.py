@@ -208,10 +208,10 @@ class Simulation:
             now = self._clock()
             if plant.due_us <= now:
                 plant.measure()
-            told = self._event_count() != self._events_seen
-            if told:
+            has_events = self._event_count() != self._events_seen
+            if has_events:
                 self._follow_events()
-            if told or shell_us <= now or bridge.next_due_us() <= now:  # not when only an observer wants to look
+            if has_events or shell_us <= now or bridge.next_due_us() <= now:  # not when only an observer wants to look
                 bridge.service()
             else:
                 bridge.flush()

@@ -205,7 +205,7 @@ class Bridge:
             data = channel.peer.take()
             if data:
                 if journal is not None:
-                    journal.heard(channel, data)
+                    journal.received(channel, data)
                 self._hear(channel, data)
         if journal is not None:
             journal.acted()

@@ -38,11 +38,11 @@ class Journal(Protocol):
     def left(self, channel: Channel) -> None:
         """It is gone."""
 
-    def heard(self, channel: Channel, data: bytes) -> None:
+    def received(self, channel: Channel, data: bytes) -> None:
         """Bytes that the client sent, read now."""
 
     def acted(self) -> None:
-        """All that was heard has been acted on."""
+        """All that was received has been acted on."""
 
     def sent(self, channel: Channel, frames: list[bytes]) -> None:
         """Frames on their way to the client."""

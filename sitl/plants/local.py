@@ -60,7 +60,7 @@ class LocalPlant(Plant):
         self.runs_in_core = self.engine is None
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
-        self._told = craft.reader.field("autopilot.events.count")
+        self._event_count = craft.reader.field("autopilot.events.count")
         self._attention = craft.reader.field("autopilot.events.attention")
         self._clock = craft.reader.field("time_us")
 
@@ -113,14 +113,14 @@ class LocalPlant(Plant):
                 self.core = load_core(craft.kind, self.progress)
             return self.core.bind(craft.fleet, craft.index)
         tick, fly = engine.tick, self._unit(craft.kind.fly)
-        told, attention = self._told, self._attention
+        event_count, attention = self._event_count, self._attention
 
         def run(ticks: int) -> None:
-            before = told()
+            before = event_count()
             for _ in range(ticks):
                 tick()
                 fly()
-                if attention() or told() != before:
+                if attention() or event_count() != before:
                     return
 
         return run

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The firmwares' faces fit the services that read them."""
+"""The firmwares' profiles fit the services that read them, and the page about MAVLink says what the code does."""
 
 from __future__ import annotations
 
 import inspect
+import re
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from sitl.bridge import docs
+from sitl.bridge.dialect import message_by_id
 from sitl.bridge.profile import Profile, load
 from sitl.bridge.wire.choose import message_of
 from sitl.vehicle.kinds import KINDS
+from tests.bridge.fakes import Bench
 
 NAMES = tuple(KINDS)
 PROFILES = [load(name) for name in NAMES]
@@ -46,10 +51,34 @@ def test_modes(name: str, profile: Profile) -> None:
 
 @pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
 def test_messages_that_laws_take(profile: Profile) -> None:
-    assert {message_of(law).kind.name for law in profile.takes} == {
+    assert {message_of(law).kind.name for law in profile.core.takers} == {
         "SET_POSITION_TARGET_LOCAL_NED",
         "SET_POSITION_TARGET_GLOBAL_INT",
         "SET_ATTITUDE_TARGET",
         "RC_CHANNELS_OVERRIDE",
         "MANUAL_CONTROL",
     }
+
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def test_the_page_is_up_to_date() -> None:
+    template = (DOCS / "templates" / "mavlink.md").read_text(encoding="utf-8")
+    assert (DOCS / "mavlink.md").read_text(encoding="utf-8") == docs.page(template), "run: python docs/make_pages.py"
+
+
+def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
+    page = (DOCS / "mavlink.md").read_text(encoding="utf-8")
+    assert set(docs.handled()) == {message_by_id(number).name for number in bench.bridge._handlers}
+    taken = {message_of(law).kind.name for profile in PROFILES for law in profile.core.takers}
+    for name in docs.handled().keys() | taken:
+        assert f"{name} (" in page
+    for kind in bench.bridge.telemetry.values():
+        assert f"| {kind.id} | {kind.name} |" in page
+    assert not re.search(r"\{\w+\}", page), "a table is missing"
+
+
+def test_every_command_says_what_it_does() -> None:
+    for line in docs.commands().splitlines()[2:]:
+        assert len(line.split("|")[5].strip()) > 10, line

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from sitl.physics.engines import NATIVE
+from sitl.vehicle.kinds import KINDS
 
 from .moments import RecordedMoment
 from .setup import Setup
@@ -27,7 +28,7 @@ _kept: OrderedDict[Beginning, RecordedMoment] = OrderedDict()
 
 def new(setup: Setup, name: str) -> Vehicle:
     """A vehicle at power-on."""
-    return (Copter if setup.kind == "copter" else Rover)(setup.build, name)
+    return (Copter if KINDS[setup.kind].flies else Rover)(setup.build, name)
 
 
 def begin(vehicle: Vehicle, setup: Setup, after: Prepare | None = None) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Literal, overload
 
 from . import boots
-from .golden import GoldenBook
+from .golden import GoldenStore
 from .logs import keep
 from .setup import Defaults, setup
 from .vehicle import Copter, Rover, Vehicle
@@ -18,7 +18,7 @@ __tracebackhide__ = True
 class VehicleFactory:
     """``vehicle_factory("rover", world="maze")``: it is ready to arm; ``setup.setup`` says what is taken."""
 
-    def __init__(self, defaults: Defaults, golden: GoldenBook, logs: Path) -> None:
+    def __init__(self, defaults: Defaults, golden: GoldenStore, logs: Path) -> None:
         self.defaults, self.golden, self.logs = defaults, golden, logs
         self.vehicles: list[Vehicle] = []
 
