@@ -193,7 +193,7 @@ class Bench:
 
     def telemetry(self, name: str) -> list[Any]:
         """What one request for a message gives, as a client decodes it."""
-        number = next(n for n, (kind, _) in self.bridge.telemetry.items() if kind.name == name)
+        number = next(n for n, kind in self.bridge.telemetry.items() if kind.name == name)
         self.bridge.send_now(self.bridge.channels[0], number)
         self.bridge.flush()
         return self.client.receive(name)

@@ -86,7 +86,7 @@ def test_a_range_beyond_the_message_is_cut() -> None:
 def test_one_reading_is_straight_ahead(bench: Bench) -> None:
     measured(bench, "erle_copter", [2.5])
     bench.vehicle.v.physics.airframe.lidar_samples = 1
-    (m,) = get(bench, SECTORS)
+    (m,) = bench.telemetry(SECTORS)
     assert (m.distances[0], set(m.distances[1:])) == (250, {65535})
     assert (m.angle_offset, m.increment) == (0.0, 255)
 

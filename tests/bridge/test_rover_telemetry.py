@@ -57,7 +57,7 @@ def test_controllers_are_at_work_in_some_modes(rover_bench: Bench) -> None:
 def test_it_neither_flies_nor_lands(rover_bench: Bench) -> None:
     state = get(rover_bench, "EXTENDED_SYS_STATE")
     assert (state.vtol_state, state.landed_state) == (0, 0)
-    names = {kind.name for kind, _ in rover_bench.bridge.telemetry.values()}
+    names = {kind.name for kind in rover_bench.bridge.telemetry.values()}
     assert not names & {"ATTITUDE_TARGET", "POSITION_TARGET_LOCAL_NED"}
 
 

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
+from sitl.bridge.core_link import CoreLink
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
-from sitl.bridge.telemetry import sensors
+from sitl.bridge.wire.choose import message_of
 from sitl.client import connect
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink.errors import LinkLostError
-from sitl.envs.mavlink.telemetry import SECTORS, StepTelemetry
+from sitl.envs.mavlink.telemetry import SCAN, SECTORS, StepTelemetry
 from tests.envs import lockstep_vehicle
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
@@ -178,7 +179,12 @@ def test_a_vehicle_that_another_client_reboots_is_noticed(tmp_path):
 def test_sectors_are_spread_over_the_readings(monkeypatch):
     whole = gym.make(COPTER, observation="scan")
     seen, _ = whole.reset(seed=2)
-    monkeypatch.delitem(sensors.BUILDERS, "DEBUG_FLOAT_ARRAY")
+    make = CoreLink.__init__
+
+    def make_without_scans(self, vehicle, units):
+        make(self, vehicle, units._replace(builders=[b for b in units.builders if message_of(b).kind is not SCAN]))
+
+    monkeypatch.setattr(CoreLink, "__init__", make_without_scans)
     sectors = gym.make(COPTER, observation="scan")
     rough, _ = sectors.reset(seed=2)
     assert sectors.unwrapped.robot.link(0).inbox.scan_kind is SECTORS

@@ -11,7 +11,6 @@ import pytest
 
 from sitl import vehicles
 from sitl.bridge.profile import Profile
-from sitl.bridge.telemetry.builder import messages
 from sitl.bridge.wire.choose import message_of
 from sitl.client import Endpoint
 from sitl.errors import OptionError
@@ -137,4 +136,4 @@ def test_every_part_of_a_built_in_kind_is_there(name: str) -> None:
     assert {"mavlink", "logs", "environments"} <= set(kind.parts)
     for part in kind.parts:
         assert kind.part(part, object) is not None
-    assert "HEARTBEAT" in {message_of(law).kind.name for law in messages(kind.part("mavlink", Profile))}
+    assert "HEARTBEAT" in {message_of(law).kind.name for law in kind.part("mavlink", Profile).core.builders}
