@@ -68,7 +68,7 @@ def test_long_texts_come_in_pieces(bench: Bench) -> None:
     old = bench.connect(version=1)
     say = bench.bridge.get(StatusTextService).say
     for length in (1, 49, 50, 51, 100, 120):
-        bench.bridge.channels[1].version = 1
+        bench.bridge.channels[1].port.version = 1
         say(4, "x" * length)
         bench.bridge.flush()
         pieces = bench.client.receive("STATUSTEXT")

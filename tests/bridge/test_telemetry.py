@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from sitl.bridge.dialect import message
 from tests.bridge.fakes import HOME, Bench
 
 

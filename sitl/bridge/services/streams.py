@@ -29,7 +29,7 @@ INTERVAL = message("MESSAGE_INTERVAL")
 
 
 class StreamService(Service):
-    """What is sent regularly: decides each channel's intervals; ``StreamTable`` keeps them."""
+    """What is sent regularly: each channel's intervals, as clients ask for them."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)

@@ -362,6 +362,7 @@ class Absent:
     def __init__(self, simulation: Simulation) -> None:
         self._run, self.is_gone = simulation.plant.run, False
         simulation.plant.run = self.run  # type: ignore[method-assign]
+        simulation.plant.runs_in_core = False
 
     def run(self, ticks: int) -> None:
         if self.is_gone:
