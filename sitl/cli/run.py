@@ -8,8 +8,7 @@ import signal
 from functools import partial
 from pathlib import Path
 
-from ..bridge.links.address import open_link
-from ..bridge.links.link import Link
+from ..bridge.links.link import Link, open_link
 from ..foreign.choice import choose
 from ..run import runner
 from ..run.lockstep import serve_lockstep

@@ -18,7 +18,7 @@ from sitl import worlds
 from sitl.worlds import World, WorldError
 
 from . import robots
-from .actions import Action, Discrete
+from .actions import SETPOINTS, Action, Discrete
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
@@ -26,7 +26,6 @@ from .options import EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import LateRobot, Robot
-from .setpoints import SETPOINTS
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 

@@ -19,6 +19,16 @@ from ..errors import SitlError
 from ..vehicles import Airframe
 from ..worlds import World
 
+
+def offset(dtype: Any, *path: str) -> int:
+    """Of a field within a record [bytes]."""
+    place = 0
+    for name in path:
+        dtype, more = dtype.fields[name][:2]
+        place += more
+    return place
+
+
 Array = np.ndarray[Any, Any]
 
 

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from ..bridge.channel import COMPONENT
 from ..bridge.links import LogLink
-from ..bridge.links.address import LinkAddressError
+from ..bridge.links.link import LinkAddressError
 from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpOutLink
 from ..logs.dataflash.log import DataFlash, attach

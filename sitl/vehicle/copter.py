@@ -99,7 +99,7 @@ COPTER = Kind(
         "WPNAV_", "WP_", "RTL_", "LAND_", "LOIT_", "PILOT_", "TKOFF_", "GUID_", "AUTO_", "MIS_", "CIRCLE_",
     ),
     parts={
-        "mavlink": "sitl.bridge.copter.profile:PROFILE",
+        "mavlink": "sitl.bridge.copter.autopilot:PROFILE",
         "logs": "sitl.logs.copter:LOGS",
         "environments": "sitl.envs.robots.copter:ROBOT",
     },

@@ -73,7 +73,7 @@ ROVER = Kind(
     programs={"ardupilot": "ardurover", "px4": "px4"},
     flight_parameters=("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
     parts={
-        "mavlink": "sitl.bridge.rover.profile:PROFILE",
+        "mavlink": "sitl.bridge.rover.autopilot:PROFILE",
         "logs": "sitl.logs.rover:LOGS",
         "environments": "sitl.envs.robots.rover:ROBOT",
     },

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from .geometry import Geometry
 from .loader import read
-from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
-from .world import World
+from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, World, WorldError
 
 __all__ = [
     "Box",

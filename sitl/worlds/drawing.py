@@ -6,9 +6,8 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from ..core.extras import MissingExtra
-from .shapes import Cylinder
-from .world import World
+from ..errors import MissingExtra
+from .shapes import Cylinder, World
 
 _NAMES_UP_TO = 40
 """Solids whose names are still readable in a picture."""

@@ -12,7 +12,7 @@ pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 from sitl.agents import algorithms, environments
 from sitl.agents.deep import checkpoint, training
 from sitl.agents.deep.checks import BEST
-from sitl.agents.deep.network import Network
+from sitl.agents.deep.policy import Network
 from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import evaluate_run
 from sitl.agents.runs.folder import RunFolder

@@ -12,7 +12,7 @@ import pytest
 
 LISTED = """
 from sitl.autopilot.copter.modes.table import NAMES, is_known, run, start
-from sitl.bridge.copter.profile import PROFILE
+from sitl.bridge.copter.autopilot import PROFILE
 import spin_mode
 
 mode = PROFILE.modes[-1]

@@ -9,8 +9,8 @@ import pkgutil
 import re
 
 import sitl
-from sitl.core.extras import MissingExtra
 from sitl.core.kernels import LAWS, UNITS
+from sitl.errors import MissingExtra
 
 
 def _import_all() -> None:

@@ -13,12 +13,11 @@ from gymnasium.error import InvalidAction
 
 from sitl import worlds
 from sitl.envs import EnvOptionError
-from sitl.envs.actions import Continuous, Discrete
+from sitl.envs.actions import DRIVE, VELOCITY, Continuous, Discrete
 from sitl.envs.navigate import Navigate
 from sitl.envs.observations import Digits
 from sitl.envs.options import COMMON
 from sitl.envs.rewards import Nearness
-from sitl.envs.setpoints import DRIVE, VELOCITY
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
 from tests.envs.navigation import NAVIGATE, make

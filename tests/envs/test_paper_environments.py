@@ -100,8 +100,6 @@ def test_importing_the_package_loads_no_compiler():
     ours = [
         "sitl",
         "sitl.envs",
-        "sitl.envs.mavlink",
-        "sitl.envs.mavlink.errors",
         "sitl.envs.options",
         "sitl.errors",
     ]

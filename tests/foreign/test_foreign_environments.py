@@ -13,8 +13,8 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.errors import LinkLostError
 from sitl.envs.mavlink.foreign import physics_port
+from sitl.envs.mavlink.preparation import LinkLostError
 from sitl.envs.robots.autopilot import AutopilotRobot
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 Floats = npt.NDArray[np.float64]
 RESAMPLES = 10_000

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The copter firmware behind the MAVLink services, in one place: a changed law is a changed line here."""
+"""The copter's firmware behind the MAVLink services, in one place: a changed law is a changed line here."""
 
 from __future__ import annotations
 
@@ -8,12 +8,21 @@ from collections.abc import Sequence
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, table
+from ...autopilot.copter.modes.auto import AUTO
+from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.guided_setpoints import YawSetpoint
+from ...autopilot.copter.modes.rtl import RTL
+from ...autopilot.copter.modes.table import MODES
 from ...autopilot.mission.notes import Text
 from ...core.algebra import IDENTITY
 from ...core.vectors import Quat, Vec3
 from ..autopilot_api import NO_YAW, Note, Vector, Yaw
 from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
+from ..profile import Controllers, Profile, Stick
+from ..telemetry.status import CAPABILITIES, TERMINATION
+from . import telemetry
+from .commands import COMMANDS
+from .setpoints import CopterSetpoints
 
 
 class CopterAutopilot(BaseAutopilot):
@@ -111,3 +120,46 @@ def _laws_yaw(yaw: Yaw | None) -> YawSetpoint:
         return guided_setpoints.NO_YAW
     use_yaw, angle, use_rate, rate, relative = yaw
     return YawSetpoint(use_yaw, angle if use_yaw else 0.0, use_rate, rate if use_rate else 0.0, relative)
+
+
+PROFILE = Profile(
+    firmware="ArduCopter",
+    mav_type=telemetry.QUADROTOR,
+    capabilities=CAPABILITIES | TERMINATION,
+    modes=MODES,
+    auto=AUTO,
+    guided=GUIDED,
+    rtl=RTL,
+    groups={
+        1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+        2: (
+            "EXT_STAT",
+            ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
+             "POSITION_TARGET_GLOBAL_INT"),
+        ),
+        3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+        4: ("RAW_CTRL", ()),
+        6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
+        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
+        11: ("EXTRA2", ("VFR_HUD",)),
+        12: ("EXTRA3", ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
+    },
+    commands=COMMANDS,
+    set_points=CopterSetpoints,
+    texts={
+        events.ARMED: (INFO, "Arming motors"),
+        events.DISARMED: (INFO, "Disarming motors"),
+        events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
+        events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
+    },
+    sticks=(
+        Stick("RCMAP_ROLL", 1, "y"),
+        Stick("RCMAP_PITCH", 2, "x", is_reversed=True),
+        Stick("RCMAP_THROTTLE", 3, "z", lowest=0),
+        Stick("RCMAP_YAW", 4, "r"),
+    ),
+    receiver_timeout="RC_FS_TIMEOUT",
+    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=True),
+    builders=telemetry.BUILDERS,
+    autopilot=CopterAutopilot,
+)  # fmt: skip

@@ -11,9 +11,8 @@ from ...autopilot.copter.modes.table import MODES, NEED_POSITION
 from ...core.geodesy import add_offset
 from ..dialect import message
 from ..telemetry import motion
-from ..telemetry.builder import Build, Builder, Context
+from ..telemetry.builder import DEG, Build, Builder, Context, int16, int32, uint16
 from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW
-from ..telemetry.units import DEG, int16, int32, uint16
 
 A, M, C, E = "autopilot.arming.", "autopilot.modes.", "autopilot.control.", "autopilot.estimate."
 QUADROTOR, ARDUPILOTMEGA = 2, 3

@@ -12,7 +12,7 @@ from typing import Any
 
 from ...core.record_reader import RecordReader
 from ..dialect import message
-from ..telemetry.units import DEG, int16, uint16
+from ..telemetry.builder import DEG, int16, uint16
 from .protocol import LATEST_US, RefusedError
 
 KIND = message("HIL_GPS")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.record_reader import RecordReader
 from ..dialect import MessageType
-from . import gps, ranging, sensor, sticks, truth
+from . import controls, gps, ranging, sensor, truth
 from .protocol import PHYSICS, RefusedError, Sender
 from .ranging import RangeWriter, ScanWriter
 
@@ -106,7 +106,7 @@ class Inbox:
             gps.KIND.id: (gps.GpsReader(v),),
             sensor.BATTERY_KIND.id: (sensor.BatteryReader(v),),
             sensor.WHEELS_KIND.id: (sensor.WheelReader(v),),
-            sticks.KIND.id: (sticks.SticksReader(v),),
+            controls.KIND.id: (controls.SticksReader(v),),
             ranging.VECTOR.id: (ranging.RangeReader(v), truth.HitReader(v)),
             ranging.DISTANCE.id: (ranging.DistanceReader(v),),
             ranging.SCAN.id: (ranging.ScanReader(v, int(v.physics.airframe.lidar_samples)),),

@@ -14,7 +14,7 @@ from typing import Any
 from ...core.record_reader import RecordReader
 from ...physics.carried import Carried
 from ..dialect import message
-from ..telemetry.units import uint16
+from ..telemetry.builder import uint16
 from .protocol import LATEST_US, RefusedError, culprit, within
 
 TRUTH_KIND = message("HIL_STATE_QUATERNION")

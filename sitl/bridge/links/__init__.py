@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ways for bytes to reach a client: in process, UDP, TCP."""
 
-from .address import LinkAddressError, open_link
 from .inprocess import InProcessLink, LogLink
-from .link import Link, Peer
+from .link import Link, LinkAddressError, Peer, open_link
 from .tcp import TcpServerLink
 from .udp import UdpInLink, UdpOutLink
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rover firmware behind the MAVLink services, in one place: a changed law is a changed line here."""
+"""The rover's firmware behind the MAVLink services, in one place: a changed law is a changed line here."""
 
 from __future__ import annotations
 
@@ -11,10 +11,19 @@ from ...autopilot.rover import arming, failsafe, motor_test, texts
 from ...autopilot.rover.control import servos
 from ...autopilot.rover.modes import guided_setpoints, set_mode
 from ...autopilot.rover.modes.auto import AUTO
+from ...autopilot.rover.modes.guided import GUIDED
+from ...autopilot.rover.modes.rtl import RTL
+from ...autopilot.rover.modes.table import MODES
 from ...autopilot.rover.navigation import waypoint
+from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
 from ...core.vectors import Vec2
 from ..autopilot_api import Note, Vector, Yaw
 from ..base_autopilot import INFO, BaseAutopilot
+from ..profile import Controllers, Profile, Stick
+from ..telemetry.status import CAPABILITIES
+from . import targets, telemetry
+from .commands import COMMANDS
+from .setpoints import RoverSetpoints
 
 
 class RoverAutopilot(BaseAutopilot):
@@ -83,3 +92,39 @@ class RoverAutopilot(BaseAutopilot):
             place = f"{int(home.lat) * 1e-7:.7g} {int(home.lon) * 1e-7:.7g} at {float(home.alt):.2f}m"
             self._say(INFO, [f"Set HOME to {place}"])
         return ok
+
+
+PROFILE = Profile(
+    firmware="ArduRover",
+    mav_type=telemetry.GROUND_ROVER,
+    capabilities=CAPABILITIES,
+    modes=MODES,
+    auto=AUTO,
+    guided=GUIDED,
+    rtl=RTL,
+    groups={
+        1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+        2: (
+            "EXT_STAT",
+            ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
+             "POSITION_TARGET_GLOBAL_INT"),
+        ),
+        3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+        4: ("RAW_CTRL", ("RC_CHANNELS_SCALED",)),
+        6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
+        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
+        11: ("EXTRA2", ("VFR_HUD",)),
+        12: (
+            "EXTRA3",
+            ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "WHEEL_DISTANCE"),
+        ),
+    },
+    commands=COMMANDS,
+    set_points=RoverSetpoints,
+    texts={},
+    sticks=(Stick("RCMAP_ROLL", 1, "y"), Stick("RCMAP_THROTTLE", 3, "z")),
+    receiver_timeout=RECEIVER_TIMEOUT_S,
+    controllers=Controllers(telemetry.CONTROLLERS, telemetry.controllers_at_work, healthy_at_rest=False),
+    builders={**telemetry.BUILDERS, **targets.BUILDERS},
+    autopilot=RoverAutopilot,
+)  # fmt: skip

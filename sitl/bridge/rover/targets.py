@@ -11,8 +11,7 @@ from ...autopilot.rover.modes.guided import GUIDED, HEADING_AND_SPEED, POSITION
 from ...autopilot.rover.modes.table import AUTONOMOUS, MODES
 from ...core.geodesy import add_offset
 from ..dialect import message
-from ..telemetry.builder import Build, Builder, Context
-from ..telemetry.units import DEG, int16, int32, uint16
+from ..telemetry.builder import DEG, Build, Builder, Context, int16, int32, uint16
 
 M, NAV, C, E = "autopilot.modes.", "autopilot.modes.nav.", "autopilot.control.position.", "autopilot.estimate."
 NOT_FOR_PLACES = 0xFDF8

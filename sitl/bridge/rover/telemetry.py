@@ -9,9 +9,8 @@ from ...autopilot.rover.modes.initialising import INITIALISING
 from ...autopilot.rover.modes.table import AUTONOMOUS, MODES
 from ..dialect import message
 from ..telemetry import motion
-from ..telemetry.builder import Build, Builder, Context
+from ..telemetry.builder import Build, Builder, Context, boot_ms, int16
 from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW
-from ..telemetry.units import boot_ms, int16
 
 A, M, C = "autopilot.arming.", "autopilot.modes.", "autopilot.control."
 GROUND_ROVER, ARDUPILOTMEGA = 10, 3

@@ -8,8 +8,7 @@ from collections.abc import Callable
 
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale
 from ..dialect import message
-from .builder import Build, Builder, Context
-from .units import DEG, heading_cdeg, int16, int32, uint16
+from .builder import DEG, Build, Builder, Context, heading_cdeg, int16, int32, uint16
 
 E = "autopilot.estimate."
 H = "autopilot.home."

@@ -11,8 +11,7 @@ from ...core.constants import GRAVITY
 from ...core.vectors import Quat
 from ...physics.carried import MILLIG
 from ..dialect import message
-from .builder import Build, Builder, Context
-from .units import DEG, boot_ms, int16, uint16
+from .builder import DEG, Build, Builder, Context, boot_ms, int16, uint16
 
 SENSORS_S = "sensors."
 _IMU = (SENSORS_S + "acc", SENSORS_S + "gyro", SENSORS_S + "mag")

@@ -7,8 +7,7 @@ import struct
 from collections.abc import Callable
 
 from ..dialect import message
-from .builder import Build, Builder, Context
-from .units import boot_ms, int16, int32, percent, uint16
+from .builder import Build, Builder, Context, boot_ms, int16, int32, percent, uint16
 
 E = "autopilot.estimate."
 A = "autopilot.arming."

@@ -17,7 +17,7 @@ from sitl.client.byte_socket import ByteSocket
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Connection
 from sitl.client.endpoint import Endpoint
-from sitl.errors import OptionError
+from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
 from sitl.foreign.hil_host import HilHost
@@ -27,7 +27,6 @@ from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT
 
-from .errors import LinkLostError, NotReadyError
 from .preparation import FORCE
 from .telemetry import StepTelemetry
 

@@ -22,17 +22,16 @@ from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
 from sitl.scenario import DEFAULT_HOME, Home, Scenario
+from sitl.errors import LinkLostError
 from sitl.simulation import OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
-from ..actions import Action
-from ..mavlink.errors import LinkLostError
+from ..actions import Action, Setpoint
 from ..mavlink.preparation import ALIGN_US, RESETS, SIMULATOR, hear_again, set_intervals, set_mode
 from ..options import EnvOptionError, unknown
-from ..setpoints import Setpoint
 from .by_socket import SocketVehicles
 from .foreign import ForeignVehicles
 from .in_process import InProcessVehicles

@@ -9,8 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from ..engine import EngineError, Seat
-from ..record import offset
+from ..engine import EngineError, Seat, offset
 
 
 class Properties:

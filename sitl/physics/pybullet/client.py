@@ -26,7 +26,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from ...core.extras import MissingExtra
+from ...errors import MissingExtra
 from ..engine import EngineError
 from ..native.body import GRAVITY
 

@@ -15,11 +15,10 @@ from typing import Any, ClassVar
 from ...core.algebra import rotate
 from ...core.vectors import Quat, Vec3
 from ...worlds.contact import clearance
-from ..engine import Array, Engine, EngineError, Seat
+from ..engine import Array, Engine, EngineError, Seat, offset
 from ..native.body import GRAVITY
 from ..native.obstacles import settle
 from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
-from ..record import offset
 from . import urdf, worlds
 from .client import load, save
 from .contacts import CLEAR, Row, contacts_report

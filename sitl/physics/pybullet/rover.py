@@ -14,17 +14,15 @@ import struct
 from typing import Any, ClassVar
 
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS
-from ..engine import Array, Engine, EngineError, Seat
+from ..engine import Array, Engine, EngineError, Seat, offset
 from ..native.body import GRAVITY
 from ..native.tick import TICK_S
-from ..record import offset
 from . import worlds
 from .client import Client, forget, load, save
 from .contacts import hits_report
 from .picture import Camera, Picture
 from .rover_model import Model, build
-from .tyres import scrub_all
-from .wheels import filter_by_both
+from .wheels import filter_by_both, scrub_all
 
 RESERVE = 1.25
 """Strength of skid steering's motors by what accelerates the vehicle's weight: they turn themselves as well."""

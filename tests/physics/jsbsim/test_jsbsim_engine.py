@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation
 from tests.physics.jsbsim.jsbsim_bench import Bench

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("pybullet")
 
 from sitl import worlds
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.physics.pybullet import client as clients
 from sitl.physics.pybullet.client import Client
 from sitl.physics.pybullet.worlds import SHAPES_EACH, build
