@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from ..core.record_reader import RecordReader
-from .autopilot_api import Autopilot
+from .autopilot_api import Autopilot, Vehicle
 from .channel import COMPONENT, Channel, ChannelState
 from .dialect import MessageType, message
 from .frame import Frame
@@ -28,7 +28,6 @@ from .services.streams import StreamService
 from .stream_table import NEVER
 from .switchboard import Switchboard
 from .telemetry import Build, Context, build_all
-from .vehicle import Vehicle
 
 _HEARTBEAT = message("HEARTBEAT").id
 EPOCH_US = 1_767_225_600_000_000
@@ -74,7 +73,7 @@ class Bridge:
         self.logs: LogStore | None = None
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
-        """Set by who lets clients push the clock (``sitl.run.lockstep``)."""
+        """Set by who lets clients push the clock (``sitl.run.standstill``)."""
         self.places = Places(self.reader)
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Worlds: solids, floor, start poses, and what is computed from them once; in the frame of world files.
+"""Worlds in the frame of world files: solids, floor, start poses, and what is computed from them once.
 
 x forward, y left, z up; metres; yaw counter-clockwise from x, in radians.
 
-In the simulator's NED, north is x, east is -y, down is -z, heading is -yaw: as in the original, where simulated x was north and y west. Signs
-change and nothing else, so no bit is lost on the way.
+In the simulator's NED, north is x, east is -y, down is -z, heading is -yaw: as in the original, where simulated x was
+north and y west. Signs change and nothing else, so no bit is lost on the way.
 """
 
 from __future__ import annotations

@@ -18,11 +18,11 @@ import numpy.typing as npt
 
 from sitl import vehicles, worlds
 from sitl.client.connection import Connection
+from sitl.errors import LinkLostError
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
 from sitl.scenario import DEFAULT_HOME, Home, Scenario
-from sitl.errors import LinkLostError
 from sitl.simulation import OptionError, Simulation
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.figures.figure import Figure
@@ -32,8 +32,7 @@ from sitl.worlds.shapes import from_heading, from_ned
 from ..actions import Action, Setpoint
 from ..mavlink.preparation import ALIGN_US, RESETS, SIMULATOR, hear_again, set_intervals, set_mode
 from ..options import EnvOptionError, unknown
-from .by_socket import SocketVehicles
-from .foreign import ForeignVehicles
+from .foreign import ForeignVehicles, SocketVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
 from .robot import Floats, Pose

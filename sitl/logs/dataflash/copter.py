@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from .. import plot
+from ..kind import KindLogs
 from . import bits, common, derived
 from .derived import DEG
 from .formats import Field, Message
@@ -141,3 +143,20 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
+
+
+_MODES = (
+    "STABILIZE ACRO ALT_HOLD AUTO GUIDED LOITER RTL CIRCLE - LAND - DRIFT - SPORT FLIP AUTOTUNE POSHOLD BRAKE THROW "
+    "AVOID_ADSB GUIDED_NOGPS SMART_RTL FLOWHOLD FOLLOW ZIGZAG SYSTEMID AUTOROTATE AUTO_RTL TURTLE"
+)
+"""https://mavlink.io/en/messages/ardupilotmega.html#COPTER_MODE"""
+
+LOGS = KindLogs(
+    messages=messages,
+    title="ArduCopter",
+    build_type=2,
+    word="Copter",
+    mav_types=(2, 3, 4, 13, 14, 15, 29),
+    mode_names=tuple(_MODES.split()),
+    panels=(plot.altitude, plot.attitude, plot.motors),
+)

@@ -13,6 +13,8 @@ from ...autopilot.rover.modes.loiter import LOITER
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.smart_rtl import SMART_RTL
 from ...autopilot.rover.modes.table import AUTONOMOUS
+from .. import plot
+from ..kind import KindLogs
 from . import bits, common, derived
 from .derived import DEG
 from .formats import Field, Message
@@ -199,3 +201,17 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
+
+
+_MODES = "MANUAL ACRO - STEERING HOLD LOITER FOLLOW SIMPLE DOCK CIRCLE AUTO RTL SMART_RTL - - GUIDED INITIALISING"
+"""https://mavlink.io/en/messages/ardupilotmega.html#ROVER_MODE"""
+
+LOGS = KindLogs(
+    messages=messages,
+    title="ArduRover",
+    build_type=1,
+    word="Rover",
+    mav_types=(10, 11),
+    mode_names=tuple(_MODES.split()),
+    panels=(plot.speed, plot.heading, plot.outputs),
+)
