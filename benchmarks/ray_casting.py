@@ -11,7 +11,8 @@ import numpy as np
 
 from sitl import worlds
 from sitl.worlds import planar, raycast
-from sitl.worlds.shapes import Box, Start, World
+from sitl.worlds.shapes import Box, Start
+from sitl.worlds.world import World
 
 FIELD_OF_VIEW = math.radians(270.0)
 RANGE = 20.0

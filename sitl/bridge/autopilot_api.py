@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the bridge needs of a vehicle (the simulation fulfils it; so does a small fake in the tests), and what the shared
-MAVLink services ask of its autopilot; each firmware's own services ask more of theirs.
+"""What the bridge needs of a vehicle (the simulation fulfils it; so does a small fake in the tests), and what the
+shared MAVLink services ask of its autopilot; each firmware's own services ask more of theirs.
 
 Positions are NED metres from the estimator's origin, angles radians, speeds m/s. Methods say whether the
 autopilot did it; what it wants to tell the pilot meanwhile waits in ``take_notes``.

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..autopilot.params import files
 from ..bridge.bridge import EPOCH_US
-from ..bridge.links.link import Link, open_link
+from ..bridge.links import Link, open_link
 from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
 from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice

@@ -8,7 +8,7 @@ import signal
 from functools import partial
 from pathlib import Path
 
-from ..bridge.links.link import Link, open_link
+from ..bridge.links import Link, open_link
 from ..foreign.choice import choose
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from ..autopilot.params.table import stored
 from ..bridge.hil.physics_end import PhysicsEnd, text_frame
 from ..bridge.hil.protocol import BASE_PORT
-from ..bridge.links.link import LOCAL, LinkAddressError
+from ..bridge.links import LOCAL, LinkAddressError
 from ..core.constants import TICK_S
 from ..physics.carried import Carried
 from ..vehicle.sim_parameters import PREFIX

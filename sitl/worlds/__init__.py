@@ -8,7 +8,8 @@ from pathlib import Path
 
 from .geometry import Geometry
 from .loader import read
-from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, World, WorldError
+from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
+from .world import World
 
 __all__ = [
     "Box",

@@ -7,7 +7,8 @@ import math
 from pathlib import Path
 
 from ..errors import MissingExtra
-from .shapes import Cylinder, World
+from .shapes import Cylinder
+from .world import World
 
 _NAMES_UP_TO = 40
 """Solids whose names are still readable in a picture."""

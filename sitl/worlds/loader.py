@@ -11,8 +11,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, World, WorldError
+from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
 from .tables import COLOURS, SINGLE, TABLES, Key, is_number, written
+from .world import World
 
 _START_HEADROOM = 0.01
 """A start pose is checked this far above its z [m]: a robot's base may touch the floor or stand on a box."""

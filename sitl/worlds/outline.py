@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .shapes import Array, World
+from .shapes import Array
+from .world import World
 
 _SEAM = 0.0005
 """Solids that stand this near to each other count as joined, and lesser parts of edges are left out [m]."""

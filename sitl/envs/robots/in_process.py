@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
-from sitl.bridge.links.link import LinkAddressError, open_link
+from sitl.bridge.links import LinkAddressError, open_link
 from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import NATIVE

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from sitl.bridge.links.link import open_link
+from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
 from sitl.errors import OptionError

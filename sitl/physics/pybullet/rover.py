@@ -22,7 +22,8 @@ from .client import Client, forget, load, save
 from .contacts import hits_report
 from .picture import Camera, Picture
 from .rover_model import Model, build
-from .wheels import filter_by_both, scrub_all
+from .tyres import scrub_all
+from .wheels import filter_by_both
 
 RESERVE = 1.25
 """Strength of skid steering's motors by what accelerates the vehicle's weight: they turn themselves as well."""

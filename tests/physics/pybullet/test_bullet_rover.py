@@ -17,7 +17,7 @@ from sitl.core.records import first_difference
 from sitl.physics.engine import EngineError
 from sitl.physics.native.body import GRAVITY
 from sitl.physics.pybullet.rover_model import layout
-from sitl.physics.pybullet.wheels import CREEP, scrub
+from sitl.physics.pybullet.tyres import CREEP, scrub
 from sitl.worlds import Box, Start, World
 from tests.physics.pybullet.bullet_rovers import AIRFRAMES, Rover
 
