@@ -164,8 +164,8 @@ def guided(frame: str, kind: str, **options: Any) -> Pilot:
     east = {"frame": 3, "x": round(lat * 1e7) + 1000, "y": round(lon * 1e7) + 1500}
     pilot.send("COMMAND_INT", command=192, param1=3.0, param2=1, z=15.0, **east)
     pilot.fly(5.0)
-    for number, *params in PROGRAMMES[kind].commands:
-        pilot.command(int(number), *params)
+    for command, *params in PROGRAMMES[kind].commands:
+        pilot.command(int(command), *params)
         pilot.fly(2.0)
     pilot.send("COMMAND_INT", command=195, **east)
     pilot.fly(3.0)
@@ -268,7 +268,7 @@ def by_dice(frame: str, kind: str, seed: int, seconds: float = 100.0) -> Pilot:
     """Random modes, set-points, sticks, commands, parameters, faults, missions; the dice do not look at the vehicle."""
     dice, programme = random.Random(seed), PROGRAMMES[kind]
     pilot = Pilot(frame, kind, seed=seed)
-    home = [round(angle * 1e7) for angle in pilot.simulation.home[:2]]
+    lat, lon = (round(angle * 1e7) for angle in pilot.simulation.home[:2])
     pilot.set_out()
     while pilot.now < 60.0 + seconds:
         deed = dice.randrange(7)
@@ -288,12 +288,13 @@ def by_dice(frame: str, kind: str, seed: int, seconds: float = 100.0) -> Pilot:
             name = dice.choice(list(programme.tunable)[1:])
             pilot.set_parameter(name, dice.randint(*programme.tunable[name]))
         elif deed == 5:
-            items = [Item(16, *home, 584.0, frame=0), *([Item(TAKEOFF, z=8.0)] if kind == "copter" else [])]
+            items = [Item(16, lat, lon, 584.0, frame=0), *([Item(TAKEOFF, z=8.0)] if kind == "copter" else [])]
             for command in dice.choices(programme.items, k=6):
-                x, y = (at + dice.randint(-programme.spread, programme.spread) for at in home)
-                place = (x, y, dice.uniform(5, 20)) if command in (16, 18, 19, 195) else (0, 0, 0.0)
+                x, y = (at + dice.randint(-programme.spread, programme.spread) for at in (lat, lon))
+                z = dice.uniform(5, 20)
                 p1, p2 = int(command in (18, 19, 93, 177, 178)), 2 * int(command in (177, 178))
-                items.append(Item(command, *place, p1, p2))
+                is_place = command in (16, 18, 19, 195)
+                items.append(Item(command, x, y, z, p1, p2) if is_place else Item(command, p1=p1, p2=p2))
             pilot.upload(items, or_refused=True)
             pilot.set_mode("AUTO")
             pilot.command(START)

@@ -26,7 +26,7 @@ class Row(NamedTuple):
     check_sum: int
     """CRC-32 of all."""
     steps: bytes
-    """For each step 1 .. 255 by its values, 0 where there was none."""
+    """For each step up to its last one 1 .. 255 by its values, 0 where there was none."""
 
 
 class Tape:
@@ -68,6 +68,6 @@ def read(result: Mapping[str, Any]) -> dict[str, Row]:
     names, width = unpacked(result["names"]).decode().split("\n"), len(result["times"])
     sums, rows = unpacked(result["sums"]), unpacked(result["rows"])
     return {
-        name: Row(int.from_bytes(sums[4 * k : 4 * k + 4], "little"), rows[k * width : (k + 1) * width])
+        name: Row(int.from_bytes(sums[4 * k : 4 * k + 4], "little"), rows[k * width : (k + 1) * width].rstrip(b"\0"))
         for k, name in enumerate(names)
     }
