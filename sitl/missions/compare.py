@@ -135,7 +135,6 @@ def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
     Raises:
         OptionError: one that does not speak ArduPilot's commands.
     """
-    from .foreign import ForeignVehicle  # the environments' connections, which nothing else here needs
 
     if choice.kind != ARDUPILOT:
         raise OptionError(f"autopilot {choice.name}: the recorded scripts are for ArduPilot")

@@ -14,7 +14,7 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.client import connect
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.preparation import LinkLostError
+from sitl.errors import LinkLostError
 from tests.envs import lockstep_vehicle
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"

@@ -14,8 +14,8 @@ import pytest
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink.foreign import physics_port
-from sitl.envs.mavlink.preparation import LinkLostError
 from sitl.envs.robots.autopilot import AutopilotRobot
+from sitl.errors import LinkLostError
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 

@@ -12,7 +12,7 @@ import numpy as np
 from ...core.record_reader import RecordReader
 from ..dialect import MessageType, message
 from ..telemetry.builder import DEG, int16, uint16
-from . import controls, ranging, sensor, truth
+from . import ranging, sensor, sticks, truth
 from .protocol import LATEST_US, PHYSICS, RefusedError, Sender
 from .ranging import RangeWriter, ScanWriter
 
@@ -166,7 +166,7 @@ class Inbox:
             GPS_KIND.id: (GpsReader(v),),
             sensor.BATTERY_KIND.id: (sensor.BatteryReader(v),),
             sensor.WHEELS_KIND.id: (sensor.WheelReader(v),),
-            controls.KIND.id: (controls.SticksReader(v),),
+            sticks.KIND.id: (sticks.SticksReader(v),),
             ranging.VECTOR.id: (ranging.RangeReader(v), truth.HitReader(v)),
             ranging.DISTANCE.id: (ranging.DistanceReader(v),),
             ranging.SCAN.id: (ranging.ScanReader(v, int(v.physics.airframe.lidar_samples)),),

@@ -19,7 +19,7 @@ from ...physics.carried import Carried
 from ..dialect import message
 from ..frame import Frame, Splitter
 from ..services.service import ACCEPTED, DENIED, UNSUPPORTED
-from . import controls, truth
+from . import controls, sticks, truth
 from .controls import ForeignClock
 from .measurements import Measurements
 from .protocol import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
@@ -173,7 +173,7 @@ class PhysicsEnd:
         self._clock.sent(self._now)
         self._tick = self.measurements.tick()
         if self._sticks:
-            kind, payload = controls.frame_for(self._is_foreign, self._now, self._sticks)
+            kind, payload = sticks.frame_for(self._is_foreign, self._now, self._sticks)
             self._tick = self._frame(kind, payload) + self._tick
             self._sticks = ()
         if self._truth_every_us > 0 and self._truth_due_us <= self._now:

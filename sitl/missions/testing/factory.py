@@ -67,9 +67,6 @@ def _is_hashable(beginning: Beginning) -> bool:
     return True
 
 
-__tracebackhide__ = True
-
-
 class VehicleFactory:
     """``vehicle_factory("rover", world="maze")``: it is ready to arm; ``setup.setup`` says what is taken."""
 

@@ -71,8 +71,6 @@ class Faulty(Client):
         raise UnknownNameError(f"a {self.kind} has no fault {what!r}; there are {', '.join(known)}")
 
 
-__tracebackhide__ = True
-
 __all__ = ["Copter", "Place", "Rover", "Text", "Vehicle"]
 
 

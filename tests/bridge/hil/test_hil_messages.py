@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.bridge.frame import Splitter
-from sitl.bridge.hil import controls, measurements, ranging, sensor, truth
+from sitl.bridge.hil import controls, measurements, ranging, sensor, sticks, truth
 from sitl.bridge.hil.measurements import Inbox, Measurements
 from sitl.bridge.hil.protocol import RefusedError
 from sitl.core.record_reader import RecordReader
@@ -209,11 +209,11 @@ def test_pressure_altitude_of_the_standard_atmosphere() -> None:
 
 def test_sticks() -> None:
     other = Vehicle()
-    taker = controls.SticksReader(other.v)
-    taker.write(taker.read(controls.sticks_payload(5000, (1500, 1100, 1900))))
+    taker = sticks.SticksReader(other.v)
+    taker.write(taker.read(sticks.sticks_payload(5000, (1500, 1100, 1900))))
     assert other.v.sensors.rc_channels.tolist() == [1500, 1100, 1900] + [0] * 9
     assert (other.v.sensors.rc_count, other.v.sensors.rc_time_us) == (1, 5000)
     with pytest.raises(RefusedError, match="chan2_raw = 3000"):
-        taker.read(controls.sticks_payload(5000, (1500, 3000)))
-    kind, payload = controls.frame_for(True, 5000, (1500, 1100))
+        taker.read(sticks.sticks_payload(5000, (1500, 3000)))
+    kind, payload = sticks.frame_for(True, 5000, (1500, 1100))
     assert kind.name == "RC_CHANNELS" and kind.decode(payload).chan2_raw == 1100
