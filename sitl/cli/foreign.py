@@ -48,7 +48,7 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
         if choice.program is not None and choice.kind == ARDUPILOT:  # PX4 speaks UDP itself
             links = open_links(options)
             folder = open_folder(options.log_dir)
-            name = f"{choice.kind}-{plant.craft.airframe.name}-{options.instance}"
+            name = f"{choice.kind}-{plant.vehicle.airframe.name}-{options.instance}"
             log = TlogWriter(runner.new_file(folder, name), EPOCH_US)
         session = build_session(options, choice, plant, links, speedup, log, say)
     except BaseException:
@@ -56,7 +56,7 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
         for link in links:
             link.close()
         raise
-    print(f"{choice.name} flies {plant.craft.airframe.name}; physics: {plant.backend}")
+    print(f"{choice.name} flies {plant.vehicle.airframe.name}; physics: {plant.backend}")
     for link in links:
         print(f"MAVLink on {link.name}")
     if log is not None:
@@ -69,7 +69,7 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
         signal.signal(number, lambda n, _: stopped.append(n))
     until_us = int(options.duration * 1e6) if options.duration else math.inf
     status = PlantStatus(plant, say, not options.quiet)
-    clock = plant.craft.reader.field("time_us")
+    clock = plant.vehicle.reader.field("time_us")
     try:
         session.serve(lambda: not stopped and clock() < until_us, status.refresh)
     finally:
@@ -121,7 +121,7 @@ def build_session(
     say: Sayer,
 ) -> Session:
     """The session of the autopilot on its plant."""
-    clock = plant.craft.reader.field("time_us")
+    clock = plant.vehicle.reader.field("time_us")
 
     def tap(frame: bytes) -> None:
         if log is not None:
@@ -158,7 +158,7 @@ class PlantStatus:
     _PERIOD_S = 0.25
 
     def __init__(self, plant: LocalPlant, say: Sayer, enabled: bool = True) -> None:
-        self._read = plant.craft.reader.fields("time_us", "physics.body.pos", "physics.body.vel")
+        self._read = plant.vehicle.reader.fields("time_us", "physics.body.pos", "physics.body.vel")
         self._say, self._enabled = say, enabled and sys.stderr.isatty()
         self._next = self._last = time.monotonic()
         self._last_us = 0

@@ -47,7 +47,7 @@ class ForeignVehicle:
         plant = stand_alone(airframe, home=home, physics=physics, seed=seed)
         self.kind = KINDS[airframe.kind]
         self.firmware = self.kind.firmware
-        self.v = plant.craft.v
+        self.v = plant.vehicle.v
         """Only the physics in it is valid: the autopilot is the foreign one."""
         self.before_boot_us = 0
         self.connection: Foreign = launch(choice, plant, {}, 0, _PATIENCE_S)

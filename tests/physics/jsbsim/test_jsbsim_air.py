@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sitl.physics.engine import EngineError
-from sitl.physics.jsbsim.craft import FOOT, SLUG_BY_FOOT3
+from sitl.physics.jsbsim.model import FOOT, SLUG_BY_FOOT3
 from sitl.physics.native.atmosphere import density
 from tests.physics.jsbsim.jsbsim_bench import Bench
 

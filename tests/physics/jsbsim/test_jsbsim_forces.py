@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sitl.core.algebra import rotate
 from sitl.core.vectors import Quat, Vec3
-from sitl.physics.jsbsim.craft import POUND, POUND_FOOT
+from sitl.physics.jsbsim.model import POUND, POUND_FOOT
 from sitl.physics.native import atmosphere
 from sitl.physics.native.copter.wrench import act
 from sitl.physics.native.tick import TICK_S

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from sitl import vehicles, worlds
-from sitl.physics.engine import Laws, Seat
+from sitl.physics.engine import EngineVehicle, Laws
 from sitl.physics.native.rover.init import init
 from sitl.physics.pybullet.rover import BulletRover
 from sitl.vehicle.core_entry import bind_unit
@@ -34,7 +34,7 @@ class Rover:
         units = (ROVER.pieces.begin, ROVER.pieces.load, ROVER.pieces.sense)
         laws = Laws(*(bind_unit(unit, ROVER, fleet, 0) for unit in units))
         found = worlds.load(world) if world is not None else None
-        self.engine = BulletRover(Seat(self.v, fleet, 0, airframe, laws, found))
+        self.engine = BulletRover(EngineVehicle(self.v, fleet, 0, airframe, laws, found))
         self.engine.place()
         self.tick = self.engine.tick
 

@@ -25,7 +25,7 @@ SQUARE = [(0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)]
 @pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad"])
 def test_says_what_the_airframe_says(frame: str) -> None:
     airframe = vehicles.load(frame)
-    robot = ElementTree.fromstring(model(copter(frame).seat.v.physics.airframe).text)
+    robot = ElementTree.fromstring(model(copter(frame).vehicle.v.physics.airframe).text)
     body, legs = robot.findall("link")
     assert float(body.find("inertial/mass").get("value")) == airframe.value("mass")  # type: ignore[union-attr]
     inertia = body.find("inertial/inertia").attrib  # type: ignore[union-attr]
@@ -68,5 +68,5 @@ def test_a_picture_shows_it_and_changes_nothing() -> None:
     assert away.std() < 1.0, "nothing but sky"
     engine.tick()
     other.tick()
-    assert engine.seat.fleet.tobytes() == other.seat.fleet.tobytes()
+    assert engine.vehicle.fleet.tobytes() == other.vehicle.fleet.tobytes()
     engine.close()
