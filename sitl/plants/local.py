@@ -18,7 +18,7 @@ from ..physics.engines import NATIVE, find
 from ..scenario import Options, Scenario
 from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..vehicles import Airframe
-from .lidar import Rangers
+from .lidar import Rangers, Scene
 from .plant import Plant, SimulatedVehicle
 from .surroundings import Surroundings
 
@@ -87,7 +87,7 @@ class LocalPlant(Plant):
             self.engine.place()
         if around is not None:
             cast = self.engine.cast if self.engine is not None else None
-            self.rangers = Rangers(v, vehicle.fleet, vehicle.index, around.world.geometry, around.floor, cast)
+            self.rangers = Rangers(v, vehicle.fleet, vehicle.index, Scene(around.world.geometry, around.floor, cast))
             self.rangers.measure(0)
             self.due_us = self.rangers.due_us
 
