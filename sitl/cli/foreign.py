@@ -120,7 +120,7 @@ def build_session(
     log: TlogWriter | None,
     say: Sayer,
 ) -> Session:
-    """The session of the autopilot on its plant."""
+    """The session of the autopilot on its plant; ``speedup``: times real time, None: as fast as it goes."""
     clock = plant.vehicle.reader.field("time_us")
 
     def tap(frame: bytes) -> None:

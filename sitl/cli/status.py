@@ -47,7 +47,7 @@ class StatusLine:
 
 
 def describe(simulation: Simulation, factor: float) -> str:
-    """Time, speed, mode, position and clients in one line."""
+    """Time, speed (``factor``: times real time), mode, position and clients in one line."""
     v = simulation.v
     estimate, ap = v.autopilot.estimate, v.autopilot
     height = -float(estimate.pos[2]) + float(ap.home.pos[2])

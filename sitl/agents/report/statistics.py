@@ -130,7 +130,7 @@ def improvement_interval(a: Floats, b: Floats, seed: int = 0, resamples: int = R
 
 
 def profile(scores: Floats, levels: Floats) -> Floats:
-    """Fraction of the runs that score above each level; shapes (..., runs), (levels,) to (levels, ...)."""
+    """Share of the runs that score above each level; shapes (..., runs), (levels,) to (levels, ...)."""
     out: Floats = np.stack([(scores > level).mean(axis=-1) for level in levels])
     return out
 

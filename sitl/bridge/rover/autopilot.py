@@ -54,7 +54,7 @@ class RoverAutopilot(BaseAutopilot):
         return self.mode() == AUTO and bool(guided_setpoints.is_open(self._v.autopilot.modes))
 
     def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
-        """Drive to a place; height and yaw mean nothing to a rover."""
+        """Drive to a place (NED [m]); height and yaw mean nothing to a rover."""
         return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
 
     def guided_heading(self, heading: float, speed: float) -> bool:
@@ -71,7 +71,7 @@ class RoverAutopilot(BaseAutopilot):
         return int(guided_setpoints.stop(self._v)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
-        """Airspeed (0) is ground speed (1); there are no others."""
+        """A speed [m/s]: airspeed (0) is ground speed (1); there are no others."""
         return bool(set_mode.change_speed(self._v, speed))
 
     def set_reversed(self, backward: bool) -> None:

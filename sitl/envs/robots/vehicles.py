@@ -208,5 +208,5 @@ class Vehicles(ABC):
         return north, east, -pose[2]
 
     def begun(self, index: int, origin: tuple[float, float, float]) -> EpisodeState:
-        """The state of an episode that starts now."""
+        """The state of an episode that starts now; ``origin``: NED [m] in the world."""
         return EpisodeState(None, None, origin, self.time_us(index), "", INTERVAL_US)

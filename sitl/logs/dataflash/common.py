@@ -48,7 +48,7 @@ def magnetometer(bit: int) -> Message:
 
 
 def pid(name: str, loop: str, gains: str, measured: str, bit: int, scale: float = 1.0) -> Message:
-    """Target, measurement, error and output parts of a PID."""
+    """Target, measurement, error and output parts of a PID, in the unit that ``scale`` makes."""
     parts = (
         Field("Tar", "f", source=loop + ".target", scale=scale),
         Field("Act", "f", source=measured, scale=scale),

@@ -86,7 +86,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         return self.altitude
 
     def change_mode(self, name: str, timeout: float = 5.0) -> None:
-        """Choose a mode, and wait until it is on."""
+        """Choose a mode, and wait until it is on, at most ``timeout`` [simulated s]."""
         self.set_mode(name, timeout)
 
     def wait_until(
@@ -97,7 +97,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         last: Callable[[], str] = lambda: "",
         hold: float = 0.0,
     ) -> None:
-        """``wait`` for a condition without an argument."""
+        """``wait`` for a condition without an argument; ``timeout`` and ``hold`` in simulated seconds."""
         self.wait(lambda _: condition(), timeout, what, last, hold)
 
     # ------------------------------------------------------------------ places, whose altitude is called height here
@@ -129,7 +129,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         accuracy: float = 1.0,
         timeout: float = 120.0,
     ) -> None:
-        """``set_position``, and wait until it is there."""
+        """``set_position`` (NED from home [m], yaw [deg]), and wait until it is there."""
         self.goto(north, east, height, yaw, accuracy, timeout)
 
     drive_to = fly_to
@@ -141,11 +141,11 @@ class Vehicle(Golden, MissionFlier, Faulty):
         return self.params[name]
 
     def set_parameter(self, name: str, value: float) -> None:
-        """Set a parameter, and see that the vehicle took it."""
+        """Set a parameter, in its unit, and see that the vehicle took it."""
         self.params[name] = value
 
     def set_parameters(self, values: Mapping[str, float] | None = None, **more: float) -> None:
-        """Set several."""
+        """Set several, each in its unit."""
         self.params.update(values, **more)
 
     def parameters(self, values: Mapping[str, float] | None = None, **more: float) -> AbstractContextManager[None]:
@@ -173,6 +173,6 @@ class Rover(Vehicle):
         self.guided_and_armed()
 
     def stop(self, timeout: float = 30.0) -> None:
-        """HOLD, and wait until it stands."""
+        """HOLD, and wait until it stands, at most ``timeout`` [simulated s]."""
         self.set_mode("HOLD")
         self.wait_groundspeed(0.0, 0.1, timeout, 1.0)

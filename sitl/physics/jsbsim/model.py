@@ -58,7 +58,7 @@ class VehicleModel(ABC):
 
     @abstractmethod
     def bind(self, properties: Properties, a: Any, dt: float) -> None:
-        """Look up the properties of a new executive."""
+        """Look up the properties of a new executive, whose frames are dt [s] long."""
 
     @abstractmethod
     def inputs(self) -> None:

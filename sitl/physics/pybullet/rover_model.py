@@ -59,17 +59,17 @@ class Layout:
 
     @property
     def sag(self) -> float:
-        """By which springs are pressed together at rest."""
+        """By which springs are pressed together at rest [m]."""
         return SAG * self.radius
 
     @property
     def wheels(self) -> tuple[tuple[float, float], ...]:
-        """Forward and left of the centre of mass: front left, front right, rear left, rear right."""
+        """Forward and left of the centre of mass [m]: front left, front right, rear left, rear right."""
         ahead, half = self.wheelbase - self.behind, 0.5 * self.track
         return ((ahead, half), (ahead, -half), (-self.behind, half), (-self.behind, -half))
 
     def load(self, wheel: int) -> float:
-        """Share of the weight on a wheel."""
+        """Share of the weight on a wheel, 0 .. 1."""
         front = self.behind / self.wheelbase
         return 0.5 * (front if wheel < 2 else 1.0 - front)
 

@@ -48,12 +48,12 @@ def box(size: Vector, centre: Vector, yaw: float = 0.0) -> Shape:
 
 
 def cylinder(radius: float, length: float, centre: Vector) -> Shape:
-    """An upright cylinder."""
+    """An upright cylinder [m]."""
     return Shape(f'<cylinder radius="{radius!r}" length="{length!r}"/>', centre)
 
 
 def sphere(radius: float, centre: Vector) -> Shape:
-    """A sphere."""
+    """A sphere [m]."""
     return Shape(f'<sphere radius="{radius!r}"/>', centre)
 
 
