@@ -14,7 +14,7 @@ from sitl.errors import did_you_mean
 from sitl.worlds import World
 from sitl.worlds.shapes import Box, Solid
 
-from ..errors import AgentError
+from ..errors import AgentError, check_names
 
 
 def altered(world: str | Path | World, mirror: bool = False, stretch: float = 1.0) -> World:
@@ -124,12 +124,7 @@ class Change:
         """
         if not isinstance(values, Mapping):
             raise AgentError(f"change = {values!r}; it must be a table")
-        known = [item.name for item in fields(cls)]
-        for key in values:
-            if key not in known:
-                hint = did_you_mean(key, known)
-                title = f"change {values.get('name', '')!r}"
-                raise AgentError(f"{title}: key {key!r} is not known; it is one of {', '.join(known)}{hint}")
+        check_names(values, [item.name for item in fields(cls)], f"change {values.get('name', '')!r}: key {{!r}}")
         for key in ("name", "group"):
             if key not in values:
                 raise AgentError(f"change {dict(values)!r}: key {key!r} is missing")
