@@ -76,11 +76,6 @@ class JsonHost:
         """Simulated time since power-on [us]."""
         return self._clock()
 
-    @property
-    def is_owing(self) -> bool:
-        """Whether a request of the autopilot is pending."""
-        return self._pending is not None
-
     def listen(self) -> bool:
         """Wait for a frame that requests a step, unless one is pending; returns whether there is one."""
         if self._pending is not None:

@@ -92,18 +92,8 @@ _NE_AT_WORK, _D_AT_WORK = _at_work(_NE), _at_work(_D)
 
 
 def _position(axis: str, k: int) -> Message:
-    ne = axis != "D"
-    base, end = (_NE, f"[{k}]") if ne else (_D, "")
-    sources = (
-        ("D", "P", "m", base + "pos_desired" + end), ("T", "P", "m", base + "pos_desired" + end),
-        ("", "P", "m", f"{E}pos[{k}]"),
-        ("D", "V", "n", base + "vel_desired" + end), ("T", "V", "n", base + "vel_target" + end),
-        ("", "V", "n", f"{E}vel[{k}]"),
-        ("D", "A", "o", base + "accel_desired" + end), ("T", "A", "o", base + "accel_target" + end),
-        ("", "A", "o", f"{E}acc_ned[{k}]"),
-    )  # fmt: skip
-    fields = tuple(Field(what + kind + axis, "f", unit, "0", source) for what, kind, unit, source in sources)
-    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=_NE_AT_WORK if ne else _D_AT_WORK)
+    base, end, when = (_D, "", _D_AT_WORK) if axis == "D" else (_NE, f"[{k}]", _NE_AT_WORK)
+    return common.position_control(axis, k, lambda name: base + name + end, "pos_desired", when)
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:

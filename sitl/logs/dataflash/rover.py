@@ -157,15 +157,7 @@ def _at_work(s: Any) -> Array:
 
 
 def _position(axis: str, k: int) -> Message:
-    names = (("D", "P", "m", "pos_target"), ("T", "P", "m", "pos_target"), ("", "P", "m", E + "pos"),
-             ("D", "V", "n", "vel_desired"), ("T", "V", "n", "vel_target"), ("", "V", "n", E + "vel"),
-             ("D", "A", "o", "accel_desired"), ("T", "A", "o", "accel_target"),
-             ("", "A", "o", E + "acc_ned"))  # fmt: skip
-    fields = tuple(
-        Field(what + kind + axis, "f", unit, "0", f"{source if '.' in source else _POSITION + source}[{k}]")
-        for what, kind, unit, source in names
-    )
-    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=_at_work)
+    return common.position_control(axis, k, lambda name: f"{_POSITION}{name}[{k}]", "pos_target", _at_work)
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
