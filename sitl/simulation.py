@@ -203,10 +203,10 @@ class Simulation:
                 lost = error
             if plant.due_us <= self._clock():
                 plant.measure()
-            told = self._event_count() != self._events_seen
-            if told:
+            has_events = self._event_count() != self._events_seen
+            if has_events:
                 self._follow_events()
-            if told or due <= self._clock():  # not when only an observer wants to look
+            if has_events or due <= self._clock():  # not when only an observer wants to look
                 bridge.service()
             for observer in self.observers:
                 if observer.due_us <= self.time_us:

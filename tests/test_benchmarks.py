@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import envs as benchmark
+from sitl import envs
 from sitl.simulation import Core, load_core
 from sitl.vehicle.kinds import KINDS
 
@@ -25,3 +27,16 @@ def test_every_figure_of_both_vehicles_is_printed(core: Core) -> None:
     factors = [float(x) for x in re.findall(r"(\d+)x   \(", result.stdout)]
     assert len(factors) == 10 and all(f > 0 for f in factors), result.stdout
     assert len(re.findall(r"restore +[\d.]+ us", result.stdout)) == 2
+
+
+def test_every_environment_has_a_row(monkeypatch, capsys):
+    pytest.importorskip("pygame")
+    monkeypatch.setattr(sys, "argv", ["benchmarks.envs", "--repeats", "1", "--steps", "2000"])
+    monkeypatch.setattr(benchmark, "VECTORS", (16,))
+    benchmark.main()
+    out = capsys.readouterr().out
+    for name in (benchmark.CARTPOLE, *envs.PAPER):
+        row = re.search(rf"^{name} +([\d,]+) +([\d,]+)x +([\d.]+) ", out, re.MULTILINE)
+        assert row, f"no row of {name} in\n{out}"
+        assert float(row[2].replace(",", "")) > 0.0 and float(row[3]) > 0.0
+    assert re.search(r", reset +[\d.]+ us", out)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One installed package: what a wheel holds, and that a user's own folders of the same names do no harm."""
+"""One installed package: its files, the names that it offers, and that a user's own folders do no harm."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
+
+import sitl
+from sitl import vehicles, worlds
+from sitl.simulation import Simulation
 
 ROOT = Path(__file__).parents[1]
 ROOMS = ("envs", "missions", "agents")
@@ -96,3 +100,23 @@ def test_a_users_own_folders_do_no_harm(wheel: Path, tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=project, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout == "(5,) (20,) 39 True\n"
+
+
+def test_every_name_is_there() -> None:
+    assert sitl.Simulation is Simulation
+    assert sitl.vehicle_names is vehicles.names and "erle_copter" in sitl.vehicle_names()
+    assert sitl.world_names is worlds.names and "maze" in sitl.world_names()
+    assert set(sitl.__all__) <= set(dir(sitl)) and all(hasattr(sitl, name) for name in sitl.__all__)
+
+
+def test_another_name_is_refused() -> None:
+    with pytest.raises(AttributeError, match=r"no attribute 'simulation_of'; it has Simulation, "):
+        sitl.simulation_of  # noqa: B018
+
+
+def test_importing_it_loads_nothing_else() -> None:
+    code = "import sys, importlib, typing; before = set(sys.modules); import sitl; dir(sitl); "
+    code += "print(sorted(set(sys.modules) - before))"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    assert done.stdout == "['sitl']\n", done.stderr

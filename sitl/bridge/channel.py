@@ -81,13 +81,13 @@ class Channel:
             self.statistics.sent += 1
             self.peer.outbox.append(frame)
 
-    def receive(self, heard: Callable[[Channel, bytes], None] | None = None) -> list[Frame]:
-        """Frames that came in since the last call; ``heard`` is told of the bytes."""
+    def receive(self, on_received: Callable[[Channel, bytes], None] | None = None) -> list[Frame]:
+        """Frames that came in since the last call; ``on_received`` gets the bytes."""
         data = self.peer.take()
         if not data:
             return []
-        if heard is not None:
-            heard(self, data)
+        if on_received is not None:
+            on_received(self, data)
         frames = self.splitter.feed(data)
         self.statistics.received += len(frames)
         expected = self._expected

@@ -39,11 +39,11 @@ class Journal(Protocol):
     def left(self, channel: Channel) -> None:
         """It is gone."""
 
-    def heard(self, channel: Channel, data: bytes) -> None:
+    def received(self, channel: Channel, data: bytes) -> None:
         """Bytes that the client sent, read now."""
 
     def acted(self) -> None:
-        """All that was heard has been acted on."""
+        """All that was received has been acted on."""
 
     def sent(self, channel: Channel, frames: list[bytes]) -> None:
         """Frames on their way to the client."""
@@ -158,9 +158,9 @@ class Switchboard:
                 if link.refusals:
                     self.dropped += link.refusals
                     link.refusals.clear()
-        heard = self.journal.heard if self.journal is not None else None
+        on_received = self.journal.received if self.journal is not None else None
         for channel in self.channels:
-            frames = channel.receive(heard)
+            frames = channel.receive(on_received)
             for tap in self.taps:
                 for frame in frames:
                     tap.frame(self._clock(), frame.raw)

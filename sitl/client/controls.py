@@ -145,7 +145,7 @@ class Controls(Waits):
     ) -> None:
         """``set_position``, and wait until it is there, within ``accuracy`` [m]."""
         self.set_position(north, east, altitude, yaw)
-        self.wait_location(north, east, None if self.kind == "rover" else altitude, accuracy, timeout)
+        self.wait_location(north, east, altitude if self.flies else None, accuracy, timeout)
 
     def set_velocity(
         self,

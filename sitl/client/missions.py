@@ -68,7 +68,7 @@ class Missions(Controls):
             self.set_mode("GUIDED")
             self.arm()
         self.set_mode("AUTO")
-        if self.kind != "rover":
+        if self.flies:
             self.command("MISSION_START", subject="the start of the mission")
 
     def transfer(self, items: Sequence[MissionItem]) -> None:

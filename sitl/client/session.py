@@ -404,6 +404,12 @@ class Session:
         simulation = self.connection.simulation
         return simulation.kind.name if simulation is not None else "vehicle"
 
+    @property
+    def flies(self) -> bool:
+        """Whether it takes off; a vehicle in another process is taken for one that does."""
+        simulation = self.connection.simulation
+        return simulation is None or simulation.kind.flies
+
     # ------------------------------------------------------------------ failures
 
     def raise_error(self, error: ClientError) -> NoReturn:

@@ -7,7 +7,7 @@ import socket
 import time
 from collections.abc import Callable
 
-from ..bridge.ardupilot_json.physics_end import Asked, Heard, PhysicsEnd, ticks
+from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, ticks
 from ..bridge.ardupilot_json.servos import controls, is_frame
 from ..core.constants import TICK_US
 from ..errors import OptionError
@@ -46,7 +46,7 @@ class JsonHost:
         self.boots = 0
         """Number of restarts of the autopilot, each with the physics."""
         self.attach(plant)
-        self._pending: Heard | None = None
+        self._pending: Request | None = None
         self._answered = float("-inf")
         self._peer: tuple[str, int] = ("", 0)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -95,17 +95,17 @@ class JsonHost:
 
     def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
         """Process one datagram; returns whether it requests a step."""
-        heard = self.end.hear(datagram, peer, now)
-        if heard.note:
-            self._say(heard.note)
-        if heard.asked is Asked.NOTHING:
+        request = self.end.receive(datagram, peer, now)
+        if request.note:
+            self._say(request.note)
+        if request.asked is Asked.NOTHING:
             return False
         self._peer = peer
-        if heard.asked is Asked.REPEAT:
+        if request.asked is Asked.REPEAT:
             self._send(self.end.repeat(now))
             self._answered = now
             return False
-        self._pending = heard
+        self._pending = request
         return True
 
     def _drain(self, waiting: dict[tuple[str, int], bytes]) -> None:
@@ -121,11 +121,11 @@ class JsonHost:
 
     def step(self, until_us: int | None = None) -> None:
         """Perform the requested step and answer it; at most until ``until_us`` [us since power-on]."""
-        heard, self._pending = self._pending, None
-        if heard is None or heard.servos is None:
+        request, self._pending = self._pending, None
+        if request is None or request.servos is None:
             return
-        plant, servos = self.plant, heard.servos
-        if heard.asked is Asked.RESTART:
+        plant, servos = self.plant, request.servos
+        if request.asked is Asked.RESTART:
             restart(plant)
             self.boots += 1
         actuators = plant.vehicle.v.actuators

@@ -49,14 +49,14 @@ class HilPlant(Plant):
         self.end = AutopilotEnd(vehicle.fleet, vehicle.index, vehicle.v, vehicle.kind.mav_type)
         self._has_joined = self._is_silent = False
         self._fly = bind_unit(vehicle.kind.fly, vehicle.kind, vehicle.fleet, vehicle.index)
-        self._told: Callable[[], int] = vehicle.reader.field("autopilot.events.count")
+        self._event_count: Callable[[], int] = vehicle.reader.field("autopilot.events.count")
         self._attention: Callable[[], int] = vehicle.reader.field("autopilot.events.attention")
         self._clock: Callable[[], int] = vehicle.reader.field("time_us")
 
     # ------------------------------------------------------------------ power-on
 
     def power_on(self) -> None:
-        """Join the physics as it stands; later times it is told to begin anew.
+        """Join the physics as it stands; later times it is event_count to begin anew.
 
         Raises:
             PhysicsLostError: nobody is there, or nobody answers.
@@ -80,13 +80,13 @@ class HilPlant(Plant):
     # ------------------------------------------------------------------ going on
 
     def run(self, ticks: int) -> None:
-        fly, told, attention = self._fly, self._told, self._attention
-        before = told()
+        fly, event_count, attention = self._fly, self._event_count, self._attention
+        before = event_count()
         for _ in range(ticks):
             if not self._exchange():
                 return
             fly()
-            if attention() or told() != before:
+            if attention() or event_count() != before:
                 return
 
     def _exchange(self) -> bool:

@@ -84,7 +84,7 @@ class JsonPlant(Plant):
         self._last: Motion | None = None
         self._sums = _NOTHING
         """What the IMU has felt in the part of the tick that is done: rates and forces by steps, sum of steps [s]."""
-        self._told: Callable[[], int] = vehicle.reader.field("autopilot.events.count")
+        self._event_count: Callable[[], int] = vehicle.reader.field("autopilot.events.count")
         self._attention: Callable[[], int] = vehicle.reader.field("autopilot.events.attention")
         self._pulses = vehicle.reader.fields("actuators.pwm")
         self._memory = memoryview(vehicle.fleet.view("u1"))  # type: ignore[arg-type]
@@ -117,7 +117,7 @@ class JsonPlant(Plant):
     def run(self, ticks: int) -> None:
         self.load()
         begin, load, sense, fly = self._units
-        told, attention, before = self._told, self._attention, self._told()
+        event_count, attention, before = self._event_count, self._attention, self._event_count()
         for _ in range(ticks):
             motion = self._next()
             if motion is None:
@@ -129,7 +129,7 @@ class JsonPlant(Plant):
             sense()
             self._others(motion)
             fly()
-            if attention() or told() != before:
+            if attention() or event_count() != before:
                 return
 
     def _next(self) -> Motion | None:
@@ -137,10 +137,10 @@ class JsonPlant(Plant):
         began = self._wall()
         gyro, accel, weight = self._sums
         while self._behind_us < 0.5 * TICK_US or self._last is None:
-            heard = self._exchange(began)
-            if heard is None:
+            answer = self._exchange(began)
+            if answer is None:
                 return None
-            motion, step = heard
+            motion, step = answer
             self._last = motion
             if step > LONGEST_S:  # a clock that jumps takes nothing with it
                 self._behind_us = TICK_US
@@ -177,15 +177,15 @@ class JsonPlant(Plant):
         while True:
             data = self.link.receive(STILL_S if stands else WAIT_S)
             if data is not None:
-                heard = self.end.hear(data)
+                answer = self.end.receive(data)
                 if self.end.note:
                     self._note, self.end.note = self.end.note, ""
-                if heard is not None:
-                    if heard[1] < 0.0:
+                if answer is not None:
+                    if answer[1] < 0.0:
                         self.vehicle.restarted()
                         return None
-                    if heard[1] > 0.0:
-                        return heard
+                    if answer[1] > 0.0:
+                        return answer
                     stands = True
             now = self._wall()
             if now - began >= PATIENCE_S:

@@ -59,7 +59,7 @@ class LocalPlant(Plant):
             self.engine = find(backend, vehicle.kind.name, vehicle.kind.engines)(self._engine_vehicle())
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
-        self._told = vehicle.reader.field("autopilot.events.count")
+        self._event_count = vehicle.reader.field("autopilot.events.count")
         self._attention = vehicle.reader.field("autopilot.events.attention")
         self._clock = vehicle.reader.field("time_us")
 
@@ -112,14 +112,14 @@ class LocalPlant(Plant):
                 self.core = load_core(vehicle.kind, self.progress)
             return self.core.bind(vehicle.fleet, vehicle.index)
         tick, fly = engine.tick, self._unit(vehicle.kind.fly)
-        told, attention = self._told, self._attention
+        event_count, attention = self._event_count, self._attention
 
         def run(ticks: int) -> None:
-            before = told()
+            before = event_count()
             for _ in range(ticks):
                 tick()
                 fly()
-                if attention() or told() != before:
+                if attention() or event_count() != before:
                     return
 
         return run

@@ -47,7 +47,7 @@ class Recorder:
     """A journal of all that comes from outside, and a digest of all that goes out.
 
     Args:
-        simulation: at power-on: no time has passed, and no client has been heard.
+        simulation: at power-on: no time has passed, and no client has sent anything.
         path: path of the file; None: nothing is kept but the digests.
         flush_us: simulated time after which what is collected is written [us]: a run that is killed loses no more.
 
@@ -158,7 +158,7 @@ class Recorder:
         self._congested.discard(channel.peer)
         self._note(EntryKind.DISCONNECTED, channel.number, channel.peer.why_closed.encode())
 
-    def heard(self, channel: Channel, data: bytes) -> None:
+    def received(self, channel: Channel, data: bytes) -> None:
         self._note(EntryKind.RECEIVED, channel.number, data)
         self._unprocessed = True
 

@@ -47,11 +47,11 @@ Tick = Callable[[Sequence[V], int], None]
 def advance_ticks(fleet: Sequence[V], index: int, ticks: int, step: Tick[V], fly: Tick[V]) -> None:
     """Up to ``ticks`` ticks of physics (``step``) and of what follows (``fly``); back early when Python is needed."""
     events = fleet[index].autopilot.events
-    told = events.count
+    before = events.count
     for _ in range(ticks):
         step(fleet, index)
         fly(fleet, index)
-        if events.attention != 0 or events.count != told:
+        if events.attention != 0 or events.count != before:
             break
 
 

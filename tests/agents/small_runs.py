@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Short runs of tabular learners, and how they are compared."""
+"""Short runs of tabular learners, how they are compared, and runs that nobody trained, whose rewards are given."""
 
 from __future__ import annotations
 
 import gymnasium as gym
 
 import sitl.envs  # noqa: F401 (registers the environments)
+from sitl.agents.report.group import Group
 from sitl.agents.runs.config import RunConfig
+from sitl.agents.runs.episodes import Episode
 from sitl.agents.runs.files import read_arrays
 from sitl.agents.runs.folder import RunFolder
 from sitl.agents.tabular import training
@@ -46,3 +48,15 @@ def result(run):
     found = (run.path / name for name in (training.MODEL, training.BEST))
     models = [read_arrays(path) for path in found if path.exists()]
     return rows, [{name: value.tobytes() for name, value in model.items()} for model in models]
+
+
+def write(path, rewards, seed=0, **fields):
+    """A run whose episodes had these rewards."""
+    run = RunFolder.create(path, config(seed=seed, episodes=max(len(rewards), 1), **fields))
+    run.episodes.append(Episode(k, 10, float(reward), 0.1, 1, 6.0, 0.01) for k, reward in enumerate(rewards))
+    return run
+
+
+def group(path, name, rows, **fields):
+    """A group of such runs, a row of rewards each."""
+    return Group(name, [write(path / name / str(seed), row, seed, **fields) for seed, row in enumerate(rows)])

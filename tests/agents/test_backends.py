@@ -46,12 +46,14 @@ def seeds(folder, count=3, **fields):
 @pytest.mark.slow
 def test_runs_are_those_of_local_processes(ray, tmp_path):
     here, there = seeds(tmp_path / "here"), seeds(tmp_path / "there")
-    told = []
+    reported = []
     assert train_all([run.path for run in here])
-    assert train_all([run.path for run in there], 2, lambda index, rows: told.extend((index, r) for r in rows), on_ray)
+    assert train_all(
+        [run.path for run in there], 2, lambda index, rows: reported.extend((index, r) for r in rows), on_ray
+    )
     assert [result(run) for run in there] == [result(run) for run in here]
     rows = [[row[:-1] for row in run.episodes.rows()] for run in there]
-    assert [[row[:-1] for index, row in told if index == k] for k in range(3)] == rows
+    assert [[row[:-1] for index, row in reported if index == k] for k in range(3)] == rows
     assert {path.name for path in there[0].path.iterdir()} == {"config.json", "episodes.csv", "model.npz", "best.npz"}
 
 
@@ -89,8 +91,8 @@ def test_interrupted_on_one_backend_it_goes_on_with_the_other(ray, tmp_path, bac
 @pytest.mark.slow
 def test_items_not_begun_before_an_interrupt_have_no_result(ray, tmp_path):
     runs = seeds(tmp_path, episodes=20_000)
-    told = lambda index, message: isinstance(message, int) and signal.raise_signal(signal.SIGINT)  # noqa: E731
-    assert on_ray(ray_works.train_eagerly, [run.path for run in runs], 1, told) == [False, None, None]
+    reported = lambda index, message: isinstance(message, int) and signal.raise_signal(signal.SIGINT)  # noqa: E731
+    assert on_ray(ray_works.train_eagerly, [run.path for run in runs], 1, reported) == [False, None, None]
 
 
 @pytest.mark.slow
@@ -99,14 +101,14 @@ def test_a_killed_worker_is_replaced_and_goes_on_from_what_was_kept(ray, tmp_pat
     train_one(whole.path, lambda rows: None, lambda: False)
     processes, kept = [], []
 
-    def told(index, message):
+    def reported(index, message):
         if isinstance(message, int):
             processes.append(message)
         elif not kept and (killed.path / "model.npz").exists():
             kept.append(len(killed.episodes.rows()))
             os.kill(processes[0], signal.SIGKILL)
 
-    assert on_ray(ray_works.train_eagerly, [killed.path], 1, told) == [True]
+    assert on_ray(ray_works.train_eagerly, [killed.path], 1, reported) == [True]
     assert len(set(processes)) == 2 and 0 < kept[0] < 5000
     assert result(killed) == result(whole)
 
@@ -139,10 +141,10 @@ def test_folders_go_and_come_back(ray, tmp_path):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.write_text(name)
-    told = []
-    ((place, there),) = on_ray(ray_works.write_and_list, [(tmp_path, "word")], 1, lambda *words: told.append(words))
+    reported = []
+    ((place, there),) = on_ray(ray_works.write_and_list, [(tmp_path, "word")], 1, lambda *words: reported.append(words))
     assert place != str(tmp_path) and not Path(place).exists()
-    assert there == ["inner/deep", "old", "same"] and told == [(0, "word")]
+    assert there == ["inner/deep", "old", "same"] and reported == [(0, "word")]
     found = {path.relative_to(tmp_path).as_posix(): path.read_text() for path in tmp_path.rglob("*") if path.is_file()}
     assert found == {"same": "same", "inner/deep": "inner/deep", ".hidden": ".hidden", "inner/new": "word"}
 

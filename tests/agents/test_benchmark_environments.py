@@ -108,10 +108,10 @@ def test_environments_that_cannot_be_are_told_before_anything_is_trained(fields)
 
 
 def test_playing_ends_after_an_episode_when_it_is_interrupted(tmp_path):
-    run, told = runs_of(tmp_path, small(), 1)[0], []
+    run, reported = runs_of(tmp_path, small(), 1)[0], []
     train_one(run.path, lambda rows: None, lambda: False)
-    assert drive_one((run.path, small()), told.append, lambda: len(told) == 2) is None and told == [1, 1]
-    assert len(drive_one((run.path, small()), told.append, lambda: False).evaluation.episodes) == 3
+    assert drive_one((run.path, small()), reported.append, lambda: len(reported) == 2) is None and reported == [1, 1]
+    assert len(drive_one((run.path, small()), reported.append, lambda: False).evaluation.episodes) == 3
 
 
 def test_recipes_of_one_name_are_refused():

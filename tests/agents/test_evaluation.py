@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Greedy play: crashes, laps, other worlds, starts that are moved."""
+"""Greedy play: crashes, laps, other worlds, moved starts; of several runs at a time, with divided episodes."""
 
 from __future__ import annotations
 
 import math
 from itertools import pairwise
+from types import SimpleNamespace
 
 import gymnasium as gym
 import numpy as np
@@ -14,7 +15,11 @@ from pytest import approx
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import CENTRES, LapCounter, evaluate, evaluate_run, moved_starts
+from sitl.agents.evaluations import Part, evaluate_groups, evaluate_runs, play_part
+from sitl.agents.runs import local
+from sitl.agents.runs.backends import Workers
 from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.training import train_one
 from sitl.agents.runs.watch import Watch
 from sitl.agents.tabular import training
 from sitl.agents.tabular.exploration import slot_of
@@ -23,7 +28,7 @@ from sitl.agents.tabular.training import TablePolicy
 from sitl.envs.observations import Digits
 from tests.agents.small_runs import make, new
 
-CIRCUIT2 = [(0.0, 0.0), (3.9, 0.0), (3.9, -3.8), (0.28, -3.8), (0.28, -7.65), (-3.7, -7.65), (-3.7, 0.0), (0.0, 0.0)]
+CORNERS = [(0.0, 0.0), (3.9, 0.0), (3.9, -3.8), (0.28, -3.8), (0.28, -7.65), (-3.7, -7.65), (-3.7, 0.0), (0.0, 0.0)]
 """Corners of the middle of its corridors, clockwise [m]."""
 
 
@@ -47,13 +52,13 @@ def walk(corners):
 
 
 def test_going_round_is_a_lap_in_either_direction():
-    for corners in (CIRCUIT2, CIRCUIT2[::-1]):
+    for corners in (CORNERS, CORNERS[::-1]):
         counter = LapCounter(CENTRES["circuit2"])
         for x, y in [*walk(corners), *walk(corners), corners[0]]:
             counter.take(x, y)
         assert counter.laps == approx(2.0)
     counter = LapCounter(CENTRES["circuit2"])
-    for x, y in [*walk(CIRCUIT2), *walk(CIRCUIT2[::-1]), CIRCUIT2[0]]:
+    for x, y in [*walk(CORNERS), *walk(CORNERS[::-1]), CORNERS[0]]:
         counter.take(x, y)
     assert counter.laps == approx(0.0, abs=1e-9)
 
@@ -126,3 +131,43 @@ def test_in_an_environment_of_another_kind_an_end_is_no_crash():
 
     found = evaluate(gym.make("CliffWalking-v1", max_episode_steps=20), Walk(), 2)
     assert found.crash_rate == 0.0 and "0 crashes, 2 ended by themselves" in found.sentence()
+
+
+ROVER = {"observation": "digits", "action": "discrete", "start": "random"}
+
+
+def trained(path, **fields):
+    run = new(path, **fields)
+    train_one(run.path, lambda rows: None, lambda: False)
+    return run
+
+
+def test_divided_episodes_are_those_of_one_evaluation(tmp_path):
+    runs = [trained(tmp_path / str(seed), seed=seed) for seed in range(2)]
+    plan = EvaluationPlan(episodes=7, jitter=0.2, max_steps=50, options={"start": "random"})
+    asked = []
+
+    def each(work, items, jobs):
+        asked.append([(item.first, item.count) for item in items])
+        return [local.each(work, [item])[0] for item in reversed(items)][::-1]
+
+    found = evaluate_runs(runs, [plan, EvaluationPlan(episodes=1)], 3, SimpleNamespace(jobs=5, each=each))
+    assert asked == [[(0, 2), (2, 2), (4, 3), (0, 1)]]
+    assert found[0] == evaluate_run(runs[0], plan, 3) and len(found[1].episodes) == 1
+
+
+@pytest.mark.slow
+def test_so_are_those_of_other_processes_and_of_a_robot_with_an_autopilot(tmp_path):
+    run = trained(tmp_path / "rover", env="GazeboMazeErleRoverLIDAR-v0", episodes=1, env_options=ROVER)
+    plan = EvaluationPlan(episodes=4)
+    whole, parts = (evaluate_groups([[run]], [plan], Workers(jobs)) for jobs in (1, 2))
+    assert repr(whole) == repr(parts) and len({played.reward for played in whole[0][0].episodes}) > 1
+
+
+def test_an_interrupt_ends_it_after_an_episode(tmp_path):
+    run = trained(tmp_path / "run")
+    rows = []
+    part = Part(run.path, EvaluationPlan(episodes=5), 0, 0, 5)
+    assert play_part(part, rows.append, lambda: len(rows) == 2) is None and rows == [1, 1]
+    with pytest.raises(KeyboardInterrupt):
+        evaluate_runs([run], [EvaluationPlan()], 0, SimpleNamespace(jobs=1, each=lambda *words: [None]))

@@ -41,9 +41,9 @@ def train(run, episodes=None):
 
 def test_a_run_is_a_folder_that_says_all(tmp_path):
     run = new(tmp_path / "run", seed=7)
-    told = train(run)
+    reported = train(run)
     rows = run.episodes.rows()
-    assert [row.episode for row in rows] == list(range(30)) == [row.episode for row in told]
+    assert [row.episode for row in rows] == list(range(30)) == [row.episode for row in reported]
     assert rows[0].epsilon == 0.9 and all(row.simulated_s == pytest.approx(0.6 * row.steps) for row in rows)
     assert all(row.steps == 60 or (row.steps < 60 and row.terminated) for row in rows)
     stored = json.loads((run.path / "config.json").read_text())
@@ -119,11 +119,11 @@ def test_steps_can_be_the_length(tmp_path):
 
 def test_processes_give_what_one_process_gives(tmp_path):
     one, two = ([new(tmp_path / where / str(seed), seed=seed) for seed in range(3)] for where in ("one", "two"))
-    told = []
+    reported = []
     assert train_all([run.path for run in one])
-    assert train_all([run.path for run in two], 2, lambda index, rows: told.append((index, len(rows))))
+    assert train_all([run.path for run in two], 2, lambda index, rows: reported.append((index, len(rows))))
     assert [result(run) for run in one] == [result(run) for run in two]
-    assert sum(count for _, count in told) == 90 and {index for index, _ in told} == {0, 1, 2}
+    assert sum(count for _, count in reported) == 90 and {index for index, _ in reported} == {0, 1, 2}
 
 
 def test_an_error_in_a_process_is_raised_here(tmp_path):
@@ -141,8 +141,8 @@ def test_a_process_that_dies_or_raises_what_cannot_be_pickled_is_reported():
 
 def test_items_not_begun_before_an_interrupt_have_no_result(tmp_path):
     runs = [new(tmp_path / str(seed), seed=seed, episodes=200_000) for seed in range(4)]
-    told = lambda index, message: isinstance(message, int) and signal.raise_signal(signal.SIGTERM)  # noqa: E731
-    results = local.each(ray_works.train_eagerly, [run.path for run in runs], 2, told)
+    reported = lambda index, message: isinstance(message, int) and signal.raise_signal(signal.SIGTERM)  # noqa: E731
+    results = local.each(ray_works.train_eagerly, [run.path for run in runs], 2, reported)
     assert results[0] is False and results[2:] == [None, None]
 
 

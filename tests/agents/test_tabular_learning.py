@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Learning rules by hand, exploration, and the textbook's cliff that tells Q-learning from Sarsa."""
+"""Learning rules by hand, exploration, the cliff that tells Q-learning from Sarsa, and which table is the best."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import pytest
 from pytest import approx
 
 from sitl.agents.errors import AgentError
+from sitl.agents.runs.files import read_arrays
 from sitl.agents.tabular.exploration import epsilon_in, slot_of
-from sitl.agents.tabular.learner import Learner, learn_episode
+from sitl.agents.tabular.learner import Learner, Outcome, learn_episode
 from sitl.agents.tabular.settings import Settings
 from sitl.agents.tabular.table import Table
-from tests.agents.small_runs import learner_for
+from sitl.agents.tabular.training import Checks
+from tests.agents.small_runs import learner_for, make
 
 GREEDY = {"epsilon": 0.0, "epsilon_floor": 0.0}
 
@@ -190,3 +192,32 @@ def test_settings_that_cannot_be_are_refused():
     with pytest.raises(AgentError, match="did you mean 'alpha'"):
         Settings.of({"alhpa": 0.1})
     assert Settings.as_coded("qlearn").exploration == "noise" and Settings.as_coded("sarsa").redraw
+
+
+def checks_by(check_by, path):
+    env = make()
+    return Checks(env, learner_for(env, settings=Settings(check_every=1, check_episodes=2, check_by=check_by)), path)
+
+
+TABLES = {"slow": [(60.0, False), (80.0, False)], "fast": [(300.0, False), (200.0, True)], "safe": [(90.0, False)] * 2}
+"""Rewards of what a table drives, and whether it crashed."""
+
+
+@pytest.mark.parametrize(("check_by", "best"), [("reward", "fast"), ("crashes", "safe")])
+def test_the_best_table_is_by_reward_or_by_crashes(tmp_path, check_by, best):
+    checks = checks_by(check_by, tmp_path / "best.npz")
+    for episodes, driven in enumerate(TABLES.values(), 1):
+        outcomes = iter(driven)
+        checks._play = lambda seed, options: Outcome(60, *next(outcomes))  # noqa: B023
+        checks.after(episodes)
+    found = read_arrays(tmp_path / "best.npz")
+    assert list(TABLES)[int(found["episodes"]) - 1] == best
+    again = checks_by(check_by, tmp_path / "best.npz")
+    again._play = lambda seed, options: Outcome(60, 70.0, False)
+    again.after(4)
+    assert int(read_arrays(tmp_path / "best.npz")["episodes"]) == int(found["episodes"])
+
+
+def test_no_other_way_to_choose():
+    with pytest.raises(AgentError, match="check_by = 'laps'; it must be one of reward, crashes"):
+        Settings(check_by="laps")

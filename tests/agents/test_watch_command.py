@@ -37,14 +37,14 @@ def call(*words):
 def test_a_gif_shows_each_step_in_its_time(run, tmp_path, capsys):
     path = tmp_path / "film.gif"
     assert call(run.path, "--out", path, "--max-steps", 12, "--speed", 4) == 0
-    told = capsys.readouterr().out
-    steps = int(told.split(" steps")[0].split(": ")[1])
+    printed = capsys.readouterr().out
+    steps = int(printed.split(" steps")[0].split(": ")[1])
     with Image.open(path) as film:
         assert film.n_frames == steps + 1 and film.info["duration"] == 150 and film.info["loop"] == 0
         first = np.asarray(film.convert("RGB"))
         film.seek(steps)
         assert (np.asarray(film.convert("RGB")) != first).any()
-    assert f"{steps + 1} pictures" in told
+    assert f"{steps + 1} pictures" in printed
 
 
 def test_a_gif_gets_colours_that_the_first_picture_did_not_have(tmp_path):

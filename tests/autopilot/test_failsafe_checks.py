@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Battery monitor, battery and estimator failsafes: laws on their own records."""
+"""Checks before arming and for failsafes that both firmwares share: laws on their own records."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot import battery
+from sitl.autopilot import arming_checks, battery
 from sitl.autopilot.arming_checks import BATTERY_CAPACITY, BATTERY_FAILSAFE, BATTERY_VOLTAGE, battery_checks
 from sitl.autopilot.failsafe_checks import is_estimate_bad, is_gcs_lost, watch_battery
 from sitl.autopilot.params.parameters import Parameters
@@ -88,3 +88,15 @@ def test_without_a_position_the_estimate_is_bad() -> None:
     assert not is_estimate_bad(fs, est, 0.8, 0.0)
     est.variance_mag = 0.9
     assert is_estimate_bad(fs, est, 0.8, 0.0)
+
+
+def test_every_check_is_a_bit_of_its_own_and_has_a_text() -> None:
+    public = {name: value for name, value in vars(arming_checks).items() if name.isupper() and isinstance(value, int)}
+    bits = [value for name, value in public.items() if not name.startswith(("BY_", "CHECK_", "_"))]
+    assert sorted(bits) == sorted(arming_checks.TEXTS)
+    assert len(set(bits)) == len(bits) and all(bit & (bit - 1) == 0 for bit in bits)
+
+
+def test_a_missing_home_explains_the_missing_position() -> None:
+    missing = arming_checks.WAITING_FOR_HOME | arming_checks.NEED_POSITION
+    assert arming_checks.texts(missing, "Arm: ") == ["Arm: AHRS: waiting for home"]

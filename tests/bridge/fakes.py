@@ -178,6 +178,13 @@ class Bench:
         self.bridge.receive()
         return self.client.receive(*types)
 
+    def telemetry(self, name: str) -> list[Any]:
+        """What one request for a message gives, as a client decodes it."""
+        number = next(n for n, (kind, _) in self.bridge.telemetry.items() if kind.name == name)
+        self.bridge.send_now(self.bridge.channels[0], number)
+        self.bridge.flush()
+        return self.client.receive(name)
+
     def run(self, seconds: float) -> None:
         """Let simulated time pass as the simulation does: from one due time to the next."""
         v = self.vehicle.v

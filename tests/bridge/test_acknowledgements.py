@@ -53,16 +53,16 @@ def send(client: Endpoint, row: dict[str, Any]) -> None:
         client.send("PARAM_REQUEST_READ", **TARGET, param_id=row["param_read"].encode(), param_index=-1)
 
 
-def seen(simulation: Simulation, row: dict[str, Any], heard: list[Received]) -> dict[str, Any]:
+def seen(simulation: Simulation, row: dict[str, Any], received: list[Received]) -> dict[str, Any]:
     """What the vehicle answered and did, in the shape of a row."""
     if "answer" in row:
-        values = [m.fields for m in heard if m.name == "PARAM_VALUE"]
+        values = [m.fields for m in received if m.name == "PARAM_VALUE"]
         answers = [[m.param_id.decode(), m.param_value, m.param_index] for m in values]
         return {"answer": answers[0] if answers else None}
-    acks = [m.fields for m in heard if m.name == "COMMAND_ACK"]
+    acks = [m.fields for m in received if m.name == "COMMAND_ACK"]
     number = (row.get("long") or row["int"])[0]
     assert [(a.command, a.target_system, a.target_component) for a in acks] == [(number, 255, 190)], row["label"]
-    texts = [m.fields.text.decode() for m in heard if m.name == "STATUSTEXT"]
+    texts = [m.fields.text.decode() for m in received if m.name == "STATUSTEXT"]
     ap = simulation.v.autopilot
     return {
         "result": RESULTS[acks[0].result],

@@ -55,13 +55,7 @@ def test_every_message_is_packed_and_unpacked_as_pymavlink_does(number: int) -> 
         frames = Splitter().feed(raw)
         assert len(frames) == 1
         frame = frames[0]
-        assert (frame.kind, frame.sequence, frame.system, frame.component, frame.version) == (
-            kind,
-            sequence,
-            3,
-            7,
-            2,
-        )
+        assert (frame.kind, frame.sequence, frame.system, frame.component, frame.version) == (kind, sequence, 3, 7, 2)
         fields = kind.decode(frame.payload)
         again = kind.payload(**fields._asdict())
         assert encode_v2(kind, again, sequence, 3, 7) == raw

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sockets on free ports of the loopback interface; the vehicle's clock is the test's."""
+"""Sockets on free ports of the loopback interface, on the test's clock; a connection that leads back to itself."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOutLink, open_link, parse, tcp
-from sitl.bridge.links.tcp import CONGESTED_BYTES
+from sitl.bridge.links.tcp import CONGESTED_BYTES, refuse_echo
 from sitl.bridge.services.statustext import StatusTextService
 from tests.bridge.fakes import Bench
 
@@ -221,3 +221,21 @@ def test_a_port_in_use_is_named() -> None:
     with pytest.raises(LinkAddressError, match=str(port)):
         open_link(f"tcp:{port}")
     link.close()
+
+
+def test_a_connection_with_itself_is_refused() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as own:
+        own.bind(("127.0.0.1", 0))
+        own.connect(own.getsockname())  # nobody listens there
+        with pytest.raises(ConnectionRefusedError):
+            refuse_echo(own)
+        assert own.fileno() == -1
+
+
+def test_a_connection_with_another_is_left() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen(1)
+        with socket.create_connection(listener.getsockname()) as own:
+            refuse_echo(own)
+            assert own.fileno() >= 0

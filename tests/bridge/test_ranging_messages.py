@@ -16,14 +16,6 @@ from tests.bridge.fakes import Bench
 SCAN, DOWN, SECTORS = "DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR", "OBSTACLE_DISTANCE"
 
 
-def get(bench: Bench, name: str) -> list[Any]:
-    """What one request for a message gives."""
-    number = next(n for n, (kind, _) in bench.bridge.telemetry.items() if kind.name == name)
-    bench.bridge.send_now(bench.bridge.channels[0], number)
-    bench.bridge.flush()
-    return list(bench.client.receive(name))
-
-
 def measured(bench: Bench, frame: str, ranges: Any, down: float = 1.25) -> None:
     """A scan of this airframe's lidar in the record."""
     v = bench.vehicle.v
@@ -35,14 +27,14 @@ def measured(bench: Bench, frame: str, ranges: Any, down: float = 1.25) -> None:
 
 def test_nothing_is_said_without_a_world(bench: Bench, rover_bench: Bench) -> None:
     for b in (bench, rover_bench):
-        assert [get(b, name) for name in (SCAN, DOWN, SECTORS)] == [[], [], []]
+        assert [b.telemetry(name) for name in (SCAN, DOWN, SECTORS)] == [[], [], []]
 
 
 def test_the_whole_scan_comes_in_parts(rover_bench: Bench) -> None:
     ranges = np.linspace(1.0, 19.0, 271, dtype=np.float32)
     ranges[100] = math.inf
     measured(rover_bench, "erle_rover", ranges)
-    parts = get(rover_bench, SCAN)
+    parts = rover_bench.telemetry(SCAN)
     assert [p.array_id for p in parts] == [0, 1, 2, 3, 4]
     assert {p.name for p in parts} == {"LASER"} and {p.time_usec for p in parts} == {600_000}
     data = np.concatenate([p.data for p in parts]).astype(np.float32)
@@ -53,7 +45,7 @@ def test_readings_of_a_coarse_lidar_are_a_sector_each_clockwise(bench: Bench) ->
     ranges = np.arange(1.0, 8.0, 0.1, dtype=np.float32)  # nearest on the right, behind
     ranges[69] = math.inf
     measured(bench, "erle_copter", ranges)
-    (m,) = get(bench, SECTORS)
+    (m,) = bench.telemetry(SECTORS)
     assert (m.time_usec, m.min_distance, m.max_distance, m.frame, m.sensor_type) == (600_000, 1, 1000, 12, 0)
     assert m.angle_offset == pytest.approx(-135.0) and m.increment_f == pytest.approx(270.0 / 69)
     assert m.increment == 4
@@ -69,7 +61,7 @@ def test_of_many_readings_a_sector_tells_the_nearest(rover_bench: Bench) -> None
     ranges[0], ranges[270] = 2.0, 1.0  # right behind, left behind
     ranges[45] = 0.06  # 90 degrees to the right
     measured(rover_bench, "erle_rover", ranges)
-    (m,) = get(rover_bench, SECTORS)
+    (m,) = rover_bench.telemetry(SECTORS)
     near = {k: d for k, d in enumerate(m.distances) if d != 2001}
     assert m.increment_f == pytest.approx(3.75) and m.angle_offset == pytest.approx(-135.0 + 1.875)
     assert near == {0: 100, 71: 200, 36: 300, 60: 6}
@@ -79,11 +71,11 @@ def test_of_many_readings_a_sector_tells_the_nearest(rover_bench: Bench) -> None
 
 def test_looking_down(bench: Bench) -> None:
     measured(bench, "erle_copter", [1.0], down=1.254)
-    (m,) = get(bench, DOWN)
+    (m,) = bench.telemetry(DOWN)
     assert (m.min_distance, m.max_distance, m.current_distance) == (1, 5000, 125)
     assert (m.type, m.orientation, m.covariance) == (0, 25, 255)
     measured(bench, "erle_copter", [1.0], down=math.inf)
-    assert get(bench, DOWN)[0].current_distance == 5001
+    assert bench.telemetry(DOWN)[0].current_distance == 5001
 
 
 def test_a_range_beyond_the_message_is_cut() -> None:

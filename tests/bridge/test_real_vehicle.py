@@ -39,9 +39,9 @@ class Bench:
     def wait(self, seconds: float) -> list[int]:
         """Results of the acknowledgements that came meanwhile."""
         self.simulation.advance(seconds)
-        heard = self.client.receive()
-        self.texts += [m.fields.text.decode() for m in heard if m.name == "STATUSTEXT"]
-        return [m.fields.result for m in heard if m.name == "COMMAND_ACK"]
+        received = self.client.receive()
+        self.texts += [m.fields.text.decode() for m in received if m.name == "STATUSTEXT"]
+        return [m.fields.result for m in received if m.name == "COMMAND_ACK"]
 
     def command(self, number: int, *p: float) -> int:
         self.client.command(number, *p)
@@ -111,8 +111,8 @@ def test_an_origin_is_taken_once(core: Core) -> None:
     place = {"target_system": 1, "latitude": -353632620, "longitude": 1491652370, "altitude": 500_000}
     bench.client.send("SET_GPS_GLOBAL_ORIGIN", **place)
     bench.simulation.advance(0.05)
-    told = [m.fields for m in bench.client.receive() if m.name == "GPS_GLOBAL_ORIGIN"]
-    assert [(m.latitude, m.longitude, m.altitude) for m in told] == [(-353632620, 1491652370, 500_000)]
+    reported = [m.fields for m in bench.client.receive() if m.name == "GPS_GLOBAL_ORIGIN"]
+    assert [(m.latitude, m.longitude, m.altitude) for m in reported] == [(-353632620, 1491652370, 500_000)]
     bench.client.send("SET_GPS_GLOBAL_ORIGIN", **{**place, "latitude": 10})
     bench.simulation.advance(0.05)
     assert not [m for m in bench.client.receive() if m.name == "GPS_GLOBAL_ORIGIN"]

@@ -30,7 +30,7 @@ class Driver:
         self.simulation = Simulation(frame, home=(HOME[0] * 1e-7, HOME[1] * 1e-7, 584.0, 0.0))
         self.client = Endpoint()
         self.simulation.bridge.add_link(self.client.link)
-        self.heard: list[Any] = []
+        self.received: list[Any] = []
 
     @property
     def ap(self) -> Any:
@@ -43,12 +43,12 @@ class Driver:
     def wait(self, seconds: float) -> list[Any]:
         """What came meanwhile."""
         self.simulation.advance(seconds)
-        heard = self.client.receive()
-        self.heard += heard
-        return heard
+        received = self.client.receive()
+        self.received += received
+        return received
 
     def texts(self) -> list[str]:
-        return [m.fields.text.decode() for m in self.heard if m.name == "STATUSTEXT"]
+        return [m.fields.text.decode() for m in self.received if m.name == "STATUSTEXT"]
 
     def command(self, number: int, *p: float) -> int:
         self.client.command(number, *p)
@@ -110,7 +110,7 @@ def test_a_place_is_reached_and_told(driver: Driver) -> None:
     assert 3 <= output["NAV_CONTROLLER_OUTPUT"].wp_dist <= 15
     assert output["POSITION_TARGET_GLOBAL_INT"].lat_int == pytest.approx(HOME[0] + 898, abs=20)
     driver.wait(20.0)
-    assert [m.fields.seq for m in driver.heard if m.name == "MISSION_ITEM_REACHED"] == [0]
+    assert [m.fields.seq for m in driver.received if m.name == "MISSION_ITEM_REACHED"] == [0]
     assert math.dist(driver.ap.estimate.pos[:2], (10.0, 10.0)) < float(driver.ap.params.WP_RADIUS)
     assert driver.speed < 0.1
 
@@ -172,14 +172,14 @@ def test_sticks_drive_in_manual(driver: Driver) -> None:
 
 def test_the_same_bytes_after_a_restore(driver: Driver) -> None:
     def record() -> bytes:
-        heard = b""
+        received = b""
         for _ in range(30):
             driver.client.send(
                 "SET_POSITION_TARGET_LOCAL_NED", **TARGET, coordinate_frame=1, type_mask=VELOCITY, vx=1.0, vy=0.5
             )
             driver.simulation.advance(0.1)
-            heard += driver.client.link.receive()
-        return heard
+            received += driver.client.link.receive()
+        return received
 
     driver.client.send("REQUEST_DATA_STREAM", **TARGET, req_stream_id=0, req_message_rate=10, start_stop=1)
     driver.client.send("PARAM_REQUEST_LIST", **TARGET)

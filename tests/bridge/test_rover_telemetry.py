@@ -20,10 +20,7 @@ CUSTOM, AUTONOMOUS, STICKS, ARMED = 1, 8, 64, 128
 
 def get(bench: Bench, name: str) -> Any:
     """One message, as a client decodes it; None when there is nothing to say."""
-    number = next(n for n, (kind, _) in bench.bridge.telemetry.items() if kind.name == name)
-    bench.bridge.send_now(bench.bridge.channels[0], number)
-    bench.bridge.flush()
-    found = bench.client.receive(name)
+    found = bench.telemetry(name)
     return found[0] if found else None
 
 

@@ -13,10 +13,7 @@ from tests.bridge.fakes import HOME, Bench
 
 def get(bench: Bench, name: str) -> object:
     """One message, as a client decodes it."""
-    number = next(n for n, (kind, _) in bench.bridge.telemetry.items() if kind.name == name)
-    bench.bridge.send_now(bench.bridge.channels[0], number)
-    bench.bridge.flush()
-    found = bench.client.receive(name)
+    found = bench.telemetry(name)
     assert len(found) == 1
     return found[0]
 
@@ -63,13 +60,7 @@ def test_imu_units(bench: Bench) -> None:
 def test_heartbeat_and_status(bench: Bench) -> None:
     ap = bench.vehicle.v.autopilot
     beat = get(bench, "HEARTBEAT")
-    assert (beat.type, beat.autopilot, beat.base_mode, beat.custom_mode, beat.system_status) == (
-        2,
-        3,
-        81,
-        0,
-        3,
-    )
+    assert (beat.type, beat.autopilot, beat.base_mode, beat.custom_mode, beat.system_status) == (2, 3, 81, 0, 3)
     ap.modes.number, ap.arming.armed, ap.arming.landed = 4, 1, 0
     beat = get(bench, "HEARTBEAT")
     assert (beat.base_mode, beat.custom_mode, beat.system_status) == (81 | 8 | 128, 4, 4)

@@ -1,18 +1,81 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fixtures of the tests with real client libraries."""
+"""Client scripts in simulated time (``sitl exec``), and vehicles for clients of the test process (``sitl run``)."""
 
 from __future__ import annotations
 
+import os
+import re
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
 import pytest
 
 from sitl.simulation import Core
-from tests.clients import drive
 
 
 @pytest.fixture
-def fly(core: Core, tmp_path: Path) -> drive.Fly:
-    """``fly(script, url, *options)``: see ``drive.fly``."""
-    return partial(drive.fly, tmp_path)
+def fly(core: Core, tmp_path: Path) -> Fly:
+    """``fly(script, url, *options)``: see ``run_script``."""
+    return partial(run_script, tmp_path)
+
+
+ROOT = Path(__file__).parents[2]
+SCRIPTS = Path(__file__).parent / "scripts"
+EXAMPLES = ROOT / "examples"
+SPEEDUP = "20"
+FASTEST = "max"
+WALL_S = 300
+"""A script that takes longer has hung: on two idle cores it takes 3 to 10 s."""
+
+Fly = Callable[..., str]
+
+
+def free_udp_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def run_script(
+    logs: Path, script: Path, url: str, *options: str, vehicle: str = "copter", speedup: str = SPEEDUP
+) -> str:
+    """Run a script against a vehicle of its own (on the ground it drives); what it printed.
+
+    Fails when the script does. ``PORT`` in ``url`` becomes the UDP port that the vehicle sends to.
+    """
+    port = str(free_udp_port())
+    command = [sys.executable, "-m", "sitl", "exec", "--vehicle", vehicle, "--quiet", "--speedup", speedup]
+    command += ["--tcp", "0", "--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
+    command += ["--", sys.executable, str(script), url.replace("PORT", port)]
+    done = subprocess.run(
+        command, cwd=ROOT, env=environment(), text=True, timeout=WALL_S,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@contextmanager
+def serve(logs: Path, *options: str, vehicle: str = "copter") -> Iterator[int]:
+    """A vehicle served in real time (or as the options say) on a TCP port of this machine, which is given."""
+    command = [sys.executable, "-m", "sitl", "run", vehicle, "--quiet", "--tcp", "0", "--out", "none"]
+    command += ["--log-dir", str(logs), *options]
+    process = subprocess.Popen(command, cwd=ROOT, env=environment(), stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        found = re.search(r"tcp:127\.0\.0\.1:(\d+)", said)
+        assert found is not None, said
+        yield int(found.group(1))
+    finally:
+        process.terminate()
+        process.wait(60)

@@ -11,7 +11,7 @@ import pytest
 
 from sitl import vehicles
 from sitl.simulation import Core
-from tests.clients.drive import EXAMPLES, FASTEST, ROOT, SPEEDUP, WALL_S, Fly
+from tests.clients.conftest import EXAMPLES, FASTEST, ROOT, SPEEDUP, WALL_S, Fly
 
 pytestmark = pytest.mark.slow
 

@@ -17,7 +17,7 @@ import pytest
 from pymavlink import mavutil
 
 from sitl.simulation import Core
-from tests.clients.drive import serve
+from tests.clients.conftest import serve
 
 pytestmark = pytest.mark.slow
 

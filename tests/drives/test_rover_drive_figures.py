@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from sitl.simulation import Core
-from tests.drives.rover_driver import AIRFRAMES
-from tests.drives.rover_figures import figures
+from tests.drives.rover_driver import AIRFRAMES, figures
 
 PAGE = Path(__file__).parents[2] / "docs" / "vehicles.md"
 ABSOLUTE, RELATIVE = 0.03, 0.1

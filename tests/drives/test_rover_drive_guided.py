@@ -9,23 +9,11 @@ import numpy as np
 import pytest
 
 from sitl.simulation import Core
-from tests.drives.rover_driver import (
-    AIRFRAMES,
-    AUTO,
-    BODY,
-    GUIDED,
-    HOLD,
-    POSITION,
-    VELOCITY,
-    VELOCITY_YAW,
-    VELOCITY_YAW_RATE,
-    YAW,
-    Driver,
-    path_error,
-)  # fmt: skip
+from tests.drives import rover_driver as rover
+from tests.drives.rover_driver import Driver, path_error
 
-ALL = pytest.mark.parametrize("frame", AIRFRAMES)
-CARS = pytest.mark.parametrize("frame", AIRFRAMES[:3])
+ALL = pytest.mark.parametrize("frame", rover.AIRFRAMES)
+CARS = pytest.mark.parametrize("frame", rover.AIRFRAMES[:3])
 TIMED_OUT = "target not received last 3secs, stopping"
 
 
@@ -57,7 +45,7 @@ def test_a_place(core: Core, frame: str, bearing: int) -> None:
     way = reach(d)
     place = (way * math.cos(math.radians(bearing)), way * math.sin(math.radians(bearing)))
     start = d.now
-    d.target(POSITION, x=place[0], y=place[1])
+    d.target(rover.POSITION, x=place[0], y=place[1])
     assert d.fly(90.0, lambda: bool(d.reached))
     d.wait_until_it_stands()
     assert d.away(*place) < 0.6 * float(d.ap.params.WP_RADIUS)
@@ -74,7 +62,7 @@ def test_a_place_by_the_real_estimator(core: Core, frame: str) -> None:
     """Where the estimator says it is: within WP_RADIUS; truly within that and what GPS is off."""
     d = Driver(core, frame).armed_in()
     way = reach(d)
-    d.target(POSITION, x=way, y=-way)
+    d.target(rover.POSITION, x=way, y=-way)
     assert d.fly(90.0, lambda: bool(d.reached))
     d.wait_until_it_stands()
     assert d.away(way, -way) < float(d.ap.params.WP_RADIUS)
@@ -89,7 +77,7 @@ def test_velocity_steps(core: Core, frame: str) -> None:
     for bearing, share in ((0.0, 1.0), (90.0, 1.0), (-150.0, 0.5), (-30.0, 0.8)):
         start = d.now
         north, east = math.cos(math.radians(bearing)), math.sin(math.radians(bearing))
-        d.stream(12.0, VELOCITY, vx=share * v * north, vy=share * v * east)
+        d.stream(12.0, rover.VELOCITY, vx=share * v * north, vy=share * v * east)
         assert d.speed == pytest.approx(share * v, rel=0.03)
         assert angle(course(d), bearing) < 4.0
         late = d.since(start + 8.0)
@@ -101,7 +89,7 @@ def test_velocity_steps_by_the_real_estimator(core: Core, frame: str) -> None:
     d = Driver(core, frame).armed_in()
     for bearing in (0.0, 90.0, 180.0):
         north, east = math.cos(math.radians(bearing)), math.sin(math.radians(bearing))
-        d.stream(12.0, VELOCITY, vx=d.cruise * north, vy=d.cruise * east)
+        d.stream(12.0, rover.VELOCITY, vx=d.cruise * north, vy=d.cruise * east)
         assert d.speed == pytest.approx(d.cruise, rel=0.08, abs=0.04)
         assert angle(course(d), bearing) < 8.0
 
@@ -109,7 +97,7 @@ def test_velocity_steps_by_the_real_estimator(core: Core, frame: str) -> None:
 @ALL
 def test_faster_than_wp_speed_is_wp_speed(core: Core, frame: str) -> None:
     d = Driver(core, frame, estimator="truth").armed_in()
-    d.stream(12.0, VELOCITY, vx=3.0 * d.cruise)
+    d.stream(12.0, rover.VELOCITY, vx=3.0 * d.cruise)
     assert d.speed == pytest.approx(d.cruise, rel=0.03)
 
 
@@ -117,9 +105,9 @@ def test_faster_than_wp_speed_is_wp_speed(core: Core, frame: str) -> None:
 def test_body_frame(core: Core, frame: str) -> None:
     """Forward is where the nose points."""
     d = Driver(core, frame, estimator="truth").armed_in()
-    d.stream(8.0, VELOCITY, vx=0.0, vy=d.cruise)
+    d.stream(8.0, rover.VELOCITY, vx=0.0, vy=d.cruise)
     heading = d.heading
-    d.target(VELOCITY, BODY, vx=0.5 * d.cruise)
+    d.target(rover.VELOCITY, rover.BODY, vx=0.5 * d.cruise)
     d.fly(2.5)
     assert angle(course(d), heading) < 5.0
 
@@ -137,7 +125,7 @@ def test_time_out(core: Core, frame: str) -> None:
     assert np.hypot(*(d.place - place)) == pytest.approx(stopping_distance(d, speed), rel=0.1, abs=0.5 * speed)
     d.fly(5.0)
     assert sum(said == TIMED_OUT for _, _, said in d.texts) == 1
-    assert d.mode == GUIDED
+    assert d.mode == rover.GUIDED
 
 
 @ALL
@@ -145,7 +133,7 @@ def test_time_out(core: Core, frame: str) -> None:
 def test_heading_and_speed(core: Core, frame: str, share: float) -> None:
     """Velocity with yaw: backwards keeps the nose at the heading."""
     d = Driver(core, frame, estimator="truth").armed_in()
-    d.stream(14.0, VELOCITY_YAW, vx=share * d.cruise, yaw=math.radians(40.0))
+    d.stream(14.0, rover.VELOCITY_YAW, vx=share * d.cruise, yaw=math.radians(40.0))
     assert d.speed == pytest.approx(share * d.cruise, rel=0.04)
     assert angle(d.heading, 40.0) < 4.0
 
@@ -158,9 +146,9 @@ def test_turn_rate_and_speed(core: Core, frame: str, share: float, side: float) 
     d = Driver(core, frame, estimator="truth").armed_in()
     speed = share * d.cruise
     rate = side * 0.75 * min(abs(speed) / max(d.radius, 1e-9), 1.0)
-    d.stream(6.0, VELOCITY_YAW_RATE, BODY, vx=speed, yaw_rate=rate)
+    d.stream(6.0, rover.VELOCITY_YAW_RATE, rover.BODY, vx=speed, yaw_rate=rate)
     start = d.now
-    d.stream(4.0, VELOCITY_YAW_RATE, BODY, vx=speed, yaw_rate=rate)
+    d.stream(4.0, rover.VELOCITY_YAW_RATE, rover.BODY, vx=speed, yaw_rate=rate)
     rows = d.since(start)
     turned = math.radians(float(np.sum((np.diff(rows[:, 9]) + 180.0) % 360.0 - 180.0)))
     assert turned / (rows[-1, 0] - rows[0, 0]) == pytest.approx(rate, rel=0.06)
@@ -170,7 +158,7 @@ def test_turn_rate_and_speed(core: Core, frame: str, share: float, side: float) 
 def test_yaw_alone_turns_a_skid_rover_on_the_spot(core: Core) -> None:
     d = Driver(core, "skid_rover", estimator="truth").armed_in()
     place = d.place
-    d.stream(6.0, YAW, yaw=math.radians(120.0))
+    d.stream(6.0, rover.YAW, yaw=math.radians(120.0))
     assert angle(d.heading, 120.0) < 3.0
     assert np.hypot(*(d.place - place)) < 0.05
 
@@ -178,7 +166,7 @@ def test_yaw_alone_turns_a_skid_rover_on_the_spot(core: Core) -> None:
 @CARS
 def test_yaw_alone_leaves_a_car_where_it_is(core: Core, frame: str) -> None:
     d = Driver(core, frame, estimator="truth").armed_in()
-    d.stream(4.0, YAW, yaw=math.radians(120.0))
+    d.stream(4.0, rover.YAW, yaw=math.radians(120.0))
     assert np.hypot(*d.place) < 0.05
 
 
@@ -205,7 +193,7 @@ def test_yaw_and_speed_command(core: Core) -> None:
     assert d.ask(213, -30, 0.5, 1) == 0
     d.fly(2.8)
     assert angle(d.heading, 60.0) < 4.0 and d.speed == pytest.approx(0.5, rel=0.05)
-    assert d.set_mode(HOLD)
+    assert d.set_mode(rover.HOLD)
     assert d.ask(213, 90, 0.5, 0) == 4
 
 
@@ -213,7 +201,7 @@ def test_yaw_and_speed_command(core: Core) -> None:
 def test_speed_is_changed_on_the_way(core: Core, frame: str) -> None:
     """DO_CHANGE_SPEED counts for the place under way."""
     d = Driver(core, frame, estimator="truth").armed_in()
-    d.target(POSITION, x=60.0 * d.cruise)
+    d.target(rover.POSITION, x=60.0 * d.cruise)
     d.fly(10.0)
     assert d.speed == pytest.approx(d.cruise, rel=0.05)
     assert d.ask(178, 1, 0.5 * d.cruise) == 0
@@ -227,7 +215,7 @@ def test_backwards_to_a_place(core: Core, frame: str) -> None:
     d = Driver(core, frame, estimator="truth").armed_in()
     heading = math.radians(d.heading)
     back = (-reach(d) * math.cos(heading), -reach(d) * math.sin(heading))
-    d.target(POSITION, x=back[0], y=back[1])
+    d.target(rover.POSITION, x=back[0], y=back[1])
     assert d.ask(194, 1) == 0
     start = d.now
     assert d.fly(60.0, lambda: bool(d.reached))
@@ -241,24 +229,24 @@ def test_backwards_to_a_place(core: Core, frame: str) -> None:
 def test_planned_legs(core: Core, frame: str) -> None:
     """GUID_OPTIONS 64: the same place along an s-curve."""
     d = Driver(core, frame, estimator="truth", GUID_OPTIONS=64).armed_in()
-    d.target(POSITION, x=reach(d), y=reach(d))
+    d.target(rover.POSITION, x=reach(d), y=reach(d))
     assert d.fly(90.0, lambda: bool(d.reached))
     d.wait_until_it_stands()
     assert d.away(reach(d), reach(d)) < 0.5 * float(d.ap.params.WP_RADIUS)
 
 
 def test_set_points_outside_of_guided_do_nothing(core: Core) -> None:
-    d = Driver(core, "erle_rover").armed_in(HOLD)
-    d.stream(2.0, VELOCITY, vx=1.0)
-    d.target(POSITION, x=10.0)
+    d = Driver(core, "erle_rover").armed_in(rover.HOLD)
+    d.stream(2.0, rover.VELOCITY, vx=1.0)
+    d.target(rover.POSITION, x=10.0)
     d.fly(2.0)
-    assert d.stands() and d.mode == HOLD
-    assert not d.set_mode(AUTO), "no mission"
+    assert d.stands() and d.mode == rover.HOLD
+    assert not d.set_mode(rover.AUTO), "no mission"
 
 
 def test_numbers_that_are_none_stop(core: Core) -> None:
     d = Driver(core, "erle_rover").armed_in()
     d.get_going()
-    d.target(VELOCITY, vx=math.nan)
+    d.target(rover.VELOCITY, vx=math.nan)
     d.wait_until_it_stands()
     assert not d.not_finite("estimate", "control", "modes")

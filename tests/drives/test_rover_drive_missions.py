@@ -8,43 +8,25 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.simulation import Core
-from tests.drives.rover_driver import ACRO, AIRFRAMES, AUTO, GUIDED, HOLD, MANUAL, VELOCITY, Driver, path_error
-from tests.drives.rover_figures import SIDE, outside, square
-from tests.pilots.witness import (
-    CHANGE_SPEED,
-    CONDITION_DELAY,
-    CONDITION_DISTANCE,
-    DELAY,
-    GUIDED_ENABLE,
-    GUIDED_LIMITS,
-    JUMP,
-    LAND_ITEM,
-    LOITER_TIME,
-    LOITER_TURNS,
-    LOITER_UNLIMITED,
-    RETURN,
-    REVERSE,
-    ROI,
-    TAKEOFF_ITEM,
-    WAYPOINT,
-    YAW_SPEED,
-    Item,
-)
+from tests.drives import rover_driver as rover
+from tests.drives.rover_driver import Driver, outside, path_error, square
+from tests.pilots.witness import Item
 
-ALL = pytest.mark.parametrize("frame", AIRFRAMES)
-CARS = pytest.mark.parametrize("frame", AIRFRAMES[:3])
+ALL = pytest.mark.parametrize("frame", rover.AIRFRAMES)
+CARS = pytest.mark.parametrize("frame", rover.AIRFRAMES[:3])
 OUTSIDE = {"erle_rover": 0.20, "erle_rover_small": 0.16, "ardupilot_rover": 0.20, "skid_rover": 0.08}
 """Furthest that the square is left to its outside [m]."""
 
 
 def corners(frame: str) -> list[tuple[float, float]]:
     """The square of docs/vehicles.md, without its start."""
-    return square(SIDE[frame])[1:]
+    return square(rover.SIDE[frame])[1:]
 
 
 def way(*places: tuple[float, float]) -> list[Item]:
-    return [Item(WAYPOINT, place) for place in places]
+    return [Item(c.NAV_WAYPOINT, place) for place in places]
 
 
 def driver(core: Core, frame: str, **params: float) -> Driver:
@@ -56,7 +38,7 @@ def driver(core: Core, frame: str, **params: float) -> Driver:
 def test_square(core: Core, frame: str) -> None:
     """Corners are rounded within WP_RADIUS, or turned on the spot, and hardly left to the outside."""
     d = driver(core, frame)
-    side, start = SIDE[frame], d.now
+    side, start = rover.SIDE[frame], d.now
     d.start_mission(*way(*corners(frame)))
     d.finish_mission(60.0 + 6.0 * side / d.cruise)
     d.wait_until_it_stands()
@@ -69,14 +51,14 @@ def test_square(core: Core, frame: str) -> None:
     assert np.sqrt(np.mean(legs**2)) < 0.25 * float(d.ap.params.WP_RADIUS)
     assert list(d.reached) == [1, 2, 3, 4]
     assert d.away(0.0, 0.0) < 0.5 * float(d.ap.params.WP_RADIUS)
-    assert d.mode == AUTO and d.armed
+    assert d.mode == rover.AUTO and d.armed
 
 
 @ALL
 def test_square_by_the_real_estimator(core: Core, frame: str) -> None:
     """GPS wanders by half a metre: so does the path."""
     d = Driver(core, frame).armed_in()
-    side, start = SIDE[frame], d.now
+    side, start = rover.SIDE[frame], d.now
     d.start_mission(*way(*corners(frame)))
     d.finish_mission(60.0 + 6.0 * side / d.cruise)
     place = d.since(start)[:, 1:3]
@@ -89,7 +71,7 @@ def test_square_by_the_real_estimator(core: Core, frame: str) -> None:
 @pytest.mark.parametrize("angle", [30, 60, 120, 175])
 def test_corners(core: Core, frame: str, angle: int) -> None:
     """Of any angle; both legs are driven, the second to its end."""
-    leg = SIDE[frame]
+    leg = rover.SIDE[frame]
     d = driver(core, frame)
     turn = math.radians(angle)
     end = (leg + leg * math.cos(turn), leg * math.sin(turn))
@@ -111,10 +93,10 @@ def test_corners(core: Core, frame: str, angle: int) -> None:
 @ALL
 def test_backwards(core: Core, frame: str) -> None:
     """DO_SET_REVERSE 1: tail first round the corner, nearly as exact as forwards."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     start = d.now
-    d.start_mission(Item(REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
+    d.start_mission(Item(c.DO_SET_REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
     d.finish_mission(100.0 + 4.0 * side / d.cruise)
     d.wait_until_it_stands()
     rows = d.since(start)
@@ -130,9 +112,9 @@ def test_backwards(core: Core, frame: str) -> None:
 
 @ALL
 def test_delay_at_a_waypoint(core: Core, frame: str) -> None:
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
+    d.start_mission(Item(c.NAV_WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Reached waypoint #1. Loiter for 5 seconds"))
     d.fly(4.9)
     assert abs(d.speed) < 0.05 and d.said("Mission: 1") and not d.said("Mission: 2")
@@ -144,10 +126,10 @@ def test_delay_at_a_waypoint(core: Core, frame: str) -> None:
 @ALL
 def test_stays(core: Core, frame: str) -> None:
     """NAV_DELAY, LOITER_TIME, then LOITER_UNLIMITED for good."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(DELAY, None, 0.0, (4.0, -1, -1, -1)), Item(LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
-                    Item(LOITER_UNLIMITED, (side, side)), *way((0.0, 0.0)))  # fmt: skip
+    d.start_mission(Item(c.NAV_DELAY, None, 0.0, (4.0, -1, -1, -1)), Item(c.NAV_LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
+                    Item(c.NAV_LOITER_UNLIM, (side, side)), *way((0.0, 0.0)))  # fmt: skip
     d.fly(3.8)
     assert d.stands() and np.hypot(*d.place) < 0.01
     assert d.fly(60.0 + 3.0 * side / d.cruise, lambda: d.said("Finished active loiter"))
@@ -160,9 +142,9 @@ def test_stays(core: Core, frame: str) -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_turns(core: Core, frame: str, side: float) -> None:
     """LOITER_TURNS: a negative radius goes anticlockwise."""
-    radius = 0.25 * SIDE[frame]
+    radius = 0.25 * rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
+    d.start_mission(Item(c.NAV_LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
     assert d.fly(60.0 + 30.0 * radius / d.cruise, lambda: d.said("Mission Complete"))
     rows = d.since(d.now - 2.0 * math.pi * radius / d.cruise)
     distance = np.hypot(rows[:, 1], rows[:, 2] - 2.0 * radius)
@@ -173,12 +155,12 @@ def test_turns(core: Core, frame: str, side: float) -> None:
 @ALL
 def test_speed_and_conditions(core: Core, frame: str) -> None:
     """Do-commands run once the waypoint before them is reached, those behind a condition when it is met."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(
-        *way((side, 0.0)), Item(CONDITION_DELAY, None, 0.0, (6.0,)),
-        Item(CHANGE_SPEED, None, 0.0, (1, 0.5 * d.cruise)), Item(CONDITION_DISTANCE, None, 0.0, (0.4 * side,)),
-        Item(CHANGE_SPEED, None, 0.0, (1, d.cruise)), *way((3.0 * side, 0.0)),
+        *way((side, 0.0)), Item(c.CONDITION_DELAY, None, 0.0, (6.0,)),
+        Item(c.DO_CHANGE_SPEED, None, 0.0, (1, 0.5 * d.cruise)), Item(c.CONDITION_DISTANCE, None, 0.0, (0.4 * side,)),
+        Item(c.DO_CHANGE_SPEED, None, 0.0, (1, d.cruise)), *way((3.0 * side, 0.0)),
     )  # fmt: skip
     d.finish_mission(100.0 + 8.0 * side / d.cruise)
     assert d.reached_at(3) - d.reached_at(1) == pytest.approx(6.0, abs=0.3)
@@ -195,9 +177,9 @@ def test_speed_and_conditions(core: Core, frame: str) -> None:
 @ALL
 def test_jump(core: Core, frame: str) -> None:
     """Twice back to the first of two places."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(*way((side, 0.0), (side, side)), Item(JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
+    d.start_mission(*way((side, 0.0), (side, side)), Item(c.DO_JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
     d.finish_mission(200.0 + 16.0 * side / d.cruise)
     assert list(d.reached) == [1, 2, 1, 2, 1, 2, 4]
 
@@ -206,7 +188,7 @@ def test_jump(core: Core, frame: str) -> None:
 def test_heading_and_speed_item(core: Core, frame: str) -> None:
     """NAV_SET_YAW_SPEED turns while it drives, and is done at the heading."""
     d = driver(core, frame)
-    d.start_mission(Item(YAW_SPEED, None, 0.0, (90.0, 0.6 * d.cruise, 0.0)))
+    d.start_mission(Item(c.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.6 * d.cruise, 0.0)))
     d.finish_mission(60.0)
     d.wait_until_it_stands()
     assert d.heading == pytest.approx(90.0, abs=12.0)
@@ -215,8 +197,8 @@ def test_heading_and_speed_item(core: Core, frame: str) -> None:
 @ALL
 def test_return_item(core: Core, frame: str) -> None:
     d = driver(core, frame)
-    d.start_mission(*way((SIDE[frame], 0.0)), Item(RETURN))
-    d.finish_mission(100.0 + 4.0 * SIDE[frame] / d.cruise)
+    d.start_mission(*way((rover.SIDE[frame], 0.0)), Item(c.NAV_RETURN_TO_LAUNCH))
+    d.finish_mission(100.0 + 4.0 * rover.SIDE[frame] / d.cruise)
     d.wait_until_it_stands()
     home = np.array(d.ap.home.pos)[:2]
     assert d.away(*home) < 0.6 * float(d.ap.params.WP_RADIUS)
@@ -225,22 +207,22 @@ def test_return_item(core: Core, frame: str) -> None:
 @ALL
 def test_guided_within_a_mission(core: Core, frame: str) -> None:
     """GUIDED_ENABLE takes set-points until DO_GUIDED_LIMITS ends it; then the mission goes on."""
-    side = SIDE[frame]
+    side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(*way((side, 0.0)), Item(GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
-                    Item(GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
+    d.start_mission(*way((side, 0.0)), Item(c.DO_GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
+                    Item(c.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Mission: 3"))
     start = d.now
     while not d.said("Mission: 4"):
-        d.target(VELOCITY, vx=0.5 * d.cruise)
+        d.target(rover.VELOCITY, vx=0.5 * d.cruise)
         d.fly(0.1)
         assert d.now < start + 12.0
     assert d.now - start == pytest.approx(8.0, abs=1.0)
-    assert d.speed > 0.3 * d.cruise and d.mode == AUTO
+    assert d.speed > 0.3 * d.cruise and d.mode == rover.AUTO
     d.finish_mission(100.0 + 4.0 * side / d.cruise)
 
 
-@pytest.mark.parametrize(("choice", "mode"), [(0, AUTO), (1, AUTO), (2, ACRO), (3, MANUAL)])
+@pytest.mark.parametrize(("choice", "mode"), [(0, rover.AUTO), (1, rover.AUTO), (2, rover.ACRO), (3, rover.MANUAL)])
 def test_after_the_last_item(core: Core, choice: int, mode: int) -> None:
     """MIS_DONE_BEHAVE: hold, loiter, ACRO or MANUAL."""
     d = Driver(core, "erle_rover", MIS_DONE_BEHAVE=choice).armed_in()
@@ -257,9 +239,9 @@ def test_a_mission_goes_on_where_it_was_left(core: Core) -> None:
     d.start_mission(*way(*corners("erle_rover")))
     assert d.fly(60.0, lambda: d.said("Mission: 2"))
     d.fly(3.0)
-    d.set_mode(HOLD)
+    d.set_mode(rover.HOLD)
     d.fly(4.0)
-    d.set_mode(AUTO)
+    d.set_mode(rover.AUTO)
     d.fly(0.5)
     assert int(d.ap.modes.nav.mission_current) == 2
     d.finish_mission(200.0)
@@ -268,10 +250,10 @@ def test_a_mission_goes_on_where_it_was_left(core: Core) -> None:
 
 def test_what_only_copters_fly_is_refused(core: Core) -> None:
     d = driver(core, "erle_rover")
-    assert d.upload(Item(TAKEOFF_ITEM, None, 10.0), *way((10.0, 0.0))) != 0
-    assert d.upload(*way((10.0, 0.0)), Item(LAND_ITEM)) != 0
-    assert d.upload(Item(ROI, (5.0, 5.0)), *way((10.0, 0.0))) == 0
-    assert d.mode == GUIDED
+    assert d.upload(Item(c.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) != 0
+    assert d.upload(*way((10.0, 0.0)), Item(c.NAV_LAND)) != 0
+    assert d.upload(Item(c.DO_SET_ROI_LOCATION, (5.0, 5.0)), *way((10.0, 0.0))) == 0
+    assert d.mode == rover.GUIDED
 
 
 @CARS

@@ -8,12 +8,27 @@ import math
 import gymnasium as gym
 from pytest import approx
 
-from tests.envs import pilot_by_velocity
-
 MAZE = [(7.5, 0.0), (7.5, 9.7), (-11.0, 9.7), (-11.0, -9.5), (-2.5, -10.0)]
 """Through the first corridors of the rover's maze [m]."""
 OFFICE = [(-9.0, 1.0), (-12.0, -2.0), (-9.0, 2.0), (1.5, 1.0), (1.5, -9.0)]
 """From room to room."""
+
+
+def go(env, places, action_of, near, most):
+    """From place to place; returns the steps. Fails on a crash and after ``most`` steps."""
+    steps = 0
+    for place in places:
+        while True:
+            x, y, _, yaw = env.unwrapped.robot.pose[0].tolist()
+            distance = math.dist((x, y), place)
+            if distance < near:
+                break
+            bearing = math.remainder(math.atan2(place[1] - y, place[0] - x) - yaw, 2.0 * math.pi)
+            _, _, terminated, _, info = env.step(action_of(distance, bearing))
+            assert not terminated, f"{info} at {x:.1f}, {y:.1f} on the way to {place}"
+            steps += 1
+            assert steps < most
+    return steps
 
 
 def test_the_rover_gets_through_the_first_corridors_of_the_maze():
@@ -24,7 +39,7 @@ def test_the_rover_gets_through_the_first_corridors_of_the_maze():
     def drive(distance, bearing):
         return [1.2 if abs(bearing) < 0.5 else 0.8, max(-0.45, min(0.45, 1.2 * bearing))]
 
-    steps = pilot_by_velocity.go(env, MAZE, drive, near=1.5, most=1500)
+    steps = go(env, MAZE, drive, near=1.5, most=1500)
     assert steps > 400
     assert env.unwrapped.robot.simulation(0).v.physics.obstacles.hit_count == 0
 
@@ -40,7 +55,7 @@ def test_the_copter_flies_through_the_office():
         return [speed * math.cos(bearing), speed * math.sin(bearing), max(-0.4, min(0.4, height)),
                 max(-0.8, min(0.8, bearing))]  # fmt: skip
 
-    steps = pilot_by_velocity.go(env, OFFICE, fly, near=0.5, most=1200)
+    steps = go(env, OFFICE, fly, near=0.5, most=1200)
     assert steps > 300
     assert env.unwrapped.robot.pose[0, 2] == approx(1.2, abs=0.15)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Environments of vehicles in other processes: the same observations in lockstep, real time otherwise, clear errors."""
+"""Environments of vehicles in other processes, and of those that send sectors and no whole scans."""
 
 from __future__ import annotations
 
@@ -10,10 +10,13 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+import sitl.envs  # noqa: F401
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
+from sitl.bridge.telemetry import sensors
 from sitl.client import connect
 from sitl.envs import EnvOptionError
+from sitl.envs.mavlink.telemetry import SECTORS, StepTelemetry
 from sitl.errors import LinkLostError
 from tests.envs import lockstep_vehicle
 
@@ -170,3 +173,28 @@ def test_a_vehicle_that_another_client_reboots_is_noticed(tmp_path):
         with pytest.raises(LinkLostError, match="rebooted"):
             env.step(0)
         assert env.reset(seed=1)[0].tolist() == [6, 4, 10, 13, 4, 6]
+
+
+def test_sectors_are_spread_over_the_readings(monkeypatch):
+    whole = gym.make(COPTER, observation="scan")
+    seen, _ = whole.reset(seed=2)
+    monkeypatch.delitem(sensors.BUILDERS, "DEBUG_FLOAT_ARRAY")
+    sectors = gym.make(COPTER, observation="scan")
+    rough, _ = sectors.reset(seed=2)
+    assert sectors.unwrapped.robot.link(0).inbox.scan_kind is SECTORS
+    assert rough == pytest.approx(seen, abs=0.0051)
+    assert not np.array_equal(rough, seen)
+    for action in (0, 1, 2, 0):
+        seen, rough = whole.step(action)[0], sectors.step(action)[0]
+        assert rough == pytest.approx(seen, abs=0.0051)
+
+
+def test_a_sector_that_was_not_measured_is_out_of_range():
+    telemetry = StepTelemetry(3)
+    telemetry.scan_kind, telemetry.angles = SECTORS, np.radians([-90.0, 0.0, 90.0])
+    distances = [65535] * 72
+    distances[0], distances[18], distances[54] = 150, 250, 1001  # ahead, right, left: beyond the range
+    fields = SECTORS.decode(SECTORS.payload(distances=distances, max_distance=1000, increment=5))
+    telemetry._sectors(fields)
+    assert telemetry.scan[:3].tolist() == [2.5, 1.5, np.inf]
+    assert telemetry.scans == 1

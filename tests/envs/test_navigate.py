@@ -18,7 +18,12 @@ from sitl.envs.observations import Digits
 from sitl.envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
-from tests.envs.navigation import NAVIGATE, make
+
+NAVIGATE = "sitl/Navigate-v0"
+
+
+def make(**options):
+    return gym.make(NAVIGATE, **options).unwrapped
 
 
 @pytest.mark.parametrize("world", worlds.names())

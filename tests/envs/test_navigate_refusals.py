@@ -20,7 +20,12 @@ from sitl.envs.rewards import Nearness
 from sitl.envs.session import NavigateOptions
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
-from tests.envs.navigation import NAVIGATE, make
+
+NAVIGATE = "sitl/Navigate-v0"
+
+
+def make(**options):
+    return gym.make(NAVIGATE, **options).unwrapped
 
 
 @pytest.mark.parametrize("action", [3, -1, 1.5, None, "0", [0, 1], np.array([0.0])])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
 import subprocess
@@ -15,13 +16,17 @@ from gymnasium.utils.env_checker import check_env
 from pytest import approx
 
 from sitl import envs
-from tests.envs import course
 
 START = {
     "GazeboCircuitTurtlebotLIDAR-v0": [0, 4, 5, 1, 0],
     "GazeboCircuit2TurtlebotLIDAR-v0": [1, 0, 2, 1, 0],
     "GazeboMazeTurtlebotLIDAR-v0": [0, 4, 1, 1, 0],
     "GazeboRoundTurtlebotLIDAR-v0": [2, 1, 3, 1, 1],
+}
+START_OF_ALL = {
+    **START,
+    "GazeboMazeErleRoverLIDAR-v0": [6, 4, 10, 13, 4, 6],
+    "GazeboOfficeErleCopterLIDAR-v0": [5, 4, 9, 7, 10],
 }
 """Computed from gym-gazebo's world files, without this simulator."""
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
@@ -33,15 +38,46 @@ MOVES = {  # forward and turning speed [m/s]
 }
 
 
-@pytest.mark.parametrize("name", START)
+FORWARD, LEFT, RIGHT = 0, 1, 2
+CIRCUIT2_CORNERS = [(3.9, 0.0), (3.9, -3.8), (0.28, -3.8), (0.28, -7.65), (-3.7, -7.65), (-3.7, 0.0), (0.0, 0.0)]
+"""Corners of the middle of circuit2's corridors, x and y [m], from the start round to it."""
+
+
+def bearing_error(pose, corner):
+    """How far to the left of the robot's heading the corner lies [rad]."""
+    x, y, _, yaw = pose
+    return math.remainder(math.atan2(corner[1] - y, corner[0] - x) - yaw, 2.0 * math.pi)
+
+
+def drive(env, corners, near=0.3, most=600):
+    """Go from corner to corner. Returns the steps, the sum of rewards, and which way it turned at each corner."""
+    turns, steps, total = [], 0, 0.0
+    for corner in corners:
+        while True:
+            pose = env.unwrapped.robot.pose[0].tolist()
+            if math.dist(pose[:2], corner) < near:
+                break
+            error = bearing_error(pose, corner)
+            action = FORWARD if abs(error) < 0.15 else LEFT if error > 0.0 else RIGHT
+            if abs(error) > 0.8 and (not turns or turns[-1][1] != corner):
+                turns.append(("left" if error > 0.0 else "right", corner))
+            _, reward, terminated, truncated, _ = env.step(action)
+            steps, total = steps + 1, total + reward
+            assert not terminated, f"crashed at {pose} on the way to {corner}"
+            assert not truncated and steps < most
+    return steps, total, [way for way, _ in turns]
+
+
+@pytest.mark.parametrize("name", START_OF_ALL)
 def test_start_observations_are_those_of_the_world_files(name):
-    env = gym.make(name)
-    observation, _ = env.reset(seed=1)
-    assert observation.tolist() == START[name]
-    assert env.observation_space.contains(observation)
+    for spelling in (name, name.replace("LIDAR", "Lidar")):
+        env = gym.make(spelling)
+        observation, _ = env.reset(seed=1)
+        assert observation.tolist() == START_OF_ALL[name]
+        assert env.observation_space.contains(observation)
 
 
-@pytest.mark.parametrize("name", START)
+@pytest.mark.parametrize("name", START_OF_ALL)
 def test_environments_pass_gymnasiums_checker(name, recwarn):
     check_env(gym.make(name).unwrapped, skip_render_check=True)
     assert [str(w.message) for w in recwarn] == []
@@ -97,12 +133,7 @@ def test_importing_the_package_loads_no_compiler():
     code = f"import sys, sitl.envs; print(sorted({heavy}), sorted(m for m in sys.modules if m.startswith('sitl')))"
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     out = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
-    ours = [
-        "sitl",
-        "sitl.envs",
-        "sitl.envs.options",
-        "sitl.errors",
-    ]
+    ours = ["sitl", "sitl.envs", "sitl.envs.options", "sitl.errors"]
     assert out.stdout == f"[] {ours}\n", out.stderr
 
 
@@ -119,7 +150,7 @@ def test_episodes_are_truncated_after_1500_steps_and_without_limit_never():
 def test_lap_of_circuit2_by_hand():
     env = gym.make(CIRCUIT2)
     env.reset()
-    steps, total, turns = course.drive(env, course.CIRCUIT2)
+    steps, total, turns = drive(env, CIRCUIT2_CORNERS)
     assert turns == ["right", "right", "left", "right", "right", "right"]
     assert 140 < steps < 250
     assert total > 600.0

@@ -3,37 +3,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from sitl.autopilot.mission import item as c
 from sitl.physics.native import truth
 from sitl.simulation import Core
-from tests.pilots.witness import (
-    ABSOLUTE,
-    CHANGE_SPEED,
-    CONDITION_DELAY,
-    CONDITION_DISTANCE,
-    CONDITION_YAW,
-    DELAY,
-    JUMP,
-    LAND_ITEM,
-    LOITER_TIME,
-    LOITER_TURNS,
-    LOITER_UNLIMITED,
-    LOW,
-    MIDDLE,
-    RETURN,
-    ROI,
-    ROI_NONE,
-    TAKEOFF_ITEM,
-    TERRAIN,
-    WAYPOINT,
-    Item,
-    Witness,
-)
-
-__all__ = [
-    "ABSOLUTE", "CHANGE_SPEED", "CONDITION_DELAY", "CONDITION_DISTANCE", "CONDITION_YAW", "DELAY", "JUMP", "LAND_ITEM",
-    "LOITER_TIME", "LOITER_TURNS", "LOITER_UNLIMITED", "LOW", "MIDDLE", "RETURN", "ROI", "ROI_NONE", "TAKEOFF_ITEM",
-    "TERRAIN", "WAYPOINT", "Aviator", "Item",
-]  # fmt: skip
+from tests.pilots.witness import MIDDLE, Item, Witness
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
@@ -70,7 +45,7 @@ class Aviator(Witness):
 
     def take_off(self, height: float) -> None:
         """Take off, armed in GUIDED."""
-        assert self.ask(TAKEOFF_ITEM, 0, 0, 0, 0, 0, 0, height) == 0
+        assert self.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.fly(30.0 + height, lambda: self.height > height - 0.5), f"at {self.height} m, {self.texts}"
         self.fly(4.0)
 
@@ -89,3 +64,16 @@ class Aviator(Witness):
         self.arm()
         assert self.set_mode(AUTO)
         assert self.ask(300, 0, 0) == 0
+
+
+POSITION, VELOCITY, ACCELERATION, POS_VEL, POS_VEL_ACCEL = 0xDF8, 0xDC7, 0xC3F, 0xDC0, 0xC00
+POSITION_YAW, POSITION_YAW_RATE, VELOCITY_YAW_RATE = 0x9F8, 0x5F8, 0x5C7
+
+
+target, stream = Aviator.target, Aviator.stream
+"""One set-point, and the same at 10 Hz: ``target(p, mask, frame, **fields)``."""
+
+
+def estimate(p: Aviator) -> np.ndarray:
+    """Estimated position, which set-points refer to."""
+    return np.array(p.ap.estimate.pos)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from sitl.simulation import Core
-from tests.flights.aviator import AIRFRAMES, Aviator
-from tests.flights.guided_targets import (
+from tests.flights.aviator import (
     ACCELERATION,
+    AIRFRAMES,
     POS_VEL,
     POS_VEL_ACCEL,
     POSITION,
@@ -19,6 +19,7 @@ from tests.flights.guided_targets import (
     POSITION_YAW_RATE,
     VELOCITY,
     VELOCITY_YAW_RATE,
+    Aviator,
     estimate,
     stream,
     target,

@@ -8,34 +8,15 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.simulation import Core
 from tests.flights import aviator
-from tests.flights.aviator import (
-    ABSOLUTE,
-    AIRFRAMES,
-    AUTO,
-    CHANGE_SPEED,
-    CONDITION_DELAY,
-    CONDITION_DISTANCE,
-    CONDITION_YAW,
-    DELAY,
-    JUMP,
-    LAND_ITEM,
-    LOITER_TIME,
-    LOITER_TURNS,
-    LOITER_UNLIMITED,
-    RETURN,
-    ROI,
-    ROI_NONE,
-    TERRAIN,
-    WAYPOINT,
-    Aviator,
-    Item,
-)  # fmt: skip
+from tests.flights.aviator import AIRFRAMES, AUTO, Aviator, Item
+from tests.pilots.witness import LOW
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
-UP = Item(aviator.TAKEOFF_ITEM, None, 10.0)
-DOWN = Item(LAND_ITEM)
+UP = Item(c.NAV_TAKEOFF, None, 10.0)
+DOWN = Item(c.NAV_LAND)
 
 
 def fly(core: Core, frame: str, *items: Item, seconds: float = 200.0, **params: float) -> tuple[Aviator, float]:
@@ -56,8 +37,8 @@ def heading_at(p: Aviator, time: float) -> float:
 @BOTH
 def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
     p, start = fly(
-        core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 15.0, (5.0,)), Item(WAYPOINT, (20.0, 20.0), 10.0),
-        Item(LAND_ITEM, (0.0, 20.0)),
+        core, frame, UP, Item(c.NAV_WAYPOINT, (20.0, 0.0), 15.0, (5.0,)), Item(c.NAV_WAYPOINT, (20.0, 20.0), 10.0),
+        Item(c.NAV_LAND, (0.0, 20.0)),
     )  # fmt: skip
     assert not p.armed
     assert p.reached == [1, 2, 3]
@@ -70,7 +51,7 @@ def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
 
 @BOTH
 def test_return_lands_at_home(core: Core, frame: str) -> None:
-    p, start = fly(core, frame, UP, Item(WAYPOINT, (20.0, 0.0), 10.0), Item(RETURN))
+    p, start = fly(core, frame, UP, Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(c.NAV_RETURN_TO_LAUNCH))
     assert not p.armed
     assert p.reached == [1, 2, 3]
     assert -p.since(start)[:, 3].min() == pytest.approx(15.0, abs=0.5)
@@ -80,9 +61,9 @@ def test_return_lands_at_home(core: Core, frame: str) -> None:
 @BOTH
 def test_loiter_turns_both_ways_and_loiter_time(core: Core, frame: str) -> None:
     p, _ = fly(
-        core, frame, UP, Item(LOITER_TIME, (15.0, 0.0), 10.0, (5.0,)),
-        Item(LOITER_TURNS, (30.0, 0.0), 12.0, (2.0, 0.0, 8.0, 1.0)),
-        Item(LOITER_TURNS, (30.0, 30.0), 12.0, (1.0, 0.0, -6.0, 1.0)), DOWN,
+        core, frame, UP, Item(c.NAV_LOITER_TIME, (15.0, 0.0), 10.0, (5.0,)),
+        Item(c.NAV_LOITER_TURNS, (30.0, 0.0), 12.0, (2.0, 0.0, 8.0, 1.0)),
+        Item(c.NAV_LOITER_TURNS, (30.0, 30.0), 12.0, (1.0, 0.0, -6.0, 1.0)), DOWN,
     )  # fmt: skip
     assert p.reached == [1, 2, 3, 4]
     rows = np.array(p.rows)  # the vehicle's own position: circles are asked here, the receiver's error elsewhere
@@ -97,7 +78,7 @@ def test_loiter_turns_both_ways_and_loiter_time(core: Core, frame: str) -> None:
 
 
 def test_unlimited_loiter_ends_by_set_current(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(LOITER_UNLIMITED, (15.0, 0.0), 10.0), DOWN, seconds=60.0)
+    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_LOITER_UNLIM, (15.0, 0.0), 10.0), DOWN, seconds=60.0)
     assert p.armed
     assert p.pos[0] == pytest.approx(15.0, abs=1.5)
     p.send("MISSION_SET_CURRENT", seq=3)
@@ -105,15 +86,15 @@ def test_unlimited_loiter_ends_by_set_current(core: Core) -> None:
 
 
 def test_delay_command(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(DELAY, None, 0.0, (7.0, -1.0, -1.0, -1.0)), DOWN)
+    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_DELAY, None, 0.0, (7.0, -1.0, -1.0, -1.0)), DOWN)
     assert p.reached_at(2) - p.reached_at(1) == pytest.approx(7.0, abs=0.2)
 
 
 @pytest.mark.parametrize(("times", "seconds"), [(2, 200.0), (-1, 120.0)])
 def test_jump(core: Core, times: int, seconds: float) -> None:
     p, _ = fly(
-        core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), Item(WAYPOINT, (0.0, 0.0), 10.0),
-        Item(JUMP, None, 0.0, (2.0, times)), DOWN, seconds=seconds,
+        core, "erle_copter", UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (0.0, 0.0), 10.0),
+        Item(c.DO_JUMP, None, 0.0, (2.0, times)), DOWN, seconds=seconds,
     )  # fmt: skip
     rounds = p.reached.count(3)
     assert (rounds == 3 and not p.armed) if times == 2 else (rounds > 8 and p.armed)
@@ -122,10 +103,10 @@ def test_jump(core: Core, times: int, seconds: float) -> None:
 @BOTH
 def test_speed_and_conditions(core: Core, frame: str) -> None:
     p, start = fly(
-        core, frame, UP, Item(CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)), Item(WAYPOINT, (20.0, 0.0), 10.0),
-        Item(CONDITION_DISTANCE, None, 0.0, (8.0,)), Item(CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)),
-        Item(WAYPOINT, (40.0, 0.0), 10.0), Item(CONDITION_DELAY, None, 0.0, (3.0,)),
-        Item(CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), Item(WAYPOINT, (40.0, 20.0), 10.0), DOWN,
+        core, frame, UP, Item(c.DO_CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)), Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0),
+        Item(c.CONDITION_DISTANCE, None, 0.0, (8.0,)), Item(c.CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)),
+        Item(c.NAV_WAYPOINT, (40.0, 0.0), 10.0), Item(c.CONDITION_DELAY, None, 0.0, (3.0,)),
+        Item(c.DO_CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), Item(c.NAV_WAYPOINT, (40.0, 20.0), 10.0), DOWN,
     )  # fmt: skip
     rows = p.since(start)
     speed = np.linalg.norm(rows[:, 4:6], axis=1)
@@ -141,8 +122,9 @@ def test_speed_and_conditions(core: Core, frame: str) -> None:
 def test_roi_behind_a_take_off_holds_until_it_is_ended(core: Core, frame: str) -> None:
     """It runs when the take-off is done; waypoints do not turn the nose away."""
     p, _ = fly(
-        core, frame, UP, Item(ROI, (0.0, 50.0), 0.0), Item(WAYPOINT, (30.0, 0.0), 10.0),
-        Item(WAYPOINT, (30.0, 10.0), 10.0), Item(ROI_NONE), Item(WAYPOINT, (0.0, 10.0), 10.0), DOWN,
+        core, frame, UP, Item(c.DO_SET_ROI_LOCATION, (0.0, 50.0), 0.0), Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0),
+        Item(c.NAV_WAYPOINT, (30.0, 10.0), 10.0), Item(c.DO_SET_ROI_NONE),
+        Item(c.NAV_WAYPOINT, (0.0, 10.0), 10.0), DOWN,
     )  # fmt: skip
     assert abs(heading_at(p, p.reached_at(1))) < 15.0
     assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(121.0, abs=6.0)
@@ -153,8 +135,8 @@ def test_a_fixed_yaw_lasts_one_leg(core: Core) -> None:
     """As in ArduPilot the next waypoint points the nose along the path again (WP_YAW_BEHAVIOR not 0)."""
     for behaviour, heading in ((2, 0.0), (0, 90.0)):
         p, _ = fly(
-            core, "erle_copter", UP, Item(CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)),
-            Item(WAYPOINT, (30.0, 0.0), 10.0), Item(WAYPOINT, (70.0, 0.0), 10.0), DOWN,
+            core, "erle_copter", UP, Item(c.CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)),
+            Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (70.0, 0.0), 10.0), DOWN,
             WP_YAW_BEHAVIOR=behaviour,
         )  # fmt: skip
         assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(90.0, abs=5.0)
@@ -166,8 +148,9 @@ def test_frames_of_altitude(core: Core, frame: str) -> None:
     p = Aviator(core, frame).ready()
     ground = float(p.ap.estimate.origin_alt)
     p.start_mission(
-        UP, Item(WAYPOINT, (10.0, 0.0), ground + 20.0, (2.0,), ABSOLUTE),
-        Item(WAYPOINT, (10.0, 10.0), 15.0, (2.0,), TERRAIN), Item(WAYPOINT, (0.0, 0.0), 5.0, (2.0,)), DOWN,
+        UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), ground + 20.0, (2.0,), c.GLOBAL_INT),
+        Item(c.NAV_WAYPOINT, (10.0, 10.0), 15.0, (2.0,), c.TERRAIN_INT),
+        Item(c.NAV_WAYPOINT, (0.0, 0.0), 5.0, (2.0,)), DOWN,
     )  # fmt: skip
     start = p.now
     p.wait_disarmed(120.0)
@@ -177,7 +160,7 @@ def test_frames_of_altitude(core: Core, frame: str) -> None:
 
 
 def test_a_mission_that_ends_in_the_air_hovers(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), seconds=40.0)
+    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0), seconds=40.0)
     assert p.armed
     assert p.mode == AUTO
     here = p.pos
@@ -190,7 +173,7 @@ def test_auto_on_the_ground_waits_for_a_raised_throttle(core: Core, frame: str) 
     p = Aviator(core, frame).ready()
     assert p.upload(UP, DOWN) == 0
     p.set_mode(aviator.STABILIZE)
-    p.sticks(0.5, throttle=aviator.LOW)
+    p.sticks(0.5, throttle=LOW)
     p.arm()
     assert p.set_mode(AUTO)
     p.fly(4.0)
@@ -202,14 +185,14 @@ def test_auto_on_the_ground_waits_for_a_raised_throttle(core: Core, frame: str) 
 
 def test_auto_on_the_ground_needs_a_take_off(core: Core) -> None:
     p = Aviator(core).ready()
-    assert p.upload(Item(WAYPOINT, (15.0, 0.0), 10.0), DOWN) == 0
+    assert p.upload(Item(c.NAV_WAYPOINT, (15.0, 0.0), 10.0), DOWN) == 0
     p.arm()
     assert not p.set_mode(AUTO)
     assert p.ask(300, 0, 0) == 4
 
 
 def test_a_mission_is_flown_again_after_its_landing(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(WAYPOINT, (10.0, 0.0), 10.0), DOWN)
+    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0), DOWN)
     assert p.set_mode(aviator.GUIDED)
     p.arm()
     assert p.set_mode(AUTO)
@@ -221,7 +204,7 @@ def test_a_mission_is_flown_again_after_its_landing(core: Core) -> None:
 @BOTH
 def test_rtl_in_a_corner_and_back(core: Core, frame: str) -> None:
     p = Aviator(core, frame).ready()
-    p.start_mission(UP, Item(WAYPOINT, (30.0, 0.0), 10.0), Item(WAYPOINT, (30.0, 30.0), 10.0), DOWN)
+    p.start_mission(UP, Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (30.0, 30.0), 10.0), DOWN)
     assert p.fly(60.0, lambda: not math.isnan(p.reached_at(2)))
     start = p.now
     assert p.set_mode(aviator.RTL)

@@ -7,24 +7,11 @@ from collections.abc import Callable
 
 import pytest
 
+from sitl.autopilot.mission import item as c
 from sitl.core import records
 from sitl.missions.pilot import VELOCITY_ONLY
 from sitl.simulation import Core
-from tests.flights.aviator import (
-    ALT_HOLD,
-    AUTO,
-    BRAKE,
-    GUIDED,
-    LAND,
-    LOITER,
-    LOITER_TURNS,
-    RTL,
-    STABILIZE,
-    TAKEOFF_ITEM,
-    WAYPOINT,
-    Aviator,
-    Item,
-)  # fmt: skip
+from tests.flights.aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
 
 TICKS = 60
 
@@ -51,7 +38,7 @@ def then(mode: int, seconds: float) -> Callable[[Aviator], None]:
 
 def mission(*items: Item, seconds: float) -> Callable[[Aviator], None]:
     def fly(p: Aviator) -> None:
-        assert p.upload(Item(TAKEOFF_ITEM, z=10.0), *items) == 0
+        assert p.upload(Item(c.NAV_TAKEOFF, z=10.0), *items) == 0
         p.set_mode(AUTO)
         p.fly(seconds)
         assert p.mode == AUTO
@@ -70,7 +57,7 @@ def in_wind(p: Aviator) -> None:
     p.fly(2.0)
 
 
-CORNER = (Item(WAYPOINT, (15.0, 0.0), 10.0), Item(WAYPOINT, (15.0, 15.0), 12.0))
+CORNER = (Item(c.NAV_WAYPOINT, (15.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (15.0, 15.0), 12.0))
 PHASES: dict[str, Callable[[Aviator], None]] = {
     "stabilize": by_sticks(STABILIZE),
     "alt_hold": by_sticks(ALT_HOLD),
@@ -83,7 +70,7 @@ PHASES: dict[str, Callable[[Aviator], None]] = {
     "guided, attitude": attitude,
     "guided, in wind": in_wind,
     "auto, at a corner": mission(*CORNER, seconds=5.0),
-    "auto, circling": mission(Item(LOITER_TURNS, (0.0, 0.0), 10.0, (3.0, 0.0, 5.0)), seconds=8.0),
+    "auto, circling": mission(Item(c.NAV_LOITER_TURNS, (0.0, 0.0), 10.0, (3.0, 0.0, 5.0)), seconds=8.0),
 }
 
 

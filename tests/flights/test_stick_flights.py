@@ -9,7 +9,8 @@ import pytest
 from sitl.missions.pilot import ARM, FlightError
 from sitl.physics.native import truth
 from sitl.simulation import Core
-from tests.flights.aviator import AIRFRAMES, ALT_HOLD, GUIDED, LOITER, LOW, STABILIZE, Aviator
+from tests.flights.aviator import AIRFRAMES, ALT_HOLD, GUIDED, LOITER, STABILIZE, Aviator
+from tests.pilots.witness import LOW
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 

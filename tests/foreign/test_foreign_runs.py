@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl run --autopilot`` and ``sitl physics --listen json`` as commands, with stand-ins for the programs."""
+"""``sitl run --autopilot``, ``sitl physics --listen json`` and the recorded scripts, with stand-in programs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ import sys
 import pytest
 
 from sitl.bridge.dialect import message
+from sitl.errors import OptionError
 from sitl.logs.tlog import read_tlog
+from sitl.missions import compare
 from sitl.simulation import Simulation
 from tests.foreign.arducopter_stand_in import install
 
@@ -112,3 +114,26 @@ def test_options_that_a_foreign_autopilot_cannot_have_are_refused(tmp_path, caps
     program = install(tmp_path)
     assert main(["run", "copter", "--autopilot", f"ardupilot:{program}", *words]) == 2
     assert why in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_the_rovers_drive_is_repeated_by_a_program(ardurover):
+    figures = {figure.name: figure for figure in compare.figures("rover", autopilot=f"ardupilot:{ardurover}")}
+    compared = [f for name, f in figures.items() if f.theirs and "reached" in name]
+    assert compared
+    for figure in compared:
+        assert abs(figure.percent) < 20.0, figure
+
+
+@pytest.mark.slow
+def test_the_copters_mission_is_repeated_by_a_program(arducopter):
+    figures = compare.figures("copter", autopilot=f"ardupilot:{arducopter}")
+    compared = [f for f in figures if f.theirs and f.name.startswith("AUTO") and "reached" in f.name]
+    assert compared
+    for figure in compared:
+        assert abs(figure.percent) < 20.0, figure
+
+
+def test_px4_does_not_speak_the_scripts_commands(px4):
+    with pytest.raises(OptionError, match="for ArduPilot"):
+        compare.figures("copter", autopilot=f"px4:{px4}")

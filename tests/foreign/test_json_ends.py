@@ -34,13 +34,13 @@ class Physics:
     def __init__(self) -> None:
         self.end, self.now, self.steps, self.restarts = PhysicsEnd(), 0.0, 0, 0
 
-    def hear(self, datagram: bytes, peer=HERE) -> bytes | None:
-        heard = self.end.hear(datagram, peer, self.now)
-        if heard.asked is Asked.REPEAT:
+    def receive(self, datagram: bytes, peer=HERE) -> bytes | None:
+        request = self.end.receive(datagram, peer, self.now)
+        if request.asked is Asked.REPEAT:
             return self.end.repeat(self.now)
-        if heard.asked is Asked.NOTHING:
+        if request.asked is Asked.NOTHING:
             return None
-        if heard.asked is Asked.RESTART:
+        if request.asked is Asked.RESTART:
             self.steps, self.restarts = 0, self.restarts + 1
         self.steps += 1
         return self.end.answer(b"line %d" % self.steps, self.now)
@@ -48,116 +48,116 @@ class Physics:
 
 def test_each_new_frame_is_one_step():
     physics = Physics()
-    assert [physics.hear(frame(n)) for n in range(3)] == [b"line 1", b"line 2", b"line 3"]
+    assert [physics.receive(frame(n)) for n in range(3)] == [b"line 1", b"line 2", b"line 3"]
 
 
 def test_a_frame_that_comes_again_after_a_second_gets_the_same_line_and_no_step():
     physics = Physics()
-    physics.hear(frame(0))
-    physics.hear(frame(1))
+    physics.receive(frame(0))
+    physics.receive(frame(1))
     for _ in range(3):
         physics.now += 1.0
-        assert physics.hear(frame(1)) == b"line 2"
-    assert physics.hear(frame(2)) == b"line 3"
+        assert physics.receive(frame(1)) == b"line 2"
+    assert physics.receive(frame(2)) == b"line 3"
 
 
 def test_a_repeat_that_crossed_our_answer_is_not_answered_again():
     physics = Physics()
-    assert physics.hear(frame(7)) == b"line 1"
+    assert physics.receive(frame(7)) == b"line 1"
     physics.now += 0.01
-    assert physics.hear(frame(7)) is None
+    assert physics.receive(frame(7)) is None
     physics.now += 1.0
-    assert physics.hear(frame(7)) == b"line 1"
+    assert physics.receive(frame(7)) == b"line 1"
 
 
 def test_an_autopilot_that_was_started_anew_finds_physics_at_power_on():
     physics = Physics()
     for number in range(5):
-        physics.hear(frame(number))
+        physics.receive(frame(number))
     physics.now += 0.3
-    assert physics.hear(frame(0), THERE) == b"line 1"
+    assert physics.receive(frame(0), THERE) == b"line 1"
     assert physics.restarts == 1
-    physics.hear(frame(1), THERE)
-    assert physics.hear(frame(0), THERE) == b"line 1"  # from the same port as well
+    physics.receive(frame(1), THERE)
+    assert physics.receive(frame(0), THERE) == b"line 1"  # from the same port as well
 
 
 def test_an_autopilot_that_lives_on_is_joined_by_a_new_physics():
     physics = Physics()
-    assert physics.hear(frame(5000)) == b"line 1"
-    assert physics.hear(frame(5001)) == b"line 2"
+    assert physics.receive(frame(5000)) == b"line 1"
+    assert physics.receive(frame(5001)) == b"line 2"
     assert physics.restarts == 0
 
 
 def test_lost_frames_are_one_step():
     physics = Physics()
-    physics.hear(frame(3))
-    assert physics.hear(frame(9)) == b"line 2"
+    physics.receive(frame(3))
+    assert physics.receive(frame(9)) == b"line 2"
 
 
 def test_the_count_goes_over_its_end():
     physics = Physics()
-    physics.hear(frame(0xFFFFFFFF))
-    assert physics.hear(frame(0)) == b"line 2"
+    physics.receive(frame(0xFFFFFFFF))
+    assert physics.receive(frame(0)) == b"line 2"
     assert physics.restarts == 0
 
 
 def test_a_second_autopilot_is_refused_while_the_first_lives_and_told_once():
     physics = Physics()
-    physics.hear(frame(0))
-    heard = physics.end.hear(frame(0), THERE, physics.now + 0.01)
-    assert heard.asked is Asked.NOTHING and "second autopilot" in heard.note
-    assert physics.end.hear(frame(0), THERE, physics.now + 0.02).note == ""
-    assert physics.hear(frame(1)) == b"line 2"
+    physics.receive(frame(0))
+    request = physics.end.receive(frame(0), THERE, physics.now + 0.01)
+    assert request.asked is Asked.NOTHING and "second autopilot" in request.note
+    assert physics.end.receive(frame(0), THERE, physics.now + 0.02).note == ""
+    assert physics.receive(frame(1)) == b"line 2"
     assert physics.end.refused == 2
 
 
 def test_bytes_that_are_no_frame_are_counted_and_told_once():
     end = PhysicsEnd()
-    first, second = (end.hear(b"junk", HERE, 0.0) for _ in range(2))
+    first, second = (end.receive(b"junk", HERE, 0.0) for _ in range(2))
     assert "no frame of servos" in first.note and second.note == "" and end.refused == 2
-    assert end.hear(frame(0), HERE, 0.0).asked is Asked.STEP
+    assert end.receive(frame(0), HERE, 0.0).asked is Asked.STEP
 
 
 def test_our_end_counts_the_lines_it_takes():
     end = AutopilotEnd()
     pulses = [1000] * 16
     assert decode(end.frame(pulses)).number == 0
-    assert end.hear(line(0.0025))[1] == 1 / 400
+    assert end.receive(line(0.0025))[1] == 1 / 400
     assert decode(end.frame(pulses)).number == 1
-    assert end.hear(line(0.005))[1] == pytest.approx(0.0025)
-    assert end.hear(line(0.005))[1] == 0.0  # one that came twice answers nothing
+    assert end.receive(line(0.005))[1] == pytest.approx(0.0025)
+    assert end.receive(line(0.005))[1] == 0.0  # one that came twice answers nothing
     assert decode(end.frame(pulses)) == Servos(400, 2, tuple(pulses))
 
 
 def test_of_lines_that_come_together_the_last_counts():
     end = AutopilotEnd()
-    told, _ = end.hear(line(0.0025) + line(0.0075))
-    assert told.time == 0.0075 and end.count == 1
+    decoded, _ = end.receive(line(0.0025) + line(0.0075))
+    assert decoded.time == 0.0075 and end.count == 1
 
 
 def test_a_line_that_cannot_be_is_told_once_and_not_counted():
     end = AutopilotEnd()
-    end.hear(line(1.0))
+    end.receive(line(1.0))
     for text in (b"", b"\n\n", b"{}", line(2.0).replace(b"-9.8", b"NaN")):
-        assert end.hear(text) is None
+        assert end.receive(text) is None
     assert end.count == 1 and end.refused == 4 and "not believed" in end.note
     end.note = ""
-    end.hear(b"{}")
+    end.receive(b"{}")
     assert end.note == ""
 
 
 def test_physics_that_begins_anew_is_a_step_back():
     end = AutopilotEnd()
-    end.hear(line(10.0))
-    assert end.hear(line(0.0025))[1] < 0.0
+    end.receive(line(10.0))
+    assert end.receive(line(0.0025))[1] < 0.0
 
 
 def test_an_autopilot_that_begins_anew_counts_from_zero_and_has_no_time():
     end = AutopilotEnd()
-    end.hear(line(10.0))
+    end.receive(line(10.0))
     end.restart()
     assert decode(end.frame([0] * 16)).number == 0
-    assert end.hear(line(0.0025))[1] == 1 / 400
+    assert end.receive(line(0.0025))[1] == 1 / 400
 
 
 def test_the_two_ends_keep_step_over_a_link_that_loses_every_seventh_datagram():
@@ -166,11 +166,11 @@ def test_the_two_ends_keep_step_over_a_link_that_loses_every_seventh_datagram():
         datagram = autopilot.frame([1500] * 16)
         while True:
             sent += 1
-            answer = physics.hear(datagram) if sent % 7 else None
+            answer = physics.receive(datagram) if sent % 7 else None
             sent += 1
             if answer is not None and sent % 7:
                 break
             physics.now += 1.0
-        assert autopilot.hear(line(0.0025 * physics.steps)) is not None
+        assert autopilot.receive(line(0.0025 * physics.steps)) is not None
         assert autopilot.time == 0.0025 * physics.steps
     assert autopilot.count == physics.steps == 200

@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import contextlib
+import json
+import socket
 
 import pytest
 
+from sitl.bridge.ardupilot_json.servos import Servos, encode
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.plants.local import stand_alone
 from sitl.scenario import DEFAULT_HOME
-from tests.foreign import json_peer
 
 ANY = ("127.0.0.1", 0)
 
@@ -22,12 +24,46 @@ def served(plant):
     wall, said = [0.0], []
     host = JsonHost(plant, ANY, said.append, lambda: wall[0])
     host.wall, host.said = wall, said
-    peer = json_peer.Peer(host)
+    peer = Peer(host)
     try:
         yield host, peer
     finally:
         peer.close()
         host.close()
+
+
+class Peer:
+    """Says frames to a ``JsonHost`` in the same thread, which has its turn in between."""
+
+    def __init__(self, host) -> None:
+        self.host = host
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.socket.connect(host.address)
+        self.socket.setblocking(False)
+
+    def send(self, number: int, pulse: int = 1000, rate: int = 400, pulses: int = 16) -> None:
+        self.socket.send(encode(Servos(rate, number, (pulse,) * pulses)))
+
+    def lines(self) -> list[dict]:
+        """All answers that are there."""
+        found = []
+        while True:
+            try:
+                found.append(json.loads(self.socket.recv(65535)))
+            except BlockingIOError:
+                return found
+
+    def ask(self, number: int, **frame) -> dict:
+        """A frame, and the one line that answers it."""
+        self.send(number, **frame)
+        assert self.host.listen()
+        self.host.step()
+        (line,) = self.lines()
+        return line
+
+    def close(self) -> None:
+        self.socket.close()
 
 
 def test_a_standing_copter_is_told_as_it_is(copter_plant):
@@ -104,7 +140,7 @@ def test_junk_and_strangers_do_not_hide_the_autopilots_frame(copter_plant):
     with served(copter_plant) as (host, peer):
         peer.ask(0)
         host.wall[0] += 0.1
-        other = json_peer.Peer(host)
+        other = Peer(host)
         other.send(7)
         peer.send(1)
         peer.socket.send(b"junk")
@@ -121,7 +157,7 @@ def test_an_autopilot_started_anew_begins_at_power_on(copter_plant):
             before = peer.ask(number, pulse=1700)
         assert before["position"][2] < -0.5
         host.wall[0] += 0.5
-        again = json_peer.Peer(host)
+        again = Peer(host)
         line = again.ask(0)
         again.close()
         assert line["position"] == [0.0, 0.0, 0.0] and host.time_us == 2500 and host.boots == 1
@@ -130,7 +166,7 @@ def test_an_autopilot_started_anew_begins_at_power_on(copter_plant):
 def test_strangers_and_junk_are_told_of_and_change_nothing(copter_plant):
     with served(copter_plant) as (host, peer):
         peer.ask(0)
-        other = json_peer.Peer(host)
+        other = Peer(host)
         other.send(0)
         assert not host.listen()
         other.socket.send(b"\x00" * 40)

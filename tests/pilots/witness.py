@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import math
+import random
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.client import MissionRefusedError
 from sitl.core.geodesy import add_offset
@@ -17,12 +20,6 @@ from sitl.simulation import Core, Simulation
 
 MIDDLE, LOW = 1500, 1000
 KEEP = 65535
-ABSOLUTE, RELATIVE, TERRAIN = 5, 6, 11
-
-WAYPOINT, LOITER_UNLIMITED, LOITER_TURNS, LOITER_TIME, RETURN = 16, 17, 18, 19, 20
-LAND_ITEM, TAKEOFF_ITEM, GUIDED_ENABLE, DELAY = 21, 22, 92, 93
-CONDITION_DELAY, CONDITION_DISTANCE, CONDITION_YAW = 112, 114, 115
-JUMP, CHANGE_SPEED, REVERSE, ROI, ROI_NONE, YAW_SPEED, GUIDED_LIMITS = 177, 178, 194, 195, 197, 213, 222
 
 
 class Item(NamedTuple):
@@ -32,7 +29,7 @@ class Item(NamedTuple):
     place: tuple[float, float] | None = None
     z: float = 0.0
     p: tuple[float, ...] = ()
-    frame: int = RELATIVE
+    frame: int = c.RELATIVE_INT
 
 
 def _is_finite(value: Any) -> bool:
@@ -169,7 +166,7 @@ class Witness(Pilot):
 
     def upload(self, *items: Item) -> int:
         """Upload items (home is put in front) by the mission protocol; the MAV_MISSION_RESULT."""
-        home = Item(WAYPOINT, (0.0, 0.0), 584.0, frame=ABSOLUTE)
+        home = Item(c.NAV_WAYPOINT, (0.0, 0.0), 584.0, frame=c.GLOBAL_INT)
         try:
             self.transfer([self._mission_item(item) for item in (home, *items)])
         except MissionRefusedError as error:
@@ -183,3 +180,22 @@ class Witness(Pilot):
     def reached_at(self, seq: int) -> float:
         """When MISSION_ITEM_REACHED first came for an item [s]; NaN when it did not."""
         return next((time for time, number in self.telemetry.reached if number == seq), math.nan)
+
+
+class ByDice(Witness):
+    """Acts by dice; mixed into a test pilot of some vehicle."""
+
+    def __init__(self, core: Core, frame: str, seed: int) -> None:
+        super().__init__(core, frame, seed=seed)
+        self.dice = random.Random(seed)
+        self.log: list[str] = []
+
+    def do_one_of(self, deeds: Sequence[Callable[[], None]]) -> None:
+        """One of these, noted."""
+        deed = self.dice.choice(deeds)
+        self.log.append(f"{self.now:.1f} {deed.__name__}")
+        deed()
+
+    def story(self) -> str:
+        """What was done last."""
+        return f"at {self.now:.1f} s in mode {self.mode}: {self.log[-12:]} {self.texts[-4:]} {self.track[-1]}"

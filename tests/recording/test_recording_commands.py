@@ -21,7 +21,7 @@ from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.run.standstill import serve_lockstep
 from sitl.simulation import Core, Simulation
-from tests.recording.recorded_flights import Recorded, hop
+from tests.recording.conftest import Recorded, hop
 
 
 def typed(text: str) -> int:

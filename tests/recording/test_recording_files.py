@@ -16,7 +16,7 @@ from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.simulation import Core, Simulation
-from tests.recording.recorded_flights import Recorded
+from tests.recording.conftest import Recorded
 
 ENTRIES_OF_ANY_KIND = st.lists(
     st.tuples(st.integers(0, 2**40), st.sampled_from(EntryKind), st.integers(0, 2**30), st.binary(max_size=300))

@@ -14,7 +14,7 @@ from sitl.recording.replay import Replay
 from sitl.run import runner
 from sitl.run.standstill import serve_lockstep
 from sitl.simulation import Core, Simulation
-from tests.recording.recorded_flights import Frames
+from tests.recording.conftest import Frames
 
 
 class SlowPeer(Peer):

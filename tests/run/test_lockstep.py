@@ -61,11 +61,11 @@ def test_a_grant_is_answered_after_all_that_falls_due_on_the_way(simulation: Sim
     serve_lockstep(simulation, running=script.running)
     assert simulation.time_us == 1_000_000
     assert max(b - a for a, b in zip(script.times, script.times[1:])) == SLICE_US
-    heard = client.receive()
-    names = [m.name for m in heard]
+    received = client.receive()
+    names = [m.name for m in received]
     assert names.count("ATTITUDE") == 10
-    end = next(k for k, m in enumerate(heard) if m.name == "COMMAND_ACK" and m.fields.command == GRANT)
-    assert heard[end].fields.result_param2 == 1000
+    end = next(k for k, m in enumerate(received) if m.name == "COMMAND_ACK" and m.fields.command == GRANT)
+    assert received[end].fields.result_param2 == 1000
     assert max(k for k, name in enumerate(names) if name == "ATTITUDE") < end
 
 

@@ -94,18 +94,18 @@ def test_it_says_hello_and_arms(simulation: Simulation) -> None:
     assert heartbeats and heartbeats[-1].type == BOAT.mav_type and not heartbeats[-1].base_mode & 128
     client.command(ARM, 1.0)
     simulation.advance(1.5)
-    heard = client.receive()
-    assert [m.fields.result for m in heard if m.name == "COMMAND_ACK"] == [0]
-    assert next(m.fields for m in reversed(heard) if m.name == "HEARTBEAT").base_mode & 128
+    received = client.receive()
+    assert [m.fields.result for m in received if m.name == "COMMAND_ACK"] == [0]
+    assert next(m.fields for m in reversed(received) if m.name == "HEARTBEAT").base_mode & 128
 
 
 def test_its_parameters_are_listed(simulation: Simulation) -> None:
     client = _connect(simulation)
     client.send("PARAM_REQUEST_LIST", target_system=1, target_component=1)
     simulation.advance(5.0)
-    heard = {m.fields.param_id.decode(): m.fields.param_value for m in client.receive() if m.name == "PARAM_VALUE"}
-    assert len(heard) == len(BOAT.firmware.table)
-    assert heard["BOAT_THROTTLE"] == 0.5
+    received = {m.fields.param_id.decode(): m.fields.param_value for m in client.receive() if m.name == "PARAM_VALUE"}
+    assert len(received) == len(BOAT.firmware.table)
+    assert received["BOAT_THROTTLE"] == 0.5
 
 
 def test_it_sails_and_goes_back_to_a_snapshot(simulation: Simulation) -> None:

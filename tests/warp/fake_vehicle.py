@@ -32,7 +32,7 @@ class FakeVehicle:
         self.deaf: set[int] = set()  # commands it never answers
         self.silent_from_us = math.inf  # no heartbeat from here on...
         self.silent_on: int | None = None  # ...set by receiving this command
-        self.heard: dict[str, list[int]] = defaultdict(list)  # message or COMMAND_<n>: simulated times [us]
+        self.received: dict[str, list[int]] = defaultdict(list)  # message or COMMAND_<n>: simulated times [us]
         self.mission_items: list[mav.MAVLink_message] = []
         self.mission_size = 0
         self.position_period_us = 200_000
@@ -108,7 +108,7 @@ class FakeVehicle:
 
     def _hear(self, m: mav.MAVLink_message) -> None:
         name = m.get_type()
-        self.heard[name].append(self.sim_us)
+        self.received[name].append(self.sim_us)
         if name in ("COMMAND_LONG", "COMMAND_INT"):
             self._command(m)
         elif name == "MISSION_COUNT":
@@ -125,7 +125,7 @@ class FakeVehicle:
         self.link.mission_request_int_send(m.get_srcSystem(), m.get_srcComponent(), seq, m.mission_type)
 
     def _command(self, m: mav.MAVLink_message) -> None:
-        self.heard[f"COMMAND_{m.command}"].append(self.sim_us)
+        self.received[f"COMMAND_{m.command}"].append(self.sim_us)
         if m.command == self.silent_on:
             self.silent_from_us = self.sim_us
         if m.command in self.deaf:
@@ -145,7 +145,7 @@ class FakeVehicle:
     # --- what was heard ---
     def intervals(self, name: str) -> list[float]:
         """Simulated seconds between one `name` and the next."""
-        times = self.heard[name]
+        times = self.received[name]
         return [(b - a) / 1e6 for a, b in itertools.pairwise(times)]
 
     def close(self) -> None:

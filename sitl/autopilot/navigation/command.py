@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from ..events import COMMAND_ARRIVED, COMMAND_COMPLETE, emit, emit_and_return
-from ..state import Autopilot
+from ..events import COMMAND_ARRIVED, COMMAND_COMPLETE, Events, emit, emit_and_return
 from .path import distance
 from .state import (
     CONDITION_DELAY,
@@ -37,20 +36,18 @@ def give_none(nav: Nav) -> None:
 
 
 @law
-def arrive(ap: Autopilot, time_us: int) -> None:
+def arrive(nav: Nav, events: Events, time_us: int) -> None:
     """The command under way has come to its place, where it may wait: ``nav.since_us`` counts from now."""
-    nav = ap.modes.nav
     nav.since_us = time_us
-    emit(ap.events, time_us, COMMAND_ARRIVED, NAV_COMMAND, float(nav.command_count))
+    emit(events, time_us, COMMAND_ARRIVED, NAV_COMMAND, float(nav.command_count))
 
 
 @law
-def complete(ap: Autopilot, time_us: int) -> None:
+def complete(nav: Nav, events: Events, time_us: int) -> None:
     """Tell the shell, once, that the navigation command is done."""
-    nav = ap.modes.nav
     if not nav.completed:
         nav.completed = True
-        emit_and_return(ap.events, time_us, COMMAND_COMPLETE, NAV_COMMAND, float(nav.command_count))
+        emit_and_return(events, time_us, COMMAND_COMPLETE, NAV_COMMAND, float(nav.command_count))
 
 
 @law
@@ -65,12 +62,11 @@ def is_condition_met(nav: Nav, time_us: int, pos: Vec3, yaw_reached: bool) -> bo
 
 
 @law
-def check_condition(ap: Autopilot, time_us: int, yaw_reached: bool) -> None:
+def check_condition(nav: Nav, events: Events, time_us: int, pos: Vec3, yaw_reached: bool) -> None:
     """Tell the shell, once, that the condition which holds back do-commands is met; AUTO calls it every tick.
 
-    ``yaw_reached``: the turn of CONDITION_YAW is done.
+    ``pos``: NED [m]; ``yaw_reached``: the turn of CONDITION_YAW is done.
     """
-    nav = ap.modes.nav
-    if is_condition_met(nav, time_us, ap.estimate.pos, yaw_reached):
+    if is_condition_met(nav, time_us, pos, yaw_reached):
         nav.condition_kind = CONDITION_NONE
-        emit_and_return(ap.events, time_us, COMMAND_COMPLETE, DO_COMMAND, float(nav.mission_do))
+        emit_and_return(events, time_us, COMMAND_COMPLETE, DO_COMMAND, float(nav.mission_do))

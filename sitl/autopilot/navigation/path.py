@@ -17,8 +17,7 @@ from ...core.algebra import dot, dot2, horizontal, norm
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..control.shaping import Motion
-from ..events import LEG_ENDING, emit_and_return
-from ..state import Autopilot
+from ..events import LEG_ENDING, Events, emit_and_return
 from .profile import clear, evaluate, finished, remaining, step
 from .state import LEG_REQUEST, Leg, Nav
 
@@ -41,23 +40,22 @@ def stop(nav: Nav) -> None:
 
 
 @law
-def request_leg(ap: Autopilot, time_us: int, target: Vec3) -> None:
+def request_leg(nav: Nav, events: Events, time_us: int, target: Vec3) -> None:
     """Ask the shell for a leg to a point, NED [m]: it is there, begun, on the next tick, and ``request_pending`` 0."""
-    nav = ap.modes.nav
     nav.request = target
     nav.request_pending = 1
-    emit_and_return(ap.events, time_us, LEG_ENDING, LEG_REQUEST, 0.0)
+    emit_and_return(events, time_us, LEG_ENDING, LEG_REQUEST, 0.0)
 
 
 @law
-def request_legs(ap: Autopilot, time_us: int, target: Vec3, following: Vec3) -> None:
+def request_legs(nav: Nav, events: Events, time_us: int, target: Vec3, following: Vec3) -> None:
     """Ask for a leg to a point and one from there to the following point, joined without a stop, NED [m].
 
     ``request_leg`` to the following point when the first is reached takes the second leg over.
     """
-    request_leg(ap, time_us, target)
-    ap.modes.nav.request_next = following
-    ap.modes.nav.request_pending = 2
+    request_leg(nav, events, time_us, target)
+    nav.request_next = following
+    nav.request_pending = 2
 
 
 @law

@@ -29,13 +29,13 @@ class AutopilotEnd:
         """Lines that could not be taken."""
         self.note = ""
         """Something that people should be told; who takes it empties it."""
-        self._told = False
+        self._has_complained = False
 
     def frame(self, pulses: Sequence[int]) -> bytes:
         """The datagram to send; the same again when no answer comes."""
         return servos.encode(Servos(self.rate, self.count, tuple(pulses)))
 
-    def hear(self, datagram: bytes) -> tuple[Motion, float] | None:
+    def receive(self, datagram: bytes) -> tuple[Motion, float] | None:
         """The motion in the last line of a datagram and how long a step it ends [s]; None when there is none.
 
         The step of the first line is the one asked for: wherever the clock of the physics stands, the autopilot's
@@ -47,15 +47,15 @@ class AutopilotEnd:
             self._refuse("an empty datagram")
             return None
         try:
-            told = motion.decode(lines[-1])
+            decoded = motion.decode(lines[-1])
         except MotionError as error:
             self._refuse(str(error))
             return None
-        before, self.time = self.time, told.time
-        if before == told.time:
-            return told, 0.0
+        before, self.time = self.time, decoded.time
+        if before == decoded.time:
+            return decoded, 0.0
         self.count = (self.count + 1) & servos.COUNT_MASK
-        return told, 1.0 / self.rate if before is None else told.time - before
+        return decoded, 1.0 / self.rate if before is None else decoded.time - before
 
     def restart(self) -> None:
         """The autopilot starts anew: the count begins at 0, which tells physics to begin anew as well."""
@@ -63,5 +63,5 @@ class AutopilotEnd:
 
     def _refuse(self, why: str) -> None:
         self.refused += 1
-        if not self._told:
-            self.note, self._told = f"physics told no motion, and is not believed: {why}", True
+        if not self._has_complained:
+            self.note, self._has_complained = f"physics sent no motion, and is not believed: {why}", True

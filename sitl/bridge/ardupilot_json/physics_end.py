@@ -43,7 +43,7 @@ class Asked(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
+class Request:
     """A datagram, understood."""
 
     asked: Asked
@@ -79,10 +79,10 @@ class PhysicsEnd:
         self.refused = 0
         """Datagrams that were no frames, or of another autopilot."""
         self._stepped_any = False
-        self._heard_at = self._answered_at = float("-inf")
-        self._told: set[str] = set()
+        self._received_at = self._answered_at = float("-inf")
+        self._reported: set[str] = set()
 
-    def hear(self, datagram: bytes, peer: Hashable, now: float) -> Heard:
+    def receive(self, datagram: bytes, peer: Hashable, now: float) -> Request:
         """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, unless for NOTHING."""
         try:
             servos = decode(datagram)
@@ -90,24 +90,24 @@ class PhysicsEnd:
             return self._refuse(f"a datagram from {named(peer)} is no frame of servos: {error}", "datagram")
         note = ""
         if peer != self.peer:
-            if self.peer is not None and now - self._heard_at < ALIVE_S:
+            if self.peer is not None and now - self._received_at < ALIVE_S:
                 return self._refuse(
                     f"a second autopilot, at {named(peer)}, is not served: there is one at {named(self.peer)}", peer
                 )
             note = f"autopilot at {named(peer)}" + (f", before at {named(self.peer)}" if self.peer is not None else "")
-        moved, self.peer, self._heard_at = peer != self.peer, peer, now
+        moved, self.peer, self._received_at = peer != self.peer, peer, now
         before, self.count = self.count, servos.number
         if before is None:
             asked = Asked.RESTART if servos.number == 0 and self._stepped_any else Asked.STEP
         elif servos.number == before and not moved:
             if now - self._answered_at < CROSSED_S:
-                return Heard(Asked.NOTHING, servos)
+                return Request(Asked.NOTHING, servos)
             asked = Asked.REPEAT if self.line else Asked.STEP
         elif servos.number <= before and (before - servos.number) < 1 << 31:
             asked, note = Asked.RESTART, note or "the autopilot has been started anew"
         else:
             asked = Asked.STEP
-        return Heard(asked, servos, note)
+        return Request(asked, servos, note)
 
     def answer(self, line: bytes, now: float) -> bytes:
         """Keep the answer to the last frame, for when it is asked for again."""
@@ -119,12 +119,12 @@ class PhysicsEnd:
         self._answered_at = now
         return self.line
 
-    def _refuse(self, note: str, kind: Hashable) -> Heard:
+    def _refuse(self, note: str, kind: Hashable) -> Request:
         """Count, and tell each kind once."""
         self.refused += 1
         key = str(kind)
-        if key in self._told:
-            return Heard(Asked.NOTHING)
-        if len(self._told) < 16:
-            self._told.add(key)
-        return Heard(Asked.NOTHING, None, note)
+        if key in self._reported:
+            return Request(Asked.NOTHING)
+        if len(self._reported) < 16:
+            self._reported.add(key)
+        return Request(Asked.NOTHING, None, note)

@@ -22,8 +22,8 @@ class _UdpPeer(Peer):
         super().__init__(name)
         self._socket = sock
         self.address = address
-        self.heard = 0
-        """Number of the datagram last heard from it on this link."""
+        self.last_received = 0
+        """Number of the last datagram that came from it on this link."""
 
     def flush(self) -> None:
         datagram = b""
@@ -52,7 +52,7 @@ class _UdpLink(Link):
             self._socket.close()
             raise
         self._by_address: dict[Address, _UdpPeer] = {}
-        self._heard = 0
+        self._received = 0
         self._selector: Selector | None = None
 
     @property
@@ -70,7 +70,7 @@ class _UdpLink(Link):
         peer = self._by_address.get(address)
         if peer is None:
             if len(self._by_address) >= MOST_PEERS:
-                silent = min(self._by_address.values(), key=lambda p: p.heard)
+                silent = min(self._by_address.values(), key=lambda p: p.last_received)
                 silent.closed, silent.why_closed = True, f"more than {MOST_PEERS} peers; silent for longest"
                 del self._by_address[silent.address]
                 self.peers.remove(silent)
@@ -87,9 +87,9 @@ class _UdpLink(Link):
                 return
             except OSError:
                 continue  # an earlier datagram was refused (ICMP); the socket is still good
-            self._heard += 1
+            self._received += 1
             peer = self._peer(address)
-            peer.heard = self._heard
+            peer.last_received = self._received
             peer.deliver(data)
 
     def close(self) -> None:

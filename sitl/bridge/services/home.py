@@ -23,26 +23,26 @@ class HomeService(Service):
         super().__init__(bridge)
         self._home = bridge.reader.fields(H + "is_set", H + "lat", H + "lon", H + "alt")
         self._origin = bridge.reader.fields(E + "set", E + "lat", E + "lon", E + "alt")
-        self._told_home = self._home()
-        self._told_origin = self._origin()
+        self._sent_home = self._home()
+        self._sent_origin = self._origin()
 
     def snapshot(self) -> Any:
-        return (self._told_home, self._told_origin)
+        return (self._sent_home, self._sent_origin)
 
     def restore(self, state: Any) -> None:
-        self._told_home, self._told_origin = state
+        self._sent_home, self._sent_origin = state
 
     def handlers(self) -> dict[str, Handler]:
         return {"SET_GPS_GLOBAL_ORIGIN": self._set_origin, "SET_HOME_POSITION": self._set_home}
 
     def tell_changes(self) -> None:
-        """Send HOME_POSITION or GPS_GLOBAL_ORIGIN to everyone when they are other than last told."""
+        """Send HOME_POSITION or GPS_GLOBAL_ORIGIN to everyone when they are other than last sent."""
         home, origin = self._home(), self._origin()
-        for number, now, told in ((ORIGIN, origin, self._told_origin), (HOME, home, self._told_home)):
-            if now != told and now[0]:
+        for number, now, sent in ((ORIGIN, origin, self._sent_origin), (HOME, home, self._sent_home)):
+            if now != sent and now[0]:
                 for channel in self.bridge.channels:
                     self.bridge.send_now(channel, number)
-        self._told_home, self._told_origin = home, origin
+        self._sent_home, self._sent_origin = home, origin
 
     def _set_origin(self, channel: Channel, m: Any, sender: Sender) -> None:
         """Only before the estimator has an origin; else nothing happens, as in ArduPilot."""

@@ -76,7 +76,7 @@ class LogDownloadService(Service):
         super().__init__(bridge)
         self._transfers: dict[Channel, _Transfer] = {}
         self._sizes: dict[Channel, dict[int, int]] = {}
-        """Sizes as they were told: a log that grows is sent up to there."""
+        """Sizes as they were listed: a log that grows is sent up to there."""
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -99,7 +99,7 @@ class LogDownloadService(Service):
         transfers, sizes, self.due_us = state
         channels = {channel.number: channel for channel in self.bridge.channels}
         self._transfers = {channels[n]: transfer for n, transfer in transfers if n in channels}
-        self._sizes = {channels[n]: dict(told) for n, told in sizes if n in channels}
+        self._sizes = {channels[n]: dict(entries) for n, entries in sizes if n in channels}
 
     def _list(self, channel: Channel, m: Any, sender: Sender) -> None:
         entries = self.bridge.logs.entries() if self.bridge.logs is not None else ()
@@ -107,16 +107,16 @@ class LogDownloadService(Service):
         last = min(m.end, len(entries))
         chosen = [entry for entry in entries if max(m.start, 1) <= entry.number <= last]
         for entry in chosen:
-            told = {"id": entry.number, "num_logs": len(entries), "last_log_num": last}
-            channel.send(ENTRY, ENTRY.payload(**told, time_utc=entry.time_utc, size=entry.size))
+            fields = {"id": entry.number, "num_logs": len(entries), "last_log_num": last}
+            channel.send(ENTRY, ENTRY.payload(**fields, time_utc=entry.time_utc, size=entry.size))
         if not chosen:
             channel.send(ENTRY, ENTRY.payload(num_logs=len(entries)))
 
     def _data(self, channel: Channel, m: Any, sender: Sender) -> None:
-        told = self._sizes.setdefault(channel, {})
-        if m.id not in told and self.bridge.logs is not None:
-            told.update({entry.number: entry.size for entry in self.bridge.logs.entries()})
-        left = min(max(told.get(m.id, 0) - m.ofs, 0), m.count)
+        sizes = self._sizes.setdefault(channel, {})
+        if m.id not in sizes and self.bridge.logs is not None:
+            sizes.update({entry.number: entry.size for entry in self.bridge.logs.entries()})
+        left = min(max(sizes.get(m.id, 0) - m.ofs, 0), m.count)
         if not left:
             self._transfers.pop(channel, None)
             channel.send(DATA, DATA.payload(id=m.id, ofs=m.ofs, count=0))

@@ -41,7 +41,7 @@ class RcService(Service):
         self._pulses[channel] = pulse
         self._times[channel] = self.bridge.now_us
 
-    def _heard(self) -> None:
+    def _note_ground_station(self) -> None:
         self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
 
     def _override(self, channel: Channel, m: Any, sender: Sender) -> None:
@@ -57,7 +57,7 @@ class RcService(Service):
                     self._put(k, 0)
                 elif LOWEST <= pulse <= HIGHEST:
                     self._put(k, pulse)
-        self._heard()
+        self._note_ground_station()
 
     def _manual(self, channel: Channel, m: Any, sender: Sender) -> None:
         """The firmware's profile says which axis drives which channel."""
@@ -72,7 +72,7 @@ class RcService(Service):
             share = (FULL - value if stick.is_reversed else value - stick.lowest) / (FULL - stick.lowest)
             low, high = self._range(number)
             self._put(number - 1, int(low + (high - low) * share))
-        self._heard()
+        self._note_ground_station()
 
     def _range(self, number: int) -> tuple[float, float]:
         low, high = self.bridge.parameter(f"RC{number}_MIN"), self.bridge.parameter(f"RC{number}_MAX")

@@ -82,7 +82,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
             )
 
 
-def hear_again(link: Connection) -> None:
+def request_again(link: Connection) -> None:
     """Ask for position, attitude and scan as they are: those of this instant were lost on the way."""
     for kind in (POSITION, ATTITUDE, link.inbox.scan_kind):
         link.command("REQUEST_MESSAGE", kind.id)
@@ -95,7 +95,7 @@ def set_mode(link: Connection, number: int) -> None:
         NotReadyError: it refuses.
     """
     if link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, number) != ACCEPTED:
-        raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_told(link)}")
+        raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_last_texts(link)}")
 
 
 def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callable[[], None]) -> None:
@@ -108,35 +108,35 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
         hold_sticks: sends RC overrides of sticks at rest.
 
     Raises:
-        NotReadyError: it does not get there; the message says what the vehicle told.
+        NotReadyError: it does not get there; the message says what the vehicle said.
     """
-    heard = link.inbox
-    link.endpoint.send("REQUEST_DATA_STREAM", target_system=heard.system, target_component=1)  # stop all
+    inbox = link.inbox
+    link.endpoint.send("REQUEST_DATA_STREAM", target_system=inbox.system, target_component=1)  # stop all
     set_intervals(link, INTERVAL_US)
 
     def arms() -> bool:
-        if math.isnan(heard.position[1]) or link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, guided) != ACCEPTED:
+        if math.isnan(inbox.position[1]) or link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, guided) != ACCEPTED:
             return False
         return link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
 
     until(link, arms, _SECOND, "does not arm")
     if take_off > 0.0:
-        floor = heard.position[3]  # home is where it is armed, which is not the origin of local positions
+        floor = inbox.position[3]  # home is where it is armed, which is not the origin of local positions
         if link.command("NAV_TAKEOFF", altitude=take_off) != ACCEPTED:
-            raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_told(link)}")
-        until(link, lambda: abs(heard.position[3] - floor + take_off) < 0.1 and abs(heard.position[6]) < 0.1, _TENTH,
+            raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_last_texts(link)}")
+        until(link, lambda: abs(inbox.position[3] - floor + take_off) < 0.1 and abs(inbox.position[6]) < 0.1, _TENTH,
                f"does not climb to {take_off:g} m")  # fmt: skip
     for _ in range(3):  # it may be lost on the way
-        if heard.origin is None:
+        if inbox.origin is None:
             link.command("REQUEST_MESSAGE", ORIGIN.id)
-    if heard.origin is None:
+    if inbox.origin is None:
         raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
     if link.is_exact:
-        link.run(ALIGN_US - 1000 * int(heard.position[0]) % ALIGN_US - _TENTH)
+        link.run(ALIGN_US - 1000 * int(inbox.position[0]) % ALIGN_US - _TENTH)
     hold_sticks()
-    scans = heard.scans
+    scans = inbox.scans
     link.run(_TENTH)
-    if heard.scans == scans:
+    if inbox.scans == scans:
         wanted = "LASER in DEBUG_FLOAT_ARRAY, or OBSTACLE_DISTANCE"
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
 
@@ -159,10 +159,10 @@ def until(
             return
         between()
         link.pause(every_us)
-    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; {_told(link)}")
+    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; {_last_texts(link)}")
 
 
-def _told(link: Connection) -> str:
+def _last_texts(link: Connection) -> str:
     return "it said: " + "; ".join(link.inbox.last_texts[-4:]) if link.inbox.last_texts else "it said nothing"
 
 
@@ -178,10 +178,10 @@ def is_simulator(link: Connection) -> bool:
 
 def refusal(link: Connection) -> NotASimulatorError:
     """The error for a vehicle that has not proved to be a simulator."""
-    heard: Any = link.inbox
-    mode = f"{'armed' if heard.armed else 'disarmed'}, in mode {heard.mode}" if heard.mode >= 0 else "no HEARTBEAT yet"
+    inbox: Any = link.inbox
+    mode = f"{'armed' if inbox.armed else 'disarmed'}, in mode {inbox.mode}" if inbox.mode >= 0 else "no HEARTBEAT yet"
     return NotASimulatorError(
-        f"connection {link.name}: the vehicle (system {heard.system}, {mode}) does not prove to be a simulator: it "
+        f"connection {link.name}: the vehicle (system {inbox.system}, {mode}) does not prove to be a simulator: it "
         f"does not give its parameter {PROOF}. It was only asked questions. A reset would disarm it by force and "
         "reboot it, in the air, too: that is done to simulators only (sitl run, ArduPilot's SITL). For a vehicle that "
         f'may be treated so, whatever it is: reset="{REBOOT}" when the environment is made'

@@ -31,16 +31,16 @@ _BEFORE = 10
 _READY_S, _CLIMB_S = 90, 30
 
 
-def velocity(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
+def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_POSITION_TARGET_LOCAL_NED: velocities [m/s] turned from the heading to north and east, turn rate [rad/s].
 
     PX4 takes them in the local frame on all its versions, in the body's on some.
     """
     forward, left, up, turn = row
-    c, s = math.cos(heard.attitude[3]), math.sin(heard.attitude[3])
+    c, s = math.cos(inbox.attitude[3]), math.sin(inbox.attitude[3])
     motion = {"vx": forward * c + left * s, "vy": forward * s - left * c, "vz": -up, "yaw_rate": -turn}
     return LOCAL, LOCAL.payload(
-        target_system=heard.system, target_component=1, coordinate_frame=LOCAL_NED, type_mask=_VELOCITY_AND_TURN,
+        target_system=inbox.system, target_component=1, coordinate_frame=LOCAL_NED, type_mask=_VELOCITY_AND_TURN,
         **motion,
     )  # fmt: skip
 
@@ -57,19 +57,19 @@ def prepare(link: Connection, take_off: float) -> None:
         take_off: height above where it stands [m].
 
     Raises:
-        NotReadyError: it does not get there; the message says what the vehicle told.
+        NotReadyError: it does not get there; the message says what the vehicle said.
     """
-    heard = link.inbox
+    inbox = link.inbox
     set_intervals(link, INTERVAL_US)
-    until(link, lambda: not math.isnan(heard.position[1]), _TENTH, "has no position", _READY_S)
-    north, east, down = heard.position[1:4]
-    heading = heard.attitude[3]
+    until(link, lambda: not math.isnan(inbox.position[1]), _TENTH, "has no position", _READY_S)
+    north, east, down = inbox.position[1:4]
+    heading = inbox.attitude[3]
 
     def hold() -> None:
         """A place above where it stands."""
         place = {"x": north, "y": east, "z": down - take_off, "yaw": heading}
         target = LOCAL.payload(
-            target_system=heard.system,
+            target_system=inbox.system,
             target_component=1,
             coordinate_frame=LOCAL_NED,
             type_mask=_PLACE_AND_YAW,
@@ -89,18 +89,18 @@ def prepare(link: Connection, take_off: float) -> None:
 
     until(link, arms, _TENTH, "does not arm in OFFBOARD", _READY_S, hold)
     until(
-        link, lambda: abs(heard.position[3] - down + take_off) < 0.15 and abs(heard.position[6]) < 0.15, _TENTH,
+        link, lambda: abs(inbox.position[3] - down + take_off) < 0.15 and abs(inbox.position[6]) < 0.15, _TENTH,
         f"does not climb to {take_off:g} m", _CLIMB_S, hold,
     )  # fmt: skip
     for _ in range(3):
-        if heard.origin is None:
+        if inbox.origin is None:
             hold()
             link.command("REQUEST_MESSAGE", ORIGIN.id)
-    if heard.origin is None:
+    if inbox.origin is None:
         raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
-    scans = heard.scans
+    scans = inbox.scans
     for _ in range(3):
         hold()
         link.run(_TENTH)
-    if heard.scans == scans:
+    if inbox.scans == scans:
         raise NotReadyError(f"{link.name}: the physics sends no scan")

@@ -39,38 +39,38 @@ Encode = Callable[[Sequence[float], StepTelemetry, Sequence[float]], Message]
 """``encode(row of the set-point, what the vehicle says, NED of its local origin in the world [m])``."""
 
 
-def override(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
+def override(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """RC_CHANNELS_OVERRIDE: eight pulses [us]; 0 releases a channel."""
-    return OVERRIDE, OVERRIDE.pack(*(round(pulse) for pulse in row), heard.system, 1, *(0,) * 10)
+    return OVERRIDE, OVERRIDE.pack(*(round(pulse) for pulse in row), inbox.system, 1, *(0,) * 10)
 
 
-def velocity(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
+def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_POSITION_TARGET_LOCAL_NED: velocities along the body's heading [m/s], turn rate [rad/s]."""
     forward, left, up, turn = row
     motion = {"vx": forward, "vy": -left, "vz": -up, "yaw_rate": -turn}
     return LOCAL, LOCAL.payload(
-        target_system=heard.system, coordinate_frame=BODY_OFFSET_NED, type_mask=_VELOCITY_ONLY, **motion
+        target_system=inbox.system, coordinate_frame=BODY_OFFSET_NED, type_mask=_VELOCITY_ONLY, **motion
     )
 
 
-def position(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float], mask: int = _PLACE_ONLY) -> Message:
+def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float], mask: int = _PLACE_ONLY) -> Message:
     """SET_POSITION_TARGET_LOCAL_NED: a place of the world [m], yaw [rad]."""
     north, east, down = to_ned(*row[:3])
     place = {"x": north - origin[0], "y": east - origin[1], "z": down - origin[2], "yaw": to_heading(row[3])}
-    return LOCAL, LOCAL.payload(target_system=heard.system, coordinate_frame=LOCAL_NED, type_mask=mask, **place)
+    return LOCAL, LOCAL.payload(target_system=inbox.system, coordinate_frame=LOCAL_NED, type_mask=mask, **place)
 
 
-def rover_position(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
+def rover_position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """The same (x, y [m]) without a yaw, which a car cannot take at will."""
-    return position(row, heard, origin, _PLACE_ONLY | YAWS_IGNORED)
+    return position(row, inbox, origin, _PLACE_ONLY | YAWS_IGNORED)
 
 
-def attitude(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
+def attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: roll, pitch [rad], turn rate [rad/s], climb -1 .. 1."""
     roll, pitch, turn, climb = row
-    q = quat_from_euler(Euler(roll, pitch, heard.attitude[3]))
+    q = quat_from_euler(Euler(roll, pitch, inbox.attitude[3]))
     return TARGET, TARGET.payload(
-        target_system=heard.system,
+        target_system=inbox.system,
         type_mask=ROLL_RATE_IGNORED | PITCH_RATE_IGNORED,
         q=q,
         body_yaw_rate=-turn,
@@ -78,10 +78,10 @@ def attitude(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]
     )
 
 
-def rover_attitude(row: Sequence[float], heard: StepTelemetry, origin: Sequence[float]) -> Message:
+def rover_attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: turn rate [rad/s], throttle -1 .. 1, a share of WP_SPEED."""
     return TARGET, TARGET.payload(
-        target_system=heard.system, type_mask=_TURN_AND_SPEED, body_yaw_rate=-row[2], thrust=row[3]
+        target_system=inbox.system, type_mask=_TURN_AND_SPEED, body_yaw_rate=-row[2], thrust=row[3]
     )
 
 

@@ -28,7 +28,7 @@ from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import Action, Setpoint
-from ..mavlink.preparation import ALIGN_US, RESETS, hear_again, set_intervals, set_mode
+from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_intervals, set_mode
 from ..options import COMMON, EnvOptionError, unknown
 from .foreign import ForeignVehicles, SocketVehicles
 from .in_process import InProcessVehicles
@@ -161,28 +161,28 @@ class AutopilotRobot:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
         if link is None:
             raise LinkLostError(f"{self._vehicles.where} is not open; reset() opens it")
-        heard = link.inbox
-        interval_us = min(math.gcd(ALIGN_US, us), heard.longest_interval_us)
+        inbox = link.inbox
+        interval_us = min(math.gcd(ALIGN_US, us), inbox.longest_interval_us)
         if now.setpoint != setpoint.name or now.interval_us != interval_us:
             now = self._change(link, now, setpoint.name, interval_us)
             self._states[index] = now
-        hits, scans, goal_ms = heard.hits, heard.scans, heard.position[0] + us // 1000
+        hits, scans, goal_ms = inbox.hits, inbox.scans, inbox.position[0] + us // 1000
         if wait_us > 0:
             if not link.is_held:
                 raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
             link.run(wait_us)
         if wait_us < us:
-            kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), heard, now.origin)
+            kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), inbox, now.origin)
             link.endpoint.send_payload(kind, payload)
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
-                if heard.position[0] == heard.attitude[0] == goal_ms and heard.scans > scans:
+                if inbox.position[0] == inbox.attitude[0] == goal_ms and inbox.scans > scans:
                     break
-                hear_again(link)
+                request_again(link)
             else:
                 raise LinkLostError(f"{link.name}: the vehicle's telemetry is not of this step: has it been rebooted?")
-        self.collided[index] = heard.hits > hits
+        self.collided[index] = inbox.hits > hits
         self._read(index)
 
     def _change(self, link: Connection, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
@@ -197,16 +197,16 @@ class AutopilotRobot:
         """Copy the last telemetry into the arrays."""
         link, now = self._vehicles.links[index], self._states[index]
         assert link is not None
-        heard = link.inbox
-        _, n, e, d, vn, ve, vd = heard.position
-        heading = heard.attitude[3]
+        inbox = link.inbox
+        _, n, e, d, vn, ve, vd = inbox.position
+        heading = inbox.attitude[3]
         c, s = math.cos(heading), math.sin(heading)
         origin = now.origin
         x, y, z = from_ned(origin[0] + n + self._base_along * c, origin[1] + e + self._base_along * s, origin[2] + d)
         self._state[index] = (
-            x, y, z, from_heading(heading), vn * c + ve * s, vn * s - ve * c, -vd, -heard.attitude[6]
+            x, y, z, from_heading(heading), vn * c + ve * s, vn * s - ve * c, -vd, -inbox.attitude[6]
         )  # fmt: skip
-        self.scan[index] = heard.scan[: self.scan.shape[1]]
+        self.scan[index] = inbox.scan[: self.scan.shape[1]]
         self.time[index] = 1e-6 * (self._vehicles.time_us(index) - now.began_us)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:

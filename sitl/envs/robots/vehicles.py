@@ -192,19 +192,19 @@ class Vehicles(ABC):
     def prepare(self, link: Connection, pose: Pose) -> tuple[float, float, float]:
         """Arm and take off a vehicle that has just booted; returns its local origin in the world: north, east, down
         [m]."""
-        kind, heard = self.setup.kind, link.inbox
+        kind, inbox = self.setup.kind, link.inbox
         take_off = self.options.take_off if kind.takes_off else 0.0
 
         def hold_sticks() -> None:
-            link.endpoint.send_payload(*setpoints.override(_AT_REST, heard, ()))
+            link.endpoint.send_payload(*setpoints.override(_AT_REST, inbox, ()))
 
         if kind.guided == px4.OFFBOARD:
             px4.prepare(link, take_off)
         else:
             prepare(link, kind.guided, take_off, hold_sticks)
-        assert heard.origin is not None
+        assert inbox.origin is not None
         lat, lon = (round(1e7 * angle) for angle in self.options.home[:2])
-        north, east = offset_ne(lat, lon, *heard.origin[:2])
+        north, east = offset_ne(lat, lon, *inbox.origin[:2])
         return north, east, -pose[2]
 
     def begun(self, index: int, origin: tuple[float, float, float]) -> EpisodeState:

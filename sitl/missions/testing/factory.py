@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any, Literal, overload
 
 from sitl.physics.engines import NATIVE
+from sitl.vehicle.kinds import KINDS
 
-from .golden import GoldenBook
+from .golden import GoldenStore
 from .logs import keep
 from .moments import RecordedMoment
 from .setup import Defaults, Setup, setup
@@ -33,7 +34,7 @@ _kept: OrderedDict[Beginning, RecordedMoment] = OrderedDict()
 
 def new(setup: Setup, name: str) -> Vehicle:
     """A vehicle at power-on."""
-    return (Copter if setup.kind == "copter" else Rover)(setup.build, name)
+    return (Copter if KINDS[setup.kind].flies else Rover)(setup.build, name)
 
 
 def begin(vehicle: Vehicle, setup: Setup, after: Prepare | None = None) -> None:
@@ -70,7 +71,7 @@ def _is_hashable(beginning: Beginning) -> bool:
 class VehicleFactory:
     """``vehicle_factory("rover", world="maze")``: it is ready to arm; ``setup.setup`` says what is taken."""
 
-    def __init__(self, defaults: Defaults, golden: GoldenBook, logs: Path) -> None:
+    def __init__(self, defaults: Defaults, golden: GoldenStore, logs: Path) -> None:
         self.defaults, self.golden, self.logs = defaults, golden, logs
         self.vehicles: list[Vehicle] = []
 

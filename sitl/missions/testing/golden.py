@@ -31,7 +31,7 @@ class FlightChanged(UserWarning):
 
 
 @dataclass
-class GoldenBook:
+class GoldenStore:
     """What is known of goldens while a test runs."""
 
     folder: Path = Path()
@@ -53,7 +53,7 @@ class GoldenBook:
 class Golden(Forking):
     """A vehicle whose flight can be compared with golden."""
 
-    golden: GoldenBook = GoldenBook()
+    golden: GoldenStore = GoldenStore()
 
     def save_recording(self, path: str | Path) -> Path:
         """Keep a recording (.rec) of the flight from power-on until now: ``sitl mission replay`` flies it again."""
@@ -101,13 +101,13 @@ class Golden(Forking):
 
     def _update(self, path: Path, new: Path) -> None:
         """Write a golden, unless it is this flight already."""
-        book = self.golden
+        store = self.golden
         if path.suffix != ".rec":
             raise AssertionError(f"golden {path} is not written: only recordings (.rec) are")
-        before = book.taken.setdefault(path.resolve(), book.test)
-        if before != book.test or path in book.checked:
+        before = store.taken.setdefault(path.resolve(), store.test)
+        if before != store.test or path in store.checked:
             raise AssertionError(f"golden {path} is of another flight of {before} already; each needs one of its own")
-        book.checked.append(path)
+        store.checked.append(path)
         if path.exists() and _track(path) == _track(new):
             return
         beside = path.with_name(f".{path.name}.{os.getpid()}")
@@ -120,7 +120,7 @@ class Golden(Forking):
                 beside.unlink(missing_ok=True)
         except OSError as error:
             raise AssertionError(f"golden {path} cannot be written: {error.strerror or error}") from None
-        book.written.append(path)
+        store.written.append(path)
 
     def _compare(self, path: Path, new: Path, tolerance: Limits) -> list[str]:
         """What is wrong, in lines; nothing when it flies like golden."""
@@ -133,8 +133,8 @@ class Golden(Forking):
         found = compare(flight.read(path), flight.read(new), tolerance)
         if found.ok:
             if found.first_trace is not None and found.tolerance.name == "same":
-                told = f"{path.name}: like golden, but not the same any more: {found.first_trace.words}"
-                warnings.warn(FlightChanged(told), stacklevel=3)
+                text = f"{path.name}: like golden, but not the same any more: {found.first_trace.words}"
+                warnings.warn(FlightChanged(text), stacklevel=3)
             return []
         lines = [f"golden {path}", *report.lines(found)]
         if self.golden.reports is not None:

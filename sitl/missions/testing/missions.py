@@ -58,7 +58,7 @@ class MissionFlier(Client):
         mission = self.upload(given)
         self.start_mission()
         last = max(seq for seq, item in enumerate(mission.items) if item.is_nav)
-        if self.kind == "rover":
+        if not self.flies:
             self.wait_waypoint(last, timeout)
             self.wait_groundspeed(-math.inf, STANDS, 30.0, STANDING_S)
             self.disarm()

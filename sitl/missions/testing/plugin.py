@@ -139,12 +139,12 @@ def _defaults(config: pytest.Config, folder: Path) -> Any:
 
 
 def _golden(config: pytest.Config, node: pytest.Item, logs: Path) -> Any:
-    from .golden import GoldenBook
+    from .golden import GoldenStore
 
     how = f"pytest {str(node.nodeid)!r} --sitl-update-golden"
     taken = config.stash.setdefault(TAKEN, {})
     update = bool(config.getoption("sitl_update_golden"))
-    return GoldenBook(node.path.parent, update, how, logs, taken=taken, test=node.nodeid)
+    return GoldenStore(node.path.parent, update, how, logs, taken=taken, test=node.nodeid)
 
 
 def _log_folder(config: pytest.Config, nodeid: str) -> Path:

@@ -65,9 +65,10 @@ class Faulty(Client):
             return Fault(self, {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence})
         if what == "station":
             return Fault(self, {}, silent=True)
-        if what == "motor" and self.kind == "copter":
+        has_motors = "SIM_ENGINE_FAIL" in self.simulation.kind.firmware.table
+        if what == "motor" and has_motors:
             return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})
-        known = [name for name in FAULTS if name != "motor" or self.kind == "copter"]
+        known = [name for name in FAULTS if name != "motor" or has_motors]
         raise UnknownNameError(f"a {self.kind} has no fault {what!r}; there are {', '.join(known)}")
 
 

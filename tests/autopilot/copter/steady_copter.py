@@ -30,7 +30,7 @@ def make() -> Any:
     est.attitude_ok = est.position_ok = 1
     v.sensors.gps_fix, v.sensors.mag_count, v.sensors.baro_count = 3, 1, 1
     init_modes(v)
-    init_control(ap)
+    init_control(ap.control, ap.estimate, ap.params)
     ap.control.tick = v.tick
     ap.control.attitude.cos_lean = 1.0
     ap.rc.channels[:8] = (1500, 1500, 1000, 1500, 1800, 1000, 1000, 1800)

@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from sitl.autopilot import events
-from sitl.autopilot.estimation import status
+from sitl.autopilot.estimation import status, update
+from sitl.core.kernels import jit_disabled
+from sitl.core.records import first_difference
 from tests.autopilot.estimation import synthetic_flight as sf
 from tests.autopilot.estimation.synthetic_flight import TAKE_OFF
 
@@ -126,3 +129,27 @@ def test_flags_before_gps(truth, tick) -> None:
     flags = fleet[0]["autopilot"]["estimate"]["status_flags"]
     assert flags == status.ATTITUDE | status.VELOCITY_VERT | status.POS_VERT_ABS | status.CONST_POS_MODE
     assert fleet[0]["autopilot"]["estimate"]["position_ok"] == 0
+
+
+@pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+def test_plain_python_agrees_with_compiled(tick) -> None:
+    """A second of flight with all sensors, from the same record."""
+    truth = sf.fly(57.0, 50.0)
+    flight = sf.sense(truth, 50.0, 1)
+    compiled = sf.new()
+    plain = None
+    n = len(truth.t)
+    for k in range(n):
+        sf.load_tick(compiled[0]["sensors"], flight, k)
+        compiled["time_us"] = 2500 * (k + 1)
+        compiled["autopilot"]["arming"]["armed"] = 1 if truth.t[k] > 50 else 0
+        if k == n - 400:
+            plain = compiled.copy()
+        elif k > n - 400:
+            plain["sensors"], plain["time_us"] = compiled["sensors"], compiled["time_us"]
+        tick(compiled)
+        if plain is not None:
+            update.update({0: sf.Copter.of(plain, 0)}, 0)
+    assert plain is not None
+    difference = first_difference(plain[0], compiled[0])
+    assert difference is None

@@ -76,15 +76,17 @@ class Vehicle:
 
     def complete(self) -> int:
         """The command under way is done; returns the number of the next."""
-        path_command.begin(self.v.autopilot, int(self.v.time_us))
-        command.complete(self.v.autopilot, int(self.v.time_us))
+        ap, now = self.v.autopilot, int(self.v.time_us)
+        path_command.begin(ap.modes.nav, ap.control, ap.estimate, ap.params, now)
+        command.complete(ap.modes.nav, ap.events, now)
         self.told += self.sequencer.attend()
         return int(self.nav.command_seq) if self.nav.mission_state == RUNNING else 0
 
     def wait(self, seconds: float) -> None:
         """Let time pass for conditions."""
+        ap = self.v.autopilot
         self.v.time_us += round(seconds * 1e6)
-        command.check_condition(self.v.autopilot, int(self.v.time_us), True)
+        command.check_condition(ap.modes.nav, ap.events, int(self.v.time_us), ap.estimate.pos, True)
         self.told += self.sequencer.attend()
 
     def order(self, most: int = 20) -> list[int]:
@@ -127,7 +129,7 @@ def test_disarming_starts_again() -> None:
     assert p.complete() == 2
     assert p.nav.command_kind == LAND
     events.emit(p.v.autopilot.events, 0, events.DISARMED, 13.0, 0.0)
-    command.complete(p.v.autopilot, 0)
+    command.complete(p.v.autopilot.modes.nav, p.v.autopilot.events, 0)
     p.told.clear()
     p.told += p.sequencer.attend()
     assert p.told == [Text(6, "Mission: 1 Takeoff"), CurrentChanged(1)]
@@ -272,7 +274,7 @@ def test_leaving_keeps_the_new_modes_legs() -> None:
     ap = p.v.autopilot
     waypoint.stop(ap.modes.nav)
     ap.modes.number, ap.modes.nav.speed_ne = 6, 4.0
-    path.request_leg(ap, 0, Vec3(0.0, 0.0, -15.0))
+    path.request_leg(ap.modes.nav, ap.events, 0, Vec3(0.0, 0.0, -15.0))
     events.emit(ap.events, 0, events.MODE_CHANGED, 6.0, 0.0)
     p.sequencer.attend()
     assert p.nav.current.segments > 0

@@ -8,7 +8,7 @@ import pytest
 from sitl.bridge.dialect import message
 from sitl.missions import copter, rover
 from sitl.simulation import Simulation
-from tests.bridge.hil.hil_peers import WatchedPilot
+from tests.bridge.hil.conftest import WatchedPilot
 
 SIMSTATE, SCAN, DISTANCE = (message(n).id for n in ("SIMSTATE", "DEBUG_FLOAT_ARRAY", "DISTANCE_SENSOR"))
 WHEELS = message("WHEEL_DISTANCE").id
@@ -16,10 +16,10 @@ WHEELS = message("WHEEL_DISTANCE").id
 
 def assert_same(here: WatchedPilot, there: WatchedPilot) -> None:
     assert here.simulation.time_us == there.simulation.time_us
-    assert len(here.heard.frames) > 10_000
-    for ours, theirs in zip(here.heard.frames, there.heard.frames):
+    assert len(here.received.frames) > 10_000
+    for ours, theirs in zip(here.received.frames, there.received.frames):
         assert ours == theirs
-    assert len(here.heard.frames) == len(there.heard.frames)
+    assert len(here.received.frames) == len(there.received.frames)
 
 
 @pytest.mark.slow
@@ -33,7 +33,7 @@ def test_a_copters_whole_mission(physics) -> None:
         copter.auto(simulation, flown[-1])
         simulation.close()
     assert_same(*flown)
-    assert SIMSTATE in flown[1].heard.names()
+    assert SIMSTATE in flown[1].received.names()
     assert flown[0].reached
 
 
@@ -47,7 +47,7 @@ def test_a_rovers_whole_drive(physics, monkeypatch) -> None:
         driven.append(rover.drive(simulation))
         simulation.close()
     assert_same(*driven)
-    assert WHEELS in driven[1].heard.names()
+    assert WHEELS in driven[1].received.names()
 
 
 @pytest.mark.slow
@@ -72,5 +72,5 @@ def test_a_copter_among_walls_with_lidar_and_a_gps_that_fails(physics) -> None:
         flown.append(pilot)
         simulation.close()
     assert_same(*flown)
-    assert {SCAN, DISTANCE, SIMSTATE} <= flown[1].heard.names()
+    assert {SCAN, DISTANCE, SIMSTATE} <= flown[1].received.names()
     assert any("hit" in text.lower() for _, _, text in flown[1].texts)

@@ -194,12 +194,12 @@ def test_parts_of_the_rotors_range(frame: str, lowest: float, highest: float) ->
 
 
 def test_truth() -> None:
-    told = Carried(
+    carried = Carried(
         (0.5, 0.5, -0.5, 0.5), (0.25, 0.0, -1.5), -353632620, 1491652370, 584123, (12, -300, 7), (0, 5, -1000)
     )
-    assert truth.read_truth(truth.truth_payload(123_000, told)) == (123_000, told)
+    assert truth.read_truth(truth.truth_payload(123_000, carried)) == (123_000, carried)
     with pytest.raises(RefusedError, match="attitude x"):
-        truth.read_truth(truth.truth_payload(0, told._replace(attitude=(1.0, math.nan, 0.0, 0.0))))
+        truth.read_truth(truth.truth_payload(0, carried._replace(attitude=(1.0, math.nan, 0.0, 0.0))))
 
 
 def test_pressure_altitude_of_the_standard_atmosphere() -> None:

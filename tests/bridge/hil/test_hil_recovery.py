@@ -28,9 +28,8 @@ from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
 from sitl.run.standstill import Patience
 from sitl.simulation import Simulation
+from tests.bridge.hil.conftest import ROOT, CutWire, PhysicsProcess, WatchedPilot
 from tests.bridge.hil.hil_bench import Vehicle
-from tests.bridge.hil.hil_cuts import CutWire
-from tests.bridge.hil.hil_peers import ROOT, PhysicsProcess, WatchedPilot
 
 
 def go_on(simulation: Simulation, time_us: int, tries: int = 1000) -> int:
@@ -90,7 +89,7 @@ def test_a_wire_cut_again_and_again_in_flight_changes_no_byte(beside) -> None:
     cut.simulation.close()
     wire.close()
     assert wire.cuts > 20 and cut.lost > 20
-    assert whole.heard.frames == cut.heard.frames
+    assert whole.received.frames == cut.received.frames
     assert server.end.ticks * 2500 == whole.simulation.time_us
 
 
@@ -150,7 +149,7 @@ def test_an_autopilot_that_joins_in_mid_world_gets_ready_to_arm(beside) -> None:
 
 def test_a_reboot_begins_the_physics_anew_and_goes_on_as_in_process(beside) -> None:
     server = beside(seed=9)
-    heard = []
+    received = []
     for options in ({"seed": 9}, {"physics": f"hil:tcp:127.0.0.1:{server.address[1]}"}):
         simulation = Simulation(**options)  # type: ignore[arg-type]
         pilot = WatchedPilot(simulation)
@@ -159,10 +158,10 @@ def test_a_reboot_begins_the_physics_anew_and_goes_on_as_in_process(beside) -> N
         pilot.fly(2.0)
         simulation.reseed(77)
         pilot.fly(2.0)
-        heard.append(pilot.heard.frames)
+        received.append(pilot.received.frames)
         assert simulation.time_us == 6_000_000 and simulation.v.time_us == 4_000_000
         simulation.close()
-    assert heard[0] == heard[1]
+    assert received[0] == received[1]
 
 
 def test_a_reboot_while_the_physics_is_away_waits_for_it(beside) -> None:
@@ -189,15 +188,15 @@ def test_a_second_autopilot_is_refused_and_told(beside) -> None:
     server = beside()
     simulation = Simulation(physics=f"hil:tcp:127.0.0.1:{server.address[1]}")
     with socket.create_connection(server.address, 10.0) as second:
-        told = b""
-        while not told:
+        answer = b""
+        while not answer:
             simulation.advance(1.0)
             second.settimeout(0.05)
             try:
-                told = second.recv(4096)
+                answer = second.recv(4096)
             except TimeoutError:
                 continue
-        assert b"another autopilot" in Splitter().feed(told)[0].payload
+        assert b"another autopilot" in Splitter().feed(answer)[0].payload
     simulation.advance(1.0)
     simulation.close()
     assert any("refused" in text for text in server.said)
@@ -271,7 +270,7 @@ def test_physics_stopped_for_a_while_changes_nothing(physics) -> None:
     process.signal(signal.SIGCONT)
     go_on(stopped, 4_000_000)
     whole.advance_to(4_000_000)
-    assert listeners[0].heard.frames == listeners[1].heard.frames
+    assert listeners[0].received.frames == listeners[1].received.frames
     assert stopped.plant.end.repeated > 0  # type: ignore[attr-defined]
     stopped.close()
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Missions by MAVSDK 4: upload, download, start, pause, jump, clear, and a QGroundControl plan."""
 
-import json
 import math
 
 from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
@@ -40,24 +39,13 @@ mission.start_mission()
 wait("back at 4", lambda: mission.mission_progress().current == 4, 5.0)
 wait("return", lambda: mission.mission_progress().current == 5, 60.0)
 wait("disarmed", lambda: not telemetry.armed(), 90.0)
-mission.clear_mission()
-check("cleared", len(mission.download_mission()) <= 1)  # MAVSDK clears ArduPilot's by uploading one empty item
-
-simple = {"autoContinue": True, "type": "SimpleItem", "frame": 3}
-plan = {
-    "fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
-    "geoFence": {"circles": [], "polygons": [], "version": 2}, "rallyPoints": {"points": [], "version": 2},
-    "mission": {
-        "version": 2, "firmwareType": 3, "vehicleType": 2, "globalPlanAltitudeMode": 1,
-        "cruiseSpeed": 15, "hoverSpeed": 5, "plannedHomePosition": [lat, lon, 584],
-        "items": [
-            {**simple, "command": TAKEOFF, "doJumpId": 1, "params": [0, 0, 0, None, 0, 0, 10]},
-            {**simple, "command": WAYPOINT, "doJumpId": 2, "params": [0, 0, 0, None, lat + 1e-4, lon, 10]},
-            {**simple, "command": RETURN, "doJumpId": 3, "params": [0, 0, 0, 0, 0, 0, 0]},
-        ],
-    },
-}  # fmt: skip
-imported = mission.import_qgroundcontrol_mission_from_string(json.dumps(plan)).mission_items
-mission.upload_mission(imported)
-check("plan", [i.command for i in mission.download_mission()] == [WAYPOINT, TAKEOFF, WAYPOINT, RETURN])
+session.check_clear_and_plan(
+    mission,
+    2,
+    [
+        {"command": TAKEOFF, "params": [0, 0, 0, None, 0, 0, 10]},
+        {"command": WAYPOINT, "params": [0, 0, 0, None, lat + 1e-4, lon, 10]},
+        {"command": RETURN, "params": [0, 0, 0, 0, 0, 0, 0]},
+    ],
+)
 session.mavsdk.destroy()

@@ -1,37 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A rover that stands: information, parameters, telemetry, arming without a position, clean refusals, by MAVSDK 4."""
 
-import math
-
-from mavsdk.plugins.info import Info
-from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import FlightMode
 from sdk import Session, check, refused, wait
 
 session = Session()
 action, telemetry, system = session.action, session.telemetry, session.system
-info, param = Info(system), Param(system)
 
-check("version", info.get_version().flight_sw_major == 4)
-param.set_param_int("FS_GCS_ENABLE", 0)
-check("whole number", param.get_param_int("FS_GCS_ENABLE") == 0)
-param.set_param_float("WP_SPEED", 1.0)
-check("float", param.get_param_float("WP_SPEED") == 1.0)
-refused("float as whole number", param.get_param_int, "WP_SPEED", result="WRONG_TYPE")
-refused("a copter's parameter", param.get_param_float, "WPNAV_SPEED", result="TIMEOUT")
-every = param.get_all_params()
-check("all parameters", len(every.int_params) > 50 and len(every.float_params) > 80)
-
-for name in (
-    "position", "home", "in_air", "landed_state", "vtol_state", "attitude_quaternion", "attitude_euler", "velocity_ned",
-    "gps_info", "raw_gps", "battery", "rc_status", "position_velocity_ned", "fixedwing_metrics", "imu", "scaled_imu",
-    "raw_imu", "unix_epoch_time", "health",
-):  # fmt: skip
-    getattr(telemetry, f"set_rate_{name}")(5.0)
-    check(f"rate of {name}", True)
-for name in ("odometry", "ground_truth", "altitude", "actuator_output_status", "actuator_control_target"):
-    refused(f"rate of {name}", getattr(telemetry, f"set_rate_{name}"), 1.0, result="COMMAND_DENIED")
-
+session.check_parameters("WP_SPEED", 1.0, unknown="WPNAV_SPEED", floats=80)
+session.check_rates()
 action.hold()
 wait("hold", lambda: telemetry.flight_mode() == FlightMode.HOLD, 5.0)
 wait("ready to arm before there is a position", lambda: telemetry.health().is_armable, 30.0)
@@ -43,16 +20,7 @@ action.disarm()
 wait("disarmed", lambda: not telemetry.armed(), 2.0)
 
 session.ready()
-check("all well", telemetry.health_all_ok())
-for name, field in (
-    ("position", "latitude_deg"), ("home", "latitude_deg"), ("attitude_quaternion", "w"), ("attitude_euler", "yaw_deg"),
-    ("velocity_ned", "north_m_s"), ("raw_gps", "hdop"), ("battery", "voltage_v"), ("heading", "heading_deg"),
-    ("fixedwing_metrics", "throttle_percentage"), ("imu", "temperature_degc"),
-):  # fmt: skip
-    value = getattr(telemetry, name)()
-    check(name, math.isfinite(getattr(value, field)), value)
-check("satellites", telemetry.gps_info().num_satellites >= 10)
-check("its clock is the vehicle's", abs(info.get_speed_factor() - 1.0) < 0.05, info.get_speed_factor())
+session.check_telemetry()
 
 here = telemetry.position()
 action.arm()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Missions of a rover by MAVSDK 4: upload, download, start, pause, jump, clear, and a QGroundControl plan."""
 
-import json
 import math
 
 from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
@@ -46,27 +45,15 @@ action.hold()
 action.disarm()
 wait("disarmed", lambda: not telemetry.armed(), 5.0)
 refused("a take-off item", mission.upload_mission, [item(0, WAYPOINT), item(1, TAKEOFF)], result="UNSUPPORTED")
-mission.clear_mission()
-check("cleared", len(mission.download_mission()) <= 1)  # MAVSDK clears ArduPilot's by uploading one empty item
-
-simple = {"autoContinue": True, "type": "SimpleItem", "frame": 3}
-plan = {
-    "fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
-    "geoFence": {"circles": [], "polygons": [], "version": 2}, "rallyPoints": {"points": [], "version": 2},
-    "mission": {
-        "version": 2, "firmwareType": 3, "vehicleType": 10, "globalPlanAltitudeMode": 1,
-        "cruiseSpeed": 2, "hoverSpeed": 5, "plannedHomePosition": [lat, lon, 584],
-        "items": [
-            {**simple, "command": WAYPOINT, "doJumpId": 1, "params": [0, 0, 0, None, lat + 1e-4, lon, 0]},
-            {**simple, "command": SET_REVERSE, "doJumpId": 2, "frame": 2, "params": [1, 0, 0, 0, 0, 0, 0]},
-            {**simple, "command": WAYPOINT, "doJumpId": 3, "params": [3, 0, 0, None, lat, lon, 0]},
-            {**simple, "command": JUMP, "doJumpId": 4, "frame": 2, "params": [1, 2, 0, 0, 0, 0, 0]},
-            {**simple, "command": RETURN, "doJumpId": 5, "frame": 2, "params": [0, 0, 0, 0, 0, 0, 0]},
-        ],
-    },
-}  # fmt: skip
-imported = mission.import_qgroundcontrol_mission_from_string(json.dumps(plan)).mission_items
-mission.upload_mission(imported)
-commands = [i.command for i in mission.download_mission()]
-check("plan", commands == [WAYPOINT, WAYPOINT, SET_REVERSE, WAYPOINT, JUMP, RETURN], commands)
+session.check_clear_and_plan(
+    mission,
+    10,
+    [
+        {"command": WAYPOINT, "params": [0, 0, 0, None, lat + 1e-4, lon, 0]},
+        {"command": SET_REVERSE, "frame": 2, "params": [1, 0, 0, 0, 0, 0, 0]},
+        {"command": WAYPOINT, "params": [3, 0, 0, None, lat, lon, 0]},
+        {"command": JUMP, "frame": 2, "params": [1, 2, 0, 0, 0, 0, 0]},
+        {"command": RETURN, "frame": 2, "params": [0, 0, 0, 0, 0, 0, 0]},
+    ],
+)
 session.mavsdk.destroy()

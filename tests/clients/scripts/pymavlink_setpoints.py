@@ -53,12 +53,12 @@ check("acceleration", pilot.here().vx > 0.6)
 pilot.fly_for(2, lambda: local(LOCAL_NED, VELOCITY))
 
 start = pilot.expect("global position", ("GLOBAL_POSITION_INT",))
-for frame, height, told in ((GLOBAL_RELATIVE, 12, "relative_alt"), (GLOBAL_AMSL, start.alt / 1e3, "alt")):
+for frame, height, field in ((GLOBAL_RELATIVE, 12, "relative_alt"), (GLOBAL_AMSL, start.alt / 1e3, "alt")):
     to = start.lat + (DEGE7_OF_10_M if frame == GLOBAL_RELATIVE else 0)
     pilot.mav.set_position_target_global_int_send(0, 1, 1, frame, POSITION, to, start.lon, height, *(0,) * 8)
 
-    def there(message, to=to, told=told, height=height):
-        return abs(message.lat - to) < 45 and abs(getattr(message, told) - height * 1e3) < 500
+    def there(message, to=to, field=field, height=height):
+        return abs(message.lat - to) < 45 and abs(getattr(message, field) - height * 1e3) < 500
 
     pilot.expect(f"global position, frame {frame}", ("GLOBAL_POSITION_INT",), there, 20.0)
 pilot.mav.command_int_send(1, 1, 3, 192, 0, 0, -1, 1, 0, 0, start.lat + DEGE7_OF_10_M, start.lon, 10)

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the MAVSDK 4 scripts of these tests share."""
 
+import json
 import math
 import sys
 import time
+from functools import cached_property
 
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
+from mavsdk.plugins.info import Info
+from mavsdk.plugins.mission_raw import MissionRaw
+from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import Telemetry
 
 
@@ -46,6 +51,11 @@ class Session:
         self.system = self.mavsdk.first_autopilot(30.0)
         check("autopilot", self.system is not None)
         self.action, self.telemetry = Action(self.system), Telemetry(self.system)
+
+    @cached_property
+    def info(self) -> Info:
+        """It measures the vehicle's clock from when it is first asked."""
+        return Info(self.system)
 
     def ready(self) -> None:
         """Until it can be armed and flown."""
@@ -89,3 +99,63 @@ class Session:
         """North, east [m] of where the estimator began."""
         p = self.telemetry.position_velocity_ned().position
         return p.north_m, p.east_m
+
+    def check_parameters(self, name: str, value: float, unknown: str, floats: int) -> None:
+        """Version and parameters: a float of this vehicle, one that it does not have, and at least so many floats."""
+        param = Param(self.system)
+        check("version", self.info.get_version().flight_sw_major == 4)
+        param.set_param_int("FS_GCS_ENABLE", 0)
+        check("whole number", param.get_param_int("FS_GCS_ENABLE") == 0)
+        param.set_param_float(name, value)
+        check("float", param.get_param_float(name) == value)
+        refused("float as whole number", param.get_param_int, name, result="WRONG_TYPE")
+        refused("unknown parameter", param.get_param_float, unknown, result="TIMEOUT")
+        every = param.get_all_params()
+        check("all parameters", len(every.int_params) > 50 and len(every.float_params) > floats)
+
+    def check_rates(self) -> None:
+        """Which telemetry can be asked for at a rate."""
+        for name in (
+            "position", "home", "in_air", "landed_state", "vtol_state", "attitude_quaternion", "attitude_euler",
+            "velocity_ned", "gps_info", "raw_gps", "battery", "rc_status", "position_velocity_ned",
+            "fixedwing_metrics", "imu", "scaled_imu", "raw_imu", "unix_epoch_time", "health",
+        ):  # fmt: skip
+            getattr(self.telemetry, f"set_rate_{name}")(5.0)
+            check(f"rate of {name}", True)
+        for name in ("odometry", "ground_truth", "altitude", "actuator_output_status", "actuator_control_target"):
+            refused(f"rate of {name}", getattr(self.telemetry, f"set_rate_{name}"), 1.0, result="COMMAND_DENIED")
+
+    def check_telemetry(self) -> None:
+        """Every message has numbers."""
+        check("all well", self.telemetry.health_all_ok())
+        for name, field in (
+            ("position", "latitude_deg"), ("home", "latitude_deg"), ("attitude_quaternion", "w"),
+            ("attitude_euler", "yaw_deg"), ("velocity_ned", "north_m_s"), ("raw_gps", "hdop"),
+            ("battery", "voltage_v"), ("heading", "heading_deg"), ("fixedwing_metrics", "throttle_percentage"),
+            ("imu", "temperature_degc"),
+        ):  # fmt: skip
+            value = getattr(self.telemetry, name)()
+            check(name, math.isfinite(getattr(value, field)), value)
+        check("satellites", self.telemetry.gps_info().num_satellites >= 10)
+        factor = self.info.get_speed_factor()
+        check("its clock is the vehicle's", abs(factor - 1.0) < 0.05, factor)
+
+    def check_clear_and_plan(self, mission: MissionRaw, vehicle_type: int, rows: list[dict]) -> None:
+        """A mission is cleared; a QGroundControl plan of such simple items is uploaded and comes back."""
+        mission.clear_mission()
+        check("cleared", len(mission.download_mission()) <= 1)  # MAVSDK clears ArduPilot's by uploading one empty item
+        home = self.telemetry.home()
+        simple = {"autoContinue": True, "type": "SimpleItem", "frame": 3}
+        plan = {
+            "fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
+            "geoFence": {"circles": [], "polygons": [], "version": 2}, "rallyPoints": {"points": [], "version": 2},
+            "mission": {
+                "version": 2, "firmwareType": 3, "vehicleType": vehicle_type, "globalPlanAltitudeMode": 1,
+                "cruiseSpeed": 15 if vehicle_type == 2 else 2, "hoverSpeed": 5,
+                "plannedHomePosition": [home.latitude_deg, home.longitude_deg, 584],
+                "items": [{**simple, "doJumpId": number, **row} for number, row in enumerate(rows, 1)],
+            },
+        }  # fmt: skip
+        mission.upload_mission(mission.import_qgroundcontrol_mission_from_string(json.dumps(plan)).mission_items)
+        commands = [item.command for item in mission.download_mission()]
+        check("plan", commands == [16, *(row["command"] for row in rows)], commands)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.logs.dataflash.logged_run import Run, read_log
+from tests.logs.dataflash.conftest import Run, read_log
 
 COMMON = {
     "FMT", "FMTU", "UNIT", "MULT", "PARM", "VER", "MSG", "MODE", "ARM", "EV", "ORGN", "ATT", "IMU", "BARO", "MAG",

@@ -9,7 +9,7 @@ import pytest
 
 from sitl.client.endpoint import Endpoint
 from sitl.simulation import Simulation
-from tests.logs.dataflash.logged_run import Run
+from tests.logs.dataflash.conftest import Run
 
 ALL = 0xFFFFFFFF
 

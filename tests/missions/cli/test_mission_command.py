@@ -31,11 +31,7 @@ class Entry:
 @pytest.fixture(autouse=True)
 def added(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """``mission`` is there whether or not the package is installed."""
-    found = [
-        Entry("zebra", ImportError("no stripes")),
-        Entry("mission", missions_cli),
-        Entry("run", missions_cli),
-    ]
+    found = [Entry("zebra", ImportError("no stripes")), Entry("mission", missions_cli), Entry("run", missions_cli)]
     ours = {"group": cli.GROUP}
     real = metadata.entry_points
     monkeypatch.setattr(metadata, "entry_points", lambda **wanted: found if wanted == ours else real(**wanted))

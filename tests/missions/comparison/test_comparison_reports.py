@@ -14,7 +14,7 @@ from sitl.cli import main
 from sitl.missions.comparison import report
 from sitl.missions.comparison.compare import Comparison, compare
 from sitl.missions.comparison.flight import read
-from tests.missions.comparison.compared_flights import fly_square
+from tests.missions.comparison.conftest import fly_square
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from sitl.missions.comparison.compare import Comparison, compare, default_tolera
 from sitl.missions.comparison.flight import Flight, of_recording, read
 from sitl.recording.entries import EntryKind
 from sitl.recording.recording import read as read_recording
-from tests.missions.comparison.compared_flights import fly_square
+from tests.missions.comparison.conftest import fly_square
 
 
 @pytest.fixture(scope="module")
@@ -70,8 +70,7 @@ def test_a_changed_height_is_told_as_such(golden: Flight, tmp_path: Path) -> Non
     found = compare(
         golden,
         fly_square(
-            tmp_path / "high.rec",
-            change=lambda items: (*items[:4], items[4]._replace(z=items[4].z + 1.0), *items[5:]),
+            tmp_path / "high.rec", change=lambda items: (*items[:4], items[4]._replace(z=items[4].z + 1.0), *items[5:])
         ),
     )
     assert found.differences["altitude"].max == pytest.approx(1.0, abs=0.4)
@@ -102,8 +101,8 @@ def test_a_lost_item_a_new_mode_and_a_late_text_are_named(golden: Flight) -> Non
 
 def test_a_message_of_the_client_that_is_lost_is_seen_and_located(squares: Path, golden: Flight) -> None:
     recording = read_recording(squares / "copter.rec")
-    heard = [entry for entry in recording.entries if entry.kind is EntryKind.RECEIVED]
-    start = heard[-1]  # MISSION_START
+    received = [entry for entry in recording.entries if entry.kind is EntryKind.RECEIVED]
+    start = received[-1]  # MISSION_START
     assert start.time_us == pytest.approx(42.6e6, abs=0.5e6)
     entries = [entry for entry in recording.entries if entry is not start]
     lost = of_recording(replace(recording, entries=entries, sections={}))

@@ -9,18 +9,18 @@ from pathlib import Path
 import pytest
 
 from sitl.missions.testing.factory import VehicleFactory
-from sitl.missions.testing.golden import GoldenBook
+from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults
 
 
 @pytest.fixture
-def book(tmp_path: Path) -> GoldenBook:
-    return GoldenBook(folder=tmp_path, test="this test")
+def store(tmp_path: Path) -> GoldenStore:
+    return GoldenStore(folder=tmp_path, test="this test")
 
 
 @pytest.fixture
-def make(tmp_path: Path, book: GoldenBook) -> Iterator[VehicleFactory]:
-    factory = VehicleFactory(Defaults(folders=(tmp_path,)), book, tmp_path / "logs")
+def make(tmp_path: Path, store: GoldenStore) -> Iterator[VehicleFactory]:
+    factory = VehicleFactory(Defaults(folders=(tmp_path,)), store, tmp_path / "logs")
     yield factory
     factory.close()
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sitl.missions.testing.factory import VehicleFactory
-from sitl.missions.testing.golden import FlightChanged, GoldenBook
+from sitl.missions.testing.golden import FlightChanged, GoldenStore
 from sitl.missions.testing.vehicle import Copter
 from sitl.recording.recording import read
 
@@ -22,12 +22,12 @@ def hop(vehicle: Copter, east: float = 5.0) -> Copter:
 
 
 @pytest.fixture
-def golden(make: VehicleFactory, book: GoldenBook, tmp_path: Path) -> Path:
-    book.update = True
+def golden(make: VehicleFactory, store: GoldenStore, tmp_path: Path) -> Path:
+    store.update = True
     hop(make("copter")).assert_flies_like("golden/hop.rec")
-    book.update = False
-    book.checked.clear()
-    book.written.clear()
+    store.update = False
+    store.checked.clear()
+    store.written.clear()
     return tmp_path / "golden" / "hop.rec"
 
 
@@ -45,8 +45,8 @@ def test_what_changes_within_the_limits_is_told(make: VehicleFactory, golden: Pa
         copter.assert_flies_like("golden/hop.rec")
 
 
-def test_without_golden_it_says_how_to_make_one(make: VehicleFactory, book: GoldenBook, tmp_path: Path) -> None:
-    book.how = "pytest x --sitl-update-golden"
+def test_without_golden_it_says_how_to_make_one(make: VehicleFactory, store: GoldenStore, tmp_path: Path) -> None:
+    store.how = "pytest x --sitl-update-golden"
     with pytest.raises(AssertionError, match=r"there is no golden flight .*hop\.rec; .* pytest x --sitl-update-golden"):
         hop(make("copter")).assert_flies_like("golden/hop.rec")
     assert not (tmp_path / "golden").exists()
@@ -59,12 +59,12 @@ def test_another_way_is_found_and_golden_stays(make: VehicleFactory, golden: Pat
     assert golden.read_bytes() == before
 
 
-def test_a_gain_that_is_one_percent_more_is_found(make: VehicleFactory, book: GoldenBook) -> None:
-    book.update = True
+def test_a_gain_that_is_one_percent_more_is_found(make: VehicleFactory, store: GoldenStore) -> None:
+    store.update = True
     copter = make("copter")
     copter.fly_mission("copter/square")
     copter.assert_flies_like("square.rec")
-    book.update = False
+    store.update = False
     other = make("copter", params={"PSC_VELXY_P": 1.01 * copter.parameter("PSC_VELXY_P")})
     other.fly_mission("copter/square")
     with pytest.raises(AssertionError, match=r"(?s)s after item 1: .* golden.*PSC_VELXY_P .* -> 2\.02"):
@@ -81,30 +81,30 @@ def test_tolerances_are_taken(make: VehicleFactory, golden: Path, tmp_path: Path
         copter.assert_flies_like("golden/hop.rec", tolerance="close.toml")
 
 
-def test_an_update_leaves_a_golden_that_is_the_same(make: VehicleFactory, book: GoldenBook, golden: Path) -> None:
+def test_an_update_leaves_a_golden_that_is_the_same(make: VehicleFactory, store: GoldenStore, golden: Path) -> None:
     before = golden.stat().st_mtime_ns
-    book.update = True
+    store.update = True
     hop(make("copter")).assert_flies_like("golden/hop.rec")
-    assert golden.stat().st_mtime_ns == before and not book.written
+    assert golden.stat().st_mtime_ns == before and not store.written
 
 
-def test_an_update_writes_another_flight(make: VehicleFactory, book: GoldenBook, golden: Path) -> None:
-    book.update = True
+def test_an_update_writes_another_flight(make: VehicleFactory, store: GoldenStore, golden: Path) -> None:
+    store.update = True
     hop(make("copter"), east=6.0).assert_flies_like("golden/hop.rec")
-    assert book.written == [golden]
+    assert store.written == [golden]
     assert [file.name for file in golden.parent.iterdir()] == ["hop.rec"]
 
 
-def test_two_flights_do_not_share_a_golden(make: VehicleFactory, book: GoldenBook, golden: Path) -> None:
-    book.update = True
+def test_two_flights_do_not_share_a_golden(make: VehicleFactory, store: GoldenStore, golden: Path) -> None:
+    store.update = True
     copter = hop(make("copter"))
     copter.assert_flies_like("golden/hop.rec")
     with pytest.raises(AssertionError, match="is of another flight of this test already"):
         copter.assert_flies_like("golden/hop.rec")
 
 
-def test_only_recordings_are_written(make: VehicleFactory, book: GoldenBook) -> None:
-    book.update = True
+def test_only_recordings_are_written(make: VehicleFactory, store: GoldenStore) -> None:
+    store.update = True
     with pytest.raises(AssertionError, match="only recordings"):
         hop(make("copter")).assert_flies_like("golden/hop.tlog")
 
@@ -115,21 +115,21 @@ def test_a_golden_that_is_damaged_is_named(make: VehicleFactory, golden: Path) -
         hop(make("copter")).assert_flies_like("golden/hop.rec")
 
 
-def test_a_golden_of_no_use_says_how_it_is_made_anew(make: VehicleFactory, book: GoldenBook, golden: Path) -> None:
+def test_a_golden_of_no_use_says_how_it_is_made_anew(make: VehicleFactory, store: GoldenStore, golden: Path) -> None:
     golden.write_text("junk")
     copter = hop(make("copter"))
     with pytest.raises(AssertionError, match=r"(?s)hop\.rec is of no use: .*begins with.*--sitl-update-golden"):
         copter.assert_flies_like("golden/hop.rec")
     assert golden.read_text() == "junk"
-    book.update = True
+    store.update = True
     copter.assert_flies_like("golden/hop.rec")
-    assert book.written == [golden]
+    assert store.written == [golden]
 
 
-def test_a_golden_that_cannot_be_written_is_said(make: VehicleFactory, book: GoldenBook, tmp_path: Path) -> None:
+def test_a_golden_that_cannot_be_written_is_said(make: VehicleFactory, store: GoldenStore, tmp_path: Path) -> None:
     (tmp_path / "golden" / "hop.rec").mkdir(parents=True)
-    book.update = True
+    store.update = True
     with pytest.raises(AssertionError, match=r"hop\.rec cannot be written: Is a directory"):
         hop(make("copter")).assert_flies_like("golden/hop.rec")
     assert [file.name for file in (tmp_path / "golden").iterdir()] == ["hop.rec"]
-    assert not book.written
+    assert not store.written

@@ -1,4 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
+"""Steps repeat, compiled and plain give the same bits; SIM_ parameters that break things."""
+
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -8,6 +12,7 @@ from pytest import approx
 from sitl.core import records
 from sitl.core.kernels import jit_disabled
 from sitl.physics.native import truth
+from sitl.simulation import Core, Simulation
 
 
 @pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
@@ -64,3 +69,33 @@ def test_truth_for_the_shell(rig):
     assert now.alt == approx(594.0)
     assert math.degrees(now.euler[2]) == approx(-7.0)
     assert not now.on_ground
+
+
+def test_a_receiver_that_is_switched_off_is_silent_and_comes_back(core: Core) -> None:
+    simulation = Simulation(core=core)
+    simulation.advance(15.0)
+    sensors = simulation.v.sensors
+    assert int(sensors.gps_fix) == 3
+    simulation.v.autopilot.params.SIM_GPS1_ENABLE = 0
+    simulation.parameter_changed("SIM_GPS1_ENABLE")
+    simulation.advance(1.0)
+    count = int(sensors.gps_count)
+    simulation.advance(2.0)
+    assert int(sensors.gps_count) == count
+    assert int(sensors.gps_fix) == 0
+    simulation.v.autopilot.params.SIM_GPS1_ENABLE = 1
+    simulation.parameter_changed("SIM_GPS1_ENABLE")
+    simulation.advance(1.0)
+    assert int(sensors.gps_count) > count
+    assert int(sensors.gps_fix) == 3
+
+
+def test_faults_given_at_the_start_and_after_a_reboot(core: Core) -> None:
+    faults = {"SIM_ENGINE_FAIL": 6, "SIM_ENGINE_MUL": 0.5, "SIM_RC_FAIL": 1, "SIM_GPS1_ENABLE": 0}
+    simulation = Simulation(core=core, params=faults)
+    for _ in range(2):
+        simulation.advance(12.0)
+        assert list(simulation.v.physics.rotors.efficiency[:4]) == [1.0, 0.5, 0.5, 1.0]
+        assert int(simulation.v.sensors.gps_count) == 0
+        assert int(simulation.v.autopilot.rc.receiver_ok) == 0
+        simulation.request_reboot()

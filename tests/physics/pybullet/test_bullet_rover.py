@@ -4,28 +4,73 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
+from pytest import approx
 
 pytest.importorskip("pybullet")
 
-from pytest import approx
-
-from sitl import worlds
+from sitl import vehicles, worlds
 from sitl.core.records import first_difference
-from sitl.physics.engine import EngineError
+from sitl.physics.engine import EngineError, EngineVehicle, Laws
 from sitl.physics.native.body import GRAVITY
+from sitl.physics.native.rover.init import init
+from sitl.physics.pybullet.rover import BulletRover
 from sitl.physics.pybullet.rover_model import layout
 from sitl.physics.pybullet.tyres import CREEP, scrub
+from sitl.vehicle.core_entry import bind_unit
+from sitl.vehicle.rover import ROVER
+from sitl.vehicle.rover import Rover as RoverRecord
 from sitl.worlds import Box, Start, World
-from tests.physics.pybullet.bullet_rovers import AIRFRAMES, Rover
 
+HOME = (-35.36, 149.16, 584.0, 0.0)
+AIRFRAMES = vehicles.names("rover")
 CARS = AIRFRAMES[:3]
 START = (Start("origin", (0.0, 0.0, 0.0), 0.0),)
 WALL = World("wall", (Box((5.0, 0.0, 0.5), (0.2, 8.0, 1.0)),), START)
 LINTEL = World("lintel", (Box((3.0, 0.0, 2.0), (0.2, 8.0, 1.0)),), START)
 ICE = World("ice", (), START, friction=0.05)
+
+
+class Rover:
+    """A rover with steering or left side on the first control, throttle or right side on the second: -1 .. 1."""
+
+    def __init__(self, frame: str, world: str | World | None = None, physics: str = "pybullet", **figures: Any) -> None:
+        airframe = vehicles.load(frame).changed(noise_scale=0.0, **figures)
+        self.fleet = fleet = RoverRecord.fleet(1)
+        self.v = RoverRecord.of(fleet, 0)
+        init(self.v, airframe, HOME, 1)
+        self.full = float(airframe.value("control_full"))
+        self.engine: BulletRover | None = None
+        if physics == "native":
+            self.tick = bind_unit(ROVER.step, ROVER, fleet, 0)
+            return
+        units = (ROVER.pieces.begin, ROVER.pieces.load, ROVER.pieces.sense)
+        laws = Laws(*(bind_unit(unit, ROVER, fleet, 0) for unit in units))
+        found = worlds.load(world) if world is not None else None
+        self.engine = BulletRover(EngineVehicle(self.v, fleet, 0, airframe, laws, found))
+        self.engine.place()
+        self.tick = self.engine.tick
+
+    def drive(self, seconds: float, first: float = 0.0, second: float = 0.0) -> None:
+        controls = self.v.actuators.controls
+        controls[0], controls[2] = first * self.full, second * self.full
+        for _ in range(round(400 * seconds)):
+            self.tick()
+
+    @property
+    def body(self) -> Any:
+        return self.v.physics.body
+
+    @property
+    def wheels(self) -> Any:
+        return self.v.physics.wheels
+
+    @property
+    def hits(self) -> Any:
+        return self.v.physics.obstacles
 
 
 @pytest.mark.parametrize("frame", AIRFRAMES)

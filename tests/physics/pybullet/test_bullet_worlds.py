@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Worlds in Bullet: floor, solids, rays; the client."""
+"""Worlds in Bullet: floor, solids, rays, the client; and the copter's URDF model, with pictures of it."""
 
 from __future__ import annotations
 
+import math
 import sys
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 pytest.importorskip("pybullet")
 
-from sitl import worlds
+from sitl import vehicles, worlds
 from sitl.errors import MissingExtra
 from sitl.physics.pybullet import client as clients
 from sitl.physics.pybullet.client import Client
+from sitl.physics.pybullet.copter_model import footing, leg_length, model, sag, springs
+from sitl.physics.pybullet.picture import Camera
 from sitl.physics.pybullet.worlds import SHAPES_EACH, build
 from sitl.worlds.contact import clearance
 from sitl.worlds.raycast import scan
@@ -74,3 +80,56 @@ def test_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     engine.close()
     out, err = capfd.readouterr()
     assert (out, err) == ("", "")
+
+
+SQUARE = [(0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)]
+
+
+@pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad"])
+def test_says_what_the_airframe_says(frame: str) -> None:
+    airframe = vehicles.load(frame)
+    robot = ElementTree.fromstring(model(copter(frame).vehicle.v.physics.airframe).text)
+    body, legs = robot.findall("link")
+    assert float(body.find("inertial/mass").get("value")) == airframe.value("mass")  # type: ignore[union-attr]
+    inertia = body.find("inertial/inertia").attrib  # type: ignore[union-attr]
+    assert [float(inertia[k]) for k in ("ixx", "iyy", "izz")] == list(airframe.value("inertia"))
+    outline = body.find("collision/geometry/cylinder").get("radius")  # type: ignore[union-attr]
+    assert float(outline) == airframe.value("contact_radius")  # type: ignore[arg-type]
+    feet = [[float(n) for n in c.find("origin").get("xyz").split()] for c in legs.findall("collision")]  # type: ignore[union-attr]
+    assert sorted((x, -y) for x, y, _ in feet) == sorted((r.x, r.y) for r in airframe.rotors)  # type: ignore[attr-defined]
+
+
+def test_it_tips_where_the_airframe_says() -> None:
+    assert leg_length(SQUARE, math.radians(45.0)) == pytest.approx(0.1)
+    assert leg_length(SQUARE, math.radians(60.0)) == pytest.approx(0.1 / math.sqrt(3.0))
+    assert leg_length(SQUARE, math.radians(120.0)) == pytest.approx(0.03), "never without legs"
+
+
+def test_every_copter_has_something_to_stand_on() -> None:
+    ring = [(0.3 * math.cos(k * math.pi / 3.0), 0.3 * math.sin(k * math.pi / 3.0), 0.0) for k in range(6)]
+    assert footing(ring, 0.4) == [(x, y) for x, y, _ in ring]
+    assert leg_length(footing(ring, 0.4), math.radians(45.0)) == pytest.approx(0.3 * math.sqrt(0.75))
+    for hubs in (ring[:1], ring[:2]):
+        assert leg_length(footing(hubs, 0.4), math.radians(45.0)) == pytest.approx(0.2)
+
+
+@given(st.floats(0.1, 20.0), st.floats(0.001, 0.1), st.integers(3, 8))
+def test_springs_carry_the_weight(mass: float, time_constant: float, count: int) -> None:
+    stiffness, damping = springs(mass, time_constant, count)
+    assert count * stiffness * sag(time_constant) == pytest.approx(mass * 9.80665)
+    assert (count * damping) ** 2 == pytest.approx(4.0 * mass * count * stiffness), "critically damped"
+
+
+def test_a_picture_shows_it_and_changes_nothing() -> None:
+    world = worlds.load("maze")
+    engine, other = copter(world=world, position=(0.0, 0.0, -0.5)), copter(world=world, position=(0.0, 0.0, -0.5))
+    picture = engine.render(96, 64)
+    assert (picture.shape, picture.dtype) == ((64, 96, 3), np.uint8)
+    red = (picture[..., 0] > 150) & (picture[..., 1] < 90)
+    assert red.sum() > 20, "the front rotors"
+    away = engine.render(96, 64, Camera((0.0, 0.0, 30.0), (0.0, 0.1, 100.0)))
+    assert away.std() < 1.0, "nothing but sky"
+    engine.tick()
+    other.tick()
+    assert engine.vehicle.fleet.tobytes() == other.vehicle.fleet.tobytes()
+    engine.close()

@@ -23,11 +23,12 @@ from ...control.shaping import (
     shape_vel_accel,
     sqrt_controller,
 )
+from ...state import Estimate
+from ..parameters import Parameters
 from ..parameters.control import Position
-from ..state import Autopilot
 from .altitude_start import ACCZ_UNIT, init_d, is_active_d
 from .motors import hover_throttle
-from .state import DT, AltitudeState
+from .state import DT, AltitudeState, Control
 from .throttle_mix import set_throttle_out
 
 _ACCZ_IMAX_UNIT = 0.001
@@ -181,17 +182,16 @@ def altitude_gains(p: Position, hover: float) -> AltitudeGains:
 
 
 @law
-def update_d(ap: Autopilot) -> None:
+def update_d(control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of the cascade; sets the throttle."""
-    c = ap.control.pos_d
-    est = ap.estimate
-    motors = ap.control.motors
-    if not is_active_d(ap.control):
-        init_d(ap)
+    c = control.pos_d
+    motors = control.motors
+    if not is_active_d(control):
+        init_d(control, est, p)
     follow_reset_d(c, est.pos.z, est.reset_vel.z, est.reset_d_count)
-    c.last_tick = ap.control.tick
+    c.last_tick = control.tick
     blocked = Blocked(motors.limit_throttle_lower, motors.limit_throttle_upper)
-    hover = hover_throttle(ap.params.MOT)
-    gains = altitude_gains(ap.params.PSC, hover)
+    hover = hover_throttle(p.MOT)
+    gains = altitude_gains(p.PSC, hover)
     taken_off = control_vertical(c, Motion(est.pos.z, est.vel.z, est.acc_ned.z), blocked, gains)
-    set_throttle_out(ap, hover - taken_off, True, _THROTTLE_HZ)
+    set_throttle_out(control, p, hover - taken_off, True, _THROTTLE_HZ)

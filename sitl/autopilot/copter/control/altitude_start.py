@@ -7,10 +7,11 @@ from ....core.kernels import law
 from ....core.scalars import TWO_PI, constrain, finite
 from ...control.pid import relax_integrator, reset_filter
 from ...control.shaping import inverse_sqrt_controller
+from ...state import Estimate
+from ..parameters import Parameters
 from ..parameters.control import Position
-from ..state import Autopilot
 from .motors import hover_throttle
-from .state import DT, GRAVITY, Control
+from .state import DT, GRAVITY, AltitudeState, Control
 
 RELAX_TIME = 0.16
 """Time constant with which the throttle decays on the ground [s] (ArduPilot's)."""
@@ -20,14 +21,13 @@ _STOP_DOWN, _STOP_UP = 2.0, 3.0  # bounds of the stopping point [m]
 
 
 @law
-def set_max_speed_accel_d(ap: Autopilot, speed_down: float, speed_up: float, accel: float) -> None:
+def set_max_speed_accel_d(c: AltitudeState, p: Position, speed_down: float, speed_up: float, accel: float) -> None:
     """Limits of the shaping and the correction (all positive) [m/s, m/s^2]."""
-    c = ap.control.pos_d
     c.speed_down = c.correction_speed_down = abs(speed_down)
     c.speed_up = c.correction_speed_up = abs(speed_up)
     c.correction_accel = abs(accel)
     c.accel_max = max(abs(accel), 0.01)
-    c.jerk_max = jerk_limit_d(ap.params.PSC, c.accel_max)
+    c.jerk_max = jerk_limit_d(p, c.accel_max)
 
 
 @law
@@ -49,11 +49,10 @@ def is_active_d(control: Control) -> bool:
 
 
 @law
-def init_d(ap: Autopilot) -> None:
+def init_d(control: Control, est: Estimate, p: Parameters) -> None:
     """Start from the present altitude, climb and throttle."""
-    c = ap.control.pos_d
-    est = ap.estimate
-    gains = ap.params.PSC.ACCZ
+    c = control.pos_d
+    gains = p.PSC.ACCZ
     c.pos_desired = est.pos.z
     c.vel_desired = est.vel.z
     c.vel_target = est.vel.z
@@ -68,33 +67,33 @@ def init_d(ap: Autopilot) -> None:
     reset_filter(c.accel)
     # What P and FF will give at once is left out, so that the throttle does not jump.
     at_once = ACCZ_UNIT * (gains.P * (target - measured) + gains.FF * target)
-    c.accel.integrator = hover_throttle(ap.params.MOT) - ap.control.attitude.throttle_in - at_once
+    c.accel.integrator = hover_throttle(p.MOT) - control.attitude.throttle_in - at_once
     c.reset_count = est.reset_d_count
-    c.last_tick = ap.control.tick
+    c.last_tick = control.tick
 
 
 @law
-def init_d_stopping_point(ap: Autopilot) -> None:
+def init_d_stopping_point(control: Control, est: Estimate, p: Parameters) -> None:
     """Start from the altitude where the vehicle can stop."""
-    init_d(ap)
-    c = ap.control.pos_d
-    c.pos_desired = stopping_point_d(ap)
+    init_d(control, est, p)
+    c = control.pos_d
+    c.pos_desired = stopping_point_d(c, est, p.PSC)
     c.vel_desired = 0.0
     c.vel_target = 0.0
     c.accel_desired = 0.0
 
 
 @law
-def relax_d(ap: Autopilot, throttle: float) -> None:
+def relax_d(control: Control, est: Estimate, p: Parameters, throttle: float) -> None:
     """Let the throttle decay to ``throttle`` (0 .. 1) at the present altitude (on the ground, spooling)."""
-    init_d(ap)
-    relax_integrator(ap.control.pos_d.accel, hover_throttle(ap.params.MOT) - throttle, DT, RELAX_TIME)
+    init_d(control, est, p)
+    relax_integrator(control.pos_d.accel, hover_throttle(p.MOT) - throttle, DT, RELAX_TIME)
 
 
 @law
-def stopping_point_d(ap: Autopilot) -> float:
+def stopping_point_d(c: AltitudeState, est: Estimate, p: Position) -> float:
     """Altitude [m, down] where the vehicle stops from its present climb or descent."""
-    kp, accel, pos = ap.params.PSC.POSZ_P, ap.control.pos_d.accel_max, ap.estimate.pos.z
+    kp, accel, pos = p.POSZ_P, c.accel_max, est.pos.z
     if kp <= 0.0 or accel <= 0.0:
         return pos
-    return pos + constrain(inverse_sqrt_controller(ap.estimate.vel.z, kp, accel), -_STOP_UP, _STOP_DOWN)
+    return pos + constrain(inverse_sqrt_controller(est.vel.z, kp, accel), -_STOP_UP, _STOP_DOWN)

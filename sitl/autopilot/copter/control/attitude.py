@@ -28,7 +28,6 @@ from ...control.shaping import shape_angle, shape_rate
 from ...state import Estimate
 from ..parameters import Parameters
 from ..parameters.control import Attitude
-from ..state import Autopilot
 from . import rate
 from .attitude_error import body_rates, euler_accel_limits, euler_rates, split_error, thrust_quaternion
 from .attitude_target import (
@@ -46,6 +45,21 @@ from .attitude_target import (
 from .state import DT, AttitudeState, Control
 
 
+class Lean(NamedTuple):
+    """Roll and pitch [rad]."""
+
+    roll: float
+    pitch: float
+
+
+class Heading(NamedTuple):
+    """Where the nose shall point, and how fast that turns."""
+
+    angle: float  # [rad]
+    rate: float  # [rad/s]
+    absolute: bool  # the angle counts; else the rate alone
+
+
 class Shaping(NamedTuple):
     """How the target attitude may move."""
 
@@ -57,14 +71,14 @@ class Shaping(NamedTuple):
 
 
 @law
-def shape_euler(target: Euler, rate: Vec3, roll: float, pitch: float, yaw_rate: float, shaping: Shaping) -> Vec3:
-    """Body rates [rad/s] of a target that turns at ``rate``, towards a roll, a pitch [rad] and a turn rate."""
+def shape_euler(target: Euler, rate: Vec3, lean: Lean, yaw_rate: float, shaping: Shaping) -> Vec3:
+    """Body rates [rad/s] of a target that turns at ``rate``, towards a lean and a turn rate [rad/s]."""
     accel = euler_accel_limits(target, shaping.accel_max)
     rates = euler_rates(target, rate)
     tau = shaping.time_constant
     shaped = Euler(
-        shape_angle(wrap_pi(roll - target.roll), rates.roll, tau, accel.roll, DT, 0.0, 0.0),
-        shape_angle(wrap_pi(pitch - target.pitch), rates.pitch, tau, accel.pitch, DT, 0.0, 0.0),
+        shape_angle(wrap_pi(lean.roll - target.roll), rates.roll, tau, accel.roll, DT, 0.0, 0.0),
+        shape_angle(wrap_pi(lean.pitch - target.pitch), rates.pitch, tau, accel.pitch, DT, 0.0, 0.0),
         shape_rate(rates.yaw, yaw_rate, accel.yaw, shaping.yaw_time_constant, DT),
     )
     return limit_rates(body_rates(target, shaped), shaping.rate_max)
@@ -140,12 +154,12 @@ def follow_yaw_reset(control: Control, est: Estimate) -> None:
 
 
 @law
-def advance_target(ap: Autopilot) -> Shaping:
+def advance_target(control: Control, est: Estimate, p: Parameters) -> Shaping:
     """What every input starts with: the target turns on. Returns how it may move."""
-    follow_yaw_reset(ap.control, ap.estimate)
-    attitude = ap.control.attitude
+    follow_yaw_reset(control, est)
+    attitude = control.attitude
     set_target(attitude, turned_by_rate(attitude.target_q, attitude.target_rate, DT))
-    return shaping_limits(ap.params)
+    return shaping_limits(p)
 
 
 @law
@@ -156,11 +170,9 @@ def jump(attitude: AttitudeState, q: Quat, rate: Vec3) -> None:
 
 
 @law
-def correct(ap: Autopilot) -> None:
+def correct(attitude: AttitudeState, est: Estimate, p: Attitude) -> None:
     """Body-rate targets from the difference between target and estimate."""
-    attitude, est = ap.control.attitude, ap.estimate
-    gains = attitude_gains(ap.params.ATC)
-    out = attitude_control(est.q, attitude.target_q, attitude.target_rate, est.rates, gains)
+    out = attitude_control(est.q, attitude.target_q, attitude.target_rate, est.rates, attitude_gains(p))
     if out.yaw_limited:
         set_target(attitude, out.target)
     attitude.rate_target = out.rate_target
@@ -179,43 +191,47 @@ def hold(attitude: AttitudeState, shaping: Shaping) -> None:
 
 
 @law
-def input_euler_roll_pitch_yaw_rate(ap: Autopilot, roll: float, pitch: float, yaw_rate: float) -> None:
-    """Lean to ``roll``, ``pitch`` [rad] while turning at ``yaw_rate`` [rad/s]."""
-    shaping = advance_target(ap)
-    attitude = ap.control.attitude
+def input_euler_roll_pitch_yaw_rate(
+    control: Control, est: Estimate, p: Parameters, lean: Lean, yaw_rate: float
+) -> None:
+    """Lean to a roll and a pitch while turning at ``yaw_rate`` [rad/s]."""
+    shaping = advance_target(control, est, p)
+    attitude = control.attitude
     euler = attitude.target_euler
-    if not (finite(roll) and finite(pitch) and finite(yaw_rate)):
-        roll, pitch, yaw_rate = euler.roll, euler.pitch, 0.0
+    if not (finite(lean.roll) and finite(lean.pitch) and finite(yaw_rate)):
+        lean, yaw_rate = Lean(euler.roll, euler.pitch), 0.0
     if shaping.enabled:
-        attitude.target_rate = shape_euler(euler, attitude.target_rate, roll, pitch, yaw_rate, shaping)
+        attitude.target_rate = shape_euler(euler, attitude.target_rate, lean, yaw_rate, shaping)
     else:
-        jump(attitude, quat_from_euler(Euler(roll, pitch, euler.yaw + yaw_rate * DT)), Vec3(0.0, 0.0, 0.0))
-    correct(ap)
+        jump(attitude, quat_from_euler(Euler(lean.roll, lean.pitch, euler.yaw + yaw_rate * DT)), Vec3(0.0, 0.0, 0.0))
+    correct(attitude, est, p.ATC)
 
 
 @law
-def input_thrust_vector_heading(ap: Autopilot, thrust: Vec3, heading: float, heading_rate: float) -> None:
-    """Point thrust along an NED vector and the nose to ``heading`` [rad], which moves at ``heading_rate`` [rad/s]."""
-    shaping = advance_target(ap)
-    attitude = ap.control.attitude
-    if not (finite_vector(thrust) and finite(heading) and finite(heading_rate)):
+def input_thrust_vector_heading(control: Control, est: Estimate, p: Parameters, thrust: Vec3, heading: Heading) -> None:
+    """Point thrust along an NED vector and the nose to the angle of ``heading``, which moves at its rate."""
+    shaping = advance_target(control, est, p)
+    attitude = control.attitude
+    if not (finite_vector(thrust) and finite(heading.angle) and finite(heading.rate)):
         hold(attitude, shaping)
     elif shaping.enabled:
-        slew = slew_yaw_max(ap.params.ATC)
-        ahead = Vec3(0.0, 0.0, limit_turn(heading_rate, slew))
-        error = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, heading))).error
+        slew = slew_yaw_max(p.ATC)
+        ahead = Vec3(0.0, 0.0, limit_turn(heading.rate, slew))
+        error = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, heading.angle))).error
         attitude.target_rate = shape_rotation(error, attitude.target_rate, ahead, shaping, slew)
     else:
-        jump(attitude, thrust_quaternion(thrust, heading), Vec3(0.0, 0.0, 0.0))
-    correct(ap)
+        jump(attitude, thrust_quaternion(thrust, heading.angle), Vec3(0.0, 0.0, 0.0))
+    correct(attitude, est, p.ATC)
 
 
 @law
-def input_thrust_vector_heading_rate(ap: Autopilot, thrust: Vec3, heading_rate: float) -> None:
+def input_thrust_vector_heading_rate(
+    control: Control, est: Estimate, p: Parameters, thrust: Vec3, heading_rate: float
+) -> None:
     """Point thrust along an NED vector while turning about it at ``heading_rate`` [rad/s]."""
-    shaping = advance_target(ap)
-    attitude = ap.control.attitude
-    turn = limit_turn(heading_rate, slew_yaw_max(ap.params.ATC))
+    shaping = advance_target(control, est, p)
+    attitude = control.attitude
+    turn = limit_turn(heading_rate, slew_yaw_max(p.ATC))
     split = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, 0.0)))
     if not (finite_vector(thrust) and finite(heading_rate)):
         hold(attitude, shaping)
@@ -224,14 +240,14 @@ def input_thrust_vector_heading_rate(ap: Autopilot, thrust: Vec3, heading_rate: 
     else:
         q = multiply(attitude.target_q, split.thrust_turn)
         jump(attitude, multiply(q, Quat(1.0, 0.0, 0.0, 0.5 * turn * DT)), Vec3(0.0, 0.0, 0.0))
-    correct(ap)
+    correct(attitude, est, p.ATC)
 
 
 @law
-def input_quaternion(ap: Autopilot, q: Quat, rates: Vec3) -> None:
+def input_quaternion(control: Control, est: Estimate, p: Parameters, q: Quat, rates: Vec3) -> None:
     """Turn to attitude ``q`` (body to NED), which itself turns at body rates ``rates`` [rad/s]."""
-    shaping = advance_target(ap)
-    attitude = ap.control.attitude
+    shaping = advance_target(control, est, p)
+    attitude = control.attitude
     n2 = quat_norm_squared(q)
     if not (finite(n2) and finite_vector(rates)) or n2 < 1e-6:
         hold(attitude, shaping)
@@ -240,42 +256,40 @@ def input_quaternion(ap: Autopilot, q: Quat, rates: Vec3) -> None:
         attitude.target_rate = shape_rotation(error, attitude.target_rate, rates, shaping, 0.0)
     else:
         jump(attitude, q, rates)
-    correct(ap)
+    correct(attitude, est, p.ATC)
 
 
 @law
-def input_rates(ap: Autopilot, rates: Vec3) -> None:
+def input_rates(control: Control, est: Estimate, p: Parameters, rates: Vec3) -> None:
     """Turn at body rates [rad/s]; the attitude reached on the way is held."""
-    shaping = advance_target(ap)
-    attitude = ap.control.attitude
+    shaping = advance_target(control, est, p)
+    attitude = control.attitude
     wanted = rates if finite_vector(rates) else Vec3(0.0, 0.0, 0.0)
     if shaping.enabled:
         wanted = shape_rates(attitude.target_rate, wanted, shaping)
     attitude.target_rate = limit_rates(wanted, shaping.rate_max)
-    correct(ap)
+    correct(attitude, est, p.ATC)
 
 
 @law
-def relax(ap: Autopilot) -> None:
+def relax(control: Control, est: Estimate) -> None:
     """Target := present attitude and rates, integrators zero: nothing pushes while the vehicle stands on the ground."""
-    attitude = ap.control.attitude
-    q, rates = ap.estimate.q, ap.estimate.rates
-    jump(attitude, q, rates)
-    attitude.rate_target = rates
+    attitude = control.attitude
+    jump(attitude, est.q, est.rates)
+    attitude.rate_target = est.rates
     attitude.error = Vec3(0.0, 0.0, 0.0)
     attitude.error_q = Quat(1.0, 0.0, 0.0, 0.0)
     attitude.thrust_error_angle = 0.0
-    attitude.cos_lean = cos_lean(q)
-    attitude.yaw_reset_count = ap.estimate.reset_yaw_count
-    rate.reset_filters(ap.control.rate)
-    rate.reset_integrators(ap.control.rate)
+    attitude.cos_lean = cos_lean(est.q)
+    attitude.yaw_reset_count = est.reset_yaw_count
+    rate.reset_filters(control.rate)
+    rate.reset_integrators(control.rate)
 
 
 @law
-def reset_yaw_target(ap: Autopilot) -> None:
-    """Heading target := present heading, without a turn."""
-    attitude = ap.control.attitude
-    turn = wrap_pi(ap.estimate.euler.yaw - attitude.target_euler.yaw)
+def reset_yaw_target(attitude: AttitudeState, yaw: float) -> None:
+    """Heading target := present heading ``yaw`` [rad], without a turn."""
+    turn = wrap_pi(yaw - attitude.target_euler.yaw)
     set_target(attitude, multiply(quat_from_rotation_vector(Vec3(0.0, 0.0, turn)), attitude.target_q))
     rates = euler_rates(attitude.target_euler, attitude.target_rate)
     attitude.target_rate = body_rates(attitude.target_euler, Euler(rates.roll, rates.pitch, 0.0))

@@ -11,12 +11,12 @@ from __future__ import annotations
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
 from ...control.pid import lowpass_gain
-from ...state import Actuators
+from ...state import Actuators, Arming
+from ..parameters import Parameters
 from ..parameters.control import Motors
-from ..state import Autopilot
 from .mixer import Demands, mix
 from .state import DT, MotorsState
-from .thrust_curve import SLOW_DT, command_from_thrust, compensate
+from .thrust_curve import command_from_thrust
 
 # desired_spool
 DESIRED_SHUT_DOWN, DESIRED_GROUND_IDLE, DESIRED_THROTTLE_UNLIMITED = 0, 1, 2
@@ -26,7 +26,6 @@ SHUT_DOWN, GROUND_IDLE, SPOOLING_UP, THROTTLE_UNLIMITED, SPOOLING_DOWN = 0, 1, 2
 MOTORS = 4
 ARMING_DELAY_US = 2_000_000
 """Motors stand still for this long after arming [us]: time to step back (ArduPilot's)."""
-_SLOW_TICKS = round(SLOW_DT / DT)
 _HOVER_TIME = 10.0  # time constant of hover-throttle learning [s]
 _HOVER_MIN, _HOVER_MAX = 0.125, 0.6875  # range in which a hover throttle is believed
 
@@ -177,20 +176,16 @@ def drive_test_motor(motors: MotorsState) -> None:
 
 
 @law
-def drive_motors(ap: Autopilot, time_us: int) -> None:
+def drive_motors(motors: MotorsState, arming: Arming, p: Parameters, time_us: int) -> None:
     """Everything between the demands of the controllers and ``motors.actuator``; ``time_us`` since boot."""
-    p, motors = ap.params.MOT, ap.control.motors
-    if ap.control.tick % _SLOW_TICKS == 0:
-        compensate(motors, ap.battery, ap.estimate, p)
-    armed = ap.arming.armed != 0
-    filter_throttle(motors, armed)
-    spool(motors, armed and time_us - ap.arming.armed_us >= ARMING_DELAY_US, p)
+    filter_throttle(motors, arming.armed)
+    spool(motors, arming.armed and time_us - arming.armed_us >= ARMING_DELAY_US, p.MOT)
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
-        out = mix(motors, int(ap.params.FRAME.TYPE), compensated_demands(motors), p.YAW_HEADROOM * 0.001)
+        out = mix(motors, int(p.FRAME.TYPE), compensated_demands(motors), p.MOT.YAW_HEADROOM * 0.001)
         motors.throttle_out = out / motors.compensation_gain
-    command_motors(motors, p)
+    command_motors(motors, p.MOT)
     if motors.test_motor != 0:
         drive_test_motor(motors)
 

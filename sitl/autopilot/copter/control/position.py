@@ -26,10 +26,11 @@ from ...control.shaping import (
     shape_vel_accel_2d,
     sqrt_controller_2d,
 )
+from ...state import Estimate
+from ..parameters import Parameters
 from ..parameters.control import Position
-from ..state import Autopilot
 from .position_start import accel_limit_ne, init_ne, is_active_ne
-from .state import DT, GRAVITY, PositionState
+from .state import DT, GRAVITY, Control, PositionState
 
 
 class PositionGains(NamedTuple):
@@ -184,13 +185,12 @@ def position_gains(p: Position) -> PositionGains:
 
 
 @law
-def update_ne(ap: Autopilot) -> None:
+def update_ne(control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of the cascade: ``accel_target`` comes out (see ``thrust_vector``)."""
-    c = ap.control.pos_ne
-    est = ap.estimate
-    if not is_active_ne(ap.control):
-        init_ne(ap)
+    c = control.pos_ne
+    if not is_active_ne(control):
+        init_ne(control, est, p)
     pos, vel = horizontal(est.pos), horizontal(est.vel)
     follow_reset_ne(c, pos, horizontal(est.reset_vel), est.reset_ne_count)
-    c.last_tick = ap.control.tick
-    control_horizontal(c, pos, vel, accel_limit_ne(ap.control, ap.params), position_gains(ap.params.PSC))
+    c.last_tick = control.tick
+    control_horizontal(c, pos, vel, accel_limit_ne(control, p), position_gains(p.PSC))

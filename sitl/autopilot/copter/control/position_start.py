@@ -10,9 +10,9 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import inverse_sqrt_controller
+from ...state import Estimate
 from ..parameters import Parameters
 from ..parameters.control import Attitude, Position
-from ..state import Autopilot
 from .state import DT, GRAVITY, Control, PositionState
 from .throttle_mix import LEAN_TICKS, lean_limit
 
@@ -22,12 +22,11 @@ _CDEG = math.radians(0.01)
 
 
 @law
-def set_max_speed_accel_ne(ap: Autopilot, speed: float, accel: float) -> None:
+def set_max_speed_accel_ne(c: PositionState, p: Parameters, speed: float, accel: float) -> None:
     """Limits of the shaping and of the correction [m/s, m/s^2]; jerk is PSC_JERK_XY or what the airframe can."""
-    c = ap.control.pos_ne
     c.speed_max = speed
     c.accel_max = max(accel, 0.01)
-    c.jerk_max = jerk_limit_ne(ap.params.PSC, ap.params.ATC, c.accel_max)
+    c.jerk_max = jerk_limit_ne(p.PSC, p.ATC, c.accel_max)
     c.correction_speed = speed
     c.correction_accel = accel
 
@@ -96,32 +95,31 @@ def start_from(c: PositionState, pos: Vec2, vel: Vec2) -> None:
 
 
 @law
-def init_ne(ap: Autopilot) -> None:
+def init_ne(control: Control, est: Estimate, p: Parameters) -> None:
     """Start from the present position, velocity and lean."""
-    c = ap.control.pos_ne
-    est = ap.estimate
-    lean = ap.control.attitude.target_euler
-    if not is_active_ne(ap.control):
+    c = control.pos_ne
+    lean = control.attitude.target_euler
+    if not is_active_ne(control):
         c.accel_target = lean_accel(lean.roll, lean.pitch, est.euler.yaw)
-    c.accel_target = limit_length(c.accel_target, renew_accel_limit(ap.control, ap.params))
+    c.accel_target = limit_length(c.accel_target, renew_accel_limit(control, p))
     start_from(c, horizontal(est.pos), horizontal(est.vel))
     c.reset_count = est.reset_ne_count
-    c.last_tick = ap.control.tick
+    c.last_tick = control.tick
 
 
 @law
-def init_ne_stopping_point(ap: Autopilot) -> None:
+def init_ne_stopping_point(control: Control, est: Estimate, p: Parameters) -> None:
     """Start from where the vehicle can stop."""
-    init_ne(ap)
-    ap.control.pos_ne.pos_desired = stopping_point_ne(ap)
-    ap.control.pos_ne.vel_desired = Vec2(0.0, 0.0)
+    init_ne(control, est, p)
+    control.pos_ne.pos_desired = stopping_point_ne(control.pos_ne, est, p.PSC)
+    control.pos_ne.vel_desired = Vec2(0.0, 0.0)
 
 
 @law
-def relax_ne(ap: Autopilot) -> None:
+def relax_ne(control: Control, est: Estimate, p: Parameters) -> None:
     """Let the lean decay to zero at the present position (on the ground, spooling)."""
-    ap.control.pos_ne.accel_target *= 1.0 - DT / (DT + RELAX_TIME)
-    init_ne(ap)
+    control.pos_ne.accel_target *= 1.0 - DT / (DT + RELAX_TIME)
+    init_ne(control, est, p)
 
 
 @law
@@ -141,8 +139,6 @@ def stopping_point(pos: Vec2, vel: Vec2, p: float, speed_max: float, accel_max: 
 
 
 @law
-def stopping_point_ne(ap: Autopilot) -> Vec2:
+def stopping_point_ne(c: PositionState, est: Estimate, p: Position) -> Vec2:
     """(north, east) [m] where the vehicle stops from its present velocity, braking within the limits."""
-    c = ap.control.pos_ne
-    pos, vel = horizontal(ap.estimate.pos), horizontal(ap.estimate.vel)
-    return stopping_point(pos, vel, ap.params.PSC.POSXY_P, c.speed_max, c.accel_max)
+    return stopping_point(horizontal(est.pos), horizontal(est.vel), p.POSXY_P, c.speed_max, c.accel_max)

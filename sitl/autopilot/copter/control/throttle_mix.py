@@ -7,10 +7,10 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
+from ..parameters import Parameters
 from ..parameters.control import Attitude
-from ..state import Autopilot
 from .motors import hover_throttle
-from .state import DT, AttitudeState, MotorsState
+from .state import DT, AttitudeState, Control, MotorsState
 
 LEAN_TICKS = 8
 """Period, in ticks, of the lean limits."""
@@ -33,23 +33,23 @@ def throttle_average_max(throttle: float, hover: float, mix: float) -> float:
 
 
 @law
-def set_throttle_out(ap: Autopilot, throttle: float, angle_boost: bool, filter_hz: float) -> None:
+def set_throttle_out(control: Control, p: Parameters, throttle: float, angle_boost: bool, filter_hz: float) -> None:
     """Throttle 0 .. 1 for the motors, low-passed at ``filter_hz`` [Hz] (0: not).
 
     ``angle_boost`` adds what a leaning vehicle needs to keep its lift (also needs ATC_ANGLE_BOOST).
     """
     if not finite(throttle):
         return
-    attitude = ap.control.attitude
-    motors = ap.control.motors
+    attitude = control.attitude
+    motors = control.motors
     attitude.throttle_in = throttle
-    if motors.thrust_max <= 0.0 or ap.control.tick % LEAN_TICKS == 0:
-        update_lean_max(attitude, throttle, motors.thrust_max, ap.params.ATC.ANG_LIM_TC)
-    boost = angle_boost and ap.params.ATC.ANGLE_BOOST != 0.0
+    if motors.thrust_max <= 0.0 or control.tick % LEAN_TICKS == 0:
+        update_lean_max(attitude, throttle, motors.thrust_max, p.ATC.ANG_LIM_TC)
+    boost = angle_boost and p.ATC.ANGLE_BOOST != 0.0
     motors.throttle_filter_hz = filter_hz
     motors.throttle_in = boosted(throttle, attitude.cos_lean) if boost else throttle
     average = constrain(max(motors.throttle_in, throttle), 0.0, 1.0)
-    motors.throttle_avg_max = throttle_average_max(average, hover_throttle(ap.params.MOT), attitude.mix)
+    motors.throttle_avg_max = throttle_average_max(average, hover_throttle(p.MOT), attitude.mix)
 
 
 @law

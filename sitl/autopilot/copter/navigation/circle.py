@@ -10,8 +10,9 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec3
-from ..control.state import DT
-from ..state import Autopilot
+from ...state import Estimate
+from ..control.state import DT, Control
+from ..parameters import Parameters
 from .state import CopterNav
 from .waypoint import CM, follow_target, speed_ne
 
@@ -72,13 +73,11 @@ def advance(nav: CopterNav) -> float:
 
 
 @law
-def run(ap: Autopilot) -> float:
+def run(nav: CopterNav, control: Control, est: Estimate, p: Parameters) -> float:
     """One tick around the circle, begun with the first; the turns flown so far."""
-    nav = ap.modes.nav
     if not nav.circle_running:
-        start(nav, ap.estimate.pos, ap.estimate.euler.yaw)
-        p = ap.params
+        start(nav, est.pos, est.euler.yaw)
         set_limits(nav, math.radians(p.CIRCLE.RATE), speed_ne(nav, p.WPNAV), CM * p.WPNAV.ACCEL)
     turns = advance(nav)
-    follow_target(ap, 0.0, 0.0)
+    follow_target(control, nav, 0.0, 0.0)
     return turns

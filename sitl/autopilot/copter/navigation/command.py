@@ -2,16 +2,18 @@
 """Flies the navigation commands that follow legs and circles.
 
 AUTO calls ``begin`` when ``nav.command_count`` changes, ``run`` on every tick for the kinds that ``follows_path``, and
-``navigation.command.complete`` when it finds a take-off, landing or return done. ``run`` says so itself.
+``navigation.command.complete`` when ``run`` says that the command is done, or a take-off, landing or return is.
 """
 
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...navigation.command import complete
 from ...navigation.state import DELAY, LOITER_TIME, LOITER_TURNS, LOITER_UNLIMITED, WAYPOINT
-from ..state import Autopilot
+from ...state import Estimate
+from ..control.state import Control
+from ..parameters import Parameters
 from . import circle, waypoint
+from .state import CopterNav
 
 
 @law
@@ -21,27 +23,24 @@ def follows_path(kind: int) -> bool:
 
 
 @law
-def begin(ap: Autopilot, time_us: int) -> None:
+def begin(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_us: int) -> None:
     """Begin the command that the shell has written."""
-    nav = ap.modes.nav
     nav.completed = False
     nav.since_us = 0
     nav.circle_running = False
-    waypoint.start(ap, time_us)
+    waypoint.start(nav, control, est, p, time_us)
 
 
 @law
-def run(ap: Autopilot, time_us: int) -> None:
-    """One tick of a command that follows a path: writes position targets."""
-    nav = ap.modes.nav
+def run(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_us: int) -> bool:
+    """One tick of a command that follows a path: writes position targets; whether the command is done."""
     kind = nav.command_kind
     if kind == LOITER_TURNS and (nav.circle_running or nav.reached):
         nav.active_us = time_us
-        if circle.run(ap) >= nav.turns:
-            complete(ap, time_us)
-    elif waypoint.advance(ap, time_us):
-        if nav.since_us == 0:
-            nav.since_us = time_us
-        waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
-        if waited and kind in (WAYPOINT, LOITER_TIME, DELAY):
-            complete(ap, time_us)
+        return circle.run(nav, control, est, p) >= nav.turns
+    if not waypoint.advance(nav, control, est, p, time_us):
+        return False
+    if nav.since_us == 0:
+        nav.since_us = time_us
+    waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
+    return waited and kind in (WAYPOINT, LOITER_TIME, DELAY)

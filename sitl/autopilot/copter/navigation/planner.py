@@ -57,8 +57,9 @@ class CopterPlanner(Planner[Autopilot]):
 
     def stopping_point(self, ap: Autopilot) -> Vec3:
         """Where the controllers would bring it to rest, NED [m]."""
-        waypoint.set_limits(ap)
-        return with_down(stopping_point_ne(ap), stopping_point_d(ap))
+        control, est, p = ap.control, ap.estimate, ap.params
+        waypoint.set_limits(control, ap.modes.nav, p)
+        return with_down(stopping_point_ne(control.pos_ne, est, p.PSC), stopping_point_d(control.pos_d, est, p.PSC))
 
     def origin_of_next(self, ap: Autopilot, time_us: int) -> tuple[Vec3, bool]:
         """A circle under way is left from where the vehicle is; a take-off ends at its height."""
@@ -73,7 +74,7 @@ class CopterPlanner(Planner[Autopilot]):
 
     def start(self, ap: Autopilot, time_us: int) -> None:
         """Hand the legs to the follower."""
-        waypoint.start(ap, time_us)
+        waypoint.start(ap.modes.nav, ap.control, ap.estimate, ap.params, time_us)
 
 
 PLANNER = CopterPlanner()

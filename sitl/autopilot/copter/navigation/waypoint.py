@@ -3,9 +3,9 @@
 
 For the modes::
 
-    start(ap, time_us)              begin at the planned legs (AUTO: when a command with legs was given)
-    advance(ap, time_us) -> bool    one tick: moves the target, hands it to the controllers; whether it is reached
-    stop(nav)                       forget all legs
+    start(nav, ...)              begin at the planned legs (AUTO: when a command with legs was given)
+    advance(nav, ...) -> bool    one tick: moves the target, hands it to the controllers; whether it is reached
+    stop(nav)                    forget all legs
 
 and ``request_leg``, ``distance``, ``bearing`` of ``navigation.path``. After ``advance``, ``nav.pos``, ``nav.vel``,
 ``nav.acc`` hold the target. Corners stay within WPNAV_RADIUS and WPNAV_ACCEL_C.
@@ -21,13 +21,14 @@ from ....core.scalars import constrain
 from ....core.vectors import Vec3
 from ...control.shaping import Motion, Motion2
 from ...navigation import path
+from ...state import Estimate
 from ..control.altitude import set_pos_vel_accel_d
 from ..control.altitude_start import init_d_stopping_point, set_max_speed_accel_d
 from ..control.position import set_pos_vel_accel_ne
 from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
-from ..control.state import DT
+from ..control.state import DT, Control
+from ..parameters import Parameters
 from ..parameters.flight import Legs
-from ..state import Autopilot
 from .state import CopterNav
 
 CM = 0.01
@@ -52,25 +53,24 @@ def speed_down(nav: CopterNav, p: Legs) -> float:
 
 
 @law
-def set_limits(ap: Autopilot) -> None:
+def set_limits(control: Control, nav: CopterNav, p: Parameters) -> None:
     """Give the position controllers the limits of legs."""
-    nav, p = ap.modes.nav, ap.params.WPNAV
-    set_max_speed_accel_ne(ap, speed_ne(nav, p), CM * p.ACCEL)
-    set_max_speed_accel_d(ap, speed_down(nav, p), speed_up(nav, p), CM * p.ACCEL_Z)
+    legs = p.WPNAV
+    set_max_speed_accel_ne(control.pos_ne, p, speed_ne(nav, legs), CM * legs.ACCEL)
+    set_max_speed_accel_d(control.pos_d, p.PSC, speed_down(nav, legs), speed_up(nav, legs), CM * legs.ACCEL_Z)
 
 
 @law
-def start(ap: Autopilot, time_us: int) -> None:
+def start(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_us: int) -> None:
     """Begin at the planned legs.
 
     A leg that continues the one just flown keeps the controllers as they are.
     """
-    nav = ap.modes.nav
-    set_limits(ap)
+    set_limits(control, nav, p)
     if nav.fresh:
         nav.fresh = False
-        init_ne_stopping_point(ap)
-        init_d_stopping_point(ap)
+        init_ne_stopping_point(control, est, p)
+        init_d_stopping_point(control, est, p)
         nav.time_scale = 1.0
         nav.pause_scale = 1.0
         nav.pause_rate = 0.0
@@ -94,30 +94,29 @@ def corner_accel(p: Legs) -> float:
 
 
 @law
-def advance(ap: Autopilot, time_us: int) -> bool:
+def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_us: int) -> bool:
     """One tick along the legs; whether the destination is reached (a corner: when the next leg takes over)."""
-    nav, p = ap.modes.nav, ap.params.WPNAV
+    legs = p.WPNAV
     if nav.request_pending != 0 or nav.current.segments < 1:
         return False
     nav.active_us = time_us
-    feasible = path.feasible_time_scale(nav, ap.estimate.pos, ap.estimate.vel, ap.params.PSC.POSXY_P)
-    path.scale_time(nav, feasible, CM * p.ACCEL / max(p.JERK, 0.1), DT)
-    advance_pause(nav, p, ap.params.PSC.JERK_XY)
-    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * p.RADIUS, corner_accel(p))
+    feasible = path.feasible_time_scale(nav, est.pos, est.vel, p.PSC.POSXY_P)
+    path.scale_time(nav, feasible, CM * legs.ACCEL / max(legs.JERK, 0.1), DT)
+    advance_pause(nav, legs, p.PSC.JERK_XY)
+    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * legs.RADIUS, corner_accel(legs))
     nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate
     nav.vel = nav.vel * nav.pause_scale
-    follow_target(ap, nav.vel.z, nav.acc.z)
-    if done and (nav.current.fast or is_near_end(nav, ap.estimate.pos, CM * p.RADIUS)):
+    follow_target(control, nav, nav.vel.z, nav.acc.z)
+    if done and (nav.current.fast or is_near_end(nav, est.pos, CM * legs.RADIUS)):
         nav.reached = True
     return nav.reached
 
 
 @law
-def follow_target(ap: Autopilot, climb: float, climb_accel: float) -> None:
+def follow_target(control: Control, nav: CopterNav, climb: float, climb_accel: float) -> None:
     """Hand the target to the controllers, which climb with it at ``climb`` [m/s], ``climb_accel`` [m/s^2]."""
-    nav = ap.modes.nav
-    set_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
-    set_pos_vel_accel_d(ap.control.pos_d, Motion(nav.pos.z, climb, climb_accel))
+    set_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
+    set_pos_vel_accel_d(control.pos_d, Motion(nav.pos.z, climb, climb_accel))
 
 
 @law

@@ -22,13 +22,18 @@ def make_autopilot() -> Any:
     TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0
     ap.estimate.q = ap.estimate.q.replace(w=1.0)
-    init(ap)
+    init(*parts(ap))
     return ap
 
 
 def make_actuators() -> Any:
     """A view of one actuators record."""
     return Actuators()
+
+
+def parts(ap: Any) -> tuple[Any, Any, Any]:
+    """What the controllers work on: their record, the estimate, the parameters."""
+    return ap.control, ap.estimate, ap.params
 
 
 def arm(ap: Any, throttle: float = 0.35) -> None:
@@ -38,7 +43,7 @@ def arm(ap: Any, throttle: float = 0.35) -> None:
     ap.control.motors.desired_spool = motors.DESIRED_THROTTLE_UNLIMITED
     ap.control.motors.spool_state = motors.THROTTLE_UNLIMITED
     ap.control.motors.thrust_max = 1.0
-    throttle_mix.set_throttle_out(ap, throttle, True, 0.0)
+    throttle_mix.set_throttle_out(ap.control, ap.params, throttle, True, 0.0)
 
 
 def output(ap: Any, actuators: Any) -> None:

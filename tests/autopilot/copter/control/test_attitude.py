@@ -22,6 +22,7 @@ from tests.autopilot.copter.control.level_autopilot import (
     make_actuators,
     make_autopilot,
     output,
+    parts,
     set_attitude,
     turn,
 )
@@ -134,11 +135,11 @@ def test_any_attitude_to_any_other(start, goal):
 def fly(start, goal):
     ap, actuators = make_autopilot(), make_actuators()
     set_attitude(ap, Quat(*start))
-    attitude.relax(ap)
+    attitude.relax(ap.control, ap.estimate)
     arm(ap, 0.5)
     goal = normalise(Quat(*goal))
     for _ in range(1000):
-        attitude.input_quaternion(ap, goal, Vec3(0.0, 0.0, 0.0))
+        attitude.input_quaternion(*parts(ap), goal, Vec3(0.0, 0.0, 0.0))
         output(ap, actuators)
         turn(ap, DT)
         assert all(math.isfinite(c) for c in actuators.controls[:4])
@@ -149,7 +150,7 @@ def fly(start, goal):
 def test_lean_keeps_heading(ap, actuators):
     arm(ap)
     for _ in range(600):
-        attitude.input_thrust_vector_heading(ap, Vec3(3.0, 0.0, -9.8), 0.5, 0.0)
+        attitude.input_thrust_vector_heading(*parts(ap), Vec3(3.0, 0.0, -9.8), attitude.Heading(0.5, 0.0, True))
         output(ap, actuators)
         turn(ap, DT)
     thrust = rotate(ap.estimate.q, UP)
@@ -161,7 +162,7 @@ def test_heading_turn_is_limited_by_slew(ap, actuators):
     arm(ap)
     fastest = 0.0
     for _ in range(1200):
-        attitude.input_thrust_vector_heading(ap, Vec3(0.0, 0.0, -9.8), 2.0, 0.0)
+        attitude.input_thrust_vector_heading(*parts(ap), Vec3(0.0, 0.0, -9.8), attitude.Heading(2.0, 0.0, True))
         output(ap, actuators)
         turn(ap, DT)
         fastest = max(fastest, float(ap.control.attitude.target_rate[2]))
@@ -172,7 +173,7 @@ def test_heading_turn_is_limited_by_slew(ap, actuators):
 def test_yaw_rate_input_turns_the_target(ap):
     arm(ap)
     for _ in range(400):
-        attitude.input_euler_roll_pitch_yaw_rate(ap, 0.2, 0.0, 0.5)
+        attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(0.2, 0.0), 0.5)
         set_attitude(ap, ap.control.attitude.target_q)
     assert ap.control.attitude.target_euler[0] == pytest.approx(0.2, abs=2e-3)
     assert ap.control.attitude.target_euler[2] == pytest.approx(0.473, abs=0.01)  # 4.7 rad/s^2
@@ -180,43 +181,49 @@ def test_yaw_rate_input_turns_the_target(ap):
 
 def test_without_feed_forward_the_target_jumps(ap):
     ap.params.ATC_RATE_FF_ENAB = 0.0
-    attitude.input_euler_roll_pitch_yaw_rate(ap, 0.3, -0.1, 0.0)
+    attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(0.3, -0.1), 0.0)
     assert tuple(ap.control.attitude.target_euler) == pytest.approx((0.3, -0.1, 0.0), abs=1e-12)
 
 
 def test_a_jump_of_the_estimated_heading_does_not_turn_the_vehicle(ap):
     arm(ap)
     ap.control.tick = 10
-    attitude.input_thrust_vector_heading_rate(ap, Vec3(0.0, 0.0, -9.8), 0.0)
+    attitude.input_thrust_vector_heading_rate(*parts(ap), Vec3(0.0, 0.0, -9.8), 0.0)
     set_attitude(ap, quat_from_rotation_vector(Vec3(0.0, 0.0, 1.0)))
     ap.estimate.reset_yaw_count += 1
-    attitude.input_thrust_vector_heading_rate(ap, Vec3(0.0, 0.0, -9.8), 0.0)
+    attitude.input_thrust_vector_heading_rate(*parts(ap), Vec3(0.0, 0.0, -9.8), 0.0)
     assert ap.control.attitude.target_euler[2] == pytest.approx(1.0)
     assert abs(ap.control.attitude.rate_target[2]) < 1e-9
 
 
 def test_reset_yaw_target_keeps_lean(ap):
     ap.params.ATC_RATE_FF_ENAB = 0.0
-    attitude.input_euler_roll_pitch_yaw_rate(ap, 0.3, 0.1, 0.0)
+    attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(0.3, 0.1), 0.0)
     ap.estimate.euler = ap.estimate.euler.replace(yaw=2.5)
-    attitude.reset_yaw_target(ap)
+    attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
     assert tuple(ap.control.attitude.target_euler) == pytest.approx((0.3, 0.1, 2.5))
 
 
 REST = Vec3(0.0, 0.0, 0.0)
 BAD_INPUTS = [
-    lambda ap, bad: attitude.input_euler_roll_pitch_yaw_rate(ap, bad, 0.0, 0.0),
-    lambda ap, bad: attitude.input_euler_roll_pitch_yaw_rate(ap, 0.0, 0.0, bad),
-    lambda ap, bad: attitude.input_thrust_vector_heading(ap, Vec3(0.0, bad, -9.8), 0.0, 0.0),
-    lambda ap, bad: attitude.input_thrust_vector_heading(ap, Vec3(0.0, 0.0, -9.8), bad, 0.0),
-    lambda ap, bad: attitude.input_thrust_vector_heading_rate(ap, Vec3(0.0, 0.0, -9.8), bad),
-    lambda ap, bad: attitude.input_quaternion(ap, Quat(bad, 0.0, 0.0, 0.0), REST),
-    lambda ap, bad: attitude.input_quaternion(ap, Quat(1.0, 0.0, 0.0, 0.0), Vec3(bad, 0.0, 0.0)),
-    lambda ap, bad: attitude.input_rates(ap, Vec3(0.0, bad, 0.0)),
-    lambda ap, bad: set_throttle_out(ap, bad, True, 2.0),
-    lambda ap, bad: setattr(ap.control.attitude, "target_q", (bad, 0.0, 0.0, 0.0)) or attitude.input_rates(ap, REST),
-    lambda ap, bad: setattr(ap.estimate, "q", (1.0, bad, 0.0, 0.0)) or attitude.input_rates(ap, REST),
-    lambda ap, bad: setattr(ap.estimate, "rates", (0.0, bad, 0.0)) or attitude.input_rates(ap, REST),
+    lambda ap, bad: attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(bad, 0.0), 0.0),
+    lambda ap, bad: attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(0.0, 0.0), bad),
+    lambda ap, bad: attitude.input_thrust_vector_heading(
+        *parts(ap), Vec3(0.0, bad, -9.8), attitude.Heading(0.0, 0.0, True)
+    ),
+    lambda ap, bad: attitude.input_thrust_vector_heading(
+        *parts(ap), Vec3(0.0, 0.0, -9.8), attitude.Heading(bad, 0.0, True)
+    ),
+    lambda ap, bad: attitude.input_thrust_vector_heading_rate(*parts(ap), Vec3(0.0, 0.0, -9.8), bad),
+    lambda ap, bad: attitude.input_quaternion(*parts(ap), Quat(bad, 0.0, 0.0, 0.0), REST),
+    lambda ap, bad: attitude.input_quaternion(*parts(ap), Quat(1.0, 0.0, 0.0, 0.0), Vec3(bad, 0.0, 0.0)),
+    lambda ap, bad: attitude.input_rates(*parts(ap), Vec3(0.0, bad, 0.0)),
+    lambda ap, bad: set_throttle_out(ap.control, ap.params, bad, True, 2.0),
+    lambda ap, bad: (
+        setattr(ap.control.attitude, "target_q", (bad, 0.0, 0.0, 0.0)) or attitude.input_rates(*parts(ap), REST)
+    ),
+    lambda ap, bad: setattr(ap.estimate, "q", (1.0, bad, 0.0, 0.0)) or attitude.input_rates(*parts(ap), REST),
+    lambda ap, bad: setattr(ap.estimate, "rates", (0.0, bad, 0.0)) or attitude.input_rates(*parts(ap), REST),
 ]
 
 
@@ -225,7 +232,7 @@ BAD_INPUTS = [
 def test_bad_numbers_never_reach_the_motors(give, bad, ap, actuators):
     arm(ap)
     for _ in range(3):
-        attitude.input_rates(ap, REST)
+        attitude.input_rates(*parts(ap), REST)
         output(ap, actuators)
     give(ap, bad)
     output(ap, actuators)

@@ -27,7 +27,7 @@ def run_until(ap, actuators, state, most=2000):
 
 def test_disarmed_motors_get_the_shortest_pulse(ap, actuators):
     ap.control.motors.desired_spool = 2
-    throttle_mix.set_throttle_out(ap, 0.5, True, 0.0)
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.5, True, 0.0)
     output(ap, actuators)
     assert list(actuators.pwm[:4]) == [1000] * 4
     assert not any(actuators.controls)
@@ -41,7 +41,7 @@ def test_spool_up_takes_spool_time_to_idle_and_follows_the_throttle(ap, actuator
     ticks = run_until(ap, actuators, motors.SPOOLING_UP)
     assert ticks * DT == pytest.approx(0.5, abs=0.01)
     assert actuators.pwm[0] == pytest.approx(1150, abs=1)
-    throttle_mix.set_throttle_out(ap, 0.4, True, 0.0)
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.4, True, 0.0)
     ticks = run_until(ap, actuators, motors.THROTTLE_UNLIMITED)
     assert ticks * DT == pytest.approx(0.4 * 0.5, abs=0.01)
     ap.control.motors.desired_spool = motors.DESIRED_SHUT_DOWN
@@ -124,15 +124,15 @@ def test_hover_throttle_is_learnt(ap):
 
 def test_angle_boost_keeps_the_lift(ap):
     ap.control.attitude.cos_lean = math.cos(0.5)
-    throttle_mix.set_throttle_out(ap, 0.3, True, 0.0)
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.3, True, 0.0)
     assert ap.control.motors.throttle_in * math.cos(0.5) == pytest.approx(0.3)
-    throttle_mix.set_throttle_out(ap, 0.3, False, 0.0)
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.3, False, 0.0)
     assert ap.control.motors.throttle_in == 0.3
 
 
 def test_upside_down_throttle_is_cut(ap):
     ap.control.attitude.cos_lean = -0.5
-    throttle_mix.set_throttle_out(ap, 0.6, True, 0.0)
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.6, True, 0.0)
     assert ap.control.motors.throttle_in == 0.0
 
 

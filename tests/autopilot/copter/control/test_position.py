@@ -18,6 +18,7 @@ from sitl.autopilot.copter.control.motors import hover_throttle
 from sitl.autopilot.copter.control.state import DT, GRAVITY, AltitudeState, PositionState
 from sitl.core.algebra import dot2, norm2, quat_from_euler, rotate, with_down
 from sitl.core.vectors import Euler, Vec2, Vec3
+from tests.autopilot.copter.control.level_autopilot import parts
 
 REST = Vec2(0.0, 0.0)
 LAG = 0.12  # of lean and of thrust [s]
@@ -31,11 +32,11 @@ def spooled(ap):
     ap.control.tick = 5
     ap.control.motors.thrust_max = 1.0
     ap.control.attitude.lean_max = 1.2
-    position_start.set_max_speed_accel_ne(ap, 10.0, 2.5)
-    altitude_start.set_max_speed_accel_d(ap, 1.5, 2.5, 1.0)
+    position_start.set_max_speed_accel_ne(ap.control.pos_ne, ap.params, 10.0, 2.5)
+    altitude_start.set_max_speed_accel_d(ap.control.pos_d, ap.params.PSC, 1.5, 2.5, 1.0)
     ap.control.attitude.throttle_in = hover_throttle(ap.params.MOT)
-    position_start.init_ne(ap)
-    altitude_start.init_d(ap)
+    position_start.init_ne(*parts(ap))
+    altitude_start.init_d(*parts(ap))
     return ap
 
 
@@ -68,7 +69,7 @@ def test_step_of_20_m(ap):
     acc, half, most, far = [Vec2(0.0, 0.0)], 0.0, 0.0, 0.0
     for k in range(4000):
         position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(20.0, 0.0))
-        position.update_ne(ap)
+        position.update_ne(*parts(ap))
         move_ne(ap, acc)
         if half == 0.0 and ap.estimate.pos[0] >= 10.0:
             half = k * DT
@@ -86,12 +87,12 @@ def test_velocity_step_and_stop(ap):
     acc = [Vec2(0.0, 0.0)]
     for _ in range(1600):
         position.input_vel_accel_ne(ap.control.pos_ne, Vec2(0.0, 3.0), REST)
-        position.update_ne(ap)
+        position.update_ne(*parts(ap))
         move_ne(ap, acc)
     assert ap.estimate.vel[1] == pytest.approx(3.0, abs=0.1)
     for _ in range(1600):
         position.brake_ne(ap.control.pos_ne)
-        position.update_ne(ap)
+        position.update_ne(*parts(ap))
         move_ne(ap, acc)
     assert abs(ap.estimate.vel[1]) < 0.1
 
@@ -101,7 +102,7 @@ def test_integrator_carries_steady_wind(ap):
     acc = [Vec2(0.0, 0.0)]
     for _ in range(4800):
         position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(0.0, 0.0))
-        position.update_ne(ap)
+        position.update_ne(*parts(ap))
         move_ne(ap, acc, wind=(1.0, 0.0))
     assert ap.estimate.pos[0] == pytest.approx(0.0, abs=0.15)
     assert ap.control.pos_ne.vel_integrator[0] == pytest.approx(-1.0, abs=0.2)
@@ -113,7 +114,7 @@ def test_storm_does_not_wind_up_the_integrator(ap):
     acc = [Vec2(0.0, 0.0)]
     for _ in range(1600):
         position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(0.0, 0.0))
-        position.update_ne(ap)
+        position.update_ne(*parts(ap))
         move_ne(ap, acc, wind=(4.0, 0.0))
     most = GRAVITY * math.tan(math.radians(10.0))
     assert math.hypot(*ap.control.pos_ne.accel_target) <= most * (1 + 1e-9)
@@ -126,7 +127,7 @@ def test_climb_of_10_m_keeps_the_speed_limit(ap):
     thrust, fastest, highest = 1.0, 0.0, 0.0
     for _ in range(4000):
         altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(-10.0, 0.0, 0.0))
-        altitude.update_d(ap)
+        altitude.update_d(*parts(ap))
         thrust = move_d(ap, thrust)
         fastest = max(fastest, -float(ap.estimate.vel[2]))
         highest = max(highest, -float(ap.estimate.pos[2]))
@@ -140,7 +141,7 @@ def test_landing_descends_at_the_rate(ap):
     thrust = 1.0
     for _ in range(1600):
         altitude.land_at_rate_d(ap.control.pos_d, 0.5, True)
-        altitude.update_d(ap)
+        altitude.update_d(*parts(ap))
         thrust = move_d(ap, thrust)
     assert ap.estimate.vel[2] == pytest.approx(0.5, abs=0.02)
 
@@ -148,16 +149,16 @@ def test_landing_descends_at_the_rate(ap):
 def test_init_does_not_move_the_throttle(ap):
     spooled(ap)
     ap.control.attitude.throttle_in = 0.42
-    altitude_start.init_d(ap)
-    altitude.update_d(ap)
+    altitude_start.init_d(*parts(ap))
+    altitude.update_d(*parts(ap))
     assert ap.control.attitude.throttle_in == pytest.approx(0.42, abs=1e-3)
 
 
 def test_relaxed_throttle_decays(ap):
     spooled(ap)
     for _ in range(400):
-        altitude_start.relax_d(ap, 0.0)
-        altitude.update_d(ap)
+        altitude_start.relax_d(*parts(ap), 0.0)
+        altitude.update_d(*parts(ap))
         ap.control.tick += 1
     assert ap.control.attitude.throttle_in == pytest.approx(0.0, abs=0.01)
 
@@ -165,15 +166,15 @@ def test_relaxed_throttle_decays(ap):
 def test_jump_of_the_estimate_moves_the_path_with_it(ap):
     spooled(ap)
     position.input_pos_vel_accel_ne(ap.control.pos_ne, standing(0.0, 0.0))
-    position.update_ne(ap)
+    position.update_ne(*parts(ap))
     before = tuple(ap.control.pos_ne.accel_target)
     ap.control.tick += 1
     ap.estimate.pos = ap.estimate.pos.replace(x=ap.estimate.pos.x + 7.0)
     ap.estimate.pos = ap.estimate.pos.replace(z=ap.estimate.pos.z - 3.0)
     ap.estimate.reset_ne_count += 1
     ap.estimate.reset_d_count += 1
-    position.update_ne(ap)
-    altitude.update_d(ap)
+    position.update_ne(*parts(ap))
+    altitude.update_d(*parts(ap))
     assert tuple(ap.control.pos_ne.accel_target) == pytest.approx(before, abs=1e-9)
     assert ap.control.pos_ne.pos_desired[0] == pytest.approx(7.0)
     assert ap.control.pos_d.pos_desired == pytest.approx(-3.0)
@@ -182,12 +183,12 @@ def test_jump_of_the_estimate_moves_the_path_with_it(ap):
 def test_stopping_point_is_ahead_and_bounded(ap):
     spooled(ap)
     ap.estimate.vel = (3.0, 4.0, -5.0)
-    n, e = position_start.stopping_point_ne(ap)
+    n, e = position_start.stopping_point_ne(ap.control.pos_ne, ap.estimate, ap.params.PSC)
     assert n / e == pytest.approx(0.75)
     assert math.hypot(n, e) == pytest.approx(0.5 * 2.5 + 25.0 / 5.0)
-    assert altitude_start.stopping_point_d(ap) == -3.0
+    assert altitude_start.stopping_point_d(ap.control.pos_d, ap.estimate, ap.params.PSC) == -3.0
     ap.estimate.vel = (0.0, 0.0, 0.0)
-    assert position_start.stopping_point_ne(ap) == Vec2(0.0, 0.0)
+    assert position_start.stopping_point_ne(ap.control.pos_ne, ap.estimate, ap.params.PSC) == Vec2(0.0, 0.0)
 
 
 @given(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2), st.floats(-3.0, 3.0))
@@ -225,8 +226,8 @@ def test_bad_targets_brake(ap, bad, give, count):
     spooled(ap)
     for k in range(count):
         give(ap.control.pos_ne, ap.control.pos_d, [bad if j == k else 0.0 for j in range(count)])
-        position.update_ne(ap)
-        altitude.update_d(ap)
+        position.update_ne(*parts(ap))
+        altitude.update_d(*parts(ap))
         ap.control.tick += 1
         assert all(math.isfinite(x) for x in position.thrust_vector(ap.control.pos_ne))
         assert math.isfinite(ap.control.motors.throttle_in)

@@ -75,21 +75,22 @@ class PointMass:
         now = int(v.time_us)
         if self.begun != nav.command_count:
             self.begun = int(nav.command_count)
-            command.begin(ap, now)
+            command.begin(ap.modes.nav, ap.control, ap.estimate, ap.params, now)
         kind = int(nav.command_kind)
         if kind == TAKEOFF:
             self._jump_to(nav.target)
-            complete(ap, now)
+            complete(ap.modes.nav, ap.events, now)
         elif kind in (NONE, LAND):
             self.acc = [0.0, 0.0, 0.0]
         elif command.follows_path(kind):
-            command.run(ap, now)
+            if command.run(nav, ap.control, ap.estimate, ap.params, now):
+                complete(nav, ap.events, now)
             if self.follow and not self.stuck:
-                position.update_ne(ap)
+                position.update_ne(ap.control, ap.estimate, ap.params)
                 self._move()
             elif not self.stuck:
                 ap.estimate.pos, ap.estimate.vel = nav.pos, nav.vel
-        check_condition(ap, now, True)
+        check_condition(ap.modes.nav, ap.events, now, ap.estimate.pos, True)
         self.note(self.sequencer.attend())
         ap.events.attention = 0
 

@@ -151,9 +151,9 @@ def test_leg_for_the_core() -> None:
     path(p, 1.0)
     ap = p.v.autopilot
     waypoint.stop(ap.modes.nav)
-    paths.request_legs(ap, p.v.time_us, Vec3(0.0, 0.0, -15.0), Vec3(30.0, 0.0, -15.0))
+    paths.request_legs(ap.modes.nav, ap.events, p.v.time_us, Vec3(0.0, 0.0, -15.0), Vec3(30.0, 0.0, -15.0))
     assert ap.events.attention == 1
-    assert waypoint.advance(ap, int(p.v.time_us)) == 0
+    assert waypoint.advance(ap.modes.nav, ap.control, ap.estimate, ap.params, int(p.v.time_us)) == 0
     p.sequencer.attend()
     nav = ap.modes.nav
     assert nav.request_pending == 0

@@ -1,15 +1,62 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lines of motion: as ArduPilot's parser finds its keys, and what our end believes."""
+"""Both sorts of datagrams of the JSON interface: frames of servos, and lines of motion."""
 
 from __future__ import annotations
 
 import json
 import math
 import re
+import struct
 
 import pytest
 
-from sitl.bridge.ardupilot_json.motion import MotionError, decode, encode, extra
+from sitl.bridge.ardupilot_json.motion import MotionError, extra
+from sitl.bridge.ardupilot_json.motion import decode as decode_motion
+from sitl.bridge.ardupilot_json.motion import encode as encode_motion
+from sitl.bridge.ardupilot_json.servos import ServoError, Servos, control, controls, decode, encode
+
+
+@pytest.mark.parametrize(("pulses", "magic", "size"), [(16, 18458, 40), (32, 29569, 72)])
+def test_a_frame_has_the_published_layout(pulses, magic, size):
+    widths = tuple(range(1000, 1000 + pulses))
+    datagram = struct.pack(f"<HHI{pulses}H", magic, 400, 4_000_000_000, *widths)
+    assert len(datagram) == size
+    frame = decode(datagram)
+    assert frame == Servos(400, 4_000_000_000, widths)
+    assert encode(frame) == datagram
+
+
+@pytest.mark.parametrize(
+    ("datagram", "why"),
+    [
+        (b"", "0 bytes"),
+        (b"hello", "5 bytes"),
+        (struct.pack("<HHI16H", 29569, 400, 0, *(0,) * 16), "begins with 29569"),
+        (struct.pack("<HHI16H", 18458, 400, 0, *(0,) * 16) + b"\0", "41 bytes"),
+    ],
+)
+def test_other_datagrams_are_refused_with_the_reason(datagram, why):
+    with pytest.raises(ServoError, match=why):
+        decode(datagram)
+
+
+def test_only_16_or_32_pulses_make_a_frame():
+    with pytest.raises(ServoError, match="not 8"):
+        encode(Servos(400, 0, (1500,) * 8))
+
+
+@pytest.mark.parametrize(
+    ("pulse", "rotor", "servo"),
+    [(0, 0.0, 0.0), (900, 0.0, -1.0), (1000, 0.0, -1.0), (1250, 0.25, -0.5), (1500, 0.5, 0.0), (2100, 1.0, 1.0)],
+)
+def test_a_pulse_is_a_rotors_or_a_servos_control(pulse, rotor, servo):
+    assert control(pulse, False) == rotor
+    assert control(pulse, True) == servo
+
+
+def test_the_border_takes_sixteen_of_32_pulses():
+    assert controls((1500,) * 16 + (2000,) * 16, False) == [0.5] * 16
+
 
 MOTION = (1.25, 0.1, -0.2, 0.3, 0.0, 0.0, -9.80665, 10.5, -20.25, -3.125, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, -0.5)
 GOOD = {
@@ -29,7 +76,7 @@ def found_by_text(line: str, section: str, key: str) -> str:
 
 
 def test_a_line_stands_between_line_feeds_without_spaces():
-    line = encode(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode()
+    line = encode_motion(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode()
     assert line.startswith("\n{") and line.endswith("}\n") and " " not in line
     assert json.loads(line)["quaternion"] == [1.0, 0.0, 0.0, 0.0]
 
@@ -45,7 +92,7 @@ def test_a_line_stands_between_line_feeds_without_spaces():
     ],
 )
 def test_ardupilots_parser_finds_every_vector(section, key, numbers):
-    line = encode(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
+    line = encode_motion(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
     values = re.match(r"\[([^]]*)\]", found_by_text(line, section, key))
     assert values is not None
     assert tuple(map(float, values[1].split(","))) == numbers
@@ -63,30 +110,32 @@ def test_ardupilots_parser_finds_every_vector(section, key, numbers):
     ],
 )
 def test_ardupilots_parser_finds_every_number(section, key, number):
-    line = encode(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
+    line = encode_motion(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
     assert float(re.match(r"[-0-9.e]+", found_by_text(line, section, key))[0]) == number
 
 
 def test_what_is_written_is_read_to_the_last_bit():
-    motion = decode(encode((1 / 3, *(math.sin(k) for k in range(9)), 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3), extra(0.7)))
+    motion = decode_motion(
+        encode_motion((1 / 3, *(math.sin(k) for k in range(9)), 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3), extra(0.7))
+    )
     assert motion.time == 1 / 3
     assert motion.gyro + motion.accel + motion.position == tuple(math.sin(k) for k in range(9))
     assert motion.ranges == (0.7, None, None, None, None, None)
 
 
 def test_an_attitude_in_angles_is_taken_and_a_quaternion_counts_more():
-    motion = decode(json.dumps({**GOOD, "attitude": [0, 0, math.pi]}).encode())
+    motion = decode_motion(json.dumps({**GOOD, "attitude": [0, 0, math.pi]}).encode())
     assert motion.attitude == pytest.approx((0, 0, 0, 1), abs=1e-12)
-    both = decode(json.dumps({**GOOD, "attitude": [0, 0, math.pi], "quaternion": [2, 0, 0, 0]}).encode())
+    both = decode_motion(json.dumps({**GOOD, "attitude": [0, 0, math.pi], "quaternion": [2, 0, 0, 0]}).encode())
     assert both.attitude == (1.0, 0.0, 0.0, 0.0)
 
 
 def test_battery_and_receiver_are_optional():
-    plain = decode(json.dumps(GOOD).encode())
+    plain = decode_motion(json.dumps(GOOD).encode())
     assert plain.battery is None and plain.receiver == ()
     more = {**GOOD, "battery": {"voltage": 12.1, "current": 3}, "rc": {"rc_1": 1500, "rc_2": 1100, "rc_4": 1}}
-    told = decode(json.dumps(more).encode())
-    assert told.battery == (12.1, 3.0) and told.receiver == (1500, 1100)
+    reported = decode_motion(json.dumps(more).encode())
+    assert reported.battery == (12.1, 3.0) and reported.receiver == (1500, 1100)
 
 
 @pytest.mark.parametrize(
@@ -107,7 +156,7 @@ def test_battery_and_receiver_are_optional():
 )
 def test_what_is_no_motion_is_refused_with_the_reason(change, why):
     with pytest.raises(MotionError, match=why):
-        decode(json.dumps({**GOOD, **change}).encode())
+        decode_motion(json.dumps({**GOOD, **change}).encode())
 
 
 @pytest.mark.parametrize(
@@ -115,4 +164,4 @@ def test_what_is_no_motion_is_refused_with_the_reason(change, why):
 )
 def test_what_is_no_json_is_refused(text):
     with pytest.raises(MotionError):
-        decode(text.encode())
+        decode_motion(text.encode())

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scripts of real client libraries against ``sitl exec``, over UDP; each runs where its library is installed."""
+
+from __future__ import annotations
+
+import importlib.metadata
+
+import pytest
+
+from tests.clients.conftest import FASTEST, SCRIPTS, Fly
+
+pytestmark = pytest.mark.slow
+
+MAVSDK, UDP = "udpin://127.0.0.1:PORT", "udpin:127.0.0.1:PORT"
+COPTER_AND_ROVER = pytest.mark.parametrize("vehicle", ["copter", "rover"])
+
+
+def installed(package: str) -> bool:
+    try:
+        importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("name", ["ground", "flight", "setpoints", "missions"])
+def test_mavsdk(fly: Fly, name: str) -> None:
+    pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
+    fly(SCRIPTS / f"mavsdk_{name}.py", MAVSDK)
+
+
+@pytest.mark.parametrize("name", ["ground", "drive", "missions"])
+def test_mavsdk_rover(fly: Fly, name: str) -> None:
+    pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
+    fly(SCRIPTS / f"mavsdk_rover_{name}.py", MAVSDK, vehicle="rover", speedup=FASTEST)
+
+
+@pytest.mark.parametrize("name", ["setpoints", "sticks", "missions"])
+def test_pymavlink(fly: Fly, name: str) -> None:
+    fly(SCRIPTS / f"pymavlink_{name}.py", UDP)
+
+
+@pytest.mark.parametrize("name", ["setpoints", "sticks", "missions"])
+def test_pymavlink_rover(fly: Fly, name: str) -> None:
+    fly(SCRIPTS / f"pymavlink_rover_{name}.py", UDP, vehicle="rover", speedup=FASTEST)
+
+
+@COPTER_AND_ROVER
+def test_mavsdk_grpc(fly: Fly, vehicle: str) -> None:
+    pytest.importorskip("mavsdk_grpc")
+    script = {"copter": "grpc_flight.py", "rover": "grpc_rover.py"}[vehicle]
+    fly(SCRIPTS / script, MAVSDK, vehicle=vehicle)
+
+
+@pytest.mark.skipif(not installed("dronekit"), reason="DroneKit is not installed")
+@COPTER_AND_ROVER
+def test_dronekit(fly: Fly, vehicle: str) -> None:
+    script = {"copter": "dronekit_flight.py", "rover": "dronekit_rover.py"}[vehicle]
+    fly(SCRIPTS / script, UDP, vehicle=vehicle)
+
+
+@pytest.mark.skipif(not installed("MAVProxy"), reason="MAVProxy is not installed")
+@COPTER_AND_ROVER
+def test_mavproxy(fly: Fly, vehicle: str) -> None:
+    script = {"copter": "mavproxy_session.py", "rover": "mavproxy_rover.py"}[vehicle]
+    fly(SCRIPTS / script, UDP, vehicle=vehicle)

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the documentation shows runs, and what it names exists."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shlex
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+from sitl import envs
+from sitl.agents import cli as agents_cli
+from sitl.agents.rehearsal import plan as plans
+from sitl.agents.rehearsal.change import GROUPS, Change
+from sitl.agents.runs.training import train_one
+from sitl.agents.tabular.settings import Settings
+from sitl.autopilot.params import docs
+from sitl.cli import parser
+from sitl.core import compile as compiler
+from sitl.envs.observations import OBSERVATIONS
+from sitl.envs.tasks import TASKS
+from sitl.simulation import Core
+from sitl.vehicle.kinds import KINDS
+from tests.agents.small_runs import new
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
+
+
+def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
+    flight, learning = blocks(ROOT / "README.md", "python")
+    exec(compile(learning, "README.md", "exec"), {})
+    rewards = [float(line.split()[-1]) for line in capsys.readouterr().out.splitlines()]
+    assert len(rewards) == 500 and sum(rewards[-100:]) > sum(rewards[:100]) + 100 * 100.0
+    scope: dict[str, object] = {}
+    exec(compile(flight, "README.md", "exec"), scope)
+    printed = capsys.readouterr().out
+    assert printed.startswith(("30.", "29."))
+    vehicle = scope["vehicle"]
+    assert vehicle.position == pytest.approx((30.0, 10.0, 10.0), abs=1.1)  # type: ignore[attr-defined]
+
+
+def test_the_commands_of_the_readme_are_understood() -> None:
+    text = "\n".join(blocks(ROOT / "README.md", ""))
+    lines = [line for line in text.splitlines() if line.startswith("sitl ")]
+    assert len(lines) > 4
+    for line in lines:
+        words = line.split("#")[0].split()[1:]
+        parser().parse_args(words)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
+        if "://" not in target:
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_the_parameter_pages_are_up_to_date(name: str) -> None:
+    page = docs.page(name, KINDS[name].firmware.table)
+    assert (ROOT / "docs" / f"parameters-{name}.md").read_text() == page, "run: python docs/make_pages.py"
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> None:
+    assert [unit.name for unit in compiler.reached(KINDS[name].advance)] == [
+        f"physics.native.{name}.step.step",
+        "autopilot.estimation.update.step",
+        "autopilot.estimation.update.update",
+        f"autopilot.{name}.modes.update.update",
+        f"autopilot.{name}.control.update.update",
+        f"vehicle.{name}.advance",
+    ]
+
+
+EXTENDING = (ROOT / "docs/extending.md").read_text(encoding="utf-8")
+BLOCK = re.compile(r"^```python ?(\S*)\n(.*?)^```$", re.M | re.S)
+EXTENSIONS = {
+    title: found
+    for title, text in (section.split("\n", 1) for section in EXTENDING.split("\n## ")[1:])
+    if (found := BLOCK.findall(text))
+}
+CORE = ("A mode", "A fault", "A parameter")
+"""They compile a core of their own."""
+
+
+@pytest.mark.parametrize(
+    "title", [pytest.param(t, marks=pytest.mark.slow) if t in CORE else t for t in EXTENSIONS], ids=lambda t: t
+)
+def test_an_example_of_extending_does_what_it_says(title: str, tmp_path: Path) -> None:
+    *files, (name, program) = EXTENSIONS[title]
+    assert not name, "the last block is the program"
+    for file, text in files:
+        (tmp_path / file).write_text(text)
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("SITL_M") and k != "SITL_PARAMETERS"}
+    environment["PYTHONPATH"] = os.pathsep.join((str(tmp_path), str(ROOT)))
+    ran = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=900
+    )
+    assert ran.returncode == 0, ran.stderr[-3000:]
+
+
+def test_every_way_in_has_an_example_or_a_test() -> None:
+    rows = [line.split("|")[1].strip() for line in EXTENDING.splitlines() if line.startswith("| a ")]
+    assert len(rows) == 8
+    assert set(EXTENSIONS) == {
+        "A mode", "A parameter", "A message that is sent", "A message that is taken", "A fault", "A physics engine",
+        "A task of environments",
+    }  # fmt: skip
+    assert (ROOT / "tests/vehicle/test_kinds.py").exists()
+
+
+DOCS = ROOT / "docs"
+LEARNING = (DOCS / "learning.md").read_text()
+
+
+def test_the_example_of_learning_runs(capsys):
+    (example,) = re.findall(r"```python\n(.*?)```", LEARNING, re.DOTALL)
+    exec(compile(example, "docs/learning.md", "exec"), {})
+    assert "states, last reward" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("page", "least"), [("learning", 7), ("mental-rehearsal", 7), ("results", 3)])
+def test_the_commands_of_learning_are_understood(page, least):
+    top = argparse.ArgumentParser()
+    agents_cli.add_parser(top.add_subparsers(dest="command", required=True))
+    lines = re.findall(r"^sitl (.*)$|`sitl ([^`]*)`", (DOCS / f"{page}.md").read_text(), re.MULTILINE)
+    whole = [line for pair in lines for line in pair if " --" in line]
+    for line in whole:
+        words = shlex.split(line.replace("--seed K", "--seed 0"), comments=True)
+        assert callable(top.parse_args(words).function)
+    assert len(whole) >= least
+
+
+def test_every_setting_of_learning_is_explained():
+    for field in fields(Settings):
+        row = next(line for line in LEARNING.splitlines() if line.startswith("| `") and f"`{field.name}`" in line)
+        defaults = str(field.default).lower() if isinstance(field.default, bool) else str(field.default)
+        assert defaults in row, field.name
+
+
+REHEARSAL = (ROOT / "docs/mental-rehearsal.md").read_text()
+
+
+def test_the_plan_of_rehearsals_can_be_used(tmp_path):
+    (text,) = re.findall(r"```toml\n(.*?)```", REHEARSAL, re.DOTALL)
+    (tmp_path / "plan.toml").write_text(text)
+    plan = plans.load(tmp_path / "plan.toml")
+    assert plan.changes[0].options == {"step_time": 0.2} and plan.randomise["draws"] == 24
+
+
+def test_every_key_and_group_of_rehearsals_is_explained():
+    for name in (*(field.name for field in fields(Change)), *GROUPS, *plans.names()):
+        assert f"`{name}`" in REHEARSAL, name
+
+
+def test_the_example_of_rehearsals_runs(tmp_path, monkeypatch, capsys):
+    new(tmp_path / "runs" / "circuit2")
+    train_one(tmp_path / "runs" / "circuit2", lambda message: None, lambda: False)
+    monkeypatch.chdir(tmp_path)
+    (example,) = re.findall(r"```python\n(.*?)```", REHEARSAL, re.DOTALL)
+    exec(compile(example, "docs/mental-rehearsal.md", "exec"), {})
+    assert "late" in capsys.readouterr().out
+
+
+ENVIRONMENTS = (ROOT / "docs/environments.md").read_text()
+ENVIRONMENT_EXAMPLES = re.findall(r"```python\n(.*?)```", ENVIRONMENTS, re.DOTALL)
+
+
+@pytest.mark.parametrize("example", ENVIRONMENT_EXAMPLES, ids=range(len(ENVIRONMENT_EXAMPLES)))
+def test_the_examples_of_environments_run(example):
+    exec(compile(example, "docs/environments.md", "exec"), {})
+
+
+def test_the_page_of_environments_names_every_one_and_every_piece():
+    for name in (*envs.PAPER, *(f'"{n}"' for n in (*OBSERVATIONS, *TASKS))):
+        assert name in ENVIRONMENTS, name
