@@ -12,16 +12,40 @@ import tempfile
 import time
 import timeit
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from sitl import vehicles
 from sitl.bridge.dialect import message
 from sitl.missions.pilot import VELOCITY_ONLY, Pilot
-from sitl.simulation import Core, load_core
+from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
-from .scenes import SPEED, begin, go_on
+Array = np.ndarray[Any, Any]
+
+SPEED = 1.0
+"""Of the set-points [m/s]: every rover reaches it."""
+
+
+def begin(frame: str, core: Core, estimator: str = "ekf") -> Pilot:
+    """A copter hovers at 10 m, a rover drives north at a velocity; both have settled."""
+    pilot = Pilot(Simulation(frame, core=core, estimator=estimator))
+    pilot.boot()
+    pilot.arm()
+    if core.kind.name == "copter":
+        pilot.send_command("NAV_TAKEOFF", altitude=10.0)
+        pilot.fly(20.0)
+    else:
+        pilot.stream_setpoint(20.0, VELOCITY_ONLY, (SPEED, 0.0, 0.0))
+    return pilot
+
+
+def go_on(core: Core, vehicles: Array) -> None:
+    """Where no client repeats it, the rovers' velocity has just come again: without, they stop after 3 s."""
+    if core.kind.name == "rover":
+        vehicles["autopilot"]["modes"]["guided"]["update_us"] = vehicles["time_us"]
+
 
 FLEET = 256
 """Vehicles."""

@@ -18,7 +18,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.missions.engines import FLIGHTS
 from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.engine import EngineError

@@ -28,6 +28,18 @@ class LinkLostError(VehicleError, ConnectionError):
     """No vehicle at the other end of a MAVLink connection, or no longer; the message names the connection."""
 
 
+class NotReadyError(VehicleError, RuntimeError):
+    """A vehicle that does not become ready for an episode; the message says which texts it sent."""
+
+
+class NotASimulatorError(NotReadyError):
+    """A vehicle that is not reset, because nothing proves that it is a simulator; nothing was sent that changes it."""
+
+
+class MissingExtra(SitlError, RuntimeError):
+    """An optional dependency is not installed; the message says which extra brings it."""
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The end of a message about a name that is not known: "; did you mean ...?" with the nearest, or nothing."""
     near = get_close_matches(name, list(known), 1)

@@ -24,7 +24,7 @@ from .errors import OptionError
 from .physics.carried import Carried
 from .physics.engines import NATIVE
 from .plants.local import LocalPlant
-from .plants.plant import Craft, PhysicsLostError, Plant, is_remote, remote
+from .plants.plant import PhysicsLostError, Plant, SimulatedVehicle, is_remote, remote
 from .scenario import Options, Scenario
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
@@ -120,14 +120,16 @@ class Simulation:
         """Names in ``params`` that this firmware does not have."""
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
-        craft = Craft(self.kind, self.airframe, self.fleet, self.index, self.v, reader, self._physics_restarted)
+        vehicle = SimulatedVehicle(
+            self.kind, self.airframe, self.fleet, self.index, self.v, reader, self._physics_restarted
+        )
         if is_remote(self.physics):
-            self.plant: Plant = remote(craft, scenario)
+            self.plant: Plant = remote(vehicle, scenario)
             self.world: World | None = None
             """Where it is; None: on a plain without end, or known at the other end of the link alone."""
             self.home = scenario.home_or_default
         else:
-            plant = LocalPlant(craft, scenario, core, progress)
+            plant = LocalPlant(vehicle, scenario, core, progress)
             self.plant, self.world, self.home = plant, plant.world, plant.home
         self.mission = Mission()
         self._power_on()

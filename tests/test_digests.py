@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 
 from benchmarks.digests import __main__ as command
-from benchmarks.digests import logs, tree
+from benchmarks.digests import flights as scripts
+from benchmarks.digests import tree
 from benchmarks.digests.compare import compare
 from benchmarks.digests.leaves import leaves
 from benchmarks.digests.pilot import KINDS, MODES
+from benchmarks.digests.tape import Tape, packed, read, unpacked
 from sitl.simulation import Core
 from sitl.vehicle.copter import COPTER
 from sitl.vehicle.rover import ROVER
@@ -23,10 +25,10 @@ from sitl.vehicle.rover import ROVER
 FLIGHT = "native/power_on/copter"
 
 
-def sums(dtype: np.dtype[Any], value: Any) -> dict[str, int]:
-    """Check sum of each leaf of a record."""
+def values(dtype: np.dtype[Any], value: Any) -> dict[str, bytes]:
+    """Value of each leaf of a record."""
     record = np.array(value, dtype).tobytes()
-    return {leaf.path: leaf.check_sum(record) for leaf in leaves(dtype)}
+    return {leaf.path: leaf.wide(record) for leaf in leaves(dtype)}
 
 
 def test_leaves_do_not_depend_on_layout() -> None:
@@ -37,11 +39,31 @@ def test_leaves_do_not_depend_on_layout() -> None:
     deep = np.dtype(
         [("armed", "i8"), ("autopilot", [("params", nested)]), ("rotors", [("thrust", "f8")], (2,)), ("vel", vector)]
     )
-    first = sums(flat, ((1.0, 2.0, 3.0), 1, (4.0, 5.0), ((1100.0, 1200.0, 0.1),)))
-    second = sums(deep, (1, (([(1100.0,), (1200.0,)], (0.1,)),), [(4.0,), (5.0,)], (1.0, 2.0, 3.0)))
+    first = values(flat, ((1.0, 2.0, 3.0), 1, (4.0, 5.0), ((1100.0, 1200.0, 0.1),)))
+    second = values(deep, (1, (([(1100.0,), (1200.0,)], (0.1,)),), [(4.0,), (5.0,)], (1.0, 2.0, 3.0)))
     second["thrust"] = second.pop("rotors.thrust")
     assert first == second
     assert len(set(first.values())) == len(first)
+
+
+def tape(*values: tuple[float, str, bytes]) -> dict[str, Any]:
+    """Digests of a flight that gave these values."""
+    taken = Tape()
+    for time, name, value in values:
+        taken.add(time, name, value)
+    return {"flight": {"given": taken.result()}}
+
+
+def test_a_tape_tells_where_a_difference_begins() -> None:
+    first = tape((0, "a", b"1"), (0, "b", b"2"), (3, "a", b"3"), (7, "b", b"4"))
+    assert list(read(first["flight"]["given"])) == ["a", "b"]
+    assert compare(first, first).same == ["flight"]
+    other = tape((0, "a", b"1"), (0, "b", b"2"), (3, "a", b"x"), (7, "b", b"y"))
+    assert compare(first, other).differing == {"flight": ["values from 3 on: a; 1 more"]}
+    shorter = tape((0, "a", b"1"), (0, "b", b"2"), (3, "a", b"3"))
+    assert compare(first, shorter).differing == {"flight": ["values from 7 on: b"]}
+    turned = tape((0, "b", b"2"), (0, "a", b"1"), (3, "a", b"3"), (7, "b", b"4"))
+    assert compare(first, turned).differing == {"flight": ["values in another order"]}
 
 
 def write(path: Path) -> Path:
@@ -56,29 +78,36 @@ def test_a_flight_repeats_and_a_change_is_named(
     first, again = write(tmp_path / "first.json"), write(tmp_path / "again.json")
     assert first.read_bytes() == again.read_bytes()
     assert command.main(["compare", str(first), str(again)]) == 0
-    changed = partial(logs.power_on, "erle_copter", "copter", params={"ATC_RAT_RLL_P": 0.2})
+    changed = partial(scripts.power_on, "erle_copter", "copter", params={"ATC_RAT_RLL_P": 0.2})
     monkeypatch.setattr(command, "flights", lambda: {FLIGHT: changed})
     other = write(tmp_path / "other.json")
     capsys.readouterr()
     assert command.main(["compare", str(first), str(other)]) == 1
-    assert "leaves at 0.1 s: autopilot.params.ATC_RAT_RLL_P, autopilot.control.motors.roll\n" in capsys.readouterr().out
-    monkeypatch.setattr(command, "flights", lambda: {FLIGHT: partial(logs.power_on, "erle_copter", "copter", seed=2)})
+    assert (
+        "leaves from 0.1 on: autopilot.params.ATC_RAT_RLL_P, autopilot.control.motors.roll\n" in capsys.readouterr().out
+    )
+    monkeypatch.setattr(
+        command, "flights", lambda: {FLIGHT: partial(scripts.power_on, "erle_copter", "copter", seed=2)}
+    )
     other = write(tmp_path / "other.json")
     capsys.readouterr()
     assert command.main(["compare", str(first), str(other)]) == 1
-    assert "messages from 0 to 1 s on: " in capsys.readouterr().out
+    assert "messages from 0 on: " in capsys.readouterr().out
 
 
 def test_renamed_leaves_are_found_again(core: Core, tmp_path: Path) -> None:
     first = json.loads(write(tmp_path / "first.json").read_text())
-    text = json.dumps(first).replace('"autopilot.estimate.', '"autopilot.navigation.estimate.')
-    found = compare(first, json.loads(text))
+    second = json.loads(json.dumps(first))
+    record = second[FLIGHT]["record"]
+    paths = unpacked(record["names"]).decode().replace("autopilot.estimate.", "autopilot.navigation.estimate.")
+    record["names"] = packed(paths.encode())
+    found = compare(first, second)
     assert found.same == [FLIGHT]
     assert "autopilot.estimate.vel" in found.leaves_only_first
     assert "autopilot.navigation.estimate.vel" in found.leaves_only_second
     names = tmp_path / "names.txt"
     names.write_text("# moved\nautopilot.estimate = autopilot.navigation.estimate\n")
-    found = compare(first, json.loads(text), command.read_names(names))
+    found = compare(first, second, command.read_names(names))
     assert not found.leaves_only_first and not found.leaves_only_second
 
 

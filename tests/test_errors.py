@@ -10,8 +10,7 @@ import pytest
 
 import sitl
 from sitl import cli
-from sitl.core.extras import MissingExtra
-from sitl.errors import OptionError, SitlError
+from sitl.errors import MissingExtra, OptionError, SitlError
 
 EXTRAS = {"jsbsim", "matplotlib", "pybullet", "pygame", "ray", "stable_baselines3", "torch"}
 

@@ -5,39 +5,38 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
-import hashlib
 import json
 import multiprocessing
 import os
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from . import copter, logs, missions, robots, rover, tree
+from . import flights as vehicles
+from . import robots, tree
 from .compare import Comparison, compare
+from .leaves import leaves
 from .pilot import Pilot
-from .tape import leaves_of
 
 QUICK = (
     "native/power_on/*", "native/log/*", "native/mission/copter/spline_figure", "native/mission/rover/figure_eight",
-    "native/recorded/*-ekf", "native/copter/LOITER-erle_copter", "native/copter/STABILIZE-ardupilot_quad",
-    "native/copter/failsafe-gps", "native/copter/failsafe-rc", "native/copter/on_ground", "native/copter/office",
-    "native/copter/guided-*", "native/copter/by_dice-*-11", "native/rover/guided-erle_rover",
-    "native/rover/guided-skid_rover", "native/rover/by_dice-*-11", "native/rover/ACRO-erle_rover", "native/rover/maze",
-    "native/rover/standing-erle_rover", "native/rover/failsafe-rc-smart_rtl", "jsbsim/copter/guided",
-    "pybullet/rover/guided", "turtlebot/maze", "env/Gazebo*", "env/navigate-turtlebot-goal",
+    "native/mission/*/square-truth", "native/copter/LOITER-erle_copter", "native/copter/STABILIZE-ardupilot_quad",
+    "native/copter/failsafe-gps", "native/copter/failsafe-rc", "native/copter/on_ground-erle_copter",
+    "native/*/world", "native/copter/guided-*", "native/*/by_dice-*-11", "native/rover/guided-erle_rover",
+    "native/rover/guided-skid_rover", "native/rover/ACRO-erle_rover", "native/rover/on_ground-erle_rover",
+    "native/rover/failsafe-rc-smart_rtl", "jsbsim/copter/guided", "pybullet/rover/guided", "turtlebot/maze",
+    "env/Gazebo*", "env/navigate-turtlebot-goal",
 )  # fmt: skip
 """Patterns of the flights that are enough after each edit."""
 
 
 def flights() -> dict[str, Callable[[], Any]]:
     """Every flight by its name."""
-    modules = (logs, missions, copter, rover, robots)
-    return {name: script for module in modules for name, script in module.flights().items()}  # type: ignore[attr-defined]
+    return {**vehicles.flights(), **robots.flights()}
 
 
 def chosen(patterns: str | None, quick: bool) -> list[str]:
@@ -47,40 +46,34 @@ def chosen(patterns: str | None, quick: bool) -> list[str]:
         patterns: shell patterns or beginnings of names, separated by commas; None: all.
         quick: only those that are enough after each edit.
     """
-    names = [name for name in flights() if not quick or any(fnmatch.fnmatch(name, each) for each in QUICK)]
-    if patterns is None:
-        return names
-    wanted = patterns.split(",")
-    return [name for name in names if any(fnmatch.fnmatch(name, each) or name.startswith(each) for each in wanted)]
+    wanted = [f"{each}*" for each in patterns.split(",")] if patterns is not None else ["*"]
+    return [
+        name
+        for name in flights()
+        if any(fnmatch.fnmatch(name, each) for each in wanted)
+        and (not quick or any(fnmatch.fnmatch(name, each) for each in QUICK))
+    ]
 
 
-def fly(name: str) -> dict[str, Any]:
-    """Digests of one flight; with "error" when it cannot be flown."""
+def fly(name: str) -> tuple[float, dict[str, Any]]:
+    """Seconds of wall time, and the digests of one flight; with "error" when it cannot be flown."""
     start = time.perf_counter()
     try:
         digests: dict[str, Any] = flights()[name]().result()
     except Exception as error:
         where = traceback.extract_tb(error.__traceback__)[-1]
         digests = {"error": f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"}
-    return {**digests, "seconds": round(time.perf_counter() - start, 2)}
+    return time.perf_counter() - start, digests
 
 
 def write(path: Path, names: list[str], jobs: int) -> int:
     """Fly, and write the digests; returns how many could not be flown."""
-    leaves: dict[str, list[str]] = {}
     flown: dict[str, Any] = {}
     with ProcessPoolExecutor(jobs, multiprocessing.get_context("fork")) as pool:
-        for name, digests in zip(names, pool.map(fly, names)):
-            seconds = digests.pop("seconds")
-            print(f"{seconds:6.2f} s  {name}  {digests.get('error', '')}", flush=True)
-            if "record" in digests:
-                paths = digests["record"]["paths"]
-                key = hashlib.sha256("\n".join(paths).encode()).hexdigest()[:8]
-                leaves[key] = paths
-                digests["record"]["paths"] = key
-            flown[name] = digests
+        for name, (seconds, flown[name]) in zip(names, pool.map(fly, names)):
+            print(f"{seconds:6.2f} s  {name}  {flown[name].get('error', '')}", flush=True)
     lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(digests)}" for name, digests in flown.items())
-    path.write_text(f'{{"leaves": {json.dumps(leaves)},\n"flights": {{\n{lines}\n}}}}\n')
+    path.write_text(f"{{{lines}}}\n")
     return sum("error" in digests for digests in flown.values())
 
 
@@ -88,28 +81,24 @@ def read_names(path: Path | None) -> dict[str, str]:
     """Renamed leaves: a file of lines ``old=new``; # begins a comment."""
     names: dict[str, str] = {}
     for line in path.read_text().splitlines() if path is not None else ():
-        text = line.partition("#")[0].strip()
-        if text:
-            old, equals, new = text.partition("=")
-            if not equals:
-                raise SystemExit(f"{path}: {line!r} is not of the form old=new")
-            names[old.strip()] = new.strip()
+        old, equals, new = (part.strip() for part in line.partition("#")[0].partition("="))
+        if old and not equals:
+            raise SystemExit(f"{path}: {line!r} is not of the form old=new")
+        if old:
+            names[old] = new
     return names
 
 
 def tell(found: Comparison, every: bool) -> None:
     """Print a comparison."""
     for name, differences in found.differing.items():
-        print(f"DIFFERS  {name}")
-        for difference in differences:
-            print(f"         {difference}")
-    lists: Mapping[str, list[str]] = {
-        "flights only in the first": found.only_first,
-        "flights only in the second": found.only_second,
-        "leaves only in the first": sorted(found.leaves_only_first),
-        "leaves only in the second": sorted(found.leaves_only_second),
-    }
-    for title, names in lists.items():
+        print(f"DIFFERS  {name}", *differences, sep="\n         ")
+    for title, names in (
+        ("flights only in the first", found.only_first),
+        ("flights only in the second", found.only_second),
+        ("leaves only in the first", sorted(found.leaves_only_first)),
+        ("leaves only in the second", sorted(found.leaves_only_second)),
+    ):
         if names:
             shown = names if every else names[:12]
             print(f"{title} ({len(names)}): {', '.join(shown)}{' ...' if len(shown) < len(names) else ''}")
@@ -129,7 +118,7 @@ def show(name: str, until_s: float) -> None:
     def look(pilot: Pilot, now_us: int) -> None:
         if now_us >= until_s * 1e6:
             dtype, record = tree.record(pilot.simulation)
-            for leaf in leaves_of(dtype):
+            for leaf in leaves(dtype):
                 print(leaf.path, *(repr(number) for number in leaf.value(record).tolist()))
             raise Reached
 

@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
-from .tape import packed, unpacked
+from .tape import Row, read
 
 Digests = Mapping[str, Any]
-NOTHING = packed(b"")
 NAMED = 5
 """Differences of one flight that are named."""
 
@@ -41,83 +38,51 @@ def renamed(path: str, names: Mapping[str, str]) -> str:
 
 
 def compare(first: Digests, second: Digests, names: Mapping[str, str] | None = None) -> Comparison:
-    """Two fingerprints; ``names``: leaves of the first, or parents of leaves, and what the second calls them."""
+    """Two sets of digests; ``names``: leaves of the first, or parents of leaves, and what the second calls them."""
     found = Comparison()
-    a, b = first["flights"], second["flights"]
-    found.only_first = [name for name in a if name not in b]
-    found.only_second = [name for name in b if name not in a]
-    for name in a:
-        if name not in b:
-            continue
-        paths = [[renamed(p, names or {}) for p in _paths(first, a[name])], _paths(second, b[name])]
-        found.leaves_only_first |= set(paths[0]) - set(paths[1])
-        found.leaves_only_second |= set(paths[1]) - set(paths[0])
-        differences = list(_differences(a[name], b[name], paths))
+    found.only_first = [name for name in first if name not in second]
+    found.only_second = [name for name in second if name not in first]
+    for flight in [name for name in first if name in second]:
+        differences = list(_differences(first[flight], second[flight], names or {}, found))
         if differences:
-            found.differing[name] = differences
+            found.differing[flight] = differences
         else:
-            found.same.append(name)
+            found.same.append(flight)
     return found
 
 
-def _paths(whole: Digests, flight: Digests) -> list[str]:
-    key = flight.get("record", {}).get("paths")
-    return list(whole["leaves"][key]) if key is not None else []
-
-
-def _differences(a: Digests, b: Digests, paths: list[list[str]]) -> Iterable[str]:
+def _differences(a: Digests, b: Digests, names: Mapping[str, str], found: Comparison) -> Iterator[str]:
     if "error" in a or "error" in b:
         yield f"error: {a.get('error', 'none')} | {b.get('error', 'none')}"
         return
-    for key in ("telemetry", "given"):
+    for key, what in (("telemetry", "messages"), ("given", "values")):
         if key in a and key in b and a[key]["sha256"] != b[key]["sha256"]:
-            yield _first_in_series(a[key], b[key], "message" if key == "telemetry" else "value", key == "telemetry")
+            yield _first(what, a[key]["times"], read(a[key]), read(b[key])) or f"{what} in another order"
     if "record" in a and "record" in b:
-        yield from _in_leaves(a["record"], b["record"], paths)
-    for key in ("end_us", "steps", "files"):
+        ours, theirs = {renamed(path, names): row for path, row in read(a["record"]).items()}, read(b["record"])
+        found.leaves_only_first |= ours.keys() - theirs.keys()
+        found.leaves_only_second |= theirs.keys() - ours.keys()
+        shared = [path for path in ours if path in theirs]
+        text = _first("leaves", a["record"]["times"], {p: ours[p] for p in shared}, {p: theirs[p] for p in shared})
+        yield from [text] if text else []
+    for key in ("end", "files"):
         if a.get(key) != b.get(key):
             yield f"{key}: {a.get(key)} | {b.get(key)}"
 
 
-def _first_in_series(a: Digests, b: Digests, what: str, in_seconds: bool) -> str:
+def _first(what: str, times: list[float], a: Mapping[str, Row], b: Mapping[str, Row]) -> str:
+    """Where two tapes differ first, in words; "" where they are the same."""
     firsts: dict[int, list[str]] = {}
-    for name in sorted({*a["names"], *b["names"]}):
-        rows = [np.frombuffer(unpacked(side["names"].get(name, NOTHING)), np.uint8) for side in (a, b)]
-        size = max(map(len, rows))
-        padded = [np.pad(row, (0, size - len(row))) for row in rows]
-        unequal = np.flatnonzero(padded[0] != padded[1])
-        if len(unequal):
-            firsts.setdefault(int(unequal[0]), []).append(name)
+    for name in {**a, **b}:
+        ours, theirs = a.get(name, Row(0, b"")), b.get(name, Row(0, b""))
+        if ours != theirs:
+            size = max(len(ours.steps), len(theirs.steps))
+            pairs = zip(ours.steps.ljust(size, b"\0"), theirs.steps.ljust(size, b"\0"))
+            firsts.setdefault(next((k for k, (x, y) in enumerate(pairs) if x != y), size), []).append(name)
     if not firsts:
-        return f"{what}s: order or time within a second"
+        return ""
     step = min(firsts)
-    others = sum(map(len, firsts.values())) - len(firsts[step])
-    when = f"{step} to {step + 1} s" if in_seconds else f"step {step}"
-    return f"{what}s from {when} on: {', '.join(firsts[step])}" + (f"; later {others} more" if others else "")
-
-
-def _in_leaves(a: Digests, b: Digests, paths: list[list[str]]) -> Iterable[str]:
-    sides = []
-    for side, names in zip((a, b), paths):
-        chains = np.frombuffer(unpacked(side["chain"]), "<u4").tolist()
-        rows = np.frombuffer(unpacked(side["changes"]), np.uint8).reshape(len(names), len(side["times_us"]))
-        sides.append(dict(zip(names, zip(chains, rows))))
-    times = a["times_us"]
-    if times != b["times_us"]:
-        yield f"checkpoints: {len(times)} | {len(b['times_us'])}, the last at {times[-1]} | {b['times_us'][-1]} us"
-    firsts: dict[int, list[str]] = {}
-    for name, (chain, changes) in sides[0].items():
-        if name not in sides[1] or sides[1][name][0] == chain:
-            continue
-        other = sides[1][name][1]
-        size = min(len(changes), len(other))
-        unequal = np.flatnonzero(changes[:size] != other[:size])
-        if len(unequal):
-            firsts.setdefault(int(unequal[0]), []).append(name)
-        elif len(changes) == len(other):
-            firsts.setdefault(len(times), []).append(name)
-    if firsts:
-        first = min(firsts)
-        when = f"at {times[first] * 1e-6:g} s" if first < len(times) else "at an unknown time"
-        more = sum(map(len, firsts.values())) - len(firsts[first][:NAMED])
-        yield f"leaves {when}: {', '.join(firsts[first][:NAMED])}" + (f"; {more} more" if more else "")
+    when = f"from {times[step]:g} on" if step < len(times) else f"after {times[-1]:g}"
+    named = firsts[step][:NAMED]
+    more = sum(map(len, firsts.values())) - len(named)
+    return f"{what} {when}: {', '.join(named)}" + (f"; {more} more" if more else "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The leaves of a record: each number or array of numbers under its path, and a check sum of its value.
+"""The leaves of a record: each number or array of numbers under its path.
 
 Paths and values do not depend on the layout: a vector is one leaf, be it an array or a record of x, y and z; an array
 of records gives a leaf for each field; a parameter has ArduPilot's name, however its record is nested.
@@ -7,8 +7,8 @@ of records gives a leaf for each field; a parameter has ArduPilot's name, howeve
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,14 +35,14 @@ class Leaf(NamedTuple):
         runs = [np.frombuffer(record, self.number, self.length, offset) for offset in self.offsets]
         return runs[0] if len(runs) == 1 else np.concatenate(runs)
 
-    def check_sum(self, record: bytes, before: int = 0) -> int:
-        """CRC-32 of its value as float64 (integers, too: their width does not count), after that of ``before``."""
+    def wide(self, record: bytes) -> bytes:
+        """Its value as float64, integers, too: their width does not count."""
         if len(self.offsets) == 1 and self.number == np.float64:
-            start = self.offsets[0]
-            return zlib.crc32(memoryview(record)[start : start + 8 * self.length], before)
-        return zlib.crc32(self.value(record).astype(np.float64).tobytes(), before)
+            return record[self.offsets[0] : self.offsets[0] + 8 * self.length]
+        return self.value(record).astype(np.float64).tobytes()
 
 
+@cache
 def leaves(record: np.dtype[Any]) -> list[Leaf]:
     """All leaves of a record type, in memory order."""
     return [_named(leaf) for leaf in _walk(record, "", (0,))]
@@ -57,16 +57,12 @@ def _walk(record: np.dtype[Any], path: str, offsets: tuple[int, ...]) -> Iterato
 
 def _leaf_or_walk(kind: np.dtype[Any], path: str, offsets: tuple[int, ...]) -> Iterator[Leaf]:
     base, count = kind.base, int(np.prod(kind.shape, dtype=int))
-    if base.names is None and kind.shape and path.startswith(PARAMETERS):  # FLTMODE[0] is FLTMODE1
-        for k in range(count):
-            yield Leaf(f"{path}{k + 1}", base, tuple(start + k * base.itemsize for start in offsets), 1)
+    if kind.shape and path.startswith(PARAMETERS):
+        for k in range(count):  # FLTMODE[0] is FLTMODE1, RC[0].MIN is RC1_MIN
+            yield from _leaf_or_walk(base, f"{path}{k + 1}", tuple(start + k * base.itemsize for start in offsets))
         return
     if base.names is None:
         yield Leaf(path, base, offsets, count)
-        return
-    if kind.shape and path.startswith(PARAMETERS):
-        for k in range(count):  # RC[0].MIN is RC1_MIN
-            yield from _walk(base, f"{path}{k + 1}", tuple(start + k * base.itemsize for start in offsets))
         return
     if kind.shape:
         offsets = tuple(start + k * base.itemsize for start in offsets for k in range(count))
@@ -79,6 +75,5 @@ def _leaf_or_walk(kind: np.dtype[Any], path: str, offsets: tuple[int, ...]) -> I
 
 
 def _named(leaf: Leaf) -> Leaf:
-    if not leaf.path.startswith(PARAMETERS):
-        return leaf
-    return leaf._replace(path=PARAMETERS + leaf.path.removeprefix(PARAMETERS).replace(".", "_"))
+    before, params, name = leaf.path.partition(PARAMETERS)
+    return leaf._replace(path=before + params + name.replace(".", "_")) if params else leaf

@@ -3,16 +3,22 @@
 
 from __future__ import annotations
 
+import hashlib
 import struct
+import tempfile
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from . import tree
-from .tape import CHECKPOINT_US, Record, Series
+from .leaves import leaves
+from .tape import Tape
 
 STEP_US = 100_000
+CHECKPOINT_US = 4_000_000
+"""Simulated time between two looks at the record [us]."""
 CLIENT = 255
 """System id of the client."""
 STREAMED = (
@@ -30,10 +36,6 @@ MODES = {
     },
 }  # fmt: skip
 KINDS = {message.msgname: message for message in mavlink.mavlink_map.values()}
-HEARD = {KINDS[name].id for name in (
-    "HEARTBEAT", "SYS_STATUS", "EKF_STATUS_REPORT", "COMMAND_ACK", "MISSION_REQUEST", "MISSION_REQUEST_INT",
-    "MISSION_ACK", "MISSION_CURRENT", "STATUSTEXT",
-)}  # fmt: skip
 
 
 class ScriptError(RuntimeError):
@@ -56,28 +58,36 @@ class Item(NamedTuple):
 
 
 class Pilot:
-    """Commands one vehicle, and takes the digests of its flight."""
+    """Commands one vehicle, and takes the digests of its flight.
+
+    Args:
+        frame: airframe.
+        kind: "copter" or "rover".
+        log: whether the flight's logs are digested, too.
+        options: of ``Simulation``.
+    """
 
     on_step: Callable[..., None] | None = None
     """Called with the simulated time [us] after each step of 0.1 s."""
 
-    def __init__(self, frame: str, kind: str = "copter", **options: Any) -> None:
+    def __init__(self, frame: str, kind: str, log: bool = False, **options: Any) -> None:
         self.kind = kind
-        self.sent, self.record = Series(), Record()
-        self.simulation = tree.simulation(frame, **options)
+        self.sent, self.record = Tape(), Tape()
+        self.simulation = tree.locate("Simulation", "sitl.simulation")(frame, **options)
+        self._folder = tempfile.TemporaryDirectory(prefix="digests-") if log else None
+        if self._folder is not None:
+            tree.locate("open_log", "sitl.run.runner")(self.simulation, Path(self._folder.name), "flight")
         self.link = tree.connect(self.simulation, self)
         self.mav = mavlink.MAVLink(self, srcSystem=CLIENT, srcComponent=190)
         self.sticks: tuple[int, ...] = ()
         self.items: Sequence[Item] = ()
-        self.texts: list[str] = []
         self._checkpoint_us = 0
-        self._restart()
+        self._listen()
 
-    def _restart(self) -> None:
-        self.armed = self.is_located = self.is_checked = False
-        self.acks: dict[int, int] = {}
-        self.answer: int | None = None
-        self.mission_state = 0
+    def _listen(self) -> None:
+        """Ask for telemetry, and forget what was heard."""
+        self.heard: dict[str, Any] = {}
+        """Name -> last message of it."""
         self.send("REQUEST_DATA_STREAM", req_stream_id=0, req_message_rate=4, start_stop=1)
         for name in STREAMED:
             self.command(511, KINDS[name].id, 500_000)
@@ -94,30 +104,21 @@ class Pilot:
             raise ScriptError(f"a frame that is not MAVLink 2: {raw.hex()}")
         if raw[5] == CLIENT:
             return
-        number = raw[7] | raw[8] << 8 | raw[9] << 16
-        kind = mavlink.mavlink_map.get(number)
-        name = kind.msgname if kind is not None else f"message {number}"
-        self.sent.add(name, time_us // 1_000_000, struct.pack("<q", time_us) + bytes(raw))
-        if number in HEARD:
-            self._hear(name, self.mav.decode(bytearray(raw)))
+        kind = mavlink.mavlink_map.get(int.from_bytes(raw[7:10], "little"))
+        name = kind.msgname if kind is not None else "unknown"
+        self.sent.add(time_us // 1_000_000, name, struct.pack("<q", time_us) + bytes(raw))
+        self.heard[name] = raw
+        if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
+            self._send_item(self.last(name, "seq"))
 
-    def _hear(self, name: str, message: Any) -> None:
-        if name == "HEARTBEAT":
-            self.armed = bool(message.base_mode & 128)
-        elif name == "EKF_STATUS_REPORT":
-            self.is_located = message.flags & 0x11 == 0x11
-        elif name == "SYS_STATUS":
-            self.is_checked = bool(message.onboard_control_sensors_health & 0x10000000)
-        elif name == "COMMAND_ACK":
-            self.acks[message.command] = message.result
-        elif name == "MISSION_ACK":
-            self.answer = message.type
-        elif name == "MISSION_CURRENT":
-            self.mission_state = message.mission_state
-        elif name == "STATUSTEXT":
-            self.texts.append(message.text)
-        else:
-            self._send_item(message.seq)
+    def last(self, name: str, field: str) -> Any:
+        """A field of the last message of a name; 0 before the first."""
+        return getattr(self.mav.decode(bytearray(self.heard[name])), field) if name in self.heard else 0
+
+    @property
+    def armed(self) -> bool:
+        """Whether it is armed, by the last HEARTBEAT."""
+        return bool(self.last("HEARTBEAT", "base_mode") & 128)
 
     # ------------------------------------------------------------------ what goes out
 
@@ -134,11 +135,6 @@ class Pilot:
         """COMMAND_LONG."""
         self.send("COMMAND_LONG", command=number, **{f"param{k + 1}": p for k, p in enumerate(params)})
 
-    def command_int(self, number: int, *params: float, x: int, y: int, z: float, frame: int = 3) -> None:
-        """COMMAND_INT."""
-        values = {f"param{k + 1}": p for k, p in enumerate(params)}
-        self.send("COMMAND_INT", command=number, frame=frame, x=x, y=y, z=z, **values)
-
     def set_mode(self, name: str, wait: float = 0.1) -> None:
         """Ask for a mode."""
         self.command(SET_MODE, 1, MODES[self.kind][name])
@@ -149,19 +145,21 @@ class Pilot:
         self.send("PARAM_SET", param_id=name.encode(), param_value=value, param_type=9)
         self.fly(0.1)
 
-    def hold(self, *pulses: int) -> None:
+    def hold(self, *pulses: int, seconds: float = 0.0) -> None:
         """Hold the sticks from now on: channels from 1 on [us]; nothing: send none any more."""
         self.sticks = pulses
-
-    def target(self, mask: int, frame: int = 1, **fields: float) -> None:
-        """SET_POSITION_TARGET_LOCAL_NED."""
-        self.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=frame, type_mask=mask, **fields)
+        self.fly(seconds)
 
     def stream(self, seconds: float, mask: int, frame: int = 1, **fields: float) -> None:
-        """The same at 10 Hz."""
+        """SET_POSITION_TARGET_LOCAL_NED at 10 Hz."""
         for _ in range(round(10 * seconds)):
-            self.target(mask, frame, **fields)
+            self.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=frame, type_mask=mask, **fields)
             self.fly(0.1)
+
+    def _send_item(self, seq: int) -> None:
+        fields = self.items[seq]._asdict()
+        params = {f"param{k}": fields.pop(f"p{k}") for k in range(1, 5)}
+        self.send("MISSION_ITEM_INT", seq=seq, **params, **fields)
 
     # ------------------------------------------------------------------ time
 
@@ -189,55 +187,67 @@ class Pilot:
 
     def look(self) -> None:
         """Take the digest of the record now."""
-        now = self.simulation.time_us
-        self.record.look(now, *tree.record(self.simulation))
-        self._checkpoint_us = now + CHECKPOINT_US
+        dtype, record = tree.record(self.simulation)
+        for leaf in leaves(dtype):
+            self.record.add(self.now, leaf.path, leaf.wide(record))
+        self._checkpoint_us = self.simulation.time_us + CHECKPOINT_US
 
     def need(self, condition: bool, what: str) -> None:
         """ScriptError unless the condition holds."""
         if not condition:
-            raise ScriptError(f"at {self.now:.1f} s: {what}; texts {self.texts[-4:]}")
+            raise ScriptError(f"at {self.now:.1f} s: {what}; last text {self.last('STATUSTEXT', 'text')!r}")
 
     # ------------------------------------------------------------------ what scripts begin and end with
 
     def boot(self) -> None:
         """Wait until it can be armed, in GUIDED."""
-        self.need(self.fly(90.0, lambda: self.is_located and self.is_checked), "not ready to be armed")
+
+        def ready() -> bool:
+            located = self.last("EKF_STATUS_REPORT", "flags") & 0x11 == 0x11
+            return located and bool(self.last("SYS_STATUS", "onboard_control_sensors_health") & 0x10000000)
+
+        self.need(self.fly(90.0, ready), "not ready to be armed")
         self.set_mode("GUIDED")
 
     def arm(self) -> None:
         """Arm."""
-        self.acks.clear()
         self.command(ARM, 1)
-        self.need(self.fly(2.0, lambda: self.acks.get(ARM) == 0), f"not armed: {self.acks}")
+        self.need(self.fly(2.0, lambda: self.armed), f"not armed: result {self.last('COMMAND_ACK', 'result')}")
 
-    def hover(self, height: float = 10.0) -> None:
-        """Boot, arm, take off."""
+    def set_out(self, height: float = 10.0) -> None:
+        """Boot and arm; a copter takes off."""
         self.boot()
         self.arm()
-        self.command(TAKEOFF, 0, 0, 0, 0, 0, 0, height)
-        self.fly(6.0 + height)
+        if self.kind == "copter":
+            self.command(TAKEOFF, 0, 0, 0, 0, 0, 0, height)
+            self.fly(6.0 + height)
+
+    def come_to_rest(self) -> None:
+        """A copter lands, a rover stops."""
+        if self.kind == "copter":
+            self.hold(*((1500,) * 4 if self.sticks else ()))
+            self.set_mode("LAND")
+            self.fly(40.0, lambda: not self.armed)
+            self.fly(1.0)
+        else:
+            self.hold()
+            self.set_mode("HOLD", 3.0)
 
     def reboot(self) -> None:
         """Reboot, and boot again."""
         self.command(REBOOT, 1)
         self.fly(0.5)
-        self._restart()
+        self._listen()
         self.boot()
 
     def upload(self, items: Sequence[Item], or_refused: bool = False) -> None:
         """Upload a mission, home first."""
-        self.items, self.answer = items, None
+        self.items = items
+        self.heard.pop("MISSION_ACK", None)
         self.send("MISSION_COUNT", count=len(items))
-        self.need(self.fly(30.0, lambda: self.answer is not None), "no MISSION_ACK")
-        self.need(self.answer == 0 or or_refused, f"MISSION_ACK {self.answer}")
-
-    def _send_item(self, seq: int) -> None:
-        item = self.items[seq]
-        self.send(
-            "MISSION_ITEM_INT", seq=seq, frame=item.frame, command=item.command, autocontinue=item.autocontinue,
-            param1=item.p1, param2=item.p2, param3=item.p3, param4=item.p4, x=item.x, y=item.y, z=item.z,
-        )  # fmt: skip
+        self.need(self.fly(30.0, lambda: "MISSION_ACK" in self.heard), "no MISSION_ACK")
+        answer = self.last("MISSION_ACK", "type")
+        self.need(answer == 0 or or_refused, f"MISSION_ACK {answer}")
 
     def fly_mission(self, items: Sequence[Item], limit: float = 500.0) -> None:
         """Upload, arm, fly until disarmed, or until the mission is complete."""
@@ -246,11 +256,17 @@ class Pilot:
         self.set_mode("AUTO")
         if self.kind == "copter":
             self.command(START)
-        self.fly(limit, lambda: not self.armed or (self.kind == "rover" and self.mission_state == 5))
+        is_rover = self.kind == "rover"
+        self.fly(limit, lambda: not self.armed or (is_rover and self.last("MISSION_CURRENT", "mission_state") == 5))
         self.fly(5.0)
 
     def result(self) -> dict[str, Any]:
         """The digests of the flight, up to now; the flight is over."""
         self.look()
         self.simulation.close()
-        return {"end_us": self.simulation.time_us, "telemetry": self.sent.result(), "record": self.record.result()}
+        digests = {"end": self.now, "telemetry": self.sent.result(), "record": self.record.result()}
+        if self._folder is not None:
+            files = sorted(Path(self._folder.name).iterdir())
+            digests["files"] = {file.suffix: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+            self._folder.cleanup()
+        return digests

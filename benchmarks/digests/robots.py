@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -10,13 +11,15 @@ from typing import Any
 import numpy as np
 
 from . import tree
-from .tape import Record, Series
+from .leaves import leaves
+from .tape import Tape
 
 PAPER = (
     "GazeboCircuitTurtlebotLIDAR-v0", "GazeboCircuit2TurtlebotLIDAR-v0", "GazeboMazeTurtlebotLIDAR-v0",
     "GazeboRoundTurtlebotLIDAR-v0", "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0",
 )  # fmt: skip
-NAVIGATE = "sitl/Navigate-v0"
+COPTER = {"robot": "erle_copter", "world": "office_erlecopter", "observation": "scan+pose", "action": "continuous"}
+ROVER = {"robot": "erle_rover", "world": "maze_erlerover", "observation": "scan+pose", "action": "continuous"}
 NAVIGATES: dict[str, dict[str, Any]] = {
     "turtlebot-goal": {
         "robot": "turtlebot", "world": "maze", "task": "goal", "observation": "scan+goal", "action": "continuous",
@@ -24,30 +27,17 @@ NAVIGATES: dict[str, dict[str, Any]] = {
         "randomise": {"range_noise": (0.0, 0.02), "wheel_radius_left": (0.0345, 0.0355)},
     },
     "turtlebot-late": {"robot": "turtlebot", "world": "round", "observation": "scan+pose", "latency": 0.2},
-    "copter-velocity": {
-        "robot": "erle_copter", "world": "office_erlecopter", "action": "continuous", "observation": "scan+pose",
+    "copter-velocity": COPTER,
+    "copter-attitude": COPTER | {
+        "setpoint": "attitude", "randomise": {"mass": (1.0, 1.4), "wind_speed": (0.0, 2.0), "latency": (0.0, 0.2)},
     },
-    "copter-attitude": {
-        "robot": "erle_copter", "world": "office_erlecopter", "setpoint": "attitude", "action": "continuous",
-        "observation": "scan+pose", "randomise": {"mass": (1.0, 1.4), "wind_speed": (0.0, 2.0), "latency": (0.0, 0.2)},
+    "copter-rc": COPTER | {"setpoint": "rc", "observation": "digits", "action": "discrete"},
+    "copter-pybullet": COPTER | {"physics": "pybullet"},
+    "rover-velocity": ROVER | {
+        "task": "goal", "observation": "scan+pose+goal", "randomise": {"mass": (1.5, 2.5), "lidar_noise": (0.0, 0.05)},
     },
-    "copter-rc": {"robot": "erle_copter", "world": "office_erlecopter", "setpoint": "rc", "observation": "digits"},
-    "copter-pybullet": {
-        "robot": "erle_copter", "world": "office_erlecopter", "action": "continuous", "physics": "pybullet",
-        "observation": "scan+pose",
-    },
-    "rover-velocity": {
-        "robot": "erle_rover", "world": "maze_erlerover", "task": "goal", "action": "continuous",
-        "observation": "scan+pose+goal", "randomise": {"mass": (1.5, 2.5), "lidar_noise": (0.0, 0.05)},
-    },
-    "rover-position": {
-        "robot": "erle_rover", "world": "maze_erlerover", "setpoint": "position", "action": "continuous",
-        "observation": "scan+pose",
-    },
-    "rover-attitude": {
-        "robot": "erle_rover", "world": "maze_erlerover", "setpoint": "attitude", "action": "continuous",
-        "observation": "scan+pose",
-    },
+    "rover-position": ROVER | {"setpoint": "position"},
+    "rover-attitude": ROVER | {"setpoint": "attitude"},
 }  # fmt: skip
 
 
@@ -55,7 +45,7 @@ class Steps:
     """Digests of what each step gives."""
 
     def __init__(self) -> None:
-        self.given, self.record = Series(), Record()
+        self.given, self.record = Tape(), Tape()
         self.step = 0
 
     def add(self, name: str, value: Any) -> None:
@@ -67,36 +57,30 @@ class Steps:
             for k, each in enumerate(value):
                 self.add(f"{name}[{k}]", each)
         elif isinstance(value, str) or value is None:
-            self.given.add(name, self.step, str(value).encode())
+            self.given.add(self.step, name, str(value).encode())
         elif np.asarray(value).dtype.kind in "biuf":
-            self.given.add(name, self.step, np.asarray(value, np.float64).tobytes())
+            self.given.add(self.step, name, np.asarray(value, np.float64).tobytes())
 
     def result(self) -> dict[str, Any]:
         """As JSON."""
-        digests: dict[str, Any] = {"steps": self.step, "given": self.given.result()}
-        if self.record.times:
-            digests["record"] = self.record.result()
-        return digests
+        return {"end": self.step, "given": self.given.result(), "record": self.record.result()}
 
 
 def environment(name: str, steps: int, vector: int = 0, **options: Any) -> Steps:
     """Random actions; episodes follow each other."""
     import gymnasium as gym
 
-    tree.register_envs()
+    importlib.import_module("sitl.envs")  # registers them
     taken = Steps()
     env: Any = gym.make_vec(name, num_envs=vector, **options) if vector else gym.make(name, **options)
     env.action_space.seed(5)
-    observation, info = env.reset(seed=5)
-    taken.add("observation", observation)
+    taken.add("observation", env.reset(seed=5)[0])
     for taken.step in range(1, steps + 1):
-        observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
-        given = (("observation", observation), ("reward", reward), ("terminated", terminated), ("truncated", truncated))
-        for what, value in (*given, ("info", info)):
+        given = env.step(env.action_space.sample())
+        for what, value in zip(("observation", "reward", "terminated", "truncated", "info"), given):
             taken.add(what, value)
-        if not vector and (terminated or truncated):
-            observation, info = env.reset()
-            taken.add("observation", observation)
+        if not vector and (given[2] or given[3]):
+            taken.add("observation", env.reset()[0])
     env.close()
     return taken
 
@@ -104,7 +88,7 @@ def environment(name: str, steps: int, vector: int = 0, **options: Any) -> Steps
 def turtlebots(world: str, steps: int = 300) -> Steps:
     """Four Turtlebots on random commands: their scans, and their records every 20 steps."""
     taken = Steps()
-    robots = tree.locate("Turtlebots", "sitl.turtlebot")(world, 4)
+    robots = tree.locate("Turtlebots", "sitl.turtlebots.native")(world, 4)
     random = np.random.default_rng(5)
     for index in range(4):
         robots.reset(index, seed=index)
@@ -113,21 +97,21 @@ def turtlebots(world: str, steps: int = 300) -> Steps:
         robots.advance(0.2)
         taken.add("scan", robots.scan)
         if taken.step % 20 == 19:
-            whole = np.dtype([("robots", robots.fleet.dtype, (4,))])
-            taken.record.look(taken.step * 200_000, whole, robots.fleet.tobytes())
+            for leaf in leaves(np.dtype([("robots", robots.fleet.dtype, (4,))])):
+                taken.record.add(taken.step, leaf.path, leaf.wide(robots.fleet.tobytes()))
     robots.close()
     return taken
 
 
 def flights() -> dict[str, Callable[[], Steps]]:
     """All of them, by name."""
-    found: dict[str, Callable[[], Steps]] = {}
-    for world in ("circuit", "circuit2", "maze", "round"):
-        found[f"turtlebot/{world}"] = partial(turtlebots, world)
-    for name in PAPER:
-        found[f"env/{name}"] = partial(environment, name, 300)
-    for name, options in NAVIGATES.items():
-        found[f"env/navigate-{name}"] = partial(environment, NAVIGATE, 200, **options)
-    found["env/vector-turtlebot"] = partial(environment, PAPER[1], 200, 8)
-    found["env/vector-copter"] = partial(environment, PAPER[5], 100, 3)
-    return found
+    return {
+        **{f"turtlebot/{world}": partial(turtlebots, world) for world in ("circuit", "circuit2", "maze", "round")},
+        **{f"env/{name}": partial(environment, name, 300) for name in PAPER},
+        **{
+            f"env/navigate-{name}": partial(environment, "sitl/Navigate-v0", 200, **options)
+            for name, options in NAVIGATES.items()
+        },
+        "env/vector-turtlebot": partial(environment, PAPER[1], 200, 8),
+        "env/vector-copter": partial(environment, PAPER[5], 100, 3),
+    }

@@ -1,26 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Digests of one flight while it is flown: everything that was sent, and the whole record every few seconds."""
+"""Digest of named values over time: a hash of all, and for each name a check sum and a byte for each step of time."""
 
 from __future__ import annotations
 
 import base64
 import hashlib
 import zlib
-from functools import cache
-from typing import Any
-
-import numpy as np
-
-from .leaves import Leaf, leaves
-
-CHECKPOINT_US = 4_000_000
-"""Simulated time between two looks at the record [us]."""
-
-
-@cache
-def leaves_of(dtype: np.dtype[Any]) -> list[Leaf]:
-    """The same, once a process."""
-    return leaves(dtype)
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 
 def packed(data: bytes) -> str:
@@ -33,61 +20,54 @@ def unpacked(text: str) -> bytes:
     return zlib.decompress(base64.b64decode(text))
 
 
-class Series:
-    """Digest of a stream of named values over time: one for all, and a byte for each name and step of time."""
+class Row(NamedTuple):
+    """All values of one name."""
+
+    check_sum: int
+    """CRC-32 of all."""
+    steps: bytes
+    """For each step up to its last one 1 .. 255 by its values, 0 where there was none."""
+
+
+class Tape:
+    """Takes values of many names as time goes on."""
 
     def __init__(self) -> None:
         self._all = hashlib.sha256()
+        self._times: list[float] = []
+        self._sums: dict[str, int] = {}
         self._steps: dict[str, dict[int, int]] = {}
-        self.count = 0
 
-    def add(self, name: str, step: int, value: bytes) -> None:
-        """One value."""
+    def add(self, time: float, name: str, value: bytes) -> None:
+        """A value; a new time [s, or number of a step] begins a new step."""
+        if not self._times or self._times[-1] != time:
+            self._times.append(time)
         self._all.update(value)
-        self.count += 1
-        steps = self._steps.setdefault(name, {})
+        self._sums[name] = zlib.crc32(value, self._sums.get(name, 0))
+        steps, step = self._steps.setdefault(name, {}), len(self._times) - 1
         steps[step] = zlib.crc32(value, steps.get(step, 0))
 
     def result(self) -> dict[str, Any]:
         """As JSON."""
-        names = {}
-        for name, steps in sorted(self._steps.items()):
-            row = bytearray(max(steps) + 1)
-            for step, crc in steps.items():
-                row[step] = crc % 255 + 1  # 0: nothing at this step
-            names[name] = packed(bytes(row))
-        return {"sha256": self._all.hexdigest(), "count": self.count, "names": names}
-
-
-class Record:
-    """Digest of a record at checkpoints: a chained check sum for each leaf, and a byte for each leaf and checkpoint."""
-
-    def __init__(self) -> None:
-        self.leaves: list[Leaf] = []
-        self.times: list[int] = []
-        self._chain = np.zeros(0, np.uint32)
-        self._last = np.zeros(0, np.uint32)
-        self._changes: list[bytes] = []
-
-    def look(self, time_us: int, dtype: np.dtype[Any], record: bytes) -> None:
-        """A checkpoint."""
-        if not self.leaves:
-            self.leaves = leaves_of(dtype)
-            self._chain = np.zeros(len(self.leaves), np.uint32)
-            self._last = np.zeros(len(self.leaves), np.uint32)
-        now = np.array([leaf.check_sum(record) for leaf in self.leaves], np.uint32)
-        for k, value in enumerate(now):
-            self._chain[k] = zlib.crc32(value.tobytes(), int(self._chain[k]))
-        self._changes.append(np.where(now == self._last, 0, now % 255 + 1).astype(np.uint8).tobytes())
-        self._last = now
-        self.times.append(time_us)
-
-    def result(self) -> dict[str, Any]:
-        """As JSON; the paths of the leaves apart, under "paths"."""
-        changes = np.frombuffer(b"".join(self._changes), np.uint8).reshape(len(self.times), len(self.leaves))
+        rows = bytearray(len(self._steps) * len(self._times))
+        for k, steps in enumerate(self._steps.values()):
+            for step, check_sum in steps.items():
+                rows[k * len(self._times) + step] = check_sum % 255 + 1
+        sums = b"".join(self._sums[name].to_bytes(4, "little") for name in self._steps)
         return {
-            "paths": [leaf.path for leaf in self.leaves],
-            "times_us": self.times,
-            "chain": packed(self._chain.astype("<u4").tobytes()),
-            "changes": packed(changes.T.tobytes()),
+            "sha256": self._all.hexdigest(),
+            "times": self._times,
+            "names": packed("\n".join(self._steps).encode()),
+            "sums": packed(sums),
+            "rows": packed(bytes(rows)),
         }
+
+
+def read(result: Mapping[str, Any]) -> dict[str, Row]:
+    """The rows of a tape's result, by their names."""
+    names, width = unpacked(result["names"]).decode().split("\n"), len(result["times"])
+    sums, rows = unpacked(result["sums"]), unpacked(result["rows"])
+    return {
+        name: Row(int.from_bytes(sums[4 * k : 4 * k + 4], "little"), rows[k * width : (k + 1) * width].rstrip(b"\0"))
+        for k, name in enumerate(names)
+    }

@@ -84,7 +84,7 @@ class Evaluation:
 
     @property
     def crash_rate(self) -> float:
-        """Fraction of the episodes that ended in a crash."""
+        """Share of the episodes that ended in a crash, 0 .. 1."""
         return float(np.mean([played.crashed for played in self.episodes]))
 
     @property
@@ -94,7 +94,7 @@ class Evaluation:
 
     @property
     def lap_rate(self) -> float:
-        """Fraction of the episodes with a whole lap or more and no crash."""
+        """Share of the episodes with a whole lap or more and no crash, 0 .. 1."""
         return float(np.mean([played.laps >= 1.0 and not played.crashed for played in self.episodes]))
 
     @property

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 from .errors import AgentError
 

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import gymnasium as gym
 from gymnasium.error import DependencyNotInstalled
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 from . import environments
 from .algorithms import Policy, policy_of

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Everything that the shared MAVLink services ask of an autopilot; each firmware's own services ask more of theirs.
+"""What the bridge needs of a vehicle (the simulation fulfils it; so does a small fake in the tests), and what the
+shared MAVLink services ask of its autopilot; each firmware's own services ask more of theirs.
 
 Positions are NED metres from the estimator's origin, angles radians, speeds m/s. Methods say whether the
 autopilot did it; what it wants to tell the pilot meanwhile waits in ``take_notes``.
@@ -8,10 +9,49 @@ autopilot did it; what it wants to tell the pilot meanwhile waits in ``take_note
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
+import numpy as np
+
+from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import MissionItem
 from ..autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from ..physics.carried import Carried
+
+
+class Vehicle(Protocol):
+    """One simulated vehicle."""
+
+    fleet: np.ndarray[Any, Any]
+    """Array of records (``sitl.vehicle.record``); its memory stays in place for the vehicle's life."""
+    index: int
+    v: Any
+    """Record view of ``fleet[index]`` with attribute access."""
+    firmware: Firmware
+    """What flies it: its parameters, modes and name."""
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since the start of the simulation [us]; the record's counts from the last boot."""
+        ...
+
+    @property
+    def has_truth_in_record(self) -> bool:
+        """Whether ``truth`` is what the record says (``sitl.physics.carried``): its physics runs in this process."""
+        ...
+
+    def truth(self) -> Carried:
+        """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
+        ...
+
+    def reseed(self, seed: int) -> None:
+        """Another seed for the noise of all sensors from now on."""
+        ...
+
+    def request_reboot(self) -> None:
+        """Restart the autopilot at the next opportunity (MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN)."""
+        ...
+
 
 Vector = tuple[float, float, float]
 Note = Text | ItemReached | CurrentChanged

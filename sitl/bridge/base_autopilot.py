@@ -13,8 +13,7 @@ from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
-from .autopilot_api import Note
-from .vehicle import Vehicle
+from .autopilot_api import Note, Vehicle
 
 CRITICAL, WARNING, INFO = 2, 4, 6
 """MAV_SEVERITY"""

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from ..core.record_reader import RecordReader
-from .autopilot_api import Autopilot
+from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
 from .core_link import CoreLink
 from .dialect import MessageType, message, message_by_id
@@ -28,7 +28,6 @@ from .services.statustext import EventService
 from .services.streams import StreamService
 from .switchboard import Switchboard
 from .telemetry.builder import shell_messages
-from .vehicle import Vehicle
 from .wire import streams
 from .wire.link import REGULAR
 from .wire.port import NEVER, Port
@@ -83,7 +82,7 @@ class Bridge:
         self.logs: LogStore | None = None
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
-        """Set by who lets clients push the clock (``sitl.run.lockstep``)."""
+        """Set by who lets clients push the clock (``sitl.run.standstill``)."""
         self.places = Places(vehicle.v.autopilot)
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}

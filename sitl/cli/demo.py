@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from ..core.extras import MissingExtra
+from ..errors import MissingExtra
 from ..logs import flight as flights
 from ..logs import plot
 from ..run import runner

@@ -7,13 +7,12 @@ import argparse
 import math
 import signal
 import sys
-import time
+from collections.abc import Callable
 from pathlib import Path
 
 from ..autopilot.params import files
 from ..bridge.bridge import EPOCH_US
-from ..bridge.links.address import open_link
-from ..bridge.links.link import Link
+from ..bridge.links import Link, open_link
 from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
 from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
@@ -25,6 +24,7 @@ from ..run import runner
 from ..run.pacing import parse_speedup
 from .options import open_folder, scenario_of
 from .progress import CompileProgress
+from .status import PlantStatus
 
 
 def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
@@ -44,20 +44,20 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
     plant = build_plant(options)
     links: list[Link] = []
     log: TlogWriter | None = None
-    say = Sayer()
+    messages: list[str] = []
     try:
         if choice.program is not None and choice.kind == ARDUPILOT:  # PX4 speaks UDP itself
             links = open_links(options)
             folder = open_folder(options.log_dir)
-            name = f"{choice.kind}-{plant.craft.airframe.name}-{options.instance}"
+            name = f"{choice.kind}-{plant.vehicle.airframe.name}-{options.instance}"
             log = TlogWriter(runner.new_file(folder, name), EPOCH_US)
-        session = build_session(options, choice, plant, links, speedup, log, say)
+        session = build_session(options, choice, plant, links, speedup, log, messages.append)
     except BaseException:
         plant.close()
         for link in links:
             link.close()
         raise
-    print(f"{choice.name} flies {plant.craft.airframe.name}; physics: {plant.backend}")
+    print(f"{choice.name} flies {plant.vehicle.airframe.name}; physics: {plant.backend}")
     for link in links:
         print(f"MAVLink on {link.name}")
     if log is not None:
@@ -69,8 +69,8 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda n, _: stopped.append(n))
     until_us = int(options.duration * 1e6) if options.duration else math.inf
-    status = PlantStatus(plant, say, not options.quiet)
-    clock = plant.craft.reader.field("time_us")
+    status = PlantStatus(plant, messages, not options.quiet)
+    clock = plant.vehicle.reader.field("time_us")
     try:
         session.serve(lambda: not stopped and clock() < until_us, status.refresh)
     finally:
@@ -119,10 +119,10 @@ def build_session(
     links: list[Link],
     speedup: float | None,
     log: TlogWriter | None,
-    say: Sayer,
+    say: Callable[[str], None],
 ) -> Session:
-    """The session of the autopilot on its plant."""
-    clock = plant.craft.reader.field("time_us")
+    """The session of the autopilot on its plant; ``speedup``: times real time, None: as fast as it goes."""
+    clock = plant.vehicle.reader.field("time_us")
 
     def tap(frame: bytes) -> None:
         if log is not None:
@@ -141,51 +141,3 @@ def build_session(
         choice, plant, instance=options.instance, speedup=speedup, params=theirs,
         folder=options.autopilot_dir, say=say,
     )  # fmt: skip
-
-
-class Sayer:
-    """Messages from any thread, printed between two updates of the status line."""
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-
-    def __call__(self, text: str) -> None:
-        self.lines.append(text)
-
-
-class PlantStatus:
-    """A line on a terminal, rewritten four times a second, from the physics' state."""
-
-    _PERIOD_S = 0.25
-
-    def __init__(self, plant: LocalPlant, say: Sayer, enabled: bool = True) -> None:
-        self._read = plant.craft.reader.fields("time_us", "physics.body.pos", "physics.body.vel")
-        self._say, self._enabled = say, enabled and sys.stderr.isatty()
-        self._next = self._last = time.monotonic()
-        self._last_us = 0
-        self._width = 0
-
-    def refresh(self) -> None:
-        """Print pending messages, and rewrite the line when it is due."""
-        while self._say.lines:
-            print(f"\r{self._say.lines.pop(0)}".ljust(self._width), file=sys.stderr, flush=True)
-        now = time.monotonic()
-        if not self._enabled or now < self._next:
-            return
-        time_us, north, east, down, vn, ve, _ = self._read()
-        factor = (time_us - self._last_us) * 1e-6 / max(now - self._last, 1e-6)
-        self._last, self._last_us, self._next = now, time_us, now + self._PERIOD_S
-        text = (
-            f"{time_us * 1e-6:9.1f} s  {factor:6.1f}x  north {north:.1f}  east {east:.1f}  height {-down:.1f} m  "
-            f"speed {math.hypot(vn, ve):.1f} m/s"
-        )
-        sys.stderr.write("\r" + text.ljust(self._width))
-        sys.stderr.flush()
-        self._width = len(text)
-
-    def close(self) -> None:
-        """End the line and print pending messages."""
-        if self._enabled and self._width:
-            sys.stderr.write("\n")
-        while self._say.lines:
-            print(self._say.lines.pop(0), file=sys.stderr)

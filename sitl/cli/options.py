@@ -95,7 +95,7 @@ def check_kind(frame: str, airframe: vehicles.Airframe, vehicle: str) -> None:
 
 
 def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None = None) -> Scenario:
-    """What the options of a command describe, with these parameters."""
+    """What the options of a command describe, with these parameters in their units."""
     vehicle = getattr(options, "vehicle", DEFAULT)
     airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
     check_kind(options.frame, airframe, vehicle)

@@ -8,12 +8,11 @@ import signal
 from functools import partial
 from pathlib import Path
 
-from ..bridge.links.address import open_link
-from ..bridge.links.link import Link
+from ..bridge.links import Link, open_link
 from ..foreign.choice import choose
 from ..run import runner
-from ..run.lockstep import serve_lockstep
 from ..run.pacing import Pacing, parse_speedup
+from ..run.standstill import serve_lockstep
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
 from . import foreign, recordings

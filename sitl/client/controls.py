@@ -50,7 +50,7 @@ class Controls(Waits):
     # ------------------------------------------------------------------ modes
 
     def set_mode(self, name: str, timeout: float = 5.0) -> None:
-        """Choose a mode ("GUIDED"), and wait until it is on."""
+        """Choose a mode ("GUIDED"), and wait until it is on; ``timeout`` in simulated seconds, as everywhere here."""
         number = self._mode_number(name)
         self._stop_sending(_VELOCITY)
         self.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, number, subject=f"mode {name}")
@@ -88,12 +88,12 @@ class Controls(Waits):
         self.wait_altitude(altitude - max(0.5, 0.05 * altitude), altitude + 2.0, timeout)
 
     def land(self, timeout: float = 120.0) -> None:
-        """LAND, and wait until it is disarmed."""
+        """LAND, and wait until it is disarmed, at most ``timeout`` [simulated s]."""
         self.set_mode("LAND")
         self.wait_disarmed(timeout)
 
     def return_to_launch(self, timeout: float = 300.0) -> None:
-        """RTL, and wait until it is disarmed."""
+        """RTL, and wait until it is disarmed, at most ``timeout`` [simulated s]."""
         self.set_mode("RTL")
         self.wait_disarmed(timeout)
 
@@ -172,7 +172,7 @@ class Controls(Waits):
         })  # fmt: skip
 
     def set_speed(self, metres_per_second: float) -> None:
-        """Along the ground, in AUTO and GUIDED (DO_CHANGE_SPEED)."""
+        """Along the ground [m/s], in AUTO and GUIDED (DO_CHANGE_SPEED)."""
         self.command("DO_CHANGE_SPEED", 1, metres_per_second, -1, subject=f"speed {metres_per_second:g} m/s")
 
     # ------------------------------------------------------------------ sticks

@@ -54,7 +54,7 @@ class Parameters:
             self._session.raise_error(ParameterRefusedError(name, value, kept))
 
     def update(self, values: Mapping[str, float] | None = None, **more: float) -> None:
-        """Set several; all names are checked first."""
+        """Set several, each in its unit; all names are checked first."""
         given = {**(values or {}), **more}
         for name in given:
             self.check(name)

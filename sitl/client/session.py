@@ -301,7 +301,7 @@ class Session:
         self.connection.endpoint.set_interval(name, rate_hz, self.system)
 
     def message(self, name: str, timeout: float = 2.0) -> Any:
-        """Ask for one message and wait for it; gives its fields as a named tuple."""
+        """Ask for one message and wait for it, at most ``timeout`` [simulated s]; gives its fields as a named tuple."""
         with self.messages(name) as seen:
             self.command("REQUEST_MESSAGE", message(name).id, subject=f"the request for {name}")
             self.wait(lambda _: seen, timeout, name)

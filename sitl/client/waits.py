@@ -33,7 +33,7 @@ class Waits(Session):
     """A vehicle that can be waited for. ``hold``: so long must it stay so [s]."""
 
     def wait_ready(self, timeout: float = BOOT_S) -> None:
-        """Until it knows where it is and its pre-arm checks are good."""
+        """Until it knows where it is and its pre-arm checks are good, at most ``timeout`` [simulated s]."""
         seen = self.telemetry
 
         def last() -> str:
@@ -43,19 +43,19 @@ class Waits(Session):
         self.wait(lambda t: t.has_position and t.checked, timeout, READY, last)
 
     def wait_mode(self, name: str, timeout: float = 30.0) -> None:
-        """Until it is in a mode."""
+        """Until it is in a mode, at most ``timeout`` [simulated s]."""
         self.wait(lambda _: self.mode == name, timeout, f"mode {name}", lambda: f"mode {self.mode}")
 
     def wait_armed(self, timeout: float = 30.0) -> None:
-        """Until it is armed."""
+        """Until it is armed, at most ``timeout`` [simulated s]."""
         self.wait(lambda _: self.armed, timeout, f"the {self.kind} to be armed")
 
     def wait_disarmed(self, timeout: float = 120.0) -> None:
-        """Until it is disarmed."""
+        """Until it is disarmed, at most ``timeout`` [simulated s]."""
         self.wait(lambda _: not self.armed, timeout, f"the {self.kind} to be disarmed")
 
     def wait_landed(self, timeout: float = 120.0) -> None:
-        """Until it stands on the ground (EXTENDED_SYS_STATE); a copter disarms a little later."""
+        """Until it stands on the ground (EXTENDED_SYS_STATE) [simulated s]; a copter disarms a little later."""
         with self.messages("EXTENDED_SYS_STATE", 5.0) as states:
             self.wait(lambda _: states and states[-1].landed_state == ON_GROUND, timeout, f"the {self.kind} to land",
                       lambda: f"{self.telemetry.altitude:.2f} m")  # fmt: skip
@@ -87,7 +87,7 @@ class Waits(Session):
         )
 
     def wait_distance(self, metres: float, timeout: float = 120.0) -> None:
-        """Until it is as far, along the ground, from where it is now."""
+        """Until it is as far [m], along the ground, from where it is now, at most ``timeout`` [simulated s]."""
         start = self.position
         self.wait(
             lambda t: math.dist(t.position[:2], start[:2]) >= metres,
@@ -123,7 +123,7 @@ class Waits(Session):
         )
 
     def wait_waypoint(self, item: int, timeout: float = 300.0) -> None:
-        """Until a mission item was reached (MISSION_ITEM_REACHED); an item that was, at once."""
+        """Until a mission item was reached (MISSION_ITEM_REACHED) [simulated s]; an item that was, at once."""
 
         def last() -> str:
             return f"reached {', '.join(map(str, self.reached)) or 'none'}; on the way to {self.telemetry.item}"
@@ -131,7 +131,7 @@ class Waits(Session):
         self.wait(lambda _: item in self.reached, timeout, f"mission item {item} to be reached", last)
 
     def wait_current_waypoint(self, item: int, timeout: float = 300.0) -> None:
-        """Until a mission item is under way (MISSION_CURRENT)."""
+        """Until a mission item is under way (MISSION_CURRENT), at most ``timeout`` [simulated s]."""
         what = f"mission item {item} to be under way"
         self.wait(lambda t: t.item == item, timeout, what, lambda: f"item {self.telemetry.item}")
 

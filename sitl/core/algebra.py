@@ -22,19 +22,19 @@ ZERO = Vec3(0.0, 0.0, 0.0)
 
 @inlined
 def dot(a: Vec3, b: Vec3) -> float:
-    """Scalar product."""
+    """Scalar product, in the product of the vectors' units."""
     return a.x * b.x + a.y * b.y + a.z * b.z
 
 
 @inlined
 def cross(a: Vec3, b: Vec3) -> Vec3:
-    """Vector product."""
+    """Vector product, in the product of the vectors' units and in their frame."""
     return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
 @inlined
 def norm(v: Vec3) -> float:
-    """Length."""
+    """Length, in the vector's unit."""
     return math.sqrt(v.x * v.x + v.y * v.y + v.z * v.z)
 
 
@@ -58,7 +58,7 @@ def vector_at(numbers: Floats, first: int) -> Vec3:
 
 @inlined
 def row_vector(rows: Floats, k: int) -> Vec3:
-    """Row ``k`` of an array of three columns."""
+    """Row ``k`` of an array of shape (rows, 3)."""
     return Vec3(rows[k, 0], rows[k, 1], rows[k, 2])
 
 
@@ -94,7 +94,7 @@ def with_down(v: Vec2, down: float) -> Vec3:
 
 @inlined
 def dot2(a: Vec2, b: Vec2) -> float:
-    """Scalar product in the plane."""
+    """Scalar product in the plane, in the product of the vectors' units."""
     return a.x * b.x + a.y * b.y
 
 
@@ -106,7 +106,7 @@ def cross2(a: Vec2, b: Vec2) -> float:
 
 @inlined
 def norm2(v: Vec2) -> float:
-    """Length in the plane."""
+    """Length in the plane, in the vector's unit."""
     return math.sqrt(v.x * v.x + v.y * v.y)
 
 
@@ -119,7 +119,7 @@ def turned(v: Vec2, angle: float) -> Vec2:
 
 @inlined
 def limit_length(v: Vec2, length_max: float) -> Vec2:
-    """``v`` shortened to at most ``length_max``."""
+    """``v`` shortened to at most ``length_max``, in its unit and frame."""
     n2 = v.x * v.x + v.y * v.y
     if n2 <= length_max * length_max:
         return v
@@ -128,7 +128,7 @@ def limit_length(v: Vec2, length_max: float) -> Vec2:
 
 @inlined
 def multiply(a: Quat, b: Quat) -> Quat:
-    """Hamilton product a b: first the rotation b, then a."""
+    """Hamilton product a b of quaternions: first the rotation b, then a."""
     return Quat(
         a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
         a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
@@ -145,7 +145,7 @@ def conjugate(q: Quat) -> Quat:
 
 @inlined
 def quat_norm_squared(q: Quat) -> float:
-    """Square of the length; 1 for a rotation."""
+    """Square of the length of a quaternion; 1 for a rotation."""
     return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z
 
 
@@ -237,11 +237,11 @@ def rotation_matrix(q: Quat) -> Matrix3:
 
 @inlined
 def scaled(m: Matrix3, k: float) -> Matrix3:
-    """``k`` times a matrix."""
+    """``k`` times a matrix, shape (3, 3)."""
     return Matrix3(m.x * k, m.y * k, m.z * k)
 
 
 @inlined
 def apply(m: Matrix3, v: Vec3) -> Vec3:
-    """Matrix times vector."""
+    """Matrix times vector, in the matrix's frame."""
     return Vec3(dot(m.x, v), dot(m.y, v), dot(m.z, v))

@@ -14,8 +14,7 @@ from contextlib import contextmanager, nullcontext, suppress
 from typing import Any
 from urllib.parse import urlsplit
 
-from ..errors import OptionError
-from .extras import MissingExtra
+from ..errors import MissingExtra, OptionError
 
 _LOCAL = "local"
 """``ray.init`` takes this for: begin an instance of your own, whatever else there is."""

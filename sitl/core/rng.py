@@ -47,7 +47,7 @@ def next_u32(rng: Rng) -> int:
 
 @law
 def uniform(rng: Rng) -> float:
-    """Uniform deviate in [0, 1) with 32 bits."""
+    """Uniform deviate in [0, 1) with 32 bits; a plain number."""
     return next_u32(rng) * (1.0 / 4294967296.0)
 
 
@@ -71,7 +71,7 @@ def normal(rng: Rng) -> float:
 
 @law
 def normal_vector(rng: Rng) -> Vec3:
-    """Three normal deviates, mean 0, standard deviation 1."""
+    """Three normal deviates, mean 0, standard deviation 1; plain numbers."""
     x = normal(rng)
     y = normal(rng)
     return Vec3(x, y, normal(rng))

@@ -64,7 +64,7 @@ def hypotenuse(x: float, y: float) -> float:
 
 @inlined
 def sign(value: float) -> float:
-    """-1.0, 0.0 or 1.0."""
+    """-1.0, 0.0 or 1.0: the sign of a number."""
     if value > 0.0:
         return 1.0
     if value < 0.0:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import gymnasium as gym
 
-from .mavlink.errors import LinkLostError, NotASimulatorError, NotReadyError
+from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
+
 from .options import EnvOptionError
 
 __all__ = [

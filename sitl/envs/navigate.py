@@ -3,22 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 
 from sitl.worlds import World
 
-from .actions import Action
-from .observations import Observation
 from .options import unknown
-from .randomisation import Randomise
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
-from .session import Session, Snapshot
-from .starts import StartOption
+from .session import NavigateOptions, Session, Snapshot
 from .tasks import Task
 
 
@@ -26,21 +20,9 @@ class Navigate(gym.Env[Any, Any]):
     """A robot that navigates by lidar.
 
     Args:
-        robot: name (``robots.ROBOTS``) or class.
-        world: name (``sitl.worlds.names()``), .toml file or World.
-        task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
-        observation: name (``observations.OBSERVATIONS``) or Observation.
-        action: "discrete", "continuous", a table (name of an action -> numbers of its set-point), or an Action.
-        setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
-        step_time: simulated time of a step [s], exact; None: the robot's default.
-        start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
-            "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
-            or a function of a random generator that gives one; None: the world's for the robot.
-        randomise: figure of the robot, or "latency", -> (low, high), drawn for each episode; "draws" -> N: of N sets.
         render_mode: "rgb_array", "human" or None.
-        latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
-            The previous command holds until then; at the start of an episode the robot stands or hovers.
-        robot_options: further options of the robot's class.
+        options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
+            randomise, latency, and options of the robot's class.
 
     ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" and what ``Task.info`` adds.
 
@@ -50,27 +32,10 @@ class Navigate(gym.Env[Any, Any]):
 
     metadata = {"render_modes": RENDER_MODES, "render_fps": 30}  # noqa: RUF012 (Gymnasium's)
 
-    def __init__(
-        self,
-        robot: str | Callable[..., Robot] = "turtlebot",
-        world: str | Path | World = "circuit2",
-        task: str | Task = "wander",
-        observation: str | Observation = "scan",
-        action: str | Mapping[str, Sequence[float]] | Action = "discrete",
-        setpoint: str | None = None,
-        step_time: float | None = None,
-        start: StartOption | None = None,
-        randomise: Randomise | None = None,
-        render_mode: str | None = None,
-        latency: float = 0.0,
-        **robot_options: Any,
-    ) -> None:
+    def __init__(self, *, render_mode: str | None = None, **options: Any) -> None:
         if render_mode is not None and render_mode not in RENDER_MODES:
             raise unknown("render_mode", render_mode, RENDER_MODES)
-        self._session = session = Session(
-            1, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options,
-            latency,
-        )  # fmt: skip
+        self._session = session = Session(1, NavigateOptions.of(options))
         self.observation_space = session.observation_space
         self.action_space = session.action.space
         self.render_mode = render_mode

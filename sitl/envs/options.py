@@ -10,9 +10,8 @@ from sitl.errors import OptionError, did_you_mean
 
 COMMON = (
     "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",
-    "render_mode",
 )  # fmt: skip
-"""Options that every environment takes, whatever its robot."""
+"""Options that every environment takes besides "render_mode", whatever its robot."""
 
 
 class EnvOptionError(OptionError):

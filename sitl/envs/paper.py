@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .actions import Discrete
+from .actions import DRIVE, Discrete
 from .navigate import Navigate
 from .observations import Digits
-from .setpoints import DRIVE
 from .tasks import paper
 from .vector import NavigateVector
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast
 
@@ -18,15 +18,14 @@ from sitl import worlds
 from sitl.worlds import World, WorldError
 
 from . import robots
-from .actions import Action, Discrete
+from .actions import SETPOINTS, Action, Discrete
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
-from .options import EnvOptionError, unknown
+from .options import COMMON, EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import LateRobot, Robot
-from .setpoints import SETPOINTS
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
@@ -53,39 +52,68 @@ class Snapshot:
     """Pending commands; None: there is no latency."""
 
 
-class Session:
-    """Robot, task, observation and action of an environment with ``count`` robots; arguments as in ``Navigate``."""
+@dataclass(frozen=True)
+class NavigateOptions:
+    """What an environment is made of; its constructor takes these by name, and the robot's own options beside them.
 
-    def __init__(
-        self,
-        count: int,
-        robot: str | Callable[..., Robot],
-        world: str | Path | World,
-        task: str | Task,
-        observation: str | Observation,
-        action: str | Mapping[str, Sequence[float]] | Action,
-        setpoint: str | None,
-        step_time: float | None,
-        start: StartOption | None,
-        randomise: Randomise | None,
-        robot_options: Mapping[str, Any],
-        latency: float = 0.0,
-    ) -> None:
+    Args:
+        robot: name (``robots.ROBOTS``) or class.
+        world: name (``sitl.worlds.names()``), .toml file or World.
+        task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
+        observation: name (``observations.OBSERVATIONS``) or Observation.
+        action: "discrete", "continuous", a table (name of an action -> numbers of its set-point), or an Action.
+        setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
+        step_time: simulated time of a step [s], exact; None: the robot's default.
+        start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
+            "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
+            or a function of a random generator that gives one; None: the world's for the robot.
+        randomise: figure of the robot, or "latency", -> (low, high), drawn for each episode; "draws" -> N: of N sets.
+        latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
+            The previous command holds until then; at the start of an episode the robot stands or hovers.
+        robot_options: further options of the robot's class, by name.
+
+    Raises:
+        EnvOptionError: an option that cannot be used; the message says what is allowed. (``Session`` checks them.)
+    """
+
+    robot: str | Callable[..., Robot] = "turtlebot"
+    world: str | Path | World = "circuit2"
+    task: str | Task = "wander"
+    observation: str | Observation = "scan"
+    action: str | Mapping[str, Sequence[float]] | Action = "discrete"
+    setpoint: str | None = None
+    step_time: float | None = None
+    start: StartOption | None = None
+    randomise: Randomise | None = None
+    latency: float = 0.0
+    robot_options: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> NavigateOptions:
+        """From options by name; those that are not the environment's are the robot's."""
+        own = {name: value for name, value in given.items() if name in COMMON}
+        return cls(**own, robot_options={name: value for name, value in given.items() if name not in COMMON})
+
+
+class Session:
+    """Robot, task, observation and action of an environment with ``count`` robots."""
+
+    def __init__(self, count: int, options: NavigateOptions) -> None:
         try:
-            found = worlds.load(world)
+            world = worlds.load(options.world)
         except WorldError as error:
             raise EnvOptionError(str(error)) from None
-        self.robot = robots.load(robot, found, count, robot_options)
+        self.robot = robots.load(options.robot, world, count, options.robot_options)
         self.count = count
-        self.action = self._choose_action(action, setpoint)
-        self.seconds = self._check_step_time(step_time)
-        ranges = ranges_of(randomise)
-        self.latency = self._make_latency(latency, ranges)
+        self.action = self._choose_action(options.action, options.setpoint)
+        self.seconds = self._check_step_time(options.step_time)
+        ranges = ranges_of(options.randomise)
+        self.latency = self._make_latency(options.latency, ranges)
         """None: commands take effect at once."""
         self.randomisation = Randomisation(ranges, self.robot, self.latency)
-        self.starts = Starts(start, self.robot)
-        self.task: Task = _named("task", task, TASKS, "judge")
-        self.observation: Observation = _named("observation", observation, OBSERVATIONS, "observe")
+        self.starts = Starts(options.start, self.robot)
+        self.task: Task = _named("task", options.task, TASKS, "judge")
+        self.observation: Observation = _named("observation", options.observation, OBSERVATIONS, "observe")
         if not isinstance(self.action.space, gym.spaces.Discrete) and any(
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -15,17 +14,10 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from sitl.worlds import World
-
-from .actions import Action
-from .observations import Observation
 from .options import EnvOptionError, unknown
-from .randomisation import Randomise
 from .rendering import Renderer
 from .robots.robot import Robot
-from .session import Session, Snapshot
-from .starts import StartOption
-from .tasks import Task
+from .session import NavigateOptions, Session, Snapshot
 
 VECTOR_RENDER_MODES = ["rgb_array"]
 
@@ -39,7 +31,8 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
     Args:
         num_envs: number of robots.
         max_episode_steps: number of steps after which an episode is truncated; None: never.
-        others: arguments of ``Navigate``.
+        render_mode: "rgb_array" or None.
+        options: see ``NavigateOptions``.
     """
 
     metadata = {  # noqa: RUF012 (Gymnasium's)
@@ -52,18 +45,9 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         self,
         num_envs: int = 1,
         max_episode_steps: int | None = None,
-        robot: str | Callable[..., Robot] = "turtlebot",
-        world: str | Path | World = "circuit2",
-        task: str | Task = "wander",
-        observation: str | Observation = "scan",
-        action: str | Mapping[str, Sequence[float]] | Action = "discrete",
-        setpoint: str | None = None,
-        step_time: float | None = None,
-        start: StartOption | None = None,
-        randomise: Randomise | None = None,
+        *,
         render_mode: str | None = None,
-        latency: float = 0.0,
-        **robot_options: Any,
+        **options: Any,
     ) -> None:
         if num_envs < 1:
             raise EnvOptionError(f"num_envs = {num_envs}; it must be 1 or more")
@@ -71,10 +55,7 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
             raise EnvOptionError(f"max_episode_steps = {max_episode_steps}; it must be 1 or more, or None")
         if render_mode is not None and render_mode not in VECTOR_RENDER_MODES:
             raise unknown("render_mode", render_mode, VECTOR_RENDER_MODES)
-        self._session = session = Session(
-            num_envs, robot, world, task, observation, action, setpoint, step_time, start, randomise, robot_options,
-            latency,
-        )  # fmt: skip
+        self._session = session = Session(num_envs, NavigateOptions.of(options))
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.render_mode = render_mode

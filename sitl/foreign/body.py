@@ -9,7 +9,7 @@ from typing import Any
 
 from ..bridge.ardupilot_json import motion
 from ..core.algebra import euler_of
-from ..plants.plant import Craft
+from ..plants.plant import SimulatedVehicle
 
 CLOCK_LEAD = 1e-9
 """Relative lead of the lines' clock.
@@ -25,21 +25,21 @@ class BodyLines:
     """Encodes JSON lines for one vehicle.
 
     Args:
-        craft: the vehicle.
+        vehicle: the vehicle.
     """
 
-    def __init__(self, craft: Craft) -> None:
-        reader = craft.reader
+    def __init__(self, vehicle: SimulatedVehicle) -> None:
+        reader = vehicle.reader
         self._clock = reader.field("time_us")
         body = (f"physics.body.{name}" for name in ("rates_mean", "specific_force", "pos", "q", "vel"))
         self._motion = reader.fields(*body)
         self._slow = reader.fields(
             "sensors.rangefinder_count", "sensors.battery_voltage", "sensors.battery_current", "physics.wind.vel"
         )
-        airframe = craft.airframe
+        airframe = vehicle.airframe
         self._range_max = float(airframe.value("rangefinder_max"))
         self._range: Callable[[], float] = reader.field("sensors.rangefinder_range")
-        self._v: Any = craft.v
+        self._v: Any = vehicle.v
         self._seen: tuple[Any, ...] = ()
         self._extras = ""
 

@@ -40,7 +40,7 @@ class HilHost:
         """Number of autopilots that have connected."""
         self._wall, self._connection, self._received = clock, None, b""
         self._due = float("-inf")
-        self.seat(plant)
+        self.attach(plant)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -54,7 +54,7 @@ class HilHost:
 
     _connection: socket.socket | None
 
-    def seat(self, plant: LocalPlant) -> None:
+    def attach(self, plant: LocalPlant) -> None:
         """Serve another plant from now on."""
         self.plant, self.end = plant, PhysicsEnd(SimulatedPlant(plant))
 

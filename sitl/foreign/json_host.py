@@ -45,7 +45,7 @@ class JsonHost:
         self.end, self._say, self._wall = PhysicsEnd(), say, clock
         self.boots = 0
         """Number of restarts of the autopilot, each with the physics."""
-        self.seat(plant)
+        self.attach(plant)
         self._pending: Request | None = None
         self._answered = float("-inf")
         self._peer: tuple[str, int] = ("", 0)
@@ -58,12 +58,12 @@ class JsonHost:
             raise OptionError(f"{where} cannot be listened on: {error.strerror or error}") from None
         wait_in_kernel(self._socket, WAIT_S)
 
-    def seat(self, plant: LocalPlant) -> None:
+    def attach(self, plant: LocalPlant) -> None:
         """Serve another plant from now on."""
         self.plant = plant
-        self._lines = BodyLines(plant.craft)
-        self._clock: Callable[[], int] = plant.craft.reader.field("time_us")
-        self._is_reversible = plant.craft.kind.has_reversible_outputs
+        self._lines = BodyLines(plant.vehicle)
+        self._clock: Callable[[], int] = plant.vehicle.reader.field("time_us")
+        self._is_reversible = plant.vehicle.kind.has_reversible_outputs
 
     @property
     def address(self) -> tuple[str, int]:
@@ -75,11 +75,6 @@ class JsonHost:
     def time_us(self) -> int:
         """Simulated time since power-on [us]."""
         return self._clock()
-
-    @property
-    def is_owing(self) -> bool:
-        """Whether a request of the autopilot is pending."""
-        return self._pending is not None
 
     def listen(self) -> bool:
         """Wait for a frame that requests a step, unless one is pending; returns whether there is one."""
@@ -133,7 +128,7 @@ class JsonHost:
         if request.asked is Asked.RESTART:
             restart(plant)
             self.boots += 1
-        actuators = plant.craft.v.actuators
+        actuators = plant.vehicle.v.actuators
         actuators.controls[:] = controls(servos.pulses, self._is_reversible)
         actuators.pwm[:] = servos.pulses[:16]
         count = ticks(servos.rate)

@@ -85,7 +85,7 @@ class ArduPilotSession:
             if choice.program is not None:
                 base = free_tcp_run(ardupilot.SERIAL_PORTS)
                 self.process = ardupilot.start(
-                    choice.program, plant.craft.airframe, plant.home, self.host.address[1], base, instance=instance,
+                    choice.program, plant.vehicle.airframe, plant.home, self.host.address[1], base, instance=instance,
                     speedup=speedup, sees_ground=plant.rangers is not None and plant.rangers.rangefinder is not None,
                     params=params, overrides=f"MAV_SYSID {1 + instance}\nSYSID_THISMAV {1 + instance}\n", folder=folder,
                 )  # fmt: skip
@@ -147,7 +147,7 @@ class Px4Session:
         if choice.program is not None:
             try:
                 self.process = px4.start(
-                    choice.program, plant.craft.airframe, plant.home, instance, speedup=speedup or 1.0, params=params,
+                    choice.program, plant.vehicle.airframe, plant.home, instance, speedup=speedup or 1.0, params=params,
                     folder=folder,
                 )  # fmt: skip
             except BaseException:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.extras import MissingExtra
+from ..errors import MissingExtra
 from ..vehicle.kinds import DEFAULT
 from .flight import Flight
 from .kind import logs_of

@@ -7,8 +7,15 @@ import argparse
 from collections.abc import Callable
 from typing import Any
 
+from sitl import vehicles
+from sitl.bridge.links.inprocess import InProcessLink
+from sitl.envs.mavlink.foreign import Foreign, launch
 from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, FORMS, Choice, choose
+from sitl.foreign.process import Cutter
+from sitl.physics.engines import NATIVE
+from sitl.physics.native.power_on import Home
+from sitl.plants.local import stand_alone
 from sitl.scenario import ESTIMATORS
 from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
@@ -17,6 +24,76 @@ from . import copter, rover
 from .figures import Figure, table
 from .pilot import Pilot
 from .recording import Recording, recorded
+
+_PATIENCE_S = 30.0
+
+
+class ForeignVehicle:
+    """The part of the ``Simulation`` interface that ``Pilot`` uses.
+
+    Args:
+        choice: the autopilot.
+        frame: airframe.
+        home: where it stands.
+        seed: seed of wind and turbulence.
+        physics: name of the engine.
+
+    Raises:
+        OptionError, LinkLostError: it cannot be started, or does not answer.
+    """
+
+    def __init__(self, choice: Choice, frame: str, home: Home, seed: int = 0, physics: str = NATIVE) -> None:
+        airframe = vehicles.load(frame)
+        plant = stand_alone(airframe, home=home, physics=physics, seed=seed)
+        self.kind = KINDS[airframe.kind]
+        self.firmware = self.kind.firmware
+        self.v = plant.vehicle.v
+        """Only the physics in it is valid: the autopilot is the foreign one."""
+        self.before_boot_us = 0
+        self.connection: Foreign = launch(choice, plant, {}, 0, _PATIENCE_S)
+        self.connection.tap = self._tell
+        self._links: list[InProcessLink] = []
+        self._cutter = Cutter()
+
+    @property
+    def bridge(self) -> ForeignVehicle:
+        """For ``bridge.add_link``."""
+        return self
+
+    def add_link(self, link: InProcessLink) -> None:
+        """Add a client in this process."""
+        self._links.append(link)
+
+    @property
+    def system(self) -> int:
+        """MAVLink id of the vehicle."""
+        return int(self.connection.inbox.system)
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since power-on [us]."""
+        return self.connection.time_us
+
+    def advance_to(self, time_us: int) -> None:
+        """Pass the clients' messages to the autopilot, and advance to a time [us]."""
+        for link in self._links:
+            for peer in link.peers:
+                data = peer.take()
+                if data:
+                    self.connection.endpoint.link.send(data)
+        self.connection.run(max(time_us - self.time_us, 0))
+
+    def _tell(self, data: bytes) -> None:
+        for frame in self._cutter.feed(data):
+            for link in self._links:
+                for peer in link.peers:
+                    peer.write(frame)
+                    peer.flush()
+
+    def close(self) -> None:
+        """End the autopilot and the physics."""
+        self.connection.close()
+
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 Script = Callable[[Simulation], Pilot]
@@ -58,7 +135,6 @@ def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
     Raises:
         OptionError: one that does not speak ArduPilot's commands.
     """
-    from .foreign import ForeignVehicle  # the environments' connections, which nothing else here needs
 
     if choice.kind != ARDUPILOT:
         raise OptionError(f"autopilot {choice.name}: the recorded scripts are for ArduPilot")

@@ -116,14 +116,14 @@ class Flown:
     """Time at which the script ended: disarmed, or its last wait [s]."""
 
     def phase(self, name: str, until: float) -> Array:
-        """Rows of a phase, time counted from its begin."""
+        """Rows of a phase, shape (rows, columns), time [s] counted from its begin."""
         start = self.phases[name]
         rows: Array = self.rows[(self.rows[:, 0] >= start - 1e-9) & (self.rows[:, 0] < until)].copy()
         rows[:, 0] -= start
         return rows
 
     def parts(self) -> dict[str, Array]:
-        """The rows of every phase."""
+        """The rows of every phase, each of shape (rows, columns), time [s] first."""
         names = list(self.phases)
         ends = [*(self.phases[name] for name in names[1:]), self.ended]
         return {name: self.phase(name, end) for name, end in zip(names, ends)}

@@ -30,7 +30,7 @@ class Figure:
 
 
 def crossing(rows: np.ndarray, column: int, level: float) -> float:
-    """Time at which a column first crosses ``level`` (interpolated); NaN when it never does."""
+    """Time [s] at which a column first crosses ``level``, in its unit (interpolated); NaN when it never does."""
     t, values = rows[:, 0], rows[:, column] - level
     beyond = np.nonzero(values * (np.sign(values[0]) or -1.0) <= 0)[0]
     if not len(beyond):
@@ -53,7 +53,7 @@ def path_rms(ours: np.ndarray, theirs: np.ndarray, from_start: bool = False) -> 
 
 
 def with_distance(rows: np.ndarray, x: float, y: float) -> np.ndarray:
-    """(time, horizontal distance to a point) of rows."""
+    """(time [s], horizontal distance to a point [m]) of rows."""
     return np.column_stack((rows[:, 0], np.hypot(rows[:, X] - x, rows[:, Y] - y)))
 
 
@@ -63,14 +63,14 @@ def speeds(rows: np.ndarray) -> np.ndarray:
 
 
 def stopped(rows: np.ndarray, level: float = 0.1) -> float:
-    """Time after which the horizontal speed stays below ``level``; NaN when it does not."""
+    """Time [s] after which the horizontal speed stays below ``level`` [m/s]; NaN when it does not."""
     above = np.nonzero(speeds(rows) >= level)[0]
     last = int(above[-1]) if len(above) else -1
     return float(rows[last + 1, 0]) if last + 1 < len(rows) else float("nan")
 
 
 def shown(value: float) -> str:
-    """Two decimals; a dash for what never was."""
+    """Two decimals of a value in its unit; a dash for what never was."""
     return "-" if math.isnan(value) else f"{value:.2f}"
 
 

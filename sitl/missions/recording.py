@@ -49,7 +49,7 @@ class Recording:
         return next((t - start for t, item in self.reached if t >= start and item == seq), float("nan"))
 
     def column(self, name: str) -> np.ndarray[Any, Any]:
-        """One column over the whole flight."""
+        """One column over the whole flight, in its unit, shape (rows,)."""
         return self.data[:, COLUMNS.index(name)]
 
     def since(self, phase: str, duration: float) -> np.ndarray[Any, Any]:

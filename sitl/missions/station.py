@@ -53,12 +53,12 @@ class Station(Client):
         self.on_step()
 
     def why(self, since: float = 0.0) -> str:
-        """The last two things that the vehicle said that sound like reasons; "" when it said nothing of the kind."""
+        """The last two texts since a time [s] that sound like reasons; "" when it said nothing of the kind."""
         severe = [text for time, severity, text in self.texts if severity <= _SEVERE and time >= since]
         return ": " + "; ".join(severe[-2:]) if severe else ""
 
     def wait_ready(self, timeout: float = 120.0) -> None:
-        """Until the vehicle has a position and its pre-arm checks are good."""
+        """Until the vehicle has a position and its pre-arm checks are good, at most ``timeout`` [simulated s]."""
         for name in _READY_MESSAGES:
             self.set_rate(name, 5.0)
         super().wait_ready(timeout)

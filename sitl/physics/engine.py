@@ -19,6 +19,16 @@ from ..errors import SitlError
 from ..vehicles import Airframe
 from ..worlds import World
 
+
+def offset(dtype: Any, *path: str) -> int:
+    """Of a field within a record [bytes]."""
+    place = 0
+    for name in path:
+        dtype, more = dtype.fields[name][:2]
+        place += more
+    return place
+
+
 Array = np.ndarray[Any, Any]
 
 
@@ -41,8 +51,8 @@ class Laws:
 
 
 @dataclass(frozen=True)
-class Seat:
-    """Where an engine finds its vehicle."""
+class EngineVehicle:
+    """What an engine is told of its vehicle: record, airframe, compiled laws and world."""
 
     v: Any
     """The record."""
@@ -66,13 +76,13 @@ class Engine(ABC):
     Ran into a solid or hard onto the ground: ``obstacles.hit_count``, ``hit_speed``, ``hit_time_us``, ``touching``, and
     a copter's ``ground.hit_*`` and ``ground.state``, as native physics.
 
-    Same seat, same actuators: same bits, on every repeat.
+    Same vehicle, same actuators: same bits, on every repeat.
     """
 
     name: ClassVar[str]
 
-    def __init__(self, seat: Seat) -> None:
-        self.seat = seat
+    def __init__(self, vehicle: EngineVehicle) -> None:
+        self.vehicle = vehicle
 
     @abstractmethod
     def place(self) -> None:
@@ -84,7 +94,7 @@ class Engine(ABC):
 
     def tick(self) -> None:
         """One tick: actuators in, sensors out."""
-        laws = self.seat.laws
+        laws = self.vehicle.laws
         laws.begin()
         self.move()
         laws.sense()
@@ -92,7 +102,7 @@ class Engine(ABC):
     @abstractmethod
     def snapshot(self) -> bytes:
         """What the record does not hold: ``restore`` goes on from it bit for bit, also in another engine of an equal
-        seat.
+        vehicle.
 
         Raises:
             EngineError: the engine cannot.

@@ -6,7 +6,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping
 
-from .engine import Engine, EngineError, Seat
+from .engine import Engine, EngineError, EngineVehicle
 
 NATIVE = "native"
 ENGINES = ("pybullet", "jsbsim")
@@ -21,7 +21,7 @@ def register_engine(name: str, kind: str, place: str) -> None:
     Args:
         name: what ``physics=`` takes.
         kind: name of a kind of vehicle that it simulates.
-        place: "module:FUNCTION" of a function that makes an ``Engine`` of a ``Seat``.
+        place: "module:FUNCTION" of a function that makes an ``Engine`` of a ``EngineVehicle``.
 
     Raises:
         EngineError: the name is one of ours.
@@ -36,7 +36,7 @@ def backends() -> tuple[str, ...]:
     return (*BACKENDS, *_registered)
 
 
-def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[Seat], Engine]:
+def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[EngineVehicle], Engine]:
     """The function that makes an engine for a vehicle.
 
     Args:
@@ -54,5 +54,5 @@ def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[Seat], En
         able = ", ".join((NATIVE, *models))
         raise EngineError(f"physics {name!r} has no model of a {kind}; it is simulated by {able}")
     module, _, function = models[name].partition(":")
-    make: Callable[[Seat], Engine] = getattr(importlib.import_module(module), function)
+    make: Callable[[EngineVehicle], Engine] = getattr(importlib.import_module(module), function)
     return make

@@ -18,7 +18,7 @@ from ..vehicle.core_entry import bind_unit
 from ..vehicle.sim_parameters import PREFIX
 from ..vehicles import apply
 from .hil_link import HilLink, parse_address
-from .plant import Craft, PhysicsLostError, Plant
+from .plant import PhysicsLostError, Plant, SimulatedVehicle
 
 PATIENCE_S = 2.5
 """Silence after which the physics counts as lost [s of wall time]."""
@@ -26,16 +26,16 @@ RESEND_S = 1.0
 """Silence after which controls are said again [s of wall time]."""
 
 
-def make(craft: Craft, address: str) -> Plant:
+def make(vehicle: SimulatedVehicle, address: str) -> Plant:
     """The plant of ``--physics hil:tcp:HOST:PORT``."""
-    return HilPlant(craft, HilLink(parse_address(address)), PATIENCE_S)
+    return HilPlant(vehicle, HilLink(parse_address(address)), PATIENCE_S)
 
 
 class HilPlant(Plant):
     """One vehicle whose physics is elsewhere.
 
     Args:
-        craft: the vehicle.
+        vehicle: record, airframe and kind.
         link: to the physics.
         patience_s: silence after which the physics counts as lost [s of wall time].
     """
@@ -43,16 +43,16 @@ class HilPlant(Plant):
     name = "hil"
     has_truth_in_record = False
 
-    def __init__(self, craft: Craft, link: HilLink, patience_s: float) -> None:
-        super().__init__(craft)
+    def __init__(self, vehicle: SimulatedVehicle, link: HilLink, patience_s: float) -> None:
+        super().__init__(vehicle)
         self.link, self._patience_s = link, patience_s
-        apply(craft.airframe, craft.v)
-        self.end = AutopilotEnd(craft.fleet, craft.index, craft.v, craft.kind.mav_type)
+        apply(vehicle.airframe, vehicle.v)
+        self.end = AutopilotEnd(vehicle.fleet, vehicle.index, vehicle.v, vehicle.kind.mav_type)
         self._has_joined = self._is_silent = False
-        self._fly = bind_unit(craft.kind.fly, craft.kind, craft.fleet, craft.index)
-        self._event_count: Callable[[], int] = craft.reader.field("autopilot.events.count")
-        self._attention: Callable[[], int] = craft.reader.field("autopilot.events.attention")
-        self._clock: Callable[[], int] = craft.reader.field("time_us")
+        self._fly = bind_unit(vehicle.kind.fly, vehicle.kind, vehicle.fleet, vehicle.index)
+        self._event_count: Callable[[], int] = vehicle.reader.field("autopilot.events.count")
+        self._attention: Callable[[], int] = vehicle.reader.field("autopilot.events.attention")
+        self._clock: Callable[[], int] = vehicle.reader.field("time_us")
 
     # ------------------------------------------------------------------ power-on
 
@@ -62,7 +62,7 @@ class HilPlant(Plant):
         Raises:
             PhysicsLostError: nobody is there, or nobody answers.
         """
-        apply(self.craft.airframe, self.craft.v)
+        apply(self.vehicle.airframe, self.vehicle.v)
         if not self.link.is_open:
             self.link.open(0.0 if self._has_joined else self._patience_s)
         end = self.end
@@ -73,8 +73,10 @@ class HilPlant(Plant):
 
     def _world(self) -> dict[str, float]:
         """The parameters of the world."""
-        params = self.craft.v.autopilot.params
-        return {name: float(params[name]) for name in self.craft.kind.firmware.table.names() if name.startswith(PREFIX)}
+        params = self.vehicle.v.autopilot.params
+        return {
+            name: float(params[name]) for name in self.vehicle.kind.firmware.table.names() if name.startswith(PREFIX)
+        }
 
     # ------------------------------------------------------------------ going on
 
@@ -99,7 +101,7 @@ class HilPlant(Plant):
             found = self._wait_for(lambda found: found != WAITING, end.controls())
         if found == TAKEN:
             return True
-        self.craft.restarted()
+        self.vehicle.restarted()
         return False
 
     def _open(self) -> None:
@@ -157,7 +159,7 @@ class HilPlant(Plant):
 
     def parameter_changed(self, name: str) -> None:
         super().parameter_changed(name)
-        self.end.set_parameter(name, float(self.craft.v.autopilot.params[name]))
+        self.end.set_parameter(name, float(self.vehicle.v.autopilot.params[name]))
 
     def reseed(self, seed: int) -> None:
         self.end.reseed(seed)

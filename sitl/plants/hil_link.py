@@ -61,7 +61,7 @@ class HilLink:
         return self._socket is not None
 
     def open(self, patience_s: float = 0.0) -> None:
-        """Connect, trying again for a while.
+        """Connect, trying again for ``patience_s`` [s of wall time].
 
         Raises:
             PhysicsLostError: nobody listens there.

@@ -28,7 +28,7 @@ from ..physics.native.power_on import DEFAULT_HOME, Home
 from ..physics.native.tick import TICK_S
 from ..vehicle.core_entry import bind_unit
 from .json_link import WAIT_S, JsonLink, parse_address
-from .plant import Craft, PhysicsLostError, Plant
+from .plant import PhysicsLostError, Plant, SimulatedVehicle
 
 OWN = ("home", "seed", "estimator")
 """Options of a simulation that are the autopilot's at this kind of link: the physics knows no place on the earth."""
@@ -45,9 +45,11 @@ _NOTHING = _ZERO, _ZERO, 0.0
 _US = 1e6
 
 
-def make(craft: Craft, address: str, home: Home | None = None, seed: int | None = None, **_: object) -> Plant:
+def make(
+    vehicle: SimulatedVehicle, address: str, home: Home | None = None, seed: int | None = None, **_: object
+) -> Plant:
     """The plant of ``--physics json:HOST:PORT``."""
-    plant = JsonPlant(craft, JsonLink(parse_address(address)), home, seed or 0)
+    plant = JsonPlant(vehicle, JsonLink(parse_address(address)), home, seed or 0)
     plant.load()  # now, and not while the physics waits
     return plant
 
@@ -56,7 +58,7 @@ class JsonPlant(Plant):
     """One vehicle whose physics is a JSON simulator.
 
     Args:
-        craft: the vehicle.
+        vehicle: record, airframe and kind.
         link: datagrams to and from the simulator.
         home: where the position (0, 0, 0) of the physics is on the earth.
         seed: of the sensors' noise.
@@ -67,13 +69,13 @@ class JsonPlant(Plant):
 
     def __init__(
         self,
-        craft: Craft,
+        vehicle: SimulatedVehicle,
         link: JsonLink,
         home: Home | None,
         seed: int,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        super().__init__(craft)
+        super().__init__(vehicle)
         self.link, self.home, self.seed = link, home or DEFAULT_HOME, seed
         self.end = AutopilotEnd()
         self._wall = clock
@@ -82,31 +84,33 @@ class JsonPlant(Plant):
         self._last: Motion | None = None
         self._sums = _NOTHING
         """What the IMU has felt in the part of the tick that is done: rates and forces by steps, sum of steps [s]."""
-        self._event_count: Callable[[], int] = craft.reader.field("autopilot.events.count")
-        self._attention: Callable[[], int] = craft.reader.field("autopilot.events.attention")
-        self._pulses = craft.reader.fields("actuators.pwm")
-        self._memory = memoryview(craft.fleet.view("u1"))  # type: ignore[arg-type]
-        self._body_at = craft.index * craft.fleet.dtype.itemsize + locate(craft.fleet.dtype, "physics.body.pos")[0]
+        self._event_count: Callable[[], int] = vehicle.reader.field("autopilot.events.count")
+        self._attention: Callable[[], int] = vehicle.reader.field("autopilot.events.attention")
+        self._pulses = vehicle.reader.fields("actuators.pwm")
+        self._memory = memoryview(vehicle.fleet.view("u1"))  # type: ignore[arg-type]
+        self._body_at = (
+            vehicle.index * vehicle.fleet.dtype.itemsize + locate(vehicle.fleet.dtype, "physics.body.pos")[0]
+        )
         self._units: tuple[Callable[[], None], ...] = ()
-        self._substeps = int(craft.airframe.value("substeps")) if craft.airframe.has("substeps") else 0
+        self._substeps = int(vehicle.airframe.value("substeps")) if vehicle.airframe.has("substeps") else 0
         self._note = ""
         """Why lines were not taken."""
 
     # ------------------------------------------------------------------ power-on
 
     def power_on(self) -> None:
-        craft = self.craft
-        craft.kind.apply_sim_parameters(craft.v)
-        craft.kind.init_physics(craft.v, craft.airframe, self.home, self.seed)
+        vehicle = self.vehicle
+        vehicle.kind.apply_sim_parameters(vehicle.v)
+        vehicle.kind.init_physics(vehicle.v, vehicle.airframe, self.home, self.seed)
         self.end.restart()
         self._behind_us, self._last, self._sums = 0.0, None, _NOTHING
 
     def load(self) -> None:
         """Compile all that ``run`` needs now."""
         if not self._units:
-            craft, pieces = self.craft, self.craft.kind.pieces
-            wanted = pieces.begin, pieces.load, pieces.sense, craft.kind.fly
-            self._units = tuple(bind_unit(unit, craft.kind, craft.fleet, craft.index) for unit in wanted)
+            vehicle, pieces = self.vehicle, self.vehicle.kind.pieces
+            wanted = pieces.begin, pieces.load, pieces.sense, vehicle.kind.fly
+            self._units = tuple(bind_unit(unit, vehicle.kind, vehicle.fleet, vehicle.index) for unit in wanted)
 
     # ------------------------------------------------------------------ going on
 
@@ -178,7 +182,7 @@ class JsonPlant(Plant):
                     self._note, self.end.note = self.end.note, ""
                 if answer is not None:
                     if answer[1] < 0.0:
-                        self.craft.restarted()
+                        self.vehicle.restarted()
                         return None
                     if answer[1] > 0.0:
                         return answer
@@ -194,7 +198,7 @@ class JsonPlant(Plant):
 
     def _move(self, motion: Motion) -> None:
         """Write the motion, and the one before that the IMU's laws make this line's gyro and accel of."""
-        m = self.craft.v.physics.motion
+        m = self.vehicle.v.physics.motion
         q = Quat(*motion.attitude)
         _BODY.pack_into(self._memory, self._body_at, *motion.position, *motion.velocity, *q, *motion.gyro)
         gx, gy, gz = motion.gyro
@@ -206,7 +210,7 @@ class JsonPlant(Plant):
 
     def _others(self, motion: Motion) -> None:
         """What a line may tell beside the motion."""
-        sensors = self.craft.v.sensors
+        sensors = self.vehicle.v.sensors
         if motion.receiver:
             channels = motion.receiver[: len(sensors.rc_channels)]
             sensors.rc_channels[: len(channels)] = channels
@@ -215,7 +219,7 @@ class JsonPlant(Plant):
         if motion.battery is not None:
             sensors.battery_voltage, sensors.battery_current = motion.battery
         if motion.ranges and motion.ranges[0] is not None:
-            longest = float(self.craft.airframe.value("rangefinder_max"))
+            longest = float(self.vehicle.airframe.value("rangefinder_max"))
             reading = motion.ranges[0]
             sensors.rangefinder_range[0] = reading if longest <= 0.0 or reading < longest else math.inf
             sensors.rangefinder_count += 1
@@ -223,10 +227,10 @@ class JsonPlant(Plant):
     # ------------------------------------------------------------------ the rest
 
     def truth(self) -> Carried:
-        return carried(self.craft.v)
+        return carried(self.vehicle.v)
 
     def reseed(self, seed: int) -> None:
-        rng.seed(self.craft.v.rng, seed)
+        rng.seed(self.vehicle.v.rng, seed)
 
     def snapshot(self) -> bytes:
         raise EngineError("physics behind a JSON link has no snapshots; native physics has")

@@ -34,7 +34,7 @@ def parse_address(text: str, what: str = "physics json:HOST:PORT") -> tuple[str,
 
 
 def wait_in_kernel(sock: socket.socket, seconds: float) -> None:
-    """Let reads block for so long at most: one system call where a Python time-out takes two."""
+    """Let reads block for so long at most [s]: one system call where a Python time-out takes two."""
     whole = int(seconds)
     if sys.platform == "win32":
         sock.settimeout(seconds)

@@ -32,6 +32,16 @@ NEVER = 1 << 62
 DOWN = np.array([[0.0], [0.0], [1.0]])
 
 
+class Scene(NamedTuple):
+    """What a sensor can meet."""
+
+    geometry: Geometry
+    floor: float
+    """Height of the floor in the world's frame [m]."""
+    cast: Cast | None = None
+    """An engine's own way to cast rays (``sitl.physics.engine.Engine.cast``)."""
+
+
 class RangerFigures(Record):
     """What a sensor is, and where."""
 
@@ -117,8 +127,7 @@ class Ranger:
         name: "lidar" or "rangefinder": of its figures and counter.
         rays: unit vectors on the body, FRD, shape (3, rays).
         readings: float32 array in the record.
-        geometry, floor: of the world.
-        cast: an engine's own way to cast rays (``sitl.physics.engine.Engine.cast``).
+        scene: what is around it.
     """
 
     def __init__(
@@ -129,9 +138,7 @@ class Ranger:
         name: str,
         rays: np.ndarray[Any, Any],
         readings: np.ndarray[Any, Any],
-        geometry: Geometry,
-        floor: float,
-        cast: Cast | None = None,
+        scene: Scene,
     ) -> None:
         self._sensors, self._counter = v.sensors, name + "_count"
         reader = RecordReader(fleet, index)
@@ -143,12 +150,13 @@ class Ranger:
         bodies: Any = [v.physics.body] if jit_disabled() else fleet["physics"]["body"][index : index + 1]
         sensors: Any = RangerFigures.fleet(1)
         self._figures = RangerFigures.of(sensors, 0)
-        self._figures.floor = floor
+        self._figures.floor = scene.floor
         if jit_disabled():
             sensors = [self._figures]
         beams = Beams(rays, np.empty(3), np.empty_like(rays), np.empty(rays.shape[1]))
-        measure = _measure.bind(rngs, bodies, sensors, geometry.arrays, beams, readings)
+        measure = _measure.bind(rngs, bodies, sensors, scene.geometry.arrays, beams, readings)
         self._measure: Callable[[], None] = measure
+        cast = scene.cast
         if cast is not None:
             turn, read = _aim.bind(bodies, sensors, beams), _publish.bind(rngs, sensors, beams.ranges, readings)
 
@@ -190,20 +198,10 @@ class Rangers:
     Args:
         v: view of the vehicle's record, with the figures of its airframe.
         fleet, index: the record itself.
-        geometry: of the world.
-        floor: height of the floor in the world's frame [m].
-        cast: see ``Ranger``.
+        scene: what is around it.
     """
 
-    def __init__(
-        self,
-        v: Any,
-        fleet: np.ndarray[Any, Any],
-        index: int,
-        geometry: Geometry,
-        floor: float,
-        cast: Cast | None = None,
-    ) -> None:
+    def __init__(self, v: Any, fleet: np.ndarray[Any, Any], index: int, scene: Scene) -> None:
         a, s = v.physics.airframe, v.sensors
         self._sensors = s
         self.lidar: Ranger | None = None
@@ -211,9 +209,9 @@ class Rangers:
         samples = int(a.lidar_samples)
         if samples > 0:
             rays = np.ascontiguousarray(planar.rays(int(a.lidar_rays), float(a.lidar_fov)))
-            self.lidar = Ranger(v, fleet, index, "lidar", rays, s.lidar_ranges[:samples], geometry, floor, cast)
+            self.lidar = Ranger(v, fleet, index, "lidar", rays, s.lidar_ranges[:samples], scene)
         if a.rangefinder_max > 0.0:
-            self.rangefinder = Ranger(v, fleet, index, "rangefinder", DOWN, s.rangefinder_range, geometry, floor, cast)
+            self.rangefinder = Ranger(v, fleet, index, "rangefinder", DOWN, s.rangefinder_range, scene)
         self._all = [sensor for sensor in (self.lidar, self.rangefinder) if sensor is not None]
         self.find_due()
 

@@ -13,13 +13,13 @@ from ..core import rng
 from ..core.compile import Progress
 from ..core.record_reader import RecordReader
 from ..physics.carried import Carried, carried
-from ..physics.engine import Engine, Laws, Seat
+from ..physics.engine import Engine, EngineVehicle, Laws
 from ..physics.engines import NATIVE, find
 from ..scenario import Options, Scenario
 from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..vehicles import Airframe
-from .lidar import Rangers
-from .plant import Craft, Plant
+from .lidar import Rangers, Scene
+from .plant import Plant, SimulatedVehicle
 from .surroundings import Surroundings
 
 
@@ -27,7 +27,7 @@ class LocalPlant(Plant):
     """A vehicle's physics and world in this process.
 
     Args:
-        craft: the vehicle.
+        vehicle: record, airframe and kind.
         scenario: what is simulated; its physics is an engine (``sitl.physics.engines.BACKENDS``).
         core: the core of this kind of vehicle, if it is loaded already.
         progress: told of each unit that is compiled.
@@ -39,16 +39,16 @@ class LocalPlant(Plant):
 
     def __init__(
         self,
-        craft: Craft,
+        vehicle: SimulatedVehicle,
         scenario: Scenario,
         core: Core | None = None,
         progress: Progress | None = None,
     ) -> None:
-        super().__init__(craft)
+        super().__init__(vehicle)
         self.backend = backend = scenario.physics
         self.seed, self.home = scenario.seed_or_default, scenario.home_or_default
         self.world = world = scenario.load_world()
-        self.surroundings = Surroundings(world, scenario.start, craft.airframe) if world is not None else None
+        self.surroundings = Surroundings(world, scenario.start, vehicle.airframe) if world is not None else None
         if self.surroundings is not None:
             self.home = (*self.home[:3], math.degrees(self.surroundings.heading))
         self.rangers: Rangers | None = None
@@ -56,39 +56,39 @@ class LocalPlant(Plant):
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
-            self.engine = find(backend, craft.kind.name, craft.kind.engines)(self._seat())
+            self.engine = find(backend, vehicle.kind.name, vehicle.kind.engines)(self._engine_vehicle())
         self.runs_in_core = self.engine is None
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None
-        self._event_count = craft.reader.field("autopilot.events.count")
-        self._attention = craft.reader.field("autopilot.events.attention")
-        self._clock = craft.reader.field("time_us")
+        self._event_count = vehicle.reader.field("autopilot.events.count")
+        self._attention = vehicle.reader.field("autopilot.events.attention")
+        self._clock = vehicle.reader.field("time_us")
 
-    def _seat(self) -> Seat:
-        craft = self.craft
-        units = craft.kind.pieces
+    def _engine_vehicle(self) -> EngineVehicle:
+        vehicle = self.vehicle
+        units = vehicle.kind.pieces
         laws = Laws(*(self._unit(unit) for unit in (units.begin, units.load, units.sense)))
         floor = self.surroundings.floor if self.surroundings is not None else 0.0
-        return Seat(craft.v, craft.fleet, craft.index, craft.airframe, laws, self.world, floor)
+        return EngineVehicle(vehicle.v, vehicle.fleet, vehicle.index, vehicle.airframe, laws, self.world, floor)
 
     def _unit(self, unit: Callable[..., None]) -> Callable[[], None]:
-        craft = self.craft
-        return bind_unit(unit, craft.kind, craft.fleet, craft.index, self.progress)
+        vehicle = self.vehicle
+        return bind_unit(unit, vehicle.kind, vehicle.fleet, vehicle.index, self.progress)
 
     # ------------------------------------------------------------------ power-on
 
     def power_on(self) -> None:
-        craft, v = self.craft, self.craft.v
-        craft.kind.apply_sim_parameters(v)  # first the wind that blows at power-on
-        craft.kind.init_physics(v, craft.airframe, self.home, self.seed)
+        vehicle, v = self.vehicle, self.vehicle.v
+        vehicle.kind.apply_sim_parameters(v)  # first the wind that blows at power-on
+        vehicle.kind.init_physics(v, vehicle.airframe, self.home, self.seed)
         around = self.surroundings
         if around is not None:
-            around.attach(v, craft.reader, lists_solids=self.engine is None)
+            around.attach(v, vehicle.reader, lists_solids=self.engine is None)
         if self.engine is not None:
             self.engine.place()
         if around is not None:
             cast = self.engine.cast if self.engine is not None else None
-            self.rangers = Rangers(v, craft.fleet, craft.index, around.world.geometry, around.floor, cast)
+            self.rangers = Rangers(v, vehicle.fleet, vehicle.index, Scene(around.world.geometry, around.floor, cast))
             self.rangers.measure(0)
             self.due_us = self.rangers.due_us
 
@@ -98,7 +98,7 @@ class LocalPlant(Plant):
         around = self.surroundings
         if around is not None and around.is_wanted():
             around.gather()
-            self.craft.v.autopilot.events.attention = 0
+            self.vehicle.v.autopilot.events.attention = 0
 
     def run(self, ticks: int) -> None:
         if self._run is None:
@@ -107,12 +107,12 @@ class LocalPlant(Plant):
 
     def _runner(self) -> Callable[[int], None]:
         """What runs ticks of physics and autopilot; compiled now if need be."""
-        craft, engine = self.craft, self.engine
+        vehicle, engine = self.vehicle, self.engine
         if engine is None:
             if self.core is None:
-                self.core = load_core(craft.kind, self.progress)
-            return self.core.bind(craft.fleet, craft.index)
-        tick, fly = engine.tick, self._unit(craft.kind.fly)
+                self.core = load_core(vehicle.kind, self.progress)
+            return self.core.bind(vehicle.fleet, vehicle.index)
+        tick, fly = engine.tick, self._unit(vehicle.kind.fly)
         event_count, attention = self._event_count, self._attention
 
         def run(ticks: int) -> None:
@@ -133,7 +133,7 @@ class LocalPlant(Plant):
     def load_tick(self) -> None:
         """Compile all that ``tick`` needs now."""
         if self._tick is None:
-            self._tick = self.engine.tick if self.engine is not None else self._unit(self.craft.kind.step)
+            self._tick = self.engine.tick if self.engine is not None else self._unit(self.vehicle.kind.step)
 
     def tick(self) -> None:
         """One tick of physics alone, for an autopilot elsewhere: actuators in, sensors out."""
@@ -153,10 +153,10 @@ class LocalPlant(Plant):
     # ------------------------------------------------------------------ the rest
 
     def truth(self) -> Carried:
-        return carried(self.craft.v)
+        return carried(self.vehicle.v)
 
     def reseed(self, seed: int) -> None:
-        rng.seed(self.craft.v.rng, seed)
+        rng.seed(self.vehicle.v.rng, seed)
 
     def snapshot(self) -> bytes:
         return b"" if self.engine is None else self.engine.snapshot()
@@ -194,13 +194,13 @@ def stand_alone(
     table.set_defaults(v.autopilot.params)
     files.apply(table, v.autopilot.params, airframe.parameters, f"airframe {airframe.name}")
     files.apply(table, v.autopilot.params, scenario.params or {}, "parameters")
-    craft = Craft(kind, airframe, fleet, 0, v, RecordReader(fleet, 0), lambda: None)
-    plant = LocalPlant(craft, scenario, None, progress)
+    vehicle = SimulatedVehicle(kind, airframe, fleet, 0, v, RecordReader(fleet, 0), lambda: None)
+    plant = LocalPlant(vehicle, scenario, None, progress)
     restart(plant)
     return plant
 
 
 def restart(plant: LocalPlant) -> None:
     """Back to power-on; parameters stay."""
-    boot.clear(plant.craft.v)
+    boot.clear(plant.vehicle.v)
     plant.power_on()

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from ..autopilot.params.table import stored
 from ..bridge.hil.physics_end import PhysicsEnd, text_frame
 from ..bridge.hil.protocol import BASE_PORT
-from ..bridge.links.address import LOCAL, LinkAddressError
+from ..bridge.links import LOCAL, LinkAddressError
 from ..core.constants import TICK_S
 from ..physics.carried import Carried
 from ..vehicle.sim_parameters import PREFIX
@@ -57,9 +57,9 @@ class SimulatedPlant:
 
     def __init__(self, plant: LocalPlant) -> None:
         self.plant = plant
-        craft = plant.craft
-        self.fleet, self.index, self.v = craft.fleet, craft.index, craft.v
-        self._params, self._table = craft.v.autopilot.params, craft.kind.firmware.table
+        vehicle = plant.vehicle
+        self.fleet, self.index, self.v = vehicle.fleet, vehicle.index, vehicle.v
+        self._params, self._table = vehicle.v.autopilot.params, vehicle.kind.firmware.table
         self.tick = plant.tick
 
     def power_on(self) -> None:
@@ -101,7 +101,7 @@ class PhysicsServer:
     """
 
     def __init__(self, plant: LocalPlant, host: str, port: int, say: Callable[[str], None] = lambda text: None) -> None:
-        self.end = PhysicsEnd(SimulatedPlant(plant), plant.craft.kind.mav_type)
+        self.end = PhysicsEnd(SimulatedPlant(plant), plant.vehicle.kind.mav_type)
         self._say = say
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -27,7 +27,7 @@ class PhysicsLostError(SitlError, ConnectionError):
 
 
 @dataclass(frozen=True)
-class Craft:
+class SimulatedVehicle:
     """One vehicle, as its plant finds it."""
 
     kind: Kind
@@ -53,8 +53,8 @@ class Plant(ABC):
     has_truth_in_record: ClassVar[bool] = True
     """Whether ``truth`` is what the record says (``sitl.physics.carried``)."""
 
-    def __init__(self, craft: Craft) -> None:
-        self.craft = craft
+    def __init__(self, vehicle: SimulatedVehicle) -> None:
+        self.vehicle = vehicle
         self.due_us = NEVER
         """Time since boot at which something has to be measured besides the tick's sensors [us]."""
 
@@ -88,7 +88,7 @@ class Plant(ABC):
 
     def parameter_changed(self, name: str) -> None:
         """A SIM_ parameter was set: the world follows it."""
-        self.craft.kind.apply_sim_parameters(self.craft.v)
+        self.vehicle.kind.apply_sim_parameters(self.vehicle.v)
 
     @abstractmethod
     def reseed(self, seed: int) -> None:
@@ -112,7 +112,7 @@ class Plant(ABC):
 
 
 LINKS = {"hil": "sitl.plants.hil", "json": "sitl.plants.json"}
-"""Scheme -> module whose ``make(craft, address)`` gives a plant at the other end of a link."""
+"""Scheme -> module whose ``make(vehicle, address)`` gives a plant at the other end of a link."""
 FORMS = (*BACKENDS, "hil:tcp:HOST:PORT", "json:HOST:PORT")
 
 
@@ -130,11 +130,11 @@ def is_remote(physics: str) -> bool:
     raise OptionError(f"physics {physics!r} is not known; it is one of {', '.join(FORMS)}")
 
 
-def remote(craft: Craft, scenario: Scenario) -> Plant:
+def remote(vehicle: SimulatedVehicle, scenario: Scenario) -> Plant:
     """A plant at the other end of a link.
 
     Args:
-        craft: the vehicle.
+        vehicle: record, airframe and kind.
         scenario: its physics is "SCHEME:ADDRESS". Home, seed, world, start and a true estimate may belong to the
             physics side: the module of the link names those that do not (``OWN``), the others may not be given.
 
@@ -151,4 +151,4 @@ def remote(craft: Craft, scenario: Scenario) -> Plant:
             where = scenario.physics
             raise OptionError(f"{name} = {value!r}: with physics {where} it belongs to the other end of the link")
     make: Callable[..., Plant] = module.make
-    return make(craft, address, **own)
+    return make(vehicle, address, **own)

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from ..bridge.channel import COMPONENT
-from ..bridge.links import LogLink
-from ..bridge.links.address import LinkAddressError
+from ..bridge.links import LinkAddressError, LogLink
 from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpOutLink
 from ..logs.dataflash.log import DataFlash, attach

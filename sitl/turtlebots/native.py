@@ -226,7 +226,7 @@ class Turtlebot:
 
 
 def full_pose(pose: Pose, z: float) -> tuple[float, float, float, float]:
-    """x, y, z, yaw of a pose that may come without z.
+    """x, y, z [m], yaw [rad] of a pose that may come without z.
 
     Raises:
         ValueError: not three or four finite numbers.

@@ -5,7 +5,8 @@ A kind of vehicle has two entries made of these laws. ``advance(fleet, index, ti
 ``ticks`` ticks of 2500 us. It returns early, at the end of a tick in which something happened (``autopilot.events``),
 or in which the vehicle came to the end of its list of solids. The border is crossed once a tick: physics writes
 ``sensors``, the autopilot reads them and writes ``actuators``. ``fly(fleet, index)`` is the autopilot's part of one
-tick alone, behind other physics.
+tick alone, behind other physics. With ``--estimator truth`` the simulator's truth stands in place of the Kalman
+filter's output, for work on controllers.
 """
 
 from __future__ import annotations
@@ -15,9 +16,27 @@ from typing import TypeVar
 
 from ..autopilot.events import HIT_OBSTACLE, emit
 from ..autopilot.inertial_ring import remember
+from ..core.algebra import euler_of
 from ..core.kernels import law
 from .record import Vehicle
-from .truth_estimator import observe
+
+# EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
+# predicted relative and absolute position.
+_ALL_WELL = 1 | 2 | 4 | 8 | 16 | 32 | 256 | 512
+
+
+@law
+def observe(v: Vehicle) -> None:
+    """Copy attitude, rates, velocity, position and acceleration of the body into the autopilot's estimate."""
+    body, place, e = v.physics.body, v.physics.place, v.autopilot.estimate
+    e.rates, e.vel, e.pos, e.acc_ned, e.q = body.rates, body.vel, body.pos, body.acc_ned, body.q
+    e.euler = euler_of(e.q)
+    e.origin_lat, e.origin_lon, e.origin_alt = place.lat, place.lon, place.alt
+    e.origin_set = True
+    e.attitude_ok = True
+    e.position_ok = True
+    e.status_flags = _ALL_WELL
+
 
 V = TypeVar("V", bound=Vehicle)
 Tick = Callable[[Sequence[V], int], None]

@@ -100,7 +100,7 @@ COPTER = Kind(
     ),
     parts={
         "mavlink": "sitl.bridge.copter.profile:PROFILE",
-        "logs": "sitl.logs.copter:LOGS",
+        "logs": "sitl.logs.dataflash.copter:LOGS",
         "environments": "sitl.envs.robots.copter:ROBOT",
     },
 )  # fmt: skip

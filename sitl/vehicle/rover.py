@@ -74,7 +74,7 @@ ROVER = Kind(
     flight_parameters=("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
     parts={
         "mavlink": "sitl.bridge.rover.profile:PROFILE",
-        "logs": "sitl.logs.rover:LOGS",
+        "logs": "sitl.logs.dataflash.rover:LOGS",
         "environments": "sitl.envs.robots.rover:ROBOT",
     },
 )

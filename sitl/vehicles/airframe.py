@@ -106,7 +106,7 @@ class Airframe:
         return replace(self, figures={**self.figures, **figures})
 
     def record(self) -> np.ndarray[Any, Any]:
-        """All figures as one record of the kind (an array without dimensions)."""
+        """All figures, in their units, as one record of the kind (an array without dimensions)."""
         out = np.zeros((), self.dtype)
         for figure in self.known:
             out[figure.name] = self.value(figure.name)

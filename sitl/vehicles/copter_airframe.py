@@ -64,7 +64,7 @@ class CopterAirframe(Airframe):
         return {"rotors": tuple(Rotor(*hub) for hub in zip(*hubs, strict=True))[: int(record["rotor_count"])]}
 
     def record(self) -> np.ndarray[Any, Any]:
-        """All figures and the rotors as one record."""
+        """All figures and the rotors, in their units, as one record."""
         out = super().record()
         out["rotor_count"] = len(self.rotors)
         for k, rotor in enumerate(self.rotors):

@@ -188,5 +188,5 @@ def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floa
 
 
 def rows(count: int) -> Floats:
-    """Room for ``near``."""
+    """Room for ``near``: shape (solids, figures)."""
     return np.zeros((count, SOLID_FIGURES))

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from ..core.extras import MissingExtra
+from ..errors import MissingExtra
 from .shapes import Cylinder
 from .world import World
 
@@ -62,7 +62,7 @@ def draw(world: World, path: str | Path, height: float | None = None) -> None:
 
 
 def plan(axes: object, world: World, height: float, names: bool = True) -> None:
-    """Draw the plan into axes of matplotlib."""
+    """Draw the plan at a height [m] into axes of matplotlib."""
     from matplotlib.axes import Axes
     from matplotlib.patches import Polygon
 

@@ -47,7 +47,7 @@ def crossing(low: float, high: float, velocity: float) -> Span:
 
 @law
 def first_of(a: Span, b: Span) -> float:
-    """Range of a ray that is in one set along a span, in another along the other: the first in both."""
+    """Range [m] of a ray that is in one set along a span, in another along the other: the first in both."""
     enter = a.enter if a.enter > b.enter else b.enter
     leave = a.leave if a.leave < b.leave else b.leave
     enter = enter if enter > 0.0 else 0.0
@@ -73,7 +73,7 @@ def to_box(start: Vec2, half: Vec2, heights: Span, direction: Vec3) -> float:
 
 @law
 def to_cylinder(start: Vec2, radius: float, heights: Span, direction: Vec3) -> float:
-    """Range to a vertical cylinder; arguments as for a box."""
+    """Range [m] to a vertical cylinder; arguments as for a box."""
     x, y, vx, vy = start.x, start.y, direction.x, direction.y
     a = vx * vx + vy * vy
     a = a if a > TINY else TINY
@@ -108,7 +108,7 @@ def rays(count: int, field_of_view: float) -> Floats:
 
 @law
 def publish_readings(ranges: Line, longest: float, out: Line) -> None:
-    """The published readings of the ranges that were cast, into ``out``; see ``publish``."""
+    """The published readings [m] of the ranges [m] that were cast, into ``out``; see ``publish``."""
     cast, published = ranges.shape[0], out.shape[0]
     for i in range(published):
         place = i * (cast - 1) / (published - 1) if published > 1 else 0.0

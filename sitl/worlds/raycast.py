@@ -105,13 +105,13 @@ def walk(solids: Solids, origin: Vec3, direction: Vec3) -> float:
 
 @law
 def ray(directions: Table, k: int) -> Vec3:
-    """Direction ``k`` of three rows (norths, easts, downs)."""
+    """Direction ``k``, NED, of three rows (norths, easts, downs)."""
     return Vec3(directions[0, k], directions[1, k], directions[2, k])
 
 
 @law
 def turn_rays(q: Quat, rays: Table, directions: Table) -> None:
-    """Turn rays on a body of attitude ``q`` into the world, into ``directions``; both have three rows."""
+    """Turn rays on a body (FRD) of attitude ``q`` into the world (NED), into ``directions``; both have shape (3, n)."""
     for k in range(rays.shape[1]):
         turned = rotate(q, ray(rays, k))
         directions[0, k], directions[1, k], directions[2, k] = turned.x, turned.y, turned.z
@@ -119,14 +119,14 @@ def turn_rays(q: Quat, rays: Table, directions: Table) -> None:
 
 @law
 def walk_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
-    """Ranges along many rays from one point, by ``walk``."""
+    """Ranges [m] along many rays from one point, by ``walk``."""
     for k in range(out.shape[0]):
         out[k] = walk(solids, origin, ray(directions, k))
 
 
 @law
 def sweep_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
-    """Ranges along many rays from one point, by testing every solid for all rays."""
+    """Ranges [m] along many rays from one point, by testing every solid for all rays."""
     rows, rays = solids.rows, out.shape[0]
     floor = solids.grid[FLOOR] - origin.z
     for k in range(rays):
@@ -150,7 +150,7 @@ def sweep_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> No
 
 @law
 def scan_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
-    """Ranges along many rays from one point, the quicker way."""
+    """Ranges [m] along many rays from one point, the quicker way."""
     if solids.rows.shape[0] < MANY:
         sweep_rays(solids, origin, directions, out)
     else:
@@ -180,7 +180,7 @@ class Scene(NamedTuple):
 
 @law
 def scan_bodies(solids: Solids, scene: Scene, out: Table) -> None:
-    """Ranges seen by a sensor on each of many bodies; see ``scan_from``."""
+    """Ranges [m] seen by a sensor on each of many bodies; see ``scan_from``."""
     positions, attitudes, mount = scene.positions, scene.attitudes, scene.mount
     for i in range(positions.shape[0]):
         q = Quat(attitudes[i, 0], attitudes[i, 1], attitudes[i, 2], attitudes[i, 3])

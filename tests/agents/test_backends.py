@@ -20,8 +20,7 @@ from sitl.agents.runs.backends import Workers, each
 from sitl.agents.runs.folder import RunFolder
 from sitl.agents.runs.training import train_all, train_one
 from sitl.core import ray_cluster as instances
-from sitl.core.extras import MissingExtra
-from sitl.errors import OptionError
+from sitl.errors import MissingExtra, OptionError
 from tests.agents import ray_works
 from tests.agents.small_runs import CIRCUIT2, new, result
 

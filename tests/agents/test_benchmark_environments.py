@@ -19,7 +19,7 @@ from sitl.agents.report.driven import Trails, Whereabouts, place_of, whereabouts
 from sitl.agents.report.environments import drive_one, with_range
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.worlds import load
 from tests.agents.small_runs import CIRCUIT2, make
 

@@ -20,7 +20,7 @@ from sitl.agents.deep.features import Features, Frames, nearest
 from sitl.agents.deep.settings import Dqn, Ppo, Sac
 from sitl.agents.deep.training import Tally
 from sitl.agents.errors import AgentError
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from tests.agents.deep_runs import CIRCUIT2
 
 

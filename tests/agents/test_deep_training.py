@@ -12,7 +12,7 @@ pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 from sitl.agents import algorithms, environments
 from sitl.agents.deep import checkpoint, training
 from sitl.agents.deep.checks import BEST, JITTER, SEED, Checks
-from sitl.agents.deep.network import Network
+from sitl.agents.deep.policy import Network
 from sitl.agents.deep.settings import settings_of
 from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import evaluate, evaluate_run, moved_starts

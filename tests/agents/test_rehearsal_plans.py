@@ -11,8 +11,7 @@ from sitl import worlds
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
 from sitl.agents.rehearsal import plan as plans
-from sitl.agents.rehearsal.change import Change
-from sitl.agents.rehearsal.worlds import altered
+from sitl.agents.rehearsal.change import Change, altered
 from sitl.agents.runs.config import RunConfig
 
 ENVIRONMENTS = {

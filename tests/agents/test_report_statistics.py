@@ -22,7 +22,7 @@ from sitl.agents.report.statistics import (
     profile_interval,
     t_quantile,
 )
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 
 def test_quantiles_are_students():

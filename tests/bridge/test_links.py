@@ -10,8 +10,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.frame import Splitter
-from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOutLink, open_link, tcp
-from sitl.bridge.links.address import parse
+from sitl.bridge.links import LinkAddressError, TcpServerLink, UdpInLink, UdpOutLink, open_link, parse, tcp
 from sitl.bridge.links.tcp import CONGESTED_BYTES, refuse_echo
 from sitl.bridge.services.statustext import StatusTextService
 from tests.bridge.fakes import Bench

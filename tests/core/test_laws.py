@@ -11,8 +11,8 @@ import re
 import sitl
 from sitl.core import fingerprint
 from sitl.core.dispatch import by_number
-from sitl.core.extras import MissingExtra
 from sitl.core.kernels import LAWS, UNITS, law
+from sitl.errors import MissingExtra
 
 
 def _import_all() -> None:

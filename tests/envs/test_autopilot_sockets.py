@@ -17,8 +17,8 @@ from sitl.bridge.frame import encode_v2
 from sitl.bridge.wire.choose import message_of
 from sitl.client import connect
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.errors import LinkLostError
 from sitl.envs.mavlink.telemetry import SCAN, SECTORS, StepTelemetry
+from sitl.errors import LinkLostError
 from tests.envs import lockstep_vehicle
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"

@@ -13,10 +13,9 @@ from pytest import approx
 
 from sitl import worlds
 from sitl.envs import EnvOptionError
-from sitl.envs.actions import Discrete
+from sitl.envs.actions import DRIVE, Discrete
 from sitl.envs.observations import Digits
 from sitl.envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
-from sitl.envs.setpoints import DRIVE
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import inspect
+import dataclasses
 import math
 
 import gymnasium as gym
@@ -13,12 +13,11 @@ from gymnasium.error import InvalidAction
 
 from sitl import worlds
 from sitl.envs import EnvOptionError
-from sitl.envs.actions import Continuous, Discrete
-from sitl.envs.navigate import Navigate
+from sitl.envs.actions import DRIVE, VELOCITY, Continuous, Discrete
 from sitl.envs.observations import Digits
 from sitl.envs.options import COMMON
 from sitl.envs.rewards import Nearness
-from sitl.envs.setpoints import DRIVE, VELOCITY
+from sitl.envs.session import NavigateOptions
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
 
@@ -80,8 +79,7 @@ def test_wrong_options_are_named_with_what_is_allowed(options, message):
 
 
 def test_the_options_that_messages_list_are_those_that_there_are():
-    taken = inspect.signature(Navigate).parameters
-    assert set(COMMON) == {name for name in taken if name != "robot_options"}
+    assert [field.name for field in dataclasses.fields(NavigateOptions)] == [*COMMON, "robot_options"]
 
 
 @pytest.mark.parametrize(

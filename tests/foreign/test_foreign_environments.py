@@ -13,9 +13,9 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.errors import LinkLostError
 from sitl.envs.mavlink.foreign import physics_port
 from sitl.envs.robots.autopilot import AutopilotRobot
+from sitl.errors import LinkLostError
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 

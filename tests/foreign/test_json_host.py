@@ -91,7 +91,7 @@ def test_pulses_turn_the_rotors(copter_plant, pulses):
         for number in range(200):
             line = peer.ask(number, pulse=1700, pulses=pulses)
         assert line["position"][2] < -0.2 and line["velocity"][2] < -0.5
-        assert list(copter_plant.craft.v.actuators.pwm) == [1700] * 16
+        assert list(copter_plant.vehicle.v.actuators.pwm) == [1700] * 16
 
 
 def test_a_rovers_pulses_are_centred(rover_plant):

@@ -100,7 +100,7 @@ def test_a_flight_over_the_wire(server):
     simulation.advance(2.0)
     client.command(22, 0, 0, 0, 0, 0, 0, 5)
     simulation.advance(12.0)
-    truth = server.host.plant.craft.v.physics.body
+    truth = server.host.plant.vehicle.v.physics.body
     assert -float(truth.pos[2]) == pytest.approx(5.0, abs=0.5)
     assert list(simulation.v.physics.body.pos) == list(truth.pos)  # to the last bit
     assert server.host.time_us == simulation.v.time_us == 64_000_000

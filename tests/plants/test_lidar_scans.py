@@ -17,7 +17,7 @@ from sitl.core.border import LIDAR_SAMPLES as ROOM
 from sitl.core.vectors import Euler
 from sitl.simulation import Core, Simulation
 from sitl.vehicles import AirframeError
-from sitl.vehicles.figures.ranging import LIDAR_SAMPLES
+from sitl.vehicles.figures.body import LIDAR_SAMPLES
 from sitl.worlds import Box, Start, World
 
 KNOWN: dict[str, Any] = json.loads(

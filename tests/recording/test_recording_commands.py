@@ -19,7 +19,7 @@ from sitl.recording.entries import RecordingError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
-from sitl.run.lockstep import serve_lockstep
+from sitl.run.standstill import serve_lockstep
 from sitl.simulation import Core, Simulation
 from tests.recording.conftest import Recorded, hop
 

@@ -12,7 +12,7 @@ from sitl.recording.recorder import Recorder
 from sitl.recording.recording import Recording, read
 from sitl.recording.replay import Replay
 from sitl.run import runner
-from sitl.run.lockstep import serve_lockstep
+from sitl.run.standstill import serve_lockstep
 from sitl.simulation import Core, Simulation
 from tests.recording.conftest import Frames
 

@@ -7,7 +7,7 @@ import pytest
 
 from sitl.bridge.services.commands import GRANT, RESEED
 from sitl.client.endpoint import Endpoint
-from sitl.run.lockstep import SLICE_US, serve_lockstep
+from sitl.run.standstill import SLICE_US, serve_lockstep
 from sitl.simulation import Core, Simulation
 
 ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3

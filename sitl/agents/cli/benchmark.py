@@ -7,7 +7,14 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..report import paper
+from .. import recipes
+from ..recipes.recipe import check_all, runs_of
+from ..rehearsal import plan as plans
+from ..rehearsal.rehearse import PLAIN, recipes_of
+from ..rehearsal.report import write_report
+from ..report import curves, environments, paper
+from ..report.driven import Driven
+from ..report.environments import Dish
 from ..report.group import Group
 from ..report.paper_tables import TITLES
 from ..runs.backends import Workers
@@ -15,10 +22,12 @@ from ..runs.bar import Bar
 from ..runs.config import EPISODES
 from ..runs.folder import RunFolder
 from ..runs.training import is_done, train_all
-from . import benchmark_environments, benchmark_rehearsal
 from .options import add_jobs, positive, workers
+from .rehearse import with_bar
 
-SEEDS = 10
+_SEEDS = 10
+_REHEARSAL_EPISODES = 30
+_REHEARSAL_OUT, _ENVIRONMENTS_OUT = Path("reports/rehearsal-benchmark"), Path("reports/environments")
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -30,7 +39,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="Q-learning and Sarsa on circuit2, beside the paper's table",
         description="Trains what is missing in --out, then writes report.md, report.html, pictures and CSV files.",
     )
-    one.add_argument("--seeds", type=positive, default=SEEDS, metavar="N", help=f"runs of each (default {SEEDS})")
+    one.add_argument("--seeds", type=positive, default=_SEEDS, metavar="N", help=f"runs of each (default {_SEEDS})")
     one.add_argument("--episodes", type=positive, default=EPISODES, metavar="N", help=f"of a run (default {EPISODES})")
     add_jobs(one)
     one.add_argument(
@@ -43,8 +52,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     one.add_argument("--out", type=Path, default=Path("reports/paper"), metavar="DIR", help="default: reports/paper")
     one.set_defaults(function=run_paper)
-    benchmark_environments.declare(actions, _train)
-    benchmark_rehearsal.declare(actions, _train)
+    _declare_environments(actions)
+    _declare_rehearsal(actions)
 
 
 def run_paper(options: argparse.Namespace) -> int:
@@ -74,6 +83,103 @@ def run_paper(options: argparse.Namespace) -> int:
     groups = [Group(name, runs) for name, runs in wanted]
     found = {key: groups[index] for key, index in main.items()}
     print(paper.write_report(found, groups[len(main) :], out, options.play, pool))
+    return 0
+
+
+def _declare_environments(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    parser = actions.add_parser(
+        "environments",
+        help="an agent for each environment, by the shipped recipes",
+        description="Trains what is missing in --out, plays it greedily, then writes report.md, report.html, pictures "
+        "and a CSV file. The same command goes on after an interrupt.",
+    )
+    shipped = ", ".join(recipes.names())
+    parser.add_argument(
+        "--only", nargs="+", metavar="NAME", help=f"recipes, or .toml files (default: all of {shipped})"
+    )
+    parser.add_argument("--seeds", type=positive, default=1, metavar="N", help="runs of each recipe (default 1)")
+    add_jobs(parser)
+    parser.add_argument(
+        "--out", type=Path, default=_ENVIRONMENTS_OUT, metavar="DIR", help=f"default: {_ENVIRONMENTS_OUT}"
+    )
+    parser.set_defaults(function=run_environments)
+
+
+def run_environments(options: argparse.Namespace) -> int:
+    """Run ``sitl benchmark environments``."""
+    pool = workers(options)
+    chosen = [recipes.load(name) for name in options.only or recipes.names()]
+    check_all(chosen, options.seeds)
+    curves.figure()  # before hours are spent, see that pictures can be drawn
+    runs = [runs_of(options.out, recipe, options.seeds) for recipe in chosen]
+    todo = [one for group in runs for one in group if not is_done(one)]
+    items = [(one.path, recipe) for recipe, group in zip(chosen, runs) for one in group]
+    driven: list[Driven | None] = [None]
+    if not todo or _train(todo, pool):
+        print(f"playing {len(items)} runs", file=sys.stderr)
+        driven = pool.each(environments.drive_one, items, pool.jobs)
+    played = [one for one in driven if one is not None]
+    if len(played) < len(items):
+        print("interrupted; the same command goes on", file=sys.stderr)
+        return 130
+    dishes = []
+    for k, (recipe, group) in enumerate(zip(chosen, runs)):
+        own = played[k * options.seeds : (k + 1) * options.seeds]
+        dishes.append(Dish(recipe, Group(recipe.name, group), own))
+    print(environments.write_report(dishes, options.out))
+    return 0
+
+
+def _declare_rehearsal(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    shipped = ", ".join(plans.names())
+    parser = actions.add_parser(
+        "rehearsal",
+        help="how much of a reward transfers to other simulations, with and without domain randomisation",
+        description="Trains for each robot what is missing in --out: a policy in one simulation and one in many. Tries "
+        "both under the changes of the robot's plan, then writes report.md, report.html, pictures and CSV files. The "
+        "same command goes on after an interrupt.",
+    )
+    parser.add_argument("--only", nargs="+", metavar="PLAN", help=f"{shipped}, or .toml files (default: all shipped)")
+    parser.add_argument("--seeds", type=positive, default=1, metavar="N", help="runs of each (default 1)")
+    parser.add_argument("--steps", type=positive, metavar="N", help="of a training, instead of the recipe's length")
+    parser.add_argument(
+        "--episodes",
+        type=positive,
+        default=_REHEARSAL_EPISODES,
+        metavar="N",
+        help=f"of each change and run (default {_REHEARSAL_EPISODES})",
+    )
+    add_jobs(parser)
+    parser.add_argument("--out", type=Path, default=_REHEARSAL_OUT, metavar="DIR", help=f"default: {_REHEARSAL_OUT}")
+    parser.set_defaults(function=run_rehearsal)
+
+
+def run_rehearsal(options: argparse.Namespace) -> int:
+    """Run ``sitl benchmark rehearsal``."""
+    pool = workers(options)
+    chosen = [plans.load(name) for name in options.only or plans.names()]
+    plans.check_names(chosen)
+    trained = {plan.name: recipes_of(plan, options.steps) for plan in chosen}
+    check_all([recipe for pair in trained.values() for recipe in pair.values()], options.seeds)
+    curves.figure()  # before much is trained, see that pictures can be drawn
+    runs = {
+        plan: {title: runs_of(options.out, recipe, options.seeds) for title, recipe in pair.items()}
+        for plan, pair in trained.items()
+    }
+    todo = [one for pair in runs.values() for group in pair.values() for one in group if not is_done(one)]
+    sections = {}
+    if not todo or _train(todo, pool):
+        for plan in chosen:
+            groups = [Group(title, group) for title, group in runs[plan.name].items()]
+            print(f"rehearsing {plan.name}: {PLAIN} and randomised", file=sys.stderr)
+            found = with_bar(groups, plan.chosen(), options.episodes, 0, None, pool)
+            if found is None:
+                break
+            sections[plan.name] = found
+    if len(sections) < len(chosen):
+        print("interrupted; the same command goes on", file=sys.stderr)
+        return 130
+    print(write_report(sections, options.out))
     return 0
 
 

@@ -88,4 +88,4 @@ def with_bar(
         def on_progress(index: int, count: Any) -> None:
             bar.update(count)
 
-        return rehearse(groups, changes, episodes, seed, jitter, pool.jobs, on_progress, pool.each)
+        return rehearse(groups, changes, episodes, seed, jitter, on_progress, pool)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 from .. import algorithms, environments, recipes
 from ..errors import AgentError

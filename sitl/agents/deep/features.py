@@ -103,7 +103,7 @@ class Frames:
         """Shape (count, frames * width)."""
 
     def begin(self, features: Rows, robots: Any = slice(None)) -> Rows:
-        """Start episodes of these robots: all frames hold the first observation. Returns all rows."""
+        """Start episodes of these robots: all frames hold the first observation. Returns all rows, a row a robot."""
         times = self.rows.shape[1] // self._width
         self.rows[robots] = np.tile(features[robots], (1, times))
         return self.rows

@@ -7,7 +7,7 @@ import os
 from importlib.util import find_spec
 from typing import Any
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 CLASSES = {"dqn": "DQN", "ppo": "PPO", "sac": "SAC"}
 """Algorithm -> its class in stable-baselines3."""

@@ -8,9 +8,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from sitl.errors import did_you_mean
-
-from ..errors import AgentError
+from ..errors import AgentError, check_names
 
 
 @dataclass(frozen=True)
@@ -139,11 +137,7 @@ def settings_of(algorithm: str, given: Mapping[str, Any]) -> Settings:
         AgentError: no such setting, or a value that cannot be.
     """
     kind = _OF[algorithm]
-    known = [field.name for field in fields(kind)]
-    for name in given:
-        if name not in known:
-            hint = did_you_mean(name, known)
-            raise AgentError(f"setting {name!r} of {algorithm} is not known; it is one of {', '.join(known)}{hint}")
+    check_names(given, [field.name for field in fields(kind)], f"setting {{!r}} of {algorithm}")
     return kind(**given)
 
 

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sitl.core import code_in_files
-from sitl.core.extras import MissingExtra
-from sitl.errors import did_you_mean
+from sitl.errors import MissingExtra, did_you_mean
 
 from .. import algorithms, environments
 from ..errors import AgentError

@@ -5,13 +5,51 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
 from typing import Any
 
+from sitl import worlds
 from sitl.errors import did_you_mean
+from sitl.worlds import World
+from sitl.worlds.shapes import Box, Solid
 
-from ..errors import AgentError
-from .worlds import altered
+from ..errors import AgentError, check_names
+
+
+def altered(world: str | Path | World, mirror: bool = False, stretch: float = 1.0) -> World:
+    """A mirrored or stretched copy of a world; heights stay.
+
+    Args:
+        world: name, .toml file or World.
+        mirror: left and right change places.
+        stretch: factor of all lengths along x and y.
+    """
+    found = worlds.load(world)
+    side = -1.0 if mirror else 1.0
+
+    def place(position: tuple[float, float, float]) -> tuple[float, float, float]:
+        x, y, z = position
+        return stretch * x, side * stretch * y, z
+
+    def solid(one: Solid) -> Solid:
+        if isinstance(one, Box):
+            x, y, z = one.size
+            return replace(one, centre=place(one.centre), size=(stretch * x, stretch * y, z), yaw=side * one.yaw)
+        return replace(one, centre=place(one.centre), radius=stretch * one.radius)
+
+    what = [*(["mirrored"] if mirror else []), *([f"x {stretch:g}"] if stretch != 1.0 else [])]
+    return World(
+        name=" ".join([found.name, *what]),
+        solids=tuple(solid(one) for one in found.solids),
+        starts=tuple(replace(s, position=place(s.position), yaw=side * s.yaw) for s in found.starts),
+        description=found.description,
+        source=found.source,
+        floor_z=found.floor_z,
+        friction=found.friction,
+        plan_height=found.plan_height,
+    )
+
 
 GROUPS = ("world", "physics", "vehicle", "sensors", "latency", "step", "together")
 """Groups of changes; reports are divided by them."""
@@ -86,12 +124,7 @@ class Change:
         """
         if not isinstance(values, Mapping):
             raise AgentError(f"change = {values!r}; it must be a table")
-        known = [item.name for item in fields(cls)]
-        for key in values:
-            if key not in known:
-                hint = did_you_mean(key, known)
-                title = f"change {values.get('name', '')!r}"
-                raise AgentError(f"{title}: key {key!r} is not known; it is one of {', '.join(known)}{hint}")
+        check_names(values, [item.name for item in fields(cls)], f"change {values.get('name', '')!r}: key {{!r}}")
         for key in ("name", "group"):
             if key not in values:
                 raise AgentError(f"change {dict(values)!r}: key {key!r} is missing")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,16 +14,15 @@ from ..errors import AgentError
 from ..recipes import Recipe
 from ..report.group import Group
 from ..runs import folder as folders
+from ..runs.backends import Workers
 from ..runs.folder import RunFolder
-from ..runs.local import OnProgress, each
+from ..runs.local import OnProgress
 from .change import Change
 from .plan import Plan
 from .transfer_ratio import Floats, Ratio, advantage, transfer_ratio
 from .trial import Result, Trial, attempt
 
 EPISODES = 50
-Each = Callable[..., list[Any]]
-"""As ``sitl.agents.runs.local.each``."""
 
 
 @dataclass(frozen=True)
@@ -114,24 +113,23 @@ def rehearse(
     episodes: int | None = None,
     seed: int = 0,
     jitter: float | None = None,
-    jobs: int = 1,
     on_progress: OnProgress = lambda index, message: None,
-    do: Each = each,
+    pool: Workers | None = None,
 ) -> list[Rehearsed] | None:
     """Try groups of runs; None when it was interrupted.
 
     Args:
         groups: names and runs.
         changes, episodes, seed, jitter: see ``trials_of``.
-        jobs: number of processes.
         on_progress: called with the number of a trial and 1 for each of its episodes.
-        do: does the work for all trials, as ``sitl.agents.runs.local.each``.
+        pool: who flies the trials; None: this process.
 
     Raises:
         AgentError: a run cannot be played at home.
     """
     trials = [trials_of(group.runs, changes, episodes, seed, jitter) for group in groups]
-    found = do(attempt, [trial for some in trials for trial in some], jobs, on_progress)
+    pool = pool or Workers()
+    found = pool.each(attempt, [trial for some in trials for trial in some], pool.jobs, on_progress)
     if any(result is None for result in found):
         return None
     out, first = [], 0

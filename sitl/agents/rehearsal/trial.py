@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from sitl.core.algebra import euler_of
-from sitl.core.extras import MissingExtra
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.envs.robots.turtlebot import Turtlebot
-from sitl.errors import OptionError, VehicleError
+from sitl.errors import MissingExtra, OptionError, VehicleError
 from sitl.worlds.contact import clearance
 from sitl.worlds.shapes import to_ned
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 from ..errors import AgentError
 from ..runs.folder import RunFolder

@@ -75,7 +75,7 @@ class Group:
 
     @cached_property
     def best(self) -> float:
-        """The best episode of all."""
+        """The best episode of all, its reward."""
         return float(self.rewards.max())
 
     @cached_property

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 Floats = npt.NDArray[np.float64]
 RESAMPLES = 10_000
@@ -130,7 +130,7 @@ def improvement_interval(a: Floats, b: Floats, seed: int = 0, resamples: int = R
 
 
 def profile(scores: Floats, levels: Floats) -> Floats:
-    """Fraction of the runs that score above each level; shapes (..., runs), (levels,) to (levels, ...)."""
+    """Share of the runs that score above each level; shapes (..., runs), (levels,) to (levels, ...)."""
     out: Floats = np.stack([(scores > level).mean(axis=-1) for level in levels])
     return out
 

@@ -7,9 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from sitl.errors import did_you_mean
-
-from ..errors import AgentError
+from ..errors import AgentError, check_names
 
 EPISODES = 100
 MAX_JITTER = 1.0
@@ -55,11 +53,7 @@ class EvaluationPlan:
         """
         if not isinstance(values, Mapping):
             raise AgentError(f"evaluation = {values!r}; it must be a table")
-        known = [item.name for item in fields(cls)]
-        for name in values:
-            if name not in known:
-                hint = did_you_mean(name, known)
-                raise AgentError(f"evaluation: key {name!r} is not known; it is one of {', '.join(known)}{hint}")
+        check_names(values, [item.name for item in fields(cls)], "evaluation: key {!r}")
         return cls(**values)
 
     def changed(

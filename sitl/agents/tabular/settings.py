@@ -8,9 +8,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-from sitl.errors import did_you_mean
-
-from ..errors import AgentError
+from ..errors import AgentError, check_names
 
 RULES = ("qlearn", "sarsa")
 EXPLORATIONS = ("uniform", "noise")
@@ -79,11 +77,7 @@ class Settings:
         Raises:
             AgentError: no such setting, or a value that cannot be.
         """
-        known = [field.name for field in fields(cls)]
-        for name in figures:
-            if name not in known:
-                hint = did_you_mean(name, known)
-                raise AgentError(f"setting {name!r} is not known; it is one of {', '.join(known)}{hint}")
+        check_names(figures, [field.name for field in fields(cls)], "setting {!r}")
         return cls(**figures)
 
     @classmethod

@@ -77,7 +77,7 @@ class Table:
         return out[::-1]
 
     def row(self, key: int) -> npt.NDArray[np.float64]:
-        """Values of the actions in a state; zeros for one not met."""
+        """Values of the actions in a state, shape (actions,); zeros for one not met."""
         out: npt.NDArray[np.float64] = self.values[slot_of(self.keys, key)]
         return out
 

@@ -125,7 +125,7 @@ class Checks:
             write_arrays(self._path, {**self._learner.table.arrays(), **extra})
 
     def score(self) -> tuple[float, ...]:
-        """Score of the table, the most important figure first; greater is better."""
+        """Score of the table, the most important number first; greater is better."""
         player = self._player
         player.table = self._learner.table
         player.seed(SEED)

@@ -149,7 +149,7 @@ class CopterCommands(Commands[Vehicle]):
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
-        """Limits of the legs from now on, until AUTO is left."""
+        """Limits [m/s] of the legs from now on, until AUTO is left."""
         if not is_speed(speed):
             return False
         nav = v.autopilot.modes.nav

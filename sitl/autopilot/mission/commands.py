@@ -82,5 +82,5 @@ def whole_seconds(item: MissionItem) -> float:
 
 
 def is_speed(speed: float) -> bool:
-    """Whether a limit can be set to it."""
+    """Whether a limit [m/s] can be set to it."""
     return 0.0 < speed < math.inf

@@ -175,7 +175,7 @@ class Sequencer:
         return (True, notes)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
-        """DO_CHANGE_SPEED from outside while the mission runs: legs under way go on with the new limit."""
+        """DO_CHANGE_SPEED [m/s] from outside while the mission runs: legs under way go on with the new limit."""
         return v.autopilot.modes.nav.mission_state == RUNNING and self.commands.change_speed(v, kind, speed)
 
     def on_event(self, v: Vehicle, code: int, a: float, b: float) -> list[Note]:

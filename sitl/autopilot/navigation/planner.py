@@ -34,18 +34,18 @@ class Planner(ABC, Generic[A]):
 
     @abstractmethod
     def stopping_point(self, ap: A) -> Vec3:
-        """Where the vehicle would come to rest."""
+        """Where the vehicle would come to rest, NED from the origin [m]."""
 
     @abstractmethod
     def start(self, ap: A, time_us: int) -> None:
         """Begin at the planned legs, as a mode does for those of a mission."""
 
     def may_join(self, ap: A, corner: Vec3, target: Vec3) -> bool:
-        """Whether the vehicle goes round this corner without a stop."""
+        """Whether the vehicle goes round this corner (NED [m]) without a stop."""
         return True
 
     def plan_leg(self, ap: A, leg: Leg, origin: Vec3, target: Vec3) -> None:
-        """Plan a leg from rest to rest into a leg record.
+        """Plan a leg from rest to rest (NED [m]) into a leg record.
 
         An origin that is not finite (parameters can spoil the estimate that it comes from) has no line to the target:
         the leg is the target alone.
@@ -73,13 +73,13 @@ class Planner(ABC, Generic[A]):
         return self.is_active(ap, time_us) and nav.reached and nav.current.segments > 0
 
     def origin_of_next(self, ap: A, time_us: int) -> tuple[Vec3, bool]:
-        """(where the next leg starts, whether it continues the one under way)."""
+        """(where the next leg starts, NED [m], whether it continues the one under way)."""
         if self.continues(ap, time_us):
             return end(ap.modes.nav.current), True
         return self.stopping_point(ap), False
 
     def begin(self, ap: A, time_us: int, target: Vec3) -> None:
-        """Make the leg to ``target`` the current one.
+        """Make the leg to ``target`` (NED [m]) the current one.
 
         It continues the leg just travelled when that was reached (and takes over the leg planned ahead, which may be
         under way already), and else starts at the point where the vehicle would come to rest.

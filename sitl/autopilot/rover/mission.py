@@ -127,7 +127,7 @@ class RoverCommands(Commands[Vehicle]):
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
-        """Of what AUTO is doing; all kinds of speed are the same."""
+        """Of what AUTO is doing [m/s]; all kinds of speed are the same."""
         return is_speed(speed) and set_mode.change_speed(v, speed)
 
 

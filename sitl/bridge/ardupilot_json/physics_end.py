@@ -115,7 +115,7 @@ class PhysicsEnd:
         return line
 
     def repeat(self, now: float) -> bytes:
-        """The last answer once more."""
+        """The last answer once more, as bytes; ``now``: wall time [s]."""
         self._answered_at = now
         return self.line
 

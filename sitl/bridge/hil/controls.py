@@ -70,14 +70,14 @@ def read_controls(payload: bytes) -> Controls:
 
 
 def rotor_range(airframe: Any) -> tuple[float, float]:
-    """Actuator controls at which the rotors of this airframe stand and turn fastest; what is said, without rotors."""
+    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; (0, 1) without rotors."""
     if not hasattr(airframe, "control_max"):
         return 0.0, 1.0
     return float(airframe.control_min), float(airframe.control_max)
 
 
 def stretch(given: Controls, lowest: float, highest: float) -> Controls:
-    """Parts of the rotors' range as actuator controls."""
+    """Parts of the rotors' range as actuator controls, 0 .. 1."""
     span = highest - lowest
     return given._replace(outputs=tuple([lowest + span * output for output in given.outputs]))
 

@@ -1,18 +1,78 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The samples of a tick: what physics sends, HIL_SENSOR last, and what the autopilot takes of it."""
+"""The samples of a tick: what physics sends, HIL_GPS among them, HIL_SENSOR last; and what the autopilot takes."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
 
 from ...core.record_reader import RecordReader
-from ..dialect import MessageType
-from . import gps, ranging, sensor, sticks, truth
-from .protocol import PHYSICS, RefusedError, Sender
+from ..dialect import MessageType, message
+from ..telemetry.units import DEG, int16, uint16
+from . import ranging, sensor, sticks, truth
+from .protocol import LATEST_US, PHYSICS, RefusedError, Sender
 from .ranging import RangeWriter, ScanWriter
+
+GPS_KIND = message("HIL_GPS")
+S = "sensors.gps_"
+_MOST_FIX = 8
+"""Greatest GPS_FIX_TYPE."""
+
+
+class GpsWriter:
+    """From a record to payloads."""
+
+    marks = (S + "count", S + "fix")
+    """Fields whose change means that there is something new."""
+
+    def __init__(self, reader: RecordReader) -> None:
+        names = ("count", "time_us", "fix", "lat", "lon", "alt", "eph", "epv", "vel", "satellites")
+        self._read = reader.fields(*(S + name for name in names))
+
+    def payloads(self) -> list[bytes]:
+        """The last fix; nothing before the first."""
+        count, t, fix, lat, lon, alt, eph, epv, vn, ve, vd, satellites = self._read()
+        if count == 0:
+            return []
+        course = uint16(math.atan2(ve, vn) * DEG * 100.0 % 36000.0)
+        speeds = uint16(math.hypot(vn, ve)), int16(vn), int16(ve), int16(vd), course
+        return [GPS_KIND.pack(t, lat, lon, alt, uint16(eph), uint16(epv), *speeds, fix & 0xFF, satellites & 0xFF, 0, 0)]
+
+
+class GpsReader:
+    """From payloads into a record."""
+
+    def __init__(self, v: Any) -> None:
+        self._sensors = v.sensors
+
+    @staticmethod
+    def read(payload: bytes) -> tuple[Any, ...]:
+        """The fields, checked.
+
+        Raises:
+            RefusedError: a place that is not on the globe, or an absurd time or fix.
+        """
+        values: tuple[Any, ...] = GPS_KIND.unpack_from(payload.ljust(GPS_KIND.size, b"\0"))
+        t, lat, lon, fix = values[0], values[1], values[2], values[11]
+        if not (abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000):
+            raise RefusedError(f"{GPS_KIND.name}: latitude {lat}, longitude {lon} degE7 is not on the globe")
+        if t >= LATEST_US or fix > _MOST_FIX:
+            raise RefusedError(f"{GPS_KIND.name}: time_usec {t}, fix_type {fix}")
+        return values
+
+    def write(self, values: tuple[Any, ...]) -> None:
+        """Put checked fields into the record."""
+        t, lat, lon, alt, eph, epv, _, vn, ve, vd, _, fix, satellites, _, _ = values
+        s = self._sensors
+        if t != s.gps_time_us:
+            s.gps_count += 1
+            s.gps_time_us = t
+        s.gps_fix, s.gps_lat, s.gps_lon, s.gps_alt = fix, lat, lon, alt
+        s.gps_eph, s.gps_epv, s.gps_satellites = eph, epv, satellites
+        s.gps_vel = (vn, ve, vd)
 
 
 class Source(Protocol):
@@ -53,7 +113,7 @@ class Measurements:
         self.sender = sender or Sender(*PHYSICS)
         self._imu = sensor.SensorWriter(reader)
         sources: list[Source] = [
-            _Plain(gps.KIND, gps.GpsWriter(reader)),
+            _Plain(GPS_KIND, GpsWriter(reader)),
             _Plain(sensor.BATTERY_KIND, sensor.BatteryWriter(reader)),
             _Plain(sensor.WHEELS_KIND, sensor.WheelWriter(reader)),
             ScanWriter(v),
@@ -103,7 +163,7 @@ class Inbox:
     def __init__(self, fleet: np.ndarray[Any, Any], index: int, v: Any) -> None:
         self._imu = sensor.SensorReader(fleet, index)
         self._readers: dict[int, Readers] = {
-            gps.KIND.id: (gps.GpsReader(v),),
+            GPS_KIND.id: (GpsReader(v),),
             sensor.BATTERY_KIND.id: (sensor.BatteryReader(v),),
             sensor.WHEELS_KIND.id: (sensor.WheelReader(v),),
             sticks.KIND.id: (sticks.SticksReader(v),),

@@ -138,7 +138,7 @@ class RangeReader:
         return float(fields.x)
 
     def write(self, reading: float) -> None:
-        """Put the reading, which is that of the DISTANCE_SENSOR before it, into the record."""
+        """Put the reading [m], which is that of the DISTANCE_SENSOR before it, into the record."""
         self._sensors.rangefinder_range[0] = reading
 
 
@@ -157,6 +157,6 @@ class DistanceReader:
         return math.inf if fields.current_distance > fields.max_distance else 0.01 * fields.current_distance
 
     def write(self, reading: float) -> None:
-        """Put a reading into the record."""
+        """Put a reading [m] into the record."""
         self._sensors.rangefinder_range[0] = reading
         self._sensors.rangefinder_count += 1

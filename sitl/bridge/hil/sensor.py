@@ -195,7 +195,7 @@ class WheelReader:
 
     @staticmethod
     def read(payload: bytes) -> tuple[float, float]:
-        """What both wheels have rolled.
+        """What both wheels, left and right, have rolled [m].
 
         Raises:
             RefusedError: not finite or absurd, or not of two wheels.
@@ -208,7 +208,7 @@ class WheelReader:
         return values[1], values[2]
 
     def write(self, values: tuple[float, float]) -> None:
-        """Put a sample into the record."""
+        """Put a sample [m], left and right, into the record."""
         s = self._sensors
         s.wheel_distance = values
         s.wheel_count += 1

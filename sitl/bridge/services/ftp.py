@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..channel import Channel
 from ..dialect import message
@@ -28,9 +28,17 @@ BURST_AT_ONCE = 10
 """Packets every 10 ms of simulated time."""
 
 
-class _Burst:
-    def __init__(self, offset: int, size: int, sequence: int) -> None:
-        self.offset, self.size, self.sequence = offset, size, sequence
+class _Request(NamedTuple):
+    """What a client asks, and where the answer goes."""
+
+    channel: Channel
+    sender: Sender
+    sequence: int
+    session: int
+    opcode: int
+    offset: int = 0
+    size: int = 0
+    data: bytes = b""
 
 
 class _Session:
@@ -38,7 +46,8 @@ class _Session:
 
     def __init__(self, data: bytes, sender: Sender, number: int) -> None:
         self.data, self.sender, self.number = data, sender, number
-        self.burst: _Burst | None = None
+        self.burst: _Request | None = None
+        """The next packet of the burst under way."""
 
 
 class FtpService(Service):
@@ -47,121 +56,94 @@ class FtpService(Service):
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
-        self._operations: dict[int, Callable[[Channel, Sender, int, int, int, int, bytes], None]] = {
+        self._operations: dict[int, Callable[[_Request], None]] = {
             OPEN_READ: self._open,
             READ: self._read,
             BURST_READ: self._burst,
+            TERMINATE: self._end,
+            RESET: self._end,
         }
 
     def handlers(self) -> dict[str, Handler]:
-        return {"FILE_TRANSFER_PROTOCOL": self._request}
+        return {"FILE_TRANSFER_PROTOCOL": self._take}
 
     def channel_removed(self, channel: Channel) -> None:
         self._sessions.pop(channel, None)
 
-    def _request(self, channel: Channel, m: Any, sender: Sender) -> None:
+    def _take(self, channel: Channel, m: Any, sender: Sender) -> None:
         payload = bytes(m.payload)
         sequence, session, opcode, size, _, _, _, offset = HEADER.unpack_from(payload)
+        data = payload[HEADER.size : HEADER.size + size]
+        request = _Request(channel, sender, sequence, session, opcode, offset, size, data)
         if opcode in (ACK, NAK):
             return
         if size > DATA_BYTES:
-            self._nak(channel, sender, sequence, session, opcode, INVALID_DATA_SIZE)
-            return
-        data = payload[HEADER.size : HEADER.size + size]
-        if opcode in (TERMINATE, RESET):
-            found = self._sessions.get(channel)
-            if found is not None and (opcode == RESET or found.number == session):
-                del self._sessions[channel]
-            self._reply(channel, sender, sequence, session, ACK, opcode, offset, b"")
+            self._refuse(request, INVALID_DATA_SIZE)
         elif opcode in self._operations:
-            self._operations[opcode](channel, sender, sequence, session, offset, size, data)
+            self._operations[opcode](request)
         else:
-            self._nak(channel, sender, sequence, session, opcode, UNKNOWN_COMMAND)
+            self._refuse(request, UNKNOWN_COMMAND)
 
-    def _reply(
-        self, channel: Channel, sender: Sender, sequence: int, session: int, opcode: int, request: int,
-        offset: int, data: bytes, complete: int = 0,
-    ) -> None:  # fmt: skip
-        head = HEADER.pack((sequence + 1) & 0xFFFF, session, opcode, len(data), request, complete, 0, offset)
+    def _reply(self, to: _Request, data: bytes, offset: int = 0, result: int = ACK, complete: bool = False) -> None:
+        sequence = (to.sequence + 1) & 0xFFFF
+        head = HEADER.pack(sequence, to.session, result, len(data), to.opcode, complete, 0, offset)
         body = (head + data).ljust(251, b"\0")
-        fields = {"target_system": sender[0], "target_component": sender[1], "payload": tuple(body)}
-        channel.send(KIND, KIND.payload(**fields))
+        fields = {"target_system": to.sender[0], "target_component": to.sender[1], "payload": tuple(body)}
+        to.channel.send(KIND, KIND.payload(**fields))
 
-    def _nak(self, channel: Channel, sender: Sender, sequence: int, session: int, request: int, error: int) -> None:
-        self._reply(channel, sender, sequence, session, NAK, request, 0, bytes((error,)))
+    def _refuse(self, request: _Request, error: int) -> None:
+        self._reply(request, bytes((error,)), result=NAK)
 
-    def _open(
-        self,
-        channel: Channel,
-        sender: Sender,
-        sequence: int,
-        session: int,
-        offset: int,
-        size: int,
-        data: bytes,
-    ) -> None:
-        path, _, query = data.split(b"\0", 1)[0].decode("ascii", "replace").partition("?")
+    def _end(self, request: _Request) -> None:
+        """TERMINATE, RESET."""
+        found = self._sessions.get(request.channel)
+        if found is not None and (request.opcode == RESET or found.number == request.session):
+            del self._sessions[request.channel]
+        self._reply(request, b"", request.offset)
+
+    def _open(self, request: _Request) -> None:
+        path, _, query = request.data.split(b"\0", 1)[0].decode("ascii", "replace").partition("?")
         if path.lstrip("/") != PARAMETERS:
-            self._nak(channel, sender, sequence, session, OPEN_READ, FILE_NOT_FOUND)
+            self._refuse(request, FILE_NOT_FOUND)
             return
         value, table = self.bridge.get(ParameterService).value, self.bridge.vehicle.firmware.table
         packed = pack_parameters(
             [(p, value(p.name)) for p in table], with_defaults="withdefaults=1" in query.split("&")
         )
-        self._sessions[channel] = _Session(packed, sender, session)
-        self._reply(channel, sender, sequence, session, ACK, OPEN_READ, 0, struct.pack("<I", len(packed)))
+        self._sessions[request.channel] = _Session(packed, request.sender, request.session)
+        self._reply(request, struct.pack("<I", len(packed)))
 
-    def _open_session(
-        self, channel: Channel, sender: Sender, sequence: int, session: int, opcode: int
-    ) -> _Session | None:
-        found = self._sessions.get(channel)
-        if found is None or session != found.number or found.sender != sender:
-            self._nak(channel, sender, sequence, session, opcode, INVALID_SESSION)
+    def _session(self, request: _Request) -> _Session | None:
+        """The client's open session; None when it has another one or none, which it is told."""
+        found = self._sessions.get(request.channel)
+        if found is None or request.session != found.number or found.sender != request.sender:
+            self._refuse(request, INVALID_SESSION)
             return None
         return found
 
-    def _read(
-        self,
-        channel: Channel,
-        sender: Sender,
-        sequence: int,
-        session: int,
-        offset: int,
-        size: int,
-        data: bytes,
-    ) -> None:
-        found = self._open_session(channel, sender, sequence, session, READ)
+    def _read(self, request: _Request) -> None:
+        found = self._session(request)
         if found is None:
             return
-        piece = found.data[offset : offset + (size or DATA_BYTES)]
+        piece = found.data[request.offset : request.offset + (request.size or DATA_BYTES)]
         if piece:
-            self._reply(channel, sender, sequence, session, ACK, READ, offset, piece)
+            self._reply(request, piece, request.offset)
         else:
-            self._nak(channel, sender, sequence, session, READ, END_OF_FILE)
+            self._refuse(request, END_OF_FILE)
 
-    def _burst(
-        self,
-        channel: Channel,
-        sender: Sender,
-        sequence: int,
-        session: int,
-        offset: int,
-        size: int,
-        data: bytes,
-    ) -> None:
-        found = self._open_session(channel, sender, sequence, session, BURST_READ)
+    def _burst(self, request: _Request) -> None:
+        found = self._session(request)
         if found is None:
             return
-        if offset >= len(found.data):
-            self._nak(channel, sender, sequence, session, BURST_READ, END_OF_FILE)
+        if request.offset >= len(found.data):
+            self._refuse(request, END_OF_FILE)
             return
-        found.burst = _Burst(offset, size or DATA_BYTES, sequence)
+        found.burst = request._replace(size=request.size or DATA_BYTES, data=b"")
         self.due_us = min(self.due_us, self.bridge.now_us)
 
     def snapshot(self) -> Any:
         sessions = tuple(
-            (c.number, (s.data, s.sender, s.number), s.burst and (s.burst.offset, s.burst.size, s.burst.sequence))
-            for c, s in self._sessions.items()
+            (c.number, (s.data, s.sender, s.number), s.burst and s.burst[1:]) for c, s in self._sessions.items()
         )
         return (sessions, self.due_us)
 
@@ -172,33 +154,20 @@ class FtpService(Service):
             for channel in self.bridge.channels:
                 if channel.number == number:
                     found = self._sessions[channel] = _Session(*session)
-                    found.burst = burst and _Burst(*burst)
+                    found.burst = burst and _Request(channel, *burst)
 
     def service(self, now_us: int) -> None:
-        running = False
         for channel, session in self._sessions.items():
-            burst = session.burst
-            if burst is None or channel.peer.congested:
-                running = running or burst is not None
-                continue
-            for _ in range(BURST_AT_ONCE):
-                piece = session.data[burst.offset : burst.offset + burst.size]
-                last = burst.offset + len(piece) >= len(session.data)
-                self._reply(
-                    channel,
-                    session.sender,
-                    burst.sequence,
-                    session.number,
-                    ACK,
-                    BURST_READ,
-                    burst.offset,
-                    piece,
-                    int(last),
-                )
-                burst.offset += len(piece)
-                burst.sequence = (burst.sequence + 1) & 0xFFFF
-                if last:
-                    session.burst = None
-                    break
-            running = running or session.burst is not None
+            for _ in range(0 if channel.peer.congested else BURST_AT_ONCE):
+                if session.burst is not None:
+                    session.burst = self._send_next(session, session.burst)
+        running = any(session.burst is not None for session in self._sessions.values())
         self.due_us = now_us + BURST_EVERY_US if running else NEVER
+
+    def _send_next(self, session: _Session, burst: _Request) -> _Request | None:
+        """Send a packet of a burst; gives the next one, None after the last."""
+        piece = session.data[burst.offset : burst.offset + burst.size]
+        end = burst.offset + len(piece)
+        is_last = end >= len(session.data)
+        self._reply(burst, piece, burst.offset, complete=is_last)
+        return None if is_last else burst._replace(offset=end, sequence=(burst.sequence + 1) & 0xFFFF)

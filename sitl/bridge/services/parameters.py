@@ -107,7 +107,7 @@ class ParameterService(Service):
             channel.send(VALUE, self._payload(name, NO_INDEX))
 
     def set(self, name: str, value: float) -> str | None:
-        """Set a parameter and tell every client, or say why not.
+        """Set a parameter, in its unit, and tell every client, or say why not.
 
         Raises:
             KeyError: there is no such parameter.

@@ -1,21 +1,43 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is sent regularly: ArduPilot's stream groups and single message intervals, per channel.
 
+AVAILABLE_MODES (https://mavlink.io/en/services/standard_modes.html) is sent on request.
+
 Sources: https://mavlink.io/en/guide/message_rates.html, https://ardupilot.org/dev/docs/mavlink-requesting-data.html
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+from ...autopilot.modes import Mode
 from ..channel import Channel
 from ..dialect import message
 from ..wire.streams import interval_of, set_interval
 from .command import Command
-from .modes import KIND as AVAILABLE_MODES
-from .modes import send_modes
 from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
+
+AVAILABLE_MODES = message("AVAILABLE_MODES")
+AUTOMATIC = 4
+"""MAV_MODE_PROPERTY_AUTO_MODE: moves without the pilot's sticks."""
+NOT_SELECTABLE = 2
+"""MAV_MODE_PROPERTY_NOT_USER_SELECTABLE"""
+
+
+def send_modes(channel: Channel, modes: Sequence[Mode[Any]], index: int) -> bool:
+    """Send mode ``index`` (from 1), or all for 0; False when there is no such mode."""
+    if not 0 <= index <= len(modes):
+        return False
+    for k, mode in enumerate(modes, start=1):
+        if index in (0, k):
+            properties = (AUTOMATIC if mode.autonomous else 0) | (0 if mode.selectable else NOT_SELECTABLE)
+            name = mode.name.encode()
+            fields = (mode.number, properties, len(modes), k, mode.standard_mode, name)
+            channel.send(AVAILABLE_MODES, AVAILABLE_MODES.pack(*fields))
+    return True
+
 
 ALL_STREAMS = 0
 RATE_PREFIX = "MAV1_"

@@ -11,8 +11,8 @@ from ..dialect import message
 from .sensors import SimState, fill_simstate
 
 if TYPE_CHECKING:
+    from ..autopilot_api import Vehicle
     from ..profile import Profile
-    from ..vehicle import Vehicle
 
 ShellBuilder = Callable[["Vehicle", "Profile"], bytes]
 """``build(vehicle, profile)``: the payload now; empty when there is nothing to say."""

@@ -17,7 +17,7 @@ from sitl.client.byte_socket import ByteSocket
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Connection
 from sitl.client.endpoint import Endpoint
-from sitl.errors import OptionError
+from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
 from sitl.foreign.hil_host import HilHost
@@ -27,7 +27,6 @@ from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.run.runner import BASE_TCP_PORT
 
-from .errors import LinkLostError, NotReadyError
 from .preparation import FORCE
 from .telemetry import StepTelemetry
 
@@ -57,7 +56,7 @@ class Host(Protocol):
     def step(self, until_us: int | None = None) -> None:
         """Give it the step, no further than ``until_us``."""
 
-    def seat(self, plant: LocalPlant) -> None:
+    def attach(self, plant: LocalPlant) -> None:
         """Serve this plant from now on."""
 
     def close(self) -> None:
@@ -92,7 +91,7 @@ class Foreign(Connection):
         self.inbox.scans_by_mavlink, self.inbox.longest_interval_us = False, 20_000
         self.host, self.plant, self.process = host, plant, process
         self.patience, self._connection = patience, connection
-        self._sensors, self._obstacles = plant.craft.v.sensors, plant.craft.v.physics.obstacles
+        self._sensors, self._obstacles = plant.vehicle.v.sensors, plant.vehicle.v.physics.obstacles
         self._scans = self._hits = 0
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
@@ -164,9 +163,9 @@ class Foreign(Connection):
             raise NotReadyError(f"{self.name}: the autopilot refuses to reboot (MAV_RESULT {result})")
         self.plant.close()
         self.plant = plant
-        self._sensors, self._obstacles = plant.craft.v.sensors, plant.craft.v.physics.obstacles
+        self._sensors, self._obstacles = plant.vehicle.v.sensors, plant.vehicle.v.physics.obstacles
         self._scans = self._hits = 0
-        self.host.seat(plant)
+        self.host.attach(plant)
         until = time.monotonic() + self.patience
         self.inbox.forget()
         while True:  # it closes its port, and opens it again when it boots
@@ -285,7 +284,7 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], readi
             json_host, base = JsonHost(plant, (HOST, 0)), free_tcp_run(ardupilot.SERIAL_PORTS)
             host, where = json_host, f"tcp:{HOST}:{base}"
         undo.callback(host.close)
-        airframe, process = plant.craft.airframe, None
+        airframe, process = plant.vehicle.airframe, None
         if choice.kind == PX4:
             if choice.program is None:
                 raise OptionError(f"autopilot {choice.name}: a PX4 that runs already cannot be reset; name its program")

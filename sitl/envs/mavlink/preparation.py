@@ -16,8 +16,8 @@ from collections.abc import Callable
 from typing import Any
 
 from sitl.client.connection import ACCEPTED, PROOF, Connection
+from sitl.errors import NotASimulatorError, NotReadyError
 
-from .errors import NotASimulatorError, NotReadyError
 from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN, SECTORS
 
 FORCE = 21196

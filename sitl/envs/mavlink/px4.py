@@ -15,8 +15,8 @@ from sitl.bridge.services.setpoints import (
     YAW_RATE_IGNORED,
 )
 from sitl.client.connection import ACCEPTED, Connection
+from sitl.errors import NotReadyError
 
-from .errors import NotReadyError
 from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
 from .telemetry import StepTelemetry

@@ -61,7 +61,7 @@ def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
 
 
 def rover_position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
-    """The same without a yaw, which a car cannot take at will."""
+    """The same (x, y [m]) without a yaw, which a car cannot take at will."""
     return position(row, inbox, origin, _PLACE_ONLY | YAWS_IGNORED)
 
 

@@ -50,5 +50,5 @@ def load(robot: str | Callable[..., Robot], world: World, count: int, options: M
         for option in options:
             if option not in parameters:
                 own = [p for p in parameters if p not in ("world", "count")]
-                raise unknown("option", option, [*own, *COMMON])
+                raise unknown("option", option, [*own, *COMMON, "render_mode"])
     return made(world=world, count=count, **options)

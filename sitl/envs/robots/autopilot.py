@@ -18,27 +18,23 @@ import numpy.typing as npt
 
 from sitl import vehicles, worlds
 from sitl.client.connection import Connection
-from sitl.foreign.choice import NATIVE as OURS
+from sitl.errors import LinkLostError
 from sitl.foreign.choice import PX4, Choice, choose
-from sitl.physics.engines import NATIVE
-from sitl.scenario import DEFAULT_HOME, Home, Scenario
+from sitl.scenario import Scenario
 from sitl.simulation import OptionError, Simulation
-from sitl.vehicles import Airframe, AirframeError
+from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
-from ..actions import Action
-from ..mavlink.errors import LinkLostError
-from ..mavlink.preparation import ALIGN_US, RESETS, SIMULATOR, request_again, set_intervals, set_mode
-from ..options import EnvOptionError, unknown
-from ..setpoints import Setpoint
-from .by_socket import SocketVehicles
-from .foreign import ForeignVehicles
+from ..actions import Action, Setpoint
+from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_intervals, set_mode
+from ..options import COMMON, EnvOptionError, unknown
+from .foreign import ForeignVehicles, SocketVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
 from .robot import Floats, Pose
-from .vehicles import INPROCESS, NOT_STARTED, EpisodeState, Vehicles, VehicleSetup
+from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
 
 _TRIES = 20
 
@@ -47,7 +43,7 @@ def make_vehicles(setup: VehicleSetup, choice: Choice | None) -> Vehicles:
     """Vehicles in process, behind a socket, or with a foreign autopilot, as the options say."""
     if choice is not None:
         return ForeignVehicles(setup, choice)
-    return InProcessVehicles(setup) if setup.options["connection"] == INPROCESS else SocketVehicles(setup)
+    return InProcessVehicles(setup) if setup.options.connection == INPROCESS else SocketVehicles(setup)
 
 
 class AutopilotRobot:
@@ -56,51 +52,19 @@ class AutopilotRobot:
     Args:
         world: world that the vehicles move in.
         count: number of vehicles.
-        frame: airframe with a lidar: a name, a .py file, or an ``Airframe``.
-        connection: "inprocess", or the address of a vehicle: "udp:HOST:PORT", "udpout:HOST:PORT", "tcp:HOST:PORT".
-            A vehicle started with ``sitl run --lockstep`` advances by exactly one step at a time; others run in real
-            time.
-        take_off: height at which a copter hovers at the start of an episode, 0.5 .. 100 [m].
-        home: latitude, longitude [deg], altitude [m] of the world's origin; the heading is not used.
-        params: parameter values by ArduPilot's names, for vehicles in process.
-        gcs: address of a ground station that receives the first vehicle's telemetry, as in ``sitl run --out``; None:
-            none.
-        patience: wall time without an answer after which a connection counts as lost [s].
-        physics: engine for vehicles in process or with a foreign autopilot, e.g. "native", "pybullet" (see
-            ``sitl.simulation.Simulation``).
-        autopilot: "native", or a foreign autopilot on our physics, by its program or the address of its MAVLink:
-            "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started or rebooted for
-            each episode, and has no snapshots.
-        autopilot_path: path of the program, when ``autopilot`` does not give it.
-        reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
-            proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
+        options: see ``AutopilotOptions``.
     """
 
-    def __init__(
-        self,
-        world: str | Path | World = "maze_erlerover",
-        count: int = 1,
-        frame: str | Airframe = "erle_rover",
-        connection: str = INPROCESS,
-        take_off: float = 1.0,
-        home: Home = DEFAULT_HOME,
-        params: Mapping[str, float] | None = None,
-        gcs: str | None = None,
-        patience: float = 10.0,
-        physics: str = NATIVE,
-        autopilot: str = OURS,
-        autopilot_path: str | Path | None = None,
-        reset: str = SIMULATOR,
-    ) -> None:
-        self._options: dict[str, Any] = {
-            "world": world, "count": count, "frame": frame, "connection": connection, "take_off": take_off,
-            "home": home, "params": params, "gcs": gcs, "patience": patience, "physics": physics,
-            "autopilot": autopilot, "autopilot_path": autopilot_path, "reset": reset,
-        }  # fmt: skip
-        if reset not in RESETS:
-            raise unknown("reset", reset, RESETS)
+    def __init__(self, world: str | Path | World = "maze_erlerover", count: int = 1, **options: Any) -> None:
+        for option in options:
+            if option not in AutopilotOptions.names():
+                raise unknown("option", option, [*AutopilotOptions.names(), *COMMON, "render_mode"])
+        self._given = {"world": world, "count": count, **options}
+        self._options = chosen = AutopilotOptions(**options)
+        if chosen.reset not in RESETS:
+            raise unknown("reset", chosen.reset, RESETS)
         try:
-            self.airframe = airframe = vehicles.load(frame)
+            self.airframe = airframe = vehicles.load(chosen.frame)
         except AirframeError as error:
             raise EnvOptionError(str(error)) from None
         self.world, self.count = worlds.load(world), count
@@ -109,10 +73,10 @@ class AutopilotRobot:
         readings = int(airframe.value("lidar_samples"))
         if readings < 1:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
-        if kind.takes_off and not 0.5 <= take_off <= 100.0:
-            raise EnvOptionError(f"take_off = {take_off}; it must be 0.5 .. 100 m")
+        if kind.takes_off and not 0.5 <= chosen.take_off <= 100.0:
+            raise EnvOptionError(f"take_off = {chosen.take_off}; it must be 0.5 .. 100 m")
         try:
-            choice = choose(autopilot, airframe.kind, autopilot_path)
+            choice = choose(chosen.autopilot, airframe.kind, chosen.autopilot_path)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         if choice is not None and choice.kind == PX4:
@@ -123,10 +87,10 @@ class AutopilotRobot:
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
         try:
-            scenario = Scenario(airframe, home, params=params, world=self.world, physics=physics)
+            scenario = Scenario(airframe, chosen.home, params=chosen.params, world=self.world, physics=chosen.physics)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
-        setup = VehicleSetup(self._options, airframe, kind, self.world, scenario, self.angles)
+        setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles)
         self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
@@ -135,7 +99,7 @@ class AutopilotRobot:
             if made.simulates
             else {}
         )
-        self.volume = volume(airframe, take_off if kind.takes_off else 0.0)
+        self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
         self.scan = np.full((count, readings), np.inf, np.float32)
         self.collided = np.zeros(count, np.int64)
         self._state = np.zeros((count, 8))
@@ -283,7 +247,7 @@ class AutopilotRobot:
         if not self._vehicles.has_snapshots:
             raise TypeError(f"an environment on {self._vehicles.where} cannot be pickled")
         kept = [None if link is None else self.snapshot(i) for i, link in enumerate(self._vehicles.links)]
-        return {"options": self._options, "kept": kept, "changed": self._vehicles.changed, "collided": self.collided}
+        return {"options": self._given, "kept": kept, "changed": self._vehicles.changed, "collided": self.collided}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["options"])  # type: ignore[misc]

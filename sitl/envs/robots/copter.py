@@ -9,8 +9,8 @@ from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.core.constants import TICK_S
 
+from ..actions import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
 from ..mavlink import px4, setpoints
-from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
 from .kind import FAR, RobotKind, pulses
 
 _ARDUPILOT = RobotKind(

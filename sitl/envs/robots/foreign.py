@@ -5,8 +5,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import ClassVar
 
-from sitl.client.connection import Connection
+from gymnasium import logger
+
+from sitl.client.connection import Connection, Lockstep, connect
 from sitl.errors import OptionError
 from sitl.foreign.choice import Choice
 from sitl.physics.engine import EngineError
@@ -14,10 +17,60 @@ from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
 from ..mavlink.foreign import Foreign, launch
-from ..mavlink.preparation import REBOOT, is_simulator, refusal
+from ..mavlink.preparation import REBOOT, is_simulator, reboot, refusal
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
+
+
+class SocketVehicles(Vehicles):
+    """See ``Vehicles``; there is one vehicle."""
+
+    simulates: ClassVar[bool] = False
+
+    def __init__(self, setup: VehicleSetup) -> None:
+        options = setup.options
+        self._connection = options.connection
+        if setup.count > 1 or options.gcs is not None or options.params:
+            raise EnvOptionError(
+                f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
+            )
+        super().__init__(setup)
+        self._pose: Pose | None = None
+
+    @property
+    def where(self) -> str:
+        return f"connection {self._connection!r}"
+
+    def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
+        if self._pose not in (None, pose):
+            raise EnvOptionError(f"{self.where}: the vehicle starts where it was started")
+        self._pose = pose
+        link = self.links[0]
+        if link is None:
+            inbox = StepTelemetry(len(self.setup.angles))
+            try:
+                link = connect(self._connection, inbox, self.options.patience, warn=logger.warn)
+            except OptionError as error:
+                raise EnvOptionError(str(error)) from None
+            link.inbox.angles = self.setup.angles
+            self.links[0] = link
+        else:
+            link.is_simulator = is_simulator(link)
+        if not link.is_simulator and self.options.reset != REBOOT:
+            self.close()
+            raise refusal(link)
+        reboot(link)
+        origin = self.prepare(link, pose)
+        if isinstance(link, Lockstep):
+            link.reseed(seed)
+        return self.begun(0, origin)
+
+    def time_us(self, index: int) -> int:
+        link = self.links[index]
+        assert link is not None
+        return link.time_us
 
 
 class ForeignVehicles(Vehicles):
@@ -31,11 +84,11 @@ class ForeignVehicles(Vehicles):
     def __init__(self, setup: VehicleSetup, choice: Choice) -> None:
         self._choice = choice
         options = setup.options
-        if options["connection"] != INPROCESS:
+        if options.connection != INPROCESS:
             raise EnvOptionError(f"{self.where}: it needs no connection besides")
-        if options["gcs"] is not None:
+        if options.gcs is not None:
             raise EnvOptionError(f"{self.where}: gcs is for our own autopilot in process")
-        if choice.program is None and (options["count"] > 1 or options["params"]):
+        if choice.program is None and (setup.count > 1 or options.params):
             raise EnvOptionError(f"{self.where} is one vehicle as it is: no count or params")
         super().__init__(setup)
 
@@ -68,7 +121,7 @@ class ForeignVehicles(Vehicles):
             start = (*pose[:3], math.degrees(pose[3]))
             plant = stand_alone(replace(self.setup.scenario, frame=airframe, seed=seed, start=start, params={}))
             if rebooted is None:
-                found = launch(choice, plant, options["params"] or {}, len(self.setup.angles), options["patience"])
+                found = launch(choice, plant, options.params or {}, len(self.setup.angles), options.patience)
                 try:
                     self._check(found)
                 except BaseException:
@@ -87,7 +140,7 @@ class ForeignVehicles(Vehicles):
 
     def _check(self, link: Foreign) -> None:
         """Refuse one that was found where it runs and may be no simulator: before it is disarmed or armed."""
-        if self._choice.program is None and self.options["reset"] != REBOOT and not is_simulator(link):
+        if self._choice.program is None and self.options.reset != REBOOT and not is_simulator(link):
             raise refusal(link)
 
     def time_us(self, index: int) -> int:

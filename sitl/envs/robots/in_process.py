@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from sitl.autopilot.params.files import ParameterError
-from sitl.bridge.links.address import LinkAddressError, open_link
+from sitl.bridge.links import LinkAddressError, open_link
 from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import NATIVE
@@ -49,7 +49,7 @@ class InProcessVehicles(Vehicles):
         super().__init__(setup)
         self._states: dict[Any, EpisodeState] = {}
         self._core: Core | None = None
-        gcs = self.options["gcs"]
+        gcs = self.options.gcs
         try:
             self._gcs = None if gcs is None else open_link(gcs)
         except LinkAddressError as error:
@@ -62,7 +62,7 @@ class InProcessVehicles(Vehicles):
 
     @property
     def where(self) -> str:
-        return f"connection {self.options['connection']!r}"
+        return f"connection {self.options.connection!r}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         state = self._restored(pose, tuple(sorted(self.changed[index].items())))

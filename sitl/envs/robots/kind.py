@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
-from ..actions import Action, Continuous, Discrete
+from ..actions import Action, Continuous, Discrete, Setpoint
 from ..mavlink.setpoints import Encode
 from ..options import EnvOptionError
-from ..setpoints import Setpoint
 from .robot import Volume
 
 Rows = Mapping[str, tuple[float, ...]]

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
-from ..setpoints import Setpoint
+from ..actions import Setpoint
 
 if TYPE_CHECKING:
     from ..actions import Action

@@ -6,8 +6,8 @@ from __future__ import annotations
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.manual import MANUAL
 
+from ..actions import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
 from ..mavlink import setpoints
-from ..setpoints import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
 from .kind import FAR, RobotKind, pulses
 
 ROBOT = RobotKind(

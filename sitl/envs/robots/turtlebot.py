@@ -17,9 +17,8 @@ from sitl.vehicles.figures.figure import Figure
 from sitl.vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
 from sitl.worlds import World, planar
 
-from ..actions import Action, Continuous, Discrete
+from ..actions import DRIVE, Action, Continuous, Discrete, Setpoint
 from ..options import EnvOptionError
-from ..setpoints import DRIVE, Setpoint
 from .robot import Floats, Pose, Volume
 
 
@@ -35,7 +34,7 @@ class Turtlebot:
 
     Raises:
         EnvOptionError: no physics of this name.
-        sitl.core.extras.MissingExtra: its library is not installed.
+        sitl.errors.MissingExtra: its library is not installed.
     """
 
     name = "turtlebot"

@@ -5,20 +5,22 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any, ClassVar
 
 from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
+from sitl.foreign.choice import NATIVE as OURS
 from sitl.physics.engines import NATIVE, backends
-from sitl.scenario import Scenario
+from sitl.scenario import DEFAULT_HOME, Home, Scenario
 from sitl.simulation import Simulation
 from sitl.vehicles import Airframe
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
 from ..mavlink import px4, setpoints
-from ..mavlink.preparation import INTERVAL_US, prepare
+from ..mavlink.preparation import INTERVAL_US, SIMULATOR, prepare
 from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
@@ -49,11 +51,55 @@ NOT_STARTED = EpisodeState(None, None, (0.0, 0.0, 0.0), 0, "", INTERVAL_US)
 
 
 @dataclass(frozen=True)
+class AutopilotOptions:
+    """Options of vehicles with an autopilot.
+
+    Args:
+        frame: airframe with a lidar: a name, a .py file, or an ``Airframe``.
+        connection: "inprocess", or the address of a vehicle: "udp:HOST:PORT", "udpout:HOST:PORT", "tcp:HOST:PORT".
+            A vehicle started with ``sitl run --lockstep`` advances by exactly one step at a time; others run in real
+            time.
+        take_off: height at which a copter hovers at the start of an episode, 0.5 .. 100 [m].
+        home: latitude, longitude [deg], altitude [m] of the world's origin; the heading is not used.
+        params: parameter values by ArduPilot's names, for vehicles in process.
+        gcs: address of a ground station that receives the first vehicle's telemetry, as in ``sitl run --out``; None:
+            none.
+        patience: wall time without an answer after which a connection counts as lost [s].
+        physics: engine for vehicles in process or with a foreign autopilot, e.g. "native", "pybullet" (see
+            ``sitl.simulation.Simulation``).
+        autopilot: "native", or a foreign autopilot on our physics, by its program or the address of its MAVLink:
+            "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started or rebooted for
+            each episode, and has no snapshots.
+        autopilot_path: path of the program, when ``autopilot`` does not give it.
+        reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
+            proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
+    """
+
+    frame: str | Airframe = "erle_rover"
+    connection: str = INPROCESS
+    take_off: float = 1.0
+    home: Home = DEFAULT_HOME
+    params: Mapping[str, float] | None = None
+    gcs: str | None = None
+    patience: float = 10.0
+    physics: str = NATIVE
+    autopilot: str = OURS
+    autopilot_path: str | Path | None = None
+    reset: str = SIMULATOR
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Names of all."""
+        return [field.name for field in fields(cls)]
+
+
+@dataclass(frozen=True)
 class VehicleSetup:
     """What vehicles are made from."""
 
-    options: Mapping[str, Any]
-    """Options of the robot, by name."""
+    options: AutopilotOptions
+    count: int
+    """Number of vehicles."""
     airframe: Airframe
     kind: RobotKind
     world: World
@@ -64,7 +110,7 @@ class VehicleSetup:
 
 
 class Vehicles(ABC):
-    """``options["count"]`` vehicles and the connections to them.
+    """``setup.count`` vehicles and the connections to them.
 
     Args:
         setup: what they are made from.
@@ -81,7 +127,7 @@ class Vehicles(ABC):
 
     def __init__(self, setup: VehicleSetup) -> None:
         self.setup, self.options = setup, setup.options
-        physics, count = self.options["physics"], self.options["count"]
+        physics, count = self.options.physics, setup.count
         if physics not in backends() or (physics != NATIVE and not self.simulates):
             raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(backends())}, of a vehicle in process")
         self.links: list[Connection | None] = [None] * count
@@ -147,7 +193,7 @@ class Vehicles(ABC):
         """Arm and take off a vehicle that has just booted; returns its local origin in the world: north, east, down
         [m]."""
         kind, inbox = self.setup.kind, link.inbox
-        take_off = self.options["take_off"] if kind.takes_off else 0.0
+        take_off = self.options.take_off if kind.takes_off else 0.0
 
         def hold_sticks() -> None:
             link.endpoint.send_payload(*setpoints.override(_AT_REST, inbox, ()))
@@ -157,10 +203,10 @@ class Vehicles(ABC):
         else:
             prepare(link, kind.guided, take_off, hold_sticks)
         assert inbox.origin is not None
-        lat, lon = (round(1e7 * angle) for angle in self.options["home"][:2])
+        lat, lon = (round(1e7 * angle) for angle in self.options.home[:2])
         north, east = offset_ne(lat, lon, *inbox.origin[:2])
         return north, east, -pose[2]
 
     def begun(self, index: int, origin: tuple[float, float, float]) -> EpisodeState:
-        """The state of an episode that starts now."""
+        """The state of an episode that starts now; ``origin``: NED [m] in the world."""
         return EpisodeState(None, None, origin, self.time_us(index), "", INTERVAL_US)

@@ -6,6 +6,9 @@ https://ardupilot.org/copter/docs/logmessages.html
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from . import bits, derived
 from .derived import DEG
 from .formats import Field, Message, Source
@@ -48,7 +51,7 @@ def magnetometer(bit: int) -> Message:
 
 
 def pid(name: str, loop: str, gains: str, measured: str, bit: int, scale: float = 1.0) -> Message:
-    """Target, measurement, error and output parts of a PID."""
+    """Target, measurement, error and output parts of a PID, in the unit that ``scale`` makes."""
     parts = (
         Field("Tar", "f", source=loop + ".target", scale=scale),
         Field("Act", "f", source=measured, scale=scale),
@@ -176,6 +179,29 @@ def battery(resting: Source, resistance: Source = 0.0) -> Message:
         bits.MEDIUM,
         bits.BATTERY,
     )
+
+
+def position_control(axis: str, k: int, path: Callable[[str], str], target: str, when: Any) -> Message:
+    """PSCN, PSCE, PSCD: desired, target and actual position, velocity and acceleration along an axis.
+
+    Args:
+        axis: "N", "E" or "D".
+        k: its index.
+        path: of a field of the position controller along it, by the field's name.
+        target: name of the field that has the target position [m].
+        when: see ``Message``.
+    """
+    rows = (
+        ("P", "m", target, target, "pos"),
+        ("V", "n", "vel_desired", "vel_target", "vel"),
+        ("A", "o", "accel_desired", "accel_target", "acc_ned"),
+    )
+    fields = tuple(
+        Field(name + axis, "f", unit, "0", source)
+        for kind, unit, desired, followed, actual in rows
+        for name, source in (("D" + kind, path(desired)), ("T" + kind, path(followed)), (kind, f"{E}{actual}[{k}]"))
+    )
+    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=when)
 
 
 GPS_ACCURACY = Message(

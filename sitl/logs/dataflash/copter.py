@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from .. import plot
+from ..kind import KindLogs
 from . import bits, common, derived
 from .derived import DEG
 from .formats import Field, Message
@@ -90,18 +92,8 @@ _NE_AT_WORK, _D_AT_WORK = _at_work(_NE), _at_work(_D)
 
 
 def _position(axis: str, k: int) -> Message:
-    ne = axis != "D"
-    base, end = (_NE, f"[{k}]") if ne else (_D, "")
-    sources = (
-        ("D", "P", "m", base + "pos_desired" + end), ("T", "P", "m", base + "pos_desired" + end),
-        ("", "P", "m", f"{E}pos[{k}]"),
-        ("D", "V", "n", base + "vel_desired" + end), ("T", "V", "n", base + "vel_target" + end),
-        ("", "V", "n", f"{E}vel[{k}]"),
-        ("D", "A", "o", base + "accel_desired" + end), ("T", "A", "o", base + "accel_target" + end),
-        ("", "A", "o", f"{E}acc_ned[{k}]"),
-    )  # fmt: skip
-    fields = tuple(Field(what + kind + axis, "f", unit, "0", source) for what, kind, unit, source in sources)
-    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=_NE_AT_WORK if ne else _D_AT_WORK)
+    base, end, when = (_D, "", _D_AT_WORK) if axis == "D" else (_NE, f"[{k}]", _NE_AT_WORK)
+    return common.position_control(axis, k, lambda name: base + name + end, "pos_desired", when)
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
@@ -141,3 +133,20 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
+
+
+_MODES = (
+    "STABILIZE ACRO ALT_HOLD AUTO GUIDED LOITER RTL CIRCLE - LAND - DRIFT - SPORT FLIP AUTOTUNE POSHOLD BRAKE THROW "
+    "AVOID_ADSB GUIDED_NOGPS SMART_RTL FLOWHOLD FOLLOW ZIGZAG SYSTEMID AUTOROTATE AUTO_RTL TURTLE"
+)
+"""https://mavlink.io/en/messages/ardupilotmega.html#COPTER_MODE"""
+
+LOGS = KindLogs(
+    messages=messages,
+    title="ArduCopter",
+    build_type=2,
+    word="Copter",
+    mav_types=(2, 3, 4, 13, 14, 15, 29),
+    mode_names=tuple(_MODES.split()),
+    panels=(plot.altitude, plot.attitude, plot.motors),
+)

@@ -127,7 +127,7 @@ def is_seen(path: str) -> Column:
 
 
 def estimates(s: Any) -> Array:
-    """Whether the filter runs and has an attitude."""
+    """Whether the filter runs and has an attitude, shape (rows,)."""
     return (s.raw(A + "ekf.use_external") == 0) & (s.raw(A + "ekf.tilt_aligned") != 0)
 
 

@@ -38,7 +38,7 @@ class Columns:
         return column if self._rows is None else column[self._rows]
 
     def before(self, path: str) -> Array:
-        """The column of the rows before these."""
+        """The column of the rows before these, shape (rows,), in its unit."""
         return self._samples.column(path)[: self._count]
 
 

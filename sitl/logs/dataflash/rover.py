@@ -13,6 +13,8 @@ from ...autopilot.rover.modes.loiter import LOITER
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.smart_rtl import SMART_RTL
 from ...autopilot.rover.modes.table import AUTONOMOUS
+from .. import plot
+from ..kind import KindLogs
 from . import bits, common, derived
 from .derived import DEG
 from .formats import Field, Message
@@ -155,15 +157,7 @@ def _at_work(s: Any) -> Array:
 
 
 def _position(axis: str, k: int) -> Message:
-    names = (("D", "P", "m", "pos_target"), ("T", "P", "m", "pos_target"), ("", "P", "m", E + "pos"),
-             ("D", "V", "n", "vel_desired"), ("T", "V", "n", "vel_target"), ("", "V", "n", E + "vel"),
-             ("D", "A", "o", "accel_desired"), ("T", "A", "o", "accel_target"),
-             ("", "A", "o", E + "acc_ned"))  # fmt: skip
-    fields = tuple(
-        Field(what + kind + axis, "f", unit, "0", f"{source if '.' in source else _POSITION + source}[{k}]")
-        for what, kind, unit, source in names
-    )
-    return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=_at_work)
+    return common.position_control(axis, k, lambda name: f"{_POSITION}{name}[{k}]", "pos_target", _at_work)
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
@@ -199,3 +193,17 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
+
+
+_MODES = "MANUAL ACRO - STEERING HOLD LOITER FOLLOW SIMPLE DOCK CIRCLE AUTO RTL SMART_RTL - - GUIDED INITIALISING"
+"""https://mavlink.io/en/messages/ardupilotmega.html#ROVER_MODE"""
+
+LOGS = KindLogs(
+    messages=messages,
+    title="ArduRover",
+    build_type=1,
+    word="Rover",
+    mav_types=(10, 11),
+    mode_names=tuple(_MODES.split()),
+    panels=(plot.speed, plot.heading, plot.outputs),
+)

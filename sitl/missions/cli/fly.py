@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from sitl.bridge.links.address import open_link
+from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
 from sitl.errors import OptionError
@@ -85,12 +85,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def print_step(time: float, text: str) -> None:
-    """Progress, at once also where the output is a pipe."""
+    """Progress at a time [simulated s], at once also where the output is a pipe."""
     print(f"{time:8.1f} s  {text}", flush=True)
 
 
 def quiet(time: float, text: str) -> None:
-    """No progress."""
+    """No progress at a time [simulated s]."""
 
 
 def prepare(options: argparse.Namespace, file: MissionFile, entry: library.Entry | None) -> dict[str, float]:

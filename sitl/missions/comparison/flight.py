@@ -107,12 +107,12 @@ class Series:
 
     @property
     def max(self) -> float:
-        """The largest magnitude."""
+        """The largest magnitude, in the series' unit."""
         return float(self.size.max(initial=0.0))
 
     @property
     def rms(self) -> float:
-        """Root mean square."""
+        """Root mean square, in the series' unit."""
         known = self.values[np.isfinite(self.values)]
         return float(np.sqrt(np.mean(known * known))) if len(known) else 0.0
 
@@ -121,7 +121,7 @@ class Series:
         return int(np.argmax(self.size)) if len(self.values) else 0
 
     def first_over(self, limit: float) -> int | None:
-        """Index of the first sample larger than ``limit``; None: there is none."""
+        """Index of the first sample larger than ``limit``, in the series' unit; None: there is none."""
         over = np.flatnonzero(self.size > limit + 1e-9)
         return int(over[0]) if len(over) else None
 

@@ -10,7 +10,7 @@ from html import escape
 from pathlib import Path
 from xml.etree import ElementTree as xml
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 
 from . import words
 from .compare import Comparison, Figure

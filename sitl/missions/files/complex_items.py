@@ -53,7 +53,7 @@ def across_polygon(polygon: list[Point], spacing: float, heading: float) -> list
 
 
 def along_corridor(polyline: list[Point], width: float, spacing: float) -> list[Line]:
-    """Lines beside each other over a corridor, from left to right."""
+    """Lines [m] beside each other over a corridor of a width [m], from left to right."""
     count = count_of(width, spacing)
     return [shifted(polyline, (k - (count - 1) / 2.0) * spacing) for k in range(count)]
 

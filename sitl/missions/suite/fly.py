@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Flies one case of a suite and compares it with its golden."""
+"""Flies one case of a suite and compares it with its golden: the result is one line of a table."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 import shutil
 import tempfile
 import time
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
@@ -28,7 +29,38 @@ from ..comparison.flight import Flight, of_recording
 from ..files import load, straightened
 from ..fly import Outcome, fly
 from .cases import Case, SuiteError
-from .result import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, SHOWN, WRITTEN, Result
+
+OK, DIFFERS, NO_GOLDEN, FAILED = "ok", "DIFFERS", "NO GOLDEN", "ERROR"
+KEPT, WRITTEN, REPLACED = "kept", "written", "replaced"
+"""What was done with golden, when it may be updated."""
+SHOWN = ("position.max", "cross_track.max", "altitude.max", "delay.max", "energy.max")
+"""Figures of the table."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """One line of the table."""
+
+    name: str
+    status: str
+    words: str = ""
+    """Differences, or why nothing could be compared."""
+    simulated: float = 0.0
+    """Simulated time [s]."""
+    wall: float = 0.0
+    """Wall time [s]."""
+    figures: dict[str, float] = field(default_factory=dict)
+    """``SHOWN`` -> value in its own unit."""
+    recording: str = ""
+    """Path of the flight's recording, if it was kept."""
+    report: str = ""
+    """Path of its report."""
+    note: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """Whether the flight is as expected."""
+        return self.status in (OK, KEPT, WRITTEN, REPLACED)
 
 
 def fly_case(case: Case, update: bool = False, reports: str | None = None) -> Result:

@@ -21,8 +21,7 @@ from sitl.vehicle.kinds import KINDS
 from ..comparison.report import Case as JunitCase
 from ..comparison.report import junit_write as write_junit
 from .cases import Case
-from .fly import fly_case
-from .result import FAILED, Result
+from .fly import FAILED, Result, fly_case
 
 BACKENDS = ("local", "ray")
 

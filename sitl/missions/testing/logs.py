@@ -17,8 +17,7 @@ from sitl.recording.recorder import Recorder
 from sitl.run import runner
 from sitl.simulation import Simulation
 
-from .moments import Forking
-from .script import Said, repeat
+from .moments import Forking, Said, repeat
 
 SUFFIXES = (".tlog", ".bin", ".rec")
 NOT_AGAIN = (

@@ -5,16 +5,72 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from types import TracebackType
 from typing import Any
 
+from sitl.client import Client, Text, UnknownNameError
 from sitl.client import Position as Place
-from sitl.client import Text
 
-from .faults import Faulty
 from .golden import Golden
 from .missions import MissionFlier
 
 __tracebackhide__ = True
+
+FAULTS = ("gps", "rc", "motor", "station", "wind")
+
+
+class Fault:
+    """A fault that lasts until ``repair``, or until the end of a ``with`` block."""
+
+    def __init__(self, vehicle: Faulty, values: dict[str, float], silent: bool = False) -> None:
+        self._vehicle, self._silent = vehicle, silent
+        self._before = {name: vehicle.params[name] for name in values}
+        vehicle.params.update(values)
+        if silent:
+            vehicle.heartbeats(False)
+
+    def repair(self) -> None:
+        """All is as before."""
+        self._vehicle.params.update(self._before)
+        if self._silent:
+            self._vehicle.heartbeats(True)
+
+    def __enter__(self) -> Fault:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if error is None:
+            self.repair()
+
+
+class Faulty(Client):
+    """A vehicle that can fail."""
+
+    def fail(self, what: str, *, motor: int = 1, thrust: float = 0.0, speed: float = 10.0, direction: float = 0.0,
+             turbulence: float = 0.0) -> Fault:  # fmt: skip
+        """Let something fail, until ``.repair()`` of what this gives, or for a ``with`` block.
+
+        Args:
+            what: "gps": no fix any more; "rc": the transmitter is off; "motor": number ``motor`` (copters) keeps
+                a share ``thrust`` of its thrust; "station": no heartbeat of this ground station any more;
+                "wind": ``speed`` [m/s] from ``direction`` [deg] with ``turbulence`` [m/s].
+        """
+        if what == "gps":
+            return Fault(self, {"SIM_GPS1_ENABLE": 0})
+        if what == "rc":
+            return Fault(self, {"SIM_RC_FAIL": 1})
+        if what == "wind":
+            return Fault(self, {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence})
+        if what == "station":
+            return Fault(self, {}, silent=True)
+        has_motors = "SIM_ENGINE_FAIL" in self.simulation.kind.firmware.table
+        if what == "motor" and has_motors:
+            return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})
+        known = [name for name in FAULTS if name != "motor" or has_motors]
+        raise UnknownNameError(f"a {self.kind} has no fault {what!r}; there are {', '.join(known)}")
+
 
 __all__ = ["Copter", "Place", "Rover", "Text", "Vehicle"]
 
@@ -31,7 +87,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         return self.altitude
 
     def change_mode(self, name: str, timeout: float = 5.0) -> None:
-        """Choose a mode, and wait until it is on."""
+        """Choose a mode, and wait until it is on, at most ``timeout`` [simulated s]."""
         self.set_mode(name, timeout)
 
     def wait_until(
@@ -42,7 +98,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         last: Callable[[], str] = lambda: "",
         hold: float = 0.0,
     ) -> None:
-        """``wait`` for a condition without an argument."""
+        """``wait`` for a condition without an argument; ``timeout`` and ``hold`` in simulated seconds."""
         self.wait(lambda _: condition(), timeout, what, last, hold)
 
     # ------------------------------------------------------------------ places, whose altitude is called height here
@@ -74,7 +130,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         accuracy: float = 1.0,
         timeout: float = 120.0,
     ) -> None:
-        """``set_position``, and wait until it is there."""
+        """``set_position`` (NED from home [m], yaw [deg]), and wait until it is there."""
         self.goto(north, east, height, yaw, accuracy, timeout)
 
     drive_to = fly_to
@@ -86,11 +142,11 @@ class Vehicle(Golden, MissionFlier, Faulty):
         return self.params[name]
 
     def set_parameter(self, name: str, value: float) -> None:
-        """Set a parameter, and see that the vehicle took it."""
+        """Set a parameter, in its unit, and see that the vehicle took it."""
         self.params[name] = value
 
     def set_parameters(self, values: Mapping[str, float] | None = None, **more: float) -> None:
-        """Set several."""
+        """Set several, each in its unit."""
         self.params.update(values, **more)
 
     def parameters(self, values: Mapping[str, float] | None = None, **more: float) -> AbstractContextManager[None]:
@@ -118,6 +174,6 @@ class Rover(Vehicle):
         self.guided_and_armed()
 
     def stop(self, timeout: float = 30.0) -> None:
-        """HOLD, and wait until it stands."""
+        """HOLD, and wait until it stands, at most ``timeout`` [simulated s]."""
         self.set_mode("HOLD")
         self.wait_groundspeed(0.0, 0.1, timeout, 1.0)

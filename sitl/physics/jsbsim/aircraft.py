@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..native.body import GRAVITY
-from .craft import FOOT, POUND, POUNDS_BY_SLUG, SLUG, SLUG_FOOT2
+from .model import FOOT, POUND, POUNDS_BY_SLUG, SLUG, SLUG_FOOT2
 
 RADIUS = 6_371_000.0
 """Of the planet [m]."""

@@ -6,27 +6,27 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..engine import Seat
+from ..engine import EngineVehicle
 from ..native.copter.ground import upright
 from ..native.obstacles import HIT_PAUSE_US
 from ..native.records import GROUND_AIRBORNE, GROUND_LYING, GROUND_STANDING
-from . import copter_aircraft, craft
+from . import copter_aircraft, model
 from .copter_aircraft import GOES
-from .craft import Craft, Properties
 from .engine import JsbsimEngine
 from .formula import NAME
+from .model import Properties, VehicleModel
 
 
-class CopterCraft(Craft):
+class CopterModel(VehicleModel):
     """Commands in, rotor speeds and power out; touching the ground."""
 
-    def __init__(self, seat: Seat) -> None:
-        super().__init__(seat)
-        p = seat.v.physics
+    def __init__(self, vehicle: EngineVehicle) -> None:
+        super().__init__(vehicle)
+        p = vehicle.v.physics
         self._rotors, self._ground, self._battery, self._body = p.rotors, p.ground, p.battery, p.body
         self._commands = p.rotors.command
         self._efficiency = p.rotors.efficiency
-        self._write_power = craft.writer(seat, "physics.rotors.power", 1)
+        self._write_power = model.writer(vehicle, "physics.rotors.power", 1)
 
     def frames(self, a: Any) -> int:
         return int(a.substeps)
@@ -49,8 +49,8 @@ class CopterCraft(Craft):
         self._thrusts = [properties.reader(f"rotor/thrust{k}") for k in numbers]
         self._power = properties.reader("rotor/power")
         self._touches = properties.reader("forces/fbz-gear-lbs")
-        self._write_speeds = craft.writer(self.seat, "physics.rotors.speed", count)
-        self._write_thrusts = craft.writer(self.seat, "physics.rotors.thrust", count)
+        self._write_speeds = model.writer(self.vehicle, "physics.rotors.speed", count)
+        self._write_thrusts = model.writer(self.vehicle, "physics.rotors.thrust", count)
         self._upright = math.cos(float(a.tip_angle))
         self._hit_speed = float(a.hit_speed)
         self._health: list[float] = []
@@ -95,7 +95,7 @@ class CopterCraft(Craft):
         g = self._ground
         if state == GROUND_AIRBORNE:
             g.state = GROUND_STANDING
-            now = int(self.seat.v.time_us)
+            now = int(self.vehicle.v.time_us)
             if self._down > self._hit_speed and (g.hit_count == 0 or now - g.hit_time_us > HIT_PAUSE_US):
                 g.hit_count += 1
                 g.hit_speed = self._down
@@ -104,11 +104,11 @@ class CopterCraft(Craft):
             g.state = GROUND_LYING
 
 
-def make(seat: Seat) -> JsbsimEngine:
+def make(vehicle: EngineVehicle) -> JsbsimEngine:
     """JSBSim for a copter.
 
     Raises:
         EngineError: its world is nothing for JSBSim.
         MissingExtra: JSBSim is not installed.
     """
-    return JsbsimEngine(seat, CopterCraft(seat))
+    return JsbsimEngine(vehicle, CopterModel(vehicle))

@@ -16,8 +16,8 @@ from ...vehicles.figures.copter import THRUST_MOMENTUM
 from ..native.body import GRAVITY
 from ..native.prepare import decay
 from .aircraft import Contact, written
-from .craft import FOOT, POUND, POUND_FOOT, SLUG_BY_FOOT3
 from .formula import component, difference, function, greatest, if_less, least, magnitude, product, root, total
+from .model import FOOT, POUND, POUND_FOOT, SLUG_BY_FOOT3
 
 GOES = "rotor/goes"
 """Property: 1, or 0 while the rotors keep their speeds."""

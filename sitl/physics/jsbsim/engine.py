@@ -17,13 +17,66 @@ from typing import Any, ClassVar
 
 from ...core.algebra import euler_of, quat_from_euler, rotate
 from ...core.vectors import Euler, Quat, Vec3
-from ..engine import Engine, EngineError, Seat
+from ..engine import Engine, EngineError, EngineVehicle
+from ..native.atmosphere import SEA_LEVEL_TEMPERATURE, pressure, temperature
 from ..native.tick import TICK_S
 from . import start
-from .air import Air
 from .aircraft import RADIUS
-from .craft import FOOT, Craft, Properties, writer
 from .formula import library, load
+from .model import FOOT, PASCALS, RANKINE, Properties, VehicleModel, writer
+
+_NONE, _MILSPEC = 0.0, 3.0
+
+
+class Air:
+    """What the vehicle flies in."""
+
+    def __init__(self, properties: Properties) -> None:
+        self._warmer = properties.writer("atmosphere/delta-T")
+        self._pressure = properties.writer("atmosphere/P-sl-psf")
+        self._wind = [properties.writer(f"atmosphere/wind-{axis}-fps") for axis in ("north", "east", "down")]
+        self._model = properties.writer("atmosphere/turb-type")
+        self._strength = properties.writer("atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps")
+        self._severity = properties.writer("atmosphere/turbulence/milspec/severity")
+        self._seed = properties.writer("simulation/randomseed")
+        self.wind: list[float] = []
+        """That blows, NED [m/s]."""
+        self.turbulence = 0.0
+        """Standard deviation of its vertical axis [m/s]."""
+        self.has_stirred = False
+        """There has been turbulence; its filters cannot be emptied."""
+
+    def settle(self, altitude: float) -> None:
+        """Be the air over a floor at this altitude above mean sea level [m]."""
+        self._warmer((temperature(altitude) - SEA_LEVEL_TEMPERATURE) / RANKINE)
+        self._pressure(pressure(altitude) / PASCALS)
+
+    def seed(self, number: int) -> None:
+        """Let the random numbers of turbulence begin anew."""
+        self._seed(float(number % 2147483647))
+
+    def blow(self, wind: list[float]) -> None:
+        """Blow steadily: NED [m/s]."""
+        self.wind = wind
+        for write, speed in zip(self._wind, wind, strict=True):
+            write(speed / FOOT)
+
+    def stir(self, deviation: float) -> None:
+        """Be turbulent, with this standard deviation of the vertical axis [m/s]; 0: not at all.
+
+        Near the ground the standard takes it for a tenth of the wind at 20 ft; along the other axes it is larger, by
+        less the higher the vehicle is.
+        """
+        self.turbulence = deviation
+        self.has_stirred |= deviation > 0.0
+        self._strength(10.0 * deviation / FOOT)
+        self._severity(1.0)
+        self._model(_MILSPEC if deviation > 0.0 else _NONE)
+
+    def be_still(self) -> None:
+        """No turbulence until the next ``stir``."""
+        self._model(_NONE)
+
 
 _STATE = (
     "position/lat-gc-rad",
@@ -45,8 +98,8 @@ class JsbsimEngine(Engine):
     """One vehicle in a JSBSim of its own.
 
     Args:
-        seat: where its record is. The world may have a floor, but no solids.
-        craft: what is special about the kind of vehicle.
+        vehicle: where its record is. The world may have a floor, but no solids.
+        model: what is special about the kind of vehicle.
 
     Raises:
         EngineError: the world has solids.
@@ -55,20 +108,20 @@ class JsbsimEngine(Engine):
 
     name: ClassVar[str] = "jsbsim"
 
-    def __init__(self, seat: Seat, craft: Craft) -> None:
-        super().__init__(seat)
+    def __init__(self, vehicle: EngineVehicle, model: VehicleModel) -> None:
+        super().__init__(vehicle)
         library()
-        if seat.world is not None and len(seat.world.geometry) > 0:
+        if vehicle.world is not None and len(vehicle.world.geometry) > 0:
             raise EngineError(
-                f"world {seat.world.name!r}: physics 'jsbsim' knows no solids; take physics 'native' or 'pybullet'"
+                f"world {vehicle.world.name!r}: physics 'jsbsim' knows no solids; take physics 'native' or 'pybullet'"
             )
-        self.craft = craft
+        self.model = model
         self.executive: Any = None
         """JSBSim's FGFDMExec."""
         self._figures = b""
-        self._physics = seat.v.physics
-        self._wind = seat.v.physics.wind
-        self._write_body = writer(seat, "physics.body.pos", 13)
+        self._physics = vehicle.v.physics
+        self._wind = vehicle.v.physics.wind
+        self._write_body = writer(vehicle, "physics.body.pos", 13)
 
     # ------------------------------------------------------------------ starting
 
@@ -85,29 +138,29 @@ class JsbsimEngine(Engine):
 
     def _load(self) -> None:
         """Have JSBSim take the vehicle as its figures are now."""
-        a, craft = self._physics.airframe, self.craft
-        self.frames = craft.frames(a)
+        a, model = self._physics.airframe, self.model
+        self.frames = model.frames(a)
         self.dt = TICK_S / self.frames
-        self.executive = load(craft.document(a, self.dt), self.dt)
-        self._height = craft.height(a)
+        self.executive = load(model.document(a, self.dt), self.dt)
+        self._height = model.height(a)
         properties = Properties(self.executive)
         self._state = [properties.reader(name) for name in _STATE]
         self._run = self.executive.run
         self.air = Air(properties)
-        craft.bind(properties, a, self.dt)
+        model.bind(properties, a, self.dt)
 
     def _start(self) -> None:
         """Start JSBSim from what the record says."""
         p = self._physics
         self.air.be_still()
-        self.air.seed(int(self.seat.v.rng.s[0]))
+        self.air.seed(int(self.vehicle.v.rng.s[0]))
         start.begin(self.executive, self._motion())
         self.air.settle(float(p.place.alt))
         self.air.blow(list(p.wind.steady))
-        self.craft.starting()
-        self.craft.inputs()
+        self.model.starting()
+        self.model.inputs()
         start.settle(self.executive)
-        self.craft.started()
+        self.model.started()
         self.air.stir(float(p.wind.turbulence))
 
     def _motion(self) -> start.Motion:
@@ -120,7 +173,7 @@ class JsbsimEngine(Engine):
 
     def _lever(self, q: Quat, rates: Vec3) -> tuple[Vec3, Vec3]:
         """From the origin of the body to its centre of mass: place [m] and velocity [m/s], NED."""
-        ahead = self.craft.ahead
+        ahead = self.model.ahead
         return rotate(q, Vec3(ahead, 0.0, 0.0)), rotate(q, Vec3(0.0, ahead * rates.z, -(ahead * rates.y)))
 
     # ------------------------------------------------------------------ going on
@@ -132,7 +185,7 @@ class JsbsimEngine(Engine):
             air.blow(wind)
         if self._wind.turbulence != air.turbulence:
             air.stir(self._wind.turbulence)
-        self.craft.inputs()
+        self.model.inputs()
         for _ in range(self.frames):
             self._run()
         lat, lon, height, vn, ve, vd, roll, pitch, yaw, p, q, r = [read() for read in self._state]
@@ -140,11 +193,11 @@ class JsbsimEngine(Engine):
         half = 0.5 * self.dt
         north, east, down = RADIUS * lat + half * vn, RADIUS * lon + half * ve, self._height - FOOT * height + half * vd
         attitude = quat_from_euler(Euler(roll, pitch, yaw))
-        if self.craft.ahead != 0.0:
+        if self.model.ahead != 0.0:
             (x, y, z), (vx, vy, vz) = self._lever(attitude, Vec3(p, q, r))
             north, east, down, vn, ve, vd = north - x, east - y, down - z, vn - vx, ve - vy, vd - vz
         self._write_body(north, east, down, vn, ve, vd, *attitude, p, q, r)
-        self.craft.outputs(vd)
+        self.model.outputs(vd)
 
     # ------------------------------------------------------------------ going back
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ...core.extras import MissingExtra
+from ...errors import MissingExtra
 from ..engine import EngineError
 
 Term = str | float

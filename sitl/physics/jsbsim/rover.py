@@ -8,22 +8,22 @@ from typing import Any
 
 from ...core.vectors import Vec2
 from ...vehicles.figures.rover import STEERING_SKID
-from ..engine import Seat
+from ..engine import EngineVehicle
 from ..native.rover.steering import curvature
 from ..native.tick import TICK_S
 from . import rover_aircraft
-from .craft import FOOT, Craft, Properties
 from .engine import JsbsimEngine
 from .formula import NAME
+from .model import FOOT, Properties, VehicleModel
 from .rover_aircraft import FRONT_LEFT, FRONT_RIGHT
 
 
-class RoverCraft(Craft):
+class RoverModel(VehicleModel):
     """Wheel speeds and steering angle in, speed over the ground and travel of the wheels out."""
 
-    def __init__(self, seat: Seat) -> None:
-        super().__init__(seat)
-        self._p = seat.v.physics
+    def __init__(self, vehicle: EngineVehicle) -> None:
+        super().__init__(vehicle)
+        self._p = vehicle.v.physics
         self._wheels = self._p.wheels
 
     def document(self, a: Any, dt: float) -> str:
@@ -72,11 +72,11 @@ class RoverCraft(Craft):
         self._wheels.distance += TICK_S * Vec2(left, right)
 
 
-def make(seat: Seat) -> JsbsimEngine:
+def make(vehicle: EngineVehicle) -> JsbsimEngine:
     """JSBSim for a rover.
 
     Raises:
         EngineError: its world is nothing for JSBSim.
         MissingExtra: JSBSim is not installed.
     """
-    return JsbsimEngine(seat, RoverCraft(seat))
+    return JsbsimEngine(vehicle, RoverModel(vehicle))

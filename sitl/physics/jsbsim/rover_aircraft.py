@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
 from ..native.body import GRAVITY
 from .aircraft import Contact, place, written
-from .craft import FOOT, POUND
 from .formula import difference, function, limited, product, total
+from .model import FOOT, POUND
 
 SPRING_RATE = 20.0
 """Natural frequency of the body on its springs [rad/s]."""

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from ...core.vectors import Euler, Vec3
 from .aircraft import RADIUS
-from .craft import FOOT
+from .model import FOOT
 
 _EULER, _BUSS2 = 1.0, 7.0
 _INTEGRATORS = (

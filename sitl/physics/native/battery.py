@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from ...vehicles.figures.battery import Battery
+from ...vehicles.figures.body import Battery
 from .records import BatteryState
 
 OPEN_CIRCUIT = (0.714, 0.845, 0.869, 0.895, 0.905, 0.919, 0.938, 0.957, 0.976, 0.990, 1.0)

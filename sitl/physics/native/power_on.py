@@ -12,7 +12,7 @@ from ...core.earth_field import field_ned
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...vehicles import Airframe, apply
-from ...vehicles.figures.sensors import Sensors as SensorFigures
+from ...vehicles.figures.body import Sensors as SensorFigures
 from . import atmosphere, wind
 from .body import GRAVITY
 from .records import Physics, SensorState, Vehicle

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from ...core.kernels import law
-from ...vehicles.figures.common import Figures
+from ...vehicles.figures.body import Figures
 from .records import Derived
 from .sensors.imu import WALK_TICKS
 from .tick import TICK_S

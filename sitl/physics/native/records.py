@@ -14,7 +14,7 @@ from ...core.border import Actuators, Sensors
 from ...core.records import Float32, FloatRows, Record, Records, Stored, array, repeat
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
-from ...vehicles.figures.common import Figures
+from ...vehicles.figures.body import Figures
 from ...worlds.geometry import SOLID_FIGURES
 
 GROUND_AIRBORNE = 0

@@ -26,7 +26,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-from ...core.extras import MissingExtra
+from ...errors import MissingExtra
 from ..engine import EngineError
 from ..native.body import GRAVITY
 
@@ -150,7 +150,7 @@ def save(client: Client) -> bytes:
 
 
 def load(client: Client, state: bytes, body: int, height: float = _FAR) -> None:
-    """Put a world back; ``body`` and ``height`` as for ``forget``.
+    """Put a world back; ``body`` and ``height`` [m] as for ``forget``.
 
     Raises:
         EngineError: the state is not one of a world with these bodies; the world stays as it is.

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..native.body import GRAVITY
-from .urdf import Vector, box, cylinder, document, link, sphere
+from .urdf import Contact, Vector, box, cylinder, document, link, sphere
 
 FOOT_RADIUS = 0.01
 """[m]."""
@@ -63,15 +63,11 @@ def model(figures: Any) -> CopterModel:
     height = leg_length(feet, float(figures.tip_angle))
     mass = float(figures.mass)
     inertia = (figures.inertia.x, figures.inertia.y, figures.inertia.z)
-    body = link(
-        "body", mass, inertia, _outline(figures, height), _looks(figures, hubs, height), friction=_OUTLINE_FRICTION
-    )
+    outline = _outline(figures, height)
+    body = link("body", mass, inertia, outline, _looks(figures, hubs, height), Contact(_OUTLINE_FRICTION))
     soles = [sphere(FOOT_RADIUS, (x, y, FOOT_RADIUS - height)) for x, y in feet]
-    stiffness, damping = springs(mass, float(figures.leg_time_constant), len(feet))
-    legs = link(
-        "legs", 0.0, (0.0, 0.0, 0.0), soles, [sole.coloured(_LOOK["foot"]) for sole in soles],
-        friction=float(figures.ground_friction), stiffness=stiffness, damping=damping,
-    )  # fmt: skip
+    contact = Contact(float(figures.ground_friction), *springs(mass, float(figures.leg_time_constant), len(feet)))
+    legs = link("legs", 0.0, (0.0, 0.0, 0.0), soles, [sole.coloured(_LOOK["foot"]) for sole in soles], contact)
     return CopterModel(document("copter", [body, legs], [("body", "legs")]), mass, inertia, height)
 
 

@@ -15,11 +15,10 @@ from typing import Any, ClassVar
 from ...core.algebra import rotate
 from ...core.vectors import Quat, Vec3
 from ...worlds.contact import clearance
-from ..engine import Array, Engine, EngineError, Seat
+from ..engine import Array, Engine, EngineError, EngineVehicle, offset
 from ..native.body import GRAVITY
 from ..native.obstacles import settle
 from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
-from ..record import offset
 from . import urdf, worlds
 from .client import load, save
 from .contacts import CLEAR, Row, contacts_report
@@ -44,7 +43,7 @@ class BulletEngine(Engine):
     """A copter in a world of Bullet of its own.
 
     Args:
-        seat: the vehicle.
+        vehicle: record, airframe, compiled laws and world.
 
     Raises:
         MissingExtra: pybullet is not installed.
@@ -52,14 +51,14 @@ class BulletEngine(Engine):
 
     name: ClassVar[str] = "pybullet"
 
-    def __init__(self, seat: Seat) -> None:
-        super().__init__(seat)
-        self._memory: Any = seat.fleet.view("u1").data
-        base = seat.index * seat.fleet.dtype.itemsize
-        self._body_at = base + offset(seat.fleet.dtype, "physics", "body")
-        self._wrench_at = base + offset(seat.fleet.dtype, "physics", "motion")
-        self._load = seat.laws.load
-        self._ground, self._obstacles = seat.v.physics.ground, seat.v.physics.obstacles
+    def __init__(self, vehicle: EngineVehicle) -> None:
+        super().__init__(vehicle)
+        self._memory: Any = vehicle.fleet.view("u1").data
+        base = vehicle.index * vehicle.fleet.dtype.itemsize
+        self._body_at = base + offset(vehicle.fleet.dtype, "physics", "body")
+        self._wrench_at = base + offset(vehicle.fleet.dtype, "physics", "motion")
+        self._load = vehicle.laws.load
+        self._ground, self._obstacles = vehicle.v.physics.ground, vehicle.v.physics.obstacles
         self._body: CopterBody | None = None
         self._figures = b""
         self._picture: Picture | None = None
@@ -67,17 +66,17 @@ class BulletEngine(Engine):
     @property
     def body(self) -> CopterBody:
         """The model in its world, as the vehicle's figures are now."""
-        a = self.seat.v.physics.airframe
+        a = self.vehicle.v.physics.airframe
         figures = bytes(a._bytes)
         if self._body is None or figures != self._figures:
             self.close()
-            self._body, self._figures = CopterBody(a, self.seat.world, self.seat.floor), figures
+            self._body, self._figures = CopterBody(a, self.vehicle.world, self.vehicle.floor), figures
         return self._body
 
     # ------------------------------------------------------------------ going on
 
     def place(self) -> None:
-        body, p = self.body, self.seat.v.physics
+        body, p = self.body, self.vehicle.v.physics
         position, (x, y, z, w) = self._pose()
         body.put(position, (x, y, z, w))
         _, found = body.client.p.getBasePositionAndOrientation(body.number, body.client.id)
@@ -121,7 +120,7 @@ class BulletEngine(Engine):
 
     def _touch(self, body: CopterBody, rows: Sequence[Row], before: Sequence[float], force: Sequence[float]) -> None:
         """After a step with contacts, or the first without: what they mean, and what hard ones did to the velocity."""
-        v = self.seat.v
+        v = self.vehicle.v
         is_hard = contacts_report(v, body.surfaces, rows, before)
         if not (is_hard or (rows and body.has_hard_feet)):
             return
@@ -144,7 +143,7 @@ class BulletEngine(Engine):
 
     def _is_near(self) -> bool:
         """Whether floor or solids are so near that Bullet may have something about them in mind."""
-        body, world, a = self.body, self.seat.world, self.seat.v.physics.airframe
+        body, world, a = self.body, self.vehicle.world, self.vehicle.v.physics.airframe
         position, _ = body.client.p.getBasePositionAndOrientation(body.number, body.client.id)
         north, east, down = position[0], -position[1], -position[2]
         reach = 1.5 * (math.hypot(float(a.contact_radius), float(a.contact_top)) + body.model.height) + _MARGIN
@@ -164,13 +163,15 @@ class BulletEngine(Engine):
         """A picture of it in its world, uint8, shape (height, width, 3); see ``Picture``."""
         text = self.body.model.text
         if self._picture is None:
-            reach = float(self.seat.v.physics.airframe.contact_radius) or 0.3
-            self._picture = Picture(lambda client: urdf.load(client, text), self.seat.world, self.seat.floor, reach)
+            reach = float(self.vehicle.v.physics.airframe.contact_radius) or 0.3
+            self._picture = Picture(
+                lambda client: urdf.load(client, text), self.vehicle.world, self.vehicle.floor, reach
+            )
         return self._picture.render(*self._pose(), width, height, camera)
 
     def _pose(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Place and attitude that the record says, in Bullet's frame."""
-        b = self.seat.v.physics.body
+        b = self.vehicle.v.physics.body
         (north, east, down), (w, x, y, z) = b.pos, b.q
         return (north, -east, self.body.zero - down), (x, -y, -z, w)
 

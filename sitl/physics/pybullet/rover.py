@@ -14,10 +14,9 @@ import struct
 from typing import Any, ClassVar
 
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS
-from ..engine import Array, Engine, EngineError, Seat
+from ..engine import Array, Engine, EngineError, EngineVehicle, offset
 from ..native.body import GRAVITY
 from ..native.tick import TICK_S
-from ..record import offset
 from . import worlds
 from .client import Client, forget, load, save
 from .contacts import hits_report
@@ -53,14 +52,14 @@ class BulletRover(Engine):
 
     name: ClassVar[str] = "pybullet"
 
-    def __init__(self, seat: Seat) -> None:
-        super().__init__(seat)
-        self._memory: Any = seat.fleet.view("u1").data
-        base = seat.index * seat.fleet.dtype.itemsize
-        self._body_at = base + offset(seat.fleet.dtype, "physics", "body", "pos")
-        self._command_at = base + offset(seat.fleet.dtype, "physics", "wheels", "angle")
-        self._rolled_at = base + offset(seat.fleet.dtype, "physics", "wheels", "speed")
-        self._forward_at = base + offset(seat.fleet.dtype, "physics", "wheels", "forward")
+    def __init__(self, vehicle: EngineVehicle) -> None:
+        super().__init__(vehicle)
+        self._memory: Any = vehicle.fleet.view("u1").data
+        base = vehicle.index * vehicle.fleet.dtype.itemsize
+        self._body_at = base + offset(vehicle.fleet.dtype, "physics", "body", "pos")
+        self._command_at = base + offset(vehicle.fleet.dtype, "physics", "wheels", "angle")
+        self._rolled_at = base + offset(vehicle.fleet.dtype, "physics", "wheels", "speed")
+        self._forward_at = base + offset(vehicle.fleet.dtype, "physics", "wheels", "forward")
         self._client: Client | None = None
         self._picture: Picture | None = None
         self._figures = b""
@@ -69,7 +68,7 @@ class BulletRover(Engine):
 
     def _fit(self) -> Client:
         """The world with a model of the vehicle as its figures are now."""
-        a = self.seat.v.physics.airframe
+        a = self.vehicle.v.physics.airframe
         figures = bytes(a._bytes)
         if self._client is None or figures != self._figures:
             self.close()
@@ -78,25 +77,25 @@ class BulletRover(Engine):
         return self._client
 
     def _built(self, a: Any) -> Client:
-        seat = self.seat
+        vehicle = self.vehicle
         client = Client(TICK_S, _ITERATIONS, _RESIDUAL)
         filter_by_both(client)
-        self.surfaces = worlds.build(client, seat.world, seat.floor)
-        self.model: Model = build(client, a, seat.floor)
+        self.surfaces = worlds.build(client, vehicle.world, vehicle.floor)
+        self.model: Model = build(client, a, vehicle.floor)
         self._has_solids = bool(self.surfaces.solids)
         plan, mass = self.model.layout, float(a.mass)
         self._number, self._radius, self._is_car = self.model.body, plan.radius, plan.steers
-        self._zero = seat.floor + self.model.height
+        self._zero = vehicle.floor + self.model.height
         self._gain = TICK_S / mass
         self._measured = self.model.driven
         if plan.steers:
             self._lever = 0.5 * self.model.rolling_mass * plan.radius / TICK_S
             self._bends = int(a.steering_model) == STEERING_FRONT_WHEELS
-            self._scale = float(seat.v.physics.derived.circle_scale)
+            self._scale = float(vehicle.v.physics.derived.circle_scale)
             turn = mass * GRAVITY * plan.radius
             self._strength: dict[str, Any] = {"forces": [turn, turn], "positionGains": [1.0, 1.0]}
         else:
-            self._friction = float(a.grip) * (1.0 if seat.world is None else float(seat.world.friction))
+            self._friction = float(a.grip) * (1.0 if vehicle.world is None else float(vehicle.world.friction))
             pull = float(a.drive_accel) if a.drive_accel > 0.0 else self._friction * GRAVITY
             self._strength = {"forces": [0.25 * RESERVE * pull * mass * plan.radius] * 4}
         self._strength["physicsClientId"] = client.id
@@ -114,7 +113,7 @@ class BulletRover(Engine):
     # ------------------------------------------------------------------ going on
 
     def place(self) -> None:
-        client, b, p = self._fit(), self.seat.v.physics.body, self._fit().p
+        client, b, p = self._fit(), self.vehicle.v.physics.body, self._fit().p
         (n, e, _), (w, x, y, z) = b.pos, b.q
         ahead = self.model.layout.origin
         c, s = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
@@ -193,9 +192,9 @@ class BulletRover(Engine):
         joints = p.getJointStates(number, self._measured, id_)
         if self._has_solids:
             rows = p.getContactPoints(number, -1, -1, _LINKS, id_)
-            if rows or self.seat.v.physics.obstacles.touching:
+            if rows or self.vehicle.v.physics.obstacles.touching:
                 before = self._state
-                hits_report(self.seat.v, rows, before[:3], before[3:6], self._spin, self._gain)
+                hits_report(self.vehicle.v, rows, before[:3], before[3:6], self._spin, self._gain)
         # Axes of the body, forward and left and up, in the world's frame.
         a, b, c = 1.0 - 2.0 * (qy * qy + qz * qz), 2.0 * (qx * qy + qw * qz), 2.0 * (qx * qz - qw * qy)
         d, e, f = 2.0 * (qx * qy - qw * qz), 1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz + qw * qx)
@@ -244,10 +243,10 @@ class BulletRover(Engine):
 
     def render(self, width: int, height: int, camera: Camera | None = None) -> Array:
         """A picture of it in its world, uint8, shape (height, width, 3); see ``Picture``."""
-        client, seat = self._fit(), self.seat
+        client, vehicle = self._fit(), self.vehicle
         if self._picture is None:
-            a, reach = seat.v.physics.airframe, self.model.layout.wheelbase
-            self._picture = Picture(lambda c: build(c, a, seat.floor).body, seat.world, seat.floor, reach)
+            a, reach = vehicle.v.physics.airframe, self.model.layout.wheelbase
+            self._picture = Picture(lambda c: build(c, a, vehicle.floor).body, vehicle.world, vehicle.floor, reach)
         place, attitude = client.p.getBasePositionAndOrientation(self._number, client.id)
         joints = {k: client.p.getJointState(self._number, k, client.id)[0] for k in self.model.joints}
         return self._picture.render(place, attitude, width, height, camera, joints)

@@ -14,6 +14,7 @@ Body axes are Bullet's: forward, left, up.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,17 +59,17 @@ class Layout:
 
     @property
     def sag(self) -> float:
-        """By which springs are pressed together at rest."""
+        """By which springs are pressed together at rest [m]."""
         return SAG * self.radius
 
     @property
     def wheels(self) -> tuple[tuple[float, float], ...]:
-        """Forward and left of the centre of mass: front left, front right, rear left, rear right."""
+        """Forward and left of the centre of mass [m]: front left, front right, rear left, rear right."""
         ahead, half = self.wheelbase - self.behind, 0.5 * self.track
         return ((ahead, half), (ahead, -half), (-self.behind, half), (-self.behind, -half))
 
     def load(self, wheel: int) -> float:
-        """Share of the weight on a wheel."""
+        """Share of the weight on a wheel, 0 .. 1."""
         front = self.behind / self.wheelbase
         return 0.5 * (front if wheel < 2 else 1.0 - front)
 
@@ -157,7 +158,7 @@ def build(client: Client, a: Any, floor: float) -> Model:
         **parts.arguments(),
         physicsClientId=id_,
     )
-    _settle(client, body, plan, float(a.grip), mass, [max(i, j) for i, j in zip(inertia, least)], axles, steering)
+    _settle(client, body, a, [max(i, j) for i, j in zip(inertia, least)], axles, steering)
     touch_in_one_point(client)
     driven = tuple(axles[2:]) if plan.steers else tuple(axles)
     pulse = math.sqrt(GRAVITY / plan.sag)
@@ -202,10 +203,11 @@ def _shell(client: Client, a: Any, plan: Layout, height: float) -> int:
 
 
 def _settle(
-    client: Client, body: int, plan: Layout, grip: float, mass: float, inertia: list[float], axles: Any, steering: Any
+    client: Client, body: int, a: Any, inertia: list[float], axles: Sequence[int], steering: Sequence[int]
 ) -> None:
     """Inertia, springs, friction and who touches what; no joint resists."""
-    p, id_, radius = client.p, client.id, plan.radius
+    p, id_, plan, mass, grip = client.p, client.id, layout(a), float(a.mass), float(a.grip)
+    radius = plan.radius
     pulse = math.sqrt(GRAVITY / plan.sag)
     still = {"linearDamping": 0.0, "angularDamping": 0.0, "physicsClientId": id_}
     p.changeDynamics(body, -1, localInertiaDiagonal=inertia, lateralFriction=0.0, restitution=0.0, **still)

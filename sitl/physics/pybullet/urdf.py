@@ -48,13 +48,32 @@ def box(size: Vector, centre: Vector, yaw: float = 0.0) -> Shape:
 
 
 def cylinder(radius: float, length: float, centre: Vector) -> Shape:
-    """An upright cylinder."""
+    """An upright cylinder [m]."""
     return Shape(f'<cylinder radius="{radius!r}" length="{length!r}"/>', centre)
 
 
 def sphere(radius: float, centre: Vector) -> Shape:
-    """A sphere."""
+    """A sphere [m]."""
     return Shape(f'<sphere radius="{radius!r}"/>', centre)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How a link touches others."""
+
+    friction: float = 0.0
+    """Coulomb coefficient."""
+    stiffness: float = 0.0
+    """Of each contact point [N/m]; 0: hard."""
+    damping: float = 0.0
+    """Of each contact point [N s/m]."""
+
+    def elements(self) -> str:
+        """As URDF."""
+        text = f'<lateral_friction value="{self.friction!r}"/>'
+        if self.stiffness > 0.0:
+            text += f'<stiffness value="{self.stiffness!r}"/><damping value="{self.damping!r}"/>'
+        return text
 
 
 def link(
@@ -63,9 +82,7 @@ def link(
     inertia: Vector,
     collisions: Sequence[Shape],
     visuals: Sequence[Shape],
-    friction: float = 0.0,
-    stiffness: float = 0.0,
-    damping: float = 0.0,
+    contact: Contact = Contact(),
 ) -> str:
     """A link whose centre of mass is its origin.
 
@@ -74,18 +91,14 @@ def link(
         mass: [kg].
         inertia: about its axes [kg m^2].
         collisions, visuals: shapes.
-        friction: Coulomb coefficient.
-        stiffness, damping: of each contact [N/m, N s/m]; 0: hard.
+        contact: how it touches others.
     """
     xx, yy, zz = inertia
-    contact = f'<lateral_friction value="{friction!r}"/>'
-    if stiffness > 0.0:
-        contact += f'<stiffness value="{stiffness!r}"/><damping value="{damping!r}"/>'
     rows = [
         f'  <link name="{name}">',
         f'    <inertial><mass value="{mass!r}"/>'
         f'<inertia ixx="{xx!r}" ixy="0" ixz="0" iyy="{yy!r}" iyz="0" izz="{zz!r}"/></inertial>',
-        f"    <contact>{contact}</contact>",
+        f"    <contact>{contact.elements()}</contact>",
         *(shape.element("visual") for shape in visuals),
         *(shape.element("collision") for shape in collisions),
         "  </link>",

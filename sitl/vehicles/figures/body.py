@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of every body."""
+"""Figures that every vehicle with an autopilot has: body, outline, battery, sensors.
+
+All noise, biases and drifts are multiplied by noise_scale.
+"""
 
 from __future__ import annotations
 
@@ -32,3 +35,77 @@ class Outline(Record):
     contact_top: float = figure("m", "how far they reach above the origin", 0.0, 100.0, 0.0)
     contact_bottom: float = figure("m", "how far they reach below the origin", 0.0, 100.0, 0.0)
     base_along: float = figure("m", "what start poses of a world mean, forward of the origin", -math.inf, default=0.0)
+
+
+class Battery(Record):
+    """The battery, and what draws on it besides the motors."""
+
+    battery_voltage_full: float = figure("V", "open circuit, full", 1.0, 1000.0)
+    battery_capacity: float = figure("Ah", "0: an ideal source of battery_voltage_full", default=0.0)
+    battery_resistance: float = figure("ohm", "inner resistance", default=0.0)
+    avionics_current: float = figure("A", "drawn by everything but the motors", default=0.0)
+
+
+class Sensors(Record):
+    """The sensors that every autopilot has."""
+
+    noise_scale: float = figure("", "0 switches all errors off", 0.0, 100.0, 1.0)
+    acc_noise_density: float = figure("m/s^2/sqrt(Hz)", "white noise of the accelerometer")
+    acc_random_walk: float = figure("m/s^3/sqrt(Hz)", "of its in-run bias")
+    acc_bias_time: float = figure("s", "correlation time of the in-run bias")
+    acc_turn_on_bias: float = figure("m/s^2", "standard deviation")
+    acc_scale_error: float = figure("", "standard deviation", default=0.0)
+    acc_range: float = figure("m/s^2", "saturation")
+    gyro_noise_density: float = figure("rad/s/sqrt(Hz)", "white noise of the gyro")
+    gyro_random_walk: float = figure("rad/s^2/sqrt(Hz)", "of its in-run bias")
+    gyro_bias_time: float = figure("s", "correlation time of the in-run bias")
+    gyro_turn_on_bias: float = figure("rad/s", "standard deviation")
+    gyro_scale_error: float = figure("", "standard deviation", default=0.0)
+    gyro_range: float = figure("rad/s", "saturation")
+    gps_rate: float = figure("Hz", "fixes a second", 0.1, 20.0)
+    gps_delay: float = figure("s", "from the fix to the reader", 0.0, 0.35)
+    gps_start: float = figure("s", "first message after boot")
+    gps_fix_time: float = figure("s", "first 3D fix after boot")
+    gps_noise_horizontal: float = figure("m", "white, standard deviation an axis")
+    gps_noise_vertical: float = figure("m", "the same, vertical")
+    gps_drift_horizontal: float = figure("m", "correlated error, standard deviation an axis")
+    gps_drift_vertical: float = figure("m", "the same, vertical")
+    gps_drift_time: float = figure("s", "correlation time of the drift")
+    gps_velocity_noise_horizontal: float = figure("m/s", "white, standard deviation an axis")
+    gps_velocity_noise_vertical: float = figure("m/s", "the same, vertical")
+    gps_satellites: float = figure("", "satellites in view", 0, 255)
+    gps_hdop: float = figure("", "horizontal dilution of precision", 0.0, 99.99)
+    gps_vdop: float = figure("", "vertical dilution of precision", 0.0, 99.99)
+    baro_rate: float = figure("Hz", "samples a second", 1.0, 200.0)
+    baro_noise: float = figure("Pa", "white, standard deviation")
+    baro_drift: float = figure("Pa", "correlated, standard deviation")
+    baro_drift_time: float = figure("s", "correlation time of the drift")
+    mag_rate: float = figure("Hz", "samples a second", 1.0, 200.0)
+    mag_noise: float = figure("gauss", "white, standard deviation an axis")
+    mag_offset: Vec3 = figure("gauss", "hard iron after calibration, body", -math.inf, default=(0.0, 0.0, 0.0))
+
+
+LIDAR_SAMPLES = 360
+"""Greatest number of published readings."""
+
+
+class Ranging(Record):
+    """Lidar and range-finder."""
+
+    lidar_rays: int = figure("", "rays cast; both ends of the field of view are rays", 0, 4096, 0)
+    lidar_samples: int = figure("", "readings published, of as many rays or more; 0 none", 0, LIDAR_SAMPLES, 0)
+    lidar_fov: float = figure("rad", "field of view, symmetric about straight ahead", 0.0, 2.0 * math.pi, 0.0)
+    lidar_min: float = figure("m", "least reading", 0.0, 10000.0, 0.0)
+    lidar_max: float = figure("m", "range; what is farther reads as nothing", 0.0, 600.0, 0.0)
+    lidar_rate: float = figure("Hz", "scans a second", 0.1, 400.0, 10.0)
+    lidar_noise: float = figure("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
+    lidar_at: Vec3 = figure("m", "its place on the body: forward, right, down", -100.0, 100.0, (0.0, 0.0, 0.0))
+    rangefinder_max: float = figure("m", "range of the one that looks down; 0 none", 0.0, 600.0, 0.0)
+    rangefinder_min: float = figure("m", "least reading", 0.0, 10000.0, 0.0)
+    rangefinder_rate: float = figure("Hz", "readings a second", 0.1, 400.0, 10.0)
+    rangefinder_noise: float = figure("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
+    rangefinder_at: Vec3 = figure("m", "its place on the body", -100.0, 100.0, (0.0, 0.0, 0.0))
+
+
+class Figures(Body, Battery, Sensors, Outline, Ranging):
+    """What all kinds have; each kind has more."""

@@ -7,12 +7,9 @@ import math
 
 from ...core.records import Floats, Record
 from ...core.vectors import Vec3
-from . import common
-from .battery import Battery
-from .body import Body, Outline
+from . import body
+from .body import Battery, Body, Outline, Ranging, Sensors
 from .figure import figure
-from .ranging import Ranging
-from .sensors import Sensors
 
 ROTORS_MAX = 8
 
@@ -84,5 +81,5 @@ class Legs(Record):
     hit_speed: float = figure("m/s", "slowest touch that is reported")
 
 
-class Figures(common.Figures, Body, Air, Hubs, Rotors, Battery, Legs, Sensors, Outline, Ranging):
+class Figures(body.Figures, Body, Air, Hubs, Rotors, Battery, Legs, Sensors, Outline, Ranging):
     """All figures of a multicopter."""

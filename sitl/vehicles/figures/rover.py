@@ -6,12 +6,9 @@ from __future__ import annotations
 import math
 
 from ...core.records import Record
-from . import common
-from .battery import Battery
-from .body import Body, Outline
+from . import body
+from .body import Battery, Body, Outline, Ranging, Sensors
 from .figure import figure
-from .ranging import Ranging
-from .sensors import Sensors
 
 STEERING_FRONT_WHEELS = 0
 """Steering model: a bicycle, whose rear axle runs on a circle of wheelbase / tan(angle)."""
@@ -84,5 +81,5 @@ class Encoders(Record):
     encoder_step: float = figure("m", "travel of the rim a count, 0 continuous", default=0.0)
 
 
-class Figures(common.Figures, Body, Drive, Tyres, Steering, Chassis, Battery, Sensors, Encoders, Outline, Ranging):
+class Figures(body.Figures, Body, Drive, Tyres, Steering, Chassis, Battery, Sensors, Encoders, Outline, Ranging):
     """All figures of a ground vehicle."""

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.bridge.frame import Splitter
-from sitl.bridge.hil import controls, gps, ranging, sensor, sticks, truth
+from sitl.bridge.hil import controls, measurements, ranging, sensor, sticks, truth
 from sitl.bridge.hil.measurements import Inbox, Measurements
 from sitl.bridge.hil.protocol import RefusedError
 from sitl.core.record_reader import RecordReader
@@ -86,10 +86,10 @@ def test_gps(lat: int, lon: int, alt: int, velocity: list[int], fix: int) -> Non
 def test_the_same_fix_again_is_not_a_new_one() -> None:
     source, other = Vehicle(), Vehicle()
     source.v.sensors.gps_count, source.v.sensors.gps_time_us, source.v.sensors.gps_fix = 1, 200_000, 3
-    (payload,), taker = gps.GpsWriter(reader(source)).payloads(), gps.GpsReader(other.v)
+    (payload,), taker = measurements.GpsWriter(reader(source)).payloads(), measurements.GpsReader(other.v)
     taker.write(taker.read(payload))
     source.v.sensors.gps_fix = 0  # the receiver is switched off
-    taker.write(taker.read(gps.GpsWriter(reader(source)).payloads()[0]))
+    taker.write(taker.read(measurements.GpsWriter(reader(source)).payloads()[0]))
     assert other.v.sensors.gps_count == 1 and other.v.sensors.gps_fix == 0
 
 

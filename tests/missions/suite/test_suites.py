@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 
 from sitl.cli import main
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.missions import library
 from sitl.missions.comparison.tolerance import ToleranceError
 from sitl.missions.suite.cases import SuiteError, find
-from sitl.missions.suite.fly import fly_case
-from sitl.missions.suite.result import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN
+from sitl.missions.suite.fly import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN, fly_case
 from sitl.missions.suite.run import run
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sitl.missions.testing import boots
+from sitl.missions.testing import factory
 from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.logs import fly_again, keep
 from sitl.missions.testing.vehicle import Copter
@@ -62,11 +62,11 @@ def test_a_vehicle_from_a_boot_that_was_kept_is_like_one_that_booted(make: Vehic
 
 
 def test_boots_are_kept_in_numbers(make: VehicleFactory, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(boots, "KEPT", 2)
-    monkeypatch.setattr(boots, "_kept", type(boots._kept)())
+    monkeypatch.setattr(factory, "KEPT", 2)
+    monkeypatch.setattr(factory, "_kept", type(factory._kept)())
     for seed in (1, 2, 3):
         make("rover", seed=seed)
-    assert [setup.seed for setup, _ in boots._kept] == [2, 3]
+    assert [setup.seed for setup, _ in factory._kept] == [2, 3]
 
 
 def test_what_comes_before_is_flown_once(make: VehicleFactory, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.physics.engine import EngineError
 from sitl.physics.jsbsim.formula import component, difference, function, if_less, limited, product, total
 from sitl.simulation import Simulation

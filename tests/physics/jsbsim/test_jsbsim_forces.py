@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sitl.core.algebra import rotate
 from sitl.core.vectors import Quat, Vec3
 from sitl.physics.engine import EngineError
-from sitl.physics.jsbsim.craft import FOOT, POUND, POUND_FOOT, SLUG_BY_FOOT3
+from sitl.physics.jsbsim.model import FOOT, POUND, POUND_FOOT, SLUG_BY_FOOT3
 from sitl.physics.native import atmosphere
 from sitl.physics.native.atmosphere import density
 from sitl.physics.native.copter.wrench import act

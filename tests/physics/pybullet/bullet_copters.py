@@ -11,7 +11,7 @@ import numpy as np
 from sitl import vehicles
 from sitl.core.algebra import ZERO, quat_from_euler
 from sitl.core.vectors import Euler
-from sitl.physics.engine import Laws, Seat
+from sitl.physics.engine import EngineVehicle, Laws
 from sitl.physics.native.copter import pieces
 from sitl.physics.native.copter.init import init
 from sitl.physics.pybullet.engine import BulletEngine
@@ -36,7 +36,7 @@ def copter(
     init(v, airframe, HOME, seed)
     floor = 0.0 if world is None else world.floor_z
     laws = Laws(lambda: pieces.begin([v], 0), lambda: pieces.load([v], 0), lambda: pieces.sense([v], 0))
-    engine = BulletEngine(Seat(v, fleet, 0, airframe, laws, world, floor))
+    engine = BulletEngine(EngineVehicle(v, fleet, 0, airframe, laws, world, floor))
     v.physics.obstacles.present = int(world is not None)
     put(engine, position, euler)
     return engine
@@ -44,15 +44,15 @@ def copter(
 
 def put(engine: BulletEngine, position: Sequence[float], euler: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
     """Put it down, at rest."""
-    body = engine.seat.v.physics.body
+    body = engine.vehicle.v.physics.body
     body.pos, body.vel, body.rates, body.q = position, ZERO, ZERO, quat_from_euler(Euler(*euler))
-    engine.seat.v.physics.ground.state = int(position[2] > -0.001)
+    engine.vehicle.v.physics.ground.state = int(position[2] > -0.001)
     engine.place()
 
 
 def hover(engine: BulletEngine, share: float = 1.0) -> None:
     """Set all controls to what carries this share of the weight."""
-    v = engine.seat.v
+    v = engine.vehicle.v
     a = v.physics.airframe
     speed = np.sqrt(share * a.mass * 9.80665 / a.rotor_count / a.thrust_coefficient)
     v.actuators.controls[: int(a.rotor_count)] = a.control_min + speed / a.speed_max * (a.control_max - a.control_min)
@@ -66,13 +66,13 @@ def run(engine: BulletEngine, seconds: float) -> None:
 
 def record_of(engine: BulletEngine) -> bytes:
     """All bytes of the vehicle."""
-    return engine.seat.fleet.tobytes()
+    return engine.vehicle.fleet.tobytes()
 
 
 def by_dice(engine: BulletEngine, ticks: int, seed: int) -> bytes:
     """Random controls; all bytes of the vehicle afterwards."""
     dice = np.random.default_rng(seed)
-    controls: Any = engine.seat.v.actuators.controls
+    controls: Any = engine.vehicle.v.actuators.controls
     for k in range(ticks):
         if k % 40 == 0:
             controls[:4] = dice.uniform(0.3, 0.75) + dice.uniform(-0.02, 0.02, 4)

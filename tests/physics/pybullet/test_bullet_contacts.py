@@ -31,7 +31,7 @@ def row(other: int, link: int, normal: tuple[float, float, float], force: float 
 
 
 def flying() -> tuple[Any, Surfaces]:
-    v = copter(position=(0.0, 0.0, -2.0)).seat.v
+    v = copter(position=(0.0, 0.0, -2.0)).vehicle.v
     v.time_us = 1_000_000
     return v, Surfaces(FLOOR, frozenset({SOLID}), 0.0)
 
@@ -79,7 +79,7 @@ def test_the_floor_out_of_the_air() -> None:
 
 def test_a_wall_stops_it_and_the_accelerometer_can_show_it() -> None:
     engine = copter(world=ROOM, position=(5.0, 0.0, -1.5))
-    v = engine.seat.v
+    v = engine.vehicle.v
     client = engine.body.client
     client.p.resetBaseVelocity(engine.body.number, (3.0, 0.0, 2.0), physicsClientId=client.id)
     v.physics.body.vel = (3.0, 0.0, -2.0)
@@ -98,7 +98,7 @@ def test_a_wall_stops_it_and_the_accelerometer_can_show_it() -> None:
 def test_stands_on_a_solid() -> None:
     engine = copter(world=ROOM, position=(2.0, 0.0, -0.8))
     run(engine, 1.5)
-    p = engine.seat.v.physics
+    p = engine.vehicle.v.physics
     assert p.body.pos == pytest.approx([2.0, 0.0, -0.7], abs=1e-4)
     assert (p.obstacles.touching, p.obstacles.hit_count, p.ground.state) == (1, 1, GROUND_AIRBORNE)
     assert p.obstacles.hit_speed == pytest.approx(math.sqrt(2.0 * 9.80665 * 0.1), abs=0.05)
@@ -108,7 +108,7 @@ def test_the_floor_of_the_world_may_be_anywhere() -> None:
     world = World("cellar", (), (Start("a", (0.0, 0.0, -3.0), 0.0),), floor_z=-3.0)
     engine = copter(world=world)
     run(engine, 0.5)
-    assert engine.seat.v.physics.body.pos == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+    assert engine.vehicle.v.physics.body.pos == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
     put(engine, (0.0, 0.0, -0.2))
     run(engine, 1.5)
-    assert engine.seat.v.physics.body.pos[2] == pytest.approx(0.0, abs=1e-5)
+    assert engine.vehicle.v.physics.body.pos[2] == pytest.approx(0.0, abs=1e-5)

@@ -14,7 +14,7 @@ pytest.importorskip("pybullet")
 
 from sitl import vehicles, worlds
 from sitl.core.records import first_difference
-from sitl.physics.engine import EngineError, Laws, Seat
+from sitl.physics.engine import EngineError, EngineVehicle, Laws
 from sitl.physics.native.body import GRAVITY
 from sitl.physics.native.rover.init import init
 from sitl.physics.pybullet.rover import BulletRover
@@ -50,7 +50,7 @@ class Rover:
         units = (ROVER.pieces.begin, ROVER.pieces.load, ROVER.pieces.sense)
         laws = Laws(*(bind_unit(unit, ROVER, fleet, 0) for unit in units))
         found = worlds.load(world) if world is not None else None
-        self.engine = BulletRover(Seat(self.v, fleet, 0, airframe, laws, found))
+        self.engine = BulletRover(EngineVehicle(self.v, fleet, 0, airframe, laws, found))
         self.engine.place()
         self.tick = self.engine.tick
 

@@ -25,7 +25,7 @@ from tests.physics.pybullet.bullet_copters import by_dice, copter, put, record_o
 
 def again(engine: BulletEngine, record: bytes, state: bytes) -> bytes:
     """Put back, flown on."""
-    engine.seat.fleet.view("u1")[:] = bytearray(record)
+    engine.vehicle.fleet.view("u1")[:] = bytearray(record)
     engine.restore(state)
     return by_dice(engine, 200, 9)
 
@@ -79,10 +79,10 @@ def test_power_on_forgets_what_it_ran_into() -> None:
         body.client.p.resetBaseVelocity(body.number, velocity, spin, body.client.id)
         by_dice(engine, 200, k)
         touched += engine.body.keeps_contacts()
-        n, e, d = list(engine.seat.v.physics.body.pos)
+        n, e, d = list(engine.vehicle.v.physics.body.pos)
         ends = []
         for again in (engine, copter(world=world)):
-            again.seat.fleet.view("u1")[:] = bytearray(record)
+            again.vehicle.fleet.view("u1")[:] = bytearray(record)
             put(again, (n, e, min(d, 0.0)))
             ends.append(by_dice(again, 300, k))
         assert ends[0] == ends[1], k
@@ -117,7 +117,7 @@ def test_goes_on_bit_for_bit_in_another_process(tmp_path: Path) -> None:
     script = (
         "import sys; from pathlib import Path; from tests.physics.pybullet.bullet_copters import by_dice, copter;"
         "e = copter();"
-        "e.seat.fleet.view('u1')[:] = bytearray(Path('record').read_bytes());"
+        "e.vehicle.fleet.view('u1')[:] = bytearray(Path('record').read_bytes());"
         "e.restore(Path('state').read_bytes()); sys.stdout.buffer.write(by_dice(e, 200, 9))"
     )
     there = subprocess.run(

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 pytest.importorskip("pybullet")
 
 from sitl import vehicles, worlds
-from sitl.core.extras import MissingExtra
+from sitl.errors import MissingExtra
 from sitl.physics.pybullet import client as clients
 from sitl.physics.pybullet.client import Client
 from sitl.physics.pybullet.copter_model import footing, leg_length, model, sag, springs
@@ -88,7 +88,7 @@ SQUARE = [(0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)]
 @pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad"])
 def test_says_what_the_airframe_says(frame: str) -> None:
     airframe = vehicles.load(frame)
-    robot = ElementTree.fromstring(model(copter(frame).seat.v.physics.airframe).text)
+    robot = ElementTree.fromstring(model(copter(frame).vehicle.v.physics.airframe).text)
     body, legs = robot.findall("link")
     assert float(body.find("inertial/mass").get("value")) == airframe.value("mass")  # type: ignore[union-attr]
     inertia = body.find("inertial/inertia").attrib  # type: ignore[union-attr]
@@ -131,5 +131,5 @@ def test_a_picture_shows_it_and_changes_nothing() -> None:
     assert away.std() < 1.0, "nothing but sky"
     engine.tick()
     other.tick()
-    assert engine.seat.fleet.tobytes() == other.seat.fleet.tobytes()
+    assert engine.vehicle.fleet.tobytes() == other.vehicle.fleet.tobytes()
     engine.close()

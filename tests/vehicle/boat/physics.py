@@ -15,12 +15,9 @@ from sitl.physics.native.power_on import Home, clear, place, wake
 from sitl.physics.native.prepare import prepare_shared
 from sitl.physics.native.sensors.sense import sense
 from sitl.vehicles import Airframe, sensor_sets
-from sitl.vehicles.figures import common
-from sitl.vehicles.figures.battery import Battery
-from sitl.vehicles.figures.body import Body, Outline
+from sitl.vehicles.figures import body
+from sitl.vehicles.figures.body import Battery, Body, Outline, Ranging, Sensors
 from sitl.vehicles.figures.figure import figure, figures
-from sitl.vehicles.figures.ranging import Ranging
-from sitl.vehicles.figures.sensors import Sensors
 
 
 class Motor(Record):
@@ -29,7 +26,7 @@ class Motor(Record):
     speed_max: float = figure("m/s", "at full throttle", 0.1, 50.0)
 
 
-class Figures(common.Figures, Body, Battery, Sensors, Outline, Ranging, Motor):
+class Figures(body.Figures, Body, Battery, Sensors, Outline, Ranging, Motor):
     """All figures of a boat."""
 
 

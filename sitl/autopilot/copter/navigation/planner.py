@@ -43,7 +43,7 @@ class CopterPlanner(Planner[Autopilot]):
     active_us = 200_000
 
     def limits(self, ap: Autopilot, direction: Vec3) -> Limits:
-        """Speed and acceleration of whichever axis is used up first."""
+        """Speed [m/s] and acceleration [m/s^2] of whichever axis is used up first."""
         nav, p = ap.modes.nav, ap.params.WPNAV
         vertical = max(waypoint.CM * p.ACCEL_Z, 0.1)
         horizontal = max(waypoint.CM * p.ACCEL, 0.1)
@@ -56,7 +56,7 @@ class CopterPlanner(Planner[Autopilot]):
         )
 
     def stopping_point(self, ap: Autopilot) -> Vec3:
-        """Where the controllers would bring it to rest."""
+        """Where the controllers would bring it to rest, NED [m]."""
         control, est, p = ap.control, ap.estimate, ap.params
         waypoint.set_limits(control, ap.modes.nav, p)
         return with_down(stopping_point_ne(control.pos_ne, est, p.PSC), stopping_point_d(control.pos_d, est, p.PSC))

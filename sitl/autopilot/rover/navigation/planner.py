@@ -31,7 +31,7 @@ class RoverPlanner(Planner[Autopilot]):
         return Limits(ap.control.position.speed_max, acceleration, jerk, 0.5 * math.pi * jerk / SNAP)
 
     def stopping_point(self, ap: Autopilot) -> Vec3:
-        """Where it would come to rest."""
+        """Where it would come to rest, NED [m]."""
         return with_down(waypoint.stopping_point(ap.estimate, ap.params.ATC), 0.0)
 
     def may_join(self, ap: Autopilot, corner: Vec3, target: Vec3) -> bool:

@@ -16,7 +16,7 @@ from ....core.geodesy import add_offset
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Vec3
-from ....vehicles.figures.sensors import Sensors as SensorFigures
+from ....vehicles.figures.body import Sensors as SensorFigures
 from ..records import GPS_RING, Physics, SensorState
 
 UNKNOWN_DOP = 9999

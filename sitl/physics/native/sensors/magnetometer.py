@@ -8,7 +8,7 @@ from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Quat, Vec3
-from ....vehicles.figures.sensors import Sensors as SensorFigures
+from ....vehicles.figures.body import Sensors as SensorFigures
 from ..records import Physics
 
 

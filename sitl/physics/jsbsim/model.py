@@ -9,8 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from ..engine import EngineError, Seat
-from ..record import offset
+from ..engine import EngineError, EngineVehicle, offset
 
 
 class Properties:
@@ -36,14 +35,14 @@ class Properties:
         return write
 
 
-class Craft(ABC):
+class VehicleModel(ABC):
     """The part of a kind of vehicle: its aircraft, and what it exchanges with JSBSim besides the body's motion."""
 
     ahead = 0.0
     """From the origin of the body forward to its centre of mass, which JSBSim moves [m]."""
 
-    def __init__(self, seat: Seat) -> None:
-        self.seat = seat
+    def __init__(self, vehicle: EngineVehicle) -> None:
+        self.vehicle = vehicle
 
     def frames(self, a: Any) -> int:
         """Frames of JSBSim a tick, of the vehicle's figures."""
@@ -59,7 +58,7 @@ class Craft(ABC):
 
     @abstractmethod
     def bind(self, properties: Properties, a: Any, dt: float) -> None:
-        """Look up the properties of a new executive."""
+        """Look up the properties of a new executive, whose frames are dt [s] long."""
 
     @abstractmethod
     def inputs(self) -> None:
@@ -78,10 +77,10 @@ class Craft(ABC):
         return
 
 
-def writer(seat: Seat, path: str, count: int) -> Callable[..., None]:
+def writer(vehicle: EngineVehicle, path: str, count: int) -> Callable[..., None]:
     """A function of ``count`` numbers that writes them as f8 from the field at ``path`` on."""
-    dtype, memory = seat.fleet.dtype, seat.fleet.view("u1").data
-    place = seat.index * dtype.itemsize + offset(dtype, *path.split("."))
+    dtype, memory = vehicle.fleet.dtype, vehicle.fleet.view("u1").data
+    place = vehicle.index * dtype.itemsize + offset(dtype, *path.split("."))
     return partial(struct.Struct(f"<{count}d").pack_into, memory, place)
 
 
