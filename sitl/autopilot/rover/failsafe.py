@@ -9,7 +9,7 @@ from __future__ import annotations
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report
+from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report, report_battery
 from ..modes import ACCEPTED, REASON_BATTERY_FAILSAFE, REASON_EKF_FAILSAFE, REASON_FAILSAFE
 from ..radio import THROTTLE, stick_pulse
 from . import arming, motor_test
@@ -144,9 +144,10 @@ def begin(v: Vehicle, bit: int) -> None:
 @law
 def update_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
-    p = v.autopilot.params
-    level = battery_fell_to(v.autopilot, v.time_us)
+    ap, p = v.autopilot, v.autopilot.params
+    level = battery_fell_to(ap.modes.failsafe, ap.battery, ap.arming.armed, v.time_us, p.BATT)
     if level != 0:
+        report_battery(ap.events, v.time_us, level)
         act(v, int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT), REASON_BATTERY_FAILSAFE)
 
 

@@ -7,6 +7,7 @@ from pytest import approx
 
 from sitl.core.geodesy import METRES_PER_DEGE7
 from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
+from sitl.physics.native.tick import Clock
 
 
 def samples(rig, sample, field, count):
@@ -64,7 +65,7 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
     for tick in range(1, 400):
         p.body.pos = p.body.pos.replace(x=0.0025 * tick * 10.0)  # 10 m/s north
         before = int(s.gps_count)
-        gps.sample(p, s, gps.Clock(tick, tick * 2500), r.v.rng)
+        gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
         if s.gps_count != before:
             arrivals.append(tick)
             north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
@@ -79,7 +80,7 @@ def test_gps_has_no_fix_at_first(rig):
     p, s = r.p, r.v.sensors
     fixes = {}
     for tick in range(1, 600):
-        gps.sample(p, s, gps.Clock(tick, tick * 2500), r.v.rng)
+        gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
         fixes[tick] = int(s.gps_fix)
     assert fixes[40] == 0 and fixes[60] == 1 and fixes[400] == 1 and fixes[599] == 3
     assert s.gps_eph == 80 and s.gps_satellites == 12
@@ -91,7 +92,7 @@ def test_gps_errors_have_their_deviation(rig):
     rows = []
     for k in range(600):
         gps.take(r.p, 10_000 + k, r.v.rng)
-        gps.deliver(r.p.sensors, r.v.sensors, gps.Clock(20_000 + k, 0), r.p.airframe)
+        gps.deliver(r.p.sensors, r.v.sensors, Clock(20_000 + k, 0), r.p.airframe)
         s = r.v.sensors
         north = (int(s.gps_lat) - int(r.p.place.lat)) * METRES_PER_DEGE7
         rows.append((north, s.gps_alt / 1e3 - 584.0, *s.gps_vel))
