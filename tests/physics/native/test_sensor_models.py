@@ -6,8 +6,12 @@ import pytest
 from pytest import approx
 
 from sitl.core.geodesy import METRES_PER_DEGE7
+from sitl.core.rng import Rng
+from sitl.core.vectors import Vec3
+from sitl.physics.native.records import Body, Derived, SensorState
 from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
 from sitl.physics.native.tick import Clock
+from sitl.vehicles.figures.sensors import Sensors
 
 
 def samples(rig, sample, field, count):
@@ -130,3 +134,20 @@ def test_sensor_rates(rig):
     assert r.v.sensors.mag_count == 1 + 160 // 5
     assert r.v.sensors.baro_count == 1 + 160 // 8
     assert r.v.sensors.time_us == 400_000 == r.v.time_us
+
+
+def test_without_errors_a_sensor_shows_the_truth():
+    one, none, truth = Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.0, -2.0, 3.0)
+    assert imu.measure(truth, one, none, 0.0, Rng()) == truth
+    assert imu.measure(truth, 2.0 * one, one, 0.0, Rng()) == 2.0 * truth + one
+    body = Body()
+    body.pos, body.vel = truth, 2.0 * truth
+    assert gps.measure(SensorState(), body, Sensors(), Derived(), Rng()) == (truth, 2.0 * truth)
+    assert barometer.pressure_error(SensorState(), Sensors(), Derived(), Rng()) == 0.0
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_a_range_bounds_all_but_nan(bad):
+    x, y, z = imu.saturate(Vec3(5.0, -5.0, bad), 3.0)
+    assert (x, y) == (3.0, -3.0)
+    assert math.isnan(z) if math.isnan(bad) else z == 3.0
