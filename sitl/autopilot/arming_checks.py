@@ -8,9 +8,11 @@ ARMING_CHECK selects which optional checks count.
 from __future__ import annotations
 
 from ..core.kernels import law
+from . import radio
 from .params.parameters import Parameters
+from .params.radio import RcMap
 from .params.system import Arming
-from .state import BatteryState, Sensors
+from .state import BatteryState, Radio, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
 BY_RUDDER = 0
@@ -133,6 +135,14 @@ def battery_checks(battery: BatteryState, level: int, params: Parameters) -> int
         if level != 0:
             failed |= BATTERY_FAILSAFE
     return failed
+
+
+@law
+def radio_checks(rc: Radio, rcmap: RcMap, throttle_min: float) -> int:
+    """Failed checks of the radio, which is lost when the throttle is below ``throttle_min`` [us]."""
+    if not rc.receiver_ok:
+        return RC_MISSING
+    return THROTTLE_FAILSAFE if radio.stick_pulse(rc, rcmap, radio.THROTTLE) < throttle_min else 0
 
 
 def texts(failed: int, prefix: str = "") -> list[str]:

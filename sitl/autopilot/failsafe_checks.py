@@ -9,8 +9,10 @@ from __future__ import annotations
 from ..core.kernels import law
 from ..core.scalars import TWO_PI
 from .events import FAILSAFE, Events, emit
+from .params.radio import RcMap
 from .params.system import Battery, Failsafes
-from .state import BatteryState, Estimate, Failsafe
+from .radio import THROTTLE, stick_pulse
+from .state import BatteryState, Estimate, Failsafe, Radio
 
 RADIO = 1
 GCS = 2
@@ -37,6 +39,13 @@ def text(which: int, on: bool) -> str | None:
 def report(events: Events, time_us: int, which: int, on: bool) -> None:
     """Emit FAILSAFE."""
     emit(events, time_us, FAILSAFE, float(which), 1.0 if on else 0.0)
+
+
+@law
+def is_radio_bad(rc: Radio, rcmap: RcMap, throttle_min: float) -> bool:
+    """Whether a radio that is fitted is silent, or its throttle below ``throttle_min`` [us]."""
+    fitted = rc.receiver_us > 0 or rc.has_receiver
+    return fitted and (not rc.receiver_ok or stick_pulse(rc, rcmap, THROTTLE) < throttle_min)
 
 
 @law
@@ -93,8 +102,9 @@ def battery_fell_to(fs: Failsafe, battery: BatteryState, armed: bool, time_us: i
 
 @law
 def report_battery(events: Events, time_us: int, level: int) -> None:
-    """Report a battery that has become low (1) or critical (2)."""
-    report(events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
+    """Report a battery that has become low (``level`` 1) or critical (2); 0: nothing."""
+    if level != 0:
+        report(events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
 
 
 _EKF_PERIOD_S = 0.1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The mode switch of the pilot's transmitter: six positions on one channel."""
+"""What the pilot's transmitter commands: the mode switch (six positions on one channel), arming with the yaw stick."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from .state import Radio
 DEBOUNCE_US = 200_000
 _ENDS = (1231, 1361, 1491, 1621, 1750)
 """Where a position ends and the next one begins [us]."""
+RUDDER_US = 2_000_000
+"""The yaw (steering) stick arms or disarms when it is held over for so long."""
+_FULL_STICK = 4000.0 / 4500.0
 
 
 class Switch(Protocol):
@@ -19,6 +22,12 @@ class Switch(Protocol):
     switch_position: int
     switch_candidate: int
     switch_us: int
+
+
+class RudderStick(Protocol):
+    """What a firmware keeps of arming with the yaw stick."""
+
+    rudder_us: int
 
 
 @law
@@ -50,3 +59,21 @@ def moved_to(switch: Switch, rc: Radio, channel: int, time_us: int) -> int:
         switch.switch_position = now
         return now
     return -1
+
+
+@law
+def rudder_command(stick: float, armed: bool, permission: float) -> int:
+    """What the yaw stick, -1 .. 1, asks for: 1 to arm, -1 to disarm, 0 nothing; ``permission``: ARMING_RUDDER."""
+    if stick > _FULL_STICK and not armed and permission >= 1.0:
+        return 1
+    return -1 if stick < -_FULL_STICK and armed and permission >= 2.0 else 0
+
+
+@law
+def is_rudder_held(pilot: RudderStick, command: int, time_us: int) -> bool:
+    """After each frame: whether the stick has asked for something (``command`` not 0) for RUDDER_US."""
+    if command == 0:
+        pilot.rudder_us = 0
+    elif pilot.rudder_us == 0:
+        pilot.rudder_us = time_us
+    return command != 0 and time_us - pilot.rudder_us >= RUDDER_US

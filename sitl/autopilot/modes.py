@@ -14,6 +14,8 @@ from typing import Any, Generic, TypeVar
 
 from ..core.kernels import law
 from ..core.places import ExtensionError, Places
+from .events import MODE_CHANGED, Events, emit
+from .state import Modes
 
 # Why a mode changed (ArduPilot's ModeReason, the number that its logs carry)
 REASON_RC = 1
@@ -38,6 +40,8 @@ NEEDS_ALTITUDE = 5
 MISSING_TAKEOFF = 6
 NO_MISSION = 7
 
+_HINTS = {MISSING_TAKEOFF: "Auto: Missing Takeoff Cmd", NO_MISSION: "No Mission. Can't set AUTO."}
+
 NUMBER_MAX = 2**24 - 1
 """A command of MAVLink carries the number as a float."""
 _PLACES = Places("SITL_MODES", "mode")
@@ -50,6 +54,48 @@ M = TypeVar("M", bound="Mode[Any]")
 def accept(v: object) -> int:
     """Start of a mode that needs no preparation."""
     return ACCEPTED
+
+
+@law
+def enter(modes: Modes, events: Events, time_us: int, number: int, reason: int, auto: int) -> None:
+    """Note that mode ``number`` has begun, and why.
+
+    The shell is told; at once when ``auto``, the mode that flies missions, begins or ends.
+    """
+    modes.previous = modes.number
+    modes.number = number
+    modes.reason = reason
+    modes.wanted = 0
+    emit(events, time_us, MODE_CHANGED, float(number), float(reason))
+    if number == auto or modes.previous == auto:
+        events.attention = True
+
+
+@law
+def ask(modes: Modes, number: int, reason: int) -> None:
+    """A mode asks for another one, which begins after its period."""
+    modes.wanted = number + 1
+    modes.wanted_reason = reason
+
+
+@law
+def take_asked(modes: Modes) -> int:
+    """The mode that was asked for, once; -1 none."""
+    number = modes.wanted - 1
+    modes.wanted = 0
+    return number
+
+
+def refusal_texts(number: int, cause: int, failed: str) -> list[str]:
+    """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted.
+
+    ``failed``: the firmware's own text of all causes but an unknown number.
+    """
+    if cause == ACCEPTED:
+        return []
+    if cause == NO_SUCH_MODE:
+        return [f"No such mode {number}"]
+    return [_HINTS[cause], failed] if cause in _HINTS else [failed]
 
 
 @dataclass(frozen=True, kw_only=True)

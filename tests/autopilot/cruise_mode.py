@@ -13,8 +13,9 @@ from sitl.core.kernels import law
 @law
 def run(v: Vehicle) -> None:
     """One period."""
-    drive.turn(v.autopilot, 0.0)
-    speed.drive(v, v.autopilot.params.WP.SPEED)
+    ap = v.autopilot
+    drive.turn(ap.control, ap.estimate, ap.modes.pilot, 0.0, ap.params)
+    speed.drive(ap.control, ap.arming.armed, ap.params.WP.SPEED, ap.params)
 
 
 MODE = RoverMode(number=77, name="CRUISE", run=run, needs_position=True, autonomous=True)

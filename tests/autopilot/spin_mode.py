@@ -16,11 +16,12 @@ RATE = math.radians(30.0)
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
-    if ground.is_grounded(v.autopilot.arming):
-        ground.rest(v.autopilot)
+    ap = v.autopilot
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap.arming.armed, ap.control, ap.estimate, ap.params)
     else:
-        auto_yaw.turn_at(v.autopilot, RATE)
-        ground.hold(v.autopilot)
+        auto_yaw.turn_at(ap.modes.auto_yaw, RATE, ap.control.attitude, ap.estimate)
+        ground.hold(ap.modes.auto_yaw, ap.control, ap.estimate, ap.params)
 
 
 MODE = CopterMode(

@@ -7,19 +7,15 @@ from ...core.kernels import law
 from .. import home
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, emit
-from .arming_checks import MANDATORY, check, check_now
+from ..state import Arming
+from .arming_checks import MANDATORY, arm_checks, check
 from .control.motors import ARMING_DELAY_US
 from .modes import ground
+from .modes.state import Modes
 from .modes.table import has_manual_throttle
-from .state import Autopilot, Vehicle
+from .state import Vehicle
 
 __all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
-
-
-@law
-def run_prearm_checks(v: Vehicle) -> None:
-    """Keep ``arming.prearm_ok`` up to date; called four times a second."""
-    v.autopilot.arming.prearm_ok = check(v) == 0
 
 
 @law
@@ -29,7 +25,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     arming = ap.arming
     if arming.armed:
         return 0
-    failed = check_now(v, method)
+    failed = check(v) | arm_checks(ap.modes, ap.rc, ap.params, method)
     if (not force and failed != 0) or (failed & MANDATORY) != 0:
         emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
         return failed
@@ -48,12 +44,12 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
 
 
 @law
-def may_disarm(ap: Autopilot, method: int) -> bool:
+def may_disarm(landed: bool, mode: int, method: int) -> bool:
     """Whether ``method`` may disarm now: in flight neither by command nor, but in STABILIZE, by stick."""
     if method == BY_MAVLINK:
-        return ap.arming.landed
+        return landed
     if method == BY_RUDDER:
-        return ap.arming.landed or has_manual_throttle(ap.modes.number)
+        return landed or has_manual_throttle(mode)
     return True
 
 
@@ -61,26 +57,24 @@ def may_disarm(ap: Autopilot, method: int) -> bool:
 def disarm(v: Vehicle, method: int, force: bool) -> bool:
     """Disarm, unless ``method`` may not; whether the vehicle is disarmed."""
     ap = v.autopilot
-    if ap.arming.armed and (force or may_disarm(ap, method)):
+    if ap.arming.armed and (force or may_disarm(ap.arming.landed, ap.modes.number, method)):
         ground.disarm(v, method)
     return not ap.arming.armed
 
 
 @law
-def follow_throttle(v: Vehicle) -> None:
+def follow_throttle(arming: Arming, modes: Modes, time_us: int) -> None:
     """Every tick: end of the arming delay, and whether the vehicle was told to fly since arming."""
-    ap = v.autopilot
-    arming = ap.arming
     if not arming.armed:
         arming.auto_armed = False
         return
-    if ap.modes.arming_delay and v.time_us - arming.armed_us >= ARMING_DELAY_US:
-        ap.modes.arming_delay = False
-    throttle_zero = ap.modes.pilot.throttle_zero
+    if modes.arming_delay and time_us - arming.armed_us >= ARMING_DELAY_US:
+        modes.arming_delay = False
+    throttle_zero = modes.pilot.throttle_zero
     if not arming.auto_armed:
         if not throttle_zero:
             arming.auto_armed = True
-    elif has_manual_throttle(ap.modes.number) and throttle_zero and not ap.modes.failsafe.radio:
+    elif has_manual_throttle(modes.number) and throttle_zero and not modes.failsafe.radio:
         arming.auto_armed = False
 
 
@@ -88,12 +82,18 @@ def follow_throttle(v: Vehicle) -> None:
 def disarm_idle(v: Vehicle) -> None:
     """Disarm what was armed on the ground and left alone for DISARM_DELAY; called ten times a second."""
     ap = v.autopilot
-    delay = ap.params.DISARM_DELAY
     idle = ap.arming.landed and ap.modes.pilot.throttle_zero and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE
-    if not ap.arming.armed or delay <= 0.0 or not idle:
-        ap.arming.idle_us = v.time_us
-    elif v.time_us - ap.arming.idle_us >= delay * 1e6:
+    if was_idle(ap.arming, idle, v.time_us, ap.params.DISARM_DELAY):
         ground.disarm(v, BY_DELAY)
+
+
+@law
+def was_idle(arming: Arming, idle: bool, time_us: int, delay: float) -> bool:
+    """Whether an armed vehicle has been ``idle`` for a delay [s], 0 for ever."""
+    if not arming.armed or delay <= 0.0 or not idle:
+        arming.idle_us = time_us
+        return False
+    return time_us - arming.idle_us >= delay * 1e6
 
 
 def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:

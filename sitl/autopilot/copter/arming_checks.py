@@ -17,18 +17,20 @@ from ..arming_checks import (
     MODE,
     NEED_ALTITUDE,
     NEED_POSITION,
-    RC_MISSING,
     RUDDER_DISABLED,
-    THROTTLE_FAILSAFE,
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
     battery_checks,
+    radio_checks,
     sensor_checks,
     wants,
 )
-from ..radio import THROTTLE, stick_pulse
+from ..params.system import Arming
+from ..state import Estimate, Radio
 from . import pilot
+from .modes.state import Modes
 from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
+from .parameters import Parameters
 from .state import Vehicle
 
 MANDATORY = NEED_POSITION | NEED_ALTITUDE
@@ -42,37 +44,19 @@ def lean_check(cos_lean: float, lean_max: float) -> int:
 
 
 @law
-def estimate_checks(v: Vehicle) -> int:
+def estimate_checks(mode: int, estimate: Estimate, home_set: bool, gps_fix: int, p: Arming) -> int:
     """Failed checks of position, height and home, as far as the mode needs them."""
-    ap = v.autopilot
-    gps = wants(ap.params.ARMING, CHECK_GPS)
+    gps = wants(p, CHECK_GPS)
     failed = 0
-    mode = ap.modes.number
     if requires_position(mode):
-        if not ap.home.is_set and gps:
+        if not home_set and gps:
             failed |= WAITING_FOR_HOME
-        elif v.sensors.gps_fix < 3 and gps:
+        elif gps_fix < 3 and gps:
             failed |= GPS_FIX
-        if not ap.estimate.position_ok:
+        if not estimate.position_ok:
             failed |= NEED_POSITION
-    if not has_manual_throttle(mode) and not ap.estimate.attitude_ok:
+    if not has_manual_throttle(mode) and not estimate.attitude_ok:
         failed |= NEED_ALTITUDE
-    return failed
-
-
-@law
-def equipment_checks(v: Vehicle) -> int:
-    """Failed checks of radio, battery and frame."""
-    ap = v.autopilot
-    p = ap.params
-    failed = battery_checks(ap.battery, ap.modes.failsafe.battery, p)
-    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
-        if not ap.rc.receiver_ok:
-            failed |= RC_MISSING
-        elif stick_pulse(ap.rc, p.RCMAP, THROTTLE) < p.FS.THR_VALUE:
-            failed |= THROTTLE_FAILSAFE
-    if p.FRAME.CLASS != 1.0:
-        failed |= FRAME
     return failed
 
 
@@ -80,31 +64,29 @@ def equipment_checks(v: Vehicle) -> int:
 def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
-    lean = lean_check(ap.control.attitude.cos_lean, math.radians(ap.params.ANGLE_MAX * 0.01))
-    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, ap.params.ARMING)
-    return sensors | lean | estimate_checks(v) | equipment_checks(v)
+    p = ap.params
+    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p.ARMING)
+    failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
+    failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
+    failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
+        failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    return failed if p.FRAME.CLASS == 1.0 else failed | FRAME
 
 
 @law
-def arm_checks(v: Vehicle, method: int) -> int:
-    """Failed checks that count only at the moment of arming."""
-    ap = v.autopilot
+def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int) -> int:
+    """Failed checks that count only at the moment of arming by ``method``."""
     failed = 0
-    mode = ap.modes.number
-    if not may_arm(mode, v, method):
+    mode = modes.number
+    if not may_arm(mode, p, method):
         failed |= MODE
-    if method == BY_RUDDER and ap.params.ARMING.RUDDER < 1.0:
+    if method == BY_RUDDER and p.ARMING.RUDDER < 1.0:
         failed |= RUDDER_DISABLED
     if method != BY_MAVLINK or not arms_at_any_throttle(mode):
         if has_manual_throttle(mode):
-            if ap.modes.pilot.throttle > 0.0:
+            if modes.pilot.throttle > 0.0:
                 failed |= THROTTLE_HIGH
-        elif pilot.climb_rate(ap) > 0.0:
+        elif pilot.climb_rate(modes, rc, p) > 0.0:
             failed |= THROTTLE_HIGH
     return failed
-
-
-@law
-def check_now(v: Vehicle, method: int) -> int:
-    """All failed checks of arming at this moment by ``method``."""
-    return check(v) | arm_checks(v, method)

@@ -7,11 +7,14 @@ import math
 
 from ...core.algebra import dot
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from ..arming_checks import BY_CRASH
 from ..events import CRASH_DISARM, emit
 from . import landing
+from .control.state import AttitudeState
 from .modes import ground
-from .state import Autopilot, Vehicle
+from .modes.state import LandingState
+from .state import Vehicle
 
 TRIGGER_TICKS = 800
 """2 s."""
@@ -22,30 +25,24 @@ SPEED_MAX = 10.0  # [m/s]
 
 
 @law
-def is_crashed(ap: Autopilot) -> bool:
-    """Whether this tick looks like a crash: far off its lean, yet neither accelerating nor fast."""
-    if not ap.arming.armed or ap.arming.landed or ap.params.FS.CRASH_CHECK < 1.0:
-        return False
-    attitude = ap.control.attitude
+def is_crashed(attitude: AttitudeState, detector: LandingState, vel: Vec3) -> bool:
+    """Whether this tick looks like a crash: far off its lean, yet neither accelerating nor fast; ``vel`` [m/s]."""
     if attitude.cos_lean > COS_LEAN_MIN or attitude.thrust_error_angle <= ANGLE_ERROR_MAX:
         return False
-    if landing.acceleration(ap.modes) >= ACCEL_MAX:
-        return False
-    vel = ap.estimate.vel
-    return dot(vel, vel) < SPEED_MAX * SPEED_MAX
+    return landing.acceleration(detector) < ACCEL_MAX and dot(vel, vel) < SPEED_MAX * SPEED_MAX
 
 
 @law
 def check(v: Vehicle) -> None:
     """One tick: count, and disarm after two seconds."""
     ap = v.autopilot
-    if not is_crashed(ap):
-        ap.arming.crash_ticks = 0
-        return
-    ap.arming.crash_ticks += 1
+    attitude, detector = ap.control.attitude, ap.modes.landing
+    watched = ap.arming.armed and not ap.arming.landed and ap.params.FS.CRASH_CHECK >= 1.0
+    crashed = watched and is_crashed(attitude, detector, ap.estimate.vel)
+    ap.arming.crash_ticks = ap.arming.crash_ticks + 1 if crashed else 0
     if ap.arming.crash_ticks >= TRIGGER_TICKS:
-        error = math.degrees(ap.control.attitude.thrust_error_angle)
-        emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(ap.modes))
+        error = math.degrees(attitude.thrust_error_angle)
+        emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(detector))
         ground.disarm(v, BY_CRASH)
 
 

@@ -12,6 +12,7 @@ from ..failsafe_checks import (
     battery_fell_to,
     is_estimate_bad,
     is_gcs_lost,
+    is_radio_bad,
     report,
     report_battery,
     text,
@@ -23,7 +24,7 @@ from ..modes import (
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
 )
-from ..radio import THROTTLE, stick_pulse
+from ..state import Failsafe
 from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
@@ -59,57 +60,54 @@ EKF_COUNT = 10
 def watch_radio(v: Vehicle) -> None:
     """After each frame of the receiver."""
     ap = v.autopilot
-    fs = ap.modes.failsafe
-    enable = int(ap.params.FS.THR_ENABLE)
-    pulse = stick_pulse(ap.rc, ap.params.RCMAP, THROTTLE)
-    fitted = ap.rc.receiver_us > 0 or ap.rc.has_receiver
-    bad = enable > 0 and fitted and (not ap.rc.receiver_ok or pulse < ap.params.FS.THR_VALUE)
-    if bad and not fs.radio:
-        fs.radio_count += 1
-        if fs.radio_count >= RADIO_FRAMES:
-            fs.radio = True
-            report(ap.events, v.time_us, RADIO, True)
-            start_radio(v, radio_action(enable))
-    elif not bad and fs.radio:
-        fs.radio_count -= 1
-        if fs.radio_count <= 0:
-            fs.radio = False
-            report(ap.events, v.time_us, RADIO, False)
-    elif not bad:
-        fs.radio_count = 0
+    fs, p = ap.modes.failsafe, ap.params
+    enabled = int(p.FS.THR_ENABLE)
+    if not count_radio(fs, enabled > 0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)):
+        return
+    report(ap.events, v.time_us, RADIO, fs.radio)
+    if fs.radio and (ap.arming.landed or not goes_on_without_radio(ap.modes.number, int(p.FS.OPTIONS))):
+        act(v, radio_action(enabled), REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
 
 
 @law
-def start_radio(v: Vehicle, action: int) -> None:
-    """Act on the lost radio, unless FS_OPTIONS lets the mode go on."""
-    ap = v.autopilot
-    options = int(ap.params.FS.OPTIONS)
-    mode = ap.modes.number
-    if mode == AUTO and (options & _RADIO_AUTO) != 0 and not ap.arming.landed:
-        return
-    if mode == GUIDED and (options & _RADIO_GUIDED) != 0 and not ap.arming.landed:
-        return
-    act(v, action, REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
+def count_radio(fs: Failsafe, bad: bool) -> bool:
+    """Count a frame that is ``bad`` or good; whether the radio (``fs.radio``) is lost or back with it."""
+    before = fs.radio
+    if bad and not fs.radio:
+        fs.radio_count += 1
+        fs.radio = fs.radio_count >= RADIO_FRAMES
+    elif not bad and fs.radio:
+        fs.radio_count -= 1
+        fs.radio = fs.radio_count > 0
+    elif not bad:
+        fs.radio_count = 0
+    return fs.radio != before
+
+
+@law
+def goes_on_without_radio(mode: int, options: int) -> bool:
+    """Whether FS_OPTIONS lets the mode fly on without a radio."""
+    return (mode == AUTO and (options & _RADIO_AUTO) != 0) or (mode == GUIDED and (options & _RADIO_GUIDED) != 0)
+
+
+@law
+def goes_on_without_gcs(mode: int, options: int) -> bool:
+    """Whether FS_OPTIONS lets the mode fly on without a ground station."""
+    return (mode == AUTO and (options & _GCS_AUTO) != 0) or (not is_autonomous(mode) and (options & _GCS_PILOT) != 0)
 
 
 @law
 def watch_gcs(v: Vehicle) -> None:
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
     ap = v.autopilot
-    fs = ap.modes.failsafe
-    lost = is_gcs_lost(fs, v.time_us, ap.params.FS)
-    if lost and not fs.gcs:
-        fs.gcs = True
-        report(ap.events, v.time_us, GCS, True)
-        options = int(ap.params.FS.OPTIONS)
-        mode = ap.modes.number
-        goes_on = mode == AUTO and (options & _GCS_AUTO) != 0
-        goes_on = goes_on or (not is_autonomous(mode) and (options & _GCS_PILOT) != 0)
-        if not goes_on or ap.arming.landed:
-            act(v, gcs_action(int(ap.params.FS.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
-    elif not lost and fs.gcs:
-        fs.gcs = False
-        report(ap.events, v.time_us, GCS, False)
+    fs, p = ap.modes.failsafe, ap.params.FS
+    lost = is_gcs_lost(fs, v.time_us, p)
+    if lost == fs.gcs:
+        return
+    fs.gcs = lost
+    report(ap.events, v.time_us, GCS, lost)
+    if lost and (ap.arming.landed or not goes_on_without_gcs(ap.modes.number, int(p.OPTIONS))):
+        act(v, gcs_action(int(p.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
 
 
 @law
@@ -117,8 +115,8 @@ def watch_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
     ap, p = v.autopilot, v.autopilot.params
     level = battery_fell_to(ap.modes.failsafe, ap.battery, ap.arming.armed, v.time_us, p.BATT)
+    report_battery(ap.events, v.time_us, level)
     if level != 0:
-        report_battery(ap.events, v.time_us, level)
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
 
@@ -131,45 +129,53 @@ EKF_ACTED = 2
 def watch_estimate(v: Vehicle) -> None:
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
     ap = v.autopilot
-    fs = ap.modes.failsafe
-    bad = is_estimate_bad(fs, ap.estimate, ap.params.FS.EKF_THRESH, ap.params.FS.EKF_FILT)
-    if ap.params.FS.EKF_THRESH <= 0.0 or not ap.arming.armed or not ap.estimate.origin_set:
+    fs, p = ap.modes.failsafe, ap.params.FS
+    before = fs.ekf
+    bad = is_estimate_bad(fs, ap.estimate, p.EKF_THRESH, p.EKF_FILT)
+    if p.EKF_THRESH <= 0.0 or not ap.arming.armed or not ap.estimate.origin_set:
         fs.ekf_count = 0
         fs.ekf = 0
         return
+    count_estimate(fs, bad)
+    if before == 0 and fs.ekf != 0 and ends_for_estimate(ap.modes.number, int(p.EKF_ACTION)):
+        act_on_estimate(v)
+    elif before == EKF_ACTED and fs.ekf == 0:
+        report(ap.events, v.time_us, EKF, False)
+
+
+@law
+def count_estimate(fs: Failsafe, bad: bool) -> None:
+    """Count a tenth of a second of a ``bad`` or good estimate; the failsafe begins after ten, and ends at zero."""
     if bad and fs.ekf_count < EKF_COUNT:
         fs.ekf_count += 1
         if fs.ekf_count >= EKF_COUNT and fs.ekf == 0:
             fs.ekf = 1
-            start_ekf(v)
     elif not bad and fs.ekf_count > 0:
         fs.ekf_count -= 1
-        if fs.ekf_count == 0 and fs.ekf != 0:
-            if fs.ekf == EKF_ACTED:
-                report(ap.events, v.time_us, EKF, False)
+        if fs.ekf_count == 0:
             fs.ekf = 0
 
 
 @law
-def start_ekf(v: Vehicle) -> None:
-    """Act on the bad estimate."""
-    ap = v.autopilot
-    action = int(ap.params.FS.EKF_ACTION)
-    mode = ap.modes.number
-    if mode != LAND and (action == 0 or (not requires_position(mode) and action != 3)):
-        return
-    ap.modes.failsafe.ekf = EKF_ACTED
-    report(ap.events, v.time_us, EKF, True)
-    if mode == LAND:
-        ap.modes.land.with_position = False
-        return
-    if action == 2 and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
-        return
-    land_with_pause(v, REASON_EKF_FAILSAFE)
-    ap.modes.land.with_position = False
+def ends_for_estimate(mode: int, action: int) -> bool:
+    """Whether a bad estimate ends the mode, or lets LAND go on without a position; ``action``: FS_EKF_ACTION."""
+    return mode == LAND or (action != 0 and (requires_position(mode) or action == 3))
 
 
 @law
+def act_on_estimate(v: Vehicle) -> None:
+    """End the mode for the bad estimate."""
+    ap = v.autopilot
+    ap.modes.failsafe.ekf = EKF_ACTED
+    report(ap.events, v.time_us, EKF, True)
+    if ap.modes.number != LAND:
+        to_alt_hold = int(ap.params.FS.EKF_ACTION) == 2
+        if to_alt_hold and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
+            return
+        land_with_pause(v, REASON_EKF_FAILSAFE)
+    ap.modes.land.with_position = False
+
+
 def terminate(v: Vehicle) -> None:
     """MAV_CMD_DO_FLIGHTTERMINATION: stop the motors."""
     ground.disarm(v, BY_TERMINATION)

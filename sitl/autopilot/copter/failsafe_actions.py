@@ -9,8 +9,9 @@ from .modes import ground, set_mode
 from .modes.brake import BRAKE
 from .modes.land import LAND
 from .modes.rtl import RTL
+from .modes.state import Modes
 from .modes.table import has_manual_throttle
-from .state import Autopilot, Vehicle
+from .state import Vehicle
 
 # What a failsafe does
 NOTHING = 0
@@ -62,9 +63,9 @@ def battery_action(choice: int) -> int:
 
 
 @law
-def is_idle(ap: Autopilot) -> bool:
-    """Whether disarming is safe: landed, or the pilot's own throttle is closed."""
-    return ap.modes.pilot.throttle_zero if has_manual_throttle(ap.modes.number) else ap.arming.landed
+def is_idle(modes: Modes, landed: bool) -> bool:
+    """Whether disarming is safe: ``landed``, or the pilot's own throttle is closed."""
+    return modes.pilot.throttle_zero if has_manual_throttle(modes.number) else landed
 
 
 @law
@@ -80,7 +81,7 @@ def act(v: Vehicle, action: int, reason: int, method: int) -> None:
     ap = v.autopilot
     if action == NOTHING or not ap.arming.armed:
         return
-    if is_idle(ap) or action == DO_STOP:
+    if is_idle(ap.modes, ap.arming.landed) or action == DO_STOP:
         ground.disarm(v, method)
         return
     mode = ap.modes.number

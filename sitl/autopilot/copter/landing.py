@@ -14,12 +14,14 @@ import math
 from ...core.algebra import norm
 from ...core.kernels import law
 from ..events import LANDED, emit
+from ..state import Arming
 from .control import throttle_mix
 from .control.motors import hover_throttle
-from .control.state import AttitudeState
+from .control.state import AttitudeState, Control, MotorsState
 from .modes import ground, table
-from .modes.state import Modes
-from .state import Autopilot, Vehicle
+from .modes.state import LandingState, Modes
+from .parameters.control import Attitude
+from .state import Vehicle
 
 TRIGGER_TICKS = 400
 """1 s."""
@@ -37,16 +39,15 @@ _STOPPED = 0.1  # [m/s]
 
 
 @law
-def is_taking_off(v: Vehicle) -> bool:
+def is_taking_off(modes: Modes) -> bool:
     """Whether the mode raises the throttle from the ground by itself and tells when it flies."""
-    modes = v.autopilot.modes
-    return modes.takeoff.user_active or table.is_taking_off(modes.number, v)
+    return modes.takeoff.user_active or table.is_taking_off(modes.number, modes)
 
 
 @law
-def acceleration(modes: Modes) -> float:
+def acceleration(detector: LandingState) -> float:
     """Filtered acceleration [m/s^2]."""
-    return norm(modes.landing.acc)
+    return norm(detector.acc)
 
 
 @law
@@ -61,71 +62,74 @@ def leans_far(attitude: AttitudeState) -> bool:
 def detect(v: Vehicle) -> None:
     """One tick of the detector."""
     ap = v.autopilot
-    arming = ap.arming
-    landing = ap.modes.landing
-    landing.acc += _FILTER * (ap.estimate.acc_ned - landing.acc)
-    landing.landing = table.is_landing(ap.modes.number, v)
+    arming, modes = ap.arming, ap.modes
+    modes.landing.acc += _FILTER * (ap.estimate.acc_ned - modes.landing.acc)
+    modes.landing.landing = table.is_landing(modes.number, modes)
     if not arming.armed:
         ground.set_landed(arming, True)
     elif arming.landed:
-        if pushes(ap) and not is_taking_off(v):
+        if pushes(ap.control.motors, hover_throttle(ap.params.MOT)) and not is_taking_off(modes):
             ground.set_landed(arming, False)
-    elif is_at_rest(ap):
-        arming.landed_ticks += 1
-        if arming.landed_ticks >= TRIGGER_TICKS:
-            ground.set_landed(arming, True)
-            emit(ap.events, v.time_us, LANDED, 0.0, 0.0)
-        arming.landed_maybe = arming.landed or arming.landed_ticks >= MAYBE_TICKS
-    else:
+    elif count_rest(arming, is_at_rest(ap.control, modes, ap.estimate.vel.z, ap.params.ATC)):
+        emit(ap.events, v.time_us, LANDED, 0.0, 0.0)
+
+
+@law
+def count_rest(arming: Arming, at_rest: bool) -> bool:
+    """Count a tick in the air ``at_rest`` or not; whether the vehicle has landed with it."""
+    if not at_rest:
         arming.landed_ticks = 0
         arming.landed_maybe = False
-
-
-@law
-def pushes(ap: Autopilot) -> bool:
-    """Whether the motors lift more than half of the vehicle."""
-    motors = ap.control.motors
-    return motors.throttle > 0.5 * hover_throttle(ap.params.MOT) and motors.spool_state == ground.IS_UNLIMITED
-
-
-@law
-def is_meant_to_land(ap: Autopilot) -> bool:
-    """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
-    if ap.modes.landing.landing:
+        return False
+    arming.landed_ticks += 1
+    if arming.landed_ticks >= TRIGGER_TICKS:
+        ground.set_landed(arming, True)
         return True
-    if not table.has_climb_stick(ap.modes.number):
-        return False
-    stopped = ap.control.motors.limit_throttle_lower and abs(ap.estimate.vel.z) < _STOPPED
-    return ap.modes.pilot.throttle_zero and stopped
+    arming.landed_maybe = arming.landed_ticks >= MAYBE_TICKS
+    return False
 
 
 @law
-def is_at_rest(ap: Autopilot) -> bool:
-    """Whether everything in this tick speaks for the ground."""
-    if not ap.control.motors.limit_throttle_lower:
-        return False
-    if ap.control.attitude.mix >= _MIX_AT_MIN * ap.params.ATC.THR_MIX_MIN:
-        return False
-    if leans_far(ap.control.attitude) and not is_meant_to_land(ap):
-        return False
-    return abs(ap.estimate.vel.z) < SPEED_MAX and acceleration(ap.modes) <= ACCEL_MAX
+def pushes(motors: MotorsState, hover: float) -> bool:
+    """Whether the motors lift more than half of the vehicle; ``hover``: throttle that lifts it."""
+    return motors.throttle > 0.5 * hover and motors.spool_state == ground.IS_UNLIMITED
 
 
 @law
-def set_priority(v: Vehicle) -> None:
-    """Attitude first in the air, throttle first on and near the ground."""
-    ap = v.autopilot
-    if not ap.arming.armed or ap.arming.landed:
-        throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
-    elif table.has_manual_throttle(ap.modes.number):
-        if ap.modes.pilot.throttle <= 0.0:
-            throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
+def is_meant_to_land(modes: Modes, motors: MotorsState, vel_d: float) -> bool:
+    """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
+    if modes.landing.landing:
+        return True
+    if not table.has_climb_stick(modes.number):
+        return False
+    return modes.pilot.throttle_zero and motors.limit_throttle_lower and abs(vel_d) < _STOPPED
+
+
+@law
+def is_at_rest(control: Control, modes: Modes, vel_d: float, p: Attitude) -> bool:
+    """Whether everything in this tick speaks for the ground; ``vel_d``: down [m/s]."""
+    if not control.motors.limit_throttle_lower or control.attitude.mix >= _MIX_AT_MIN * p.THR_MIX_MIN:
+        return False
+    if leans_far(control.attitude) and not is_meant_to_land(modes, control.motors, vel_d):
+        return False
+    return abs(vel_d) < SPEED_MAX and acceleration(modes.landing) <= ACCEL_MAX
+
+
+@law
+def set_priority(control: Control, arming: Arming, modes: Modes, vel_d: float, p: Attitude) -> None:
+    """Attitude first in the air, throttle first on and near the ground; ``vel_d``: down [m/s]."""
+    attitude = control.attitude
+    if not arming.armed or arming.landed:
+        throttle_mix.set_mix_min(attitude, p)
+    elif table.has_manual_throttle(modes.number):
+        if modes.pilot.throttle <= 0.0:
+            throttle_mix.set_mix_min(attitude, p)
         else:
-            throttle_mix.set_mix_man(ap.control.attitude, ap.params.ATC)
+            throttle_mix.set_mix_man(attitude, p)
     else:
-        path = ap.control.pos_d
-        busy = leans_far(ap.control.attitude) or path.vel_desired <= 0.0 or acceleration(ap.modes) > ACCEL_MOVING
-        if busy and not is_meant_to_land(ap):
-            throttle_mix.set_mix_max(ap.control.attitude, ap.params.ATC, path.control_ratio)
+        path = control.pos_d
+        busy = leans_far(attitude) or path.vel_desired <= 0.0 or acceleration(modes.landing) > ACCEL_MOVING
+        if busy and not is_meant_to_land(modes, control.motors, vel_d):
+            throttle_mix.set_mix_max(attitude, p, path.control_ratio)
         else:
-            throttle_mix.set_mix_min(ap.control.attitude, ap.params.ATC)
+            throttle_mix.set_mix_min(attitude, p)

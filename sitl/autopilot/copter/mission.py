@@ -78,7 +78,7 @@ class CopterCommands(Commands[Vehicle]):
         nav = ap.modes.nav
         kind = KINDS[item.command]
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
-            auto.choose_heading(ap, kind)
+            auto.choose_heading(ap.modes.auto_yaw, kind, ap.params.WP, ap.control.attitude, ap.estimate)
         here, _ = PLANNER.origin_of_next(ap, time_us)
         if kind in LEGS:
             PLANNER.begin(ap, time_us, point(ap, item, here))
@@ -138,12 +138,14 @@ class CopterCommands(Commands[Vehicle]):
             self.change_speed(v, int(item.p1), item.p2)
         elif item.command == commands.CONDITION_YAW:
             direction = int(math.copysign(1.0, item.p3)) if item.p3 else 0
-            auto_yaw.turn_to(ap, math.radians(item.p1), math.radians(item.p2), direction, item.p4 > 0.0)
+            turn = auto_yaw.Turn(math.radians(item.p1), math.radians(item.p2), direction, item.p4 > 0.0)
+            start = ap.control.attitude.target_euler.yaw
+            auto_yaw.turn_to(ap.modes.auto_yaw, turn, start, auto_yaw.slew_max(ap.params.ATC))
             ap.modes.nav.condition_kind = kinds.CONDITION_YAW
         elif item.command in (commands.DO_SET_ROI, commands.DO_SET_ROI_LOCATION):
             set_roi(v, item)
         elif item.command == commands.DO_SET_ROI_NONE:
-            auto_yaw.set_default(ap, False)
+            _look_ahead(ap)
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
@@ -164,9 +166,15 @@ class CopterCommands(Commands[Vehicle]):
 def set_roi(v: Vehicle, item: MissionItem) -> None:
     """Keep the nose on a place; a place of zeros ends that."""
     if item.no_place and item.z == 0.0:
-        auto_yaw.set_default(v.autopilot, False)
+        _look_ahead(v.autopilot)
         return
-    auto_yaw.look_at(v.autopilot, point(v.autopilot, item, v.autopilot.estimate.pos))
+    ap = v.autopilot
+    auto_yaw.look_at(ap.modes.auto_yaw, point(ap, item, ap.estimate.pos), ap.control.attitude, ap.estimate)
+
+
+def _look_ahead(ap: Autopilot) -> None:
+    """Leave the heading to WP_YAW_BEHAVIOR."""
+    auto_yaw.set_default(ap.modes.auto_yaw, ap.params.WP, False, ap.control.attitude, ap.estimate)
 
 
 def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:

@@ -10,7 +10,9 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
+from ..state import Arming
 from .control.motors import MOTORS
+from .control.state import MotorsState
 from .modes import ground
 from .state import Vehicle
 
@@ -28,13 +30,24 @@ _PLUS_ORDER = (2, 0, 3, 1)
 _X_ORDER = (0, 3, 1, 2)
 
 
-@law
 def motor_in_order(frame_type: int, position: int) -> int:
     """Motor 0 .. 3 at ``position`` 0 .. 3 clockwise from the front (front right for X)."""
     return _PLUS_ORDER[position] if frame_type == 0 else _X_ORDER[position]
 
 
-@law
+def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float, seconds: float) -> int:
+    """OK, or why motor 0 .. 3 is not turned so."""
+    if not arming.landed:
+        return NOT_LANDED
+    if arming.armed and motors.test_motor == 0:
+        return ARMED
+    if motor < 0 or motor >= MOTORS:
+        return BAD_MOTOR
+    if not 0.0 <= throttle <= 1.0:
+        return BAD_THROTTLE
+    return OK if 0.0 <= seconds <= LONGEST_S else BAD_TIME
+
+
 def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
     """Turn motor 0 .. 3 at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
 
@@ -42,16 +55,9 @@ def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
     """
     ap = v.autopilot
     motors = ap.control.motors
-    if not ap.arming.landed:
-        return NOT_LANDED
-    if ap.arming.armed and motors.test_motor == 0:
-        return ARMED
-    if motor < 0 or motor >= MOTORS:
-        return BAD_MOTOR
-    if not 0.0 <= throttle <= 1.0:
-        return BAD_THROTTLE
-    if not 0.0 <= seconds <= LONGEST_S:
-        return BAD_TIME
+    cause = refusal(motors, ap.arming, motor, throttle, seconds)
+    if cause != OK:
+        return cause
     if motors.test_motor == 0:
         emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor + 1))
     motors.test_motor = motor + 1

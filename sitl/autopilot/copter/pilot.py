@@ -22,21 +22,21 @@ from ..radio import (
     stick_channel,
     stick_position,
 )
+from ..state import Failsafe, Radio
 from .control.attitude import Lean
-from .modes.state import PilotState
+from .modes.state import Modes, PilotState
+from .parameters import Parameters
 from .parameters.flight import Pilot
-from .state import Autopilot, Vehicle
+from .state import Vehicle
 
 THROTTLE_ZERO_US = 400_000
 """The throttle counts as zero when it was low for so long."""
 _THROTTLE_LOW = RECEIVER_PULSES[2]
 
 
-@law
-def init(v: Vehicle) -> None:
+def init(rc: Radio, pilot: PilotState) -> None:
     """A receiver is fitted; channels are not known yet."""
-    v.autopilot.rc.has_receiver = True
-    pilot = v.autopilot.modes.pilot
+    rc.has_receiver = True
     pilot.throttle_zero = True
     pilot.throttle_zero_us = -THROTTLE_ZERO_US
     pilot.switch_position = -1
@@ -44,9 +44,9 @@ def init(v: Vehicle) -> None:
 
 
 @law
-def has_receiver(ap: Autopilot) -> bool:
+def has_receiver(rc: Radio, failsafe: Failsafe) -> bool:
     """Whether the sticks are the pilot's: the radio is there, and its failsafe off."""
-    return ap.rc.receiver_ok and not ap.modes.failsafe.radio
+    return rc.receiver_ok and not failsafe.radio
 
 
 @law
@@ -54,27 +54,25 @@ def read(v: Vehicle) -> None:
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
     ap = v.autopilot
     receive(ap.rc, v.sensors, ap.params, v.time_us, _THROTTLE_LOW, ap.params.RC_FS_TIMEOUT)
-    read_sticks(v)
+    read_sticks(ap.modes.pilot, has_receiver(ap.rc, ap.modes.failsafe), ap.rc, ap.params)
+    note_throttle(ap.modes.pilot, v.time_us)
+    filter_sticks(ap.modes.pilot, ap.params.PILOT)
 
 
 @law
-def read_sticks(v: Vehicle) -> None:
-    """Sticks from effective channels; the radio failsafe centres them and closes the throttle."""
-    ap = v.autopilot
-    pilot = ap.modes.pilot
-    if has_receiver(ap):
-        pilot.roll = stick_position(ap.rc, ap.params, ROLL)
-        pilot.pitch = stick_position(ap.rc, ap.params, PITCH)
-        pilot.yaw = stick_position(ap.rc, ap.params, YAW)
-        channel = stick_channel(ap.params.RCMAP, THROTTLE)
-        pilot.throttle = ranged(ap.rc.channels[channel], ap.params.RC[channel])
+def read_sticks(pilot: PilotState, connected: bool, rc: Radio, p: Parameters) -> None:
+    """Sticks from effective channels; without a radio (not ``connected``) centred, and the throttle closed."""
+    if connected:
+        pilot.roll = stick_position(rc, p, ROLL)
+        pilot.pitch = stick_position(rc, p, PITCH)
+        pilot.yaw = stick_position(rc, p, YAW)
+        channel = stick_channel(p.RCMAP, THROTTLE)
+        pilot.throttle = ranged(rc.channels[channel], p.RC[channel])
     else:
         pilot.roll = 0.0
         pilot.pitch = 0.0
         pilot.yaw = 0.0
         pilot.throttle = 0.0
-    note_throttle(pilot, v.time_us)
-    filter_sticks(pilot, ap.params.PILOT)
 
 
 @law
@@ -137,13 +135,12 @@ def speed_down(p: Pilot) -> float:
 
 
 @law
-def climb_rate(ap: Autopilot) -> float:
-    """Climb rate of the throttle stick [m/s], up positive; 0 within THR_DZ of the middle."""
-    if not has_receiver(ap):
+def climb_rate(modes: Modes, rc: Radio, p: Parameters) -> float:
+    """Climb rate of the throttle stick [m/s], up positive; 0 within THR_DZ of the middle, and without a radio."""
+    if not has_receiver(rc, modes.failsafe):
         return 0.0
-    p = ap.params
     dead = constrain(p.THR_DZ * 0.001, 0.0, 0.4)
-    return climb_of_stick(ap.modes.pilot.throttle, dead, p.PILOT.SPEED_UP * 0.01, speed_down(p.PILOT))
+    return climb_of_stick(modes.pilot.throttle, dead, p.PILOT.SPEED_UP * 0.01, speed_down(p.PILOT))
 
 
 @law

@@ -5,20 +5,18 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..arming_checks import BY_RUDDER, TEXTS, texts
-from ..events import ARMED, ARMING_REFUSED, DISARMED, emit, emit_and_return
+from ..events import ARMED, ARMING_REFUSED, DISARMED, Events, emit, emit_and_return
+from ..mode_switch import rudder_command
+from ..state import Arming
 from . import smart_rtl_path
-from .arming_checks import check, check_now
+from .arming_checks import check, method_checks
 from .control.motors import is_moving
 from .modes.simple import note_heading
+from .modes.state import PilotState
+from .modes.table import allows_arming_by_stick
 from .state import Vehicle
 
 __all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
-
-
-@law
-def update(v: Vehicle) -> None:
-    """Keep ``arming.prearm_ok`` up to date; called four times a second."""
-    v.autopilot.arming.prearm_ok = v.autopilot.arming.armed or check(v) == 0
 
 
 @law
@@ -27,7 +25,9 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap = v.autopilot
     if ap.arming.armed:
         return 0
-    failed = 0 if force else check_now(v, method)
+    failed = 0
+    if not force:
+        failed = check(v) | method_checks(ap.modes, ap.rc.receiver_ok, method, ap.params.ARMING)
     if failed != 0:
         emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
         return failed
@@ -36,26 +36,42 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap.arming.auto_armed = True
     ap.arming.landed = False
     ap.arming.crash_ticks = 0
-    smart_rtl_path.set_home(v)
+    smart_rtl_path.begin(ap.modes.path, ap.estimate, v.time_us, ap.params.SRTL)
     note_heading(ap.modes.simple, ap.estimate.euler.yaw)
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0
 
 
 @law
+def set_disarmed(arming: Arming, events: Events, time_us: int, method: int) -> None:
+    """Disarm, unless it is disarmed."""
+    if arming.armed:
+        arming.armed = False
+        arming.auto_armed = False
+        arming.landed = True
+        arming.crash_ticks = 0
+        emit_and_return(events, time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
+
+
 def disarm(v: Vehicle, method: int, force: bool) -> bool:
-    """Disarm. Whether it is disarmed (or was already); not by stick while the motors turn."""
+    """Disarm from the shell. Whether it is disarmed (or was already); not by stick while the motors turn."""
     ap = v.autopilot
-    if not ap.arming.armed:
-        return True
-    if not force and method == BY_RUDDER and is_moving(ap):
+    if not force and method == BY_RUDDER and is_moving(ap.control.motors, ap.arming.armed, ap.params):
         return False
-    ap.arming.armed = False
-    ap.arming.auto_armed = False
-    ap.arming.landed = True
-    ap.arming.crash_ticks = 0
-    emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
+    set_disarmed(ap.arming, ap.events, v.time_us, method)
     return True
+
+
+@law
+def stick_command(pilot: PilotState, mode: int, armed: bool, moving: bool, permission: float) -> int:
+    """What the steering stick asks for: 1 to arm, -1 to disarm, 0 nothing; with the throttle at rest.
+
+    ``moving``: the motors turn; ``permission``: ARMING_RUDDER.
+    """
+    if pilot.throttle != 0.0 or pilot.lost or not allows_arming_by_stick(mode):
+        return 0
+    command = rudder_command(pilot.steering, armed, permission)
+    return 0 if command < 0 and moving else command
 
 
 def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:

@@ -15,50 +15,44 @@ from ..arming_checks import (
     MODE_BY_RUDDER,
     NO_OUTPUTS,
     NOT_INITIALISED,
-    RC_MISSING,
     RUDDER_DISABLED,
     STEERING_OFF_CENTRE,
-    THROTTLE_FAILSAFE,
     THROTTLE_OFF_CENTRE,
     WAYPOINT_SPEED,
     battery_checks,
+    radio_checks,
     sensor_checks,
     wants,
 )
-from ..radio import THROTTLE, stick_pulse
+from ..params.system import Arming
+from ..state import Estimate
 from .control import servos
 from .control.motors import is_skid
-from .modes.state import PilotState
+from .modes.state import Modes, PilotState
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
-from .state import Autopilot, Vehicle
+from .parameters import Parameters
+from .state import Vehicle
 
 CHECK_PARAMETERS = 32
 """ARMING_CHECK"""
 
 
 @law
-def estimate_checks(ap: Autopilot, gps_fix: int) -> int:
+def estimate_checks(modes: Modes, estimate: Estimate, gps_fix: int, params: Parameters) -> int:
     """Failed checks of GPS and estimate, as far as the mode needs them; the first of them."""
-    mode = ap.modes.number
-    if not requires_position(mode) and not requires_velocity(mode, is_skid(ap.params)):
+    if not requires_position(modes.number) and not requires_velocity(modes.number, is_skid(params)):
         return 0
-    if gps_fix < 3 and wants(ap.params.ARMING, CHECK_GPS):
+    if gps_fix < 3 and wants(params.ARMING, CHECK_GPS):
         return GPS_FIX
-    if not ap.estimate.position_ok:
+    if not estimate.position_ok:
         return AHRS_TYPE
-    return EKF_FAILSAFE if ap.modes.failsafe.ekf != 0 else 0
+    return EKF_FAILSAFE if modes.failsafe.ekf != 0 else 0
 
 
 @law
-def equipment_checks(ap: Autopilot) -> int:
-    """Failed checks of radio, battery and outputs."""
-    p = ap.params
-    failed = battery_checks(ap.battery, ap.modes.failsafe.battery, p)
-    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
-        if not ap.rc.receiver_ok:
-            failed |= RC_MISSING
-        elif stick_pulse(ap.rc, p.RCMAP, THROTTLE) < p.FS.THR_VALUE:
-            failed |= THROTTLE_FAILSAFE
+def parameter_checks(p: Parameters) -> int:
+    """Failed checks of outputs and parameters."""
+    failed = 0
     if not (servos.is_assigned(p, servos.STEERING) or servos.is_assigned(p, servos.THROTTLE) or is_skid(p)):
         failed |= NO_OUTPUTS
     if p.WP.SPEED <= 0.0 and wants(p.ARMING, CHECK_PARAMETERS):
@@ -70,11 +64,15 @@ def equipment_checks(ap: Autopilot) -> int:
 def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
-    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, ap.params.ARMING)
-    if ap.params.ARMING.CHECK == 0.0:
+    modes, p = ap.modes, ap.params
+    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p.ARMING)
+    if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
-    mode = 0 if allows_arming(ap.modes.number) else MODE
-    return sensors | estimate_checks(ap, v.sensors.gps_fix) | equipment_checks(ap) | mode
+    estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
+    failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
+    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
+        failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    return failed if allows_arming(modes.number) else failed | MODE
 
 
 @law
@@ -89,15 +87,14 @@ def stick_checks(pilot: PilotState, method: int) -> int:
 
 
 @law
-def check_now(v: Vehicle, method: int) -> int:
-    """All failed checks of arming at this moment by ``method``."""
-    ap = v.autopilot
-    failed = check(v)
-    if ap.rc.receiver_ok and wants(ap.params.ARMING, CHECK_RC):
-        failed |= stick_checks(ap.modes.pilot, method)
+def method_checks(modes: Modes, receiver_ok: bool, method: int, params: Arming) -> int:
+    """Failed checks of arming at this moment by ``method``, besides those of ``check``."""
+    failed = 0
+    if receiver_ok and wants(params, CHECK_RC):
+        failed |= stick_checks(modes.pilot, method)
     if method == BY_RUDDER:
-        if ap.params.ARMING.RUDDER < 1.0:
+        if params.RUDDER < 1.0:
             failed |= RUDDER_DISABLED
-        if not allows_arming_by_stick(ap.modes.number):
+        if not allows_arming_by_stick(modes.number):
             failed |= MODE_BY_RUDDER
     return failed

@@ -13,12 +13,15 @@ from ...core.vectors import Euler
 from ..arming_checks import BY_CRASH
 from ..events import CRASH_HOLD, emit
 from ..modes import REASON_CRASH_FAILSAFE
-from ..state import Estimate
-from . import arming, motor_test
+from ..state import Arming, Estimate
+from . import motor_test
+from .arming import set_disarmed
+from .control.state import MotorsState
 from .modes import set_mode
 from .modes.hold import HOLD
 from .modes.table import is_autonomous
-from .state import Autopilot, Vehicle
+from .parameters.safety import Failsafes
+from .state import Vehicle
 
 TRIGGER = 20
 """Tenths of a second."""
@@ -44,25 +47,36 @@ def is_blocked(estimate: Estimate, throttle: float) -> bool:
 
 
 @law
-def is_watched(ap: Autopilot) -> bool:
+def is_watched(mode: int, armed: bool, motors: MotorsState, params: Failsafes) -> bool:
     """Whether a crash counts now."""
-    if not ap.arming.armed or ap.params.FS.CRASH_CHECK <= 0.0:
+    if not armed or params.CRASH_CHECK <= 0.0:
         return False
-    return is_autonomous(ap.modes.number) and not motor_test.is_running(ap.control.motors)
+    return is_autonomous(mode) and not motor_test.is_running(motors)
 
 
 @law
-def update(v: Vehicle) -> None:
-    """Ten times a second."""
+def detect_crash(arming: Arming, estimate: Estimate, throttle: float, angle_max: float) -> bool:
+    """Ten times a second while watched: whether the vehicle has crashed; ``angle_max`` [rad], 0: no lean counts."""
+    leaning = is_leaning(estimate.euler, angle_max)
+    if not leaning and not is_blocked(estimate, throttle):
+        arming.crash_ticks = 0
+        return False
+    arming.crash_ticks += 1
+    if not leaning and arming.crash_ticks < TRIGGER:
+        return False
+    arming.crash_ticks = 0
+    return True
+
+
+@law
+def check(v: Vehicle) -> None:
+    """Ten times a second: HOLD after a crash, and disarm (FS_CRASH_CHECK)."""
     ap = v.autopilot
-    leaning = is_leaning(ap.estimate.euler, math.radians(ap.params.CRASH_ANGLE))
-    if not is_watched(ap) or not (leaning or is_blocked(ap.estimate, ap.control.motors.throttle)):
+    m, p = ap.control.motors, ap.params
+    if not is_watched(ap.modes.number, ap.arming.armed, m, p.FS):
         ap.arming.crash_ticks = 0
-        return
-    ap.arming.crash_ticks += 1
-    if leaning or ap.arming.crash_ticks >= TRIGGER:
-        ap.arming.crash_ticks = 0
+    elif detect_crash(ap.arming, ap.estimate, m.throttle, math.radians(p.CRASH_ANGLE)):
         emit(ap.events, v.time_us, CRASH_HOLD, 0.0, 0.0)
         set_mode.request(v, HOLD, REASON_CRASH_FAILSAFE)
-        if ap.params.FS.CRASH_CHECK == HOLD_AND_DISARM:
-            arming.disarm(v, BY_CRASH, True)
+        if p.FS.CRASH_CHECK == HOLD_AND_DISARM:
+            set_disarmed(ap.arming, ap.events, v.time_us, BY_CRASH)

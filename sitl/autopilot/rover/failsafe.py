@@ -9,18 +9,22 @@ from __future__ import annotations
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, report, report_battery
-from ..modes import ACCEPTED, REASON_BATTERY_FAILSAFE, REASON_EKF_FAILSAFE, REASON_FAILSAFE
-from ..radio import THROTTLE, stick_pulse
-from . import arming, motor_test
+from ..failsafe_checks import EKF, GCS, RADIO, is_estimate_bad, report
+from ..modes import ACCEPTED, REASON_EKF_FAILSAFE, REASON_FAILSAFE
+from ..state import Estimate, Failsafe
+from . import motor_test
+from .arming import set_disarmed
+from .control.state import MotorsState
 from .modes import set_mode
 from .modes.auto import AUTO
 from .modes.hold import HOLD
 from .modes.loiter import LOITER
 from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
+from .modes.state import LinksState, Modes
 from .modes.table import requires_position
-from .state import Autopilot, Vehicle
+from .parameters.safety import Battery, Failsafes
+from .state import Vehicle
 
 CONTINUES, VARIANCE = 6, 7
 """More kinds of FAILSAFE: AUTO goes on; the estimate is bad (said in all modes)."""
@@ -36,6 +40,8 @@ EKF_COUNT = 10
 """Tenths of a second of bad estimate that count."""
 EKF_NOTHING, EKF_HOLD, EKF_REPORT = 0, 1, 2
 """FS_EKF_ACTION"""
+EKF_SAME, EKF_FAILS, EKF_RECOVERS = 0, 1, 2
+"""What ``watch_estimate`` sees."""
 NOTHING, DO_RTL, DO_HOLD, DO_SMART_RTL, DO_SMART_RTL_OR_HOLD, TERMINATE, DO_LOITER_OR_HOLD = 0, 1, 2, 3, 4, 5, 6
 """FS_ACTION, BATT_FS_LOW_ACT, BATT_FS_CRT_ACT; DO_SMART_RTL: else RTL, else HOLD."""
 
@@ -58,7 +64,7 @@ def act(v: Vehicle, action: int, reason: int) -> None:
     if action == NOTHING:
         return
     if action == TERMINATE:
-        arming.disarm(v, BY_BATTERY_FAILSAFE, True)
+        set_disarmed(v.autopilot.arming, v.autopilot.events, v.time_us, BY_BATTERY_FAILSAFE)
         return
     if action in (DO_SMART_RTL, DO_SMART_RTL_OR_HOLD):
         if set_mode.request(v, SMART_RTL, reason) == ACCEPTED:
@@ -73,131 +79,114 @@ def act(v: Vehicle, action: int, reason: int) -> None:
 
 
 @law
-def update_radio(v: Vehicle) -> None:
-    """After each frame of the receiver."""
-    ap = v.autopilot
-    p = ap.params
-    pulse = stick_pulse(ap.rc, p.RCMAP, THROTTLE)
-    heard = ap.rc.receiver_us > 0 or ap.rc.has_receiver
-    bad = p.FS.THR_ENABLE > 0.0 and heard and (not ap.rc.receiver_ok or pulse < p.FS.THR_VALUE)
-    ap.modes.failsafe.radio = bad
-    watch(v, BIT_RADIO, bad)
-
-
-@law
-def update_gcs(v: Vehicle) -> None:
-    """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
-    fs = v.autopilot.modes.failsafe
-    lost = is_gcs_lost(fs, v.time_us, v.autopilot.params.FS)
-    fs.gcs = lost
-    watch(v, BIT_GCS, lost)
-
-
-@law
 def kind_of(bit: int) -> int:
     """FAILSAFE's name of a link."""
     return RADIO if bit == BIT_RADIO else GCS
 
 
 @law
-def waits(ap: Autopilot) -> bool:
+def waits(mode: int, motors: MotorsState, params: Failsafes) -> bool:
     """Whether a lost link is not acted upon now: on the way home, in HOLD, in a motor test."""
-    mode = ap.modes.number
-    in_hold = mode == HOLD and (int(ap.params.FS.OPTIONS) & ACTIVE_IN_HOLD) == 0
-    return mode == RTL or in_hold or motor_test.is_running(ap.control.motors)
+    in_hold = mode == HOLD and (int(params.OPTIONS) & ACTIVE_IN_HOLD) == 0
+    return mode == RTL or in_hold or motor_test.is_running(motors)
+
+
+@law
+def note_link(links: LinksState, bit: int, bad: bool, time_us: int) -> bool:
+    """Note that a link is there or not; whether a failsafe that was acted upon is over."""
+    before = links.bad
+    links.bad = (before | bit) if bad else (before & ~bit)
+    if before == 0 and links.bad != 0:
+        links.since_us = time_us
+    over = links.acted != 0 and links.bad == 0
+    links.acted = links.acted & links.bad
+    return over
+
+
+@law
+def goes_on(bit: int, mode: int, params: Failsafes) -> bool:
+    """Whether the mission may go on without the link."""
+    enabled = params.THR_ENABLE if bit == BIT_RADIO else params.GCS_ENABLE
+    return mode == AUTO and enabled == ENABLED_BUT_IN_AUTO
 
 
 @law
 def watch(v: Vehicle, bit: int, bad: bool) -> None:
-    """Note that a link is there or not; a loss that lasts is acted upon once, whichever link it is."""
+    """Watch a link: a loss that lasts is acted upon once (FS_ACTION), whichever link it is."""
     ap = v.autopilot
-    links = ap.modes.links
-    before = links.bad
-    links.bad = (before | bit) if bad else (before & ~bit)
-    if before == 0 and links.bad != 0:
-        links.since_us = v.time_us
-    if links.acted != 0 and links.bad == 0:
+    links, p = ap.modes.links, ap.params.FS
+    if note_link(links, bit, bad, v.time_us):
         report(ap.events, v.time_us, kind_of(bit), False)
-    links.acted = links.acted & links.bad
-    if links.acted != 0 or not bad or v.time_us - links.since_us <= ap.params.FS.TIMEOUT * 1e6:
+    if links.acted != 0 or not bad or v.time_us - links.since_us <= p.TIMEOUT * 1e6:
         return
-    if not waits(ap):
-        links.acted = links.bad
-        begin(v, bit)
-
-
-@law
-def begin(v: Vehicle, bit: int) -> None:
-    """FS_ACTION, unless the mission may go on."""
-    ap = v.autopilot
-    p = ap.params
+    if waits(ap.modes.number, ap.control.motors, p):
+        return
+    links.acted = links.bad
     report(ap.events, v.time_us, kind_of(bit), True)
     for k in range(18):
         ap.rc.override[k] = 0
-    enabled = p.FS.THR_ENABLE if bit == BIT_RADIO else p.FS.GCS_ENABLE
-    if ap.modes.number == AUTO and enabled == ENABLED_BUT_IN_AUTO:
+    if goes_on(bit, ap.modes.number, p):
         report(ap.events, v.time_us, CONTINUES, True)
     else:
-        act(v, int(p.FS.ACTION), REASON_FAILSAFE)
+        act(v, int(p.ACTION), REASON_FAILSAFE)
 
 
 @law
-def update_battery(v: Vehicle) -> None:
-    """Ten times a second: act on a battery that has become low or critical."""
-    ap, p = v.autopilot, v.autopilot.params
-    level = battery_fell_to(ap.modes.failsafe, ap.battery, ap.arming.armed, v.time_us, p.BATT)
-    if level != 0:
-        report_battery(ap.events, v.time_us, level)
-        act(v, int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT), REASON_BATTERY_FAILSAFE)
+def battery_action(level: int, params: Battery) -> int:
+    """What a battery that has become low (``level`` 1) or critical (2) asks for."""
+    if level == 0:
+        return NOTHING
+    return int(params.FS_CRT_ACT) if level == 2 else int(params.FS_LOW_ACT)
 
 
 @law
-def update_ekf(v: Vehicle) -> None:
-    """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION).
+def watch_estimate(modes: Modes, estimate: Estimate, armed: bool, params: Failsafes) -> int:
+    """Ten times a second: EKF_FAILS, EKF_RECOVERS or EKF_SAME; a bad estimate counts when it lasts a second.
 
     Only once the estimate has been good: a rover may drive without a position.
     """
-    ap = v.autopilot
-    fs = ap.modes.failsafe
-    if not ap.estimate.origin_set:
-        return
-    bad = is_estimate_bad(fs, ap.estimate, ap.params.FS.EKF_THRESH, 0.0)
-    if ap.params.FS.EKF_THRESH <= 0.0 or not ap.arming.armed:
+    fs = modes.failsafe
+    if not estimate.origin_set:
+        return EKF_SAME
+    bad = is_estimate_bad(fs, estimate, params.EKF_THRESH, 0.0)
+    if params.EKF_THRESH <= 0.0 or not armed:
         fs.ekf_count = 0
-        clear_ekf(v)
-        return
+        return clear_ekf(fs)
     if not bad:
-        ap.modes.ekf_was_good = True
-    if not ap.modes.ekf_was_good:
-        return
+        modes.ekf_was_good = True
+    if not modes.ekf_was_good:
+        return EKF_SAME
     if bad and fs.ekf_count < EKF_COUNT:
         fs.ekf_count += 1
         if fs.ekf_count >= EKF_COUNT and fs.ekf == 0:
             fs.ekf = 1
-            report(ap.events, v.time_us, VARIANCE, True)
-            begin_ekf(v)
+            return EKF_FAILS
     elif not bad and fs.ekf_count > 0:
         fs.ekf_count -= 1
         if fs.ekf_count == 0:
-            clear_ekf(v)
+            return clear_ekf(fs)
+    return EKF_SAME
 
 
 @law
-def clear_ekf(v: Vehicle) -> None:
-    """The failsafe is over."""
-    fs = v.autopilot.modes.failsafe
-    if fs.ekf != 0:
-        fs.ekf = 0
-        report(v.autopilot.events, v.time_us, EKF, False)
+def clear_ekf(fs: Failsafe) -> int:
+    """The estimate is good: EKF_RECOVERS when it was not."""
+    before = fs.ekf
+    fs.ekf = 0
+    return EKF_RECOVERS if before != 0 else EKF_SAME
 
 
 @law
-def begin_ekf(v: Vehicle) -> None:
-    """Act on the bad estimate in a mode that needs a good one."""
+def check_ekf(v: Vehicle) -> None:
+    """Ten times a second: a bad estimate ends modes that need a good one (FS_EKF_ACTION)."""
     ap = v.autopilot
-    action = int(ap.params.FS.EKF_ACTION)
-    if not requires_position(ap.modes.number) or action == EKF_NOTHING:
-        return
-    if action != EKF_REPORT:
-        set_mode.request(v, HOLD, REASON_EKF_FAILSAFE)
-    report(ap.events, v.time_us, EKF, True)
+    change = watch_estimate(ap.modes, ap.estimate, ap.arming.armed, ap.params.FS)
+    if change == EKF_RECOVERS:
+        report(ap.events, v.time_us, EKF, False)
+    elif change == EKF_FAILS:
+        report(ap.events, v.time_us, VARIANCE, True)
+        action = int(ap.params.FS.EKF_ACTION)
+        if requires_position(ap.modes.number) and action != EKF_NOTHING:
+            if action != EKF_REPORT:
+                set_mode.request(v, HOLD, REASON_EKF_FAILSAFE)
+            report(ap.events, v.time_us, EKF, True)

@@ -15,7 +15,7 @@ from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.planner import end
 from .modes import guided_setpoints, set_mode
-from .modes.auto import AUTO
+from .modes.auto import AUTO, LEGS
 from .navigation import waypoint
 from .navigation.planner import PLANNER
 from .state import Vehicle
@@ -46,7 +46,6 @@ OTHERS = (
     commands.DO_GUIDED_LIMITS,
     *commands.CAMERA_COMMANDS,
 )
-LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 
 
 class RoverCommands(Commands[Vehicle]):
@@ -59,11 +58,11 @@ class RoverCommands(Commands[Vehicle]):
 
     def enter(self, v: Vehicle) -> None:
         """The parameters' speed, forwards, no legs."""
-        waypoint.start(v.autopilot)
+        waypoint.start(v.autopilot.modes.nav, v.autopilot.control.position, v.autopilot.params)
 
     def reset(self, v: Vehicle) -> None:
         """Forget the legs."""
-        waypoint.stop(v.autopilot)
+        waypoint.stop(v.autopilot.modes.nav)
 
     def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way; without a place it is where the vehicle is."""
@@ -121,7 +120,8 @@ class RoverCommands(Commands[Vehicle]):
         if item.command == commands.DO_CHANGE_SPEED and self.change_speed(v, int(item.p1), item.p2):
             return [Text(INFO, f"speed: {item.p2:.1f} m/s")]
         if item.command == commands.DO_SET_REVERSE:
-            waypoint.set_reversed(v.autopilot, item.p1 == 1.0)
+            ap = v.autopilot
+            waypoint.set_reversed(ap.modes.nav, ap.estimate, item.p1 == 1.0, ap.params)
         elif item.command == commands.DO_GUIDED_LIMITS:
             guided_setpoints.set_limits(v.autopilot.modes.guided, max(item.p1, 0.0), max(item.p4, 0.0))
         return super().run(v, item)

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..arming_checks import BY_MOTOR_TEST
-from ..events import MOTOR_TEST, emit
-from .arming import disarm, try_arm
+from ..events import MOTOR_TEST, Events, emit
+from ..state import Arming
+from .arming import set_disarmed, try_arm
 from .control.motors import is_skid
 from .control.state import TEST_RIGHT, TEST_THROTTLE, MotorsState
 from .state import Vehicle
@@ -37,7 +38,6 @@ def refusal(skid: bool, motor: int, throttle: float, pulse: int, seconds: float)
     return OK if seconds >= 0.0 else BAD_TIME
 
 
-@law
 def start(v: Vehicle, motor: int, throttle: float, pulse: int, seconds: float) -> int:
     """Drive an output: motor 1 throttle, 2 steering, 3 left, 4 right (MOTOR_TEST_ORDER). OK, or why not.
 
@@ -71,16 +71,14 @@ def is_running(motors: MotorsState) -> bool:
 
 
 @law
-def update(v: Vehicle) -> None:
+def control(motors: MotorsState, arming: Arming, events: Events, time_us: int) -> None:
     """Every period, behind the mode: keep the mode's hands off the motors; end in time."""
-    ap = v.autopilot
-    motors = ap.control.motors
     if not is_running(motors):
         return
     motors.throttle = 0.0
     motors.steering = 0.0
-    if v.time_us >= motors.test_until_us or not ap.arming.armed:
+    if time_us >= motors.test_until_us or not arming.armed:
         motors.test_motor = 0
         motors.test_pulse = 0
-        emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
-        disarm(v, BY_MOTOR_TEST, True)
+        emit(events, time_us, MOTOR_TEST, 0.0, 0.0)
+        set_disarmed(arming, events, time_us, BY_MOTOR_TEST)

@@ -12,17 +12,19 @@ from typing import NamedTuple
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_2pi
 from ..radio import ROLL, THROTTLE, centred, receive, stick_channel, stick_position
-from ..state import Radio
+from ..state import Radio, Sensors
 from .control import motors, speed
+from .control.state import Control
 from .modes.state import PilotState
 from .parameters import Parameters
-from .state import Autopilot, Vehicle
 
 RECEIVER_TIMEOUT_S = 0.5
 """Silence of the receiver that counts as lost (ArduRover's)."""
 THROTTLE_AT_REST = 1500
 """[us]"""
 MIXING_RANGE = 500.0  # [us]
+CRUISE_THROTTLE_MIN, CRUISE_THROTTLE_MAX = 5.0, 100.0
+"""CRUISE_THROTTLE outside of this [%] says nothing about speeds."""
 
 # PILOT_STEER_TYPE
 TURNS_ROUND, TWO_PADDLES, TURNS_ROUND_TOO, STAYS = 0, 1, 2, 3
@@ -49,24 +51,23 @@ class HeadingAndSpeed(NamedTuple):
     speed: float  # [m/s]
 
 
-@law
-def init(ap: Autopilot) -> None:
+def init(pilot: PilotState, rc: Radio) -> None:
     """A receiver is fitted; channels are not known yet."""
-    ap.rc.has_receiver = True
-    ap.modes.pilot.switch_position = -1
-    ap.modes.pilot.switch_candidate = -1
+    rc.has_receiver = True
+    pilot.switch_position = -1
+    pilot.switch_candidate = -1
 
 
 @law
-def read(v: Vehicle) -> None:
+def read(pilot: PilotState, rc: Radio, sensors: Sensors, params: Parameters, time_us: int) -> None:
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
-    ap = v.autopilot
-    receive(ap.rc, v.sensors, ap.params, v.time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
-    pilot = ap.modes.pilot
-    pilot.steering = stick_position(ap.rc, ap.params, ROLL)
-    pilot.throttle = stick_position(ap.rc, ap.params, THROTTLE)
-    pilot.left = paddle(ap.rc, ap.params, ROLL)
-    pilot.right = paddle(ap.rc, ap.params, THROTTLE)
+    receive(rc, sensors, params, time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
+    pilot.steering = stick_position(rc, params, ROLL)
+    pilot.throttle = stick_position(rc, params, THROTTLE)
+    channel = stick_channel(params.RCMAP, ROLL)
+    pilot.steering_pulse = min(abs(rc.channels[channel] - params.RC[channel].TRIM), MIXING_RANGE)
+    pilot.left = paddle(rc, params, ROLL)
+    pilot.right = paddle(rc, params, THROTTLE)
 
 
 @law
@@ -75,12 +76,6 @@ def paddle(rc: Radio, params: Parameters, stick: int) -> float:
     channel = stick_channel(params.RCMAP, stick)
     pulse = rc.channels[channel]
     return centred(pulse, params.RC[channel], 0.0) if pulse != 0 else 0.0
-
-
-@law
-def is_lost(ap: Autopilot) -> bool:
-    """Whether the sticks say nothing."""
-    return ap.modes.failsafe.radio or not ap.rc.receiver_ok
 
 
 @law
@@ -97,11 +92,11 @@ def understood(pilot: PilotState, steer_type: int) -> Sticks:
 
 
 @law
-def sticks(ap: Autopilot) -> Sticks:
+def sticks(pilot: PilotState, params: Parameters) -> Sticks:
     """Steering and throttle of the sticks."""
-    if is_lost(ap):
+    if pilot.lost:
         return Sticks(0.0, 0.0)
-    return understood(ap.modes.pilot, int(ap.params.PILOT_STEER_TYPE))
+    return understood(pilot, int(params.PILOT_STEER_TYPE))
 
 
 @law
@@ -121,22 +116,20 @@ def within_skid(wanted: Sticks) -> Sticks:
 
 
 @law
-def limited_sticks(ap: Autopilot) -> Sticks:
+def limited_sticks(pilot: PilotState, throttle_last: float, params: Parameters) -> Sticks:
     """Steering and throttle within what a skid-steered vehicle has for both, and within MOT_SLEWRATE."""
-    p = ap.params
-    wanted = within_skid(sticks(ap)) if motors.is_skid(p) else sticks(ap)
-    throttle = motors.slew_limited(wanted.throttle, ap.control.motors.throttle_last, p.MOT.SLEWRATE)
-    return Sticks(turned_with(wanted.steering, wanted.throttle, throttle, int(p.PILOT_STEER_TYPE)), throttle)
+    wanted = within_skid(sticks(pilot, params)) if motors.is_skid(params) else sticks(pilot, params)
+    throttle = motors.slew_limited(wanted.throttle, throttle_last, params.MOT.SLEWRATE)
+    return Sticks(turned_with(wanted.steering, wanted.throttle, throttle, int(params.PILOT_STEER_TYPE)), throttle)
 
 
 @law
-def steering_and_speed(ap: Autopilot) -> SteeringAndSpeed:
+def steering_and_speed(pilot: PilotState, control: Control, params: Parameters) -> SteeringAndSpeed:
     """Steering, and a speed within the acceleration limits."""
-    p = ap.params
-    wanted = sticks(ap)
-    asked = wanted.throttle * speed.speed_max(p)
-    given = speed.accel_limited(ap.control, asked, p.ATC)
-    return SteeringAndSpeed(turned_with(wanted.steering, asked, given, int(p.PILOT_STEER_TYPE)), given)
+    wanted = sticks(pilot, params)
+    asked = wanted.throttle * speed.speed_max(params)
+    given = speed.accel_limited(control, asked, params.ATC)
+    return SteeringAndSpeed(turned_with(wanted.steering, asked, given, int(params.PILOT_STEER_TYPE)), given)
 
 
 @law
@@ -150,18 +143,40 @@ def pointed(pilot: PilotState, steer_type: int, speed_max: float) -> HeadingAndS
 
 
 @law
-def heading_and_speed(ap: Autopilot) -> HeadingAndSpeed:
+def heading_and_speed(pilot: PilotState, params: Parameters) -> HeadingAndSpeed:
     """Where the stick points, and how fast."""
-    if is_lost(ap):
+    if pilot.lost:
         return HeadingAndSpeed(0.0, 0.0)
-    return pointed(ap.modes.pilot, int(ap.params.PILOT_STEER_TYPE), speed.speed_max(ap.params))
+    return pointed(pilot, int(params.PILOT_STEER_TYPE), speed.speed_max(params))
 
 
 @law
-def mixed(ap: Autopilot, demand: float) -> float:
-    """``demand`` -1 .. 1 and the steering stick; the further the stick is out, the less of ``demand`` is left."""
-    if is_lost(ap):
+def mixed(pilot: PilotState, demand: float, enabled: float) -> float:
+    """``demand`` -1 .. 1 and the steering stick; the further it is out, the less of ``demand`` is left.
+
+    ``enabled``: STICK_MIXING. Without the stick, ``demand`` is not cut at -1 .. 1: the motors shrink it with speed
+    first, as recorded ArduRovers do.
+    """
+    if pilot.lost or not enabled > 0.0:
         return demand
-    channel = stick_channel(ap.params.RCMAP, ROLL)
-    out = min(abs(ap.rc.channels[channel] - ap.params.RC[channel].TRIM), MIXING_RANGE)
-    return constrain(demand * (1.0 - out / MIXING_RANGE) + ap.modes.pilot.steering, -1.0, 1.0)
+    return constrain(demand * (1.0 - pilot.steering_pulse / MIXING_RANGE) + pilot.steering, -1.0, 1.0)
+
+
+@law
+def stick_speed(pilot: PilotState, backward: bool, params: Parameters) -> float:
+    """Speed [m/s] that the throttle stick asks for in the direction of travel; 0 when it pulls the other way.
+
+    ``backward``: the vehicle drives backwards on purpose.
+    """
+    if not CRUISE_THROTTLE_MIN <= params.CRUISE.THROTTLE <= CRUISE_THROTTLE_MAX:
+        return 0.0
+    asked = sticks(pilot, params).throttle * speed.speed_max(params)
+    return min(asked, 0.0) if backward else max(asked, 0.0)
+
+
+@law
+def nudged(pilot: PilotState, wanted: float, params: Parameters) -> float:
+    """``wanted`` [m/s], or the stick's speed when that is faster in the same direction."""
+    if wanted < 0.0:
+        return min(wanted, stick_speed(pilot, True, params))
+    return max(wanted, stick_speed(pilot, False, params))

@@ -16,10 +16,10 @@ from ...core.algebra import dot2, horizontal
 from ...core.kernels import law
 from ...core.scalars import constrain, finite
 from ...core.vectors import Vec2
-from ..events import PATH_LOST, emit
+from ..events import PATH_LOST, Events, emit
+from ..state import Estimate
 from .modes.state import PATH_POINTS, PathState
 from .parameters.driving import SmartRtl
-from .state import Vehicle
 
 TIMEOUT_US = 15_000_000
 """Without a position or without room for so long, the path is given up."""
@@ -68,48 +68,42 @@ def set_point(path: PathState, k: int, place: Vec2) -> None:
 
 
 @law
-def set_home(v: Vehicle) -> None:
+def begin(path: PathState, estimate: Estimate, time_us: int, params: SmartRtl) -> None:
     """On arming: forget the path; it begins here, if there is a position."""
-    ap = v.autopilot
-    path = ap.modes.path
     path.points = 0
     path.simplified = 0
     path.active = False
     path.home_saved = False
-    if not ap.estimate.position_ok or capacity(ap.params.SRTL) == 0 or ap.params.SRTL.ACCURACY <= 0.0:
+    if not estimate.position_ok or capacity(params) == 0 or params.ACCURACY <= 0.0:
         return
-    path.good_us = v.time_us
-    path.saved_us = v.time_us
+    path.good_us = time_us
+    path.saved_us = time_us
     path.active = True
-    path.home_saved = add(path, horizontal(ap.estimate.pos), ap.params.SRTL)
+    path.home_saved = add(path, horizontal(estimate.pos), params)
 
 
 @law
-def give_up(v: Vehicle, reason: int) -> None:
+def give_up(path: PathState, events: Events, time_us: int, reason: int) -> None:
     """No path any more until the next arming."""
-    v.autopilot.modes.path.active = False
-    emit(v.autopilot.events, v.time_us, PATH_LOST, float(reason), 0.0)
+    path.active = False
+    emit(events, time_us, PATH_LOST, float(reason), 0.0)
 
 
 @law
-def update(v: Vehicle, record: bool) -> None:
-    """Three times a second: note the position, when ``record``, and keep room."""
-    ap = v.autopilot
-    path = ap.modes.path
-    if not path.home_saved and ap.estimate.position_ok:
-        set_home(v)
-    if not path.active or not record:
+def record(path: PathState, estimate: Estimate, events: Events, time_us: int, params: SmartRtl) -> None:
+    """Three times a second, unless on the way home: note the position and keep room."""
+    if not path.active:
         return
-    if not ap.estimate.position_ok:
-        if v.time_us - path.good_us > TIMEOUT_US:
-            give_up(v, BAD_POSITION)
+    if not estimate.position_ok:
+        if time_us - path.good_us > TIMEOUT_US:
+            give_up(path, events, time_us, BAD_POSITION)
         return
-    path.good_us = v.time_us
-    if add(path, horizontal(ap.estimate.pos), ap.params.SRTL):
-        path.saved_us = v.time_us
-    elif v.time_us - path.saved_us > TIMEOUT_US:
-        give_up(v, FULL)
-    keep_room(path, ap.params.SRTL)
+    path.good_us = time_us
+    if add(path, horizontal(estimate.pos), params):
+        path.saved_us = time_us
+    elif time_us - path.saved_us > TIMEOUT_US:
+        give_up(path, events, time_us, FULL)
+    keep_room(path, params)
 
 
 @law

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, table
+from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.modes.guided_setpoints import YawSetpoint
 from ...autopilot.mission.notes import Text
 from ...core.algebra import IDENTITY
@@ -30,7 +31,7 @@ class CopterAutopilot(BaseAutopilot):
     def start_mission(self) -> bool:
         if not super().start_mission():
             return False
-        auto.start_mission(self._v.autopilot)
+        auto.start_mission(self._v.autopilot.modes.auto, self._v.autopilot.arming)
         return True
 
     # ------------------------------------------------------------------ take-off and motors
@@ -90,13 +91,14 @@ class CopterAutopilot(BaseAutopilot):
             return False
         if self.mode() == auto.AUTO:
             return bool(self._sequencer().change_speed(self._v, kind, speed))
-        return int(commands.change_speed(self._v.autopilot, kinds[kind], speed)) == 0
+        ap = self._v.autopilot
+        return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
-        return int(commands.condition_yaw(self._v.autopilot, angle, rate, direction, relative)) == 0
+        return commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:
-        return int(commands.set_paused(self._v.autopilot, on)) == 0
+        return commands.set_paused(self._v.autopilot.modes, on) == 0
 
     def set_roi(self, place: Vector | None) -> None:
         if place is None:

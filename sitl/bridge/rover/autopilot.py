@@ -11,6 +11,7 @@ from ...autopilot.rover import arming, failsafe, motor_test, texts
 from ...autopilot.rover.control import servos
 from ...autopilot.rover.modes import guided_setpoints, set_mode
 from ...autopilot.rover.modes.auto import AUTO
+from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
 from ...core.vectors import Vec2
 from ..autopilot_api import Note, Vector, Yaw
@@ -40,26 +41,33 @@ class RoverAutopilot(BaseAutopilot):
 
     # ------------------------------------------------------------------ GUIDED
 
+    @property
+    def _modes(self) -> Modes:
+        modes: Modes = self._v.autopilot.modes
+        return modes
+
     def is_guided_in_auto(self) -> bool:
         """Whether a mission waits for set-points (NAV_GUIDED_ENABLE)."""
-        return self.mode() == AUTO and bool(guided_setpoints.is_open(self._v.autopilot.modes))
+        return self.mode() == AUTO and bool(guided_setpoints.is_open(self._modes))
 
     def guided_position(self, place: Vector, yaw: Yaw | None) -> bool:
         """Drive to a place; height and yaw mean nothing to a rover."""
         return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
 
     def guided_heading(self, heading: float, speed: float) -> bool:
-        return int(guided_setpoints.set_heading_and_speed(self._v, heading, speed)) == 0
+        return int(guided_setpoints.set_heading_and_speed(self._modes, self._v.time_us, heading, speed)) == 0
 
     def guided_heading_change(self, change: float, speed: float) -> bool:
         """Turn by an angle [rad] from the heading asked for last."""
-        return int(guided_setpoints.set_heading_change_and_speed(self._v, change, speed)) == 0
+        yaw = self._v.autopilot.estimate.euler.yaw
+        code = guided_setpoints.set_heading_change_and_speed(self._modes, self._v.time_us, yaw, change, speed)
+        return int(code) == 0
 
     def guided_turn_rate(self, rate: float, speed: float) -> bool:
-        return int(guided_setpoints.set_turn_rate_and_speed(self._v, rate, speed)) == 0
+        return int(guided_setpoints.set_turn_rate_and_speed(self._modes, self._v.time_us, rate, speed)) == 0
 
     def guided_stop(self) -> bool:
-        return int(guided_setpoints.stop(self._v)) == 0
+        return int(guided_setpoints.stop(self._modes)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
         """Airspeed (0) is ground speed (1); there are no others."""
@@ -67,7 +75,8 @@ class RoverAutopilot(BaseAutopilot):
 
     def set_reversed(self, backward: bool) -> None:
         """Drive paths backwards, until the mode changes."""
-        waypoint.set_reversed(self._v.autopilot, backward)
+        ap = self._v.autopilot
+        waypoint.set_reversed(ap.modes.nav, ap.estimate, backward, ap.params)
 
     # ------------------------------------------------------------------ home
 

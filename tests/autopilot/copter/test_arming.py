@@ -43,8 +43,6 @@ def test_a_start_as_recorded(vehicle, mode, seconds, texts):
     booting(vehicle, mode, seconds)
     assert arming.texts(arming.check(vehicle)) == texts
     assert arming.arm(vehicle, BY_MAVLINK, False) == (not texts, [f"Arm: {t}" for t in texts])
-    arming.run_prearm_checks(vehicle)
-    assert vehicle.autopilot.arming.prearm_ok == int(not texts)
 
 
 def test_forcing_skips_all_but_the_position_that_the_mode_needs(vehicle):
@@ -137,11 +135,12 @@ def test_arming_moves_home_here_unless_it_is_locked(vehicle):
 
 
 def test_motors_wait_two_seconds(vehicle):
+    ap = vehicle.autopilot
     arming.arm(vehicle, BY_MAVLINK, False)
     for seconds, waits in ((0.0, 1), (1.9, 1), (0.2, 0)):
         wait(vehicle, seconds)
-        arming.follow_throttle(vehicle)
-        assert vehicle.autopilot.modes.arming_delay == waits
+        arming.follow_throttle(ap.arming, ap.modes, vehicle.time_us)
+        assert ap.modes.arming_delay == waits
 
 
 @pytest.mark.parametrize(
@@ -194,11 +193,11 @@ def test_auto_armed_follows_the_throttle(vehicle):
     ap = vehicle.autopilot
     arming.arm(vehicle, BY_MAVLINK, False)
     ap.modes.pilot.throttle_zero = 0
-    arming.follow_throttle(vehicle)
+    arming.follow_throttle(ap.arming, ap.modes, vehicle.time_us)
     assert ap.arming.auto_armed == 1
     ap.modes.pilot.throttle_zero = 1
-    arming.follow_throttle(vehicle)
+    arming.follow_throttle(ap.arming, ap.modes, vehicle.time_us)
     assert ap.arming.auto_armed == 0  # STABILIZE: throttle closed
     ap.modes.number, ap.arming.auto_armed = GUIDED, 1
-    arming.follow_throttle(vehicle)
+    arming.follow_throttle(ap.arming, ap.modes, vehicle.time_us)
     assert ap.arming.auto_armed == 1

@@ -11,9 +11,29 @@ from sitl.autopilot import failsafe_checks
 from sitl.autopilot.arming_checks import BY_RADIO_FAILSAFE
 from sitl.autopilot.copter import failsafe, pilot
 from sitl.autopilot.events import FAILSAFE
+from sitl.autopilot.state import Failsafe
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+
+
+def test_three_bad_frames_lose_the_radio_and_three_good_ones_find_it() -> None:
+    state = Failsafe()
+    frames = (True, True, False, True, True, True, False, False, True, False)
+    changed = [failsafe.count_radio(state, bad) for bad in frames]
+    assert changed == [False] * 5 + [True] + [False] * 2 + [False, True]
+    assert not state.radio
+
+
+def test_a_second_of_a_bad_estimate_counts() -> None:
+    state = Failsafe()
+    for _ in range(10):
+        assert state.ekf == 0
+        failsafe.count_estimate(state, True)
+    for _ in range(10):
+        assert state.ekf == 1
+        failsafe.count_estimate(state, False)
+    assert (state.ekf, state.ekf_count) == (0, 0)
 
 
 def lose_gcs(v):
@@ -88,7 +108,7 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
         pilot.read(flying)
         failsafe.watch_radio(flying)
     assert ap.modes.failsafe.radio == 1
-    assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap)) == (RTL, 0.0, 0.0)
+    assert (ap.modes.number, ap.modes.pilot.throttle, pilot.climb_rate(ap.modes, ap.rc, ap.params)) == (RTL, 0.0, 0.0)
     ap.rc.has_receiver = 1
     for _ in range(4):
         pilot.read(flying)

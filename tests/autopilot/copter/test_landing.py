@@ -8,11 +8,33 @@ import math
 import pytest
 
 from sitl.autopilot.copter import crash, landing
+from sitl.autopilot.copter.control.state import AttitudeState
+from sitl.autopilot.copter.modes.state import LandingState
 from sitl.autopilot.events import CRASH_DISARM, LANDED
+from sitl.autopilot.state import Arming
 from sitl.core.vectors import Vec3
 from tests.autopilot.copter.steady_copter import codes, fly
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+
+
+def test_rest_is_counted_and_lands_the_vehicle() -> None:
+    arming = Arming()
+    told = [landing.count_rest(arming, True) for _ in range(landing.TRIGGER_TICKS)]
+    assert told == [False] * (landing.TRIGGER_TICKS - 1) + [True]
+    assert (arming.landed, arming.landed_maybe) == (True, True)
+    arming.landed, arming.landed_ticks = False, 300
+    assert not landing.count_rest(arming, False)
+    assert (arming.landed_ticks, arming.landed_maybe) == (0, False)
+
+
+def test_a_crash_is_a_lean_far_off_without_speed() -> None:
+    attitude, detector = AttitudeState(), LandingState()
+    attitude.thrust_error_angle, attitude.cos_lean = math.radians(40.0), 0.5
+    assert crash.is_crashed(attitude, detector, Vec3(1.0, 0.0, 0.0))
+    assert not crash.is_crashed(attitude, detector, Vec3(11.0, 0.0, 0.0))
+    detector.acc = Vec3(0.0, 0.0, 4.0)
+    assert not crash.is_crashed(attitude, detector, Vec3(1.0, 0.0, 0.0))
 
 
 def touch(v):
@@ -117,7 +139,7 @@ def test_throttle_priority(flying, mode, throttle, descent, mix):
         1.0,
     )
     landing.detect(flying)
-    landing.set_priority(flying)
+    landing.set_priority(ap.control, ap.arming, ap.modes, ap.estimate.vel.z, ap.params.ATC)
     assert ap.control.attitude.mix_desired == pytest.approx(float(ap.params[mix]))
 
 

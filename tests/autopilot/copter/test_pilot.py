@@ -100,8 +100,9 @@ def test_throttle_counts_as_zero_only_after_a_while(vehicle):
     ((0.5, 0.0), (0.6, 0.0), (0.4, 0.0), (1.0, 2.5), (0.8, 1.25), (0.0, -2.5), (0.2, -1.25)),
 )
 def test_climb_rate(vehicle, throttle, climb):
-    vehicle.autopilot.modes.pilot.throttle = throttle
-    assert pilot.climb_rate(vehicle.autopilot) == pytest.approx(climb)
+    ap = vehicle.autopilot
+    ap.modes.pilot.throttle = throttle
+    assert pilot.climb_rate(ap.modes, ap.rc, ap.params) == pytest.approx(climb)
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.1, 1.3), st.floats(0.1, 1.3))

@@ -7,11 +7,14 @@ import math
 
 import pytest
 
+from sitl.autopilot.rover import crash
 from sitl.autopilot.rover.modes import guided_setpoints
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.state import Arming, Estimate
+from sitl.core.vectors import Euler, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
@@ -37,7 +40,7 @@ def blocked(**params: float) -> Stuck:
 
 def run_into_wall(rover: Stuck, seconds: float) -> None:
     for _ in range(round(seconds / 0.5)):
-        guided_setpoints.set_heading_and_speed(rover.v, 0.0, 2.0)
+        guided_setpoints.set_heading_and_speed(rover.ap.modes, rover.v.time_us, 0.0, 2.0)
         rover.run(0.5)
 
 
@@ -75,3 +78,15 @@ def test_pilots_modes_are_not_watched() -> None:
     rover.ap.estimate.euler = rover.ap.estimate.euler.replace(roll=math.radians(35.0))
     rover.run(3.0)
     assert rover.ap.modes.number == MANUAL
+
+
+def test_a_crash_is_two_seconds_without_a_break_or_a_lean() -> None:
+    arming, estimate = Arming(), Estimate()
+    assert [crash.detect_crash(arming, estimate, 0.5, 0.0) for _ in range(20)] == [False] * 19 + [True]
+    crash.detect_crash(arming, estimate, 0.5, 0.0)
+    estimate.vel = Vec3(0.1, 0.0, 0.0)
+    assert not crash.detect_crash(arming, estimate, 0.5, 0.0)
+    assert arming.crash_ticks == 0
+    estimate.euler = Euler(0.0, -0.6, 0.0)
+    assert not crash.detect_crash(arming, estimate, 0.5, 0.7)
+    assert crash.detect_crash(arming, estimate, 0.5, 0.5)

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from sitl.autopilot.rover import pilot
+from sitl.autopilot.rover import failsafe, pilot
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.hold import HOLD
@@ -13,6 +15,9 @@ from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.modes.smart_rtl import SMART_RTL
+from sitl.autopilot.rover.modes.state import LinksState, Modes
+from sitl.autopilot.rover.parameters.safety import Failsafes
+from sitl.autopilot.state import Estimate
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
@@ -34,7 +39,7 @@ def lose_radio(rover: Rover, seconds: float) -> None:
 def test_a_lost_radio_centres_the_sticks_at_once_and_acts_later() -> None:
     rover = driving()
     lose_radio(rover, 0.04)
-    assert pilot.sticks(rover.ap) == (0.0, 0.0)
+    assert pilot.sticks(rover.ap.modes.pilot, rover.ap.params) == (0.0, 0.0)
     rover.run(0.5)
     assert rover.ap.control.motors.throttle == 0.0
     assert rover.ap.modes.number == MANUAL
@@ -144,3 +149,32 @@ def test_bad_estimate_is_no_matter_in_manual_nor_before_it_was_good() -> None:
     never.set_estimate(False)
     never.arm().run(3.0)
     assert "EKF variance" not in never.texts()
+
+
+@given(st.lists(st.tuples(st.sampled_from([failsafe.BIT_RADIO, failsafe.BIT_GCS]), st.booleans()), max_size=20))
+def test_links_are_lost_since_the_first_of_them_and_over_with_the_last(seen: list[tuple[int, bool]]) -> None:
+    links, lost, since = LinksState(), set(), 0
+    for k, (bit, bad) in enumerate(seen, 1):
+        links.acted = links.bad
+        before = set(lost)
+        (lost.add if bad else lost.discard)(bit)
+        since = k if lost and not before else since
+        assert failsafe.note_link(links, bit, bad, k) == bool(before and not lost)
+        assert (links.bad, links.since_us) == (sum(lost), since)
+
+
+def test_a_bad_estimate_counts_after_a_second_and_only_once_it_has_been_good() -> None:
+    modes, estimate, params = Modes(), Estimate(), Failsafes()
+    params.EKF_THRESH, estimate.origin_set = 0.8, True
+
+    def watch(periods: int, good: bool) -> list[int]:
+        estimate.position_ok = good
+        return [failsafe.watch_estimate(modes, estimate, True, params) for _ in range(periods)]
+
+    same, fails, recovers = failsafe.EKF_SAME, failsafe.EKF_FAILS, failsafe.EKF_RECOVERS
+    assert watch(30, False) == [same] * 30
+    assert watch(1, True) == [same]
+    assert watch(12, False) == [same] * 9 + [fails] + [same] * 2
+    assert watch(12, True) == [same] * 9 + [recovers] + [same] * 2
+    watch(10, False)
+    assert failsafe.watch_estimate(modes, estimate, False, params) == recovers

@@ -8,12 +8,16 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ...modes import ACCEPTED
+from ...state import Arming, Estimate, Radio
 from .. import pilot
 from ..control import altitude, altitude_start, attitude
+from ..control.state import AltitudeState, Control, MotorsState
 from ..control.throttle_mix import lean_limit
-from ..state import Autopilot, Vehicle
+from ..parameters import Parameters
+from ..state import Vehicle
 from . import ground, takeoff
 from .mode import CopterMode
+from .state import Modes, TakeoffState
 
 ALT_HOLD = 2
 
@@ -28,39 +32,38 @@ FLYING = 4
 @law
 def start(v: Vehicle) -> int:
     """Enter from the present vertical motion."""
-    start_vertical(v.autopilot)
+    ap = v.autopilot
+    start_vertical(ap.modes.takeoff, ap.control, ap.estimate, ap.params)
     return ACCEPTED
 
 
 @law
-def start_vertical(ap: Autopilot) -> None:
+def start_vertical(takeoff: TakeoffState, control: Control, est: Estimate, p: Parameters) -> None:
+    """Go on with the present vertical motion, within the limits of the throttle stick."""
+    set_limits(control.pos_d, p)
+    if not altitude_start.is_active_d(control):
+        altitude_start.init_d(control, est, p)
+    takeoff.user_active = False
+
+
+@law
+def set_limits(path: AltitudeState, p: Parameters) -> None:
     """Limits of the throttle stick: PILOT_SPEED_UP, PILOT_SPEED_DN, PILOT_ACCEL_Z."""
-    set_limits(ap)
-    if not altitude_start.is_active_d(ap.control):
-        altitude_start.init_d(ap.control, ap.estimate, ap.params)
-    ap.modes.takeoff.user_active = False
+    down, up = pilot.speed_down(p.PILOT), p.PILOT.SPEED_UP * 0.01
+    altitude_start.set_max_speed_accel_d(path, p.PSC, down, up, p.PILOT.ACCEL_Z * 0.01)
 
 
 @law
-def set_limits(ap: Autopilot) -> None:
-    """Vertical limits of modes that the pilot flies."""
-    p = ap.params.PILOT
-    altitude_start.set_max_speed_accel_d(
-        ap.control.pos_d, ap.params.PSC, pilot.speed_down(p), p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01
-    )
-
-
-@law
-def decide(ap: Autopilot, climb: float) -> int:
+def decide(arming: Arming, takeoff: TakeoffState, motors: MotorsState, climb: float) -> int:
     """What to do with the throttle stick asking for ``climb`` [m/s]; sets the spool state that this needs."""
-    motors = ap.control.motors
-    if not ap.arming.armed:
+    if not arming.armed:
         motors.desired_spool = ground.SHUT_DOWN
         return STOPPED
-    if ap.modes.takeoff.user_active or takeoff.is_triggered(ap, climb):
+    triggered = arming.landed and climb > 0.0 and motors.spool_state == ground.IS_UNLIMITED
+    if takeoff.user_active or triggered:
         motors.desired_spool = ground.UNLIMITED
         return TAKING_OFF
-    if not ap.arming.auto_armed or ap.arming.landed:
+    if not arming.auto_armed or arming.landed:
         motors.desired_spool = ground.GROUND_IDLE if climb < 0.0 else ground.UNLIMITED
         if motors.spool_state == ground.IS_GROUND_IDLE or motors.spool_state == ground.IS_SHUT_DOWN:
             return LANDED_IDLE
@@ -70,41 +73,49 @@ def decide(ap: Autopilot, climb: float) -> int:
 
 
 @law
-def climb_rate(ap: Autopilot) -> float:
+def climb_rate(modes: Modes, rc: Radio, limits: AltitudeState, p: Parameters) -> float:
     """Climb rate of the stick within the limits [m/s]."""
-    return constrain(pilot.climb_rate(ap), -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
+    return constrain(pilot.climb_rate(modes, rc, p), -limits.speed_down, limits.speed_up)
 
 
 @law
-def run_vertical(ap: Autopilot, doing: int, climb: float) -> None:
-    """Vertical part of one tick; ``climb`` from the stick [m/s]."""
+def run_vertical(
+    doing: int, climb: float, arming: Arming, state: TakeoffState, control: Control, est: Estimate, p: Parameters
+) -> None:
+    """Vertical part of one tick, also in a take-off; ``climb`` from the stick [m/s]."""
     if doing == TAKING_OFF:
-        if not ap.modes.takeoff.user_active:
-            takeoff.begin_user(ap, constrain(ap.params.PILOT.TKOFF_ALT * 0.01, 0.0, 10.0))
-        if ap.control.motors.spool_state == ground.IS_UNLIMITED:
-            takeoff.run_user(ap, climb)
-            return
-        altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
-    elif doing == FLYING:
-        altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
+        if not state.user_active:
+            takeoff.begin_user(state, constrain(p.PILOT.TKOFF_ALT * 0.01, 0.0, 10.0), control, est, p)
+        if control.motors.spool_state != ground.IS_UNLIMITED:
+            altitude_start.relax_d(control, est, p, 0.0)
+            altitude.update_d(control, est, p)
+        elif not arming.landed:
+            takeoff.climb_user(state, climb, control, est, p)
+        elif takeoff.lift_off_user(state, climb, control, est, p):
+            ground.set_landed(arming, False)
+            altitude_start.init_d(control, est, p)
+        return
+    if doing == FLYING:
+        altitude.input_vel_accel_d(control.pos_d, -climb, 0.0)
     else:
-        altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
-    altitude.update_d(ap.control, ap.estimate, ap.params)
+        altitude_start.relax_d(control, est, p, 0.0)
+    altitude.update_d(control, est, p)
 
 
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    set_limits(ap)
-    climb = climb_rate(ap)
-    doing = decide(ap, climb)
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    set_limits(control.pos_d, p)
+    climb = climb_rate(modes, ap.rc, control.pos_d, p)
+    doing = decide(ap.arming, modes.takeoff, control.motors, climb)
     if doing in (STOPPED, LANDED_IDLE):
-        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
-    lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
-    lean = pilot.lean_angles(ap.modes.pilot, lean_max, min(lean_max, lean_limit(ap.control.attitude)))
-    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, lean, ap.modes.pilot.yaw_rate)
-    run_vertical(ap, doing, climb)
+        attitude.reset_yaw_target(control.attitude, est.euler.yaw)
+    lean_max = math.radians(p.ANGLE_MAX * 0.01)
+    lean = pilot.lean_angles(modes.pilot, lean_max, min(lean_max, lean_limit(control.attitude)))
+    attitude.input_euler_roll_pitch_yaw_rate(control, est, p, lean, modes.pilot.yaw_rate)
+    run_vertical(doing, climb, ap.arming, modes.takeoff, control, est, p)
 
 
 MODE = CopterMode(number=ALT_HOLD, name="ALT_HOLD", start=start, run=run, standard_mode=4, climb_stick=True)

@@ -12,10 +12,16 @@ from ...arming_checks import BY_MISSION_EXIT
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
+from ...state import Arming, Estimate
+from ..control.state import AttitudeState, Control
 from ..navigation import command, waypoint
-from ..state import Autopilot, Vehicle
+from ..navigation.state import CopterNav
+from ..parameters import Parameters
+from ..parameters.flight import Waypoints
+from ..state import Vehicle
 from . import auto_yaw, ground, land, rtl, takeoff
 from .mode import CopterMode
+from .state import AutoState, AutoYaw, Modes
 
 AUTO = 3
 
@@ -30,28 +36,30 @@ DESCENDING = 1
 
 
 @law
-def has_option(ap: Autopilot, option: int) -> bool:
+def has_option(p: Parameters, option: int) -> bool:
     """Whether a bit of AUTO_OPTIONS is set."""
-    return (int(ap.params.AUTO_OPTIONS) & option) != 0
+    return (int(p.AUTO_OPTIONS) & option) != 0
 
 
 @law
-def may_arm(v: Vehicle, method: int) -> bool:
+def may_arm(p: Parameters, method: int) -> bool:
     """Whether it may be armed: when AUTO_OPTIONS says so."""
-    return has_option(v.autopilot, _ARM)
+    return has_option(p, _ARM)
 
 
 @law
-def start(v: Vehicle) -> int:
-    """Enter; armed it needs a mission, on the ground one that begins with a take-off."""
-    ap = v.autopilot
-    if ap.arming.armed:
-        if ap.modes.mission_count < 2:
-            return INIT_FAILED
-        if ap.arming.landed and not ap.modes.mission_takes_off:
-            return MISSING_TAKEOFF
-    auto = ap.modes.auto
-    nav = ap.modes.nav
+def refusal(modes: Modes, arming: Arming) -> int:
+    """ACCEPTED, or why not: armed it needs a mission, on the ground one that begins with a take-off."""
+    if arming.armed and modes.mission_count < 2:
+        return INIT_FAILED
+    if arming.armed and arming.landed and not modes.mission_takes_off:
+        return MISSING_TAKEOFF
+    return ACCEPTED
+
+
+@law
+def reset(auto: AutoState, nav: CopterNav) -> None:
+    """Wait for the first command; speeds are the parameters' again."""
     waypoint.stop(nav)
     nav.speed_ne = 0.0
     nav.speed_up = 0.0
@@ -60,140 +68,152 @@ def start(v: Vehicle) -> int:
     auto.command = nav.command_count
     auto.submode = NONE
     auto.started = False
-    if ap.modes.auto_yaw.mode == auto_yaw.ROI:
-        auto_yaw.set_mode(ap, auto_yaw.HOLD)
-    auto_yaw.set_default(ap, False)
-    ground.set_waypoint_limits(ap)
-    ground.continue_position_control(ap)
-    return ACCEPTED
 
 
 @law
-def start_mission(ap: Autopilot) -> None:
+def start(v: Vehicle) -> int:
+    """Enter."""
+    ap = v.autopilot
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    cause = refusal(modes, ap.arming)
+    if cause != ACCEPTED:
+        return cause
+    reset(modes.auto, modes.nav)
+    if modes.auto_yaw.mode == auto_yaw.ROI:
+        auto_yaw.set_mode(modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
+    auto_yaw.set_default(modes.auto_yaw, p.WP, False, control.attitude, est)
+    ground.set_waypoint_limits(control, p)
+    ground.continue_position_control(control, est, p)
+    return ACCEPTED
+
+
+def start_mission(auto: AutoState, arming: Arming) -> None:
     """MAV_CMD_MISSION_START: a take-off at the beginning need not wait for a raised throttle."""
-    ap.modes.auto.started = True
-    if ap.arming.armed:
-        ap.arming.auto_armed = True
+    auto.started = True
+    if arming.armed:
+        arming.auto_armed = True
 
 
 @law
 def begin(v: Vehicle) -> None:
     """Begin the command that the shell has written."""
     ap = v.autopilot
-    nav = ap.modes.nav
-    auto = ap.modes.auto
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    auto, nav = modes.auto, modes.nav
     auto.command = nav.command_count
     auto.submode = nav.command_kind
     auto.land_state = FLYING
     ap.arming.landed_maybe = ap.arming.landed
-    command.begin(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us)
+    command.begin(nav, control, est, p, v.time_us)
     if auto.submode == TAKEOFF:
-        takeoff.begin(ap, nav.target.z)
+        takeoff.begin(modes.takeoff, nav.target.z, ap.arming.landed, control, est, p)
     elif auto.submode == RTL:
         rtl.begin(v)
     elif auto.submode == LAND and not nav.has_place:
-        begin_descent(v)
+        begin_descent(modes, v.time_us, control, est, p)
 
 
-@law
-def choose_heading(ap: Autopilot, kind: int) -> None:
-    """Heading of a new command; do-commands on the way to it have run, or follow."""
-    mode = ap.modes.auto_yaw.mode
+def choose_heading(yaw: AutoYaw, kind: int, p: Waypoints, target: AttitudeState, est: Estimate) -> None:
+    """Heading of a new command of a ``kind``; do-commands on the way to it have run, or follow."""
     if kind == TAKEOFF:
-        auto_yaw.set_mode(ap, auto_yaw.HOLD)
-    elif mode != auto_yaw.ROI and (mode != auto_yaw.FIXED or ap.params.WP.YAW_BEHAVIOR != 0.0):
-        auto_yaw.set_default(ap, False)
+        auto_yaw.set_mode(yaw, auto_yaw.HOLD, target, est)
+    elif yaw.mode != auto_yaw.ROI and (yaw.mode != auto_yaw.FIXED or p.YAW_BEHAVIOR != 0.0):
+        auto_yaw.set_default(yaw, p, False, target, est)
 
 
 @law
-def begin_descent(v: Vehicle) -> None:
+def begin_descent(modes: Modes, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
     """Land where it is."""
-    v.autopilot.modes.auto.land_state = DESCENDING
-    land.begin(v)
+    modes.auto.land_state = DESCENDING
+    land.begin(modes, time_us, control, est, p)
 
 
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    auto = ap.modes.auto
-    if auto.command != ap.modes.nav.command_count:
+    modes, est = ap.modes, ap.estimate
+    if modes.auto.command != modes.nav.command_count:
         begin(v)
-    if not has_option(ap, _NO_PILOT_YAW):
-        auto_yaw.follow_pilot(ap)
-    if auto.submode == TAKEOFF:
-        run_takeoff(v)
-    elif auto.submode == LAND:
-        run_land(v)
-    elif auto.submode == RTL:
+    if not has_option(ap.params, _NO_PILOT_YAW):
+        auto_yaw.follow_pilot(modes, ap.control.attitude, est)
+    if run_command(v, modes.auto.submode):
+        complete(modes.nav, ap.events, v.time_us)
+    turned = auto_yaw.has_turned(modes.auto_yaw, est.euler.yaw)
+    check_condition(modes.nav, ap.events, v.time_us, est.pos, turned)
+
+
+@law
+def run_command(v: Vehicle, kind: int) -> bool:
+    """One tick of a command of a ``kind``; whether it is done."""
+    ap = v.autopilot
+    if kind == TAKEOFF:
+        if ap.arming.armed and (ap.modes.auto.started or has_option(ap.params, _TAKE_OFF_ALONE)):
+            ap.arming.auto_armed = True
+        takeoff.run(v)
+        return ap.modes.takeoff.complete
+    if kind == LAND:
+        return run_land(v)
+    if kind == RTL:
         rtl.run(v)
-        if ap.arming.landed and ap.modes.rtl.state == rtl.LANDING:
-            complete(ap.modes.nav, ap.events, v.time_us)
-    else:
-        run_path(v)
-    turned = auto_yaw.has_turned(ap.modes.auto_yaw, ap.estimate.euler.yaw)
-    check_condition(ap.modes.nav, ap.events, v.time_us, ap.estimate.pos, turned)
+        return ap.arming.landed and rtl.is_landing(ap.modes)
+    return run_path(v, kind)
 
 
 @law
-def run_path(v: Vehicle) -> None:
-    """One tick of a command that follows a path, or of none; on the ground after the last one the vehicle disarms."""
+def run_path(v: Vehicle, kind: int) -> bool:
+    """One tick of a command that follows a path, or of none; whether it is done.
+
+    On the ground after the last one the vehicle disarms.
+    """
     ap = v.autopilot
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     if ground.is_grounded(ap.arming):
-        ground.rest(ap)
-        if ap.arming.armed and ap.arming.landed and ap.modes.nav.mission_state == COMPLETE:
+        ground.rest(ap.arming.armed, control, est, p)
+        if ap.arming.armed and ap.arming.landed and modes.nav.mission_state == COMPLETE:
             ground.disarm(v, BY_MISSION_EXIT)
-    elif command.follows_path(ap.modes.auto.submode):
-        ap.control.motors.desired_spool = ground.UNLIMITED
-        if command.run(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us):
-            complete(ap.modes.nav, ap.events, v.time_us)
-        ground.fly(ap)
-    else:
-        ground.hold(ap)
+        return False
+    if not command.follows_path(kind):
+        ground.hold(modes.auto_yaw, control, est, p)
+        return False
+    control.motors.desired_spool = ground.UNLIMITED
+    done = command.run(modes.nav, control, est, p, v.time_us)
+    ground.fly(modes.auto_yaw, control, est, p)
+    return done
 
 
 @law
-def run_takeoff(v: Vehicle) -> None:
-    """One tick of the take-off command."""
+def run_land(v: Vehicle) -> bool:
+    """One tick of the land command: to the place at the present height, then down; whether it is done."""
     ap = v.autopilot
-    if ap.arming.armed and (ap.modes.auto.started or has_option(ap, _TAKE_OFF_ALONE)):
-        ap.arming.auto_armed = True
-    takeoff.run(v)
-    if ap.modes.takeoff.complete:
-        complete(ap.modes.nav, ap.events, v.time_us)
-
-
-@law
-def run_land(v: Vehicle) -> None:
-    """One tick of the land command: to the place at the present height, then down."""
-    ap = v.autopilot
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     land.finish(v)
-    if ap.arming.landed and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE:
-        complete(ap.modes.nav, ap.events, v.time_us)
+    done = ap.arming.landed and control.motors.spool_state <= ground.IS_GROUND_IDLE
     if ground.is_grounded(ap.arming):
-        ground.rest(ap)
-        return
-    ap.control.motors.desired_spool = ground.UNLIMITED
-    if ap.modes.auto.land_state == FLYING:
-        reached = waypoint.advance(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us)
-        ground.fly(ap)
-        if reached:
-            begin_descent(v)
-    else:
-        land.descend(ap, False)
+        ground.rest(ap.arming.armed, control, est, p)
+        return done
+    control.motors.desired_spool = ground.UNLIMITED
+    if modes.auto.land_state == DESCENDING:
+        land.descend(modes, ap.home.pos.z - est.pos.z, ap.arming.landed_maybe, control, est, p)
+        return done
+    reached = waypoint.advance(modes.nav, control, est, p, v.time_us)
+    ground.fly(modes.auto_yaw, control, est, p)
+    if reached:
+        begin_descent(modes, v.time_us, control, est, p)
+    return done
 
 
 @law
-def is_landing(v: Vehicle) -> bool:
+def is_landing(modes: Modes) -> bool:
     """Whether the descent to the ground has begun."""
-    auto = v.autopilot.modes.auto
-    return rtl.is_landing(v) if auto.submode == RTL else auto.submode == LAND and auto.land_state == DESCENDING
+    auto = modes.auto
+    return rtl.is_landing(modes) if auto.submode == RTL else auto.submode == LAND and auto.land_state == DESCENDING
 
 
 @law
-def is_taking_off(v: Vehicle) -> bool:
+def is_taking_off(modes: Modes) -> bool:
     """Whether a take-off command is not done yet."""
-    return v.autopilot.modes.auto.submode == TAKEOFF and not v.autopilot.modes.takeoff.complete
+    return modes.auto.submode == TAKEOFF and not modes.takeoff.complete
 
 
 MODE = CopterMode(

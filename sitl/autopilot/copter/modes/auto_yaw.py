@@ -7,16 +7,20 @@ Sources: ArduPilot's WP_YAW_BEHAVIOR, ATC_SLEW_YAW, MAV_CMD_CONDITION_YAW, MAV_C
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from ....core.algebra import cross2, dot2, horizontal
 from ....core.kernels import law
 from ....core.scalars import TWO_PI, constrain, wrap_pi
 from ....core.vectors import Vec2, Vec3
+from ...state import Estimate
 from ..control import attitude
 from ..control.attitude import Heading
-from ..control.state import DT
-from ..state import Autopilot
-from .state import AutoYaw
+from ..control.state import DT, AttitudeState, Control, PositionState
+from ..parameters import Parameters
+from ..parameters.control import Attitude
+from ..parameters.flight import Waypoints
+from .state import AutoYaw, Modes
 
 HOLD = 0  # heading as it is
 LOOK_AT_NEXT_WP = 1  # along the desired velocity
@@ -30,16 +34,24 @@ PILOT_RATE = 9
 _COURSE_SPEED = 1.0  # slower than this the course says nothing [m/s]
 
 
+class Turn(NamedTuple):
+    """MAV_CMD_CONDITION_YAW."""
+
+    angle: float  # heading, or angle to turn by [rad]
+    rate: float  # [rad/s]; 0: ATC_SLEW_YAW
+    direction: int  # 1 clockwise, -1 counter-clockwise, 0 the shorter way
+    relative: bool  # the angle counts from the present heading
+
+
 @law
-def set_mode(ap: Autopilot, mode: int) -> None:
-    """Change what decides about the heading; keeps the heading under way."""
-    yaw = ap.modes.auto_yaw
+def set_mode(yaw: AutoYaw, mode: int, target: AttitudeState, est: Estimate) -> None:
+    """Change what decides about the heading; keeps the one under way, that of the attitude controller's ``target``."""
     if yaw.mode == mode:
         return
     yaw.mode = mode
     yaw.rate = 0.0
-    yaw.yaw = ap.control.attitude.target_euler.yaw
-    yaw.look_ahead = ap.estimate.euler.yaw
+    yaw.yaw = target.target_euler.yaw
+    yaw.look_ahead = est.euler.yaw
 
 
 @law
@@ -51,39 +63,41 @@ def default_mode(behaviour: int, homeward: bool) -> int:
 
 
 @law
-def set_default(ap: Autopilot, homeward: bool) -> None:
+def set_default(yaw: AutoYaw, p: Waypoints, homeward: bool, target: AttitudeState, est: Estimate) -> None:
     """Leave the heading to WP_YAW_BEHAVIOR."""
-    set_mode(ap, default_mode(int(ap.params.WP.YAW_BEHAVIOR), homeward))
+    set_mode(yaw, default_mode(int(p.YAW_BEHAVIOR), homeward), target, est)
 
 
 @law
-def turn_from(start: float, angle: float, direction: int, relative: bool) -> float:
-    """The angle to turn, signed [rad], from heading ``start`` to ``angle`` [rad], or by it when it is ``relative``.
+def turn_from(start: float, turn: Turn) -> float:
+    """The angle to turn, signed [rad], from heading ``start`` [rad].
 
-    ``direction``: 1 clockwise, -1 counter-clockwise, 0 the shorter way. An absolute angle is reached in the
-    direction asked for, even if that is almost a full circle.
+    An absolute angle is reached in the direction asked for, even if that is almost a full circle.
     """
-    if relative:
-        return -angle if direction < 0 else angle
-    offset = wrap_pi(angle - start)
-    if direction < 0 and offset > 0.0:
+    if turn.relative:
+        return -turn.angle if turn.direction < 0 else turn.angle
+    offset = wrap_pi(turn.angle - start)
+    if turn.direction < 0 and offset > 0.0:
         return offset - TWO_PI
-    if direction > 0 and offset < 0.0:
+    if turn.direction > 0 and offset < 0.0:
         return offset + TWO_PI
     return offset
 
 
 @law
-def turn_to(ap: Autopilot, angle: float, rate: float, direction: int, relative: bool) -> None:
-    """Turn to ``angle`` [rad] at ``rate`` [rad/s] (0: ATC_SLEW_YAW), then hold; the rest as ``turn_from``."""
-    yaw = ap.modes.auto_yaw
-    start = ap.control.attitude.target_euler.yaw
-    rate_max = math.radians(ap.params.ATC.SLEW_YAW * 0.01)
+def turn_to(yaw: AutoYaw, turn: Turn, start: float, rate_max: float) -> None:
+    """Turn from heading ``start`` [rad], at most at ``rate_max`` [rad/s] (0: no limit), then hold."""
     yaw.mode = FIXED
     yaw.yaw = start
     yaw.rate = 0.0
-    yaw.offset = turn_from(start, angle, direction, relative)
-    yaw.slew = rate if rate > 0.0 and (rate < rate_max or rate_max <= 0.0) else rate_max
+    yaw.offset = turn_from(start, turn)
+    yaw.slew = turn.rate if turn.rate > 0.0 and (turn.rate < rate_max or rate_max <= 0.0) else rate_max
+
+
+@law
+def slew_max(p: Attitude) -> float:
+    """ATC_SLEW_YAW [rad/s]."""
+    return math.radians(p.SLEW_YAW * 0.01)
 
 
 @law
@@ -95,24 +109,24 @@ def follow_angle(yaw: AutoYaw, angle: float, rate: float) -> None:
 
 
 @law
-def turn_at(ap: Autopilot, rate: float) -> None:
+def turn_at(yaw: AutoYaw, rate: float, target: AttitudeState, est: Estimate) -> None:
     """Turn at ``rate`` [rad/s]."""
-    set_mode(ap, RATE)
-    ap.modes.auto_yaw.rate = rate
+    set_mode(yaw, RATE, target, est)
+    yaw.rate = rate
 
 
 @law
-def look_at(ap: Autopilot, place: Vec3) -> None:
+def look_at(yaw: AutoYaw, place: Vec3, target: AttitudeState, est: Estimate) -> None:
     """Keep the nose on a point, NED [m]."""
-    set_mode(ap, ROI)
-    ap.modes.auto_yaw.roi = place
+    set_mode(yaw, ROI, target, est)
+    yaw.roi = place
 
 
 @law
-def stop_turning(ap: Autopilot) -> None:
+def stop_turning(yaw: AutoYaw, target: AttitudeState, est: Estimate) -> None:
     """A set-point's turn rate is too old: keep the heading."""
-    if ap.modes.auto_yaw.mode in (RATE, ANGLE_RATE):
-        set_mode(ap, HOLD)
+    if yaw.mode in (RATE, ANGLE_RATE):
+        set_mode(yaw, HOLD, target, est)
 
 
 @law
@@ -145,24 +159,22 @@ def look_along(yaw: AutoYaw, vel: Vec2, acc: Vec2, speed_max: float) -> float:
 
 
 @law
-def advance(ap: Autopilot, dt: float) -> Heading:
-    """Move the heading on by ``dt`` [s]."""
-    yaw = ap.modes.auto_yaw
+def advance(yaw: AutoYaw, path: PositionState, est: Estimate, dt: float) -> Heading:
+    """Move the heading on by ``dt`` [s]; ``path``: that of the position controller."""
     if yaw.mode == FIXED:
         advance_turn(yaw, dt)
         return Heading(yaw.yaw, 0.0, True)
     if yaw.mode == ROI:
-        away = horizontal(yaw.roi - ap.estimate.pos)
+        away = horizontal(yaw.roi - est.pos)
         if dot2(away, away) > 0.01:
             yaw.yaw = math.atan2(away.y, away.x)
         return Heading(yaw.yaw, 0.0, True)
     if yaw.mode == LOOK_AHEAD:
-        vel = horizontal(ap.estimate.vel)
+        vel = horizontal(est.vel)
         if dot2(vel, vel) > _COURSE_SPEED * _COURSE_SPEED:
             yaw.look_ahead = math.atan2(vel.y, vel.x)
         return Heading(yaw.look_ahead, 0.0, True)
     if yaw.mode == LOOK_AT_NEXT_WP:
-        path = ap.control.pos_ne
         rate = look_along(yaw, path.vel_desired, path.accel_desired, path.speed_max)
         return Heading(yaw.yaw, rate, True)
     if yaw.mode == ANGLE_RATE:
@@ -172,21 +184,21 @@ def advance(ap: Autopilot, dt: float) -> Heading:
 
 
 @law
-def follow_pilot(ap: Autopilot) -> None:
+def follow_pilot(modes: Modes, target: AttitudeState, est: Estimate) -> None:
     """Let the yaw stick take over, and keep the heading when it is released."""
-    rate = ap.modes.pilot.yaw_rate
-    if abs(rate) > 1e-4 and not ap.modes.failsafe.radio:
-        set_mode(ap, PILOT_RATE)
-        ap.modes.auto_yaw.rate = rate
-    elif ap.modes.auto_yaw.mode == PILOT_RATE:
-        set_mode(ap, HOLD)
+    yaw, rate = modes.auto_yaw, modes.pilot.yaw_rate
+    if abs(rate) > 1e-4 and not modes.failsafe.radio:
+        set_mode(yaw, PILOT_RATE, target, est)
+        yaw.rate = rate
+    elif yaw.mode == PILOT_RATE:
+        set_mode(yaw, HOLD, target, est)
 
 
 @law
-def point(ap: Autopilot, thrust: Vec3) -> None:
+def point(yaw: AutoYaw, thrust: Vec3, control: Control, est: Estimate, p: Parameters) -> None:
     """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
-    heading = advance(ap, DT)
+    heading = advance(yaw, control.pos_ne, est, DT)
     if heading.absolute:
-        attitude.input_thrust_vector_heading(ap.control, ap.estimate, ap.params, thrust, heading)
+        attitude.input_thrust_vector_heading(control, est, p, thrust, heading)
     else:
-        attitude.input_thrust_vector_heading_rate(ap.control, ap.estimate, ap.params, thrust, heading.rate)
+        attitude.input_thrust_vector_heading_rate(control, est, p, thrust, heading.rate)

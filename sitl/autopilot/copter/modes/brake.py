@@ -24,15 +24,13 @@ SPEED_D = 2.5
 def start(v: Vehicle) -> int:
     """Enter."""
     ap = v.autopilot
-    vel = ap.estimate.vel
-    position_start.set_max_speed_accel_ne(
-        ap.control.pos_ne, ap.params, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION
-    )
-    position_start.init_ne(ap.control, ap.estimate, ap.params)
-    altitude_start.set_max_speed_accel_d(
-        ap.control.pos_d, ap.params.PSC, max(SPEED_D, vel.z), max(SPEED_D, -vel.z), DECELERATION
-    )
-    altitude_start.init_d(ap.control, ap.estimate, ap.params)
+    control, est, p = ap.control, ap.estimate, ap.params
+    vel = est.vel
+    position_start.set_max_speed_accel_ne(control.pos_ne, p, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION)
+    position_start.init_ne(control, est, p)
+    down, up = max(SPEED_D, vel.z), max(SPEED_D, -vel.z)
+    altitude_start.set_max_speed_accel_d(control.pos_d, p.PSC, down, up, DECELERATION)
+    altitude_start.init_d(control, est, p)
     return ACCEPTED
 
 
@@ -40,16 +38,15 @@ def start(v: Vehicle) -> int:
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
+    control, est, p = ap.control, ap.estimate, ap.params
     if ground.is_grounded(ap.arming):
-        ground.rest(ap)
+        ground.rest(ap.arming.armed, control, est, p)
         return
-    ap.control.motors.desired_spool = ground.UNLIMITED
-    ground.brake(ap)
-    position.update_ne(ap.control, ap.estimate, ap.params)
-    altitude.update_d(ap.control, ap.estimate, ap.params)
-    attitude.input_thrust_vector_heading_rate(
-        ap.control, ap.estimate, ap.params, position.thrust_vector(ap.control.pos_ne), 0.0
-    )
+    control.motors.desired_spool = ground.UNLIMITED
+    ground.brake(control)
+    position.update_ne(control, est, p)
+    altitude.update_d(control, est, p)
+    attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), 0.0)
 
 
 MODE = CopterMode(

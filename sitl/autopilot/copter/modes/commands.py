@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Commands of MAVLink to the mode under way: take off, turn, look at, fly slower, pause.
+"""Commands of MAVLink to the mode under way (shell): take off, turn, look at, fly slower, pause.
 
-Every law returns OK, or says why it left the record as it was.
+Each function returns OK, or says why it left the record as it was.
 """
 
 from __future__ import annotations
 
-from ....core.kernels import law
 from ....core.vectors import Vec3
 from ..control import altitude_start, position_start
+from ..control.state import Control
+from ..parameters import Parameters
 from ..state import Autopilot
 from . import auto_yaw, guided, takeoff
 from .auto import AUTO
+from .auto_yaw import Turn
 from .guided import GUIDED
 from .rtl import RTL
+from .state import Modes
 from .table import has_climb_stick
 
 OK = 0
@@ -31,19 +34,16 @@ HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
 """Kinds of speed that change_speed knows."""
 
 
-@law
 def is_usable(x: float) -> bool:
     """Whether a number is neither NaN nor infinite nor absurdly large."""
     return abs(x) <= LARGEST
 
 
-@law
 def is_usable_vector(x: Vec3) -> bool:
     """Whether all of them are usable numbers."""
     return is_usable(x.x) and is_usable(x.y) and is_usable(x.z)
 
 
-@law
 def take_off(ap: Autopilot, height: float) -> int:
     """MAV_CMD_NAV_TAKEOFF to ``height`` [m] above home."""
     mode = ap.modes.number
@@ -51,7 +51,7 @@ def take_off(ap: Autopilot, height: float) -> int:
         return NOT_FINITE
     if not ap.arming.armed:
         return NOT_ARMED
-    if not ap.arming.landed and not (mode == GUIDED and guided.climbs(ap.modes)):
+    if not ap.arming.landed and not (mode == GUIDED and guided.is_taking_off(ap.modes)):
         return ALREADY_FLYING
     if mode != GUIDED and not has_climb_stick(mode):
         return WRONG_MODE
@@ -61,46 +61,48 @@ def take_off(ap: Autopilot, height: float) -> int:
     if not ap.arming.landed:  # repeated in the climb: a client that missed the acknowledgement
         ap.modes.takeoff.target_d = target_d
         return OK
+    control, est, p = ap.control, ap.estimate, ap.params
     if mode == GUIDED:
-        guided.take_off(ap, target_d)
+        ap.modes.guided.submode = guided.TAKEOFF
+        ap.modes.guided.paused = False
+        auto_yaw.set_mode(ap.modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
+        takeoff.begin(ap.modes.takeoff, target_d, True, control, est, p)
     else:
-        takeoff.begin_user(ap, height)
+        takeoff.begin_user(ap.modes.takeoff, height, control, est, p)
     ap.arming.auto_armed = True
     return OK
 
 
-@law
-def condition_yaw(ap: Autopilot, angle: float, rate: float, direction: int, relative: bool) -> int:
-    """MAV_CMD_CONDITION_YAW in GUIDED and AUTO: angle [rad], rate [rad/s], direction -1, 0, 1."""
-    if not (is_usable(angle) and is_usable(rate)):
+def condition_yaw(ap: Autopilot, turn: Turn) -> int:
+    """MAV_CMD_CONDITION_YAW in GUIDED and AUTO."""
+    if not (is_usable(turn.angle) and is_usable(turn.rate)):
         return NOT_FINITE
     if ap.modes.number != GUIDED and ap.modes.number != AUTO:
         return WRONG_MODE
-    if rate < 0.0:
+    if turn.rate < 0.0:
         return OUT_OF_RANGE
-    auto_yaw.turn_to(ap, angle, rate, direction, relative)
+    start = ap.control.attitude.target_euler.yaw
+    auto_yaw.turn_to(ap.modes.auto_yaw, turn, start, auto_yaw.slew_max(ap.params.ATC))
     return OK
 
 
-@law
 def set_roi(ap: Autopilot, place: Vec3) -> int:
     """Keep the nose on a point, NED [m]."""
     if not is_usable_vector(place):
         return NOT_FINITE
-    auto_yaw.look_at(ap, place)
+    auto_yaw.look_at(ap.modes.auto_yaw, place, ap.control.attitude, ap.estimate)
     return OK
 
 
-@law
 def clear_roi(ap: Autopilot) -> int:
     """Give the heading back to WP_YAW_BEHAVIOR."""
-    if ap.modes.auto_yaw.mode == auto_yaw.ROI:
-        auto_yaw.set_default(ap, ap.modes.number == RTL)
+    yaw = ap.modes.auto_yaw
+    if yaw.mode == auto_yaw.ROI:
+        auto_yaw.set_default(yaw, ap.params.WP, ap.modes.number == RTL, ap.control.attitude, ap.estimate)
     return OK
 
 
-@law
-def change_speed(ap: Autopilot, kind: int, speed: float) -> int:
+def change_speed(control: Control, p: Parameters, kind: int, speed: float) -> int:
     """MAV_CMD_DO_CHANGE_SPEED: HORIZONTAL, CLIMB or DESCENT speed limit [m/s] until the mode or the
     kind of set-point changes.
     """
@@ -108,25 +110,24 @@ def change_speed(ap: Autopilot, kind: int, speed: float) -> int:
         return NOT_FINITE
     if speed <= 0.0:
         return OUT_OF_RANGE
-    path = ap.control.pos_d
+    path = control.pos_d
     if kind == HORIZONTAL:
-        position_start.set_max_speed_accel_ne(ap.control.pos_ne, ap.params, speed, ap.control.pos_ne.accel_max)
+        position_start.set_max_speed_accel_ne(control.pos_ne, p, speed, control.pos_ne.accel_max)
     elif kind == CLIMB:
-        altitude_start.set_max_speed_accel_d(ap.control.pos_d, ap.params.PSC, path.speed_down, speed, path.accel_max)
+        altitude_start.set_max_speed_accel_d(path, p.PSC, path.speed_down, speed, path.accel_max)
     elif kind == DESCENT:
-        altitude_start.set_max_speed_accel_d(ap.control.pos_d, ap.params.PSC, speed, path.speed_up, path.accel_max)
+        altitude_start.set_max_speed_accel_d(path, p.PSC, speed, path.speed_up, path.accel_max)
     else:
         return OUT_OF_RANGE
     return OK
 
 
-@law
-def set_paused(ap: Autopilot, paused: bool) -> int:
+def set_paused(modes: Modes, paused: bool) -> int:
     """MAV_CMD_DO_PAUSE_CONTINUE in GUIDED and AUTO: stop and hold, or go on."""
-    if ap.modes.number == GUIDED:
-        ap.modes.guided.paused = paused
-    elif ap.modes.number == AUTO:
-        ap.modes.nav.paused = paused
+    if modes.number == GUIDED:
+        modes.guided.paused = paused
+    elif modes.number == AUTO:
+        modes.nav.paused = paused
     else:
         return WRONG_MODE
     return OK

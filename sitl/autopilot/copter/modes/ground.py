@@ -5,10 +5,13 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...events import DISARMED, emit_and_return
-from ...state import Arming
+from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start
-from ..state import Autopilot, Vehicle
+from ..control.state import Control
+from ..parameters import Parameters
+from ..state import Vehicle
 from . import auto_yaw
+from .state import AutoYaw
 
 # Spool states wanted by a mode (control/motors.py)
 SHUT_DOWN = 0
@@ -53,64 +56,63 @@ def disarm(v: Vehicle, method: int) -> None:
 
 
 @law
-def rest(ap: Autopilot) -> None:
+def rest(armed: bool, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick on the ground: motors idle, controllers follow the vehicle, throttle decays to zero."""
-    motors = ap.control.motors
-    motors.desired_spool = GROUND_IDLE if ap.arming.armed else SHUT_DOWN
+    motors = control.motors
+    motors.desired_spool = GROUND_IDLE if armed else SHUT_DOWN
     if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
-        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
-    position_start.relax_ne(ap.control, ap.estimate, ap.params)
-    position.update_ne(ap.control, ap.estimate, ap.params)
-    altitude_start.relax_d(ap.control, ap.estimate, ap.params, 0.0)
-    altitude.update_d(ap.control, ap.estimate, ap.params)
-    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, attitude.Lean(0.0, 0.0), 0.0)
+        attitude.reset_yaw_target(control.attitude, est.euler.yaw)
+    position_start.relax_ne(control, est, p)
+    position.update_ne(control, est, p)
+    altitude_start.relax_d(control, est, p, 0.0)
+    altitude.update_d(control, est, p)
+    attitude.input_euler_roll_pitch_yaw_rate(control, est, p, attitude.Lean(0.0, 0.0), 0.0)
 
 
 @law
-def fly(ap: Autopilot) -> None:
+def fly(yaw: AutoYaw, control: Control, est: Estimate, p: Parameters) -> None:
     """Position controllers, then the attitude that they ask for with the heading of auto_yaw."""
-    position.update_ne(ap.control, ap.estimate, ap.params)
-    altitude.update_d(ap.control, ap.estimate, ap.params)
-    auto_yaw.point(ap, position.thrust_vector(ap.control.pos_ne))
+    position.update_ne(control, est, p)
+    altitude.update_d(control, est, p)
+    auto_yaw.point(yaw, position.thrust_vector(control.pos_ne), control, est, p)
 
 
 @law
-def brake(ap: Autopilot) -> None:
+def brake(control: Control) -> None:
     """Ask the position controllers to come to a stop and stay."""
-    position.brake_ne(ap.control.pos_ne)
-    altitude.input_vel_accel_d(ap.control.pos_d, 0.0, 0.0)
+    position.brake_ne(control.pos_ne)
+    altitude.input_vel_accel_d(control.pos_d, 0.0, 0.0)
 
 
 @law
-def hold(ap: Autopilot) -> None:
+def hold(yaw: AutoYaw, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of a stop, with the heading of auto_yaw."""
-    ap.control.motors.desired_spool = UNLIMITED
-    brake(ap)
-    fly(ap)
+    control.motors.desired_spool = UNLIMITED
+    brake(control)
+    fly(yaw, control, est, p)
 
 
 @law
-def set_waypoint_limits(ap: Autopilot) -> None:
+def set_waypoint_limits(control: Control, p: Parameters) -> None:
     """Speed and acceleration limits of GUIDED, RTL and LAND: WPNAV_*."""
-    p = ap.params.WPNAV
-    position_start.set_max_speed_accel_ne(ap.control.pos_ne, ap.params, p.SPEED * 0.01, p.ACCEL * 0.01)
-    altitude_start.set_max_speed_accel_d(
-        ap.control.pos_d, ap.params.PSC, p.SPEED_DN * 0.01, p.SPEED_UP * 0.01, p.ACCEL_Z * 0.01
-    )
+    legs = p.WPNAV
+    position_start.set_max_speed_accel_ne(control.pos_ne, p, legs.SPEED * 0.01, legs.ACCEL * 0.01)
+    down, up = legs.SPEED_DN * 0.01, legs.SPEED_UP * 0.01
+    altitude_start.set_max_speed_accel_d(control.pos_d, p.PSC, down, up, legs.ACCEL_Z * 0.01)
 
 
 @law
-def start_position_control(ap: Autopilot) -> None:
+def start_position_control(control: Control, est: Estimate, p: Parameters) -> None:
     """Take over position control from whatever flew before, without a jump."""
-    set_waypoint_limits(ap)
-    position_start.init_ne(ap.control, ap.estimate, ap.params)
-    altitude_start.init_d(ap.control, ap.estimate, ap.params)
+    set_waypoint_limits(control, p)
+    position_start.init_ne(control, est, p)
+    altitude_start.init_d(control, est, p)
 
 
 @law
-def continue_position_control(ap: Autopilot) -> None:
+def continue_position_control(control: Control, est: Estimate, p: Parameters) -> None:
     """Go on with position control, which starts anew only where the mode before did not have it."""
-    if not position_start.is_active_ne(ap.control):
-        position_start.init_ne(ap.control, ap.estimate, ap.params)
-    if not altitude_start.is_active_d(ap.control):
-        altitude_start.init_d(ap.control, ap.estimate, ap.params)
+    if not position_start.is_active_ne(control):
+        position_start.init_ne(control, est, p)
+    if not altitude_start.is_active_d(control):
+        altitude_start.init_d(control, est, p)

@@ -10,14 +10,16 @@ from __future__ import annotations
 from ....core.algebra import ZERO, euler_of, horizontal, quat_from_euler
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ....core.vectors import Euler, Vec3
+from ....core.vectors import Euler
 from ...arming_checks import BY_RUDDER
 from ...control.shaping import Motion, Motion2
-from ...events import GUIDED_TIMEOUT, emit
+from ...events import GUIDED_TIMEOUT, Events, emit
 from ...modes import ACCEPTED
+from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
-from ..control.state import DT
-from ..state import Autopilot, Vehicle
+from ..control.state import DT, Control
+from ..parameters import Parameters
+from ..state import Vehicle
 from . import auto_yaw, ground, takeoff
 from .mode import CopterMode
 from .state import GuidedState, Modes
@@ -41,100 +43,94 @@ _NO_PILOT_YAW = 4  # the yaw stick is ignored
 def start(v: Vehicle) -> int:
     """Enter: come to a stop and hold."""
     ap = v.autopilot
-    auto_yaw.set_default(ap, False)
-    start_submode(ap, VELOCITY_ACCEL)
-    ap.modes.guided.update_us = v.time_us
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    auto_yaw.set_default(modes.auto_yaw, p.WP, False, control.attitude, est)
+    start_submode(modes.guided, VELOCITY_ACCEL, control, est, p)
+    modes.guided.update_us = v.time_us
     return ACCEPTED
 
 
 @law
-def start_submode(ap: Autopilot, submode: int) -> None:
+def start_submode(guided: GuidedState, submode: int, control: Control, est: Estimate, p: Parameters) -> None:
     """Change what kind of set-point is flown, from the present motion."""
-    guided = ap.modes.guided
     guided.submode = submode
     guided.paused = False
     guided.timed_out = False
     guided.vel = ZERO
     guided.acc = ZERO
-    ground.start_position_control(ap)
+    ground.start_position_control(control, est, p)
 
 
 @law
-def is_old(v: Vehicle) -> bool:
-    """Whether the set-point is older than GUID_TIMEOUT."""
-    ap = v.autopilot
-    return v.time_us - ap.modes.guided.update_us > ap.params.GUID.TIMEOUT * 1e6
+def is_stale(guided: GuidedState, time_us: int, timeout: float) -> bool:
+    """Whether the set-point is older than ``timeout`` [s]."""
+    return time_us - guided.update_us > timeout * 1e6
 
 
 @law
-def is_stale(v: Vehicle) -> bool:
-    """Whether the set-point, of a kind that times out, is too old; tells the shell once."""
-    ap = v.autopilot
-    guided = ap.modes.guided
-    if not is_old(v):
-        guided.timed_out = False
-        return False
-    if not guided.timed_out:
-        guided.timed_out = True
-        emit(ap.events, v.time_us, GUIDED_TIMEOUT, float(guided.submode), 0.0)
-    return True
+def note_timeout(guided: GuidedState, stale: bool, events: Events, time_us: int) -> None:
+    """Tell the shell, once, that a set-point of a kind that times out is too old."""
+    if stale and not guided.timed_out:
+        emit(events, time_us, GUIDED_TIMEOUT, float(guided.submode), 0.0)
+    guided.timed_out = stale
 
 
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    guided = ap.modes.guided
-    if (int(ap.params.GUID.OPTIONS) & _NO_PILOT_YAW) == 0:
-        auto_yaw.follow_pilot(ap)
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    guided = modes.guided
+    if (int(p.GUID.OPTIONS) & _NO_PILOT_YAW) == 0:
+        auto_yaw.follow_pilot(modes, control.attitude, est)
+    stale = is_stale(guided, v.time_us, p.GUID.TIMEOUT)
     if guided.submode == TAKEOFF:
         takeoff.run(v)
     elif guided.submode == ANGLE:
-        run_angle(v)
+        note_timeout(guided, stale, ap.events, v.time_us)
+        run_angle(guided, stale, ap.arming, control, est, p)
     elif ground.is_grounded(ap.arming):
-        ground.rest(ap)
+        ground.rest(ap.arming.armed, control, est, p)
     else:
-        ap.control.motors.desired_spool = ground.UNLIMITED
+        control.motors.desired_spool = ground.UNLIMITED
         if guided.paused:
-            ground.brake(ap)
-        elif guided.submode == POSITION:
-            run_position(v)
+            ground.brake(control)
         else:
-            run_motion(v)
-        ground.fly(ap)
+            if guided.submode != POSITION:
+                note_timeout(guided, stale, ap.events, v.time_us)
+            if stale:
+                auto_yaw.stop_turning(modes.auto_yaw, control.attitude, est)
+            follow_setpoint(guided, stale, control)
+        ground.fly(modes.auto_yaw, control, est, p)
 
 
 @law
-def run_position(v: Vehicle) -> None:
-    """Fly to a point and stay; the speed limits keep a climbing path straight."""
-    ap = v.autopilot
-    if is_old(v):
-        auto_yaw.stop_turning(ap)
-    position_ned.input_pos_ned(ap.control.pos_ne, ap.control.pos_d, ap.modes.guided.pos)
+def follow_setpoint(guided: GuidedState, stale: bool, control: Control) -> None:
+    """Ask the position controllers for the set-point, which moves on between messages; a stale motion stops.
 
-
-@law
-def run_motion(v: Vehicle) -> None:
-    """Fly velocity, acceleration, or position with both; the set-point moves on between messages."""
-    ap = v.autopilot
-    guided = ap.modes.guided
-    stale = is_stale(v)
+    POSITION: fly to a point and stay; the speed limits keep a climbing path straight.
+    """
+    if guided.submode == POSITION:
+        position_ned.input_pos_ned(control.pos_ne, control.pos_d, guided.pos)
+        return
     if stale:
         guided.vel = ZERO
         guided.acc = ZERO
-        auto_yaw.stop_turning(ap)
     if guided.submode == ACCEL:
         if stale:
-            ground.brake(ap)
+            ground.brake(control)
         else:
-            follow_accel(ap, guided.acc)
+            position.input_accel_ne(control.pos_ne, horizontal(guided.acc))
+            altitude.input_vel_accel_d(control.pos_d, control.pos_d.vel_desired, guided.acc.z)
         return
     advance(guided, DT)
+    pos, vel, acc = guided.pos, guided.vel, guided.acc
     if guided.submode == POS_VEL_ACCEL:
-        follow_motion(ap, guided)
+        position.input_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
+        altitude.input_pos_vel_accel_d(control.pos_d, Motion(pos.z, vel.z, acc.z))
     else:
-        position.input_vel_accel_ne(ap.control.pos_ne, horizontal(guided.vel), horizontal(guided.acc))
-        altitude.input_vel_accel_d(ap.control.pos_d, guided.vel.z, guided.acc.z)
+        position.input_vel_accel_ne(control.pos_ne, horizontal(vel), horizontal(acc))
+        altitude.input_vel_accel_d(control.pos_d, vel.z, acc.z)
 
 
 @law
@@ -145,101 +141,74 @@ def advance(guided: GuidedState, dt: float) -> None:
 
 
 @law
-def follow_accel(ap: Autopilot, acc: Vec3) -> None:
-    """Ask the position controllers for an acceleration, NED [m/s^2]."""
-    position.input_accel_ne(ap.control.pos_ne, horizontal(acc))
-    altitude.input_vel_accel_d(ap.control.pos_d, ap.control.pos_d.vel_desired, acc.z)
-
-
-@law
-def follow_motion(ap: Autopilot, target: GuidedState) -> None:
-    """Ask the position controllers to follow a moving point."""
-    pos, vel, acc = target.pos, target.vel, target.acc
-    position.input_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
-    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(pos.z, vel.z, acc.z))
-
-
-@law
-def run_angle(v: Vehicle) -> None:
+def run_angle(guided: GuidedState, stale: bool, arming: Arming, control: Control, est: Estimate, p: Parameters) -> None:
     """Fly SET_ATTITUDE_TARGET: attitude or rates with a climb rate or a thrust."""
-    ap = v.autopilot
-    guided = ap.modes.guided
     climb = 0.0
     if not guided.use_thrust:
-        climb = constrain(guided.climb_rate, -ap.control.pos_d.speed_down, ap.control.pos_d.speed_up)
-    if is_stale(v):
+        climb = constrain(guided.climb_rate, -control.pos_d.speed_down, control.pos_d.speed_up)
+    if stale:
         climb = 0.0
-        level_off(ap)
+        level_off(guided, control, est, p)
     wants_up = guided.thrust > 0.0 if guided.use_thrust else climb > 0.0
-    if ap.arming.armed and wants_up:
-        ap.arming.auto_armed = True
-    if not ap.arming.armed or not ap.arming.auto_armed or (ap.arming.landed and not wants_up):
-        ground.rest(ap)
+    if arming.armed and wants_up:
+        arming.auto_armed = True
+    if not arming.armed or not arming.auto_armed or (arming.landed and not wants_up):
+        ground.rest(arming.armed, control, est, p)
         return
-    ap.control.motors.desired_spool = ground.UNLIMITED
-    if ap.arming.landed:
-        leave_ground(ap)
-        return
+    control.motors.desired_spool = ground.UNLIMITED
+    if arming.landed:
+        leave_ground(arming, control, est, p)
+    else:
+        fly_angle(guided, climb, control, est, p)
+
+
+@law
+def fly_angle(guided: GuidedState, climb: float, control: Control, est: Estimate, p: Parameters) -> None:
+    """One tick of an attitude or rates with a thrust or ``climb`` [m/s] in the air."""
     if guided.use_attitude:
-        attitude.input_quaternion(ap.control, ap.estimate, ap.params, guided.q, guided.rates)
+        attitude.input_quaternion(control, est, p, guided.q, guided.rates)
     else:
-        attitude.input_rates(ap.control, ap.estimate, ap.params, guided.rates)
+        attitude.input_rates(control, est, p, guided.rates)
     if guided.use_thrust:
-        throttle_mix.set_throttle_out(ap.control, ap.params, guided.thrust, True, 0.0)
+        throttle_mix.set_throttle_out(control, p, guided.thrust, True, 0.0)
     else:
-        altitude.input_vel_accel_d(ap.control.pos_d, -climb, 0.0)
-        altitude.update_d(ap.control, ap.estimate, ap.params)
+        altitude.input_vel_accel_d(control.pos_d, -climb, 0.0)
+        altitude.update_d(control, est, p)
 
 
 @law
-def leave_ground(ap: Autopilot) -> None:
+def leave_ground(arming: Arming, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of a landed vehicle that is asked to climb: it flies as soon as the motors have spooled up."""
-    throttle_mix.set_throttle_out(ap.control, ap.params, 0.0, False, 0.0)
-    attitude.relax(ap.control, ap.estimate)
-    if ap.control.motors.spool_state == ground.IS_UNLIMITED:
-        ground.set_landed(ap.arming, False)
-        altitude_start.init_d(ap.control, ap.estimate, ap.params)
+    throttle_mix.set_throttle_out(control, p, 0.0, False, 0.0)
+    attitude.relax(control, est)
+    if control.motors.spool_state == ground.IS_UNLIMITED:
+        ground.set_landed(arming, False)
+        altitude_start.init_d(control, est, p)
 
 
 @law
-def level_off(ap: Autopilot) -> None:
+def level_off(guided: GuidedState, control: Control, est: Estimate, p: Parameters) -> None:
     """Replace a stale attitude by level flight at constant height, heading kept."""
-    guided = ap.modes.guided
-    yaw = euler_of(guided.q).yaw if guided.use_attitude else ap.control.attitude.target_euler.yaw
+    yaw = euler_of(guided.q).yaw if guided.use_attitude else control.attitude.target_euler.yaw
     guided.q = quat_from_euler(Euler(0.0, 0.0, yaw))
     guided.use_attitude = True
     guided.rates = ZERO
     if guided.use_thrust:
         guided.use_thrust = False
-        altitude_start.init_d(ap.control, ap.estimate, ap.params)
+        altitude_start.init_d(control, est, p)
     guided.climb_rate = 0.0
 
 
 @law
-def take_off(ap: Autopilot, target_d: float) -> None:
-    """Climb to ``target_d`` (NED [m]) before the first set-point."""
-    ap.modes.guided.submode = TAKEOFF
-    ap.modes.guided.paused = False
-    auto_yaw.set_mode(ap, auto_yaw.HOLD)
-    takeoff.begin(ap, target_d)
-
-
-@law
-def climbs(modes: Modes) -> bool:
+def is_taking_off(modes: Modes) -> bool:
     """Whether a take-off is not done yet."""
     return modes.guided.submode == TAKEOFF and not modes.takeoff.complete
 
 
 @law
-def is_taking_off(v: Vehicle) -> bool:
-    """Whether a take-off is not done yet."""
-    return climbs(v.autopilot.modes)
-
-
-@law
-def may_arm(v: Vehicle, method: int) -> bool:
+def may_arm(p: Parameters, method: int) -> bool:
     """Whether it may be armed: by stick when GUID_OPTIONS says so."""
-    return method != BY_RUDDER or (int(v.autopilot.params.GUID.OPTIONS) & _ARM_BY_STICK) != 0
+    return method != BY_RUDDER or (int(p.GUID.OPTIONS) & _ARM_BY_STICK) != 0
 
 
 MODE = CopterMode(

@@ -14,16 +14,19 @@ from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...arming_checks import BY_LANDING
 from ...control.shaping import sqrt_controller
-from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE
+from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE, ask
+from ...state import Estimate
 from .. import pilot
 from ..control import altitude, attitude, position, position_start
-from ..control.state import DT, AltitudeState
-from ..parameters.flight import Land
-from ..state import Autopilot, Vehicle
+from ..control.state import DT, AltitudeState, Control
+from ..parameters import Parameters
+from ..parameters.flight import Land, Pilot
+from ..state import Vehicle
 from . import auto_yaw, ground
 from .alt_hold import ALT_HOLD
 from .loiter import LOITER
 from .mode import CopterMode, never_arms, yes
+from .state import LandState, Modes, PilotState
 
 LAND = 9
 
@@ -40,45 +43,51 @@ _REPOSITION_ACCEL = 0.5
 @law
 def start(v: Vehicle) -> int:
     """Enter; with position control when there is a position."""
-    begin(v)
-    v.autopilot.modes.land.with_position = v.autopilot.estimate.position_ok
+    ap = v.autopilot
+    begin(ap.modes, v.time_us, ap.control, ap.estimate, ap.params)
+    ap.modes.land.with_position = ap.estimate.position_ok
     return ACCEPTED
 
 
 @law
-def begin(v: Vehicle) -> None:
+def begin(modes: Modes, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
     """Prepare a descent from the present motion."""
-    ap = v.autopilot
-    ground.set_waypoint_limits(ap)
-    ground.continue_position_control(ap)
-    ap.modes.land.start_us = v.time_us
-    ap.modes.land.pause = False
-    ap.modes.land.with_position = True
-    auto_yaw.set_mode(ap, auto_yaw.HOLD)
+    ground.set_waypoint_limits(control, p)
+    ground.continue_position_control(control, est, p)
+    modes.land.start_us = time_us
+    modes.land.pause = False
+    modes.land.with_position = True
+    auto_yaw.set_mode(modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
 
 
 @law
 def run(v: Vehicle) -> None:
     """One tick of the mode LAND."""
     ap = v.autopilot
-    auto_yaw.follow_pilot(ap)
-    land = ap.modes.land
-    if land.pause and v.time_us - land.start_us >= PAUSE_US:
-        land.pause = False
-    if land.with_position and not ap.estimate.position_ok:
-        land.with_position = False
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    auto_yaw.follow_pilot(modes, control.attitude, est)
+    follow_state(modes.land, v.time_us, est.position_ok)
     finish(v)
     if ground.is_grounded(ap.arming):
-        ground.rest(ap)
+        ground.rest(ap.arming.armed, control, est, p)
         return
-    ap.control.motors.desired_spool = ground.UNLIMITED
-    if is_cancelled(ap):
-        ap.modes.wanted = (LOITER if ap.estimate.position_ok else ALT_HOLD) + 1
-        ap.modes.wanted_reason = REASON_THROTTLE_LAND_ESCAPE
-    elif land.with_position:
-        descend(ap, land.pause)
+    control.motors.desired_spool = ground.UNLIMITED
+    height = ap.home.pos.z - est.pos.z
+    if is_cancelled(modes.pilot, p.PILOT):
+        ask(modes, LOITER if est.position_ok else ALT_HOLD, REASON_THROTTLE_LAND_ESCAPE)
+    elif modes.land.with_position:
+        descend(modes, height, ap.arming.landed_maybe, control, est, p)
     else:
-        descend_blind(ap, land.pause)
+        descend_blind(modes, height, ap.arming.landed_maybe, control, est, p)
+
+
+@law
+def follow_state(land: LandState, time_us: int, position_ok: bool) -> None:
+    """The pause ends; without a position it is a landing without one to its end."""
+    if land.pause and time_us - land.start_us >= PAUSE_US:
+        land.pause = False
+    if land.with_position and not position_ok:
+        land.with_position = False
 
 
 @law
@@ -90,32 +99,37 @@ def finish(v: Vehicle) -> None:
 
 
 @law
-def is_cancelled(ap: Autopilot) -> bool:
+def is_cancelled(sticks: PilotState, p: Pilot) -> bool:
     """Whether the pilot's high throttle asks for LOITER (or ALT_HOLD) instead."""
-    return (int(ap.params.PILOT.THR_BHV) & _CANCEL_BEHAVIOUR) != 0 and ap.modes.pilot.throttle > _CANCEL_THROTTLE
+    return (int(p.THR_BHV) & _CANCEL_BEHAVIOUR) != 0 and sticks.throttle > _CANCEL_THROTTLE
 
 
 @law
-def descend(ap: Autopilot, pause: bool) -> None:
-    """One tick of a landing with position control; the sticks move the landing place (LAND_REPOSITION)."""
-    vel = stick_velocity(ap)
-    if ap.arming.landed_maybe:
-        position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
-    position.input_vel_accel_ne(ap.control.pos_ne, vel, ZERO2)
-    sink(ap, pause)
-    ground.fly(ap)
+def descend(modes: Modes, height: float, landed_maybe: bool, control: Control, est: Estimate, p: Parameters) -> None:
+    """One tick of a landing with position control from ``height`` above home [m].
+
+    The sticks move the landing place (LAND_REPOSITION).
+    """
+    vel = stick_velocity(modes.pilot, est.euler.yaw, p)
+    if landed_maybe:
+        position_start.soften_for_landing_ne(control.pos_ne, est.pos)
+    position.input_vel_accel_ne(control.pos_ne, vel, ZERO2)
+    sink(control.pos_d, modes.land, height, landed_maybe, p)
+    ground.fly(modes.auto_yaw, control, est, p)
 
 
 @law
-def descend_blind(ap: Autopilot, pause: bool) -> None:
-    """One tick of a landing without a position: the sticks lean the vehicle."""
+def descend_blind(
+    modes: Modes, height: float, landed_maybe: bool, control: Control, est: Estimate, p: Parameters
+) -> None:
+    """One tick of a landing without a position, from ``height`` above home [m]: the sticks lean the vehicle."""
     lean = attitude.Lean(0.0, 0.0)
-    if ap.params.LAND.REPOSITION != 0.0:
-        lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
-        lean = pilot.lean_angles(ap.modes.pilot, lean_max, lean_max)
-    sink(ap, pause)
-    altitude.update_d(ap.control, ap.estimate, ap.params)
-    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, lean, ap.modes.pilot.yaw_rate)
+    if p.LAND.REPOSITION != 0.0:
+        lean_max = math.radians(p.ANGLE_MAX * 0.01)
+        lean = pilot.lean_angles(modes.pilot, lean_max, lean_max)
+    sink(control.pos_d, modes.land, height, landed_maybe, p)
+    altitude.update_d(control, est, p)
+    attitude.input_euler_roll_pitch_yaw_rate(control, est, p, lean, modes.pilot.yaw_rate)
 
 
 @law
@@ -139,27 +153,23 @@ def height_low(p: Land) -> float:
 
 
 @law
-def sink(ap: Autopilot, pause: bool) -> None:
-    """Descent of this tick."""
-    path = ap.control.pos_d
-    if pause:
+def sink(path: AltitudeState, land: LandState, height: float, landed_maybe: bool, p: Parameters) -> None:
+    """Descent of this tick, from ``height`` above home [m]."""
+    if land.pause:
         altitude.land_at_rate_d(path, 0.0, False)
         return
-    height = ap.home.pos.z - ap.estimate.pos.z
-    near_ground = height < height_low(ap.params.LAND) or ap.arming.landed_maybe
-    rate = sink_rate(height, path, ap.params.LAND, ap.params.PSC.POSZ_P)
-    altitude.land_at_rate_d(path, rate, near_ground)
+    near_ground = height < height_low(p.LAND) or landed_maybe
+    altitude.land_at_rate_d(path, sink_rate(height, path, p.LAND, p.PSC.POSZ_P), near_ground)
 
 
 @law
-def stick_velocity(ap: Autopilot) -> Vec2:
-    """North and east [m/s] that the sticks ask for while landing; zero without LAND_REPOSITION."""
-    sticks = ap.modes.pilot
-    if ap.params.LAND.REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
+def stick_velocity(sticks: PilotState, yaw: float, p: Parameters) -> Vec2:
+    """North and east [m/s] that the sticks ask for at heading ``yaw`` [rad]; zero without LAND_REPOSITION."""
+    if p.LAND.REPOSITION == 0.0 or (sticks.roll == 0.0 and sticks.pitch == 0.0):
         return Vec2(0.0, 0.0)
-    speed_max = ap.params.WPNAV.ACCEL * 0.01 * _REPOSITION_ACCEL
+    speed_max = p.WPNAV.ACCEL * 0.01 * _REPOSITION_ACCEL
     forward_right = pilot.limit_stick(Vec2(-sticks.pitch * speed_max, sticks.roll * speed_max), speed_max)
-    return turned(forward_right, ap.estimate.euler.yaw)
+    return turned(forward_right, yaw)
 
 
 MODE = CopterMode(

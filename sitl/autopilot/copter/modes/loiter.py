@@ -14,15 +14,16 @@ from typing import NamedTuple
 from ....core.algebra import ZERO2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
-from ....core.vectors import Vec2
+from ....core.vectors import Euler, Vec2
 from ...control.shaping import Motion2, shape_angle, sqrt_controller
 from ...modes import ACCEPTED
+from ...state import Estimate
 from .. import pilot
 from ..control import attitude, position, position_start
-from ..control.state import DT, GRAVITY
+from ..control.state import DT, GRAVITY, Control, PositionState
 from ..parameters import Parameters
 from ..parameters.control import Attitude
-from ..state import Autopilot, Vehicle
+from ..state import Vehicle
 from . import alt_hold
 from .mode import CopterMode
 from .state import LoiterState
@@ -72,27 +73,29 @@ def limits(p: Parameters) -> Limits:
 def start(v: Vehicle) -> int:
     """Enter from the present motion."""
     ap = v.autopilot
-    loiter = ap.modes.loiter
-    set_limits(ap)
-    if not position_start.is_active_ne(ap.control):
-        position_start.init_ne(ap.control, ap.estimate, ap.params)
-    target = ap.control.attitude.target_euler
-    loiter.predicted_euler = Vec2(target.roll, target.pitch)
-    loiter.predicted_acc = position_start.lean_accel(target.roll, target.pitch, ap.estimate.euler.yaw)
-    loiter.predicted_rate = ZERO2
-    loiter.brake_acc = 0.0
-    loiter.brake_us = v.time_us
-    alt_hold.start_vertical(ap)
+    control, est, p = ap.control, ap.estimate, ap.params
+    set_limits(control.pos_ne, p)
+    if not position_start.is_active_ne(control):
+        position_start.init_ne(control, est, p)
+    start_prediction(ap.modes.loiter, control.attitude.target_euler, est.euler.yaw)
+    ap.modes.loiter.brake_us = v.time_us
+    alt_hold.start_vertical(ap.modes.takeoff, control, est, p)
     return ACCEPTED
 
 
 @law
-def set_limits(ap: Autopilot) -> None:
+def start_prediction(loiter: LoiterState, lean: Euler, yaw: float) -> None:
+    """The sticks' lean starts from that of the attitude controller [rad]; nothing brakes."""
+    loiter.predicted_euler = Vec2(lean.roll, lean.pitch)
+    loiter.predicted_acc = position_start.lean_accel(lean.roll, lean.pitch, yaw)
+    loiter.predicted_rate = ZERO2
+    loiter.brake_acc = 0.0
+
+
+@law
+def set_limits(path: PositionState, p: Parameters) -> None:
     """Limits of the position correction: LOIT_SPEED, LOIT_ACC_MAX."""
-    p = ap.params.LOIT
-    position_start.set_max_speed_accel_ne(
-        ap.control.pos_ne, ap.params, max(p.SPEED * 0.01, _SPEED_MIN), p.ACC_MAX * 0.01
-    )
+    position_start.set_max_speed_accel_ne(path, p, max(p.LOIT.SPEED * 0.01, _SPEED_MIN), p.LOIT.ACC_MAX * 0.01)
 
 
 @law
@@ -132,46 +135,48 @@ def advance_path(loiter: LoiterState, path: Motion2, limits: Limits, braking: bo
 
 
 @law
-def advance(v: Vehicle) -> None:
-    """Move the desired position, velocity and acceleration on by one tick."""
-    ap = v.autopilot
-    loiter = ap.modes.loiter
-    path = ap.control.pos_ne
+def is_braking(loiter: LoiterState, time_us: int, delay: float) -> bool:
+    """Whether the sticks have been centred for a delay [s]."""
     if loiter.acc.x != 0.0 or loiter.acc.y != 0.0:
-        loiter.brake_us = v.time_us
-    braking = v.time_us - loiter.brake_us > ap.params.LOIT.BRK_DELAY * 1e6
-    moved = advance_path(loiter, position.desired_motion_ne(path), limits(ap.params), braking)
-    position.set_pos_vel_accel_ne(path, moved)
+        loiter.brake_us = time_us
+    return time_us - loiter.brake_us > delay * 1e6
+
+
+@law
+def stand(loiter: LoiterState, yaw_rate: float, control: Control, est: Estimate, p: Parameters) -> None:
+    """Horizontal part of one tick on the ground, turning at ``yaw_rate`` [rad/s]."""
+    position_start.relax_ne(control, est, p)
+    loiter.brake_acc = 0.0
+    position.update_ne(control, est, p)
+    attitude.input_euler_roll_pitch_yaw_rate(control, est, p, attitude.Lean(0.0, 0.0), yaw_rate)
 
 
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    yaw_rate = ap.modes.pilot.yaw_rate
-    alt_hold.set_limits(ap)
-    set_limits(ap)
-    lean_max = angle_max(ap.params)
-    lean = pilot.lean_angles(ap.modes.pilot, lean_max, min(math.radians(ap.params.ANGLE_MAX * 0.01), lean_max))
-    predict_accel(ap.modes.loiter, lean, ap.estimate.euler.yaw, ap.params.ATC)
-    climb = alt_hold.climb_rate(ap)
-    doing = alt_hold.decide(ap, climb)
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    loiter, yaw_rate = modes.loiter, modes.pilot.yaw_rate
+    alt_hold.set_limits(control.pos_d, p)
+    set_limits(control.pos_ne, p)
+    lean_max = angle_max(p)
+    lean = pilot.lean_angles(modes.pilot, lean_max, min(math.radians(p.ANGLE_MAX * 0.01), lean_max))
+    predict_accel(loiter, lean, est.euler.yaw, p.ATC)
+    climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
+    doing = alt_hold.decide(ap.arming, modes.takeoff, control.motors, climb)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
-        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
+        attitude.reset_yaw_target(control.attitude, est.euler.yaw)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
-        position_start.relax_ne(ap.control, ap.estimate, ap.params)
-        ap.modes.loiter.brake_acc = 0.0
-        position.update_ne(ap.control, ap.estimate, ap.params)
-        attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, attitude.Lean(0.0, 0.0), yaw_rate)
+        stand(loiter, yaw_rate, control, est, p)
     else:
         if ap.arming.landed_maybe:
-            position_start.soften_for_landing_ne(ap.control.pos_ne, ap.estimate.pos)
-        advance(v)
-        position.update_ne(ap.control, ap.estimate, ap.params)
-        attitude.input_thrust_vector_heading_rate(
-            ap.control, ap.estimate, ap.params, position.thrust_vector(ap.control.pos_ne), yaw_rate
-        )
-    alt_hold.run_vertical(ap, doing, climb)
+            position_start.soften_for_landing_ne(control.pos_ne, est.pos)
+        braking = is_braking(loiter, v.time_us, p.LOIT.BRK_DELAY)
+        moved = advance_path(loiter, position.desired_motion_ne(control.pos_ne), limits(p), braking)
+        position.set_pos_vel_accel_ne(control.pos_ne, moved)
+        position.update_ne(control, est, p)
+        attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), yaw_rate)
+    alt_hold.run_vertical(doing, climb, ap.arming, modes.takeoff, control, est, p)
 
 
 MODE = CopterMode(

@@ -8,29 +8,31 @@ from dataclasses import dataclass
 
 from ....core.kernels import law
 from ...modes import Mode
+from ..parameters import Parameters
 from ..state import Vehicle
+from .state import Modes
 
 
 @law
-def always_arms(v: Vehicle, method: int) -> bool:
+def always_arms(p: Parameters, method: int) -> bool:
     """Whether the mode may be armed by ``method``: yes."""
     return True
 
 
 @law
-def never_arms(v: Vehicle, method: int) -> bool:
+def never_arms(p: Parameters, method: int) -> bool:
     """Whether the mode may be armed by ``method``: no."""
     return False
 
 
 @law
-def no(v: Vehicle) -> bool:
+def no(modes: Modes) -> bool:
     """The answer of a mode that neither lands nor takes off."""
     return False
 
 
 @law
-def yes(v: Vehicle) -> bool:
+def yes(modes: Modes) -> bool:
     """The answer of a mode that does nothing else."""
     return True
 
@@ -47,9 +49,9 @@ class CopterMode(Mode[Vehicle]):
     """Controls the position when there is one, but does without."""
     arms_at_any_throttle: bool = False
     """A ground station may arm it whatever the throttle stick says."""
-    may_arm: Callable[[Vehicle, int], bool] = always_arms
+    may_arm: Callable[[Parameters, int], bool] = always_arms
     """Law: whether it may be armed by a method (BY_*)."""
-    is_landing: Callable[[Vehicle], bool] = no
+    is_landing: Callable[[Modes], bool] = no
     """Law: whether it is on its way to the ground."""
-    is_taking_off: Callable[[Vehicle], bool] = no
+    is_taking_off: Callable[[Modes], bool] = no
     """Law: whether it raises the throttle from the ground by itself, and will say when it flies."""

@@ -7,15 +7,21 @@ import math
 
 from ....core.algebra import ZERO2, horizontal, with_down
 from ....core.kernels import law
+from ....core.vectors import Vec3
 from ...control.shaping import Motion
+from ...events import Events
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
+from ...state import Estimate
 from ..control import altitude, position, position_start
+from ..control.state import Control
 from ..navigation import waypoint
+from ..parameters import Parameters
 from ..parameters.flight import Rtl
-from ..state import Autopilot, Vehicle
+from ..state import Vehicle
 from . import auto_yaw, ground, land
 from .mode import CopterMode, never_arms
+from .state import Modes, RtlState
 
 RTL = 6
 
@@ -44,31 +50,30 @@ def start(v: Vehicle) -> int:
 def begin(v: Vehicle) -> None:
     """Prepare the way home from the present motion."""
     ap = v.autopilot
-    rtl = ap.modes.rtl
-    waypoint.stop(ap.modes.nav)
-    ap.modes.nav.speed_ne = max(ap.params.RTL.SPEED * 0.01, 0.0)
-    ap.modes.nav.speed_up = 0.0
-    ap.modes.nav.speed_down = 0.0
-    ground.set_waypoint_limits(ap)
-    ground.continue_position_control(ap)
-    plan_heights(ap)
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    rtl, nav = modes.rtl, modes.nav
+    waypoint.stop(nav)
+    nav.speed_ne = max(p.RTL.SPEED * 0.01, 0.0)
+    nav.speed_up = 0.0
+    nav.speed_down = 0.0
+    ground.set_waypoint_limits(control, p)
+    ground.continue_position_control(control, est, p)
+    plan_heights(rtl, ap.home.pos, est.pos, p.RTL)
     rtl.state = CLIMB
     rtl.loiter_us = 0
-    auto_yaw.set_mode(ap, auto_yaw.HOLD)
-    above = with_down(position_start.stopping_point_ne(ap.control.pos_ne, ap.estimate, ap.params.PSC), rtl.return_d)
+    auto_yaw.set_mode(modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
+    above = with_down(position_start.stopping_point_ne(control.pos_ne, est, p.PSC), rtl.return_d)
     if ap.arming.armed and not ap.arming.landed:
-        path.request_legs(ap.modes.nav, ap.events, v.time_us, above, with_down(rtl.home, rtl.return_d))
+        path.request_legs(nav, ap.events, v.time_us, above, with_down(rtl.home, rtl.return_d))
 
 
 @law
-def plan_heights(ap: Autopilot) -> None:
-    """Where home is, the height of the way there, and where RTL_ALT_FINAL ends."""
-    rtl = ap.modes.rtl
-    home = ap.home.pos
-    away = home - ap.estimate.pos
+def plan_heights(rtl: RtlState, home: Vec3, pos: Vec3, p: Rtl) -> None:
+    """Where home is, the height of the way there from ``pos``, and where RTL_ALT_FINAL ends; NED [m]."""
+    away = home - pos
     rtl.home = horizontal(home)
-    rtl.return_d = home.z - return_height(away.z, math.hypot(away.x, away.y), ap.params.RTL)
-    rtl.descent_d = home.z - ap.params.RTL.ALT_FINAL * 0.01
+    rtl.return_d = home.z - return_height(away.z, math.hypot(away.x, away.y), p)
+    rtl.descent_d = home.z - p.ALT_FINAL * 0.01
 
 
 @law
@@ -88,82 +93,68 @@ def return_height(height: float, distance: float, p: Rtl) -> float:
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    rtl = ap.modes.rtl
-    auto_yaw.follow_pilot(ap)
-    if not ap.arming.armed:
-        ground.rest(ap)
-    elif rtl.state == LANDING:
-        run_landing(v)
-    elif ground.is_grounded(ap.arming):
-        ground.rest(ap)
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    auto_yaw.follow_pilot(modes, control.attitude, est)
+    if is_landing(modes):
+        land.finish(v)
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap.arming.armed, control, est, p)
+        return
+    control.motors.desired_spool = ground.UNLIMITED
+    if is_landing(modes):
+        land.descend(modes, ap.home.pos.z - est.pos.z, ap.arming.landed_maybe, control, est, p)
+    elif modes.rtl.state == FINAL_DESCENT:
+        run_descent(modes, control, est, p)
     else:
-        ap.control.motors.desired_spool = ground.UNLIMITED
-        if rtl.state == FINAL_DESCENT:
-            run_descent(ap)
-        else:
-            run_way(v)
+        run_way(modes, ap.events, v.time_us, control, est, p)
 
 
 @law
-def run_way(v: Vehicle) -> None:
+def run_way(modes: Modes, events: Events, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of the climb, the way home and the wait there."""
-    ap = v.autopilot
-    rtl = ap.modes.rtl
+    rtl, nav = modes.rtl, modes.nav
     reached = False
-    if ap.modes.nav.request_pending != 0:
-        ground.brake(ap)
+    if nav.request_pending != 0:
+        ground.brake(control)
     else:
-        reached = waypoint.advance(ap.modes.nav, ap.control, ap.estimate, ap.params, v.time_us)
-    ground.fly(ap)
+        reached = waypoint.advance(nav, control, est, p, time_us)
+    ground.fly(modes.auto_yaw, control, est, p)
     if rtl.state == CLIMB:
         if reached:
             rtl.state = RETURN
-            auto_yaw.set_default(ap, True)
-            path.request_leg(ap.modes.nav, ap.events, v.time_us, with_down(rtl.home, rtl.return_d))
+            auto_yaw.set_default(modes.auto_yaw, p.WP, True, control.attitude, est)
+            path.request_leg(nav, events, time_us, with_down(rtl.home, rtl.return_d))
     elif rtl.state == RETURN:
         if reached:
             rtl.state = LOITER
-            rtl.loiter_us = v.time_us
-    elif v.time_us - rtl.loiter_us >= ap.params.RTL.LOIT_TIME * 1000.0:
-        begin_descent(v)
+            rtl.loiter_us = time_us
+    elif time_us - rtl.loiter_us >= p.RTL.LOIT_TIME * 1000.0:
+        begin_descent(modes, time_us, control, est, p)
 
 
 @law
-def begin_descent(v: Vehicle) -> None:
+def begin_descent(modes: Modes, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
     """Over home: land, or go down to RTL_ALT_FINAL."""
-    ap = v.autopilot
-    if ap.params.RTL.ALT_FINAL > 0.0 and not ap.modes.failsafe.radio:
-        ap.modes.rtl.state = FINAL_DESCENT
-        ground.set_waypoint_limits(ap)
+    if p.RTL.ALT_FINAL > 0.0 and not modes.failsafe.radio:
+        modes.rtl.state = FINAL_DESCENT
+        ground.set_waypoint_limits(control, p)
     else:
-        ap.modes.rtl.state = LANDING
-        land.begin(v)
+        modes.rtl.state = LANDING
+        land.begin(modes, time_us, control, est, p)
 
 
 @law
-def run_landing(v: Vehicle) -> None:
-    """One tick of the landing at home."""
-    ap = v.autopilot
-    land.finish(v)
-    if ground.is_grounded(ap.arming):
-        ground.rest(ap)
-        return
-    ap.control.motors.desired_spool = ground.UNLIMITED
-    land.descend(ap, False)
-
-
-@law
-def run_descent(ap: Autopilot) -> None:
+def run_descent(modes: Modes, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
-    position.input_vel_accel_ne(ap.control.pos_ne, land.stick_velocity(ap), ZERO2)
-    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(ap.modes.rtl.descent_d, 0.0, 0.0))
-    ground.fly(ap)
+    position.input_vel_accel_ne(control.pos_ne, land.stick_velocity(modes.pilot, est.euler.yaw, p), ZERO2)
+    altitude.input_pos_vel_accel_d(control.pos_d, Motion(modes.rtl.descent_d, 0.0, 0.0))
+    ground.fly(modes.auto_yaw, control, est, p)
 
 
 @law
-def is_landing(v: Vehicle) -> bool:
+def is_landing(modes: Modes) -> bool:
     """Whether the descent to the ground has begun."""
-    return v.autopilot.modes.rtl.state == LANDING
+    return modes.rtl.state == LANDING
 
 
 MODE = CopterMode(

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...events import MODE_CHANGED, MODE_REFUSED, emit, emit_and_return
+from ... import modes as all_modes
+from ...events import MODE_REFUSED, emit
 from ...modes import (
     ACCEPTED,
     INIT_FAILED,
@@ -13,11 +14,15 @@ from ...modes import (
     NO_SUCH_MODE,
     REQUIRES_POSITION,
     THROTTLE_TOO_HIGH,
+    enter,
 )
+from ...state import Arming, Estimate
 from ..control.motors import hover_throttle
+from ..parameters.control import Motors
 from ..state import Vehicle
 from . import stabilize
 from .auto import AUTO
+from .state import Modes
 from .table import NAMES, has_manual_throttle, is_known, requires_position, start
 
 _CAUSES = {
@@ -30,20 +35,19 @@ _CAUSES = {
 
 
 @law
-def refusal(v: Vehicle, number: int) -> int:
+def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Motors) -> int:
     """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
-    ap = v.autopilot
     if not is_known(number):
         return NO_SUCH_MODE
-    if not ap.arming.armed:
+    if not arming.armed:
         return ACCEPTED
-    manual_now = has_manual_throttle(ap.modes.number)
-    if ap.arming.landed and has_manual_throttle(number) and not manual_now:
-        if stabilize.throttle(ap) > 0.5 * hover_throttle(ap.params.MOT):
+    manual_now = has_manual_throttle(modes.number)
+    if arming.landed and has_manual_throttle(number) and not manual_now:
+        if stabilize.throttle(modes.pilot, p) > 0.5 * hover_throttle(p):
             return THROTTLE_TOO_HIGH
-    if requires_position(number) and not ap.estimate.position_ok:
+    if requires_position(number) and not estimate.position_ok:
         return REQUIRES_POSITION
-    if manual_now and not has_manual_throttle(number) and not ap.estimate.attitude_ok:
+    if manual_now and not has_manual_throttle(number) and not estimate.attitude_ok:
         return NEEDS_ALTITUDE
     return ACCEPTED
 
@@ -61,7 +65,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         modes.reason = reason
         return ACCEPTED
     pending = modes.nav.request_pending
-    cause = refusal(v, number)
+    cause = refusal(number, modes, ap.arming, ap.estimate, ap.params.MOT)
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = start(number, v)
@@ -69,23 +73,12 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
-    modes.previous = modes.number
-    modes.number = number
-    modes.reason = reason
     modes.takeoff.user_active = False
-    modes.wanted = 0
-    if number == AUTO or modes.previous == AUTO:
-        emit_and_return(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
-    else:
-        emit(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
+    enter(modes, ap.events, v.time_us, number, reason, AUTO)
     return cause
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
-    if cause == ACCEPTED:
-        return []
-    if cause == NO_SUCH_MODE:
-        return [f"No such mode {number}"]
-    texts = ["Auto: Missing Takeoff Cmd"] if cause == MISSING_TAKEOFF else []
-    return [*texts, f"Mode change to {NAMES[number]} failed: {_CAUSES[cause]}"]
+    failed = f"Mode change to {NAMES.get(number)} failed: {_CAUSES.get(cause)}"
+    return all_modes.refusal_texts(number, cause, failed)

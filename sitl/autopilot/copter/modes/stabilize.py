@@ -9,41 +9,44 @@ from ....core.kernels import law
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
-from ..state import Autopilot, Vehicle
+from ..parameters.control import Motors
+from ..state import Vehicle
 from . import ground
 from .mode import CopterMode
+from .state import PilotState
 
 STABILIZE = 0
 
 
 @law
-def throttle(ap: Autopilot) -> float:
+def throttle(sticks: PilotState, p: Motors) -> float:
     """Motor throttle 0 .. 1 that the stick asks for."""
-    return pilot.throttle_out(ap.modes.pilot.throttle_filtered, hover_throttle(ap.params.MOT))
+    return pilot.throttle_out(sticks.throttle_filtered, hover_throttle(p))
 
 
 @law
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    motors = ap.control.motors
+    control, sticks, p = ap.control, ap.modes.pilot, ap.params
+    motors = control.motors
     if not ap.arming.armed:
         motors.desired_spool = ground.SHUT_DOWN
-    elif ap.modes.pilot.throttle_zero:
+    elif sticks.throttle_zero:
         motors.desired_spool = ground.GROUND_IDLE
     else:
         motors.desired_spool = ground.UNLIMITED
-    wanted = throttle(ap)
+    wanted = throttle(sticks, p.MOT)
     state = motors.spool_state
     if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
-        attitude.reset_yaw_target(ap.control.attitude, ap.estimate.euler.yaw)
+        attitude.reset_yaw_target(control.attitude, ap.estimate.euler.yaw)
         wanted = 0.0
     elif state == ground.IS_UNLIMITED and not motors.limit_throttle_lower and ap.arming.landed:
         ground.set_landed(ap.arming, False)
-    lean_max = math.radians(ap.params.ANGLE_MAX * 0.01)
-    lean = pilot.lean_angles(ap.modes.pilot, lean_max, lean_max)
-    attitude.input_euler_roll_pitch_yaw_rate(ap.control, ap.estimate, ap.params, lean, ap.modes.pilot.yaw_rate)
-    throttle_mix.set_throttle_out(ap.control, ap.params, wanted, True, ap.params.PILOT.THR_FILT)
+    lean_max = math.radians(p.ANGLE_MAX * 0.01)
+    lean = pilot.lean_angles(sticks, lean_max, lean_max)
+    attitude.input_euler_roll_pitch_yaw_rate(control, ap.estimate, p, lean, sticks.yaw_rate)
+    throttle_mix.set_throttle_out(control, p, wanted, True, p.PILOT.THR_FILT)
 
 
 MODE = CopterMode(number=STABILIZE, name="STABILIZE", run=run, manual_throttle=True)

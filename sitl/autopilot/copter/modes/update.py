@@ -6,14 +6,16 @@ from __future__ import annotations
 from ....core.kernels import law, unit
 from ....core.records import Records
 from ... import battery, home
-from ...modes import REASON_INITIALISED
+from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
+from ...state import Arming
 from .. import arming, crash, failsafe, landing, motor_test, pilot
-from ..control.motors import hover_throttle, learn_hover_throttle
-from ..control.state import DT
+from ..control.motors import learn_hover_throttle
+from ..control.state import DT, Control
 from ..state import Vehicle
 from . import ground, set_mode, switch, table
 from .stabilize import STABILIZE
+from .state import Modes
 
 _TENTH = 40  # ticks
 _QUARTER = 100
@@ -22,7 +24,6 @@ _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
 
 
-@law
 def init(v: Vehicle) -> None:
     """At boot, on a record of zeros with parameters set: on the ground, disarmed, in INITIAL_MODE."""
     ap = v.autopilot
@@ -33,29 +34,30 @@ def init(v: Vehicle) -> None:
     ap.arming.landed = True
     ap.arming.landed_maybe = True
     ap.battery.remaining_pct = -1.0
-    pilot.init(v)
+    pilot.init(ap.rc, ap.modes.pilot)
 
 
 @unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick of vehicle ``i``: reads the estimate, writes targets of the controllers."""
     v = fleet[i]
+    ap = v.autopilot
     tick = v.tick
     if tick % RC_TICKS == 0:
         read_transmitter(v)
     if tick % _TENTH == 4:
         check_slowly(v)
     if tick % _QUARTER == 12:
-        home.set_first(v.autopilot.home, v.autopilot.estimate)
-        arming.run_prearm_checks(v)
-    arming.follow_throttle(v)
+        home.set_first(ap.home, ap.estimate)
+        ap.arming.prearm_ok = arming.check(v) == 0
+    arming.follow_throttle(ap.arming, ap.modes, v.time_us)
     run_mode(v)
     motor_test.run(v)
     landing.detect(v)
     crash.check(v)
-    landing.set_priority(v)
-    if tick % _LEARN_TICKS == 0 and hovers(v):
-        learn_hover_throttle(v.autopilot.params.MOT, v.autopilot.control.motors.throttle, _LEARN_TICKS * DT)
+    landing.set_priority(ap.control, ap.arming, ap.modes, ap.estimate.vel.z, ap.params.ATC)
+    if tick % _LEARN_TICKS == 0 and holds_height(ap.arming, ap.modes) and hovers(ap.control, ap.estimate.vel.z):
+        learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, _LEARN_TICKS * DT)
 
 
 @law
@@ -82,22 +84,23 @@ def run_mode(v: Vehicle) -> None:
     """The mode's own tick, then the change that it may have asked for."""
     ap = v.autopilot
     table.run(ap.modes.number, v)
-    if ap.modes.wanted != 0:
-        wanted = ap.modes.wanted - 1
-        ap.modes.wanted = 0
+    wanted = take_asked(ap.modes)
+    if wanted >= 0:
         set_mode.request(v, wanted, ap.modes.wanted_reason)
     if not ap.arming.armed or ap.modes.arming_delay:
         ap.control.motors.desired_spool = ground.SHUT_DOWN
 
 
 @law
-def hovers(v: Vehicle) -> bool:
-    """Whether the vehicle hovers level in a mode that holds height: its throttle is the hover throttle."""
-    ap = v.autopilot
-    if not ap.arming.armed or ap.arming.landed or table.has_manual_throttle(ap.modes.number):
+def holds_height(arming: Arming, modes: Modes) -> bool:
+    """Whether the vehicle flies in a mode that holds height, and is not taking off."""
+    flies = arming.armed and not arming.landed and not table.has_manual_throttle(modes.number)
+    return flies and not landing.is_taking_off(modes)
+
+
+@law
+def hovers(control: Control, vel_d: float) -> bool:
+    """Whether a vehicle that holds height hovers level: its throttle is the hover throttle; ``vel_d``: down [m/s]."""
+    if abs(control.pos_d.vel_desired) > 0.01 or abs(vel_d) >= _LEARN_SPEED:
         return False
-    if abs(ap.control.pos_d.vel_desired) > 0.01 or abs(ap.estimate.vel.z) >= _LEARN_SPEED:
-        return False
-    if ap.control.attitude.cos_lean < _LEARN_COS_LEAN or ap.control.motors.throttle <= 0.0:
-        return False
-    return not landing.is_taking_off(v) and hover_throttle(ap.params.MOT) > 0.0
+    return control.attitude.cos_lean >= _LEARN_COS_LEAN and control.motors.throttle > 0.0

@@ -17,7 +17,6 @@ from ....core.vectors import Quat, Vec2, Vec3
 from ...control.pid import lowpass_gain
 from ...estimation.status import VELOCITY_HORIZ
 from ...state import Estimate, Sensors
-from ..state import Vehicle
 from .state import SpeedState
 
 FIX_3D = 3
@@ -77,14 +76,12 @@ def estimate_forward_speed(s: SpeedState, estimate: Estimate, sensors: Sensors) 
 
 
 @law
-def sense(v: Vehicle) -> ForwardSpeed:
-    """Renew ``control.speed.forward``; the first thing of a period, before any steering or speed law."""
-    s = v.autopilot.control.speed
-    sense_wheels(s, v.sensors, v.time_us)
-    forward = estimate_forward_speed(s, v.autopilot.estimate, v.sensors)
+def sense(s: SpeedState, estimate: Estimate, sensors: Sensors, time_us: int) -> None:
+    """Renew ``s.forward``; the first thing of a period, before any steering or speed law."""
+    sense_wheels(s, sensors, time_us)
+    forward = estimate_forward_speed(s, estimate, sensors)
     s.forward_ok = forward.known
     s.forward = forward.speed
-    return forward
 
 
 @law

@@ -12,7 +12,6 @@ from ....core.kernels import law
 from ....core.scalars import constrain, finite
 from ..parameters import Parameters
 from ..parameters.control import Motors
-from ..state import Autopilot
 from . import mixer, servos
 from .state import DT, TEST_LEFT, TEST_RIGHT, TEST_STEERING, TEST_THROTTLE, Control, MotorsState, current_tick
 
@@ -36,25 +35,25 @@ def throttle_min(params: Motors) -> float:
 
 
 @law
-def set_steering(ap: Autopilot, steering: float) -> None:
+def set_steering(m: MotorsState, steering: float) -> None:
     """Steering demand of a control loop: shrunk with speed, mirrored while the vehicle rolls backwards."""
-    ap.control.motors.steering = steering if finite(steering) else 0.0
-    ap.control.motors.scale_steering = True
+    m.steering = steering if finite(steering) else 0.0
+    m.scale_steering = True
 
 
 @law
-def set_steering_unscaled(ap: Autopilot, steering: float) -> None:
+def set_steering_unscaled(m: MotorsState, steering: float) -> None:
     """Steering of a pilot's or client's hand, not shrunk; mirrored while the throttle pulls backwards."""
-    set_steering(ap, steering)
-    ap.control.motors.scale_steering = False
+    set_steering(m, steering)
+    m.scale_steering = False
 
 
 @law
-def set_throttle(ap: Autopilot, throttle: float) -> None:
+def set_throttle(m: MotorsState, armed: bool, throttle: float, params: Motors) -> None:
     """Throttle demand -1 .. 1; none while disarmed."""
-    if ap.arming.armed:
-        limit = throttle_max(ap.params.MOT)
-        ap.control.motors.throttle = constrain(throttle, -limit, limit) if finite(throttle) else 0.0
+    if armed:
+        limit = throttle_max(params)
+        m.throttle = constrain(throttle, -limit, limit) if finite(throttle) else 0.0
 
 
 @law
@@ -67,10 +66,9 @@ def slew_limited(throttle: float, last: float, slew_rate: float) -> float:
 
 
 @law
-def is_moving(ap: Autopilot) -> bool:
+def is_moving(m: MotorsState, armed: bool, params: Parameters) -> bool:
     """Whether a demand turns the motors (ArduPilot's active())."""
-    m = ap.control.motors
-    return ap.arming.armed and (m.throttle != 0.0 or (is_skid(ap.params) and m.steering != 0.0))
+    return armed and (m.throttle != 0.0 or (is_skid(params) and m.steering != 0.0))
 
 
 @law
@@ -177,20 +175,19 @@ def run_motor_test(m: MotorsState, params: Motors) -> None:
 
 
 @law
-def drive_motors(ap: Autopilot) -> None:
+def drive_motors(control: Control, armed: bool, params: Parameters) -> None:
     """One period, from the demands to ``motors.out_*`` and the limit flags."""
-    m = ap.control.motors
-    armed = ap.arming.armed
+    m = control.motors
     if not armed:
         m.throttle = 0.0
     m.limit_left = False
     m.limit_right = False
     m.limit_lower = False
     m.limit_upper = False
-    slew_throttle(m, ap.params.MOT.SLEWRATE)
+    slew_throttle(m, params.MOT.SLEWRATE)
     if m.test_motor != 0:
-        run_motor_test(m, ap.params.MOT)
-    elif is_skid(ap.params):
-        drive_skid(ap.control, armed, ap.params.MOT)
+        run_motor_test(m, params.MOT)
+    elif is_skid(params):
+        drive_skid(control, armed, params.MOT)
     else:
-        drive_car(ap.control, armed, ap.params.MOT)
+        drive_car(control, armed, params.MOT)

@@ -26,7 +26,6 @@ from ...control.shaping import (
 )
 from ...state import Estimate
 from ..parameters import Parameters
-from ..state import Autopilot
 from .motors import is_skid
 from .speed import accel_limited
 from .state import DT, Control, PositionState, current_tick, is_recent
@@ -205,19 +204,19 @@ def brake(control: Control, params: Parameters) -> None:
 
 
 @law
-def follow_target(ap: Autopilot) -> None:
+def follow_target(control: Control, estimate: Estimate, armed: bool, params: Parameters) -> None:
     """One period of the cascade. Disarmed or without a position the outputs brake."""
-    c = ap.control.position
-    psc = ap.params.PSC
-    pos, vel = horizontal(ap.estimate.pos), horizontal(ap.estimate.vel)
-    if not (ap.arming.armed and ap.estimate.position_ok and finite2(pos) and finite2(vel)):
-        brake(ap.control, ap.params)
+    c = control.position
+    psc = params.PSC
+    pos, vel = horizontal(estimate.pos), horizontal(estimate.vel)
+    if not (armed and estimate.position_ok and finite2(pos) and finite2(vel)):
+        brake(control, params)
         return
-    follow_reset(c, ap.estimate)
-    if not is_active(ap.control):
+    follow_reset(c, estimate)
+    if not is_active(control):
         c.started = False
         c.vel_integrator = ZERO2
-    c.last_tick = current_tick(ap.control)
+    c.last_tick = current_tick(control)
     c.vel_target = limit_length(control_position(c, pos, psc.POS_P) + c.vel_desired, c.speed_max)
     c.accel_target = control_velocity(c, vel, basic_gains(psc.VEL, psc.VEL.IMAX)) + c.accel_desired
-    drive_towards(ap.control, ap.estimate.euler.yaw, ap.params)
+    drive_towards(control, estimate.euler.yaw, params)

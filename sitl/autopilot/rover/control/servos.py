@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ....core.scalars import constrain, finite
-from ...state import Actuators
+from ...state import Actuators, Radio
 from ..parameters import Parameters
 from ..parameters.control import ServoOutput
-from ..state import Autopilot
 from .state import TEST_LEFT, TEST_RIGHT, TEST_STEERING, TEST_THROTTLE, MotorsState
 
 OUTPUTS = 4
@@ -93,32 +92,37 @@ def function_value(m: MotorsState, function: int) -> float:
 
 
 @law
-def function_pulse(ap: Autopilot, output: int, function: int) -> int:
-    """Pulse [us] of an output with a function; 0 for none."""
-    m = ap.control.motors
+def receiver_channel(output: int, function: int) -> int:
+    """Channel, from 0 on, of the receiver that an output passes on; -1 when its function is another one."""
     if function == PASS_THROUGH:
-        return ap.rc.channels[output]
-    if RECEIVER_1 <= function <= RECEIVER_16:
-        return ap.rc.channels[function - RECEIVER_1]
+        return output
+    return function - RECEIVER_1 if RECEIVER_1 <= function <= RECEIVER_16 else -1
+
+
+@law
+def function_pulse(m: MotorsState, function: int, silent: bool, servo: ServoOutput) -> int:
+    """Pulse [us] of an output that steering or a motor drives; 0 for none. ``silent``: motors get none."""
     if m.test_pulse != 0 and is_tested(m.test_motor, function):
         return m.test_pulse
     if function != STEERING and not drives(function):
         return 0
-    if drives(function) and not ap.arming.armed and ap.params.MOT.SAFE_DISARM != 0.0:
+    if drives(function) and silent:
         return 0
-    return pulse(ap.params.SERVO[output], function_value(m, function))
+    return pulse(servo, function_value(m, function))
 
 
 @law
-def write_actuators(ap: Autopilot, actuators: Actuators) -> None:
+def write_actuators(m: MotorsState, actuators: Actuators, rc: Radio, armed: bool, params: Parameters) -> None:
     """Pulses of the outputs that have a function; one that loses its function falls silent."""
-    m = ap.control.motors
+    silent = not armed and params.MOT.SAFE_DISARM != 0.0
     for k in range(OUTPUTS):
-        function = function_of(ap.params, k)
+        function = function_of(params, k)
         if function > NONE:
-            write(actuators, k, function_pulse(ap, k, function))
+            channel = receiver_channel(k, function)
+            width = function_pulse(m, function, silent, params.SERVO[k]) if channel < 0 else rc.channels[channel]
+            write(actuators, k, width)
             m.driven[k] = 1
         elif m.driven[k] != 0:
             write(actuators, k, 0)
             m.driven[k] = 0
-    actuators.armed = ap.arming.armed
+    actuators.armed = armed

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Speed: desired speed -> throttle demand (ATC_SPEED_*, ATC_ACCEL_MAX, ATC_DECEL_MAX, ATC_BRAKE, CRUISE_*).
 
-A mode calls ``drive`` or ``stop`` once a period (or ``throttle_*`` and ``motors.set_throttle`` itself). The desired
+A mode calls ``drive`` or ``stop`` once a period, after ``forward_speed.sense``. The desired
 speed changes no faster than the acceleration limits; CRUISE_THROTTLE over CRUISE_SPEED is fed forward, the loop
 corrects the rest. Backward speeds are negative.
 """
@@ -16,9 +16,7 @@ from ...control.pid import pid_gains, reset_filter, update_pid
 from ..parameters import Parameters
 from ..parameters.control import Attitude
 from ..parameters.driving import Cruise
-from ..state import Vehicle
 from . import motors
-from .forward_speed import ForwardSpeed, sense
 from .state import DT, Control, SpeedState, current_tick, is_recent
 
 TIMEOUT = 10
@@ -98,20 +96,20 @@ def without_brake(s: SpeedState, throttle: float) -> float:
 
 
 @law
-def control_speed(control: Control, desired: float, forward: ForwardSpeed, params: Parameters) -> float:
+def control_speed(control: Control, desired: float, params: Parameters) -> float:
     """Throttle demand for a speed [m/s]; 0 while the present speed is not known."""
     s = control.speed
     m = control.motors
-    if not forward.known:
+    if not s.forward_ok:
         return 0.0
     if not is_active(control):
         reset_filter(s.loop)
         s.loop.integrator = 0.0
-        s.desired = forward.speed
+        s.desired = s.forward
     s.last_tick = current_tick(control)
     s.desired = accel_limited(control, desired if finite(desired) else 0.0, params.ATC)
     saturated = m.limit_lower or m.limit_upper or s.limit_low or s.limit_high
-    correction = update_pid(s.loop, s.desired, forward.speed, DT, saturated, pid_gains(params.ATC.SPEED))
+    correction = update_pid(s.loop, s.desired, s.forward, DT, saturated, pid_gains(params.ATC.SPEED))
     throttle = cruise_throttle(s.desired, params.CRUISE) + correction
     s.limit_low = False
     s.limit_high = False
@@ -119,12 +117,12 @@ def control_speed(control: Control, desired: float, forward: ForwardSpeed, param
 
 
 @law
-def control_stop(control: Control, forward: ForwardSpeed, params: Parameters) -> Stop:
+def control_stop(control: Control, params: Parameters) -> Stop:
     """Throttle demand of a controlled stop, 0 once standing (ATC_STOP_SPEED)."""
     s = control.speed
     limited = accel_limited(control, 0.0, params.ATC)
-    slow = limited == 0.0 and abs(forward.speed) <= abs(params.ATC.STOP_SPEED)
-    if is_recent(control, s.stop_tick, STANDING) or not forward.known or slow:
+    slow = limited == 0.0 and abs(s.forward) <= abs(params.ATC.STOP_SPEED)
+    if is_recent(control, s.stop_tick, STANDING) or not s.forward_ok or slow:
         s.stop_tick = current_tick(control)
         s.last_tick = s.stop_tick
         reset_filter(s.loop)
@@ -132,27 +130,24 @@ def control_stop(control: Control, forward: ForwardSpeed, params: Parameters) ->
         s.desired = 0.0
         return Stop(0.0, True)
     s.stop_tick = 0
-    return Stop(control_speed(control, limited, forward, params), False)
+    return Stop(control_speed(control, limited, params), False)
 
 
 @law
-def drive(v: Vehicle, desired: float) -> None:
+def drive(control: Control, armed: bool, desired: float, params: Parameters) -> None:
     """Drive at ``desired`` [m/s] this period; 0 makes a controlled stop."""
-    ap = v.autopilot
-    forward = sense(v)
-    limited = accel_limited(ap.control, desired if finite(desired) else 0.0, ap.params.ATC)
+    limited = accel_limited(control, desired if finite(desired) else 0.0, params.ATC)
     if limited == 0.0:
-        throttle = control_stop(ap.control, forward, ap.params).throttle
+        throttle = control_stop(control, params).throttle
     else:
-        throttle = control_speed(ap.control, limited, forward, ap.params)
-    motors.set_throttle(ap, throttle)
+        throttle = control_speed(control, limited, params)
+    motors.set_throttle(control.motors, armed, throttle, params.MOT)
 
 
 @law
-def stop(v: Vehicle) -> bool:
+def stop(control: Control, armed: bool, params: Parameters) -> bool:
     """Stop with straight wheels; whether it stands."""
-    ap = v.autopilot
-    out = control_stop(ap.control, sense(v), ap.params)
-    motors.set_throttle(ap, out.throttle)
-    motors.set_steering(ap, 0.0)
+    out = control_stop(control, params)
+    motors.set_throttle(control.motors, armed, out.throttle, params.MOT)
+    motors.set_steering(control.motors, 0.0)
     return out.stands

@@ -12,8 +12,8 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
 from ...control.pid import pid_gains, reset_filter, update_pid
+from ...state import Estimate
 from ..parameters.control import Attitude
-from ..state import Autopilot
 from .forward_speed import yaw_rate
 from .state import DT, GRAVITY, Control, SteeringState, current_tick, is_recent
 
@@ -118,27 +118,27 @@ def turn_rate_from_heading(error: float, rate_max: float, params: Attitude) -> f
 
 
 @law
-def out_from_rate(ap: Autopilot, turn_rate: float) -> float:
+def out_from_rate(control: Control, estimate: Estimate, turn_rate: float, params: Attitude) -> float:
     """Steering demand for a turn rate [rad/s]."""
-    measured = yaw_rate(ap.estimate.q, ap.estimate.rates)
-    return control_turn_rate(ap.control, turn_rate, measured, ap.params.ATC)
+    return control_turn_rate(control, turn_rate, yaw_rate(estimate.q, estimate.rates), params)
 
 
 @law
-def out_from_heading(ap: Autopilot, heading: float) -> float:
+def out_from_heading(control: Control, estimate: Estimate, heading: float, params: Attitude) -> float:
     """Steering demand towards ``heading`` [rad]."""
     if not finite(heading):
-        return out_from_rate(ap, 0.0)
-    error = wrap_pi(heading - ap.estimate.euler.yaw)
-    return out_from_rate(ap, turn_rate_from_heading(error, 0.0, ap.params.ATC))
+        return out_from_rate(control, estimate, 0.0, params)
+    error = wrap_pi(heading - estimate.euler.yaw)
+    return out_from_rate(control, estimate, turn_rate_from_heading(error, 0.0, params), params)
 
 
 @law
-def out_from_lat_accel(ap: Autopilot, accel: float) -> float:
+def out_from_lat_accel(control: Control, estimate: Estimate, accel: float, params: Attitude) -> float:
     """Steering demand for a lateral acceleration [m/s^2] to the right; 0 while the speed is not known."""
-    s = ap.control.steering
-    s.lat_accel_tick = current_tick(ap.control)
+    s = control.steering
+    s.lat_accel_tick = current_tick(control)
     s.lat_accel = accel if finite(accel) else 0.0
-    if not ap.control.speed.forward_ok:
+    if not control.speed.forward_ok:
         return 0.0
-    return out_from_rate(ap, turn_rate_from_lat_accel(s.lat_accel, ap.control.speed.forward))
+    turn_rate = turn_rate_from_lat_accel(s.lat_accel, control.speed.forward)
+    return out_from_rate(control, estimate, turn_rate, params)

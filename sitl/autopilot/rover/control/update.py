@@ -3,24 +3,24 @@
 
 from __future__ import annotations
 
-from ....core.kernels import inline_unit, law
+from ....core.kernels import inline_unit
 from ....core.records import Records
-from ..state import Autopilot, Vehicle
+from ..parameters import Parameters
+from ..state import Vehicle
 from . import forward_speed, motors, position, servos
 from .speed import decel_max
+from .state import Control
 from .steering import lat_accel_max
 
 
-@law
-def init(ap: Autopilot) -> None:
+def init(control: Control, params: Parameters) -> None:
     """Limits of the position controller to sane starts (gains are read live from the parameters).
 
     Harmless when called again.
     """
-    p = ap.params
-    if ap.control.position.speed_max <= 0.0:
-        decel = decel_max(p.ATC)
-        position.set_limits(ap.control.position, p.CRUISE.SPEED, decel, lat_accel_max(p.ATC), decel)
+    if control.position.speed_max <= 0.0:
+        decel = decel_max(params.ATC)
+        position.set_limits(control.position, params.CRUISE.SPEED, decel, lat_accel_max(params.ATC), decel)
 
 
 @inline_unit
@@ -28,7 +28,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     """Carry out what the mode of vehicle ``i`` asked for and write its actuators."""
     v = fleet[i]
     ap = v.autopilot
-    forward_speed.sense(v)
-    motors.drive_motors(ap)
-    servos.write_actuators(ap, v.actuators)
+    armed = ap.arming.armed
+    forward_speed.sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
+    motors.drive_motors(ap.control, armed, ap.params)
+    servos.write_actuators(ap.control.motors, v.actuators, ap.rc, armed, ap.params)
     ap.control.tick += 1

@@ -8,7 +8,6 @@ import math
 from ....core.kernels import law
 from .. import pilot
 from ..control import motors, speed
-from ..control.forward_speed import sense
 from ..control.steering import out_from_rate
 from ..state import Vehicle
 from .mode import RoverMode
@@ -20,15 +19,18 @@ ACRO = 1
 def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    if sense(v).known:
-        wanted = pilot.steering_and_speed(ap)
+    control, p = ap.control, ap.params
+    armed = ap.arming.armed
+    if control.speed.forward_ok:
+        wanted = pilot.steering_and_speed(ap.modes.pilot, control, p)
         steering = wanted.steering
-        speed.drive(v, wanted.speed)
+        speed.drive(control, armed, wanted.speed, p)
     else:
-        sticks = pilot.limited_sticks(ap)
+        sticks = pilot.limited_sticks(ap.modes.pilot, control.motors.throttle_last, p)
         steering = sticks.steering
-        motors.set_throttle(ap, sticks.throttle)
-    motors.set_steering(ap, out_from_rate(ap, steering * math.radians(ap.params.ACRO_TURN_RATE)))
+        motors.set_throttle(control.motors, armed, sticks.throttle, p.MOT)
+    turn_rate = steering * math.radians(p.ACRO_TURN_RATE)
+    motors.set_steering(control.motors, out_from_rate(control, ap.estimate, turn_rate, p.ATC))
 
 
 MODE = RoverMode(number=ACRO, name="ACRO", run=run, car_needs_velocity=True, manual_input=True)

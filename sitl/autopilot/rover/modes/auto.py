@@ -12,9 +12,11 @@ import math
 from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
-from ...modes import ACCEPTED, NO_MISSION, REASON_MISSION_END
+from ....core.vectors import Vec2
+from ...modes import ACCEPTED, NO_MISSION, REASON_MISSION_END, ask
 from ...navigation import command
 from ...navigation import state as kinds
+from .. import pilot
 from ..control import speed
 from ..navigation import waypoint
 from ..navigation.state import RoverNav
@@ -23,13 +25,15 @@ from . import circle, drive, guided, loiter, rtl
 from .acro import ACRO
 from .manual import MANUAL
 from .mode import RoverMode
-from .state import AutoState
+from .state import AutoState, Modes
 
 AUTO = 10
 
 STOPPED, ON_PATH, TURNING, RETURNING, LOITERING, GUIDED_IN_MISSION, CIRCLING = 0, 1, 2, 3, 4, 5, 6
 """What it is doing (``modes.auto.submode``); TURNING: to a heading, at a speed."""
 HEADING_REACHED = math.radians(5.0)
+LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
+"""Kinds of command that drive along a leg."""
 LOITER_WHEN_DONE, ACRO_WHEN_DONE, MANUAL_WHEN_DONE = 1.0, 2.0, 3.0
 """MIS_DONE_BEHAVE"""
 
@@ -37,11 +41,11 @@ LOITER_WHEN_DONE, ACRO_WHEN_DONE, MANUAL_WHEN_DONE = 1.0, 2.0, 3.0
 @law
 def start(v: Vehicle) -> int:
     """Enter; needs a mission. The shell gives the first command."""
-    modes = v.autopilot.modes
-    auto = modes.auto
+    ap = v.autopilot
+    modes, auto = ap.modes, ap.modes.auto
     if modes.mission_count < 2:
         return NO_MISSION
-    waypoint.start(v.autopilot)
+    waypoint.start(modes.nav, ap.control.position, ap.params)
     modes.guided.limit_us = 0
     modes.guided.limit_distance = 0.0
     auto.command = modes.nav.command_count
@@ -52,39 +56,41 @@ def start(v: Vehicle) -> int:
 
 
 @law
-def begin(v: Vehicle) -> None:
-    """Begin the command that the shell has written."""
-    modes = v.autopilot.modes
-    nav, auto = modes.nav, modes.auto
-    auto.command = nav.command_count
-    auto.complete = False
-    nav.completed = False
-    nav.since_us = 0
-    kind = nav.command_kind
-    auto.submode = STOPPED
-    if kind == kinds.WAYPOINT or kind == kinds.LOITER_UNLIMITED or kind == kinds.LOITER_TIME:
-        auto.submode = ON_PATH
-    elif kind == kinds.LOITER_TURNS:
-        begin_circle(v)
-    elif kind == kinds.RTL:
-        if rtl.start(v) == ACCEPTED:
-            auto.submode = RETURNING
-    elif kind == kinds.GUIDED:
-        guided.start_in_mission(v)
-        auto.submode = GUIDED_IN_MISSION
-    elif kind == kinds.YAW_SPEED:
-        begin_turn(auto, nav, v.autopilot.params.WP.SPEED)
-    elif kind == kinds.DELAY:
-        nav.since_us = v.time_us
+def first_submode(kind: int) -> int:
+    """What it begins to do for a command of this kind."""
+    if kind in LEGS:
+        return ON_PATH
+    if kind == kinds.LOITER_TURNS:
+        return CIRCLING
+    if kind == kinds.RTL:
+        return RETURNING
+    if kind == kinds.GUIDED:
+        return GUIDED_IN_MISSION
+    return TURNING if kind == kinds.YAW_SPEED else STOPPED
 
 
 @law
-def begin_circle(v: Vehicle) -> None:
-    """LOITER_TURNS: around ``nav.target``."""
-    nav = v.autopilot.modes.nav
-    direction = -1.0 if nav.circle_radius < 0.0 else 1.0
-    if circle.start_around(v, horizontal(nav.target), abs(nav.circle_radius), direction) == ACCEPTED:
-        v.autopilot.modes.auto.submode = CIRCLING
+def begin(v: Vehicle) -> None:
+    """Begin the command that the shell has written; what cannot begin becomes a stop."""
+    ap = v.autopilot
+    nav, auto = ap.modes.nav, ap.modes.auto
+    auto.command = nav.command_count
+    auto.complete = False
+    nav.completed = False
+    nav.since_us = v.time_us if nav.command_kind == kinds.DELAY else 0
+    auto.submode = first_submode(nav.command_kind)
+    cause = ACCEPTED
+    if auto.submode == CIRCLING:
+        cause = circle.begin(v, circle.circuit_around(horizontal(nav.target), nav.circle_radius, ap.estimate))
+    elif auto.submode == RETURNING:
+        cause = rtl.start(v)
+    elif auto.submode == GUIDED_IN_MISSION:
+        cause = guided.start(v)
+        guided.begin_limits(ap.modes.guided, v.time_us, horizontal(ap.estimate.pos))
+    elif auto.submode == TURNING:
+        begin_turn(auto, nav, ap.params.WP.SPEED)
+    if cause != ACCEPTED:
+        auto.submode = STOPPED
 
 
 @law
@@ -101,22 +107,33 @@ def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
     nav, auto = ap.modes.nav, ap.modes.auto
+    pos = ap.estimate.pos
     if auto.command != nav.command_count:
         begin(v)
     if nav.mission_state == kinds.COMPLETE and not auto.complete:
-        finish(v)
+        finish(ap.modes, ap.params.MIS.DONE_BEHAVE)
+        if ap.params.MIS.DONE_BEHAVE == LOITER_WHEN_DONE and loiter.start(v) == ACCEPTED:
+            auto.submode = LOITERING
     run_command(v)
-    if not nav.completed and is_done(v):
-        command.complete(ap.modes.nav, ap.events, v.time_us)
-    command.check_condition(ap.modes.nav, ap.events, v.time_us, ap.estimate.pos, True)
+    if has_arrived(nav):
+        command.arrive(nav, ap.events, v.time_us)
+    if not nav.completed and is_done(ap.modes, v.time_us, horizontal(pos), ap.params.WP.RADIUS):
+        command.complete(nav, ap.events, v.time_us)
+    command.check_condition(nav, ap.events, v.time_us, pos, True)
 
 
 @law
 def run_command(v: Vehicle) -> None:
-    """One period of the command under way."""
-    submode = v.autopilot.modes.auto.submode
-    if submode == ON_PATH:
-        run_path(v)
+    """One period of the command under way.
+
+    Waiting at a waypoint a car stands: it would have to circle to hold the very point.
+    """
+    ap = v.autopilot
+    auto, nav = ap.modes.auto, ap.modes.nav
+    control, armed, p = ap.control, ap.arming.armed, ap.params
+    submode = auto.submode
+    if submode == ON_PATH and (nav.current.fast or not waypoint.reached(nav)):
+        drive.follow_path(v)
     elif submode == CIRCLING:
         circle.run(v)
     elif submode == RETURNING:
@@ -125,87 +142,54 @@ def run_command(v: Vehicle) -> None:
         loiter.run(v)
     elif submode == GUIDED_IN_MISSION:
         guided.run(v)
-    elif submode == TURNING:
-        run_turn(v)
+    elif submode == TURNING and not auto.heading_reached:
+        drive.turn_to(control, ap.estimate, ap.modes.pilot, auto.heading, p)
+        speed.drive(control, armed, pilot.nudged(ap.modes.pilot, auto.speed, p), p)
+        auto.heading_reached = abs(wrap_pi(auto.heading - ap.estimate.euler.yaw)) < HEADING_REACHED
     else:
-        speed.stop(v)
+        speed.stop(control, armed, p)
 
 
 @law
-def run_path(v: Vehicle) -> None:
-    """One period towards a waypoint. There, waiting, a car stands: it would have to circle to hold the very point."""
-    if waypoint.reached(v.autopilot) and not waypoint.is_fast(v.autopilot):
-        speed.stop(v)
-    else:
-        drive.follow_path(v)
+def has_arrived(nav: RoverNav) -> bool:
+    """Whether the command under way has just come to its place, where it may wait."""
+    return not nav.completed and nav.command_kind in LEGS and nav.since_us == 0 and waypoint.reached(nav)
 
 
 @law
-def run_turn(v: Vehicle) -> None:
-    """One period of SET_YAW_SPEED: turns while it drives, then stops."""
-    ap = v.autopilot
-    auto = ap.modes.auto
-    if auto.heading_reached:
-        speed.stop(v)
-        return
-    drive.turn_to(ap, auto.heading)
-    speed.drive(v, drive.nudged(ap, auto.speed))
-    auto.heading_reached = abs(wrap_pi(auto.heading - ap.estimate.euler.yaw)) < HEADING_REACHED
+def is_done(modes: Modes, time_us: int, pos: Vec2, radius: float) -> bool:
+    """Whether the command under way is complete, at ``pos`` [m]; one that could not begin is.
 
-
-@law
-def is_done(v: Vehicle) -> bool:
-    """Whether the command under way is complete; one that could not begin is."""
-    ap = v.autopilot
-    nav = ap.modes.nav
+    Guided within the mission is within ``radius`` [m] of its place, or at its limit.
+    """
+    nav, submode = modes.nav, modes.auto.submode
     kind = nav.command_kind
-    if kind == kinds.NONE:
+    if kind == kinds.NONE or kind == kinds.LOITER_UNLIMITED:
         return False
-    if kind == kinds.WAYPOINT or kind == kinds.LOITER_TIME or kind == kinds.LOITER_UNLIMITED:
-        if nav.since_us == 0 and waypoint.reached(ap):
-            command.arrive(ap.modes.nav, ap.events, v.time_us)
-        return kind != kinds.LOITER_UNLIMITED and nav.since_us != 0 and (v.time_us - nav.since_us) * 1e-6 >= nav.delay
-    if kind == kinds.DELAY:
-        return (v.time_us - nav.since_us) * 1e-6 >= nav.delay
-    submode = ap.modes.auto.submode
+    if kind in LEGS or kind == kinds.DELAY:
+        waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
+        return waited and (kind == kinds.DELAY or nav.since_us != 0)
     if submode == CIRCLING:
-        return circle.turns(ap.modes.circle) >= nav.turns
+        return circle.turns(modes.circle) >= nav.turns
     if submode == RETURNING:
-        return waypoint.reached(ap)
+        return waypoint.reached(nav)
     if submode == GUIDED_IN_MISSION:
-        return is_guided_done(v)
+        at_place = nav.has_place and norm2(horizontal(nav.target) - pos) <= radius
+        return at_place or guided.is_at_limit(modes.guided, time_us, pos)
     if submode == TURNING:
-        return ap.modes.auto.heading_reached
+        return modes.auto.heading_reached
     return True
 
 
 @law
-def is_guided_done(v: Vehicle) -> bool:
-    """Guided within the mission: at its place, or at its limit."""
-    ap = v.autopilot
-    nav = ap.modes.nav
-    pos = horizontal(ap.estimate.pos)
-    if nav.has_place and norm2(horizontal(nav.target) - pos) <= ap.params.WP.RADIUS:
-        return True
-    return guided.is_at_limit(ap.modes.guided, v.time_us, pos)
-
-
-@law
-def finish(v: Vehicle) -> None:
-    """The mission is complete: MIS_DONE_BEHAVE; what cannot be entered becomes a stop."""
-    modes = v.autopilot.modes
-    wanted = v.autopilot.params.MIS.DONE_BEHAVE
+def finish(modes: Modes, wanted: float) -> None:
+    """The mission is complete: it stops; some modes of MIS_DONE_BEHAVE are asked for."""
     modes.auto.complete = True
     modes.auto.submode = STOPPED
-    if wanted == LOITER_WHEN_DONE:
-        if loiter.start(v) == ACCEPTED:
-            modes.auto.submode = LOITERING
-    elif wanted in (ACRO_WHEN_DONE, MANUAL_WHEN_DONE):
-        modes.wanted = 1 + (ACRO if wanted == ACRO_WHEN_DONE else MANUAL)
-        modes.wanted_reason = REASON_MISSION_END
+    if wanted in (ACRO_WHEN_DONE, MANUAL_WHEN_DONE):
+        ask(modes, ACRO if wanted == ACRO_WHEN_DONE else MANUAL, REASON_MISSION_END)
 
 
-@law
 def change_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED [m/s] of what it is doing."""
     auto = v.autopilot.modes.auto

@@ -8,20 +8,21 @@ slower by a fifth. CIRCLE_ADAPTED tells what a vehicle's limits changed.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
 from ...control.shaping import Motion2
-from ...events import CIRCLE_ADAPTED, emit
+from ...events import CIRCLE_ADAPTED, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED
 from ...state import Estimate
 from ..control import position, speed
-from ..control.state import DT
+from ..control.state import DT, PositionState
 from ..control.steering import lat_accel_max
 from ..parameters import Parameters
-from ..state import Autopilot, Vehicle
+from ..state import Vehicle
 from . import drive
 from .mode import RoverMode
 from .state import CircleState
@@ -37,6 +38,15 @@ SLOWER = 0.8
 SPEED_LIMITED, RADIUS_ENLARGED, FELL_BEHIND = 0, 1, 2
 
 
+class Circuit(NamedTuple):
+    """A circle to drive, and where on it to begin."""
+
+    centre: Vec2  # [m]
+    radius: float  # [m]
+    direction: float  # 1 clockwise, -1 counter-clockwise
+    angle: float  # of the beginning, seen from the centre [rad]
+
+
 @law
 def tolerance(radius: float, turn_radius: float) -> float:
     """Distance from the edge [m] that counts as on it."""
@@ -44,25 +54,21 @@ def tolerance(radius: float, turn_radius: float) -> float:
 
 
 @law
-def set_radius(v: Vehicle, radius: float) -> None:
-    """A circle that the vehicle can drive [m]."""
-    ap = v.autopilot
-    circle = ap.modes.circle
+def set_radius(circle: CircleState, events: Events, time_us: int, radius: float, turn_radius: float) -> None:
+    """A circle [m] that a vehicle with this ``turn_radius`` [m] can drive."""
     circle.radius = max(abs(radius), RADIUS_MIN)
-    if circle.radius < ap.params.TURN_RADIUS:
-        circle.radius = ap.params.TURN_RADIUS
-        emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(RADIUS_ENLARGED), circle.radius)
+    if circle.radius < turn_radius:
+        circle.radius = turn_radius
+        emit(events, time_us, CIRCLE_ADAPTED, float(RADIUS_ENLARGED), circle.radius)
 
 
 @law
-def set_speed(v: Vehicle, wanted: float) -> None:
-    """Speed [m/s] around the circle, within what the lateral acceleration allows."""
-    ap = v.autopilot
-    circle = ap.modes.circle
-    speed_max = math.sqrt(lat_accel_max(ap.params.ATC) * circle.radius)
+def set_speed(circle: CircleState, events: Events, time_us: int, wanted: float, accel_max: float) -> None:
+    """Speed [m/s] around the circle, within what the lateral acceleration ``accel_max`` [m/s^2] allows."""
+    speed_max = math.sqrt(accel_max * circle.radius)
     circle.speed = min(wanted, speed_max)
     if wanted > speed_max:
-        emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(SPEED_LIMITED), speed_max)
+        emit(events, time_us, CIRCLE_ADAPTED, float(SPEED_LIMITED), speed_max)
 
 
 @law
@@ -75,36 +81,38 @@ def acceleration(params: Parameters) -> float:
 
 
 @law
-def set_limits(ap: Autopilot) -> None:
+def set_limits(c: PositionState, circle: CircleState, params: Parameters) -> None:
     """Limits of the position controller for this circle."""
-    p = ap.params
-    accel = acceleration(p)
-    jerk = p.WP.JERK if p.WP.JERK > 0.0 else accel
-    position.set_limits(ap.control.position, ap.modes.circle.speed, accel, lat_accel_max(p.ATC), jerk)
+    accel = acceleration(params)
+    jerk = params.WP.JERK if params.WP.JERK > 0.0 else accel
+    position.set_limits(c, circle.speed, accel, lat_accel_max(params.ATC), jerk)
 
 
 @law
-def begin(v: Vehicle, centre: Vec2, radius: float, direction: float, angle: float) -> int:
-    """Start on a circle around ``centre`` [m]; ``direction`` 1 clockwise, -1 not.
-
-    At ``angle`` [rad] seen from the centre. ACCEPTED, or INIT_FAILED without an origin.
-    """
-    ap = v.autopilot
-    if not ap.estimate.origin_set:
-        return INIT_FAILED
-    circle = ap.modes.circle
-    circle.centre = centre
-    set_radius(v, radius)
-    circle.direction = direction
-    set_speed(v, ap.params.CIRC.SPEED if ap.params.CIRC.SPEED > 0.0 else ap.params.WP.SPEED)
-    circle.angle = angle
+def set_up(circle: CircleState, wanted: Circuit, events: Events, time_us: int, params: Parameters) -> None:
+    """A circle that the vehicle can drive, begun at its edge."""
+    circle.centre = wanted.centre
+    set_radius(circle, events, time_us, wanted.radius, params.TURN_RADIUS)
+    circle.direction = wanted.direction
+    wanted_speed = params.CIRC.SPEED if params.CIRC.SPEED > 0.0 else params.WP.SPEED
+    set_speed(circle, events, time_us, wanted_speed, lat_accel_max(params.ATC))
+    circle.angle = wanted.angle
     circle.target_speed = 0.0
     circle.total = 0.0
     circle.at_edge = False
     circle.waiting = False
-    set_limits(ap)
-    position.init(ap.control.position, ap.estimate)
     circle.target = edge(circle)
+
+
+@law
+def begin(v: Vehicle, wanted: Circuit) -> int:
+    """Drive to a circle and along it. ACCEPTED, or INIT_FAILED without an origin."""
+    ap = v.autopilot
+    if not ap.estimate.origin_set:
+        return INIT_FAILED
+    set_up(ap.modes.circle, wanted, ap.events, v.time_us, ap.params)
+    set_limits(ap.control.position, ap.modes.circle, ap.params)
+    position.init(ap.control.position, ap.estimate)
     return ACCEPTED
 
 
@@ -113,13 +121,13 @@ def start(v: Vehicle) -> int:
     """Enter: around where the vehicle is, beginning ahead of its nose."""
     p = v.autopilot.params.CIRC
     est = v.autopilot.estimate
-    return begin(v, horizontal(est.pos), p.RADIUS, -1.0 if p.DIR == 1.0 else 1.0, est.euler.yaw)
+    return begin(v, Circuit(horizontal(est.pos), p.RADIUS, -1.0 if p.DIR == 1.0 else 1.0, est.euler.yaw))
 
 
 @law
-def start_around(v: Vehicle, centre: Vec2, radius: float, direction: float) -> int:
-    """For missions: around ``centre`` [m], beginning at the nearest point of the edge."""
-    return begin(v, centre, radius, direction, angle_from(centre, v.autopilot.estimate))
+def circuit_around(centre: Vec2, radius: float, estimate: Estimate) -> Circuit:
+    """For missions: around ``centre`` [m], beginning at the nearest point of the edge; counter-clockwise below 0."""
+    return Circuit(centre, abs(radius), -1.0 if radius < 0.0 else 1.0, angle_from(centre, estimate))
 
 
 @law
@@ -166,37 +174,38 @@ def advance(circle: CircleState, accel_max: float, estimate: Estimate) -> Motion
 
 
 @law
-def follow(v: Vehicle) -> None:
-    """To the edge, then along it, waiting for a vehicle that falls behind."""
-    ap = v.autopilot
-    circle = ap.modes.circle
-    away = edge_distance(circle, horizontal(ap.estimate.pos))
-    near = tolerance(circle.radius, ap.params.TURN_RADIUS)
+def follow(circle: CircleState, c: PositionState, estimate: Estimate, turn_radius: float) -> bool:
+    """To the edge, then along it; whether the vehicle has just fallen behind, so that the target waits."""
+    away = edge_distance(circle, horizontal(estimate.pos))
+    near = tolerance(circle.radius, turn_radius)
     if not circle.at_edge:
         circle.at_edge = away <= near
-        position.input_pos(ap.control.position, circle.target)
+        position.input_pos(c, circle.target)
     elif away > 2.0 * near and not circle.waiting:
         circle.speed *= SLOWER
         circle.waiting = True
-        emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(FELL_BEHIND), circle.speed)
+        return True
     elif away < near and circle.waiting:
         circle.waiting = False
     else:
-        target = advance(circle, ap.control.position.accel_max, ap.estimate)
-        position.set_pos_vel_accel(ap.control.position, target)
+        position.set_pos_vel_accel(c, advance(circle, c.accel_max, estimate))
+    return False
 
 
 @law
 def run(v: Vehicle) -> None:
     """One period; stops without a position."""
     ap = v.autopilot
+    circle = ap.modes.circle
+    control, armed, p = ap.control, ap.arming.armed, ap.params
     if not ap.estimate.position_ok:
-        speed.stop(v)
+        speed.stop(control, armed, p)
         return
-    follow(v)
-    position.follow_target(ap)
-    drive.turn(ap, ap.control.position.desired_turn_rate)
-    speed.drive(v, ap.control.position.desired_speed)
+    if follow(circle, control.position, ap.estimate, p.TURN_RADIUS):
+        emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(FELL_BEHIND), circle.speed)
+    position.follow_target(control, ap.estimate, armed, p)
+    drive.turn(control, ap.estimate, ap.modes.pilot, control.position.desired_turn_rate, p)
+    speed.drive(control, armed, control.position.desired_speed, p)
 
 
 @law
@@ -205,15 +214,15 @@ def turns(circle: CircleState) -> float:
     return abs(circle.total) / (2.0 * math.pi)
 
 
-@law
 def change_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED [m/s]; False for one that is not positive."""
     if wanted <= 0.0:
         return False
     ap = v.autopilot
-    set_speed(v, wanted)
-    if ap.modes.circle.speed > ap.control.position.speed_max:
-        set_limits(ap)
+    circle, c = ap.modes.circle, ap.control.position
+    set_speed(circle, ap.events, v.time_us, wanted, lat_accel_max(ap.params.ATC))
+    if circle.speed > c.speed_max:
+        set_limits(c, circle, ap.params)
     return True
 
 

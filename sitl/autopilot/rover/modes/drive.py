@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the autonomous modes share: demands of throttle and steering, with what the pilot adds to them.
+"""Driving as the controllers ask, with the pilot's help.
 
 STICK_MIXING lets the pilot's steering stick add to the autopilot's steering; a throttle stick that asks for more speed
 in the direction of travel gets it.
@@ -8,68 +8,54 @@ in the direction of travel gets it.
 from __future__ import annotations
 
 from ....core.kernels import law
+from ...events import LEG_ENDING, emit_and_return
+from ...navigation.state import SPEED_REQUEST
+from ...state import Estimate
 from .. import pilot
 from ..control import motors, speed, steering
+from ..control.state import Control, PositionState
 from ..navigation import waypoint
-from ..state import Autopilot, Vehicle
-
-CRUISE_THROTTLE_MIN, CRUISE_THROTTLE_MAX = 5.0, 100.0
-"""CRUISE_THROTTLE outside of this [%] says nothing about speeds."""
-
-
-@law
-def steer(ap: Autopilot, demand: float) -> None:
-    """Steering demand of a control loop, mixed with the stick's.
-
-    It is not cut at -1 .. 1 here: the motors shrink it with speed first, as recorded ArduRovers do.
-    """
-    motors.set_steering(ap, pilot.mixed(ap, demand) if ap.params.STICK_MIXING > 0.0 else demand)
+from ..navigation.state import RoverNav
+from ..parameters import Parameters
+from ..state import Vehicle
+from .state import PilotState
 
 
 @law
-def turn(ap: Autopilot, rate: float) -> None:
-    """Turn at ``rate`` [rad/s], right positive."""
-    steer(ap, steering.out_from_rate(ap, rate))
+def turn(control: Control, estimate: Estimate, sticks: PilotState, rate: float, params: Parameters) -> None:
+    """Turn at ``rate`` [rad/s], right positive; the stick may add to it."""
+    demand = steering.out_from_rate(control, estimate, rate, params.ATC)
+    motors.set_steering(control.motors, pilot.mixed(sticks, demand, params.STICK_MIXING))
 
 
 @law
-def turn_to(ap: Autopilot, heading: float) -> None:
-    """Turn towards ``heading`` [rad]."""
-    steer(ap, steering.out_from_heading(ap, heading))
-
-
-@law
-def stick_speed(ap: Autopilot, backward: bool) -> float:
-    """Speed [m/s] that the throttle stick asks for in the direction of travel; 0 when it pulls the other way.
-
-    ``backward``: the vehicle drives backwards on purpose.
-    """
-    if not CRUISE_THROTTLE_MIN <= ap.params.CRUISE.THROTTLE <= CRUISE_THROTTLE_MAX:
-        return 0.0
-    asked = pilot.sticks(ap).throttle * speed.speed_max(ap.params)
-    return min(asked, 0.0) if backward else max(asked, 0.0)
-
-
-@law
-def nudged(ap: Autopilot, wanted: float) -> float:
-    """``wanted`` [m/s], or the stick's speed when that is faster in the same direction."""
-    if wanted < 0.0:
-        return min(wanted, stick_speed(ap, True))
-    return max(wanted, stick_speed(ap, False))
+def turn_to(control: Control, estimate: Estimate, sticks: PilotState, heading: float, params: Parameters) -> None:
+    """Turn towards ``heading`` [rad]; the stick may add to it."""
+    demand = steering.out_from_heading(control, estimate, heading, params.ATC)
+    motors.set_steering(control.motors, pilot.mixed(sticks, demand, params.STICK_MIXING))
 
 
 @law
 def follow_path(v: Vehicle) -> None:
     """One period along the path of ``navigation.waypoint``: it says how fast and how to turn."""
     ap = v.autopilot
-    path = ap.modes.nav.drive
-    waypoint.set_nudge_speed(ap, abs(stick_speed(ap, path.reversed)))
-    waypoint.follow(v)
-    speed.drive(v, path.desired_speed)
-    turn(ap, path.desired_turn_rate)
+    nav, armed = ap.modes.nav, ap.arming.armed
+    path = nav.drive
+    path.nudge_speed = abs(pilot.stick_speed(ap.modes.pilot, path.reversed, ap.params))
+    if waypoint.follow(nav, ap.control, ap.estimate, armed, v.time_us, ap.params):
+        emit_and_return(ap.events, v.time_us, LEG_ENDING, SPEED_REQUEST, 0.0)
+    speed.drive(ap.control, armed, path.desired_speed, ap.params)
+    turn(ap.control, ap.estimate, ap.modes.pilot, path.desired_turn_rate, ap.params)
 
 
 @law
+def begin_return(nav: RoverNav, c: PositionState, params: Parameters) -> None:
+    """A way home begins: at RTL_SPEED, else WP_SPEED."""
+    waypoint.start(nav, c, params)
+    if params.RTL_SPEED > 0.0:
+        waypoint.set_speed(nav, params.RTL_SPEED)
+
+
 def change_path_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED [m/s] of a mode that follows a path; False for a speed that is too slow."""
-    return waypoint.set_speed(v.autopilot, wanted)
+    return waypoint.set_speed(v.autopilot.modes.nav, wanted)

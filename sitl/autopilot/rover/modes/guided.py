@@ -7,11 +7,12 @@ too, within limits of time and distance.
 
 from __future__ import annotations
 
-from ....core.algebra import horizontal, norm2
+from ....core.algebra import norm2
 from ....core.kernels import law
 from ....core.vectors import Vec2
-from ...events import GUIDED_REACHED, GUIDED_TIMEOUT, emit
+from ...events import GUIDED_REACHED, GUIDED_TIMEOUT, Events, emit
 from ...modes import ACCEPTED
+from .. import pilot
 from ..control import motors, speed
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -30,8 +31,9 @@ TIMEOUT_US = 3_000_000
 @law
 def start(v: Vehicle) -> int:
     """Enter: stops until a set-point comes."""
-    guided = v.autopilot.modes.guided
-    waypoint.start(v.autopilot)
+    ap = v.autopilot
+    guided = ap.modes.guided
+    waypoint.start(ap.modes.nav, ap.control.position, ap.params)
     guided.submode = STOP
     guided.has_target = False
     guided.reached_told = True
@@ -39,25 +41,19 @@ def start(v: Vehicle) -> int:
 
 
 @law
-def check_age(v: Vehicle) -> None:
+def check_age(guided: GuidedState, events: Events, time_us: int) -> None:
     """Drop a set-point that is too old, and say so once."""
-    guided = v.autopilot.modes.guided
-    if guided.has_target and v.time_us - guided.update_us > TIMEOUT_US:
+    if guided.has_target and time_us - guided.update_us > TIMEOUT_US:
         guided.has_target = False
-        emit(v.autopilot.events, v.time_us, GUIDED_TIMEOUT, TIMEOUT_US * 1e-6, 0.0)
+        emit(events, time_us, GUIDED_TIMEOUT, TIMEOUT_US * 1e-6, 0.0)
 
 
 @law
-def run_position(v: Vehicle) -> None:
-    """One period of a position target."""
-    ap = v.autopilot
-    if not waypoint.reached(ap):
-        drive.follow_path(v)
-        return
-    if not ap.modes.guided.reached_told:
-        ap.modes.guided.reached_told = True
-        emit(ap.events, v.time_us, GUIDED_REACHED, 0.0, 0.0)
-    speed.stop(v)
+def note_arrival(guided: GuidedState, events: Events, time_us: int) -> None:
+    """At a position target: say so once."""
+    if not guided.reached_told:
+        guided.reached_told = True
+        emit(events, time_us, GUIDED_REACHED, 0.0, 0.0)
 
 
 @law
@@ -65,25 +61,28 @@ def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
     guided = ap.modes.guided
+    control, armed, p = ap.control, ap.arming.armed, ap.params
     kind = guided.submode
-    if kind == POSITION:
-        run_position(v)
+    if kind != POSITION:
+        check_age(guided, ap.events, v.time_us)
+    elif not waypoint.reached(ap.modes.nav):
+        drive.follow_path(v)
         return
-    check_age(v)
-    if kind == STOP or not guided.has_target:
-        speed.stop(v)
+    else:
+        note_arrival(guided, ap.events, v.time_us)
+    if kind in (POSITION, STOP) or not guided.has_target:
+        speed.stop(control, armed, p)
     elif kind == STEERING_AND_THROTTLE:
-        motors.set_steering_unscaled(ap, guided.steering)
-        motors.set_throttle(ap, guided.throttle)
+        motors.set_steering_unscaled(control.motors, guided.steering)
+        motors.set_throttle(control.motors, armed, guided.throttle, p.MOT)
     else:
         if kind == TURN_RATE_AND_SPEED:
-            drive.turn(ap, guided.turn_rate)
+            drive.turn(control, ap.estimate, ap.modes.pilot, guided.turn_rate, p)
         elif kind == HEADING_AND_SPEED:
-            drive.turn_to(ap, guided.heading)
-        speed.drive(v, drive.nudged(ap, guided.speed))
+            drive.turn_to(control, ap.estimate, ap.modes.pilot, guided.heading, p)
+        speed.drive(control, armed, pilot.nudged(ap.modes.pilot, guided.speed, p), p)
 
 
-@law
 def change_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED [m/s]: only on the way to a position."""
     return v.autopilot.modes.guided.submode == POSITION and drive.change_path_speed(v, wanted)
@@ -98,12 +97,10 @@ def is_at_limit(guided: GuidedState, time_us: int, pos: Vec2) -> bool:
 
 
 @law
-def start_in_mission(v: Vehicle) -> None:
-    """Guided within a mission begins here and now."""
-    ap = v.autopilot
-    start(v)
-    ap.modes.guided.limit_since_us = v.time_us
-    ap.modes.guided.limit_from = horizontal(ap.estimate.pos)
+def begin_limits(guided: GuidedState, time_us: int, pos: Vec2) -> None:
+    """Guided within a mission begins now, at ``pos`` [m]."""
+    guided.limit_since_us = time_us
+    guided.limit_from = pos
 
 
 MODE = RoverMode(

@@ -7,9 +7,11 @@ north, turn rates [rad/s] right positive, speeds [m/s] backward negative.
 
 from __future__ import annotations
 
+from ....core.algebra import with_down
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
+from ...navigation.path import request_leg
 from ..navigation import waypoint
 from ..state import Vehicle
 from .auto import AUTO, GUIDED_IN_MISSION
@@ -55,7 +57,6 @@ def begin(guided: GuidedState, time_us: int, submode: int) -> None:
     guided.has_target = True
 
 
-@law
 def set_position(v: Vehicle, point: Vec2) -> int:
     """Drive to a point and stop there; arrival is GUIDED_REACHED."""
     ap = v.autopilot
@@ -63,9 +64,9 @@ def set_position(v: Vehicle, point: Vec2) -> int:
     if code != OK:
         return code
     if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0:
-        waypoint.set_destination(ap, v.time_us, point)
+        request_leg(ap.modes.nav, ap.events, v.time_us, with_down(point, 0.0))
     else:
-        waypoint.set_destination_shaped(ap, v.time_us, point)
+        waypoint.set_destination_shaped(ap.modes.nav, ap.estimate, v.time_us, point, ap.params)
     begin(ap.modes.guided, v.time_us, POSITION)
     ap.modes.guided.pos = point
     ap.modes.guided.reached_told = False
@@ -73,57 +74,54 @@ def set_position(v: Vehicle, point: Vec2) -> int:
 
 
 @law
-def set_heading_and_speed(v: Vehicle, heading: float, speed: float) -> int:
+def set_heading_and_speed(modes: Modes, time_us: int, heading: float, speed: float) -> int:
     """Turn to a heading and drive."""
-    guided = v.autopilot.modes.guided
-    code = refusal(v.autopilot.modes, heading, speed)
+    guided = modes.guided
+    code = refusal(modes, heading, speed)
     if code == OK:
-        begin(guided, v.time_us, HEADING_AND_SPEED)
+        begin(guided, time_us, HEADING_AND_SPEED)
         guided.heading = wrap_pi(heading)
         guided.speed = speed
     return code
 
 
 @law
-def set_heading_change_and_speed(v: Vehicle, change: float, speed: float) -> int:
-    """Turn by an angle [rad] from the heading under way (from the nose when there is none) and drive."""
-    ap = v.autopilot
-    code = refusal(ap.modes, change, speed)
+def set_heading_change_and_speed(modes: Modes, time_us: int, yaw: float, change: float, speed: float) -> int:
+    """Turn by an angle [rad] from the heading under way (from the nose, ``yaw``, when there is none) and drive."""
+    code = refusal(modes, change, speed)
     if code != OK:
         return code
-    guided = ap.modes.guided
-    now = guided.heading if guided.submode == HEADING_AND_SPEED else ap.estimate.euler.yaw
-    return set_heading_and_speed(v, now + change, speed)
+    now = modes.guided.heading if modes.guided.submode == HEADING_AND_SPEED else yaw
+    return set_heading_and_speed(modes, time_us, now + change, speed)
 
 
 @law
-def set_turn_rate_and_speed(v: Vehicle, turn_rate: float, speed: float) -> int:
+def set_turn_rate_and_speed(modes: Modes, time_us: int, turn_rate: float, speed: float) -> int:
     """Turn steadily and drive."""
-    guided = v.autopilot.modes.guided
-    code = refusal(v.autopilot.modes, turn_rate, speed)
+    guided = modes.guided
+    code = refusal(modes, turn_rate, speed)
     if code == OK:
-        begin(guided, v.time_us, TURN_RATE_AND_SPEED)
+        begin(guided, time_us, TURN_RATE_AND_SPEED)
         guided.turn_rate = turn_rate
         guided.speed = speed
     return code
 
 
 @law
-def set_steering_and_throttle(v: Vehicle, steering: float, throttle: float) -> int:
+def set_steering_and_throttle(modes: Modes, time_us: int, steering: float, throttle: float) -> int:
     """Steering and throttle -1 .. 1 directly (ArduRover: for scripts on board; no message asks for it)."""
-    guided = v.autopilot.modes.guided
-    code = refusal(v.autopilot.modes, steering, throttle)
+    guided = modes.guided
+    code = refusal(modes, steering, throttle)
     if code == OK:
-        begin(guided, v.time_us, STEERING_AND_THROTTLE)
+        begin(guided, time_us, STEERING_AND_THROTTLE)
         guided.steering = constrain(steering, -1.0, 1.0)
         guided.throttle = constrain(throttle, -1.0, 1.0)
     return code
 
 
 @law
-def stop(v: Vehicle) -> int:
+def stop(modes: Modes) -> int:
     """Stop and stay."""
-    modes = v.autopilot.modes
     if not is_open(modes):
         return NOT_IN_GUIDED
     modes.guided.submode = STOP

@@ -14,8 +14,9 @@ HOLD = 4
 @law
 def run(v: Vehicle) -> None:
     """One period."""
-    motors.set_throttle(v.autopilot, 0.0)
-    motors.set_steering(v.autopilot, 0.0)
+    ap = v.autopilot
+    motors.set_throttle(ap.control.motors, ap.arming.armed, 0.0, ap.params.MOT)
+    motors.set_steering(ap.control.motors, 0.0)
 
 
 MODE = RoverMode(number=HOLD, name="HOLD", run=run, controlled=False)

@@ -32,9 +32,9 @@ def start(v: Vehicle) -> int:
     if not ap.estimate.origin_set:
         return INIT_FAILED
     loiter = ap.modes.loiter
-    loiter.place = waypoint.stopping_point(ap)
-    forward = sense(v)
-    loiter.speed = forward.speed if forward.known else 0.0
+    loiter.place = waypoint.stopping_point(ap.estimate, ap.params.ATC)
+    sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
+    loiter.speed = ap.control.speed.forward
     loiter.heading = ap.estimate.euler.yaw
     loiter.distance = 0.0
     return ACCEPTED
@@ -69,8 +69,8 @@ def run(v: Vehicle) -> None:
         loiter.speed = speed.accel_limited(ap.control, 0.0, ap.params.ATC)
     else:
         aim(loiter, pos, ap.estimate.euler.yaw, ap.params)
-    drive.turn_to(ap, loiter.heading)
-    speed.drive(v, loiter.speed)
+    drive.turn_to(ap.control, ap.estimate, ap.modes.pilot, loiter.heading, ap.params)
+    speed.drive(ap.control, ap.arming.armed, loiter.speed, ap.params)
 
 
 MODE = RoverMode(

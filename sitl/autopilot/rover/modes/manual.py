@@ -20,13 +20,14 @@ _SCALED = 1
 def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    sticks = pilot.limited_sticks(ap)
+    m = ap.control.motors
+    sticks = pilot.limited_sticks(ap.modes.pilot, m.throttle_last, ap.params)
     steering = expo(sticks.steering, ap.params.MANUAL.STR_EXPO)
-    motors.set_throttle(ap, sticks.throttle)
+    motors.set_throttle(m, ap.arming.armed, sticks.throttle, ap.params.MOT)
     if (int(ap.params.MANUAL.OPTIONS) & _SCALED) != 0:
-        motors.set_steering(ap, steering)
+        motors.set_steering(m, steering)
     else:
-        motors.set_steering_unscaled(ap, steering)
+        motors.set_steering_unscaled(m, steering)
 
 
 MODE = RoverMode(number=MANUAL, name="MANUAL", run=run, manual_input=True, controlled=False)

@@ -6,12 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ....core.kernels import law
 from ...modes import Mode
 from ..state import Vehicle
 
 
-@law
 def refuses_speed(v: Vehicle, wanted: float) -> bool:
     """DO_CHANGE_SPEED in a mode whose speed is not set so."""
     return False
@@ -34,4 +32,4 @@ class RoverMode(Mode[Vehicle]):
     destination: str = ""
     """Field of ``modes`` with the place that it drives to, for telemetry; "" none."""
     change_speed: Callable[[Vehicle, float], bool] = refuses_speed
-    """Law of DO_CHANGE_SPEED [m/s] until the mode changes: whether it is taken."""
+    """DO_CHANGE_SPEED [m/s] until the mode changes, from the shell: whether it is taken."""

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from ....core.algebra import horizontal
+from ....core.algebra import horizontal, with_down
 from ....core.kernels import law
 from ...events import DESTINATION_REACHED, emit
 from ...modes import ACCEPTED, INIT_FAILED
+from ...navigation.path import request_leg
 from ..control import speed
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -22,10 +23,9 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     if not ap.home.is_set:
         return INIT_FAILED
-    waypoint.start(ap)
-    if ap.params.RTL_SPEED > 0.0:
-        waypoint.set_speed(ap, ap.params.RTL_SPEED)
-    waypoint.set_destination(ap, v.time_us, horizontal(ap.home.pos))
+    nav = ap.modes.nav
+    drive.begin_return(nav, ap.control.position, ap.params)
+    request_leg(nav, ap.events, v.time_us, with_down(horizontal(ap.home.pos), 0.0))
     ap.modes.rtl.told = False
     return ACCEPTED
 
@@ -34,13 +34,13 @@ def start(v: Vehicle) -> int:
 def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    if not waypoint.reached(ap):
+    if not waypoint.reached(ap.modes.nav):
         drive.follow_path(v)
         return
     if not ap.modes.rtl.told:
         ap.modes.rtl.told = True
         emit(ap.events, v.time_us, DESTINATION_REACHED, float(ap.modes.number), 0.0)
-    speed.stop(v)
+    speed.stop(ap.control, ap.arming.armed, ap.params)
 
 
 MODE = RoverMode(

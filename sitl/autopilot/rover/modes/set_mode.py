@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...events import MODE_CHANGED, MODE_REFUSED, emit, emit_and_return
-from ...modes import ACCEPTED, NO_MISSION, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION
+from ... import modes as all_modes
+from ...events import MODE_REFUSED, emit
+from ...modes import ACCEPTED, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
 from ..control.motors import is_skid
 from ..navigation import waypoint
-from ..state import Autopilot, Vehicle
+from ..state import Vehicle
 from . import table
 from .auto import AUTO
 from .initialising import INITIALISING
@@ -17,7 +18,6 @@ SPEED_MAX = 1e7
 """Speeds beyond this are refused [m/s]."""
 
 
-@law
 def enter_first(v: Vehicle) -> None:
     """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a place, home, a mission)."""
     modes = v.autopilot.modes
@@ -29,16 +29,16 @@ def enter_first(v: Vehicle) -> None:
 
 
 @law
-def refusal(ap: Autopilot, number: int) -> int:
-    """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
+def refusal(number: int, free: bool, speed_known: bool, skid: bool) -> int:
+    """ACCEPTED, or why the mode cannot be entered, its own conditions aside.
+
+    ``free``: any mode may be, disarmed or with a good position; ``skid``: the vehicle is skid-steered.
+    """
     if not table.is_known(number):
         return NO_SUCH_MODE
-    good = ap.estimate.position_ok and not ap.modes.failsafe.ekf
-    if not ap.arming.armed or good:
+    if free:
         return ACCEPTED
-    if table.requires_position(number):
-        return REQUIRES_POSITION
-    if table.requires_velocity(number, is_skid(ap.params)) and not ap.control.speed.forward_ok:
+    if table.requires_position(number) or (table.requires_velocity(number, skid) and not speed_known):
         return REQUIRES_POSITION
     return ACCEPTED
 
@@ -55,7 +55,8 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     if number == modes.number:
         return ACCEPTED
     pending = modes.nav.request_pending
-    cause = refusal(ap, number)
+    free = not ap.arming.armed or (ap.estimate.position_ok and modes.failsafe.ekf == 0)
+    cause = refusal(number, free, ap.control.speed.forward_ok, is_skid(ap.params))
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = table.start(number, v)
@@ -63,29 +64,16 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
-    waypoint.set_reversed(ap, False)
-    modes.previous = modes.number
-    modes.number = number
-    modes.reason = reason
-    modes.wanted = 0
-    if number == AUTO or modes.previous == AUTO:
-        emit_and_return(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
-    else:
-        emit(ap.events, v.time_us, MODE_CHANGED, float(number), float(reason))
+    waypoint.set_reversed(modes.nav, ap.estimate, False, ap.params)
+    enter(modes, ap.events, v.time_us, number, reason, AUTO)
     return cause
 
 
-@law
 def change_speed(v: Vehicle, speed: float) -> bool:
     """MAV_CMD_DO_CHANGE_SPEED [m/s] until the mode or its destination's kind changes; whether it was taken."""
-    return abs(speed) <= SPEED_MAX and table.change_speed(v.autopilot.modes.number, v, speed)
+    return abs(speed) <= SPEED_MAX and table.CHANGE_SPEED[v.autopilot.modes.number](v, speed)
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
-    if cause == ACCEPTED:
-        return []
-    if cause == NO_SUCH_MODE:
-        return [f"No such mode {number}"]
-    first = ["No Mission. Can't set AUTO."] if cause == NO_MISSION else []
-    return [*first, "Flight mode change failed"]
+    return all_modes.refusal_texts(number, cause, "Flight mode change failed")

@@ -29,12 +29,13 @@ def run(v: Vehicle) -> None:
     """One period; with the stick released the last heading stays."""
     ap = v.autopilot
     simple = ap.modes.simple
-    wanted = pilot.heading_and_speed(ap)
+    control, p = ap.control, ap.params
+    wanted = pilot.heading_and_speed(ap.modes.pilot, p)
     if wanted.speed > 0.0:
-        from_first = int(ap.params.SIMPLE_TYPE) == FROM_FIRST_HEADING
+        from_first = int(p.SIMPLE_TYPE) == FROM_FIRST_HEADING
         simple.heading = wrap_2pi(wanted.heading + simple.first_heading) if from_first else wanted.heading
-    motors.set_steering(ap, out_from_heading(ap, simple.heading))
-    speed.drive(v, wanted.speed)
+    motors.set_steering(control.motors, out_from_heading(control, ap.estimate, simple.heading, p.ATC))
+    speed.drive(control, ap.arming.armed, wanted.speed, p)
 
 
 MODE = RoverMode(number=SIMPLE, name="SIMPLE", run=run, needs_position=True, manual_input=True)

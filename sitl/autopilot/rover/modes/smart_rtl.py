@@ -7,17 +7,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
+from ....core.algebra import with_down
 from ....core.kernels import law
 from ....core.vectors import Vec2
-from ...events import DESTINATION_REACHED, emit
+from ...events import DESTINATION_REACHED, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED
+from ...navigation.path import request_leg, request_legs
 from .. import smart_rtl_path
 from ..control import speed
 from ..navigation import waypoint
+from ..navigation.state import RoverNav
 from ..state import Vehicle
-from . import drive
-from .mode import RoverMode
+from . import drive, rtl
 from .state import PathState
 
 SMART_RTL = 12
@@ -34,9 +37,7 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     if not ap.estimate.origin_set or not ap.modes.path.active:
         return INIT_FAILED
-    waypoint.start(ap)
-    if ap.params.RTL_SPEED > 0.0:
-        waypoint.set_speed(ap, ap.params.RTL_SPEED)
+    drive.begin_return(ap.modes.nav, ap.control.position, ap.params)
     ap.modes.smart_rtl.state = CLEAN_UP
     return ACCEPTED
 
@@ -52,48 +53,37 @@ def skip_near(path: PathState, pos: Vec2, radius: float) -> None:
 
 
 @law
-def load(v: Vehicle) -> None:
-    """Drive on to the next point, through it when there is one behind it."""
-    ap = v.autopilot
-    path = ap.modes.path
+def drive_on(path: PathState, nav: RoverNav, events: Events, time_us: int) -> bool:
+    """Drive on to the last point of the path, through it when there is one behind it; False when none is left."""
     if path.points == 0:
-        ap.modes.smart_rtl.state = ARRIVED
-        emit(ap.events, v.time_us, DESTINATION_REACHED, float(SMART_RTL), 0.0)
-        return
-    place = smart_rtl_path.point(path, path.points - 1)
+        return False
+    place = with_down(smart_rtl_path.point(path, path.points - 1), 0.0)
     smart_rtl_path.drop_last(path)
     if path.points > 0:
-        waypoint.set_destinations(ap, v.time_us, place, smart_rtl_path.point(path, path.points - 1))
+        following = with_down(smart_rtl_path.point(path, path.points - 1), 0.0)
+        request_legs(nav, events, time_us, place, following)
     else:
-        waypoint.set_destination(ap, v.time_us, place)
+        request_leg(nav, events, time_us, place)
+    return True
 
 
 @law
 def run(v: Vehicle) -> None:
     """One period."""
     ap = v.autopilot
-    state = ap.modes.smart_rtl
+    state, path, nav = ap.modes.smart_rtl, ap.modes.path, ap.modes.nav
+    at_point = state.state == CLEAN_UP or (state.state == FOLLOW and waypoint.reached(nav))
     if state.state == CLEAN_UP:
-        smart_rtl_path.clean_up(ap.modes.path, ap.params.SRTL.ACCURACY)
-        skip_near(ap.modes.path, waypoint.stopping_point(ap), ap.params.WP.RADIUS)
+        smart_rtl_path.clean_up(path, ap.params.SRTL.ACCURACY)
+        skip_near(path, waypoint.stopping_point(ap.estimate, ap.params.ATC), ap.params.WP.RADIUS)
         state.state = FOLLOW
-        load(v)
-    elif state.state == FOLLOW and waypoint.reached(ap):
-        load(v)
+    if at_point and not drive_on(path, nav, ap.events, v.time_us):
+        state.state = ARRIVED
+        emit(ap.events, v.time_us, DESTINATION_REACHED, float(SMART_RTL), 0.0)
     if state.state == FOLLOW:
         drive.follow_path(v)
     else:
-        speed.stop(v)
+        speed.stop(ap.control, ap.arming.armed, ap.params)
 
 
-MODE = RoverMode(
-    number=SMART_RTL,
-    name="SMART_RTL",
-    start=start,
-    run=run,
-    needs_position=True,
-    autonomous=True,
-    armable=False,
-    destination="nav.target",
-    change_speed=drive.change_path_speed,
-)
+MODE = replace(rtl.MODE, number=SMART_RTL, name="SMART_RTL", start=start, run=run)

@@ -106,8 +106,10 @@ class AutoState(Record):
 class PilotState(Record):
     """The pilot's sticks and switch."""
 
+    lost: bool  # the radio is: the sticks say nothing
     steering: float  # stick with dead zone, right positive
     throttle: float
+    steering_pulse: float  # how far the steering stick's pulse is from the middle, at most half its travel [us]
     left: float  # the same sticks as the paddles of a tank, without dead zone
     right: float
     switch_position: int  # of the mode channel 0 .. 5, -1 none

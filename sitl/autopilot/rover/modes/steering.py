@@ -13,7 +13,6 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from .. import pilot
 from ..control import motors, speed
-from ..control.forward_speed import sense
 from ..control.steering import lat_accel_max, out_from_lat_accel, out_from_rate
 from ..state import Vehicle
 from .mode import RoverMode
@@ -31,24 +30,30 @@ def full_stick_accel(speed: float, turn_radius: float, accel_max: float) -> floa
 
 
 @law
+def stick_accel(wanted: pilot.SteeringAndSpeed, forward: float, turn_radius: float, accel_max: float) -> float:
+    """Lateral acceleration [m/s^2] to the right that the sticks ask for at the speed ``forward`` [m/s]."""
+    accel = full_stick_accel(forward, turn_radius, accel_max) * wanted.steering
+    return constrain(-accel if wanted.speed < 0.0 else accel, -accel_max, accel_max)
+
+
+@law
 def run(v: Vehicle) -> None:
     """One period; without a known speed the motors rest."""
     ap = v.autopilot
-    p = ap.params
-    forward = sense(v)
-    if not forward.known:
-        motors.set_throttle(ap, 0.0)
-        motors.set_steering(ap, 0.0)
+    control, p = ap.control, ap.params
+    if not control.speed.forward_ok:
+        motors.set_throttle(control.motors, ap.arming.armed, 0.0, p.MOT)
+        motors.set_steering(control.motors, 0.0)
         return
-    wanted = pilot.steering_and_speed(ap)
+    wanted = pilot.steering_and_speed(ap.modes.pilot, control, p)
     if wanted.speed == 0.0 and motors.is_skid(p):
-        motors.set_steering(ap, out_from_rate(ap, wanted.steering * math.radians(p.ACRO_TURN_RATE)))
+        turn_rate = wanted.steering * math.radians(p.ACRO_TURN_RATE)
+        demand = out_from_rate(control, ap.estimate, turn_rate, p.ATC)
     else:
-        accel_max = lat_accel_max(p.ATC)
-        accel = full_stick_accel(forward.speed, p.TURN_RADIUS, accel_max) * wanted.steering
-        accel = constrain(-accel if wanted.speed < 0.0 else accel, -accel_max, accel_max)
-        motors.set_steering(ap, out_from_lat_accel(ap, accel))
-    speed.drive(v, wanted.speed)
+        accel = stick_accel(wanted, control.speed.forward, p.TURN_RADIUS, lat_accel_max(p.ATC))
+        demand = out_from_lat_accel(control, ap.estimate, accel, p.ATC)
+    motors.set_steering(control.motors, demand)
+    speed.drive(control, ap.arming.armed, wanted.speed, p)
 
 
 MODE = RoverMode(number=STEERING, name="STEERING", run=run, needs_velocity=True, manual_input=True)

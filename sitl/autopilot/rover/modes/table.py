@@ -34,9 +34,7 @@ NAMES = {mode.number: mode.name for mode in MODES}
 
 run = by_number("run", {mode.number: mode.run for mode in MODES}, initialising.MODE.run)
 start = by_number("start", {mode.number: mode.start for mode in MODES}, initialising.MODE.start)
-change_speed = by_number(
-    "change_speed", {mode.number: mode.change_speed for mode in MODES}, initialising.MODE.change_speed
-)
+CHANGE_SPEED = {mode.number: mode.change_speed for mode in MODES}
 
 ALL = tuple(NAMES)
 AUTONOMOUS = numbers(MODES, "autonomous")

@@ -8,11 +8,22 @@ from ....core.kernels import law, unit
 from ....core.records import Records
 from ....core.vectors import Vec3
 from ... import battery, home
-from .. import arming, crash, failsafe, motor_test, pilot, smart_rtl_path
+from ...arming_checks import BY_RUDDER
+from ...events import Events
+from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery
+from ...mode_switch import is_rudder_held, moved_to
+from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
+from ...state import Estimate, HomeState
+from .. import crash, failsafe, motor_test, pilot, smart_rtl_path
+from ..arming import set_disarmed, stick_command, try_arm
+from ..arming_checks import check
 from ..control.forward_speed import sense
+from ..control.motors import is_moving
+from ..parameters.driving import SmartRtl
 from ..state import Vehicle
-from . import set_mode, switch, table
+from . import set_mode, table
 from .smart_rtl import SMART_RTL
+from .state import Modes
 
 # Ticks of 2.5 ms; all are multiples of the 8 of a period
 _TENTH = 40
@@ -24,52 +35,85 @@ HOME_MOVES = 0.5
 """Disarmed, home follows a vehicle that is further from it [m]."""
 
 
-@law
 def init(v: Vehicle) -> None:
     """At boot, on a record of zeros with parameters set: disarmed, in the first mode."""
+    ap = v.autopilot
     set_mode.enter_first(v)
-    v.autopilot.arming.landed = True
-    v.autopilot.battery.remaining_pct = -1.0
-    pilot.init(v.autopilot)
+    ap.arming.landed = True
+    ap.battery.remaining_pct = -1.0
+    pilot.init(ap.modes.pilot, ap.rc)
 
 
 @unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One period of vehicle ``i``: reads the estimate, writes demands of steering and throttle."""
     v = fleet[i]
-    tick = v.tick
-    sense(v)
+    ap, tick = v.autopilot, v.tick
+    modes = ap.modes
+    sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
     read_transmitter(v)
     if tick % _TENTH == 0:
         check_slowly(v)
     if tick % _QUARTER == 0:
-        arming.update(v)
+        ap.arming.prearm_ok = ap.arming.armed or check(v) == 0
     if tick % _THIRD == 0:
-        smart_rtl_path.update(v, v.autopilot.modes.number != SMART_RTL)
+        keep_path(modes, ap.estimate, ap.events, v.time_us, ap.params.SRTL)
     if tick % _SECOND == 0:
-        follow_home(v)
-    run_mode(v)
-    motor_test.update(v)
+        follow_home(ap.home, ap.estimate, ap.arming.armed)
+    table.run(modes.number, v)
+    wanted = take_asked(modes)
+    if wanted >= 0:
+        set_mode.request(v, wanted, modes.wanted_reason)
+    motor_test.control(ap.control.motors, ap.arming, ap.events, v.time_us)
 
 
 @law
 def read_transmitter(v: Vehicle) -> None:
-    """50 times a second."""
-    pilot.read(v)
-    failsafe.update_radio(v)
-    switch.read_mode(v)
-    switch.read_rudder(v)
+    """50 times a second: sticks, whether the radio is there, mode switch, arming by stick."""
+    ap = v.autopilot
+    sticks, modes, p = ap.modes.pilot, ap.modes, ap.params
+    pilot.read(sticks, ap.rc, v.sensors, p, v.time_us)
+    lost = p.FS.THR_ENABLE > 0.0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    modes.failsafe.radio = lost
+    sticks.lost = lost or not ap.rc.receiver_ok
+    failsafe.watch(v, failsafe.BIT_RADIO, lost)
+    if not lost:
+        now = moved_to(sticks, ap.rc, int(p.MODE_CH), v.time_us)
+        if now >= 0:
+            set_mode.request(v, int(p.MODE[now]), REASON_RC)
+    armed = ap.arming.armed
+    moving = is_moving(ap.control.motors, armed, p)
+    command = stick_command(sticks, modes.number, armed, moving, p.ARMING.RUDDER)
+    if is_rudder_held(sticks, command, v.time_us):
+        sticks.rudder_us = 0
+        if command > 0:
+            try_arm(v, BY_RUDDER, False)
+        else:
+            set_disarmed(ap.arming, ap.events, v.time_us, BY_RUDDER)
 
 
 @law
 def check_slowly(v: Vehicle) -> None:
-    """Ten times a second."""
+    """Ten times a second: battery, ground station, estimate, crash."""
     ap = v.autopilot
-    battery.monitor(ap.battery, v.sensors, ap.params.BATT)
-    failsafe.update_gcs(v)
-    failsafe.update_battery(v)
-    failsafe.update_ekf(v)
-    crash.update(v)
+    fs, p = ap.modes.failsafe, ap.params
+    battery.monitor(ap.battery, v.sensors, p.BATT)
+    fs.gcs = is_gcs_lost(fs, v.time_us, p.FS)
+    failsafe.watch(v, failsafe.BIT_GCS, fs.gcs)
+    level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
+    report_battery(ap.events, v.time_us, level)
+    failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
+    failsafe.check_ekf(v)
+    crash.check(v)
+
+
+@law
+def keep_path(modes: Modes, estimate: Estimate, events: Events, time_us: int, params: SmartRtl) -> None:
+    """Three times a second: the path of SMART_RTL begins with the first position, and grows unless on the way back."""
+    if not modes.path.home_saved and estimate.position_ok:
+        smart_rtl_path.begin(modes.path, estimate, time_us, params)
+    if modes.number != SMART_RTL:
+        smart_rtl_path.record(modes.path, estimate, events, time_us, params)
 
 
 @law
@@ -80,22 +124,10 @@ def is_away(pos: Vec3, home_pos: Vec3) -> bool:
 
 
 @law
-def follow_home(v: Vehicle) -> None:
+def follow_home(place: HomeState, estimate: Estimate, armed: bool) -> None:
     """Once a second: home is set with the first position; disarmed it moves with the vehicle, unless locked."""
-    ap = v.autopilot
-    if not ap.home.is_set:
-        home.set_first(ap.home, ap.estimate)
-    elif not (ap.arming.armed or ap.home.locked) and ap.estimate.position_ok:
-        if is_away(ap.estimate.pos, ap.home.pos):
-            home.set_here(ap.home, ap.estimate)
-
-
-@law
-def run_mode(v: Vehicle) -> None:
-    """The mode's own period, then the change that it may have asked for."""
-    modes = v.autopilot.modes
-    table.run(modes.number, v)
-    if modes.wanted != 0:
-        wanted = modes.wanted - 1
-        modes.wanted = 0
-        set_mode.request(v, wanted, modes.wanted_reason)
+    if not place.is_set:
+        home.set_first(place, estimate)
+    elif not (armed or place.locked) and estimate.position_ok:
+        if is_away(estimate.pos, place.pos):
+            home.set_here(place, estimate)

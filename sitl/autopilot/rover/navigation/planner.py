@@ -32,7 +32,7 @@ class RoverPlanner(Planner[Autopilot]):
 
     def stopping_point(self, ap: Autopilot) -> Vec3:
         """Where it would come to rest."""
-        return with_down(waypoint.stopping_point(ap), 0.0)
+        return with_down(waypoint.stopping_point(ap.estimate, ap.params.ATC), 0.0)
 
     def may_join(self, ap: Autopilot, corner: Vec3, target: Vec3) -> bool:
         """Not when it would turn on the spot there."""
@@ -44,11 +44,11 @@ class RoverPlanner(Planner[Autopilot]):
 
     def begin(self, ap: Autopilot, time_us: int, target: Vec3) -> None:
         """With today's limits."""
-        waypoint.set_limits(ap)
+        waypoint.set_limits(ap.control.position, ap.modes.nav, ap.params)
         super().begin(ap, time_us, target)
         if ap.modes.nav.joined and ap.modes.nav.current.top_speed != ap.control.position.speed_max:
             self.change_speed(ap)  # it was planned ahead, before the mission changed the speed
-        waypoint.begin_leg(ap, time_us)
+        waypoint.begin_leg(ap.modes.nav, ap.estimate, time_us, ap.params)
 
     def look_ahead(self, ap: Autopilot, target: Vec3 | None) -> None:
         """Forget what was known of the next corner."""

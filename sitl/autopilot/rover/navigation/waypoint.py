@@ -3,20 +3,18 @@
 
 For the modes, positions NE metres from the EKF origin::
 
-    start(ap)                   a mode begins: limits from the parameters, forwards, no destination
-    set_destination(ap, time_us, point)     along a leg; one that was reached just now is continued from its end. The
-                                shell plans the leg (as RTL of the copter): it is there on the next period
-    set_destinations(ap, time_us, point, following)     the same with the destination after it, for a corner without a
-                                stop; ``set_destination(s)`` to the second when the first is reached takes its leg over
-    set_destination_shaped(ap, time_us, point)      without a plan, for destinations that change often
-    follow(v)                   one period (50 Hz); then ``nav.drive`` has desired_speed, desired_turn_rate and
-                                desired_lat_accel. Brakes without a destination, disarmed, or without a position
-    reached(ap)                 whether it is at the destination (a corner: when the next leg takes over)
-    set_speed(ap, speed), set_nudge_speed(ap, speed), set_reversed(ap, backward)
-    stop(ap)                    forget the destination
-    is_fast(ap), stopping_point(ap)
+    start       a mode begins: limits from the parameters, forwards, no destination
+    path.request_leg    to a point along a leg; one that was reached just now is continued from its end. The shell plans
+                the leg: it is there on the next period
+    path.request_legs   the same with the destination after it, for a corner without a stop; ``request_leg(s)`` to the
+                second when the first is reached takes its leg over
+    set_destination_shaped      without a plan, for destinations that change often
+    follow      one period (50 Hz); then ``nav.drive`` has desired_speed, desired_turn_rate and desired_lat_accel.
+                Brakes without a destination, disarmed, or without a position
+    reached     whether it is at the destination (a corner: when the next leg takes over)
+    set_speed, set_reversed, stop, stopping_point
 
-and ``distance``, ``bearing`` of ``navigation.path``, ``pivot.is_active``, ``nav.drive.crosstrack``.
+and ``distance``, ``bearing`` of ``navigation.path``, ``pivot.is_active``, ``nav.drive.crosstrack``, ``nudge_speed``.
 In AUTO the shell plans the legs of a mission before it gives the command: then ``follow`` is all there is to call.
 WP_SPEED, WP_RADIUS, WP_ACCEL, WP_JERK, WP_PIVOT_*, TURN_RADIUS, ATC_TURN_MAX_G as ArduPilot uses them
 (https://ardupilot.org/rover/docs/rover-tuning-navigation.html).
@@ -31,16 +29,13 @@ from ....core.kernels import law
 from ....core.scalars import finite, wrap_pi
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
-from ...events import LEG_ENDING, emit_and_return
 from ...navigation import path
-from ...navigation.state import SPEED_REQUEST
 from ...state import Estimate
 from ..control import position, speed
-from ..control.forward_speed import sense
-from ..control.state import DT, PositionState
+from ..control.state import DT, Control, PositionState
 from ..control.steering import lat_accel_max, turn_rate_from_heading
 from ..parameters import Parameters
-from ..state import Autopilot, Vehicle
+from ..parameters.control import Attitude
 from . import pivot
 from .state import DriveState, RoverNav
 
@@ -85,40 +80,38 @@ def corner_radius(params: Parameters) -> float:
 
 
 @law
-def set_limits(ap: Autopilot) -> None:
+def set_limits(c: PositionState, nav: RoverNav, params: Parameters) -> None:
     """Give the position controller the limits of the path."""
-    p = ap.params
-    limit = top_speed(ap.modes.nav, p)
-    position.set_limits(ap.control.position, limit, accel_max(p), lat_accel_max(p.ATC), jerk_max(p))
+    limit = top_speed(nav, params)
+    position.set_limits(c, limit, accel_max(params), lat_accel_max(params.ATC), jerk_max(params))
 
 
 @law
-def stopping_point(ap: Autopilot) -> Vec2:
+def stopping_point(estimate: Estimate, params: Attitude) -> Vec2:
     """Where braking from the present motion ends [m]."""
-    pos, vel = horizontal(ap.estimate.pos), horizontal(ap.estimate.vel)
+    pos, vel = horizontal(estimate.pos), horizontal(estimate.vel)
     size = norm2(vel)
     if size <= 0.0:
         return pos
-    return pos + vel / size * speed.stopping_distance(size, ap.params.ATC)
+    return pos + vel / size * speed.stopping_distance(size, params)
 
 
 @law
-def start(ap: Autopilot) -> None:
+def start(nav: RoverNav, c: PositionState, params: Parameters) -> None:
     """A mode begins: limits from the parameters, forwards, no destination."""
-    nav = ap.modes.nav
-    stop(ap)
+    stop(nav)
     nav.time_scale = 1.0
     nav.speed_ne = 0.0
     nav.drive.nudge_speed = 0.0
     nav.drive.reversed = False
-    set_limits(ap)
+    set_limits(c, nav, params)
 
 
 @law
-def stop(ap: Autopilot) -> None:
+def stop(nav: RoverNav) -> None:
     """Forget the destination."""
-    drive = ap.modes.nav.drive
-    path.stop(ap.modes.nav)
+    drive = nav.drive
+    path.stop(nav)
     drive.shaped = False
     drive.crosstrack = 0.0
     drive.pivot_next = False
@@ -126,35 +119,21 @@ def stop(ap: Autopilot) -> None:
 
 
 @law
-def set_destination(ap: Autopilot, time_us: int, point: Vec2) -> None:
-    """Drive to a point along a planned leg and stop there."""
-    path.request_leg(ap.modes.nav, ap.events, time_us, with_down(point, 0.0))
-
-
-@law
-def set_destinations(ap: Autopilot, time_us: int, point: Vec2, following: Vec2) -> None:
-    """Drive to a point along a planned leg, without a stop if the following point is to come after it."""
-    path.request_legs(ap.modes.nav, ap.events, time_us, with_down(point, 0.0), with_down(following, 0.0))
-
-
-@law
-def set_destination_shaped(ap: Autopilot, time_us: int, point: Vec2) -> None:
+def set_destination_shaped(nav: RoverNav, estimate: Estimate, time_us: int, point: Vec2, params: Parameters) -> None:
     """Drive to a point after a shaped target and stop there."""
-    nav = ap.modes.nav
     going_on = nav.drive.shaped and is_active(nav, time_us)
-    nav.drive.origin = horizontal(nav.target) if going_on else stopping_point(ap)
+    nav.drive.origin = horizontal(nav.target) if going_on else stopping_point(estimate, params.ATC)
     path.clear_legs(nav)
     nav.request_pending = 0
     nav.target = with_down(point, 0.0)
     nav.reached = False
     nav.drive.shaped = True
-    pivot.check(nav.drive, time_us, heading_error(nav, ap.estimate), False, ap.params)
+    pivot.check(nav.drive, time_us, heading_error(nav, estimate), False, params)
 
 
 @law
-def begin_leg(ap: Autopilot, time_us: int) -> None:
+def begin_leg(nav: RoverNav, estimate: Estimate, time_us: int, params: Parameters) -> None:
     """The shell has planned a leg to ``nav.target``: turn towards it first if that is far."""
-    nav = ap.modes.nav
     drive = nav.drive
     drive.origin = horizontal(nav.current.origin)
     drive.shaped = False
@@ -163,33 +142,26 @@ def begin_leg(ap: Autopilot, time_us: int) -> None:
         nav.vel = Vec3(0.0, 0.0, 0.0)
     if not nav.joined:
         pivot.end(drive)
-        pivot.check(drive, time_us, heading_error(nav, ap.estimate), drive.pivot_next, ap.params)
+        pivot.check(drive, time_us, heading_error(nav, estimate), drive.pivot_next, params)
     drive.pivot_next = False
 
 
 @law
-def set_speed(ap: Autopilot, wanted: float) -> bool:
+def set_speed(nav: RoverNav, wanted: float) -> bool:
     """Speed limit [m/s] from now on, until a mode begins anew; False for one that is too slow or not finite."""
     if not wanted >= SPEED_MIN or not finite(wanted):
         return False
-    ap.modes.nav.speed_ne = wanted
+    nav.speed_ne = wanted
     return True
 
 
 @law
-def set_nudge_speed(ap: Autopilot, wanted: float) -> None:
-    """Speed limit [m/s] that the pilot asks for, whatever the direction; counts while it is above the other."""
-    ap.modes.nav.drive.nudge_speed = wanted
-
-
-@law
-def set_reversed(ap: Autopilot, backward: bool) -> None:
+def set_reversed(nav: RoverNav, estimate: Estimate, backward: bool, params: Parameters) -> None:
     """Drive backwards or forwards; a skid-steered vehicle on its way turns round first."""
-    nav = ap.modes.nav
     if backward == nav.drive.reversed:
         return
     nav.drive.reversed = backward
-    if has_destination(nav) and pivot.would_turn(heading_error(nav, ap.estimate), ap.params):
+    if has_destination(nav) and pivot.would_turn(heading_error(nav, estimate), params):
         pivot.begin(nav.drive)
 
 
@@ -206,15 +178,9 @@ def has_destination(nav: RoverNav) -> bool:
 
 
 @law
-def reached(ap: Autopilot) -> bool:
+def reached(nav: RoverNav) -> bool:
     """Whether it is at the destination; False while a new one is being planned."""
-    return ap.modes.nav.reached and ap.modes.nav.request_pending == 0
-
-
-@law
-def is_fast(ap: Autopilot) -> bool:
-    """Whether the destination is passed without a stop."""
-    return ap.modes.nav.current.fast
+    return nav.reached and nav.request_pending == 0
 
 
 @law
@@ -239,74 +205,69 @@ def command(drive: DriveState, speed: float, turn_rate: float, lat_accel: float)
 
 
 @law
-def follow(v: Vehicle) -> None:
-    """One period."""
-    ap = v.autopilot
-    nav = ap.modes.nav
+def follow(nav: RoverNav, control: Control, estimate: Estimate, armed: bool, time_us: int, params: Parameters) -> bool:
+    """One period; whether the speed limit has changed, so that the shell must plan the legs anew."""
     drive = nav.drive
-    forward = sense(v)
-    if not (ap.arming.armed and ap.estimate.position_ok and forward.known and has_destination(nav)):
-        command(drive, speed.accel_limited(ap.control, 0.0, ap.params.ATC), 0.0, 0.0)
+    if not (armed and estimate.position_ok and control.speed.forward_ok and has_destination(nav)):
+        command(drive, speed.accel_limited(control, 0.0, params.ATC), 0.0, 0.0)
         drive.crosstrack = 0.0
-        return
-    if not is_active(nav, v.time_us):
-        command(drive, forward.speed, 0.0, 0.0)
-    nav.active_us = v.time_us
+        return False
+    if not is_active(nav, time_us):
+        command(drive, control.speed.forward, 0.0, 0.0)
+    nav.active_us = time_us
     if nav.request_pending != 0:
-        return
-    follow_speed_limit(ap, v.time_us)
-    move_target(ap)
-    drive.crosstrack = crosstrack(drive.origin, horizontal(nav.target), horizontal(ap.estimate.pos))
-    c = ap.control.position
+        return False
+    changed = follow_speed_limit(nav, control.position, time_us, params)
+    move_target(nav, control, estimate, params)
+    drive.crosstrack = crosstrack(drive.origin, horizontal(nav.target), horizontal(estimate.pos))
+    c = control.position
     c.reversed = drive.reversed
-    position.follow_target(ap)
-    if pivot.is_active(drive, ap.params):
-        turn_on_the_spot(ap, v.time_us)
+    position.follow_target(control, estimate, armed, params)
+    if pivot.is_active(drive, params):
+        turn_on_the_spot(nav, control, estimate, time_us, params)
     else:
         command(drive, c.desired_speed, c.desired_turn_rate, c.desired_lat_accel)
+    return changed and not drive.shaped
 
 
 @law
-def turn_on_the_spot(ap: Autopilot, time_us: int) -> None:
+def turn_on_the_spot(nav: RoverNav, control: Control, estimate: Estimate, time_us: int, params: Parameters) -> None:
     """One period of a pivot turn: first it stops."""
-    nav = ap.modes.nav
     drive = nav.drive
-    command(drive, speed.accel_limited(ap.control, 0.0, ap.params.ATC), 0.0, 0.0)
+    command(drive, speed.accel_limited(control, 0.0, params.ATC), 0.0, 0.0)
     if drive.desired_speed == 0.0:
-        error = heading_error(nav, ap.estimate)
-        rate_max = math.radians(ap.params.WP.PIVOT_RATE)
-        drive.desired_turn_rate = turn_rate_from_heading(wrap_pi(error), rate_max, ap.params.ATC)
-        pivot.check(drive, time_us, error, False, ap.params)
+        error = heading_error(nav, estimate)
+        rate_max = math.radians(params.WP.PIVOT_RATE)
+        drive.desired_turn_rate = turn_rate_from_heading(wrap_pi(error), rate_max, params.ATC)
+        pivot.check(drive, time_us, error, False, params)
 
 
 @law
-def follow_speed_limit(ap: Autopilot, time_us: int) -> None:
-    """Follow a change of the speed limit; the shell plans the legs anew."""
-    drive = ap.modes.nav.drive
-    if top_speed(ap.modes.nav, ap.params) == ap.control.position.speed_max:
-        return
+def follow_speed_limit(nav: RoverNav, c: PositionState, time_us: int, params: Parameters) -> bool:
+    """Give the position controller a speed limit that has changed; whether it has."""
+    drive = nav.drive
+    if top_speed(nav, params) == c.speed_max:
+        return False
     if drive.speed_us > 0 and time_us - drive.speed_us < SPEED_CHANGE_US:
-        return
+        return False
     drive.speed_us = time_us
-    set_limits(ap)
-    if not drive.shaped:
-        emit_and_return(ap.events, time_us, LEG_ENDING, SPEED_REQUEST, 0.0)
+    set_limits(c, nav, params)
+    return True
 
 
 @law
-def move_target(ap: Autopilot) -> None:
+def move_target(nav: RoverNav, control: Control, estimate: Estimate, params: Parameters) -> None:
     """Move the position controller's target on, unless the vehicle turns on the spot."""
-    nav = ap.modes.nav
-    c = ap.control.position
-    if not position.is_active(ap.control):
-        position.init(c, ap.estimate)
-    if pivot.is_active(nav.drive, ap.params):
+    c = control.position
+    if not position.is_active(control):
+        position.init(c, estimate)
+    if pivot.is_active(nav.drive, params):
         return
     if nav.drive.shaped:
         position.input_pos(c, horizontal(nav.target))
-        nav.reached = nav.reached or has_arrived(c, horizontal(nav.target), ap.params.WP.RADIUS)
+        nav.reached = nav.reached or has_arrived(c, horizontal(nav.target), params.WP.RADIUS)
     else:
-        advance(ap)
+        advance(nav, c, estimate, params)
 
 
 @law
@@ -317,17 +278,15 @@ def has_arrived(c: PositionState, destination: Vec2, radius: float) -> bool:
 
 
 @law
-def advance(ap: Autopilot) -> None:
+def advance(nav: RoverNav, c: PositionState, estimate: Estimate, params: Parameters) -> None:
     """Move the target along the legs."""
-    nav, p = ap.modes.nav, ap.params
-    pos = ap.estimate.pos
-    feasible = path.feasible_time_scale(nav, pos, ap.estimate.vel, p.PSC.POS_P)
-    path.scale_time(nav, feasible, accel_max(p) / jerk_max(p), DT)
-    done = path.move(nav, nav.time_scale * DT, corner_radius(p), lat_accel_max(p.ATC))
-    target = Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc))
-    position.set_pos_vel_accel(ap.control.position, target)
+    pos = estimate.pos
+    feasible = path.feasible_time_scale(nav, pos, estimate.vel, params.PSC.POS_P)
+    path.scale_time(nav, feasible, accel_max(params) / jerk_max(params), DT)
+    done = path.move(nav, nav.time_scale * DT, corner_radius(params), lat_accel_max(params.ATC))
+    position.set_pos_vel_accel(c, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
     if done and not nav.reached:
-        near = path.distance(nav, pos) <= p.WP.RADIUS
+        near = path.distance(nav, pos) <= params.WP.RADIUS
         nav.reached = nav.current.fast or near or has_passed(nav.drive.origin, horizontal(nav.target), horizontal(pos))
 
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter import arming
-from sitl.autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, update
+from sitl.autopilot.copter.modes import auto, auto_yaw, commands, guided_setpoints, set_mode, update
 from sitl.autopilot.copter.modes.table import NAMES
 from sitl.core.algebra import ZERO
 from sitl.core.vectors import Quat, Vec3
@@ -50,9 +50,9 @@ def act(v: Any, name: str, *args: Any) -> None:
     elif name == "attitude":
         guided_setpoints.set_attitude(v, True, Quat(*args[:4]), Vec3(*args[4:7]), args[7])
     elif name == "yaw":
-        commands.condition_yaw(ap, *args)
+        commands.condition_yaw(ap, auto_yaw.Turn(*args))
     elif name == "speed":
-        commands.change_speed(ap, *args)
+        commands.change_speed(ap.control, ap.params, *args)
     elif name == "takeoff":
         commands.take_off(ap, args[0])
     elif name == "arm":
@@ -64,7 +64,7 @@ def act(v: Any, name: str, *args: Any) -> None:
     elif name == "wait":
         v.time_us += int(args[0] * 400) * 2500
     elif name == "start":
-        auto.start_mission(ap)
+        auto.start_mission(ap.modes.auto, ap.arming)
 
 
 @pytest.mark.slow

@@ -133,7 +133,7 @@ def test_the_time_out_is_a_parameter(flying):
     flying.autopilot.params.GUID_TIMEOUT = 0.5
     guided_setpoints.set_velocity(flying, Vec3(3.0, 0.0, 0.0), STILL, NO_YAW)
     wait(flying, 0.6)
-    assert guided.is_stale(flying)
+    assert guided.is_stale(flying.autopilot.modes.guided, flying.time_us, 0.5)
 
 
 def test_the_set_point_moves_on_between_messages(flying):
@@ -150,12 +150,12 @@ def test_the_set_point_moves_on_between_messages(flying):
 
 def test_pause_keeps_the_target_and_a_new_set_point_ends_it(flying):
     guided_setpoints.set_position(flying, Vec3(20.0, 0.0, -10.0), NO_YAW)
-    assert commands.set_paused(flying.autopilot, True) == OK
+    assert commands.set_paused(flying.autopilot.modes, True) == OK
     guided.run(flying)
     assert flying.autopilot.control.pos_ne.vel_desired[0] == 0.0
-    commands.set_paused(flying.autopilot, False)
+    commands.set_paused(flying.autopilot.modes, False)
     assert flying.autopilot.modes.guided.paused == 0
-    commands.set_paused(flying.autopilot, True)
+    commands.set_paused(flying.autopilot.modes, True)
     guided_setpoints.set_position(flying, Vec3(5.0, 0.0, -10.0), NO_YAW)
     assert flying.autopilot.modes.guided.paused == 0
 
@@ -198,9 +198,10 @@ def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
     ("speed", "answer"), ((3.0, OK), (-5.0, OUT_OF_RANGE), (0.0, OUT_OF_RANGE), (math.nan, NOT_FINITE))
 )
 def test_change_speed(flying, speed, answer):
-    before = float(flying.autopilot.control.pos_ne.speed_max)
-    assert commands.change_speed(flying.autopilot, commands.HORIZONTAL, speed) == answer
-    assert flying.autopilot.control.pos_ne.speed_max == (speed if answer == OK else before)
+    ap = flying.autopilot
+    before = float(ap.control.pos_ne.speed_max)
+    assert commands.change_speed(ap.control, ap.params, commands.HORIZONTAL, speed) == answer
+    assert ap.control.pos_ne.speed_max == (speed if answer == OK else before)
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,37 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.copter import pilot
-from sitl.autopilot.copter.control.state import AltitudeState
-from sitl.autopilot.copter.modes import auto_yaw, guided, guided_setpoints, land, loiter
-from sitl.autopilot.copter.modes.state import AutoYaw, GuidedState, LoiterState, PilotState
+from sitl.autopilot.copter.control.state import AltitudeState, Control, MotorsState
+from sitl.autopilot.copter.modes import (
+    alt_hold,
+    auto,
+    auto_yaw,
+    ground,
+    guided,
+    guided_setpoints,
+    land,
+    loiter,
+    rtl,
+    takeoff,
+    update,
+)
+from sitl.autopilot.copter.modes.state import (
+    AutoYaw,
+    GuidedState,
+    LandState,
+    LoiterState,
+    Modes,
+    PilotState,
+    RtlState,
+    TakeoffState,
+)
 from sitl.autopilot.copter.modes.table import MODES, NAMES
 from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.copter.parameters.flight import Land, Legs
+from sitl.autopilot.copter.parameters.flight import Land, Legs, Pilot, Rtl
+from sitl.autopilot.events import Events
+from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from sitl.autopilot.state import Arming
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Vec2, Vec3
 
@@ -31,7 +55,7 @@ def test_modes_have_numbers_names_and_a_description_of_their_own() -> None:
 
 @given(ANGLES, ANGLES, st.sampled_from((-1, 0, 1)))
 def test_a_turn_ends_at_the_angle_in_the_direction_asked_for(start: float, angle: float, direction: int) -> None:
-    turn = auto_yaw.turn_from(start, angle, direction, False)
+    turn = auto_yaw.turn_from(start, auto_yaw.Turn(angle, 0.0, direction, False))
     assert wrap_pi(start + turn - angle) == pytest.approx(0.0, abs=1e-9)
     assert turn * direction >= 0.0
     assert abs(turn) <= (2.0 * math.pi if direction else math.pi)
@@ -126,3 +150,105 @@ def test_a_pause_stops_path_time_and_lets_it_run_again() -> None:
             waypoint.advance_pause(nav, p, 5.0)
             assert -0.01 <= nav.pause_scale <= 1.01
         assert (nav.pause_scale, nav.pause_rate) == (wanted, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("armed", "flies", "spool", "climb", "doing", "wanted"),
+    (
+        (False, False, 0, 0.0, alt_hold.STOPPED, ground.SHUT_DOWN),
+        (True, False, ground.IS_GROUND_IDLE, -0.5, alt_hold.LANDED_IDLE, ground.GROUND_IDLE),
+        (True, False, ground.IS_UNLIMITED, 0.0, alt_hold.LANDED_READY, ground.UNLIMITED),
+        (True, False, ground.IS_GROUND_IDLE, 0.5, alt_hold.LANDED_IDLE, ground.UNLIMITED),
+        (True, False, ground.IS_UNLIMITED, 0.5, alt_hold.TAKING_OFF, ground.UNLIMITED),
+        (True, True, ground.IS_UNLIMITED, -0.5, alt_hold.FLYING, ground.UNLIMITED),
+    ),
+)
+def test_what_the_throttle_stick_does(
+    armed: bool, flies: bool, spool: int, climb: float, doing: int, wanted: int
+) -> None:
+    arming, motors = Arming(), MotorsState()
+    arming.armed, arming.auto_armed, arming.landed, motors.spool_state = armed, flies, not flies, spool
+    assert alt_hold.decide(arming, TakeoffState(), motors, climb) == doing
+    assert motors.desired_spool == wanted
+
+
+@pytest.mark.parametrize(
+    ("throttle", "accel_d", "lifts"), ((0.5, 0.0, False), (0.8, 0.0, True), (0.1, -1.3, True), (0.1, 1.3, False))
+)
+def test_a_take_off_ends_at_full_throttle_or_with_acceleration(throttle: float, accel_d: float, lifts: bool) -> None:
+    assert takeoff.has_thrust(throttle, accel_d, 2.5, 0.8) == lifts
+
+
+def test_loiter_brakes_some_time_after_the_sticks_are_centred() -> None:
+    state = LoiterState()
+    state.acc = Vec2(0.0, 1.0)
+    assert not loiter.is_braking(state, 5_000_000, 1.0)
+    state.acc = Vec2(0.0, 0.0)
+    assert not loiter.is_braking(state, 6_000_000, 1.0)
+    assert loiter.is_braking(state, 6_000_001, 1.0)
+
+
+def test_a_landing_waits_and_goes_on_without_a_position() -> None:
+    state = LandState()
+    state.pause, state.with_position, state.start_us = True, True, 1_000_000
+    land.follow_state(state, 4_999_999, True)
+    assert (state.pause, state.with_position) == (True, True)
+    land.follow_state(state, 5_000_000, False)
+    assert (state.pause, state.with_position) == (False, False)
+
+
+@pytest.mark.parametrize(("option", "throttle", "cancelled"), ((2, 0.8, True), (2, 0.6, False), (0, 0.8, False)))
+def test_a_high_throttle_cancels_a_landing(option: int, throttle: float, cancelled: bool) -> None:
+    sticks, p = PilotState(), Pilot()
+    sticks.throttle, p.THR_BHV = throttle, float(option)
+    assert land.is_cancelled(sticks, p) == cancelled
+
+
+@given(st.floats(0.0, 200.0), st.floats(-500.0, 500.0), st.floats(200.0, 10000.0), st.floats(0.0, 3.0))
+def test_the_way_home_is_not_below_the_vehicle(height: float, away: float, alt: float, slope: float) -> None:
+    state, p = RtlState(), Rtl()
+    p.ALT, p.CONE_SLOPE, p.ALT_FINAL = alt, slope, 300.0
+    rtl.plan_heights(state, Vec3(3.0, 4.0, -2.0), Vec3(3.0 + away, 4.0, -2.0 - height), p)
+    assert state.return_d <= -2.0 - height + 1e-9
+    assert (state.home, state.descent_d) == (Vec2(3.0, 4.0), -5.0)
+
+
+@pytest.mark.parametrize(
+    ("armed", "landed", "count", "takes_off", "cause"),
+    (
+        (False, True, 0, False, ACCEPTED),
+        (True, True, 1, False, INIT_FAILED),
+        (True, True, 3, False, MISSING_TAKEOFF),
+        (True, True, 3, True, ACCEPTED),
+        (True, False, 3, False, ACCEPTED),
+    ),
+)
+def test_auto_needs_a_mission(armed: bool, landed: bool, count: int, takes_off: bool, cause: int) -> None:
+    modes, arming = Modes(), Arming()
+    modes.mission_count, modes.mission_takes_off, arming.armed, arming.landed = count, takes_off, armed, landed
+    assert auto.refusal(modes, arming) == cause
+
+
+def test_a_time_out_is_told_once_each_time() -> None:
+    target, events = GuidedState(), Events()
+    for stale, told in ((False, 0), (True, 1), (True, 1), (False, 1), (True, 2)):
+        guided.note_timeout(target, stale, events, 0)
+        assert (events.count, target.timed_out) == (told, stale)
+
+
+@pytest.mark.parametrize(
+    ("climb", "vel_d", "cos_lean", "throttle", "hovers"),
+    (
+        (0.0, 0.1, 1.0, 0.4, True),
+        (0.5, 0.1, 1.0, 0.4, False),
+        (0.0, 0.7, 1.0, 0.4, False),
+        (0.0, 0.1, 0.9, 0.4, False),
+        (0.0, 0.1, 1.0, 0.0, False),
+    ),
+)
+def test_hovering_is_level_and_at_rest(
+    climb: float, vel_d: float, cos_lean: float, throttle: float, hovers: bool
+) -> None:
+    control = Control()
+    control.pos_d.vel_desired, control.attitude.cos_lean, control.motors.throttle = climb, cos_lean, throttle
+    assert update.hovers(control, vel_d) == hovers

@@ -13,6 +13,7 @@ from sitl.autopilot.copter.modes import land, rtl, set_mode
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.rtl import RTL
+from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters.flight import Rtl
 from sitl.autopilot.events import DISARMED, LEG_ENDING
 from sitl.autopilot.modes import REASON_GCS
@@ -75,9 +76,11 @@ def test_over_home_it_waits_then_lands_or_stays(flying, final, state):
 
 def descent(v, seconds=6.0):
     """Desired descent [m/s] once the shaping has settled."""
+    ap = v.autopilot
+    height = ap.home.pos.z - ap.estimate.pos.z
     for _ in range(round(seconds * 400)):
-        land.sink(v.autopilot, False)
-    return float(v.autopilot.control.pos_d.vel_desired)
+        land.sink(ap.control.pos_d, ap.modes.land, height, False, ap.params)
+    return float(ap.control.pos_d.vel_desired)
 
 
 @pytest.mark.parametrize(
@@ -115,12 +118,11 @@ def test_it_disarms_when_landed_and_idling(flying):
 
 
 def test_sticks_move_the_landing_place_in_the_direction_of_the_nose(flying):
-    ap = flying.autopilot
-    ap.estimate.euler = ap.estimate.euler.replace(yaw=math.pi / 2)
-    ap.modes.pilot.pitch = -1.0
-    assert land.stick_velocity(ap) == pytest.approx((0.0, 1.25))
-    ap.params.LAND_REPOSITION = 0.0
-    assert land.stick_velocity(ap) == (0.0, 0.0)
+    sticks, params = PilotState(), flying.autopilot.params
+    sticks.pitch = -1.0
+    assert land.stick_velocity(sticks, math.pi / 2, params) == pytest.approx((0.0, 1.25))
+    params.LAND_REPOSITION = 0.0
+    assert land.stick_velocity(sticks, math.pi / 2, params) == (0.0, 0.0)
 
 
 def test_a_high_throttle_cancels_the_landing_only_with_the_option(flying):

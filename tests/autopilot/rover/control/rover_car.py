@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.autopilot.rover.control import update
-from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control
+from sitl.autopilot.rover.control import forward_speed, update
+from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control, SpeedState
 from sitl.autopilot.rover.parameters import TABLE, Parameters
 from sitl.autopilot.state import Autopilot
 from sitl.core.border import Actuators, Sensors
@@ -58,7 +58,7 @@ def make_vehicle(**params: float) -> Any:
     v.autopilot.estimate.status_flags = HORIZONTAL
     v.autopilot.estimate.position_ok = 1
     set_motion(v, 0.0, 0.0, 0.0)
-    update.init(v.autopilot)
+    update.init(v.autopilot.control, v.autopilot.params)
     return v
 
 
@@ -67,6 +67,13 @@ def arm(v: Any) -> Any:
     v.autopilot.arming.armed = 1
     finish(v)
     return v
+
+
+def sense(v: Any) -> SpeedState:
+    """What a period begins with; the record of the speed along the nose."""
+    s: SpeedState = v.autopilot.control.speed
+    forward_speed.sense(s, v.autopilot.estimate, v.sensors, v.time_us)
+    return s
 
 
 def set_motion(v: Any, heading: float, speed: float, turn_rate: float) -> None:

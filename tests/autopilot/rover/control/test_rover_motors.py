@@ -23,12 +23,14 @@ def pulses(v):
 
 
 def demand(v, steering, throttle, periods=1, scaled=True):
+    ap = v.autopilot
+    m = ap.control.motors
     for _ in range(periods):
         if scaled:
-            motors.set_steering(v.autopilot, steering)
+            motors.set_steering(m, steering)
         else:
-            motors.set_steering_unscaled(v.autopilot, steering)
-        motors.set_throttle(v.autopilot, throttle)
+            motors.set_steering_unscaled(m, steering)
+        motors.set_throttle(m, ap.arming.armed, throttle, ap.params.MOT)
         finish(v)
 
 
@@ -96,7 +98,7 @@ def test_disarmed_wheels_steer_but_do_not_drive(safe, throttle_pulse):
     assert v.actuators.armed == 0
     m = v.autopilot.control.motors
     assert (m.limit_left, m.limit_right, m.limit_lower, m.limit_upper) == (1, 1, 1, 1)
-    assert not motors.is_moving(v.autopilot)
+    assert not motors.is_moving(m, False, v.autopilot.params)
 
 
 def test_skid_outputs():

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.control.pid import Gains
 from sitl.autopilot.control.shaping import Motion2
-from sitl.autopilot.rover.control import forward_speed, motors, position, speed, steering
+from sitl.autopilot.rover.control import motors, position, speed, steering
 from sitl.autopilot.rover.control.state import DT, PositionState
 from sitl.core.algebra import ZERO2, dot2, horizontal, norm2
 from sitl.core.vectors import Vec2
-from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle
+from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle, sense
 
 number = st.floats(-50.0, 50.0)
 
@@ -37,14 +37,20 @@ def pos_error(ap):
     return ap.control.position.pos_target - horizontal(ap.estimate.pos)
 
 
+def follow_target(ap):
+    position.follow_target(ap.control, ap.estimate, ap.arming.armed, ap.params)
+
+
 def follow(car, backward=False):
     """One period towards what the targets say."""
-    v, c = car.v, car.v.autopilot.control.position
-    forward_speed.sense(v)
+    v, ap = car.v, car.v.autopilot
+    c = ap.control.position
+    sense(v)
     c.reversed = backward
-    position.follow_target(v.autopilot)
-    speed.drive(v, float(c.desired_speed))
-    motors.set_steering(v.autopilot, steering.out_from_rate(v.autopilot, float(c.desired_turn_rate)))
+    follow_target(ap)
+    speed.drive(ap.control, True, c.desired_speed, ap.params)
+    demand = steering.out_from_rate(ap.control, ap.estimate, c.desired_turn_rate, ap.params.ATC)
+    motors.set_steering(ap.control.motors, demand)
     finish(v)
     car.move()
 
@@ -71,9 +77,9 @@ def test_a_car_keeps_the_speed_of_its_tightest_turn_where_a_skid_steered_one_wai
     wide, tight = ready(), ready(SERVO1_FUNCTION=73.0, SERVO3_FUNCTION=74.0)
     for car in (wide, tight):
         ap = car.v.autopilot
-        forward_speed.sense(car.v)
+        sense(car.v)
         position.set_pos_vel_accel(ap.control.position, Motion2(ZERO2, Vec2(0.0, 3.0), ZERO2))
-        position.follow_target(ap)
+        follow_target(ap)
         assert ap.control.position.desired_turn_rate > 0.5
     least = math.sqrt(0.5 * 0.6 * 9.80665 * 0.9)
     assert wide.v.autopilot.control.position.desired_speed == pytest.approx(least)
@@ -114,7 +120,7 @@ def test_target_follows_a_jump_of_the_estimate():
     before = pos_error(ap)
     ap.estimate.pos = ap.estimate.pos.replace(x=ap.estimate.pos.x + 5.0)
     ap.estimate.reset_ne_count += 1
-    position.follow_target(ap)
+    follow_target(ap)
     assert pos_error(ap) == pytest.approx(before, abs=0.05)
 
 
@@ -126,7 +132,7 @@ def test_disarmed_or_lost_it_brakes():
         follow(car)
     before = float(ap.control.speed.desired)
     ap.estimate.position_ok = 0
-    position.follow_target(ap)
+    follow_target(ap)
     assert ap.control.position.desired_turn_rate == 0.0
     assert ap.control.position.desired_speed == pytest.approx(before - 1.0 * DT)
     assert not position.init(ap.control.position, ap.estimate)

@@ -9,26 +9,31 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.rover.control import forward_speed, motors, steering
+from sitl.autopilot.rover.control import motors, steering
 from sitl.autopilot.rover.control.state import DT, GRAVITY, Control
 from sitl.autopilot.rover.parameters.control import Attitude
-from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, set_motion
+from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, sense, set_motion
 
 
 def moving(speed=0.0, turn_rate=0.0, heading=0.0, **params):
     v = arm(make_vehicle(**params))
     set_motion(v, heading, speed, turn_rate)
-    forward_speed.sense(v)
+    sense(v)
     return v
 
 
+def out(law, v, wanted):
+    ap = v.autopilot
+    return law(ap.control, ap.estimate, wanted, ap.params.ATC)
+
+
 def run(v, rate, periods):
-    out = 0.0
+    demand = 0.0
     for _ in range(periods):
-        out = steering.out_from_rate(v.autopilot, rate)
-        motors.set_steering(v.autopilot, out)
+        demand = out(steering.out_from_rate, v, rate)
+        motors.set_steering(v.autopilot.control.motors, demand)
         finish(v)
-    return out
+    return demand
 
 
 def test_turn_rate_grows_no_faster_than_acc_max():
@@ -65,14 +70,14 @@ def test_first_call_starts_at_the_present_turn_rate_and_a_pause_forgets():
     for _ in range(11):
         finish(v)
     assert not steering.is_active(v.autopilot.control)
-    steering.out_from_rate(v.autopilot, 0.5)
+    out(steering.out_from_rate, v, 0.5)
     assert v.autopilot.control.steering.turn_rate == pytest.approx(-0.4 + math.radians(120.0) * DT)
     assert v.autopilot.control.steering.rate.integrator == pytest.approx(0.0, abs=1e-3)
 
 
 def test_feed_forward_and_proportional():
     v = moving(speed=1.0, ATC_STR_RAT_I=0.0, ATC_STR_ACC_MAX=0.0, ATC_STR_RAT_FF=0.5, ATC_STR_RAT_P=0.1)
-    assert steering.out_from_rate(v.autopilot, 0.8) == pytest.approx(0.8 * 0.5 + 0.8 * 0.1)
+    assert out(steering.out_from_rate, v, 0.8) == pytest.approx(0.8 * 0.5 + 0.8 * 0.1)
 
 
 def test_integrator_rests_below_the_scaling_speed_and_learns_above():
@@ -122,7 +127,7 @@ def test_lateral_acceleration_to_turn_rate():
     assert steering.turn_rate_from_lat_accel(2.0, 0.1) == 2.0
     assert steering.turn_rate_from_lat_accel(2.0, -0.1) == -2.0
     v = moving(speed=-4.0, ATC_STR_ACC_MAX=0.0)
-    steering.out_from_lat_accel(v.autopilot, 2.0)
+    out(steering.out_from_lat_accel, v, 2.0)
     assert v.autopilot.control.steering.turn_rate == pytest.approx(-0.5)
     assert v.autopilot.control.steering.lat_accel == 2.0
 
@@ -130,14 +135,14 @@ def test_lateral_acceleration_to_turn_rate():
 def test_no_speed_no_steering_by_lateral_acceleration():
     v = moving()
     v.autopilot.control.speed.forward_ok = False
-    assert steering.out_from_lat_accel(v.autopilot, 2.0) == 0.0
+    assert out(steering.out_from_lat_accel, v, 2.0) == 0.0
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_bad_numbers_steer_straight_and_leave_no_trace(bad):
     v = moving(speed=2.0)
     for law in (steering.out_from_rate, steering.out_from_lat_accel):
-        assert math.isfinite(law(v.autopilot, bad))
+        assert math.isfinite(out(law, v, bad))
         finish(v)
-    assert math.isfinite(steering.out_from_heading(v.autopilot, bad))
+    assert math.isfinite(out(steering.out_from_heading, v, bad))
     assert v.autopilot.control.steering.turn_rate == 0.0

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from sitl.autopilot.rover.control import forward_speed, motors, speed, steering
+from sitl.autopilot.rover.control import motors, speed, steering
 from sitl.autopilot.rover.control.state import DT
-from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle
+from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle, sense
 
 
 class Sample(NamedTuple):
@@ -63,7 +63,7 @@ def drive(car: Car, act: Callable[[Any], object], seconds: float, start: float) 
     """Every period of a mode that only acts; its first is at ``start``."""
     driven = []
     for k in range(round(seconds / DT)):
-        forward_speed.sense(car.v)
+        sense(car.v)
         act(car.v)
         finish(car.v)
         pwm = car.v.actuators.pwm
@@ -76,16 +76,24 @@ def towards(heading: float, wanted: float) -> Callable[[Any], object]:
     """GUIDED: heading and speed."""
 
     def act(v: Any) -> None:
-        motors.set_steering(v.autopilot, steering.out_from_heading(v.autopilot, heading))
-        speed.drive(v, wanted)
+        ap = v.autopilot
+        demand = steering.out_from_heading(ap.control, ap.estimate, heading, ap.params.ATC)
+        motors.set_steering(ap.control.motors, demand)
+        speed.drive(ap.control, True, wanted, ap.params)
 
     return act
 
 
 def coast(v: Any) -> None:
     """HOLD."""
-    motors.set_steering(v.autopilot, 0.0)
-    motors.set_throttle(v.autopilot, 0.0)
+    m = v.autopilot.control.motors
+    motors.set_steering(m, 0.0)
+    motors.set_throttle(m, True, 0.0, v.autopilot.params.MOT)
+
+
+def stop(v: Any) -> None:
+    """A controlled stop."""
+    speed.stop(v.autopilot.control, True, v.autopilot.params)
 
 
 def at_times_of(recorded: Iterable[Sample], driven: list[Sample]) -> list[tuple[Sample, Sample]]:
@@ -134,7 +142,7 @@ def test_turn_at_full_lock_and_the_shrinking_of_steering_with_speed():
 def test_controlled_stop():
     car = rolling(2.0)
     start = car.position[0]
-    driven = drive(car, speed.stop, 3.5, 2.98)
+    driven = drive(car, stop, 3.5, 2.98)
     for theirs, ours in at_times_of(STOP, driven):
         assert ours.speed == pytest.approx(theirs.speed, abs=0.04), theirs
         assert ours.throttle_us == pytest.approx(theirs.throttle_us, abs=4), theirs

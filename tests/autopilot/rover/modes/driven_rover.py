@@ -164,7 +164,28 @@ class Rover:
 def set_velocity(v: Any, north: float, east: float) -> int:
     """A velocity [m/s] as the bridge gives it to GUIDED: its direction is the heading, its length the speed."""
     speed = min(math.hypot(north, east), float(v.autopilot.params.WP_SPEED))
-    return int(guided_setpoints.set_heading_and_speed(v, math.atan2(east, north), speed))
+    return int(guided_setpoints.set_heading_and_speed(v.autopilot.modes, v.time_us, math.atan2(east, north), speed))
+
+
+def set_heading(v: Any, heading: float, speed: float) -> int:
+    """A heading [rad] and a speed [m/s] for GUIDED."""
+    return guided_setpoints.set_heading_and_speed(v.autopilot.modes, v.time_us, heading, speed)
+
+
+def change_heading(v: Any, change: float, speed: float) -> int:
+    """An angle to turn by [rad] and a speed [m/s] for GUIDED."""
+    ap = v.autopilot
+    return guided_setpoints.set_heading_change_and_speed(ap.modes, v.time_us, ap.estimate.euler.yaw, change, speed)
+
+
+def set_turn_rate(v: Any, rate: float, speed: float) -> int:
+    """A turn rate [rad/s] and a speed [m/s] for GUIDED."""
+    return guided_setpoints.set_turn_rate_and_speed(v.autopilot.modes, v.time_us, rate, speed)
+
+
+def set_steering(v: Any, steering: float, throttle: float) -> int:
+    """Steering and throttle for GUIDED."""
+    return guided_setpoints.set_steering_and_throttle(v.autopilot.modes, v.time_us, steering, throttle)
 
 
 def drive_to(v: Any, north: float, east: float) -> int:

@@ -14,16 +14,24 @@ from sitl.autopilot.rover import arming, motor_test
 from sitl.autopilot.rover.modes import guided_setpoints, set_mode
 from sitl.autopilot.rover.modes.set_mode import change_speed
 from sitl.autopilot.rover.modes.table import NAMES
-from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
+from tests.autopilot.rover.modes.driven_rover import (
+    Rover,
+    change_heading,
+    drive_to,
+    set_heading,
+    set_steering,
+    set_turn_rate,
+    set_velocity,
+)
 
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
 SETTERS = (
     drive_to,
     set_velocity,
-    guided_setpoints.set_heading_and_speed,
-    guided_setpoints.set_heading_change_and_speed,
-    guided_setpoints.set_turn_rate_and_speed,
-    guided_setpoints.set_steering_and_throttle,
+    set_heading,
+    change_heading,
+    set_turn_rate,
+    set_steering,
     lambda v, x, y: guided_setpoints.set_limits(v.autopilot.modes.guided, x, y),
 )
 ACTIONS = st.one_of(

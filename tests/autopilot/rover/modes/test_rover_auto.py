@@ -17,8 +17,9 @@ from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.guided_setpoints import NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
+from sitl.autopilot.rover.modes.state import Modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
-from sitl.core.vectors import Vec3
+from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
 
@@ -171,3 +172,33 @@ def test_leaving_auto_is_told() -> None:
     rover.ap.events.attention = 0
     request(rover.v, GUIDED, 2)
     assert rover.ap.events.attention == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "since_us", "done"),
+    [
+        (kinds.NONE, 1, False),
+        (kinds.WAYPOINT, 0, False),
+        (kinds.WAYPOINT, 2, False),
+        (kinds.WAYPOINT, 1, True),
+        (kinds.LOITER_TIME, 1, True),
+        (kinds.LOITER_UNLIMITED, 1, False),
+        (kinds.DELAY, 2, False),
+        (kinds.DELAY, 1, True),
+        (kinds.PASSED_OVER, 0, True),
+    ],
+)
+def test_a_command_is_done_when_it_has_waited(kind: int, since_us: int, done: bool) -> None:
+    modes = Modes()
+    modes.nav.command_kind, modes.nav.since_us, modes.nav.delay = kind, since_us, 3.0
+    assert auto.is_done(modes, 3_000_001, Vec2(0.0, 0.0), 2.0) == done
+
+
+def test_guided_within_a_mission_is_done_at_its_place() -> None:
+    modes = Modes()
+    modes.nav.command_kind, modes.auto.submode = kinds.GUIDED, auto.GUIDED_IN_MISSION
+    modes.nav.target = Vec3(10.0, 0.0, 0.0)
+    assert not auto.is_done(modes, 1, Vec2(9.0, 0.0), 2.0)
+    modes.nav.has_place = True
+    assert auto.is_done(modes, 1, Vec2(9.0, 0.0), 2.0)
+    assert not auto.is_done(modes, 1, Vec2(7.0, 0.0), 2.0)

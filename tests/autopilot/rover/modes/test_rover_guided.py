@@ -13,7 +13,15 @@ from sitl.autopilot.rover.modes.guided import GUIDED, STOP
 from sitl.autopilot.rover.modes.guided_setpoints import NOT_FINITE, NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
-from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
+from tests.autopilot.rover.modes.driven_rover import (
+    Rover,
+    change_heading,
+    drive_to,
+    set_heading,
+    set_steering,
+    set_turn_rate,
+    set_velocity,
+)
 
 
 @pytest.fixture
@@ -104,43 +112,41 @@ def test_planned_positions(rover: Rover) -> None:
 
 
 def test_heading_and_speed(rover: Rover) -> None:
-    stream(rover, 6.0, guided_setpoints.set_heading_and_speed, 2.0, 1.5)
+    stream(rover, 6.0, set_heading, 2.0, 1.5)
     assert rover.speed == pytest.approx(1.5, abs=0.05)
     assert rover.heading == pytest.approx(2.0, abs=0.05)
 
 
 def test_heading_change_counts_from_the_one_under_way(rover: Rover) -> None:
-    assert guided_setpoints.set_heading_change_and_speed(rover.v, 0.5, 1.0) == OK
-    assert guided_setpoints.set_heading_change_and_speed(rover.v, 0.5, 1.0) == OK
+    assert change_heading(rover.v, 0.5, 1.0) == OK
+    assert change_heading(rover.v, 0.5, 1.0) == OK
     assert rover.ap.modes.guided.heading == pytest.approx(1.0)
 
 
 def test_backwards(rover: Rover) -> None:
-    stream(rover, 6.0, guided_setpoints.set_heading_and_speed, 0.0, -1.5)
+    stream(rover, 6.0, set_heading, 0.0, -1.5)
     assert rover.speed == pytest.approx(-1.5, abs=0.05)
 
 
 def test_turn_rate_and_speed(rover: Rover) -> None:
-    stream(rover, 6.0, guided_setpoints.set_turn_rate_and_speed, 0.3, 2.0)
+    stream(rover, 6.0, set_turn_rate, 0.3, 2.0)
     assert float(rover.ap.estimate.rates[2]) == pytest.approx(0.3, abs=0.02)
 
 
 def test_steering_and_throttle(rover: Rover) -> None:
-    stream(rover, 3.0, guided_setpoints.set_steering_and_throttle, 0.5, 0.1)
+    stream(rover, 3.0, set_steering, 0.5, 0.1)
     assert [int(rover.v.actuators.pwm[k]) for k in (0, 2)] == [1750, 1550]
 
 
 def test_stop(rover: Rover) -> None:
     stream(rover, 4.0, set_velocity, 2.0, 0.0)
-    assert guided_setpoints.stop(rover.v) == OK
+    assert guided_setpoints.stop(rover.ap.modes) == OK
     rover.run(3.0)
     assert abs(rover.speed) < 0.1
     assert rover.ap.modes.guided.submode == STOP
 
 
-@pytest.mark.parametrize(
-    "setter", [drive_to, guided_setpoints.set_heading_and_speed, guided_setpoints.set_turn_rate_and_speed]
-)
+@pytest.mark.parametrize("setter", [drive_to, set_heading, set_turn_rate])
 def test_refusals_change_nothing(setter: object) -> None:
     rover = Rover().arm()
     before = bytes(rover.v._bytes)

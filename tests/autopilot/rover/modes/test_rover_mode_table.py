@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot import events
-from sitl.autopilot.modes import INIT_FAILED, NO_MISSION, NO_SUCH_MODE
+from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, NO_MISSION, NO_SUCH_MODE, REQUIRES_POSITION
 from sitl.autopilot.rover import failsafe, texts
-from sitl.autopilot.rover.modes import table
+from sitl.autopilot.rover.modes import set_mode, table
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.manual import MANUAL
@@ -71,3 +71,13 @@ def test_initial_mode_is_one_that_can_be_entered_at_power_on(wanted: int, got: i
 )
 def test_what_is_said(code: int, a: float, b: float, said: list[tuple[int, str]]) -> None:
     assert texts.texts(code, a, b) == said
+
+
+@pytest.mark.parametrize("number", [*table.NAMES, 2, 99])
+@pytest.mark.parametrize("speed_known", [False, True])
+def test_a_mode_is_refused_only_for_what_it_lacks(number: int, speed_known: bool) -> None:
+    assert set_mode.refusal(number, True, speed_known, False) == (ACCEPTED if number in table.NAMES else NO_SUCH_MODE)
+    if number in table.NAMES:
+        needs = table.requires_velocity(number, False)
+        refused = table.requires_position(number) or (needs and not speed_known)
+        assert set_mode.refusal(number, False, speed_known, False) == (REQUIRES_POSITION if refused else ACCEPTED)

@@ -11,6 +11,7 @@ import pytest
 from sitl.autopilot.events import PATH_LOST
 from sitl.autopilot.rover import smart_rtl_path as srtl
 from sitl.autopilot.rover.modes.state import PathState
+from sitl.autopilot.rover.modes.update import keep_path
 from sitl.autopilot.rover.parameters.driving import SmartRtl
 from sitl.core.vectors import Vec2
 from tests.autopilot.rover.modes.driven_rover import Rover
@@ -38,12 +39,18 @@ def armed_at(way: Way, **params: float) -> Rover:
     """A rover that was armed at the first point and has been at the others."""
     rover = Rover(**params)
     rover.ap.estimate.pos = (*way[0], 0.0)
-    srtl.set_home(rover.v)
+    srtl.begin(rover.ap.modes.path, rover.ap.estimate, rover.v.time_us, rover.ap.params.SRTL)
     for n, e in way[1:]:
         rover.ap.estimate.pos = (n, e, 0.0)
         rover.v.time_us += 340_000
-        srtl.update(rover.v, True)
+        keep(rover)
     return rover
+
+
+def keep(rover: Rover) -> None:
+    """What is done three times a second."""
+    ap = rover.ap
+    keep_path(ap.modes, ap.estimate, ap.events, rover.v.time_us, ap.params.SRTL)
 
 
 def test_points_are_srtl_accuracy_apart() -> None:
@@ -104,10 +111,10 @@ def test_a_position_lost_for_long_ends_it() -> None:
     rover = armed_at([(2.0 * k, 0.0) for k in range(5)])
     rover.set_estimate(False)
     rover.v.time_us += 14_000_000
-    srtl.update(rover.v, True)
+    keep(rover)
     assert rover.ap.modes.path.active
     rover.v.time_us += 2_000_000
-    srtl.update(rover.v, True)
+    keep(rover)
     assert not rover.ap.modes.path.active
 
 

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from sitl.autopilot.rover import pilot
+from sitl.autopilot.rover import arming, pilot
 from sitl.autopilot.rover.modes import steering
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.hold import HOLD
@@ -15,6 +15,7 @@ from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.modes.simple import SIMPLE
+from sitl.autopilot.rover.modes.state import PilotState
 from sitl.autopilot.rover.modes.steering import STEERING
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -68,7 +69,7 @@ def test_pilot_steer_type(kind: int, sticks: tuple[int, int], wanted: tuple[floa
     rover = Rover(PILOT_STEER_TYPE=float(kind))
     rover.sticks(*sticks)
     rover.run(0.04)
-    assert pilot.sticks(rover.ap) == pytest.approx(wanted, abs=1e-4)
+    assert pilot.sticks(rover.ap.modes.pilot, rover.ap.params) == pytest.approx(wanted, abs=1e-4)
 
 
 def test_hold_does_nothing() -> None:
@@ -161,4 +162,28 @@ def test_stick_mixing_adds_to_the_autopilots_steering() -> None:
     rover = Rover(STICK_MIXING=1.0)
     rover.sticks(steering=1750)
     rover.run(0.04)
-    assert pilot.mixed(rover.ap, 0.4) == pytest.approx(0.5 * 0.4 + 220 / 470)
+    assert pilot.mixed(rover.ap.modes.pilot, 0.4, 1.0) == pytest.approx(0.5 * 0.4 + 220 / 470)
+    assert pilot.mixed(rover.ap.modes.pilot, 0.4, 0.0) == 0.4
+
+
+@pytest.mark.parametrize(
+    ("stick", "armed", "moving", "enabled", "command"),
+    [
+        (1.0, False, False, 1.0, 1),
+        (1.0, False, False, 0.0, 0),
+        (1.0, True, False, 2.0, 0),
+        (0.8, False, False, 2.0, 0),
+        (-1.0, True, False, 2.0, -1),
+        (-1.0, True, True, 2.0, 0),
+        (-1.0, True, False, 1.0, 0),
+    ],
+)
+def test_arming_by_stick(stick: float, armed: bool, moving: bool, enabled: float, command: int) -> None:
+    sticks = PilotState()
+    sticks.steering = stick
+    assert arming.stick_command(sticks, MANUAL, armed, moving, enabled) == command
+    assert arming.stick_command(sticks, RTL, armed, moving, enabled) == 0
+    sticks.throttle = 0.1
+    assert arming.stick_command(sticks, MANUAL, armed, moving, enabled) == 0
+    sticks.throttle, sticks.lost = 0.0, True
+    assert arming.stick_command(sticks, MANUAL, armed, moving, enabled) == 0

@@ -117,7 +117,7 @@ def test_guided_within_a_mission() -> None:
         at(WP, 10.0, 0.0),
     )
     p.run(0.1)
-    assert guided_setpoints.set_heading_and_speed(p.v, 0.0, 1.0) == guided_setpoints.OK
+    assert guided_setpoints.set_heading_and_speed(p.ap.modes, p.v.time_us, 0.0, 1.0) == guided_setpoints.OK
     begun = p.time
     second = p.until(2)
     assert p.position[0] > 1.0

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from sitl.autopilot.events import LEG_ENDING
 from sitl.autopilot.navigation import path
 from sitl.autopilot.navigation.state import SPEED_REQUEST
+from sitl.autopilot.rover.control import forward_speed
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.navigation import pivot, waypoint
@@ -20,7 +21,7 @@ from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.navigation.state import DriveState
 from sitl.autopilot.rover.parameters import Parameters
 from sitl.core.algebra import turned
-from sitl.core.vectors import Vec2
+from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 SKID = {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
@@ -38,8 +39,27 @@ class Driver(Rover):
 
     def to(self, n: float, e: float) -> Driver:
         """Go there along a leg."""
-        waypoint.set_destination(self.ap, self.v.time_us, Vec2(n, e))
+        self.ask(n, e)
         return self.follow()
+
+    def ask(self, n: float, e: float) -> None:
+        """Ask the shell for a leg to there."""
+        path.request_leg(self.ap.modes.nav, self.ap.events, self.v.time_us, Vec3(n, e, 0.0))
+
+    def ask_two(self, corner: Vec3, following: Vec3) -> None:
+        """Ask the shell for two legs, joined without a stop."""
+        path.request_legs(self.ap.modes.nav, self.ap.events, self.v.time_us, corner, following)
+
+    def run_path(self) -> bool:
+        """One period of ``waypoint.follow``; whether the speed limit changed."""
+        ap = self.ap
+        s = ap.control.speed
+        forward_speed.sense(s, ap.estimate, self.v.sensors, self.v.time_us)
+        return waypoint.follow(ap.modes.nav, ap.control, ap.estimate, ap.arming.armed, self.v.time_us, ap.params)
+
+    def set_reversed(self, backward: bool) -> None:
+        """Drive backwards or forwards."""
+        waypoint.set_reversed(self.ap.modes.nav, self.ap.estimate, backward, self.ap.params)
 
     def follow(self) -> Driver:
         """Let GUIDED drive after what ``waypoint`` has."""
@@ -60,7 +80,7 @@ class Driver(Rover):
             self.step()
             nav = self.ap.modes.nav
             self.rows.append((*self.position, self.speed, float(nav.pos[0]), float(nav.pos[1])))
-            if waypoint.reached(self.ap):
+            if waypoint.reached(self.ap.modes.nav):
                 return 0.02 * (k + 1)
         return math.inf
 
@@ -79,18 +99,18 @@ def test_a_leg_ends_at_its_destination() -> None:
 def test_not_reached_while_the_next_leg_is_planned() -> None:
     p = Driver().to(10.0, 0.0)
     p.until_reached()
-    waypoint.set_destination(p.ap, p.v.time_us, Vec2(20.0, 0.0))
-    assert not waypoint.reached(p.ap)
+    p.ask(20.0, 0.0)
+    assert not waypoint.reached(p.ap.modes.nav)
     PLANNER.serve(p.ap, int(p.v.time_us))
-    assert not waypoint.reached(p.ap)
+    assert not waypoint.reached(p.ap.modes.nav)
     assert p.ap.modes.nav.current.origin[0] == pytest.approx(10.0)  # goes on from the end of the last leg
 
 
 def test_a_corner_is_rounded_without_a_stop_and_near_the_waypoint() -> None:
     p = Driver()
-    waypoint.set_destinations(p.ap, p.v.time_us, Vec2(25.0, 0.0), Vec2(25.0, 25.0))
+    p.ask_two(Vec3(25.0, 0.0, 0.0), Vec3(25.0, 25.0, 0.0))
     p.follow()
-    assert waypoint.is_fast(p.ap)
+    assert p.ap.modes.nav.current.fast
     p.until_reached()
     p.to(25.0, 25.0)
     assert p.ap.modes.nav.joined == 1
@@ -114,7 +134,7 @@ def test_crosstrack_is_negative_on_the_right() -> None:
     p.place(5.0, 2.0)
     p.step()
     assert p.ap.modes.nav.drive.crosstrack == pytest.approx(-2.0, abs=0.05)
-    waypoint.stop(p.ap)
+    waypoint.stop(p.ap.modes.nav)
     assert p.ap.modes.nav.drive.crosstrack == 0.0
 
 
@@ -122,15 +142,15 @@ def test_speed_changes_on_the_way_and_not_more_than_twice_a_second() -> None:
     p = Driver().to(100.0, 0.0)
     p.run(8.0)
     assert p.speed > 4.0
-    assert waypoint.set_speed(p.ap, 2.0)
+    assert waypoint.set_speed(p.ap.modes.nav, 2.0)
     p.run(8.0)
     assert p.speed == pytest.approx(2.0, abs=0.15)
     for wrong in (math.nan, math.inf, 0.0, -1.0, 0.01):
-        assert not waypoint.set_speed(p.ap, wrong)
+        assert not waypoint.set_speed(p.ap.modes.nav, wrong)
     assert waypoint.top_speed(p.ap.modes.nav, p.ap.params) == 2.0
     for nudge, seen in ((3.0, 3.0), (4.0, 3.0), (1.0, 3.0)):
-        waypoint.set_nudge_speed(p.ap, nudge)
-        waypoint.follow(p.v)
+        p.ap.modes.nav.drive.nudge_speed = nudge
+        p.run_path()
         assert p.ap.control.position.speed_max == seen
     p.run(0.6)
     assert p.ap.control.position.speed_max == 2.0
@@ -139,7 +159,7 @@ def test_speed_changes_on_the_way_and_not_more_than_twice_a_second() -> None:
 
 def test_backwards() -> None:
     p = Driver()
-    waypoint.set_reversed(p.ap, True)
+    p.set_reversed(True)
     p.to(-20.0, 0.0)
     p.run(5.0)
     assert p.speed < -1.0
@@ -152,7 +172,8 @@ def test_backwards() -> None:
 def test_a_shaped_destination_may_change_at_any_time() -> None:
     p = Driver()
     for k in range(20):
-        waypoint.set_destination_shaped(p.ap, p.v.time_us, Vec2(10.0 + k, 0.0))
+        nav, place = p.ap.modes.nav, Vec2(10.0 + k, 0.0)
+        waypoint.set_destination_shaped(nav, p.ap.estimate, p.v.time_us, place, p.ap.params)
         p.follow()
         p.run(0.2)
     assert p.speed > 1.0
@@ -164,7 +185,7 @@ def test_a_shaped_destination_may_change_at_any_time() -> None:
 def test_straight_behind_is_no_way_without_end(backward: bool) -> None:
     """Nothing pushes a car to either side then; it turns all the same."""
     p = Driver()
-    waypoint.set_reversed(p.ap, backward)
+    p.set_reversed(backward)
     p.to(20.0 if backward else -20.0, 0.0)
     assert p.until_reached() < 40.0
 
@@ -178,9 +199,9 @@ def test_brakes_when_it_cannot_go(because: str) -> None:
     elif because == "no position":
         p.ap.estimate.position_ok = 0
     else:
-        waypoint.stop(p.ap)
+        waypoint.stop(p.ap.modes.nav)
     before = float(p.ap.control.speed.desired)
-    waypoint.follow(p.v)
+    p.run_path()
     drive = p.ap.modes.nav.drive
     assert 0.0 < drive.desired_speed < before
     assert drive.desired_turn_rate == drive.crosstrack == 0.0
@@ -194,14 +215,14 @@ def test_pivot_turn() -> None:
     assert not pivot.would_turn(math.radians(59.0), p.ap.params)
     p.to(0.0, 20.0)
     assert pivot.is_active(p.ap.modes.nav.drive, p.ap.params)
-    waypoint.follow(p.v)
+    p.run_path()
     assert p.ap.modes.nav.drive.desired_speed == 0.0
     assert 0.0 < p.ap.modes.nav.drive.desired_turn_rate <= math.radians(60.0) + 1e-9
     p.place(0.0, 0.0, math.radians(88.0))
-    waypoint.follow(p.v)
+    p.run_path()
     assert pivot.is_active(p.ap.modes.nav.drive, p.ap.params)
     p.v.time_us += 1_100_000
-    waypoint.follow(p.v)
+    p.run_path()
     assert not pivot.is_active(p.ap.modes.nav.drive, p.ap.params)
 
 
@@ -209,12 +230,12 @@ def test_reversed_on_the_way_a_skid_steered_vehicle_turns_round() -> None:
     """Else it would stand for ever with its nose where its tail should go."""
     p = Driver(**SKID).to(60.0, 0.0)
     p.place(10.0, 0.0)
-    waypoint.set_reversed(p.ap, True)
+    p.set_reversed(True)
     assert pivot.is_active(p.ap.modes.nav.drive, p.ap.params)
-    waypoint.follow(p.v)
+    p.run_path()
     assert abs(p.ap.modes.nav.drive.desired_turn_rate) > 0.5
     pivot.end(p.ap.modes.nav.drive)
-    waypoint.set_reversed(p.ap, True)  # said again, it changes nothing
+    p.set_reversed(True)  # said again, it changes nothing
     assert not pivot.is_active(p.ap.modes.nav.drive, p.ap.params)
 
 
@@ -222,10 +243,10 @@ def test_reversed_on_the_way_a_skid_steered_vehicle_turns_round() -> None:
 def test_standing_it_turns_as_for_the_way_it_will_drive(backward: bool, turn: float) -> None:
     """Towards a destination on the right of its nose or, backwards, away from it."""
     p = Driver(**SKID, WP_PIVOT_ANGLE=0.0)
-    waypoint.set_reversed(p.ap, backward)
+    p.set_reversed(backward)
     p.to(20.0, 5.0)
     for _ in range(100):
-        waypoint.follow(p.v)
+        p.run_path()
         p.v.time_us += 20_000
         p.ap.control.tick += 1
     assert p.ap.modes.nav.drive.desired_turn_rate * turn > 0.0
@@ -233,13 +254,13 @@ def test_standing_it_turns_as_for_the_way_it_will_drive(backward: bool, turn: fl
 
 def test_a_pivot_corner_is_a_stop() -> None:
     p = Driver(**SKID)
-    waypoint.set_destinations(p.ap, p.v.time_us, Vec2(20.0, 0.0), Vec2(20.0, 20.0))
+    p.ask_two(Vec3(20.0, 0.0, 0.0), Vec3(20.0, 20.0, 0.0))
     p.follow()
-    assert not waypoint.is_fast(p.ap)
+    assert not p.ap.modes.nav.current.fast
     assert p.ap.modes.nav.drive.pivot_next == 1
-    waypoint.set_destinations(p.ap, p.v.time_us, Vec2(20.0, 0.0), Vec2(40.0, 10.0))
+    p.ask_two(Vec3(20.0, 0.0, 0.0), Vec3(40.0, 10.0, 0.0))
     p.follow()
-    assert waypoint.is_fast(p.ap)
+    assert p.ap.modes.nav.current.fast
 
 
 def test_wp_pivot_angle_of_zero_means_none() -> None:
@@ -253,7 +274,7 @@ def test_limits_that_its_motion_does_not_fit_leave_the_leg_as_it_is() -> None:
     leg = p.ap.modes.nav.current
     before = float(leg.duration)
     p.ap.params.WP_ACCEL = p.ap.params.WP_JERK = 0.01
-    waypoint.set_speed(p.ap, 2.0)
+    waypoint.set_speed(p.ap.modes.nav, 2.0)
     p.run(1.0)
     assert float(leg.duration) == before
 
