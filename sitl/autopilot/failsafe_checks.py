@@ -12,7 +12,7 @@ from .events import FAILSAFE, Events, emit
 from .params.radio import RcMap
 from .params.system import Battery, Failsafes
 from .radio import THROTTLE, stick_pulse
-from .state import Autopilot, BatteryState, Estimate, Failsafe, Radio
+from .state import BatteryState, Estimate, Failsafe, Radio
 
 RADIO = 1
 GCS = 2
@@ -76,8 +76,11 @@ def low_since(since_us: int, low: bool, time_us: int) -> int:
 
 
 @law
-def watch_battery(fs: Failsafe, battery: BatteryState, armed: bool, time_us: int, params: Battery) -> int:
-    """Ten times a second: 1 when the battery has become low, 2 when critical, else 0."""
+def battery_fell_to(fs: Failsafe, battery: BatteryState, armed: bool, time_us: int, params: Battery) -> int:
+    """Ten times a second: 1 when the battery has become low, 2 when critical, else 0.
+
+    Both stay (``failsafe.battery``) until the next start.
+    """
     if params.MONITOR < 3.0 or not armed:
         fs.battery_low_us = 0
         fs.battery_critical_us = 0
@@ -98,15 +101,10 @@ def watch_battery(fs: Failsafe, battery: BatteryState, armed: bool, time_us: int
 
 
 @law
-def battery_fell_to(ap: Autopilot, time_us: int) -> int:
-    """Ten times a second: 1 when the battery has become low, 2 when critical, else 0; it is reported.
-
-    Both stay (``failsafe.battery``) until the next start.
-    """
-    level = watch_battery(ap.modes.failsafe, ap.battery, ap.arming.armed, time_us, ap.params.BATT)
+def report_battery(events: Events, time_us: int, level: int) -> None:
+    """Report a battery that has become low (``level`` 1) or critical (2); 0: nothing."""
     if level != 0:
-        report(ap.events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
-    return level
+        report(events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
 
 
 _EKF_PERIOD_S = 0.1

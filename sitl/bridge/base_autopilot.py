@@ -95,7 +95,8 @@ class BaseAutopilot:
         return home.set_place(self._v.autopilot.home, self._v.autopilot.estimate, lat, lon, alt)
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
-        return aiding.set_origin(self._v.autopilot, lat, lon, alt)
+        ap = self._v.autopilot
+        return aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(int(lat), int(lon), float(alt)))
 
     def parameter_changed(self, name: str) -> None:
         changed = getattr(self._vehicle, "parameter_changed", None)

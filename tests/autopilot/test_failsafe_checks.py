@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot import arming_checks, battery
 from sitl.autopilot.arming_checks import BATTERY_CAPACITY, BATTERY_FAILSAFE, BATTERY_VOLTAGE, battery_checks
-from sitl.autopilot.failsafe_checks import is_estimate_bad, is_gcs_lost, watch_battery
+from sitl.autopilot.failsafe_checks import battery_fell_to, is_estimate_bad, is_gcs_lost
 from sitl.autopilot.params.parameters import Parameters
 from sitl.autopilot.params.system import Battery, Failsafes
 from sitl.autopilot.state import BatteryState, Estimate, Failsafe, Sensors
@@ -46,7 +46,7 @@ def test_a_low_voltage_counts_when_it_lasts() -> None:
     found = []
     for second in range(40):
         state.voltage = 10.0 if second not in (5, 6) else 11.0
-        found.append(watch_battery(fs, state, True, 1_000_000 * (second + 1), params))
+        found.append(battery_fell_to(fs, state, True, 1_000_000 * (second + 1), params))
     assert found.index(1) == 17 and sum(found) == 1 and fs.battery == 1
 
 
@@ -55,10 +55,10 @@ def test_a_battery_only_gets_worse_and_is_reported_once(volt: float, used: float
     fs, state = Failsafe(), BatteryState()
     params = monitored(LOW_VOLT=low, CRT_MAH=left)
     state.voltage, state.consumed_mah = volt, used
-    levels = [watch_battery(fs, state, True, 100_000 * k, params) for k in range(1, 4)]
+    levels = [battery_fell_to(fs, state, True, 100_000 * k, params) for k in range(1, 4)]
     assert fs.battery == max(levels) and sum(level != 0 for level in levels) <= 1
     state.voltage, state.consumed_mah = 20.0, 0.0
-    assert watch_battery(fs, state, True, 500_000, params) == 0 and fs.battery == max(levels)
+    assert battery_fell_to(fs, state, True, 500_000, params) == 0 and fs.battery == max(levels)
 
 
 def test_arming_wants_voltage_and_charge() -> None:

@@ -14,8 +14,9 @@ import pytest
 from pytest import approx
 
 from sitl.core.records import first_difference
+from sitl.physics.native.turtlebot.state import Body, Command
 from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
-from sitl.physics.native.turtlebot.step import wheel_speeds
+from sitl.physics.native.turtlebot.step import WheelSpeeds, commanded, move, wheel_speeds
 from sitl.turtlebots.native import Turtlebot, Turtlebots
 from sitl.vehicles import AirframeError
 from sitl.vehicles.turtlebot import AIRFRAME, Lidar
@@ -62,6 +63,27 @@ def test_turn_is_counter_clockwise_and_an_exact_arc():
     x, y, _, yaw = robot.pose
     assert yaw == approx(0.3)
     assert (x, y) == approx((0.4 * math.sin(0.3), 0.4 * (1.0 - math.cos(0.3))), abs=1e-6)
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.0, 3.14, -3.14])
+def test_wheels_turn_and_move_a_body_by_their_mean_and_difference(heading):
+    body, figures = Body(), TurtlebotRecord().figures
+    body.heading, figures.wheel_separation = heading, 0.2
+    move(body, figures, WheelSpeeds(0.3, 0.1), np.empty((0, 9)))
+    turned = (0.3 - 0.1) / 0.2 * 0.01
+    assert math.remainder(body.heading - heading - turned, math.tau) == approx(0.0, abs=1e-12)
+    assert math.hypot(body.north, body.east) == approx(0.2 * 0.01)
+    course = math.atan2(body.east, body.north)
+    assert math.remainder(course - heading - 0.5 * turned, math.tau) == approx(0.0, abs=1e-12) and not body.collided
+
+
+def test_a_command_holds_until_its_time_out():
+    command, figures = Command(), TurtlebotRecord().figures
+    figures.wheel_radius = figures.wheel_radius_left = figures.wheel_radius_right = 0.04
+    figures.wheel_speed_max, figures.command_timeout = 1.0, 0.6
+    command.forward, command.time_us = 0.3, 1_000_000
+    assert commanded(figures, command, 1_590_000) == approx((0.3, 0.3))
+    assert commanded(figures, command, 1_600_000) == (0.0, 0.0)
 
 
 def test_wheels_stop_when_the_command_is_too_old():

@@ -5,7 +5,18 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
-from ..failsafe_checks import EKF, GCS, RADIO, battery_fell_to, is_estimate_bad, is_gcs_lost, is_radio_bad, report, text
+from ..failsafe_checks import (
+    EKF,
+    GCS,
+    RADIO,
+    battery_fell_to,
+    is_estimate_bad,
+    is_gcs_lost,
+    is_radio_bad,
+    report,
+    report_battery,
+    text,
+)
 from ..modes import (
     ACCEPTED,
     REASON_BATTERY_FAILSAFE,
@@ -102,8 +113,9 @@ def watch_gcs(v: Vehicle) -> None:
 @law
 def watch_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
-    p = v.autopilot.params
-    level = battery_fell_to(v.autopilot, v.time_us)
+    ap, p = v.autopilot, v.autopilot.params
+    level = battery_fell_to(ap.modes.failsafe, ap.battery, ap.arming.armed, v.time_us, p.BATT)
+    report_battery(ap.events, v.time_us, level)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ...core.algebra import ZERO2, horizontal, with_down
 from ...core.geodesy import offset_ne
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from .. import events
-from ..state import Autopilot, Estimate, Sensors
+from ..state import Estimate, Sensors
 from . import noise
 from .covariance import clear
 from .history import shift
@@ -16,22 +18,29 @@ from .magnetometer import learn_field
 from .state import POS, VEL, Ekf
 
 
+class Origin(NamedTuple):
+    """Where the position is zero."""
+
+    lat: int  # [degE7]
+    lon: int  # [degE7]
+    alt: float  # above mean sea level [m]
+
+
 @law
-def place_origin(ap: Autopilot, lat_e7: int, lon_e7: int, alt: float) -> None:
-    """Set the origin: alt [m] is the height above mean sea level of the position zero."""
-    estimate = ap.estimate
-    estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = lat_e7, lon_e7, alt
+def place_origin(ekf: Ekf, estimate: Estimate, log: events.Events, origin: Origin) -> None:
+    """Set the origin."""
+    estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = origin.lat, origin.lon, origin.alt
     estimate.origin_set = True
-    learn_field(ap.ekf, estimate, lat_e7, lon_e7)
-    events.emit(ap.events, ap.ekf.now_us, events.EKF_ORIGIN_SET, 0.0, 0.0)
+    learn_field(ekf, estimate, origin.lat, origin.lon)
+    events.emit(log, ekf.now_us, events.EKF_ORIGIN_SET, 0.0, 0.0)
 
 
 @law
-def set_origin(ap: Autopilot, lat_e7: int, lon_e7: int, alt_m: float) -> bool:
+def set_origin(ekf: Ekf, estimate: Estimate, log: events.Events, origin: Origin) -> bool:
     """Origin given by a ground station (SET_GPS_GLOBAL_ORIGIN); whether it is taken: not when there is one already."""
-    if ap.estimate.origin_set or abs(lat_e7) > 900000000 or abs(lon_e7) > 1800000000 or not abs(alt_m) < 1e5:
+    if estimate.origin_set or abs(origin.lat) > 900000000 or abs(origin.lon) > 1800000000 or not abs(origin.alt) < 1e5:
         return False
-    place_origin(ap, int(lat_e7), int(lon_e7), float(alt_m))
+    place_origin(ekf, estimate, log, origin)
     return True
 
 
@@ -65,24 +74,22 @@ def reset_to_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, age: float) -> 
 
 
 @law
-def start_using(ap: Autopilot, sensors: Sensors, age: float) -> None:
+def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Sensors, age: float) -> None:
     """From holding the position to GPS, whose fix is ``age`` [s] old."""
-    ekf = ap.ekf
-    reset_to_fix(ekf, ap.estimate, sensors, age)
+    reset_to_fix(ekf, estimate, sensors, age)
     ekf.gps_in_use = True
     ekf.gps_used_before = True
     ekf.gps_pos_fused_us = ekf.now_us
     ekf.gps_vel_fused_us = ekf.now_us
-    events.emit(ap.events, ekf.now_us, events.EKF_USES_GPS, 0.0, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_USES_GPS, 0.0, 0.0)
 
 
 @law
-def stop_using(ap: Autopilot) -> None:
+def stop_using(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     """From GPS to holding the position."""
-    ekf, estimate = ap.ekf, ap.estimate
     ekf.gps_in_use = False
     ekf.hold_pos = horizontal(ekf.pos)
     estimate.variance_pos = 0.0
     estimate.variance_vel = 0.0
     reset_ne(ekf, estimate, ekf.hold_pos, ZERO2)
-    events.emit(ap.events, ekf.now_us, events.EKF_STOPPED_GPS, 0.0, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, 0.0, 0.0)

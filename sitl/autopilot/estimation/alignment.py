@@ -129,8 +129,8 @@ def check_tilt(ekf: Ekf, log: events.Events) -> None:
 
 
 @law
-def _size(v: Vec3) -> float:
-    return abs(v.x) + abs(v.y) + abs(v.z)
+def _size(vector: Vec3) -> float:
+    return abs(vector.x) + abs(vector.y) + abs(vector.z)
 
 
 @law

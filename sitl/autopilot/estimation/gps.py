@@ -16,10 +16,12 @@ import math
 from ...core.algebra import horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
+from ..events import Events
 from ..params.estimator import Ekf3
-from ..state import Autopilot, Estimate, Sensors
+from ..params.parameters import Parameters
+from ..state import Estimate, Sensors
 from . import noise
-from .aiding import fix_ne, place_origin, reset_to_fix, start_using, stop_using
+from .aiding import Origin, fix_ne, place_origin, reset_to_fix, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
 from .history import past_at
 from .magnetometer import learn_field
@@ -185,24 +187,23 @@ def delay_us(delay_ms: float) -> int:
 
 
 @law
-def fuse(ap: Autopilot, sensors: Sensors) -> bool:
+def fuse(ekf: Ekf, estimate: Estimate, log: Events, params: Parameters, sensors: Sensors) -> bool:
     """Look at the GPS message; whether something was fused."""
-    ekf, estimate = ap.ekf, ap.estimate
     if ekf.gps_in_use and ekf.now_us - max(ekf.gps_pos_fused_us, ekf.gps_vel_fused_us) > STOP_TIMEOUT_US:
-        stop_using(ap)
+        stop_using(ekf, estimate, log)
     if not ekf.gps_new:
         return False
     ekf.gps_new = False
-    if not count_fix(ekf, sensors, ap.params.EK3):
+    if not count_fix(ekf, sensors, params.EK3):
         return False
     if not ekf.field_known and ekf.yaw_aligned:
         learn_field(ekf, estimate, sensors.gps_lat, sensors.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
-        place_origin(ap, sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter)
+        place_origin(ekf, estimate, log, Origin(sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter))
     learn_bias(ekf)
-    when_us = ekf.gps_arrival_us - delay_us(ap.params.GPS1_DELAY_MS)
+    when_us = ekf.gps_arrival_us - delay_us(params.GPS1_DELAY_MS)
     if ekf.gps_in_use:
-        return fuse_fix(ekf, estimate, sensors, ap.params.EK3, when_us)
+        return fuse_fix(ekf, estimate, sensors, params.EK3, when_us)
     if may_start(ekf, estimate.origin_set):
-        start_using(ap, sensors, 1e-6 * (ekf.now_us - when_us))
+        start_using(ekf, estimate, log, sensors, 1e-6 * (ekf.now_us - when_us))
     return False

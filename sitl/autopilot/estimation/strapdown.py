@@ -23,9 +23,9 @@ MAX_ACC = 400.0
 
 
 @law
-def within(v: Vec3, limit: float) -> bool:
+def within(vector: Vec3, limit: float) -> bool:
     """Whether a vector is finite and each component at most ``limit`` (NaN is not)."""
-    return abs(v.x) <= limit and abs(v.y) <= limit and abs(v.z) <= limit
+    return abs(vector.x) <= limit and abs(vector.y) <= limit and abs(vector.z) <= limit
 
 
 @law

@@ -7,7 +7,7 @@ from ...core.algebra import IDENTITY
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events
-from ..state import Autopilot, Vehicle
+from ..state import Estimate, Vehicle
 from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
 from .alignment import CALIBRATE, RUN, TILT, YAW
 from .state import POS, VEL, Ekf
@@ -61,30 +61,29 @@ def step(fleet: Records[Vehicle], i: int) -> None:
     """Prediction of the covariance over the last ticks, then fusion of what the sensors brought."""
     v = fleet[i]
     ap = v.autopilot
-    ekf, params, armed = ap.ekf, ap.params.EK3, ap.arming.armed
+    ekf, estimate, params, armed = ap.ekf, ap.estimate, ap.params.EK3, ap.arming.armed
     covariance.predict(ekf.P, ekf.q, ekf.step_dv, ekf.step_dt, params)
     alignment.begin_step(ekf)
     history.keep(ekf)
-    fused = barometer.fuse(ekf, ap.estimate, params)
-    fused |= magnetometer.fuse(ekf, ap.estimate, ap.events, params, armed)
-    fused |= gps.fuse(ap, v.sensors)
+    fused = barometer.fuse(ekf, estimate, params)
+    fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
+    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors)
     if not ekf.gps_in_use:
         fused |= hold(ekf, armed, params.NOAID_M_NSE)
     if fused:
         fusion.inject(ekf, params.ACC_BIAS_LIM)
         covariance.bound(ekf.P)
     watch_alignment(ekf, ap.events, armed)
-    status.publish_status(ekf, ap.estimate)
+    status.publish_status(ekf, estimate)
 
 
 @law
-def _boot(ap: Autopilot) -> None:
+def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     """A tick of gyro calibration."""
-    ekf, estimate = ap.ekf, ap.estimate
     if alignment.calibrate(ekf):
         barometer.set_ground(ekf)
         alignment.initialise(ekf)
-        events.emit(ap.events, ekf.now_us, events.EKF_INITIALISED, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_INITIALISED, 0.0, 0.0)
         return
     ekf.q = IDENTITY
     estimate.q = IDENTITY
@@ -106,7 +105,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     gps.read(ekf, sensors)
     if ekf.phase == CALIBRATE:
         if ap.params.EK3.ENABLE != 0:
-            _boot(ap)
+            _boot(ekf, ap.estimate, ap.events)
         return
     strapdown.advance(ekf, DT)
     magnetometer.read(ekf, sensors)

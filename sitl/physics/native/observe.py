@@ -14,7 +14,7 @@ from ...core.kernels import law
 from ...core.vectors import Quat, Vec3
 from .body import GRAVITY, unit
 from .obstacles import show
-from .records import Body, Motion, Physics
+from .records import Body, Motion, Obstacles
 from .tick import TICK_S
 
 _PER_S = 1.0 / TICK_S
@@ -40,9 +40,8 @@ def mean_rates(before: Quat, after: Quat) -> Vec3:
 
 
 @law
-def observe(p: Physics) -> None:
+def observe(body: Body, motion: Motion, obstacles: Obstacles) -> None:
     """After it: write the body's rates_mean, acc_ned and specific_force."""
-    body, motion, obstacles = p.body, p.motion, p.obstacles
     before, after = motion.q, body.q
     if before.w * after.w + before.x * after.x + before.y * after.y + before.z * after.z < 0.0:
         after = -after  # the same attitude under the other sign

@@ -20,7 +20,7 @@ from ...core.vectors import Vec2, Vec3
 from ...vehicles.figures.body import Outline
 from ...worlds.contact import Contact, Volume, nearest_of
 from .body import GRAVITY
-from .records import Body, Obstacles, Physics
+from .records import Body, Obstacles
 from .tick import TICK_S
 
 HIT_SPEED = 0.1
@@ -127,9 +127,8 @@ def push_out(o: Obstacles, body: Body, outline: Outline) -> float:
 
 
 @law
-def collide(p: Physics, time_us: int) -> bool:
+def collide(o: Obstacles, body: Body, outline: Outline, time_us: int) -> bool:
     """After the body has moved in a world: keep it out of solids. Returns whether it was pushed."""
-    o, body, outline = p.obstacles, p.body, p.airframe
     half = half_length(outline)
     if is_clear(o, body, half):
         return False

@@ -1,5 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One tick of the simulated world: 400 Hz."""
 
+from __future__ import annotations
+
+from typing import NamedTuple
+
 TICK_US = 2500
 TICK_S = 0.0025
+
+
+class Clock(NamedTuple):
+    """When it is."""
+
+    tick: int  # since boot
+    time_us: int  # since boot

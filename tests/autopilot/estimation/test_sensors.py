@@ -85,10 +85,13 @@ def test_quality_checks_can_be_switched_off(name: str, value: int) -> None:
 
 
 def test_origin_is_set_once(ap) -> None:
-    assert not aiding.set_origin(ap, 910000000, 0, 0.0)
-    assert not aiding.set_origin(ap, -353632620, 1491652370, float("nan"))
-    assert aiding.set_origin(ap, -353632620, 1491652370, 584.0)
-    assert not aiding.set_origin(ap, 0, 0, 0.0)
+    def set_origin(lat: int, lon: int, alt: float) -> bool:
+        return aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(lat, lon, alt))
+
+    assert not set_origin(910000000, 0, 0.0)
+    assert not set_origin(-353632620, 1491652370, float("nan"))
+    assert set_origin(-353632620, 1491652370, 584.0)
+    assert not set_origin(0, 0, 0.0)
     e = ap.estimate
     assert (e.origin_set, e.origin_lat, e.origin_lon, e.origin_alt) == (1, -353632620, 1491652370, 584.0)
     assert math.degrees(ap.ekf.declination) == pytest.approx(12.7, abs=0.3)
@@ -96,7 +99,7 @@ def test_origin_is_set_once(ap) -> None:
 
 def test_yaw_turns_by_the_declination_learnt(ap) -> None:
     ap.ekf.q, ap.ekf.yaw_aligned = IDENTITY, True
-    aiding.place_origin(ap, -353632620, 1491652370, 584.0)
+    aiding.place_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(-353632620, 1491652370, 584.0))
     assert 2 * math.atan2(ap.ekf.q.z, ap.ekf.q.w) == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw_count == 1

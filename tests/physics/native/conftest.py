@@ -96,10 +96,10 @@ class Rig:
     def move(self, ticks: int = 1) -> None:
         """Motors, body and ground only."""
         for _ in range(ticks):
+            p = self.p
             if self.airframe.kind == "rover":
-                rover_step.move(self.p, self.v.actuators.controls)
+                rover_step.move(p.wheels, p.body, p.airframe, p.derived, self.v.actuators.controls)
             else:
-                p = self.p
                 copter_step.rotors.command(p.rotors, self.v.actuators.controls, p.airframe, p.derived)
                 copter_step.move(p, 0)
 

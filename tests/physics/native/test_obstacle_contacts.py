@@ -40,7 +40,7 @@ def coast(rig: Any, ticks: int) -> None:
     b = rig.p.body
     for k in range(ticks):
         b.pos += 0.0025 * b.vel
-        obstacles.collide(rig.p, 2500 * (k + 1))
+        obstacles.collide(rig.p.obstacles, rig.p.body, rig.p.airframe, 2500 * (k + 1))
 
 
 def test_a_body_stops_at_a_wall_and_keeps_its_speed_along_it(rig):
@@ -145,7 +145,7 @@ def test_turning_on_the_spot_counts_as_motion(rig):
         half = 0.5 * math.radians(90.0 - 90.0 * (k + 1) / 400)
         b.q = (math.cos(half), 0.0, 0.0, math.sin(half))
         b.rates_mean = b.rates_mean.replace(z=-math.radians(90.0))
-        obstacles.collide(r.p, 2500 * k)
+        obstacles.collide(r.p.obstacles, r.p.body, r.p.airframe, 2500 * k)
     assert b.pos[0] == approx(-0.3, abs=1e-9) and r.p.obstacles.touching == 1
 
 

@@ -4,9 +4,14 @@ import math
 import numpy as np
 import pytest
 from pytest import approx
+from sitl.vehicles.figures.sensors import Sensors
 
 from sitl.core.geodesy import METRES_PER_DEGE7
+from sitl.core.rng import Rng
+from sitl.core.vectors import Vec3
+from sitl.physics.native.records import Body, Derived, SensorState
 from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
+from sitl.physics.native.tick import Clock
 
 
 def samples(rig, sample, field, count):
@@ -64,7 +69,7 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
     for tick in range(1, 400):
         p.body.pos = p.body.pos.replace(x=0.0025 * tick * 10.0)  # 10 m/s north
         before = int(s.gps_count)
-        gps.sample(p, s, gps.Clock(tick, tick * 2500), r.v.rng)
+        gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
         if s.gps_count != before:
             arrivals.append(tick)
             north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
@@ -79,7 +84,7 @@ def test_gps_has_no_fix_at_first(rig):
     p, s = r.p, r.v.sensors
     fixes = {}
     for tick in range(1, 600):
-        gps.sample(p, s, gps.Clock(tick, tick * 2500), r.v.rng)
+        gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
         fixes[tick] = int(s.gps_fix)
     assert fixes[40] == 0 and fixes[60] == 1 and fixes[400] == 1 and fixes[599] == 3
     assert s.gps_eph == 80 and s.gps_satellites == 12
@@ -91,7 +96,7 @@ def test_gps_errors_have_their_deviation(rig):
     rows = []
     for k in range(600):
         gps.take(r.p, 10_000 + k, r.v.rng)
-        gps.deliver(r.p.sensors, r.v.sensors, gps.Clock(20_000 + k, 0), r.p.airframe)
+        gps.deliver(r.p.sensors, r.v.sensors, Clock(20_000 + k, 0), r.p.airframe)
         s = r.v.sensors
         north = (int(s.gps_lat) - int(r.p.place.lat)) * METRES_PER_DEGE7
         rows.append((north, s.gps_alt / 1e3 - 584.0, *s.gps_vel))
@@ -129,3 +134,20 @@ def test_sensor_rates(rig):
     assert r.v.sensors.mag_count == 1 + 160 // 5
     assert r.v.sensors.baro_count == 1 + 160 // 8
     assert r.v.sensors.time_us == 400_000 == r.v.time_us
+
+
+def test_without_errors_a_sensor_shows_the_truth():
+    one, none, truth = Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.0, -2.0, 3.0)
+    assert imu.measure(truth, one, none, 0.0, Rng()) == truth
+    assert imu.measure(truth, 2.0 * one, one, 0.0, Rng()) == 2.0 * truth + one
+    body = Body()
+    body.pos, body.vel = truth, 2.0 * truth
+    assert gps.measure(SensorState(), body, Sensors(), Derived(), Rng()) == (truth, 2.0 * truth)
+    assert barometer.pressure_error(SensorState(), Sensors(), Derived(), Rng()) == 0.0
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_a_range_bounds_all_but_nan(bad):
+    x, y, z = imu.saturate(Vec3(5.0, -5.0, bad), 3.0)
+    assert (x, y) == (3.0, -3.0)
+    assert math.isnan(z) if math.isnan(bad) else z == 3.0

@@ -14,6 +14,7 @@ from sitl.physics.native import battery, records
 from sitl.physics.native.power_on import Home, clear, place, wake
 from sitl.physics.native.prepare import prepare_shared
 from sitl.physics.native.sensors.sense import sense
+from sitl.physics.native.tick import Clock
 from sitl.vehicles import Airframe, sensor_sets
 from sitl.vehicles.figures import body
 from sitl.vehicles.figures.body import Battery, Body, Outline, Ranging, Sensors
@@ -66,7 +67,7 @@ def step(fleet: Records[records.Vehicle[Physics]], i: int) -> None:
     p.body.pos += TICK_S * p.body.vel
     p.body.specific_force = Vec3(change / TICK_S, 0.0, p.body.specific_force.z)
     battery.discharge(p.battery, 20.0, p.airframe, p.derived.charge_per_amp)
-    sense(v)
+    sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
 
 
 def init(v: Any, airframe: BoatAirframe, home: Home, seed: int) -> None:

@@ -10,7 +10,7 @@ from ....core.vectors import Vec3
 from ... import battery, home
 from ...arming_checks import BY_RUDDER
 from ...events import Events
-from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad
+from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery
 from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
 from ...state import Estimate, HomeState
@@ -100,7 +100,9 @@ def check_slowly(v: Vehicle) -> None:
     battery.monitor(ap.battery, v.sensors, p.BATT)
     fs.gcs = is_gcs_lost(fs, v.time_us, p.FS)
     failsafe.watch(v, failsafe.BIT_GCS, fs.gcs)
-    failsafe.act(v, failsafe.battery_action(battery_fell_to(ap, v.time_us), p.BATT), REASON_BATTERY_FAILSAFE)
+    level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
+    report_battery(ap.events, v.time_us, level)
+    failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
     crash.check(v)
 

@@ -31,5 +31,5 @@ def load(fleet: Records[Vehicle[Physics]], i: int) -> None:
 def sense(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Accelerations, battery, sensors."""
     v = fleet[i]
-    observe(v.physics)
+    observe(v.physics.body, v.physics.motion, v.physics.obstacles)
     step.end(v)

@@ -11,7 +11,7 @@ from .. import battery, obstacles, wind
 from ..body import GRAVITY, Inertia, Wrench, fly
 from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
 from ..sensors.sense import sense
-from ..tick import TICK_US
+from ..tick import TICK_US, Clock
 from . import rotors
 from .ground import absorb, lifts_off, rest, touch
 from .state import Physics
@@ -67,7 +67,7 @@ def end(v: Vehicle[Physics]) -> None:
     """Last thing of a tick: battery and sensors."""
     p = v.physics
     battery.discharge(p.battery, p.rotors.power, p.airframe, p.derived.charge_per_amp)
-    sense(v)
+    sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
 
 
 @inline_unit
@@ -78,6 +78,6 @@ def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     p = v.physics
     move(p, v.time_us)
     if p.obstacles.present:
-        obstacles.collide(p, v.time_us)
+        obstacles.collide(p.obstacles, p.body, p.airframe, v.time_us)
         obstacles.show(p.obstacles, p.body)
     end(v)

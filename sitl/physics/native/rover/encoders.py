@@ -8,7 +8,6 @@ import math
 from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.vectors import Vec2
-from .state import Physics
 
 
 @law
@@ -20,9 +19,8 @@ def counted(distance: float, step: float) -> float:
 
 
 @law
-def sample(p: Physics, sensors: Sensors, tick: int) -> None:
-    """Write wheel_distance [m] when a sample falls due."""
-    period, rolled, step = p.derived.encoder_period, p.wheels.distance, p.airframe.encoder_step
+def sample(sensors: Sensors, rolled: Vec2, step: float, period: int, tick: int) -> None:
+    """Write wheel_distance of wheels that have ``rolled`` so far, in steps [m], every ``period`` ticks (0: never)."""
     if period == 0 or tick % period != 1:
         return
     sensors.wheel_distance = Vec2(counted(rolled.x, step), counted(rolled.y, step))

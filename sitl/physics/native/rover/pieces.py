@@ -15,10 +15,10 @@ from .state import Physics
 @unit
 def begin(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Clock; motors and steering follow the controls: ``wheels.speed``, ``wheels.angle``, ``wheels.power``."""
-    v = fleet[i]
-    note(v.physics.body, v.physics.motion)
+    v, p = fleet[i], fleet[i].physics
+    note(p.body, p.motion)
     step.begin(v)
-    step.drive(v.physics, v.actuators.controls)
+    step.drive(p.wheels, p.airframe, p.derived, v.actuators.controls)
 
 
 @unit
@@ -31,5 +31,5 @@ def load(fleet: Records[Vehicle[Physics]], i: int) -> None:
 def sense(fleet: Records[Vehicle[Physics]], i: int) -> None:
     """Accelerations, battery, sensors."""
     v = fleet[i]
-    observe(v.physics)
+    observe(v.physics.body, v.physics.motion, v.physics.obstacles)
     step.end(v)

@@ -6,15 +6,15 @@ from __future__ import annotations
 from ....core.kernels import inline_unit, law
 from ....core.records import Floats, Records
 from ....core.vectors import Vec2
-from ....vehicles.figures.rover import STEERING_SKID
+from ....vehicles.figures.rover import STEERING_SKID, Figures
 from .. import battery, obstacles
-from ..records import Vehicle
+from ..records import Body, Vehicle
 from ..sensors.sense import sense
-from ..tick import TICK_S, TICK_US
+from ..tick import TICK_S, TICK_US, Clock
 from . import encoders
 from .drive import commanded, grip_along, run
 from .motion import Course, hold_back, roll
-from .state import Physics
+from .state import Derived, Physics, Wheels
 from .steering import approach, curvature, grip_across
 
 STEERING_OUTPUT = 0
@@ -24,9 +24,8 @@ THROTTLE_OUTPUT = 2
 
 
 @law
-def drive(p: Physics, controls: Floats) -> None:
+def drive(wheels: Wheels, figures: Figures, derived: Derived, controls: Floats) -> None:
     """Let motors and steering follow the actuator controls [-1 .. 1] for a tick."""
-    wheels, figures, derived = p.wheels, p.airframe, p.derived
     first = commanded(float(controls[STEERING_OUTPUT]), derived.control_scale)
     second = commanded(float(controls[THROTTLE_OUTPUT]), derived.control_scale)
     if figures.steering_model == STEERING_SKID:
@@ -42,10 +41,9 @@ def drive(p: Physics, controls: Floats) -> None:
 
 
 @law
-def move(p: Physics, controls: Floats) -> None:
+def move(wheels: Wheels, body: Body, figures: Figures, derived: Derived, controls: Floats) -> None:
     """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
-    wheels, body, figures, derived = p.wheels, p.body, p.airframe, p.derived
-    drive(p, controls)
+    drive(wheels, figures, derived, controls)
     before, left, right = wheels.forward, wheels.speed.x, wheels.speed.y
     skids = figures.steering_model == STEERING_SKID
     pull = grip_along(before, 0.5 * (left + right) if skids else left, derived.drive_grip)
@@ -75,8 +73,8 @@ def end(v: Vehicle[Physics]) -> None:
     """Last thing of a tick: battery and sensors."""
     p = v.physics
     battery.discharge(p.battery, p.wheels.power, p.airframe, p.derived.charge_per_amp)
-    sense(v)
-    encoders.sample(p, v.sensors, v.tick)
+    sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
+    encoders.sample(v.sensors, p.wheels.distance, p.airframe.encoder_step, p.derived.encoder_period, v.tick)
 
 
 @inline_unit
@@ -85,9 +83,9 @@ def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     v = fleet[i]
     begin(v)
     p = v.physics
-    move(p, v.actuators.controls)
+    move(p.wheels, p.body, p.airframe, p.derived, v.actuators.controls)
     if p.obstacles.present:
-        if obstacles.collide(p, v.time_us):
+        if obstacles.collide(p.obstacles, p.body, p.airframe, v.time_us):
             hold_back(p.body, p.obstacles, p.wheels, p.airframe.rear_axle)
         obstacles.show(p.obstacles, p.body)
     end(v)

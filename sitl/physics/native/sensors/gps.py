@@ -17,7 +17,8 @@ from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Sensors as SensorFigures
-from ..records import GPS_RING, Physics, SensorState
+from ..records import GPS_RING, Body, Derived, Physics, Place, SensorState
+from ..tick import Clock
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""
@@ -25,13 +26,11 @@ NO_FIX, FIX_3D = 1, 3
 """Of MAVLink's GPS_FIX_TYPE."""
 
 
-class Clock(NamedTuple):
-    """When it is."""
+class Measured(NamedTuple):
+    """What a receiver makes of the true position and velocity."""
 
-    tick: int
-    """Since boot."""
-    time_us: int
-    """Since boot."""
+    pos: Vec3  # NED [m]
+    vel: Vec3  # NED [m/s]
 
 
 @law
@@ -45,24 +44,36 @@ def _axes(horizontal: float, vertical: float) -> Vec3:
 
 
 @law
-def take(p: Physics, tick: int, rng: Rng) -> None:
-    """Take a fix of the true position and send it on its way."""
-    a, s, d, place = p.airframe, p.sensors, p.derived, p.place
+def measure(s: SensorState, body: Body, a: SensorFigures, d: Derived, rng: Rng) -> Measured:
+    """Position and velocity with drift and noise."""
     scale = a.noise_scale
     s.gps_drift = d.gps_drift_decay * s.gps_drift + d.gps_drift_step * normal_vector(rng)
     slow = _axes(scale * a.gps_drift_horizontal, scale * a.gps_drift_vertical)
     noise = _axes(scale * a.gps_noise_horizontal, scale * a.gps_noise_vertical)
-    pos = p.body.pos + by_component(slow, s.gps_drift) + by_component(noise, normal_vector(rng))
+    pos = body.pos + by_component(slow, s.gps_drift) + by_component(noise, normal_vector(rng))
     noise = _axes(scale * a.gps_velocity_noise_horizontal, scale * a.gps_velocity_noise_vertical)
-    vel = p.body.vel + by_component(noise, normal_vector(rng))
+    return Measured(pos, body.vel + by_component(noise, normal_vector(rng)))
+
+
+@law
+def send(s: SensorState, place: Place, found: Measured, due: int, fix_type: int) -> None:
+    """Send a fix on its way, to be delivered at tick ``due``."""
+    pos, vel = found.pos, found.vel
     lat, lon = add_offset(place.lat, place.lon, pos.x, pos.y)
     fix = s.gps_fixes[s.gps_head % GPS_RING]
     s.gps_head += 1
-    fix.due = tick + d.gps_delay
-    fix.type = FIX_3D if tick >= d.gps_fix else NO_FIX
+    fix.due, fix.type = due, fix_type
     fix.lat, fix.lon = _nearest(lat), _nearest(lon)
     fix.alt = _nearest((place.alt - pos.z) * 1000.0)
     fix.vel = Vec3(_nearest(vel.x * 100.0), _nearest(vel.y * 100.0), _nearest(vel.z * 100.0))
+
+
+@law
+def take(p: Physics, tick: int, rng: Rng) -> None:
+    """Take a fix of the true position and send it on its way."""
+    s, d = p.sensors, p.derived
+    found = measure(s, p.body, p.airframe, d, rng)
+    send(s, p.place, found, tick + d.gps_delay, FIX_3D if tick >= d.gps_fix else NO_FIX)
 
 
 @law

@@ -19,20 +19,25 @@ WALK_TICKS = 40
 
 
 @law
-def saturate(v: Vec3, bound: float) -> Vec3:
-    """``v`` with each component within +-``bound``."""
-    return Vec3(min(max(v.x, -bound), bound), min(max(v.y, -bound), bound), min(max(v.z, -bound), bound))
+def saturate(value: Vec3, bound: float) -> Vec3:
+    """``value`` with each component within +-``bound``; NaN stays."""
+    x, y, z = value.x, value.y, value.z
+    return Vec3(min(max(x, -bound), bound), min(max(y, -bound), bound), min(max(z, -bound), bound))
+
+
+@law
+def measure(truth: Vec3, scale: Vec3, bias: Vec3, noise: float, rng: Rng) -> Vec3:
+    """What a sensor of three axes shows; ``noise``: standard deviation of a sample."""
+    return by_component(truth, scale) + bias + noise * normal_vector(rng)
 
 
 @law
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
     a, s, d, body = p.airframe, p.sensors, p.derived, p.body
-    bias = s.acc_bias + s.acc_walk
-    acc = by_component(body.specific_force, s.acc_scale) + bias + d.acc_noise * normal_vector(rng)
+    acc = measure(body.specific_force, s.acc_scale, s.acc_bias + s.acc_walk, d.acc_noise, rng)
     sensors.acc = saturate(acc, a.acc_range)
-    bias = s.gyro_bias + s.gyro_walk
-    gyro = by_component(body.rates_mean, s.gyro_scale) + bias + d.gyro_noise * normal_vector(rng)
+    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise, rng)
     sensors.gyro = saturate(gyro, a.gyro_range)
 
 

@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
+from ....core.border import Sensors
 from ....core.kernels import law
+from ....core.rng import Rng
 from ..atmosphere import set_air
-from ..records import Physics, Vehicle
+from ..records import Physics
+from ..tick import Clock
 from . import barometer, gps, imu, magnetometer, power
 
 
 @law
-def sense(v: Vehicle[Physics]) -> None:
+def sense(p: Physics, sensors: Sensors, rng: Rng, now: Clock) -> None:
     """Write the samples that fall due in this tick."""
-    p, sensors, rng, tick = v.physics, v.sensors, v.rng, v.tick
+    tick = now.tick
     if tick % imu.WALK_TICKS == 0:
         imu.walk(p.sensors, p.derived, rng)
         power.sample(p.battery, sensors)
@@ -22,5 +25,5 @@ def sense(v: Vehicle[Physics]) -> None:
     if tick % p.derived.baro_period == 1:
         set_air(p.air, p.place.alt - p.body.pos.z)
         barometer.sample(p, sensors, rng)
-    gps.sample(p, sensors, gps.Clock(tick, v.time_us), rng)
-    sensors.time_us = v.time_us
+    gps.sample(p, sensors, now, rng)
+    sensors.time_us = now.time_us

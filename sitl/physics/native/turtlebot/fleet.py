@@ -10,9 +10,9 @@ from ....core.array_kernels import IntLine, Kernel, NarrowTable, Table
 from ....core.kernels import law
 from ....core.records import Records
 from ....worlds.geometry import Solids
-from .scan import Beams, scan
-from .state import Turtlebot
-from .step import step
+from .scan import Beams, add_noise, scan
+from .state import TICK_US, Turtlebot
+from .step import commanded, move
 
 
 class Orders(NamedTuple):
@@ -49,8 +49,10 @@ def advance_fleet(
                 c = v.command
                 c.forward, c.turn, c.time_us = commands[i, 0], commands[i, 1], v.time_us
         for _ in range(ticks[i]):
-            step(v, solids.rows)
-        scan(v, solids, beams, readings[i])
+            move(v.body, v.figures, commanded(v.figures, v.command, v.time_us), solids.rows)
+            v.time_us += TICK_US
+        scan(v.body, v.figures, solids, beams, readings[i])
+        add_noise(readings[i], v.figures, v.rng)
 
 
 advance = Kernel(advance_fleet)

@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 from ....core.array_kernels import Line, NarrowLine, Table
 from ....core.kernels import law
-from ....core.rng import normal
+from ....core.rng import Rng, normal
 from ....core.vectors import Vec3
+from ....vehicles.turtlebot import Figures
 from ....worlds.geometry import Solids
 from ....worlds.planar import publish_readings
 from ....worlds.raycast import scan_rays
-from .state import Turtlebot
+from .state import Body
 
 
 class Beams(NamedTuple):
@@ -28,16 +29,12 @@ class Beams(NamedTuple):
 
 
 @law
-def scan(v: Turtlebot, solids: Solids, beams: Beams, readings: NarrowLine) -> None:
-    """Read the lidar into ``readings``, float32 as the original's messages.
+def scan(b: Body, f: Figures, solids: Solids, beams: Beams, readings: NarrowLine) -> None:
+    """Read the lidar of a body in a world into ``readings``, float32 as the original's messages.
 
-    Args:
-        v: one record.
-        solids: of the world.
-        beams: of the lidar.
-        readings: shape (readings,) [m], from right to left; inf: nothing within the range.
+    ``readings``: shape (readings,) [m], from right to left; inf: nothing within the range.
     """
-    b, f, directions = v.body, v.figures, beams.directions
+    directions = beams.directions
     c, s = math.cos(b.heading), math.sin(b.heading)
     for k in range(beams.ranges.shape[0]):
         x, y = beams.rays[0, k], beams.rays[1, k]
@@ -45,9 +42,14 @@ def scan(v: Turtlebot, solids: Solids, beams: Beams, readings: NarrowLine) -> No
     origin = Vec3(b.north + c * f.lidar_ahead, b.east + s * f.lidar_ahead, b.down - f.lidar_height)
     scan_rays(solids, origin, directions, beams.ranges)
     publish_readings(beams.ranges, f.range_max, readings)
+
+
+@law
+def add_noise(readings: NarrowLine, f: Figures, rng: Rng) -> None:
+    """Add the lidar's noise to what it reads [m]."""
     if f.range_noise > 0.0:
         for k in range(readings.shape[0]):
-            error = f.range_noise * normal(v.rng)
+            error = f.range_noise * normal(rng)
             reading = float(readings[k])
             if reading < f.range_max:
                 readings[k] = min(max(reading + error, 0.0), f.range_max)

@@ -16,7 +16,7 @@ from ....core.scalars import TWO_PI
 from ....core.vectors import Vec2
 from ....vehicles.turtlebot import Figures
 from ....worlds.contact import Volume, nearest_of
-from .state import TICK_S, TICK_US, Turtlebot
+from .state import TICK_S, Body, Command
 
 
 class WheelSpeeds(NamedTuple):
@@ -50,17 +50,19 @@ def free_distance(f: Figures, floor: float, solids: Table, place: Vec2) -> float
 
 
 @law
-def step(v: Turtlebot, solids: Table) -> None:
+def commanded(f: Figures, c: Command, time_us: int) -> WheelSpeeds:
+    """What the wheels do now: a command holds until its time-out."""
+    if 1e-6 * (time_us - c.time_us) < f.command_timeout:
+        return wheel_speeds(f, c.forward, c.turn)
+    return WheelSpeeds(0.0, 0.0)
+
+
+@law
+def move(b: Body, f: Figures, wheels: WheelSpeeds, solids: Table) -> None:
     """Move on by ``TICK_US``. A move that would bring the robot into a solid does not happen; it still turns.
 
-    Args:
-        v: one record.
-        solids: rows of a world's ``Geometry``.
+    ``solids``: rows of a world's ``Geometry``.
     """
-    b, c, f = v.body, v.command, v.figures
-    wheels = WheelSpeeds(0.0, 0.0)
-    if 1e-6 * (v.time_us - c.time_us) < f.command_timeout:
-        wheels = wheel_speeds(f, c.forward, c.turn)
     speed, yaw_rate = 0.5 * (wheels.left + wheels.right), (wheels.left - wheels.right) / f.wheel_separation
     turned = yaw_rate * TICK_S
     heading = b.heading + turned
@@ -81,4 +83,3 @@ def step(v: Turtlebot, solids: Table) -> None:
     elif heading < -math.pi:
         heading += TWO_PI
     b.heading, b.speed, b.yaw_rate = heading, speed, yaw_rate
-    v.time_us += TICK_US
