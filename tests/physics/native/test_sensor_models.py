@@ -4,7 +4,6 @@ import math
 import numpy as np
 import pytest
 from pytest import approx
-from sitl.vehicles.figures.sensors import Sensors
 
 from sitl.core.geodesy import METRES_PER_DEGE7
 from sitl.core.rng import Rng
@@ -12,6 +11,7 @@ from sitl.core.vectors import Vec3
 from sitl.physics.native.records import Body, Derived, SensorState
 from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
 from sitl.physics.native.tick import Clock
+from sitl.vehicles.figures.body import Sensors
 
 
 def samples(rig, sample, field, count):

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal
-from ....vehicles.figures.sensors import Sensors as SensorFigures
+from ....vehicles.figures.body import Sensors as SensorFigures
 from ..atmosphere import pressure, temperature
 from ..records import Derived, Physics, SensorState
 
