@@ -195,16 +195,20 @@ class Bridge:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
         return self.board.wait(seconds)
 
-    def receive(self) -> None:
-        """Read all links and act on every frame."""
+    def receive(self, resume: bool = False) -> None:
+        """Read all links and act on every frame.
+
+        Args:
+            resume: the ports hold frames already, or have stopped at one.
+        """
         board = self.board
         board.read()
         journal = board.journal
         for channel in self.channels:
             data = channel.peer.take()
-            if data:
-                if journal is not None:
-                    journal.received(channel, data)
+            if data and journal is not None:
+                journal.received(channel, data)
+            if data or resume:
                 self._hear(channel, data)
         if journal is not None:
             journal.acted()
@@ -212,25 +216,29 @@ class Bridge:
 
     def _hear(self, channel: Channel, data: bytes) -> None:
         """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
-        port, taps = channel.port, self.taps
-        port.stops_at_frames = bool(taps)
+        channel.port.stops_at_frames = bool(self.taps)
+        if channel.port.in_size:
+            self._hear_port(channel)
         while data:
             data = channel.feed(data)
             self._hear_port(channel)
-            while port.frame_end:
-                frame = channel.frame()
-                for tap in taps:
-                    tap.frame(self.elapsed_us, frame.raw)
-                if not port.frame_taken:
-                    self._dispatch(channel, frame)
-                port = channel.port
-                self._hear_port(channel)
 
     def _hear_port(self, channel: Channel) -> None:
-        events = self._event_count()
-        self.core.hear(channel.address)
-        if self._event_count() != events:  # the law of a message had something to say
-            self.get(EventService).read()
+        """Act on what the port holds; it may have stopped at a frame already."""
+        while True:
+            if not channel.port.frame_end:
+                events = self._event_count()
+                self.core.hear(channel.address)
+                if self._event_count() != events:  # the law of a message had something to say
+                    self.get(EventService).read()
+                if not channel.port.frame_end:
+                    return
+            frame = channel.frame()
+            for tap in self.taps:
+                tap.frame(self.elapsed_us, frame.raw)
+            taken, channel.port.frame_end = channel.port.frame_taken, 0
+            if not taken:
+                self._dispatch(channel, frame)
 
     def _dispatch(self, channel: Channel, frame: Frame) -> None:
         """Act on a frame that the core does not take; our own words and messages to other systems do not come here."""

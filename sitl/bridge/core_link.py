@@ -20,6 +20,8 @@ class CoreUnits(NamedTuple):
     hear: Callable[..., None]
     tell: Callable[..., None]
     run: Callable[..., None]
+    run_all: Callable[..., None]
+    """The same for vehicles of a fleet (``wire/fleet.py``)."""
     builders: tuple[Builder, ...]
     takers: tuple[Taker, ...]
 

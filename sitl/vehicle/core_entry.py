@@ -47,6 +47,16 @@ def bind_unit(
     return _bound(kind, unit, compiler.load(unit, kind.record_path, progress), fleet, index)
 
 
+def bind_fleet_unit(
+    unit: Callable[..., None], kind: Kind, fleet: Array, progress: Progress | None = None
+) -> Callable[..., None]:
+    """A unit of a kind of vehicle for a whole fleet, whose memory stays in place: ``run(index, *integers)``."""
+    compiled = compiler.load(unit, kind.record_path, progress)
+    if compiled is None:
+        return partial(unit, [kind.record.of(fleet, k) for k in range(len(fleet))])  # type: ignore[arg-type]
+    return partial(compiled, c_void_p(fleet.ctypes.data), c_int64(len(fleet)))
+
+
 def _bound(kind: Kind, plain: Callable[..., None], compiled: Any, fleet: Array, index: int) -> Callable[..., None]:
     if compiled is None:
         views: Any = {index: kind.record.of(fleet, index)}

@@ -128,6 +128,8 @@ class EventService(Service):
         if code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
+        if code in (core.ARMED, core.DISARMED):
+            self.bridge.get(PreArmService).find_due()
         if code == core.EKF_INITIALISED:
             say(INFO, "AHRS: EKF3 active")
         elif code == core.EKF_ORIGIN_SET:
@@ -163,10 +165,15 @@ class PreArmService(Service):
     due_us = EVERY_US
 
     def service(self, now_us: int) -> None:
-        self.due_us = (now_us // EVERY_US + 1) * EVERY_US
+        self.find_due()
         if not self.bridge.autopilot.armed():
             self.bridge.autopilot.run_prearm_checks()
             self.bridge.say_pending()
+
+    def find_due(self) -> None:
+        """It was armed, disarmed or checked: an armed vehicle is checked no more."""
+        armed = self.bridge.autopilot.armed()
+        self.due_us = NEVER if armed else (self.bridge.now_us // EVERY_US + 1) * EVERY_US
 
     def snapshot(self) -> int:
         return self.due_us

@@ -17,6 +17,7 @@ from sitl.bridge.telemetry.builder import compiled
 from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
 from sitl.bridge.telemetry.shell import CAPABILITIES
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
+from sitl.bridge.wire.fleet import run_slots
 from sitl.bridge.wire.link import Links, hear_port, run_vehicle, tell_links
 from sitl.core.kernels import law, unit
 from sitl.vehicle.record import Vehicle
@@ -83,7 +84,12 @@ def run(fleet: Sequence[Boat], index: int, ports: int, count: int, until_us: int
     run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
 
 
-UNITS = CoreUnits(hear, tell, run, BUILDERS, TAKERS)
+@unit
+def run_all(fleet: Sequence[Boat], index: int, last: int, ports: int, slots: int) -> None:
+    run_slots(fleet, index, last, ports, slots, hear, run)
+
+
+UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)
 _VEHICLE: dict[int, Any] = {**command_table.COMMANDS, **command_table.COMMANDS}
 PROFILE = Profile(
     firmware="Boat",

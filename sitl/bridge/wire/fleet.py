@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many vehicles with a client each in the core; one that needs the shell stops, and the others go on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+from ...core.kernels import law
+from ...core.memory import record_at
+from ...core.records import Record
+from ...vehicle.record import Vehicle
+from .port import SIZE, Port
+
+V = TypeVar("V", bound=Vehicle)
+
+
+class Slot(Record):
+    """What a fleet keeps of a vehicle besides its record and its port."""
+
+    until_us: int  # where it is to go on to [since boot]
+    shell_us: int  # when the shell has something to do [since boot]
+    events_seen: int  # events that the shell has acted on
+    needs_shell: bool  # the core cannot go on without it
+
+
+@law
+def run_slot(
+    fleet: Sequence[V],
+    index: int,
+    port_address: int,
+    slot: Slot,
+    hear: Callable[[Sequence[V], int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int], None],
+) -> None:
+    """Let one vehicle act on what its client sent and go on to ``slot.until_us``."""
+    v, port = fleet[index], record_at(Port, port_address)
+    events = v.autopilot.events
+    if port.in_size > 0:
+        hear(fleet, index, port_address)
+    slot.needs_shell = port.frame_end != 0 or events.count != slot.events_seen or events.attention
+    if slot.needs_shell or v.time_us >= slot.until_us:
+        return
+    run(fleet, index, port_address, 1, slot.until_us, slot.shell_us)
+    slot.needs_shell = (
+        events.count != slot.events_seen
+        or events.attention
+        or v.time_us < slot.until_us
+        or v.time_us >= slot.shell_us
+        or port.next_us <= v.time_us
+    )
+
+
+@law
+def run_slots(
+    fleet: Sequence[V],
+    first: int,
+    last: int,
+    ports: int,
+    slots: int,
+    hear: Callable[[Sequence[V], int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int], None],
+) -> None:
+    """The same for vehicles ``first`` .. ``last`` - 1; a vehicle whose ``until_us`` is 0 stays as it is."""
+    for index in range(first, last):
+        slot = record_at(Slot, slots + index * SLOT_SIZE)
+        if slot.until_us != 0:
+            run_slot(fleet, index, ports + index * SIZE, slot, hear, run)
+
+
+SLOT_SIZE = Slot.dtype.itemsize

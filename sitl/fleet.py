@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many vehicles of one kind in one array of records, each with a client of its own on MAVLink.
+
+One compiled call advances all of them: it acts on what their clients sent, lets time go on and sends what falls due,
+split over threads if asked for. A vehicle that needs Python (a command, a parameter, a mission, a text) is served by one
+simulation that all of them share: it takes the vehicle's state, does what there is to do, and gives the state back; the
+others have gone on meanwhile. Each vehicle flies bit for bit as a ``Simulation`` of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from itertools import pairwise
+from numbers import Real
+from typing import Any, Unpack
+
+import numpy as np
+
+from .bridge.channel import ChannelState
+from .bridge.links.inprocess import InProcessLink
+from .bridge.wire.fleet import Slot
+from .bridge.wire.port import IN_BYTES, STATE, Port
+from .core.compile import Progress
+from .core.kernels import jit_disabled
+from .errors import OptionError
+from .scenario import Options, Scenario
+from .simulation import Simulation, Snapshot
+from .vehicle.core_entry import Core, bind_fleet_unit
+from .vehicles import Airframe
+
+Array = np.ndarray[Any, Any]
+
+
+class Fleet:
+    """Vehicles of one kind, each with one client in this process.
+
+    All begin at power-on. ``put`` gives some of them another state, such as that of a vehicle in the air.
+
+    Args:
+        frame: airframe name, path of a file that defines one, an Airframe, or a whole ``Scenario``.
+        count: number of vehicles.
+        threads: that advance them; their number changes no bit of the result.
+        core: the core of this kind of vehicle, if it is loaded already.
+        progress: told of each unit that is compiled.
+        options: the other fields of ``sitl.scenario.Scenario``: home, seed, params ...; the physics is native.
+
+    Raises:
+        OptionError: ``count`` or ``threads`` is no positive whole number, or the physics is not native; and what
+            ``Simulation`` raises.
+    """
+
+    def __init__(
+        self,
+        frame: str | Airframe | Scenario | None = None,
+        count: int = 1,
+        *,
+        threads: int = 1,
+        core: Core | None = None,
+        progress: Progress | None = None,
+        **options: Unpack[Options],
+    ) -> None:
+        for name, number in (("count", count), ("threads", threads)):
+            if not isinstance(number, int) or number < 1:
+                raise OptionError(f"{name} = {number!r}; a whole number from 1 on is needed")
+        self._shell = shell = Simulation(frame, core=core, progress=progress, **options)
+        if not shell.plant.runs_in_core:
+            raise OptionError(f"a fleet flies on native physics, not on {shell.physics}")
+        self.scenario, self.kind = shell.scenario, shell.kind
+        self.records: Array = shell.kind.record.fleet(count)
+        """The vehicles' records (``sitl.vehicle.record``), shape (count,); their memory stays in place."""
+        self.ports: Array = np.zeros(count, Port.dtype)
+        """Their ends of the links (``sitl.bridge.wire.port``), shape (count,)."""
+        self._slots: Array = np.zeros(count, Slot.dtype)
+        self._link = InProcessLink()
+        shell.bridge.add_link(self._link)
+        (self._channel,) = shell.bridge.channels
+        self._states: list[Snapshot] = []
+        self._extra: dict[int, bytes] = {}
+        """Bytes to clients that the shell sent: they come before those in the ports."""
+        self._records_u1 = self.records.view("u1").reshape(count, -1)
+        self._ports_u1 = self.ports.view("u1").reshape(count, -1)
+        unit = shell.bridge.profile.core.run_all
+        self._run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
+        self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
+        self.threads = threads
+        self._states = [shell.snapshot()] * count
+        self.put(range(count), self._states[0])
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    @property
+    def time_us(self) -> Array:
+        """Simulated time of each vehicle since it was first powered on [us], shape (count,)."""
+        before: Array = np.array([state.before_boot_us for state in self._states])
+        return before + self.records["time_us"]
+
+    # ------------------------------------------------------------------ states
+
+    def put(self, which: int | Iterable[int], snapshot: Snapshot, seed: int | None = None) -> None:
+        """Give vehicles the state of a snapshot, made by a simulation or fleet of the same scenario.
+
+        Args:
+            which: a vehicle, or several.
+            snapshot: its client is the first one, if it had any.
+            seed: of the noise of all sensors from now on; None: as in the snapshot.
+
+        Raises:
+            OptionError: the snapshot is of another airframe, world or physics; no vehicle is changed.
+        """
+        rows = [which] if isinstance(which, int) else list(which)
+        for row in rows:
+            self._check(row)
+        shell = self._shell
+        shell.restore(snapshot)  # refuses what cannot be put here
+        if seed is not None:
+            shell.reseed(seed)
+        self._link.receive()
+        self._take_back(rows)
+
+    def snapshot(self, index: int) -> Snapshot:
+        """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""
+        self._check(index)
+        held = self._states[index]
+        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes())
+        bridge = held.bridge._replace(channels=(port,))
+        return replace(held, record=self._records_u1[index].tobytes(), bridge=bridge)
+
+    def simulation(self, index: int) -> Simulation:
+        """A simulation of its own in the state of a vehicle: a copy, which flies on without the fleet."""
+        made = Simulation(self.scenario)
+        made.restore(self.snapshot(index))
+        return made
+
+    def view(self, index: int) -> Any:
+        """The record of a vehicle, by attributes."""
+        self._check(index)
+        return self.kind.record.of(self.records, index)
+
+    def _check(self, index: int) -> None:
+        if not 0 <= index < len(self.records):
+            raise OptionError(f"the fleet has no vehicle {index!r}; it has 0 .. {len(self.records) - 1}")
+
+    # ------------------------------------------------------------------ clients
+
+    def send(self, index: int, data: bytes) -> None:
+        """Bytes from a vehicle's client; it acts on them when it is advanced."""
+        self._check(index)
+        port = self.ports[index]
+        size = int(port["in_size"])
+        if size + len(data) > IN_BYTES:
+            self._serve(index, 0, data)
+            return
+        port["incoming"][size : size + len(data)] = np.frombuffer(data, np.uint8)
+        port["in_size"] = size + len(data)
+
+    def receive(self, index: int) -> bytes:
+        """All bytes to a vehicle's client since the last call."""
+        self._check(index)
+        port = self.ports[index]
+        size = int(port["out_size"])
+        data = self._extra.pop(index, b"") + port["out"][:size].tobytes()
+        port["out_size"] = port["out_count"] = 0
+        return data
+
+    # ------------------------------------------------------------------ time
+
+    def advance(self, seconds: float, which: Sequence[int] | Array | None = None) -> None:
+        """Advance vehicles by a simulated time, rounded up to whole ticks of 2.5 ms.
+
+        Args:
+            seconds: from 0 on.
+            which: numbers of the vehicles; None: all.
+
+        Raises:
+            OptionError: ``seconds`` is negative or not a finite number.
+        """
+        if not (isinstance(seconds, Real) and 0.0 <= seconds < math.inf):
+            raise OptionError(f"cannot advance by {seconds!r} s: a number from 0 on is needed")
+        slots, step_us = self._slots, round(seconds * 1e6)
+        until = self.records["time_us"] + step_us
+        if which is None:
+            slots["until_us"] = until
+        else:
+            slots["until_us"] = 0
+            slots["until_us"][which] = until[which]
+        slots["needs_shell"] = 0
+        self._run_all()
+        for index in np.flatnonzero(slots["needs_shell"]).tolist():
+            self._serve(index, int(slots["until_us"][index]) - int(self.records["time_us"][index]))
+
+    def _run_all(self) -> None:
+        count, threads = len(self.records), self.threads
+        addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
+        if self._pool is None:
+            self._run(0, count, *addresses)
+            return
+        cuts = [count * k // threads for k in range(threads + 1)]
+        runs = [self._pool.submit(self._run, a, b, *addresses) for a, b in pairwise(cuts) if a < b]
+        for run in runs:
+            run.result()
+
+    # ------------------------------------------------------------------ what needs Python
+
+    def _serve(self, index: int, step_us: int, data: bytes = b"") -> None:
+        """Let the shell act on what the core left to it, and advance the vehicle by ``step_us``."""
+        shell, channel = self._shell, self._channel
+        shell.restore(self.snapshot(index))
+        channel.port._bytes[:] = self._ports_u1[index].tobytes()
+        self._link.send(data)
+        shell.bridge.receive(resume=True)
+        shell.advance_to(shell.time_us + max(step_us, 0))
+        self._extra[index] = self._extra.get(index, b"") + self._link.receive()
+        self._take_back([index])
+
+    def _take_back(self, rows: list[int]) -> None:
+        """Put the shell's state into the vehicles."""
+        shell = self._shell
+        state = shell.snapshot()
+        record = np.frombuffer(state.record, np.uint8)
+        port = np.frombuffer(bytes(self._channel.port._bytes), np.uint8)
+        kept = replace(state, record=b"")
+        for row in rows:
+            self._records_u1[row], self._ports_u1[row] = record, port
+            self._states[row] = kept
+        self._slots["events_seen"][rows] = shell.v.autopilot.events.count
+        self._slots["shell_us"][rows] = shell.bridge.shell_due_us()
+
+    def close(self) -> None:
+        """Close the shell and stop the threads."""
+        if self._pool is not None:
+            self._pool.shutdown()
+        self._shell.close()
