@@ -2,7 +2,7 @@
 """Many vehicles of one kind in one array of records, each with a client of its own on MAVLink.
 
 One compiled call advances all of them: it acts on what their clients sent, lets time go on and sends what falls due,
-split over threads if asked for. A vehicle that needs Python (a command, a parameter, a mission, a text) is served by one
+split over threads if asked for. A vehicle that needs Python (a command, a parameter, a mission, a text) is served by a
 simulation that all of them share: it takes the vehicle's state, does what there is to do, and gives the state back; the
 others have gone on meanwhile. Each vehicle flies bit for bit as a ``Simulation`` of its own.
 """
@@ -21,7 +21,7 @@ import numpy as np
 
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
-from .bridge.wire.fleet import Slot
+from .bridge.wire.fleet import TO_SERVE, Slot
 from .bridge.wire.port import IN_BYTES, STATE, Port
 from .core.compile import Progress
 from .core.kernels import jit_disabled
@@ -190,7 +190,8 @@ class Fleet:
         slots["needs_shell"] = 0
         self._run_all()
         for index in np.flatnonzero(slots["needs_shell"]).tolist():
-            self._serve(index, int(slots["until_us"][index]) - int(self.records["time_us"][index]))
+            left_us = int(slots["until_us"][index]) - int(self.records["time_us"][index])
+            self._serve(index, left_us, serves=slots["needs_shell"][index] == TO_SERVE)
 
     def _run_all(self) -> None:
         count, threads = len(self.records), self.threads
@@ -205,14 +206,16 @@ class Fleet:
 
     # ------------------------------------------------------------------ what needs Python
 
-    def _serve(self, index: int, step_us: int, data: bytes = b"") -> None:
-        """Let the shell act on what the core left to it, and advance the vehicle by ``step_us``."""
+    def _serve(self, index: int, left_us: int, data: bytes = b"", serves: bool = False) -> None:
+        """Let the shell act on what the core left to it, and advance the vehicle by ``left_us``."""
         shell, channel = self._shell, self._channel
         shell.restore(self.snapshot(index))
         channel.port._bytes[:] = self._ports_u1[index].tobytes()
         self._link.send(data)
+        if serves:
+            shell.serve()
         shell.bridge.receive(resume=True)
-        shell.advance_to(shell.time_us + max(step_us, 0))
+        shell.advance_to(shell.time_us + max(left_us, 0))
         self._extra[index] = self._extra.get(index, b"") + self._link.receive()
         self._take_back([index])
 

@@ -193,10 +193,11 @@ class Simulation:
             if now >= stop:
                 return
             plant.prepare()
-            shell_us = min(bridge.shell_due_us(), plant.due_us)
-            if not (plant.runs_in_core and bridge.goes_by_itself()):
-                shell_us = min(shell_us, bridge.next_due_us())
-            until = min(stop, shell_us)
+            by_itself = plant.runs_in_core and bridge.goes_by_itself()
+            shell_us = bridge.shell_due_us() if by_itself else bridge.next_due_us()
+            if plant.due_us < shell_us:
+                shell_us = plant.due_us
+            until = shell_us if shell_us < stop else stop
             for observer in self.observers:
                 until = min(until, observer.due_us - self.before_boot_us)
             lost = None
@@ -208,20 +209,23 @@ class Simulation:
             except PhysicsLostError as error:
                 lost = error
             now = self._clock()
-            if plant.due_us <= now:
-                plant.measure()
-            has_events = self._event_count() != self._events_seen
-            if has_events:
-                self._follow_events()
-            if has_events or shell_us <= now or bridge.next_due_us() <= now:  # not when only an observer wants to look
-                bridge.service()
-            else:
+            if shell_us <= now or now < until or self._event_count() != self._events_seen:
+                self.serve()
+            else:  # the core has sent all that is due
                 bridge.flush()
             for observer in self.observers:
                 if observer.due_us <= self.time_us:
                     observer.observe()
             if lost is not None:
                 raise lost
+
+    def serve(self) -> None:
+        """After a run of the core: measure, follow up what happened, send what is due and the core did not send."""
+        if self.plant.due_us <= self._clock():
+            self.plant.measure()
+        if self._event_count() != self._events_seen:
+            self._follow_events()
+        self.bridge.service()
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""

@@ -155,15 +155,19 @@ class Switchboard:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
         return bool(self._selector.select(seconds))
 
+    @property
+    def has_sockets(self) -> bool:
+        """Whether there is anything to ``read``."""
+        return self._sockets > 0
+
     def read(self) -> None:
         """Read all sockets."""
-        if self._sockets:
-            for key, _ in self._selector.select(0):
-                key.data()
-            for link in self.links:
-                if link.refusals:
-                    self.dropped += link.refusals
-                    link.refusals.clear()
+        for key, _ in self._selector.select(0):
+            key.data()
+        for link in self.links:
+            if link.refusals:
+                self.dropped += link.refusals
+                link.refusals.clear()
 
     def flush(self) -> None:
         """Hand everything queued to the links; notice who is gone."""
@@ -172,6 +176,8 @@ class Switchboard:
             peer = channel.peer
             if channel.port.out_count:
                 channel.collect()
+            elif peer.waits and not peer.outbox:
+                continue
             if self.taps and peer.outbox:
                 now = self._clock()
                 for tap in self.taps:

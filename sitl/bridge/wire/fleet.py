@@ -15,13 +15,17 @@ from .port import SIZE, Port
 V = TypeVar("V", bound=Vehicle)
 
 
+GOES_ON, TO_HEAR, TO_SERVE = 0, 1, 2
+"""A client's words are the shell's; so is what happened, or what is due."""
+
+
 class Slot(Record):
     """What a fleet keeps of a vehicle besides its record and its port."""
 
     until_us: int  # where it is to go on to [since boot]
     shell_us: int  # when the shell has something to do [since boot]
     events_seen: int  # events that the shell has acted on
-    needs_shell: bool  # the core cannot go on without it
+    needs_shell: int  # GOES_ON, or what the core has left to it
 
 
 @law
@@ -38,17 +42,14 @@ def run_slot(
     events = v.autopilot.events
     if port.in_size > 0:
         hear(fleet, index, port_address)
-    slot.needs_shell = port.frame_end != 0 or events.count != slot.events_seen or events.attention
-    if slot.needs_shell or v.time_us >= slot.until_us:
-        return
-    run(fleet, index, port_address, 1, slot.until_us, slot.shell_us)
-    slot.needs_shell = (
-        events.count != slot.events_seen
-        or events.attention
-        or v.time_us < slot.until_us
-        or v.time_us >= slot.shell_us
-        or port.next_us <= v.time_us
-    )
+    slot.needs_shell = GOES_ON
+    if port.frame_end != 0 or events.count != slot.events_seen or events.attention:
+        slot.needs_shell = TO_HEAR
+    elif v.time_us < slot.until_us:
+        run(fleet, index, port_address, 1, min(slot.until_us, slot.shell_us), slot.shell_us)
+        happened = events.count != slot.events_seen or events.attention
+        if happened or not slot.until_us <= v.time_us < slot.shell_us or port.next_us <= v.time_us:
+            slot.needs_shell = TO_SERVE
 
 
 @law
