@@ -120,6 +120,7 @@ def test_what_needs_the_shell(kind: str, under_way: Snapshot, fleet: Fleet) -> N
         (4, 3): says("MISSION_COUNT", target_system=1, target_component=1, count=1),
         (6, 3): says("PARAM_REQUEST_LIST", target_system=1, target_component=1),
         (8, 1): command(511, 30, 20_000),
+        (8, 0): command(400, 0, 21196),
         (9, 0): command(246, 1),
         (12, 2): says("MANUAL_CONTROL", target=1, x=100, y=-200, z=500, r=30),
     }  # fmt: skip
