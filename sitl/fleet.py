@@ -76,7 +76,6 @@ class Fleet:
         self._slots: Array = np.zeros(count, Slot.dtype)
         self._link = InProcessLink()
         shell.bridge.add_link(self._link)
-        (self._channel,) = shell.bridge.channels
         self._states: list[Snapshot] = []
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
@@ -208,9 +207,9 @@ class Fleet:
 
     def _serve(self, index: int, left_us: int, data: bytes = b"", serves: bool = False) -> None:
         """Let the shell act on what the core left to it, and advance the vehicle by ``left_us``."""
-        shell, channel = self._shell, self._channel
+        shell = self._shell
         shell.restore(self.snapshot(index))
-        channel.port._bytes[:] = self._ports_u1[index].tobytes()
+        shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
         self._link.send(data)
         if serves:
             shell.serve()
@@ -224,7 +223,7 @@ class Fleet:
         shell = self._shell
         state = shell.snapshot()
         record = np.frombuffer(state.record, np.uint8)
-        port = np.frombuffer(bytes(self._channel.port._bytes), np.uint8)
+        port = np.frombuffer(bytes(shell.bridge.channels[0].port._bytes), np.uint8)
         kept = replace(state, record=b"")
         for row in rows:
             self._records_u1[row], self._ports_u1[row] = record, port
