@@ -6,17 +6,45 @@ Source: https://mavlink.io/en/guide/serialization.html (packet format, zero trun
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ...core.kernels import law
+from ...core.kernels import inlined, law
 from ...core.memory import Bytes, bytes_at
 from ..frame import CHECKSUM, HEADER_V1, HEADER_V2, MARK_V1, MARK_V2, SIGNATURE, SIGNED
-from .port import INCOMING, OUT, OUT_BYTES, OUT_FRAMES, Port, note_sender
+from .port import INCOMING, OUT, OUT_BYTES, OUT_FRAMES, PAYLOAD_BYTES, Port, note_sender
 from .tables import BASE_SIZES, CRC_EXTRAS, PAYLOAD_MAX, SIZES, row_of
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1"""
 FRAME_MAX = HEADER_V2 + PAYLOAD_MAX + CHECKSUM
+
+
+class Sender(NamedTuple):
+    """Who sends a frame."""
+
+    sequence: int
+    system: int
+    component: int
+
+
+class Found(NamedTuple):
+    """A frame in a row of bytes."""
+
+    start: int
+    """Where it begins; without a frame, where to go on when more has come."""
+    end: int
+    """Where it ends; 0: there is none."""
+    version: int
+    number: int
+    """Of its message."""
+    sender: Sender
+    payload: int
+    """Where its payload begins."""
+    payload_size: int
+    bad: int
+    """Wrong checksums on the way."""
 
 
 def _crc_table() -> list[int]:
@@ -59,100 +87,135 @@ def open_frame(port: Port, address: int) -> int:
 
 
 @law
-def close_frame(port: Port, address: int, number: int) -> None:
-    """Send the message ``number`` whose payload has been written to ``open_frame``'s address."""
+def seal(frame: Bytes, version: int, number: int, sender: Sender) -> int:
+    """Write header and checksum around a payload at full length that has been written behind the header's place.
+
+    Trailing zeros of a MAVLink 2 payload are left out. Returns the length of the frame; 0: version 1 cannot carry it.
+    """
     row = row_of(number)
-    start = port.out_size
-    data = bytes_at(address + OUT + start, FRAME_MAX)
-    if port.version == 2:
+    if version == 2:
         size = int(SIZES[row])
-        while size > 1 and data[HEADER_V2 + size - 1] == 0:
+        while size > 1 and frame[HEADER_V2 + size - 1] == 0:
             size -= 1
-        data[0] = MARK_V2
-        data[1] = size
-        data[2] = 0
-        data[3] = 0
-        data[4] = port.sequence
-        data[5] = port.system
-        data[6] = COMPONENT
-        data[7] = number & 0xFF
-        data[8] = number >> 8 & 0xFF
-        data[9] = number >> 16
+        frame[0] = MARK_V2
+        frame[1] = size
+        frame[2] = 0
+        frame[3] = 0
+        frame[4] = sender.sequence
+        frame[5] = sender.system
+        frame[6] = sender.component
+        frame[7] = number & 0xFF
+        frame[8] = number >> 8 & 0xFF
+        frame[9] = number >> 16
         end = HEADER_V2 + size
-    elif number > 255:  # version 1 cannot carry it
-        return
+    elif number > 255:
+        return 0
     else:
         size = int(BASE_SIZES[row])
-        data[0] = MARK_V1
-        data[1] = size
-        data[2] = port.sequence
-        data[3] = port.system
-        data[4] = COMPONENT
-        data[5] = number
+        frame[0] = MARK_V1
+        frame[1] = size
+        frame[2] = sender.sequence
+        frame[3] = sender.system
+        frame[4] = sender.component
+        frame[5] = number
         end = HEADER_V1 + size
-    crc = crc_of(data, 1, end, int(CRC_EXTRAS[row]))
-    data[end] = crc & 0xFF
-    data[end + 1] = crc >> 8
-    port.out_size += end + CHECKSUM
+    crc = crc_of(frame, 1, end, int(CRC_EXTRAS[row]))
+    frame[end] = crc & 0xFF
+    frame[end + 1] = crc >> 8
+    return end + CHECKSUM
+
+
+@law
+def close_frame(port: Port, address: int, number: int) -> None:
+    """Send the message ``number`` whose payload has been written to ``open_frame``'s address."""
+    frame = bytes_at(address + OUT + port.out_size, FRAME_MAX)
+    length = seal(frame, port.version, number, Sender(port.sequence, port.system, COMPONENT))
+    if length == 0:
+        return
+    port.out_size += length
     port.out_end[port.out_count] = port.out_size
     port.out_count += 1
     port.sequence = (port.sequence + 1) & 0xFF
     port.sent += 1
 
 
+@inlined
+def number_at(data: Bytes, k: int) -> int:
+    """A byte as an integer of full width: Numba keeps ``int(byte)`` at eight bits."""
+    return data[k] + 0
+
+
 @law
-def next_frame(port: Port, address: int) -> bool:
-    """Go to the next whole frame in what came in; False when there is none yet.
+def find(data: Bytes, at: int, size: int) -> Found:
+    """The next whole frame from ``at`` on in the first ``size`` bytes of ``data``.
 
     A header that cannot be right (unknown message, payload longer than the message, unknown incompatibility flag) or a
     wrong checksum costs one byte: the search goes on right behind its start mark. Signed frames are accepted and their
     signature is not checked.
     """
-    data = bytes_at(address + INCOMING, port.in_size)
-    at = port.in_at
-    while at < port.in_size:
+    bad = 0
+    while at < size:
         mark = data[at]
         if mark != MARK_V2 and mark != MARK_V1:
             at += 1
             continue
         version = 2 if mark == MARK_V2 else 1
         start = at + (HEADER_V2 if version == 2 else HEADER_V1)
-        if start > port.in_size:
+        if start > size:
             break
-        size = int(data[at + 1])
+        length = number_at(data, at + 1)
         flags, first = 0, at + 2  # of sequence, system, component, number
-        number = int(data[at + 5])
+        number = number_at(data, at + 5)
         if version == 2:
-            flags, first = int(data[at + 2]), at + 4
-            number = int(data[at + 7]) | int(data[at + 8]) << 8 | int(data[at + 9]) << 16
+            flags, first = number_at(data, at + 2), at + 4
+            number = number_at(data, at + 7) | number_at(data, at + 8) << 8 | number_at(data, at + 9) << 16
         row = row_of(number)
-        if row < 0 or size > SIZES[row] or flags & ~SIGNED != 0:
+        if row < 0 or length > SIZES[row] or flags & ~SIGNED != 0:
             at += 1
             continue
-        stop = start + size
+        stop = start + length
         after = stop + CHECKSUM + (SIGNATURE if flags != 0 else 0)
-        if after > port.in_size:
+        if after > size:
             break
-        if crc_of(data, at + 1, stop, int(CRC_EXTRAS[row])) != int(data[stop]) | int(data[stop + 1]) << 8:
-            port.bad_checksums += 1
+        if crc_of(data, at + 1, stop, int(CRC_EXTRAS[row])) != number_at(data, stop) | number_at(data, stop + 1) << 8:
+            bad += 1
             at += 1
             continue
-        port.frame_start = at
-        port.frame_end = after
-        port.frame_number = number
-        port.frame_payload = start
-        port.frame_payload_size = size
-        port.frame_sequence = int(data[first])
-        port.frame_sender = int(data[first + 1]) << 8 | int(data[first + 2])
-        port.frame_version = version
-        port.in_at = after
-        port.received += 1
-        note_sender(port, port.frame_sender, port.frame_sequence)
-        if version == 2:
-            port.heard_v2 = True
-            port.version = 2
-        elif not port.heard_v2:
-            port.version = 1
-        return True
-    port.in_at = at
-    return False
+        sender = Sender(number_at(data, first), number_at(data, first + 1), number_at(data, first + 2))
+        return Found(at, after, version, number, sender, start, length, bad)
+    return Found(at, 0, 0, 0, Sender(0, 0, 0), 0, 0, bad)
+
+
+@law
+def next_frame(port: Port, address: int) -> bool:
+    """Go to the next whole frame in what came in; False when there is none yet."""
+    found = find(bytes_at(address + INCOMING, port.in_size), port.in_at, port.in_size)
+    port.bad_checksums += found.bad
+    if found.end == 0:
+        port.in_at = found.start
+        return False
+    sender = found.sender
+    port.frame_start = found.start
+    port.frame_end = found.end
+    port.frame_number = found.number
+    port.frame_payload = found.payload
+    port.frame_payload_size = found.payload_size
+    port.frame_sequence = sender.sequence
+    port.frame_sender = sender.system << 8 | sender.component
+    port.frame_version = found.version
+    port.in_at = found.end
+    port.received += 1
+    note_sender(port, port.frame_sender, sender.sequence)
+    if found.version == 2:
+        port.heard_v2 = True
+        port.version = 2
+    elif not port.heard_v2:
+        port.version = 1
+    return True
+
+
+@law
+def copy_payload(data: Bytes, start: int, size: int, payload: Bytes) -> None:
+    """A payload at full length, with the zeros that the sender left out."""
+    for k in range(PAYLOAD_BYTES):
+        payload[k] = data[start + k] if k < size else 0

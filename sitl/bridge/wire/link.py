@@ -14,7 +14,7 @@ from ...core.constants import TICK_US
 from ...core.kernels import law
 from ...core.memory import bytes_at, record_at
 from ...vehicle.record import Vehicle
-from .frames import COMPONENT, next_frame
+from .frames import COMPONENT, copy_payload, next_frame
 from .port import INCOMING, PAYLOAD, PAYLOAD_BYTES, Port
 from .streams import Builder, next_due, send, send_all_due
 
@@ -41,7 +41,8 @@ def hear_port(v: V, address: int, take: Taker[V], targets: Callable[[int], int])
     while next_frame(port, address):
         taken = port.frame_sender == (port.system << 8 | COMPONENT)  # our own words
         if not taken:
-            copy_payload(port, address)
+            incoming, payload = bytes_at(address + INCOMING, port.in_size), bytes_at(address + PAYLOAD, PAYLOAD_BYTES)
+            copy_payload(incoming, port.frame_payload, port.frame_payload_size, payload)
             target = targets(port.frame_number)
             system = port.payload[target] if target >= 0 else 0
             if system == 0 or system == port.system:
@@ -54,15 +55,6 @@ def hear_port(v: V, address: int, take: Taker[V], targets: Callable[[int], int])
             return
         port.frame_end = 0
     keep_rest(port, address)
-
-
-@law
-def copy_payload(port: Port, address: int) -> None:
-    """The frame's payload, at full length."""
-    incoming = bytes_at(address + INCOMING, port.in_size)
-    payload = bytes_at(address + PAYLOAD, PAYLOAD_BYTES)
-    for k in range(PAYLOAD_BYTES):
-        payload[k] = incoming[port.frame_payload + k] if k < port.frame_payload_size else 0
 
 
 @law
