@@ -165,6 +165,11 @@ class Fleet:
         port["out_size"] = port["out_count"] = 0
         return data
 
+    def take_shell_bytes(self) -> dict[int, bytes]:
+        """Bytes to clients that the ports do not hold, by vehicle: they come before those in the ports."""
+        taken, self._extra = self._extra, {}
+        return taken
+
     # ------------------------------------------------------------------ time
 
     def advance(self, seconds: float, which: Sequence[int] | Array | None = None) -> None:
@@ -179,13 +184,16 @@ class Fleet:
         """
         if not (isinstance(seconds, Real) and 0.0 <= seconds < math.inf):
             raise OptionError(f"cannot advance by {seconds!r} s: a number from 0 on is needed")
-        slots, step_us = self._slots, round(seconds * 1e6)
-        until = self.records["time_us"] + step_us
+        self.advance_us(round(seconds * 1e6), which)
+
+    def advance_us(self, step_us: int | Array, which: Sequence[int] | Array | None = None) -> None:
+        """The same by microseconds, one number or one for each vehicle of ``which``."""
+        slots = self._slots
         if which is None:
-            slots["until_us"] = until
+            slots["until_us"] = self.records["time_us"] + step_us
         else:
             slots["until_us"] = 0
-            slots["until_us"][which] = until[which]
+            slots["until_us"][which] = self.records["time_us"][which] + step_us
         slots["needs_shell"] = 0
         self._run_all()
         for index in np.flatnonzero(slots["needs_shell"]).tolist():
@@ -215,7 +223,9 @@ class Fleet:
             shell.serve()
         shell.bridge.receive(resume=True)
         shell.advance_to(shell.time_us + max(left_us, 0))
-        self._extra[index] = self._extra.get(index, b"") + self._link.receive()
+        said = self._link.receive()
+        if said:
+            self._extra[index] = self._extra.get(index, b"") + said
         self._take_back([index])
 
     def _take_back(self, rows: list[int]) -> None:

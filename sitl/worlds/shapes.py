@@ -15,6 +15,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+
+from ..core.kernels import law
 import numpy.typing as npt
 
 from ..errors import SitlError
@@ -156,21 +158,25 @@ def circle(x: float, y: float, radius: float, corners: int = CIRCLE_CORNERS) -> 
     return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1) + (x, y)
 
 
+@law
 def to_ned(x: float, y: float, z: float) -> tuple[float, float, float]:
     """North, east, down [m] of a point of a world file [m]."""
     return x, 0.0 - y, 0.0 - z
 
 
+@law
 def from_ned(north: float, east: float, down: float) -> tuple[float, float, float]:
     """x, y, z [m] of a point in the simulator's frame [m]."""
     return north, 0.0 - east, 0.0 - down
 
 
+@law
 def to_heading(yaw: float) -> float:
     """Heading [rad], clockwise from north, of a yaw [rad], counter-clockwise from x."""
     return 0.0 - yaw
 
 
+@law
 def from_heading(heading: float) -> float:
     """Yaw [rad], counter-clockwise from x, of a heading [rad], clockwise from north."""
     return 0.0 - heading

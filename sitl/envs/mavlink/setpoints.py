@@ -29,9 +29,10 @@ from .telemetry import StepTelemetry
 OVERRIDE, LOCAL, TARGET = (
     message(name) for name in ("RC_CHANNELS_OVERRIDE", "SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
 )
-_VELOCITY_ONLY = POSITION_IGNORED | ACCELERATION_IGNORED | YAW_IGNORED
-_PLACE_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
-_TURN_AND_SPEED = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | ATTITUDE_IGNORED
+VELOCITY_ONLY = POSITION_IGNORED | ACCELERATION_IGNORED | YAW_IGNORED
+PLACE_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
+ATTITUDE_AND_RATES = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED
+TURN_AND_SPEED = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | ATTITUDE_IGNORED
 
 Message = tuple[Any, bytes]
 """Kind, payload."""
@@ -49,11 +50,11 @@ def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     forward, left, up, turn = row
     motion = {"vx": forward, "vy": -left, "vz": -up, "yaw_rate": -turn}
     return LOCAL, LOCAL.payload(
-        target_system=inbox.system, coordinate_frame=BODY_OFFSET_NED, type_mask=_VELOCITY_ONLY, **motion
+        target_system=inbox.system, coordinate_frame=BODY_OFFSET_NED, type_mask=VELOCITY_ONLY, **motion
     )
 
 
-def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float], mask: int = _PLACE_ONLY) -> Message:
+def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float], mask: int = PLACE_ONLY) -> Message:
     """SET_POSITION_TARGET_LOCAL_NED: a place of the world [m], yaw [rad]."""
     north, east, down = to_ned(*row[:3])
     place = {"x": north - origin[0], "y": east - origin[1], "z": down - origin[2], "yaw": to_heading(row[3])}
@@ -62,7 +63,7 @@ def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
 
 def rover_position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """The same (x, y [m]) without a yaw, which a car cannot take at will."""
-    return position(row, inbox, origin, _PLACE_ONLY | YAWS_IGNORED)
+    return position(row, inbox, origin, PLACE_ONLY | YAWS_IGNORED)
 
 
 def attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
@@ -71,7 +72,7 @@ def attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     q = quat_from_euler(Euler(roll, pitch, inbox.attitude[3]))
     return TARGET, TARGET.payload(
         target_system=inbox.system,
-        type_mask=ROLL_RATE_IGNORED | PITCH_RATE_IGNORED,
+        type_mask=ATTITUDE_AND_RATES,
         q=q,
         body_yaw_rate=-turn,
         thrust=0.5 + 0.5 * climb,
@@ -81,7 +82,7 @@ def attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
 def rover_attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: turn rate [rad/s], throttle -1 .. 1, a share of WP_SPEED."""
     return TARGET, TARGET.payload(
-        target_system=inbox.system, type_mask=_TURN_AND_SPEED, body_yaw_rate=-row[2], thrust=row[3]
+        target_system=inbox.system, type_mask=TURN_AND_SPEED, body_yaw_rate=-row[2], thrust=row[3]
     )
 
 

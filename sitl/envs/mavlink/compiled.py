@@ -1,0 +1,362 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The environment's end of MAVLink for a fleet, compiled: set-points become frames, frames become what is known.
+
+The bytes are those that ``setpoints`` and ``telemetry`` of this package make and read for one vehicle.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sitl.bridge.frame import HEADER_V2
+from sitl.bridge.telemetry.heartbeat import Heartbeat
+from sitl.bridge.telemetry.motion import Attitude, LocalPositionNed
+from sitl.bridge.telemetry.ranging import DebugFloatArray
+from sitl.bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
+from sitl.bridge.wire.message import Message
+from sitl.bridge.wire.port import INCOMING, OUT, PAYLOAD, PAYLOAD_BYTES, SIZE, Port
+from sitl.core.algebra import quat_from_euler
+from sitl.core.array_kernels import IntLine, Kernel, NarrowTable, Table
+from sitl.core.kernels import law
+from sitl.core.memory import Bytes, bytes_at, record_at
+from sitl.core.records import Floats, Ints, Record, Records
+from sitl.core.vectors import Euler, Vec3
+from sitl.worlds.shapes import from_heading, from_ned, to_heading, to_ned
+
+from .setpoints import (
+    ATTITUDE_AND_RATES,
+    BODY_OFFSET_NED,
+    LOCAL_NED,
+    PLACE_ONLY,
+    TURN_AND_SPEED,
+    VELOCITY_ONLY,
+    YAWS_IGNORED,
+)
+from .telemetry import ARMED, HIT, PART, SCAN_NAME
+
+GROUND_STATION, COMPONENT = 255, 190
+"""MAVLink ids of the environment."""
+RC, VELOCITY, POSITION, ATTITUDE, ROVER_POSITION, ROVER_ATTITUDE = range(6)
+"""Sorts of set-points."""
+_HIT = np.frombuffer(HIT, np.uint8).astype(np.int64)
+_SCAN = np.frombuffer(SCAN_NAME, np.uint8).astype(np.int64)
+
+
+class Override(Message, name="RC_CHANNELS_OVERRIDE"):
+    """Pulses [us]."""
+
+    chan1_raw: int
+    chan2_raw: int
+    chan3_raw: int
+    chan4_raw: int
+    chan5_raw: int
+    chan6_raw: int
+    chan7_raw: int
+    chan8_raw: int
+    target_system: int
+    target_component: int
+
+
+class LocalTarget(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
+    """Position [m], velocity [m/s], yaw [rad], yaw rate [rad/s]."""
+
+    target_system: int
+    coordinate_frame: int
+    type_mask: int
+    x: float
+    y: float
+    z: float
+    vx: float
+    vy: float
+    vz: float
+    yaw: float
+    yaw_rate: float
+
+
+class AttitudeTarget(Message, name="SET_ATTITUDE_TARGET"):
+    """Attitude (body to NED), turn rate [rad/s], thrust."""
+
+    target_system: int
+    type_mask: int
+    q: Floats
+    body_yaw_rate: float
+    thrust: float
+
+
+class Statustext(Message, name="STATUSTEXT"):
+    """A text."""
+
+    text: Ints
+
+
+OVERRIDE, LOCAL, TARGET = Override.kind.id, LocalTarget.kind.id, AttitudeTarget.kind.id
+HEARTBEAT_, POSITION_, ATTITUDE_ = Heartbeat.kind.id, LocalPositionNed.kind.id, Attitude.kind.id
+SCAN_, TEXT_ = DebugFloatArray.kind.id, Statustext.kind.id
+
+
+class ClientEnd(Record):
+    """What the environment knows of one vehicle, and its next sequence number."""
+
+    sequence: int
+    system: int  # MAVLink id of the vehicle
+    position_ms: int  # of position and velocity, since boot
+    position: Vec3  # NED from the origin of its estimate [m]
+    velocity: Vec3  # NED [m/s]
+    attitude_ms: int  # of angles and rates, since boot
+    euler: Euler  # [rad]
+    rates: Vec3  # of the Euler angles' message [rad/s]
+    parts: int  # of a scan
+    fresh: int  # bits of the parts that have come of the scan under way
+    scan_us: int  # its time
+    scans: int  # whole scans so far
+    hits: int  # touches so far
+    mode: int
+    armed: bool
+
+
+# ---------------------------------------------------------------------- set-points
+
+
+@law
+def override(m: Override, commands: Table, i: int, system: int) -> None:
+    """Eight pulses [us]; 0 releases a channel."""
+    m.chan1_raw = round(commands[i, 0])
+    m.chan2_raw = round(commands[i, 1])
+    m.chan3_raw = round(commands[i, 2])
+    m.chan4_raw = round(commands[i, 3])
+    m.chan5_raw = round(commands[i, 4])
+    m.chan6_raw = round(commands[i, 5])
+    m.chan7_raw = round(commands[i, 6])
+    m.chan8_raw = round(commands[i, 7])
+    m.target_system = system
+    m.target_component = 1
+
+
+@law
+def velocity(m: LocalTarget, commands: Table, i: int, system: int) -> None:
+    """Velocities along the body's heading: forward, left, up [m/s]; turn rate [rad/s]."""
+    m.target_system = system
+    m.coordinate_frame = BODY_OFFSET_NED
+    m.type_mask = VELOCITY_ONLY
+    m.vx = commands[i, 0]
+    m.vy = -commands[i, 1]
+    m.vz = -commands[i, 2]
+    m.yaw_rate = -commands[i, 3]
+
+
+@law
+def position(m: LocalTarget, commands: Table, i: int, system: int, origin: Vec3, mask: int) -> None:
+    """A place of the world [m], yaw [rad]; ``origin``: of the vehicle's local frame, NED in the world [m]."""
+    north, east, down = to_ned(commands[i, 0], commands[i, 1], commands[i, 2])
+    m.target_system = system
+    m.coordinate_frame = LOCAL_NED
+    m.type_mask = mask
+    m.x = north - origin.x
+    m.y = east - origin.y
+    m.z = down - origin.z
+    m.yaw = to_heading(commands[i, 3])
+
+
+@law
+def attitude(m: AttitudeTarget, commands: Table, i: int, system: int, heading: float) -> None:
+    """Roll, pitch [rad], turn rate [rad/s], climb -1 .. 1; ``heading`` [rad] of the vehicle."""
+    q = quat_from_euler(Euler(commands[i, 0], commands[i, 1], heading))
+    m.target_system = system
+    m.type_mask = ATTITUDE_AND_RATES
+    m.q[0] = q.w
+    m.q[1] = q.x
+    m.q[2] = q.y
+    m.q[3] = q.z
+    m.body_yaw_rate = -commands[i, 2]
+    m.thrust = 0.5 + 0.5 * commands[i, 3]
+
+
+@law
+def rover_attitude(m: AttitudeTarget, commands: Table, i: int, system: int) -> None:
+    """Turn rate [rad/s], throttle -1 .. 1."""
+    m.target_system = system
+    m.type_mask = TURN_AND_SPEED
+    m.body_yaw_rate = -commands[i, 2]
+    m.thrust = commands[i, 3]
+
+
+@law
+def write_setpoint(sort: int, commands: Table, i: int, end: ClientEnd, origin: Vec3, payload: int) -> int:
+    """Write row ``i`` of the set-points to a payload's address; returns the message's number."""
+    if sort == RC:
+        override(record_at(Override, payload), commands, i, end.system)
+        return OVERRIDE
+    if sort == VELOCITY:
+        velocity(record_at(LocalTarget, payload), commands, i, end.system)
+        return LOCAL
+    if sort in (POSITION, ROVER_POSITION):
+        mask = PLACE_ONLY if sort == POSITION else PLACE_ONLY | YAWS_IGNORED
+        position(record_at(LocalTarget, payload), commands, i, end.system, origin, mask)
+        return LOCAL
+    m = record_at(AttitudeTarget, payload)
+    if sort == ATTITUDE:
+        attitude(m, commands, i, end.system, end.euler.yaw)
+    else:
+        rover_attitude(m, commands, i, end.system)
+    return TARGET
+
+
+@law
+def send_setpoints(
+    sort: int, rows: IntLine, commands: Table, ends: Records[ClientEnd], origins: Table, ports: int
+) -> None:
+    """Send a set-point to each vehicle of ``rows``.
+
+    Args:
+        sort: of set-point.
+        rows: numbers of the vehicles.
+        commands: set-points, shape (vehicles, columns).
+        ends: one for each vehicle.
+        origins: of the vehicles' local frames, NED in the world [m], shape (vehicles, 3).
+        ports: address of the vehicles' ports.
+    """
+    for k in range(rows.shape[0]):
+        i = rows[k]
+        end, address = ends[i], ports + i * SIZE
+        port = record_at(Port, address)
+        start = address + INCOMING + port.in_size
+        frame = bytes_at(start, FRAME_MAX)
+        for byte in range(FRAME_MAX):
+            frame[byte] = 0
+        origin = Vec3(origins[i, 0], origins[i, 1], origins[i, 2])
+        number = write_setpoint(sort, commands, i, end, origin, start + HEADER_V2)
+        port.in_size += seal(frame, 2, number, Sender(end.sequence, GROUND_STATION, COMPONENT))
+        end.sequence = (end.sequence + 1) & 0xFF
+
+
+# ---------------------------------------------------------------------- telemetry
+
+
+@law
+def read_position(end: ClientEnd, m: LocalPositionNed) -> None:
+    end.position_ms = m.time_boot_ms
+    end.position = Vec3(m.x, m.y, m.z)
+    end.velocity = Vec3(m.vx, m.vy, m.vz)
+
+
+@law
+def read_attitude(end: ClientEnd, m: Attitude) -> None:
+    end.attitude_ms = m.time_boot_ms
+    end.euler = Euler(m.roll, m.pitch, m.yaw)
+    end.rates = Vec3(m.rollspeed, m.pitchspeed, m.yawspeed)
+
+
+@law
+def begins_with(text: Ints, beginning: Ints) -> bool:
+    for k in range(beginning.shape[0]):
+        if text[k] != beginning[k]:
+            return False
+    return True
+
+
+@law
+def read_part(end: ClientEnd, m: DebugFloatArray, i: int, scans: NarrowTable, coming: NarrowTable) -> None:
+    """A part of a scan; the scan counts when all have come."""
+    if m.array_id >= end.parts or not begins_with(m.name, _SCAN):
+        return
+    if m.time_usec != end.scan_us:
+        end.scan_us = m.time_usec
+        end.fresh = 0
+    first = PART * m.array_id
+    for k in range(PART):
+        coming[i, first + k] = m.data[k]
+    end.fresh |= 1 << m.array_id
+    if end.fresh == (1 << end.parts) - 1:
+        end.fresh = 0
+        end.scans += 1
+        for k in range(scans.shape[1]):
+            scans[i, k] = coming[i, k]
+
+
+@law
+def read_bytes(
+    end: ClientEnd, data: Bytes, size: int, i: int, scans: NarrowTable, coming: NarrowTable, address: int
+) -> None:
+    """Read frames from a vehicle; the port at ``address`` gives room for a payload."""
+    payload = address + PAYLOAD
+    at = 0
+    while True:
+        found = find(data, at, size)
+        if found.end == 0:
+            return
+        at, number = found.end, found.number
+        copy_payload(data, found.payload, found.payload_size, bytes_at(payload, PAYLOAD_BYTES))
+        if number == POSITION_:
+            read_position(end, record_at(LocalPositionNed, payload))
+        elif number == ATTITUDE_:
+            read_attitude(end, record_at(Attitude, payload))
+        elif number == SCAN_:
+            read_part(end, record_at(DebugFloatArray, payload), i, scans, coming)
+        elif number == HEARTBEAT_:
+            beat = record_at(Heartbeat, payload)
+            end.mode = beat.custom_mode
+            end.armed = (beat.base_mode & ARMED) != 0
+        elif number == TEXT_ and begins_with(record_at(Statustext, payload).text, _HIT):
+            end.hits += 1
+
+
+@law
+def read_ports(
+    rows: IntLine, ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int
+) -> None:
+    """Read what each vehicle of ``rows`` has sent, and take it from its port.
+
+    Args:
+        rows: numbers of the vehicles.
+        ends: one for each vehicle.
+        scans: the last whole scans [m], shape (vehicles, readings rounded up to whole parts).
+        coming: those under way, of the same shape.
+        ports: address of the vehicles' ports.
+    """
+    for k in range(rows.shape[0]):
+        i = rows[k]
+        address = ports + i * SIZE
+        port = record_at(Port, address)
+        read_bytes(ends[i], bytes_at(address + OUT, port.out_size), port.out_size, i, scans, coming, address)
+        port.out_size = 0
+        port.out_count = 0
+
+
+@law
+def read_row(
+    i: int, data: int, size: int, ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int
+) -> None:
+    """Read ``size`` bytes of vehicle ``i`` at an address."""
+    read_bytes(ends[i], bytes_at(data, size), size, i, scans, coming, ports + i * SIZE)
+
+
+@law
+def place_robots(rows: IntLine, ends: Records[ClientEnd], origins: Table, base_along: float, state: Table) -> None:
+    """Where the vehicles are, for observations.
+
+    Args:
+        rows: numbers of the vehicles.
+        ends: one for each vehicle.
+        origins: of the vehicles' local frames, NED in the world [m], shape (vehicles, 3).
+        base_along: how far the robot's base lies ahead of the body's origin [m].
+        state: x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; shape (vehicles, 8).
+    """
+    for k in range(rows.shape[0]):
+        i = rows[k]
+        end = ends[i]
+        p, v, heading = end.position, end.velocity, end.euler.yaw
+        c, s = math.cos(heading), math.sin(heading)
+        x, y, z = from_ned(
+            origins[i, 0] + p.x + base_along * c, origins[i, 1] + p.y + base_along * s, origins[i, 2] + p.z
+        )
+        state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
+        state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c
+        state[i, 6], state[i, 7] = -v.z, -end.rates.z
+
+
+send_all = Kernel(send_setpoints)
+read_all = Kernel(read_ports)
+read_one = Kernel(read_row)
+place_all = Kernel(place_robots)
