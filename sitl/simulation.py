@@ -192,7 +192,6 @@ class Simulation:
             stop = time_us - self.before_boot_us
             if now >= stop:
                 return
-            plant.prepare()
             shell_us = min(bridge.shell_due_us(), plant.due_us)
             if not (plant.runs_in_core and bridge.goes_by_itself()):
                 shell_us = min(shell_us, bridge.next_due_us())
@@ -202,7 +201,7 @@ class Simulation:
             lost = None
             try:
                 if plant.runs_in_core:
-                    bridge.run(until, shell_us)
+                    bridge.run(plant.ranging, until, shell_us)
                 else:
                     plant.run(max((until - now + TICK_US - 1) // TICK_US, 1))
             except PhysicsLostError as error:
