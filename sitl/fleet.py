@@ -26,6 +26,7 @@ from .bridge.wire.port import IN_BYTES, STATE, Port
 from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
+from .plants.local import LocalPlant
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
 from .vehicle.core_entry import Core, bind_fleet_unit
@@ -65,7 +66,8 @@ class Fleet:
         for name, number in (("count", count), ("threads", threads)):
             if not isinstance(number, int) or number < 1:
                 raise OptionError(f"{name} = {number!r}; a whole number from 1 on is needed")
-        self._shell = shell = Simulation(frame, core=core, progress=progress, **options)
+        self.shell = shell = Simulation(frame, core=core, progress=progress, **options)
+        """Serves vehicles that need Python, one after the other."""
         if not shell.plant.runs_in_core:
             raise OptionError(f"a fleet flies on native physics, not on {shell.physics}")
         self.scenario, self.kind = shell.scenario, shell.kind
@@ -83,6 +85,9 @@ class Fleet:
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
         unit = shell.bridge.profile.core.run_all
         self._run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
+        rangers = shell.plant.rangers if isinstance(shell.plant, LocalPlant) else None
+        self._rooms = [(0, None) if rangers is None else rangers.with_own_room() for _ in range(threads)]
+        """What each thread needs to measure in the world: its address, and what keeps it alive."""
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
         self._states = [shell.snapshot()] * count
@@ -113,7 +118,7 @@ class Fleet:
         rows = [which] if isinstance(which, int) else list(which)
         for row in rows:
             self._check(row)
-        shell = self._shell
+        shell = self.shell
         shell.restore(snapshot)  # refuses what cannot be put here
         if seed is not None:
             shell.reseed(seed)
@@ -204,10 +209,10 @@ class Fleet:
         count, threads = len(self.records), self.threads
         addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
         if self._pool is None:
-            self._run(0, count, *addresses)
+            self._run(0, count, *addresses, self._rooms[0][0])
             return
-        cuts = [count * k // threads for k in range(threads + 1)]
-        runs = [self._pool.submit(self._run, a, b, *addresses) for a, b in pairwise(cuts) if a < b]
+        parts = zip(pairwise(count * k // threads for k in range(threads + 1)), self._rooms, strict=True)
+        runs = [self._pool.submit(self._run, a, b, *addresses, room[0]) for (a, b), room in parts if a < b]
         for run in runs:
             run.result()
 
@@ -215,7 +220,7 @@ class Fleet:
 
     def _serve(self, index: int, left_us: int, data: bytes = b"", serves: bool = False) -> None:
         """Let the shell act on what the core left to it, and advance the vehicle by ``left_us``."""
-        shell = self._shell
+        shell = self.shell
         shell.restore(self.snapshot(index))
         shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
         self._link.send(data)
@@ -230,7 +235,7 @@ class Fleet:
 
     def _take_back(self, rows: list[int]) -> None:
         """Put the shell's state into the vehicles."""
-        shell = self._shell
+        shell = self.shell
         state = shell.snapshot()
         record = np.frombuffer(state.record, np.uint8)
         port = np.frombuffer(bytes(shell.bridge.channels[0].port._bytes), np.uint8)
@@ -245,4 +250,4 @@ class Fleet:
         """Close the shell and stop the threads."""
         if self._pool is not None:
             self._pool.shutdown()
-        self._shell.close()
+        self.shell.close()

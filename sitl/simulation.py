@@ -192,7 +192,6 @@ class Simulation:
             stop = time_us - self.before_boot_us
             if now >= stop:
                 return
-            plant.prepare()
             by_itself = plant.runs_in_core and bridge.goes_by_itself()
             shell_us = bridge.shell_due_us() if by_itself else bridge.next_due_us()
             if plant.due_us < shell_us:
@@ -203,7 +202,7 @@ class Simulation:
             lost = None
             try:
                 if plant.runs_in_core:
-                    bridge.run(until, shell_us)
+                    bridge.run(plant.ranging, until, shell_us)
                 else:
                     plant.run(max((until - now + TICK_US - 1) // TICK_US, 1))
             except PhysicsLostError as error:

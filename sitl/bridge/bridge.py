@@ -278,13 +278,17 @@ class Bridge:
                 return False
         return True
 
-    def run(self, until_us: int, shell_us: int) -> None:
-        """Advance the vehicle in the core to the first tick at or after ``until_us`` and send what falls due.
+    def run(self, ranging: int, until_us: int, shell_us: int) -> None:
+        """Advance the vehicle in the core to the first tick at or after ``until_us``; measure and send what falls due.
 
         Back early when something happened that the shell must know, and at ``shell_us``, before messages are sent.
+
+        Args:
+            ranging: address of what it needs to measure in a world (``sitl.physics.native.ranging``); 0: it is in none.
+            until_us, shell_us: times since boot [us].
         """
         ports = self.board.ports
-        self.core.run(ports.address, ports.count, until_us, shell_us)
+        self.core.run(ports.address, ports.count, ranging, until_us, shell_us)
 
     def service(self) -> None:
         """Send what has fallen due by now."""

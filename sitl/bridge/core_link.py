@@ -55,6 +55,6 @@ class CoreLink:
         return self._bind(self._units.tell)
 
     @cached_property
-    def run(self) -> Callable[[int, int, int, int], None]:
-        """``run(address of ports, count, until_us, shell_us)``: advance, and send what falls due."""
+    def run(self) -> Callable[[int, int, int, int, int], None]:
+        """``run(address of ports, count, address of Ranging, until_us, shell_us)``: advance, measure, send."""
         return self._bind(self._units.run)

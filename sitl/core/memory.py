@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Records and bytes at an address: what laws need to read and write messages in a buffer.
+"""Records, bytes and arrays at an address: what laws need to work on memory that is not in their records.
 
-An address is an integer; who gives it to a law keeps the memory behind it where it is. In plain Python the same
-functions give views of the same memory.
+An address is an integer; who gives it to a law keeps the memory behind it where it is, for as long as laws may use it.
+In plain Python the same functions give views of the same memory.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from __future__ import annotations
 from ctypes import c_uint8
 from typing import Protocol, TypeVar
 
-from .records import Record
+import numpy as np
+
+from .records import FloatRows, Floats, Ints, Record
 
 R = TypeVar("R", bound=Record)
 
@@ -23,11 +25,30 @@ class Bytes(Protocol):
     def __len__(self) -> int: ...
 
 
+def _memory(address: int, size: int) -> memoryview[int]:
+    return memoryview((c_uint8 * size).from_address(address)).cast("B")
+
+
 def record_at(cls: type[R], address: int) -> R:
     """The record of class ``cls`` at an address."""
-    return cls(memoryview((c_uint8 * cls.dtype.itemsize).from_address(address)).cast("B"))
+    return cls(_memory(address, cls.dtype.itemsize))
 
 
 def bytes_at(address: int, count: int) -> Bytes:
     """The bytes at an address."""
-    return memoryview((c_uint8 * count).from_address(address)).cast("B")
+    return _memory(address, count)
+
+
+def floats_at(address: int, count: int) -> Floats:
+    """The float64 numbers at an address, shape (count,)."""
+    return np.ndarray((count,), np.float64, _memory(address, 8 * count))
+
+
+def table_at(address: int, rows: int, columns: int) -> FloatRows:
+    """The float64 numbers at an address, row by row, shape (rows, columns)."""
+    return np.ndarray((rows, columns), np.float64, _memory(address, 8 * rows * columns))
+
+
+def ints_at(address: int, count: int) -> Ints:
+    """The int64 numbers at an address, shape (count,)."""
+    return np.ndarray((count,), np.int64, _memory(address, 8 * count))

@@ -24,7 +24,7 @@ from numba.extending import intrinsic, overload, typeof_impl
 from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
-from .memory import bytes_at, record_at
+from .memory import bytes_at, floats_at, ints_at, record_at, table_at
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record
 from .vectors import Value
@@ -181,12 +181,20 @@ def _as_record(typing_context, cls, address):  # type: ignore[no-untyped-def]
     return cls.record(cls, types.int64), generate
 
 
-@intrinsic
-def _as_pointer(typing_context, address):  # type: ignore[no-untyped-def]
-    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.inttoptr(args[0], context.get_value_type(sig.return_type))
+def _pointer_to(number: Any) -> Any:
+    """What makes an address a pointer to numbers of a type."""
 
-    return types.CPointer(types.uint8)(types.int64), generate  # type: ignore[attr-defined]
+    @intrinsic
+    def pointer(typing_context, address):  # type: ignore[no-untyped-def]
+        def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            return builder.inttoptr(args[0], context.get_value_type(sig.return_type))
+
+        return types.CPointer(number)(types.int64), generate  # type: ignore[attr-defined]
+
+    return pointer
+
+
+_to_bytes, _to_floats, _to_ints = _pointer_to(types.uint8), _pointer_to(types.float64), _pointer_to(types.int64)
 
 
 # No annotations here: Numba compares these signatures with those of the functions.
@@ -197,4 +205,19 @@ def _record_at(cls, address):  # type: ignore[no-untyped-def]
 
 @overload(bytes_at)
 def _bytes_at(address, count):  # type: ignore[no-untyped-def]
-    return lambda address, count: carray(_as_pointer(address), (count,))
+    return lambda address, count: carray(_to_bytes(address), (count,))
+
+
+@overload(floats_at)
+def _floats_at(address, count):  # type: ignore[no-untyped-def]
+    return lambda address, count: carray(_to_floats(address), (count,))
+
+
+@overload(table_at)
+def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
+    return lambda address, rows, columns: carray(_to_floats(address), (rows, columns))
+
+
+@overload(ints_at)
+def _ints_at(address, count):  # type: ignore[no-untyped-def]
+    return lambda address, count: carray(_to_ints(address), (count,))

@@ -86,7 +86,7 @@ class ArduPilotSession:
                 base = free_tcp_run(ardupilot.SERIAL_PORTS)
                 self.process = ardupilot.start(
                     choice.program, plant.vehicle.airframe, plant.home, self.host.address[1], base, instance=instance,
-                    speedup=speedup, sees_ground=plant.rangers is not None and plant.rangers.rangefinder is not None,
+                    speedup=speedup, sees_ground=plant.rangers is not None and plant.rangers.has_rangefinder,
                     params=params, overrides=f"MAV_SYSID {1 + instance}\nSYSID_THISMAV {1 + instance}\n", folder=folder,
                 )  # fmt: skip
                 undo.callback(self.process.stop)

@@ -15,6 +15,7 @@ from ..core.record_reader import RecordReader
 from ..physics.carried import Carried, carried
 from ..physics.engine import Engine, EngineVehicle, Laws
 from ..physics.engines import NATIVE, find
+from ..physics.native.ranging import list_near
 from ..scenario import Options, Scenario
 from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..vehicles import Airframe
@@ -63,6 +64,7 @@ class LocalPlant(Plant):
         self._event_count = vehicle.reader.field("autopilot.events.count")
         self._attention = vehicle.reader.field("autopilot.events.attention")
         self._clock = vehicle.reader.field("time_us")
+        self._wants_list: Callable[[], int] = vehicle.reader.field("physics.obstacles.wanted")
 
     def _engine_vehicle(self) -> EngineVehicle:
         vehicle = self.vehicle
@@ -71,7 +73,7 @@ class LocalPlant(Plant):
         floor = self.surroundings.floor if self.surroundings is not None else 0.0
         return EngineVehicle(vehicle.v, vehicle.fleet, vehicle.index, vehicle.airframe, laws, self.world, floor)
 
-    def _unit(self, unit: Callable[..., None]) -> Callable[[], None]:
+    def _unit(self, unit: Callable[..., None]) -> Callable[..., None]:
         vehicle = self.vehicle
         return bind_unit(unit, vehicle.kind, vehicle.fleet, vehicle.index, self.progress)
 
@@ -83,26 +85,32 @@ class LocalPlant(Plant):
         vehicle.kind.init_physics(v, vehicle.airframe, self.home, self.seed)
         around = self.surroundings
         if around is not None:
-            around.attach(v, vehicle.reader, lists_solids=self.engine is None)
+            around.attach(v, lists_solids=self.engine is None)
         if self.engine is not None:
             self.engine.place()
         if around is not None:
             cast = self.engine.cast if self.engine is not None else None
-            self.rangers = Rangers(v, vehicle.fleet, vehicle.index, Scene(around.world.geometry, around.floor, cast))
-            self.rangers.measure(0)
-            self.due_us = self.rangers.due_us
+            self.rangers = Rangers(vehicle, Scene(around.world.geometry, around.floor, cast), self._unit)
+            self.ranging = self.rangers.address
+            if self.engine is None:
+                self._list_near = self._unit(list_near)
+                self._list_near(self.ranging)
+            self.measure()
+            self._note_due()
 
     # ------------------------------------------------------------------ going on
 
-    def prepare(self) -> None:
-        around = self.surroundings
-        if around is not None and around.is_wanted():
-            around.gather()
+    def _prepare(self) -> None:
+        """List the solids near the vehicle anew, where that is asked for, before a tick that ``Bridge.run`` does not
+        make."""
+        if self._wants_list():
+            self._list_near(self.ranging)
             self.vehicle.v.autopilot.events.attention = 0
 
     def run(self, ticks: int) -> None:
         if self._run is None:
             self._run = self._runner()
+        self._prepare()
         self._run(ticks)
 
     def _runner(self) -> Callable[[int], None]:
@@ -139,16 +147,19 @@ class LocalPlant(Plant):
         """One tick of physics alone, for an autopilot elsewhere: actuators in, sensors out."""
         if self._tick is None:
             self.load_tick()
-        self.prepare()
+        self._prepare()
         self._tick()  # type: ignore[misc]
-        if self.due_us <= self._clock():
-            self.measure()
+        self.measure()
 
     def measure(self) -> None:
         rangers = self.rangers
         if rangers is not None and rangers.due_us <= self._clock():
-            rangers.measure(self._clock())
-            self.due_us = rangers.due_us
+            rangers.measure()
+            self._note_due()
+
+    def _note_due(self) -> None:
+        if self.rangers is not None and not self.runs_in_core:
+            self.due_us = self.rangers.due_us
 
     # ------------------------------------------------------------------ the rest
 
@@ -165,9 +176,8 @@ class LocalPlant(Plant):
         if self.engine is not None:
             self.engine.restore(state)
         if self.rangers is not None:
-            self.rangers.read_figures()
             self.rangers.find_due()
-            self.due_us = self.rangers.due_us
+            self._note_due()
 
     def close(self) -> None:
         if self.engine is not None:

@@ -44,7 +44,8 @@ class SimulatedVehicle:
 class Plant(ABC):
     """What moves one vehicle, and what measures it.
 
-    ``run`` lets physics and autopilot go on; the simulation never runs past ``due_us`` and then calls ``measure``.
+    ``run`` lets physics and autopilot go on; the simulation never runs past ``due_us`` and then calls ``measure``. What
+    ``runs_in_core`` measures there.
     """
 
     name: ClassVar[str] = ""
@@ -56,7 +57,9 @@ class Plant(ABC):
     def __init__(self, vehicle: SimulatedVehicle) -> None:
         self.vehicle = vehicle
         self.due_us = NEVER
-        """Time since boot at which something has to be measured besides the tick's sensors [us]."""
+        """Time since boot at which ``measure`` has to be called [us]."""
+        self.ranging = 0
+        """Address of what the core needs to measure in a world (``sitl.physics.native.ranging``); 0: nothing."""
 
     @abstractmethod
     def power_on(self) -> None:
@@ -73,10 +76,6 @@ class Plant(ABC):
         Raises:
             PhysicsLostError: the physics has gone; the ticks before that have passed and count.
         """
-
-    def prepare(self) -> None:
-        """What the world has to look up before the next tick."""
-        return
 
     def measure(self) -> None:
         """Take the measurements that are due now, and set ``due_us``."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The world around one vehicle: where it starts, the solids that its record lists, the floor that it stands on.
+"""The world around one vehicle: where it starts, and the floor that it stands on.
 
 Body positions are NED from the world's origin on the floor; the world's own heights count from its z = 0.
 """
@@ -7,22 +7,16 @@ Body positions are NED from the world's origin on the floor; the world's own hei
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from ..core.record_reader import RecordReader
 from ..errors import OptionError
-from ..physics.native.records import OBSTACLES_MAX
 from ..scenario import StartPose
 from ..vehicles import Airframe
 from ..worlds import World, contact
-from ..worlds.geometry import BOTTOM, TOP
 from ..worlds.shapes import to_heading, to_ned
 
-REACH = 30.0
-"""Solids farther away than this are not listed [m]."""
 OFF_FLOOR = 0.5
 """Greatest height of a start pose over the floor [m]: a vehicle stands at power-on."""
 INSIDE = 1e-6
@@ -54,37 +48,17 @@ class Surroundings:
         north, east, _ = to_ned(x, y, z)
         self.position = (north - along * math.cos(self.heading), east - along * math.sin(self.heading), 0.0)
         """Of the body's origin at power-on, NED from the world's origin on the floor [m]."""
-        self._rows = contact.rows(OBSTACLES_MAX)
         self._check_free(airframe)
 
-    def attach(self, v: Any, reader: RecordReader, lists_solids: bool = True) -> None:
+    def attach(self, v: Any, lists_solids: bool) -> None:
         """Put a vehicle that has just been powered on, at home, at its start.
 
         Args:
             v: view of its record.
-            reader: of the same.
             lists_solids: native physics finds the solids near the vehicle in its record; other engines have their own.
         """
-        self._obstacles, self._body = v.physics.obstacles, v.physics.body
-        self.is_wanted: Callable[[], int] = reader.field("physics.obstacles.wanted")
-        """Whether the vehicle needs a new list of the solids near it."""
-        self._body.pos = self.position
-        self._obstacles.present = lists_solids and len(self.world.geometry) > 0
-        if lists_solids:
-            self.gather()
-
-    def gather(self) -> None:
-        """List the solids near the vehicle in its record."""
-        o, (north, east, _) = self._obstacles, self._body.pos
-        count, complete = contact.near(self.world.geometry, north, east, REACH, self._rows)
-        rows = o.rows
-        rows[:] = 0.0
-        rows[:count] = self._rows[:count]
-        rows[:count, TOP] += self.floor
-        rows[:count, BOTTOM] += self.floor
-        o.count, o.north, o.east, o.complete = count, north, east, complete
-        o.clear = 0.0
-        o.wanted = False
+        v.physics.body.pos = self.position
+        v.physics.obstacles.present = lists_solids and len(self.world.geometry) > 0
 
     def _check_free(self, airframe: Airframe) -> None:
         top, bottom = float(airframe.value("contact_top")), float(airframe.value("contact_bottom"))

@@ -15,10 +15,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-
-from ..core.kernels import law
 import numpy.typing as npt
 
+from ..core.kernels import law
 from ..errors import SitlError
 
 Array = npt.NDArray[np.float64]

@@ -40,7 +40,7 @@ def stand(simulation: Simulation, down: float, *angles: float) -> np.ndarray:
     assert simulation.plant.rangers is not None
     simulation.v.sensors.lidar_count = simulation.v.sensors.rangefinder_count = 0
     simulation.plant.rangers.find_due()
-    simulation.plant.rangers.measure(0)
+    simulation.plant.rangers.measure()
     return scan(simulation)
 
 

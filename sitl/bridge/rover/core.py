@@ -11,8 +11,8 @@ from ..core_link import CoreUnits
 from ..services.rc import rc_channels_override
 from ..telemetry.builder import compiled
 from ..wire.choose import choose_builder, choose_taker, choose_targets
-from ..wire.fleet import run_slots
-from ..wire.link import Links, hear_port, run_vehicle, tell_links
+from ..wire.fleet import Beside, run_slots
+from ..wire.link import Limits, Links, hear_port, run_vehicle, tell_links
 from .setpoints import attitude_target, position_target_global, position_target_local
 from .sticks import manual_control
 from .telemetry import MESSAGES
@@ -35,15 +35,15 @@ def tell(fleet: Sequence[Rover], index: int, ports: int, count: int, number: int
 
 
 @unit
-def run(fleet: Sequence[Rover], index: int, ports: int, count: int, until_us: int, shell_us: int) -> None:
-    """Advance, and send what falls due."""
-    run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
+def run(fleet: Sequence[Rover], index: int, ports: int, count: int, ranging: int, until_us: int, shell_us: int) -> None:
+    """Advance; measure and send what falls due."""
+    run_vehicle(fleet, index, Links(ports, count), ranging, Limits(until_us, shell_us), advance, tell)
 
 
 @unit
-def run_all(fleet: Sequence[Rover], index: int, last: int, ports: int, slots: int) -> None:
+def run_all(fleet: Sequence[Rover], index: int, last: int, ports: int, slots: int, ranging: int) -> None:
     """Vehicles ``index`` .. ``last`` - 1 of a fleet act on what their clients sent, and advance."""
-    run_slots(fleet, index, last, ports, slots, hear, run)
+    run_slots(fleet, index, last, Beside(ports, slots, ranging), hear, run)
 
 
 UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)

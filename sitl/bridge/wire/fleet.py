@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from ...core.kernels import law
 from ...core.memory import record_at
 from ...core.records import Record
 from ...vehicle.record import Vehicle
+from .link import wants_shell
 from .port import SIZE, Port
 
 V = TypeVar("V", bound=Vehicle)
@@ -28,14 +29,26 @@ class Slot(Record):
     needs_shell: int  # GOES_ON, or what the core has left to it
 
 
+class Beside(NamedTuple):
+    """What lies beside the vehicles' records, by address."""
+
+    ports: int
+    """One ``Port`` for each vehicle."""
+    slots: int
+    """One ``Slot`` for each vehicle."""
+    ranging: int
+    """The ``Ranging`` of their world, for one thread; 0: there is none."""
+
+
 @law
 def run_slot(
     fleet: Sequence[V],
     index: int,
     port_address: int,
+    ranging: int,
     slot: Slot,
     hear: Callable[[Sequence[V], int, int], None],
-    run: Callable[[Sequence[V], int, int, int, int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int, int], None],
 ) -> None:
     """Let one vehicle act on what its client sent and go on to ``slot.until_us``."""
     v, port = fleet[index], record_at(Port, port_address)
@@ -43,11 +56,11 @@ def run_slot(
     if port.in_size > 0:
         hear(fleet, index, port_address)
     slot.needs_shell = GOES_ON
-    if port.frame_end != 0 or events.count != slot.events_seen or events.attention:
+    if port.frame_end != 0 or events.count != slot.events_seen or wants_shell(v, ranging):
         slot.needs_shell = TO_HEAR
     elif v.time_us < slot.until_us:
-        run(fleet, index, port_address, 1, min(slot.until_us, slot.shell_us), slot.shell_us)
-        happened = events.count != slot.events_seen or events.attention
+        run(fleet, index, port_address, 1, ranging, min(slot.until_us, slot.shell_us), slot.shell_us)
+        happened = events.count != slot.events_seen or wants_shell(v, ranging)
         if happened or not slot.until_us <= v.time_us < slot.shell_us or port.next_us <= v.time_us:
             slot.needs_shell = TO_SERVE
 
@@ -57,16 +70,15 @@ def run_slots(
     fleet: Sequence[V],
     first: int,
     last: int,
-    ports: int,
-    slots: int,
+    beside: Beside,
     hear: Callable[[Sequence[V], int, int], None],
-    run: Callable[[Sequence[V], int, int, int, int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int, int], None],
 ) -> None:
     """The same for vehicles ``first`` .. ``last`` - 1; a vehicle whose ``until_us`` is 0 stays as it is."""
     for index in range(first, last):
-        slot = record_at(Slot, slots + index * SLOT_SIZE)
+        slot = record_at(Slot, beside.slots + index * SLOT_SIZE)
         if slot.until_us != 0:
-            run_slot(fleet, index, ports + index * SIZE, slot, hear, run)
+            run_slot(fleet, index, beside.ports + index * SIZE, beside.ranging, slot, hear, run)
 
 
 SLOT_SIZE = Slot.dtype.itemsize

@@ -2,7 +2,8 @@
 """A vehicle and its clients in the core: bytes are acted on, ticks go by, messages go out when they are due.
 
 A firmware makes three units of these laws (``copter/core.py``): ``hear``, ``tell`` and ``run``. All take the address of
-the vehicle's ports, which lie side by side.
+the vehicle's ports, which lie side by side. Of a vehicle in a world, ``run`` takes the address of its ``Ranging``, too:
+lidar and range-finder measure, and solids are listed, while the core goes on.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import NamedTuple, TypeVar
 from ...core.constants import TICK_US
 from ...core.kernels import law
 from ...core.memory import bytes_at, record_at
+from ...physics.native.ranging import NEVER, Ranging, list_near, measure, scan_due
 from ...vehicle.record import Vehicle
 from .frames import COMPONENT, copy_payload, next_frame
 from .port import INCOMING, PAYLOAD, PAYLOAD_BYTES, Port
@@ -76,11 +78,20 @@ class Links(NamedTuple):
     clients: int
 
 
+class Limits(NamedTuple):
+    """How far a run goes."""
+
+    until_us: int
+    """The first tick at or after this is the last one [us since boot]."""
+    shell_us: int
+    """When the shell has to act before messages are sent [us since boot]."""
+
+
 @law
 def run_vehicle(
-    fleet: Sequence[V], index: int, links: Links, until_us: int, shell_us: int, advance: Advance[V], tell: Tell[V]
+    fleet: Sequence[V], index: int, links: Links, ranging: int, limits: Limits, advance: Advance[V], tell: Tell[V]
 ) -> None:
-    """Advance to the first tick at or after ``until_us``, sending what falls due.
+    """Advance to the first tick at or after ``until_us``, measuring and then sending what falls due.
 
     Back early, at the end of the tick, when something happened that the shell must know, and when a message is due that
     the core cannot send.
@@ -89,26 +100,44 @@ def run_vehicle(
         fleet: the vehicle's fleet.
         index: of the vehicle.
         links: its clients.
-        until_us: since boot [us].
-        shell_us: when the shell has to act before messages are sent [us since boot].
+        ranging: address of its ``Ranging``; 0: it is in no world.
+        limits: when to stop.
         advance: unit that goes on by some ticks.
         tell: unit that sends what is due.
     """
     v = fleet[index]
-    events = v.autopilot.events
+    events, obstacles = v.autopilot.events, v.physics.obstacles
     told = events.count
     while True:
-        stop = min(until_us, next_due(links.address, links.clients))
+        if obstacles.wanted and ranging != 0:
+            list_near(fleet, index, ranging)
+            events.attention = False
+        due = measurement_due(v, ranging)
+        stop = min(min(limits.until_us, due), next_due(links.address, links.clients))
         ticks = (stop - v.time_us + TICK_US - 1) // TICK_US
         advance(fleet, index, max(ticks, 1))
-        if events.attention or events.count != told or v.time_us >= shell_us:
+        if due <= v.time_us:
+            measure(fleet, index, ranging)
+        if wants_shell(v, ranging) or events.count != told or v.time_us >= limits.shell_us:
             return
         if next_due(links.address, links.clients) <= v.time_us:
             tell(fleet, index, links.address, links.clients, REGULAR)
             if next_due(links.address, links.clients) <= v.time_us:
                 return
-        if v.time_us >= until_us:
+        if v.time_us >= limits.until_us:
             return
+
+
+@law
+def wants_shell(v: Vehicle, ranging: int) -> bool:
+    """Whether the core came back for the shell, and not for another list of near solids."""
+    return v.autopilot.events.attention and not (v.physics.obstacles.wanted and ranging != 0)
+
+
+@law
+def measurement_due(v: Vehicle, ranging: int) -> int:
+    """When lidar or range-finder have to measure next [us since boot]."""
+    return scan_due(v, record_at(Ranging, ranging)) if ranging != 0 else NEVER
 
 
 @law

@@ -250,7 +250,7 @@ def read_attitude(end: ClientEnd, m: Attitude) -> None:
 
 @law
 def begins_with(text: Ints, beginning: Ints) -> bool:
-    for k in range(beginning.shape[0]):
+    for k in range(beginning.shape[0]):  # noqa: SIM110 - laws know no generators
         if text[k] != beginning[k]:
             return False
     return True
@@ -303,9 +303,7 @@ def read_bytes(
 
 
 @law
-def read_ports(
-    rows: IntLine, ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int
-) -> None:
+def read_ports(rows: IntLine, ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int) -> None:
     """Read what each vehicle of ``rows`` has sent, and take it from its port.
 
     Args:

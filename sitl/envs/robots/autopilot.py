@@ -20,6 +20,7 @@ from sitl import vehicles, worlds
 from sitl.client.connection import Connection
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import PX4, Choice, choose
+from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
 from sitl.simulation import OptionError, Simulation
 from sitl.vehicles import AirframeError
@@ -31,6 +32,7 @@ from ..actions import Action, Setpoint
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_intervals, set_mode
 from ..options import COMMON, EnvOptionError, unknown
 from .foreign import ForeignVehicles, SocketVehicles
+from .in_fleet import FleetVehicles, rows_of
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
 from .robot import Floats, Pose
@@ -43,7 +45,10 @@ def make_vehicles(setup: VehicleSetup, choice: Choice | None) -> Vehicles:
     """Vehicles in process, behind a socket, or with a foreign autopilot, as the options say."""
     if choice is not None:
         return ForeignVehicles(setup, choice)
-    return InProcessVehicles(setup) if setup.options.connection == INPROCESS else SocketVehicles(setup)
+    if setup.options.connection != INPROCESS:
+        return SocketVehicles(setup)
+    together = setup.options.physics == NATIVE and setup.options.gcs is None
+    return FleetVehicles(setup) if together else InProcessVehicles(setup)
 
 
 class AutopilotRobot:
@@ -108,6 +113,7 @@ class AutopilotRobot:
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
         self._base_along = float(airframe.value("base_along"))
         self._states = [NOT_STARTED] * count
+        self._began_us = np.zeros(count, np.int64)
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
@@ -138,6 +144,9 @@ class AutopilotRobot:
     def advance(self, seconds: float, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """See ``Robot``."""
         us = round(1e6 * seconds)
+        if isinstance(self._vehicles, FleetVehicles):
+            self._step_all(self._vehicles, rows_of(rows, self.count), us)
+            return
         try:
             for index in range(self.count) if rows is None else np.flatnonzero(rows).tolist():
                 self._step(index, us)
@@ -150,12 +159,38 @@ class AutopilotRobot:
     ) -> None:
         """See ``Robot``: the set-point message is sent after ``waits`` ticks."""
         us, tick_us = round(1e6 * seconds), round(1e6 * self.tick)
+        if isinstance(self._vehicles, FleetVehicles):
+            self._step_all(self._vehicles, rows_of(rows, self.count), us, waits * tick_us)
+            return
         try:
             for index in range(self.count) if rows is None else np.flatnonzero(rows).tolist():
                 self._step(index, us, int(waits[index]) * tick_us)
         except LinkLostError:
             self.close()
             raise
+
+    def _step_all(
+        self,
+        vehicles: FleetVehicles,
+        rows: npt.NDArray[np.int64],
+        us: int,
+        waits_us: npt.NDArray[np.int64] | None = None,
+    ) -> None:
+        """One step of many vehicles at once."""
+        interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
+        for index in rows.tolist():
+            now = states[index]
+            if now.setpoint != setpoint or now.interval_us != interval_us:
+                states[index] = vehicles.change(index, now, setpoint, interval_us)
+        hits = vehicles.hits
+        vehicles.step(rows, us, setpoint, self._commands, waits_us)
+        self.collided[rows] = vehicles.hits[rows] > hits[rows]
+        self._place(vehicles, rows)
+
+    def _place(self, vehicles: FleetVehicles, rows: npt.NDArray[np.int64]) -> None:
+        vehicles.place(rows, self._base_along, self._state)
+        self.scan[rows] = vehicles.scans[rows, : self.scan.shape[1]]
+        self.time[rows] = 1e-6 * (vehicles.times_us()[rows] - self._began_us[rows])
 
     def _step(self, index: int, us: int, wait_us: int = 0) -> None:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
@@ -195,6 +230,10 @@ class AutopilotRobot:
 
     def _read(self, index: int) -> None:
         """Copy the last telemetry into the arrays."""
+        self._began_us[index] = self._states[index].began_us
+        if isinstance(self._vehicles, FleetVehicles):
+            self._place(self._vehicles, np.array([index]))
+            return
         link, now = self._vehicles.links[index], self._states[index]
         assert link is not None
         inbox = link.inbox
@@ -246,7 +285,7 @@ class AutopilotRobot:
     def __getstate__(self) -> dict[str, Any]:
         if not self._vehicles.has_snapshots:
             raise TypeError(f"an environment on {self._vehicles.where} cannot be pickled")
-        kept = [None if link is None else self.snapshot(i) for i, link in enumerate(self._vehicles.links)]
+        kept = [None if state is NOT_STARTED else self.snapshot(i) for i, state in enumerate(self._states)]
         return {"options": self._given, "kept": kept, "changed": self._vehicles.changed, "collided": self.collided}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

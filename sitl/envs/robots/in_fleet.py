@@ -6,7 +6,6 @@ Each has its own link, and commands and telemetry are MAVLink's bytes, as for on
 
 from __future__ import annotations
 
-
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,10 @@ import numpy.typing as npt
 
 from sitl.client.connection import InProcess
 from sitl.core.kernels import jit_disabled
-from sitl.errors import EngineError, OptionError
+from sitl.errors import OptionError
 from sitl.fleet import Fleet
-from sitl.simulation import Simulation
+from sitl.physics.engine import EngineError
+from sitl.simulation import Simulation, Snapshot
 
 from ..mavlink.compiled import (
     ATTITUDE,
@@ -35,8 +35,8 @@ from ..mavlink.preparation import set_intervals, set_mode
 from ..mavlink.setpoints import Encode, override, position, rover_attitude, rover_position, velocity
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
-from ..options import EnvOptionError
-from .in_process import InProcessVehicles
+from ..options import EnvOptionError, unknown
+from .in_process import MAX_STATES, InProcessVehicles
 from .robot import Floats, Pose
 from .vehicles import EpisodeState, VehicleSetup
 
@@ -52,9 +52,7 @@ class FleetVehicles(InProcessVehicles):
     """See ``Vehicles``; ``step`` advances many at once."""
 
     def __init__(self, setup: VehicleSetup) -> None:
-        super().__init__(setup)
         count, readings = setup.count, len(setup.angles)
-        self.fleet: Fleet | None = None
         parts = -(-readings // PART)
         self._ends: Any = ClientEnd.fleet(count)
         self._views = [ClientEnd.of(self._ends, k) for k in range(count)]
@@ -65,16 +63,33 @@ class FleetVehicles(InProcessVehicles):
         self._coming = self.scans.copy()
         self._origins = np.zeros((count, 3))
         self._ends_for_laws: Any = self._views if jit_disabled() else self._ends
+        self._changed: dict[tuple[int, str, int], tuple[Snapshot, Snapshot]] = {}
+        """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
+        self._begun: list[tuple[Snapshot, int] | None] = [None] * count
+        """Start state and seed of each vehicle's episode, until its first step."""
+        super().__init__(setup)
+
+    def _open(self) -> None:
+        count = self.setup.count
+        self.fleet: Fleet = self._made(None, (), lambda scenario: Fleet(scenario, count, core=self._core))
+        shell = self.fleet.shell
+        if shell.unknown_parameters:
+            raise unknown("parameter", shell.unknown_parameters[0], shell.firmware.table.names())
+        self._core = shell.core
+        for end in self._views:
+            end.system = shell.bridge.system
 
     # ------------------------------------------------------------------ episodes
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         state = self._restored(pose, tuple(sorted(self.changed[index].items())))
         self._put(index, state, seed)
+        self._begun[index] = (state.simulation, seed)
         return state
 
     def _put(self, index: int, state: EpisodeState, seed: int | None = None) -> None:
-        fleet = self._the_fleet()
+        fleet = self.fleet
+        self._begun[index] = None
         try:
             fleet.put(index, state.simulation, seed)
         except (OptionError, EngineError) as error:
@@ -85,26 +100,34 @@ class FleetVehicles(InProcessVehicles):
         place, angles, (_, scan, scan_us), end.mode, end.armed, _ = telemetry
         end.position_ms, end.position, end.velocity = int(place[0]), place[1:4], place[4:]
         end.attitude_ms, end.euler, end.rates = int(angles[0]), angles[1:4], angles[4:]
-        end.scan_us, end.fresh, end.system = scan_us, 0, self._system
+        end.scan_us, end.fresh = scan_us, 0
         self.scans[index] = scan
         self._origins[index] = state.origin
 
-    def _the_fleet(self) -> Fleet:
-        if self.fleet is None:
-            self.fleet = Fleet(self._scenario((0.0, 0.0, 0.0, 0.0), ()), self.setup.count, core=self._core)
-            self._system = self.fleet.shell.bridge.system
-        return self.fleet
-
     def change(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
         """Set the mode and the telemetry intervals that a kind of set-point needs, without time going by."""
-        simulation = self.simulation(index)
+        begun, self._begun[index] = self._begun[index], None
+        if begun is None:
+            self.fleet.put(index, self._ready(index, now, setpoint, interval_us))
+        else:
+            start, seed = begun
+            key = (id(start), setpoint, interval_us)
+            if key not in self._changed:
+                if len(self._changed) >= MAX_STATES:
+                    del self._changed[next(iter(self._changed))]
+                self._changed[key] = (start, self._ready(index, now, setpoint, interval_us))
+            self.fleet.put(index, self._changed[key][1], seed)
+        return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
+
+    def _ready(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> Snapshot:
+        simulation = Simulation(self.fleet.scenario, core=self._core)
         link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
+        simulation.restore(self.fleet.snapshot(index))
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
             set_mode(link, self.setup.kind.modes[setpoint])
-        self._the_fleet().put(index, simulation.snapshot())
-        return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
+        return simulation.snapshot()
 
     # ------------------------------------------------------------------ steps
 
@@ -118,7 +141,7 @@ class FleetVehicles(InProcessVehicles):
             commands: one row for each vehicle, shape (count, columns).
             waits_us: how long each set-point is under way [us], shape (count,); None: no time.
         """
-        fleet = self._the_fleet()
+        fleet = self.fleet
         late = np.zeros(0, np.int64)
         if waits_us is not None:
             late = rows[waits_us[rows] > 0]
@@ -137,7 +160,7 @@ class FleetVehicles(InProcessVehicles):
         self._read(rows)
 
     def _read(self, rows: Rows) -> None:
-        fleet, ports = self._the_fleet(), self._the_fleet().ports.ctypes.data
+        fleet, ports = self.fleet, self.fleet.ports.ctypes.data
         for index, data in fleet.take_shell_bytes().items():
             held = np.frombuffer(data, np.uint8)
             read_one(index, held.ctypes.data, len(held), self._ends_for_laws, self.scans, self._coming, ports)
@@ -155,17 +178,17 @@ class FleetVehicles(InProcessVehicles):
 
     def times_us(self) -> npt.NDArray[np.int64]:
         """Simulated time of every vehicle [us], shape (count,)."""
-        found: npt.NDArray[np.int64] = self._the_fleet().time_us
+        found: npt.NDArray[np.int64] = self.fleet.time_us
         return found
 
     # ------------------------------------------------------------------ the rest
 
     def time_us(self, index: int) -> int:
-        return int(self._the_fleet().time_us[index])
+        return int(self.fleet.time_us[index])
 
     def simulation(self, index: int) -> Simulation:
         """A copy of one vehicle: what is done to it does not reach the fleet."""
-        return self._the_fleet().simulation(index)
+        return self.fleet.simulation(index)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         return None
@@ -180,21 +203,16 @@ class FleetVehicles(InProcessVehicles):
             end.armed,
             None,
         )
-        simulation = self._the_fleet().snapshot(index)
+        simulation = self.fleet.snapshot(index)
         return EpisodeState(simulation, telemetry, now.origin, now.began_us, now.setpoint, now.interval_us)
 
     def restore(self, index: int, state: EpisodeState) -> None:
         self._put(index, state)
 
     def close(self) -> None:
-        if self.fleet is not None:
-            self.fleet.close()
-            self.fleet = None
+        self.fleet.close()
 
 
 def rows_of(rows: npt.NDArray[np.bool_] | None, count: int) -> Rows:
     """Numbers of the robots that are meant."""
     return np.arange(count) if rows is None else np.flatnonzero(rows)
-
-
-

@@ -8,7 +8,7 @@ noise.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -18,6 +18,7 @@ from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import NATIVE
 from sitl.plants.local import LocalPlant
+from sitl.scenario import Scenario
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
@@ -28,7 +29,7 @@ from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
-_MAX_STATES = 2048
+MAX_STATES = 2048
 """Number of start states that are kept, one for each start pose and set of figures: about 40 kB each. Calculating one
 takes about 30 ms."""
 WIND = {
@@ -54,6 +55,10 @@ class InProcessVehicles(Vehicles):
             self._gcs = None if gcs is None else open_link(gcs)
         except LinkAddressError as error:
             raise EnvOptionError(f"gcs: {error}") from None
+        self._open()
+
+    def _open(self) -> None:
+        """Make the first vehicle: options that cannot be taken are refused here."""
         self._link(0)
 
     @property
@@ -83,12 +88,25 @@ class InProcessVehicles(Vehicles):
                 simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US
             )
             link.close()
-            if len(self._states) >= _MAX_STATES:
+            if len(self._states) >= MAX_STATES:
                 del self._states[next(iter(self._states))]
             self._states[key] = state
         return state
 
     def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
+        simulation: Simulation = self._made(pose, figures, lambda scenario: Simulation(scenario, core=self._core))
+        if simulation.unknown_parameters:
+            raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
+        if self.setup.scenario.physics == NATIVE:
+            self._core = simulation.core
+        return simulation
+
+    def _made(self, pose: Pose | None, figures: Sequence[tuple[str, float]], make: Callable[[Scenario], Any]) -> Any:
+        """What ``make`` makes of the scenario at a pose, with changed figures.
+
+        Raises:
+            EnvOptionError: an option is refused.
+        """
         scenario, airframe = self.setup.scenario, self.setup.airframe
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
@@ -96,14 +114,9 @@ class InProcessVehicles(Vehicles):
         params = {**(scenario.params or {}), **wind}
         try:
             scenario = replace(scenario, frame=airframe.changed(**own) if own else airframe, params=params, start=start)
-            simulation = Simulation(scenario, core=self._core)
+            return make(scenario)
         except (OptionError, AirframeError, EngineError, ParameterError) as error:
             raise EnvOptionError(str(error)) from None
-        if simulation.unknown_parameters:
-            raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
-        if scenario.physics == NATIVE:
-            self._core = simulation.core
-        return simulation
 
     def _link(self, index: int) -> InProcess:
         link = self.links[index]

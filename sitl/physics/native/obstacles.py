@@ -2,8 +2,8 @@
 """Contact with the solids of a world.
 
 A vehicle's record lists the solids near it, so that it stays one record of a fixed size: a copy of it is the whole
-state, and a fleet needs nothing else. When the vehicle leaves the place for which the list is good, ``wanted`` asks
-the shell for a new one (``sitl.worlds.contact.near``) before the next tick.
+state. When the vehicle leaves the place for which the list is good, ``wanted`` asks for a new one before the next tick
+(``list_solids``).
 
 The vehicle's outline is a row of upright discs along its body between two heights. It does not enter a solid: it is
 pushed out along the solid's normal and loses the velocity into it, without bounce. Sides have no friction; on top of a
@@ -15,14 +15,18 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import dot, rotate_inverse
+from ...core.array_kernels import Table
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
 from ...vehicles.figures.body import Outline
-from ...worlds.contact import Contact, Volume, nearest_of
+from ...worlds.contact import Contact, Volume, gather, nearest_of
+from ...worlds.geometry import BOTTOM, SOLID_FIGURES, TOP
 from .body import GRAVITY
-from .records import Body, Obstacles
+from .records import OBSTACLES_MAX, Body, Obstacles
 from .tick import TICK_S
 
+REACH = 30.0
+"""Solids farther away than this are not listed [m]."""
 HIT_SPEED = 0.1
 """Slowest contact that is reported [m/s]."""
 HIT_PAUSE_US = 250_000
@@ -38,6 +42,29 @@ _AHEAD = 0.5
 _RELEASE = 1.0 - math.exp(-TICK_S / 0.02)
 """Share of an impact that shows in a tick: body and bumper give way for some 0.02 s, as a copter's legs do. All of it
 in one tick would be beyond what an accelerometer can show."""
+
+
+@law
+def list_solids(o: Obstacles, body: Body, solids: Table, floor: float) -> None:
+    """List the solids near a body.
+
+    Args:
+        o: the list.
+        body: of the vehicle.
+        solids: of the world, shape (n, SOLID_FIGURES), down from z = 0 of its frame.
+        floor: height of the floor in the world's frame [m]; the list's rows count from the floor.
+    """
+    place, rows = Vec2(body.pos.x, body.pos.y), o.rows
+    listed = gather(solids, place, REACH, rows)
+    for k in range(listed.rows):
+        rows[k, TOP] += floor
+        rows[k, BOTTOM] += floor
+    for k in range(listed.rows, OBSTACLES_MAX):
+        for figure in range(SOLID_FIGURES):
+            rows[k, figure] = 0.0
+    o.count, o.north, o.east, o.complete = listed.rows, place.x, place.y, listed.complete
+    o.clear = 0.0
+    o.wanted = False
 
 
 @law

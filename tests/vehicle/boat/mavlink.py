@@ -17,8 +17,8 @@ from sitl.bridge.telemetry.builder import compiled
 from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
 from sitl.bridge.telemetry.shell import CAPABILITIES
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
-from sitl.bridge.wire.fleet import run_slots
-from sitl.bridge.wire.link import Links, hear_port, run_vehicle, tell_links
+from sitl.bridge.wire.fleet import Beside, run_slots
+from sitl.bridge.wire.link import Limits, Links, hear_port, run_vehicle, tell_links
 from sitl.core.kernels import law, unit
 from sitl.vehicle.record import Vehicle
 
@@ -80,13 +80,13 @@ def tell(fleet: Sequence[Boat], index: int, ports: int, count: int, number: int)
 
 
 @unit
-def run(fleet: Sequence[Boat], index: int, ports: int, count: int, until_us: int, shell_us: int) -> None:
-    run_vehicle(fleet, index, Links(ports, count), until_us, shell_us, advance, tell)
+def run(fleet: Sequence[Boat], index: int, ports: int, count: int, ranging: int, until_us: int, shell_us: int) -> None:
+    run_vehicle(fleet, index, Links(ports, count), ranging, Limits(until_us, shell_us), advance, tell)
 
 
 @unit
-def run_all(fleet: Sequence[Boat], index: int, last: int, ports: int, slots: int) -> None:
-    run_slots(fleet, index, last, ports, slots, hear, run)
+def run_all(fleet: Sequence[Boat], index: int, last: int, ports: int, slots: int, ranging: int) -> None:
+    run_slots(fleet, index, last, Beside(ports, slots, ranging), hear, run)
 
 
 UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)
