@@ -18,6 +18,8 @@ from sitl.bridge.wire.choose import message_of
 from sitl.client import connect
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink.telemetry import SCAN, SECTORS, StepTelemetry
+from sitl.envs.robots import autopilot
+from sitl.envs.robots.in_process import InProcessVehicles
 from sitl.errors import LinkLostError
 from tests.envs import lockstep_vehicle
 
@@ -185,6 +187,7 @@ def test_sectors_are_spread_over_the_readings(monkeypatch):
         make(self, vehicle, units._replace(builders=[b for b in units.builders if message_of(b).kind is not SCAN]))
 
     monkeypatch.setattr(CoreLink, "__init__", make_without_scans)
+    monkeypatch.setattr(autopilot, "make_vehicles", lambda setup, choice: InProcessVehicles(setup))
     sectors = gym.make(COPTER, observation="scan")
     rough, _ = sectors.reset(seed=2)
     assert sectors.unwrapped.robot.link(0).inbox.scan_kind is SECTORS

@@ -6,7 +6,7 @@ Each has its own link, and commands and telemetry are MAVLink's bytes, as for on
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -51,6 +51,8 @@ Rows = npt.NDArray[np.int64]
 class FleetVehicles(InProcessVehicles):
     """See ``Vehicles``; ``step`` advances many at once."""
 
+    takes_threads: ClassVar[bool] = True
+
     def __init__(self, setup: VehicleSetup) -> None:
         count, readings = setup.count, len(setup.angles)
         parts = -(-readings // PART)
@@ -70,8 +72,10 @@ class FleetVehicles(InProcessVehicles):
         super().__init__(setup)
 
     def _open(self) -> None:
-        count = self.setup.count
-        self.fleet: Fleet = self._made(None, (), lambda scenario: Fleet(scenario, count, core=self._core))
+        count, threads = self.setup.count, self.options.threads
+        self.fleet: Fleet = self._made(
+            None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
+        )
         shell = self.fleet.shell
         if shell.unknown_parameters:
             raise unknown("parameter", shell.unknown_parameters[0], shell.firmware.table.names())

@@ -73,6 +73,7 @@ class AutopilotOptions:
         autopilot_path: path of the program, when ``autopilot`` does not give it.
         reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
             proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
+        threads: that advance vehicles in process on native physics; their number changes no bit of the result.
     """
 
     frame: str | Airframe = "erle_rover"
@@ -86,6 +87,7 @@ class AutopilotOptions:
     autopilot: str = OURS
     autopilot_path: str | Path | None = None
     reset: str = SIMULATOR
+    threads: int = 1
 
     @classmethod
     def names(cls) -> list[str]:
@@ -122,6 +124,7 @@ class Vehicles(ABC):
     simulates: ClassVar[bool] = True
     """Whether the physics is ours, so that figures can be changed."""
     has_snapshots: ClassVar[bool] = False
+    takes_threads: ClassVar[bool] = False
     min_step: ClassVar[float] = 0.005
     """An environment's step is a whole multiple of this, or of the autopilot's loop period when that is longer [s]."""
 
@@ -130,6 +133,10 @@ class Vehicles(ABC):
         physics, count = self.options.physics, setup.count
         if physics not in backends() or (physics != NATIVE and not self.simulates):
             raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(backends())}, of a vehicle in process")
+        if self.options.threads != 1 and not self.takes_threads:
+            raise EnvOptionError(
+                f"threads = {self.options.threads!r}: only vehicles in process on native physics have any"
+            )
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
