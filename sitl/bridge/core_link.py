@@ -54,5 +54,5 @@ class CoreLink:
 
     @cached_property
     def run(self) -> Callable[[int, int, int, int, int], None]:
-        """``run(address of ports, count, address of Ranging, until_us, shell_us)``: advance; measure, send what is due."""
+        """``run(address of ports, count, address of Ranging, until_us, shell_us)``: advance, measure, send."""
         return self._bind(self._units.run)

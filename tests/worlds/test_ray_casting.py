@@ -28,7 +28,7 @@ def walked(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -
 
 def swept(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> Floats:
     out = np.full(fan.shape[1], -1.0)
-    raycast.swept(geometry.arrays, Vec3(*point), fan, out)
+    raycast.swept(geometry.arrays, Vec3(*point), fan, math.inf, out)
     return out
 
 
@@ -42,7 +42,7 @@ def test_the_grid_gives_the_bits_of_brute_force(
 @given(worlds, points, fans())
 def test_plain_python_gives_the_same_bits(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> None:
     plain = np.zeros(fan.shape[1])
-    raycast.sweep_rays(geometry.arrays, Vec3(*point), fan, plain)
+    raycast.sweep_rays(geometry.arrays, Vec3(*point), fan, math.inf, plain)
     assert plain.tobytes() == swept(geometry, point, fan).tobytes()
     raycast.walk_rays(geometry.arrays, Vec3(*point), fan, plain)
     assert plain.tobytes() == swept(geometry, point, fan).tobytes()
