@@ -17,7 +17,7 @@ import numpy as np
 
 from ..core.algebra import rotate
 from ..core.array_kernels import IntLine, Kernel, Line, Table
-from ..core.kernels import law
+from ..core.kernels import inlined, law
 from ..core.vectors import Quat, Vec2, Vec3
 from .geometry import (
     BOTTOM,
@@ -44,6 +44,13 @@ from .planar import INF, TINY, Span, crossing, to_box, to_cylinder, to_floor
 
 MANY = 128
 """From so many solids on a scan walks through the grid: measured, see docs/worlds.md."""
+GROUP = 32
+"""Rays that are swept at once: fewer see fewer solids, more are quicker to test. Scans of up to two groups are not
+parted."""
+_MARGIN = 0.001
+"""[m]"""
+_ROUNDING = 1e-9
+"""How far a ray of unit length may be on the wrong side of a plane."""
 
 
 @law
@@ -124,35 +131,154 @@ def walk_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> Non
         out[k] = walk(solids, origin, ray(directions, k))
 
 
+class Sight(NamedTuple):
+    """What rays from a point can meet within their reach, with a margin for rounding and for directions that are not
+    quite units."""
+
+    reach: float
+    """Seen from above [m]."""
+    top: float
+    """Down coordinate of the highest point [m]."""
+    bottom: float
+    """Down coordinate of the lowest point [m]."""
+    is_fan: bool
+    """There are several groups, and seen from above the rays of each are all to the right of its first one and to the
+    left of its last one, or all the other way round."""
+
+
 @law
-def sweep_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
-    """Ranges [m] along many rays from one point, by testing every solid for all rays."""
+def sight_of(origin: Vec3, directions: Table, reach: float) -> Sight:
+    """What rays can meet within their reach [m]."""
+    rise, fall, outside = 0.0, 0.0, 0.0
+    norths, easts, downs = directions[0], directions[1], directions[2]
+    rays = directions.shape[1]
+    for k in range(rays):
+        down = downs[k]
+        rise = down if down < rise else rise
+        fall = down if down > fall else fall
+    for first in range(0, rays, GROUP):
+        end = min(first + GROUP, rays)
+        side = sides(Vec2(norths[first], easts[first]), Vec2(norths[end - 1], easts[end - 1]))
+        for k in range(first, end):
+            left = norths[k] * side.left.x + easts[k] * side.left.y
+            right = norths[k] * side.right.x + easts[k] * side.right.y
+            inside = left if left < right else right
+            outside = inside if inside < outside else outside
+    far = 1.001 * reach + _MARGIN
+    top = origin.z - _MARGIN + (rise * far if rise < 0.0 else 0.0)
+    bottom = origin.z + _MARGIN + (fall * far if fall > 0.0 else 0.0)
+    return Sight(far, top, bottom, rays > 2 * GROUP and outside > -_ROUNDING)
+
+
+class Sides(NamedTuple):
+    """Normals (north, east), no longer than units, of the two upright planes between which a group of rays is: towards
+    the rays."""
+
+    left: Vec2
+    right: Vec2
+
+
+@inlined
+def sides(first: Vec2, last: Vec2) -> Sides:
+    """The sides of a group of rays from the directions of the first and the last one (north, east)."""
+    turn = 1.0 if first.x * last.y > first.y * last.x else -1.0  # from the first to the last: 1 to the right
+    return Sides(Vec2(-turn * first.y, turn * first.x), Vec2(turn * last.y, -turn * last.x))
+
+
+class Face(NamedTuple):
+    """A solid as a ray's origin sees it."""
+
+    cos: float
+    """Of its heading."""
+    sin: float
+    start: Vec2
+    """The origin, from the solid's middle along its own axes [m]."""
+    half: Vec2
+    """Half lengths along those [m]."""
+    radius: float
+    """Rounding [m]."""
+    heights: Span
+    """Top and bottom, down from the origin [m]."""
+
+
+@inlined
+def face(rows: Table, j: int, origin: Vec3) -> Face:
+    """The solid of row ``j``."""
+    c, s = rows[j, COS], rows[j, SIN]
+    dn, de = origin.x - rows[j, NORTH], origin.y - rows[j, EAST]
+    start, half = Vec2(c * dn + s * de, c * de - s * dn), Vec2(rows[j, HALF_LENGTH], rows[j, HALF_WIDTH])
+    heights = Span(rows[j, TOP] - origin.z, rows[j, BOTTOM] - origin.z)
+    return Face(c, s, start, half, rows[j, RADIUS], heights)
+
+
+@inlined
+def is_behind(f: Face, normal: Vec2) -> bool:
+    """Whether a solid is all on the other side of an upright plane through the origin; ``normal``: north, east."""
+    x, y = f.cos * normal.x + f.sin * normal.y, f.cos * normal.y - f.sin * normal.x
+    return f.half.x * abs(x) + f.half.y * abs(y) + f.radius + _MARGIN < x * f.start.x + y * f.start.y
+
+
+class Group(NamedTuple):
+    """Rays that lie side by side; shapes (rays,)."""
+
+    norths: Line
+    """Their directions, unit vectors NED."""
+    easts: Line
+    downs: Line
+    ranges: Line
+    """How far it is along them to what they meet [m]."""
+
+
+@inlined
+def sweep_group(f: Face, offset: Vec2, group: Group) -> None:
+    """Test one solid for all rays of a group; ``offset``: the origin, from the solid's middle (north, east) [m]."""
+    norths, easts, downs, ranges = group.norths, group.easts, group.downs, group.ranges
+    if f.radius > 0.0:
+        for k in range(len(ranges)):
+            met = to_cylinder(offset, f.radius, f.heights, Vec3(norths[k], easts[k], downs[k]))
+            ranges[k] = met if met < ranges[k] else ranges[k]
+    else:
+        c, s = f.cos, f.sin
+        for k in range(len(ranges)):
+            vn, ve = norths[k], easts[k]
+            met = to_box(f.start, f.half, f.heights, Vec3(c * vn + s * ve, c * ve - s * vn, downs[k]))
+            ranges[k] = met if met < ranges[k] else ranges[k]
+
+
+@law
+def sweep_rays(solids: Solids, origin: Vec3, directions: Table, reach: float, out: Line) -> None:
+    """Ranges [m] along many rays from one point, by testing every solid in reach for all groups of rays that may meet
+    it."""
     rows, rays = solids.rows, out.shape[0]
+    norths, easts, downs = directions[0], directions[1], directions[2]
     floor = solids.grid[FLOOR] - origin.z
     for k in range(rays):
-        out[k] = to_floor(floor, directions[2, k])
+        out[k] = to_floor(floor, downs[k])
+    sight = sight_of(origin, directions, reach)
+    whole = Group(norths, easts, downs, out)
     for j in range(rows.shape[0]):
-        c, s = rows[j, COS], rows[j, SIN]
-        dn, de = origin.x - rows[j, NORTH], origin.y - rows[j, EAST]
-        heights = Span(rows[j, TOP] - origin.z, rows[j, BOTTOM] - origin.z)
-        radius = rows[j, RADIUS]
-        if radius > 0.0:
-            for k in range(rays):
-                met = to_cylinder(Vec2(dn, de), radius, heights, ray(directions, k))
-                out[k] = met if met < out[k] else out[k]
-        else:
-            start, half = Vec2(c * dn + s * de, c * de - s * dn), Vec2(rows[j, HALF_LENGTH], rows[j, HALF_WIDTH])
-            for k in range(rays):
-                v = ray(directions, k)
-                met = to_box(start, half, heights, Vec3(c * v.x + s * v.y, c * v.y - s * v.x, v.z))
-                out[k] = met if met < out[k] else out[k]
+        f = face(rows, j, origin)
+        if rows[j, TOP] > sight.bottom or rows[j, BOTTOM] < sight.top:
+            continue
+        far = sight.reach + f.radius
+        if abs(f.start.x) - f.half.x > far or abs(f.start.y) - f.half.y > far:
+            continue
+        offset = Vec2(origin.x - rows[j, NORTH], origin.y - rows[j, EAST])
+        if not sight.is_fan:
+            sweep_group(f, offset, whole)
+            continue
+        for first in range(0, rays, GROUP):
+            end = min(first + GROUP, rays)
+            side = sides(Vec2(norths[first], easts[first]), Vec2(norths[end - 1], easts[end - 1]))
+            if not is_behind(f, side.left) and not is_behind(f, side.right):
+                sweep_group(f, offset, Group(norths[first:end], easts[first:end], downs[first:end], out[first:end]))
 
 
 @law
-def scan_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> None:
-    """Ranges [m] along many rays from one point, the quicker way."""
+def scan_rays(solids: Solids, origin: Vec3, directions: Table, reach: float, out: Line) -> None:
+    """Ranges [m] along many rays from one point, the quicker way; what is beyond ``reach`` [m] may read as inf."""
     if solids.rows.shape[0] < MANY:
-        sweep_rays(solids, origin, directions, out)
+        sweep_rays(solids, origin, directions, reach, out)
     else:
         walk_rays(solids, origin, directions, out)
 
@@ -160,7 +286,7 @@ def scan_rays(solids: Solids, origin: Vec3, directions: Table, out: Line) -> Non
 @law
 def scan_point(rows: Table, grid: Line, cells: IntLine, origin: Line, directions: Table, out: Line) -> None:
     """``scan_rays`` of the arrays of a ``Geometry`` and a point of three numbers."""
-    scan_rays(Solids(rows, grid, cells), Vec3(origin[0], origin[1], origin[2]), directions, out)
+    scan_rays(Solids(rows, grid, cells), Vec3(origin[0], origin[1], origin[2]), directions, INF, out)
 
 
 class Scene(NamedTuple):
@@ -187,7 +313,7 @@ def scan_bodies(solids: Solids, scene: Scene, out: Table) -> None:
         at = rotate(q, Vec3(mount[0], mount[1], mount[2]))
         turn_rays(q, scene.rays, scene.directions)
         origin = at + Vec3(positions[i, 0], positions[i, 1], positions[i, 2])
-        scan_rays(solids, origin, scene.directions, out[i])
+        scan_rays(solids, origin, scene.directions, INF, out[i])
 
 
 _scan = Kernel(scan_point)

@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from sitl.core.algebra import quat_from_euler, rotate
 from sitl.core.vectors import Euler, Quat, Vec2, Vec3
 from sitl.worlds import contact, planar, raycast
 from sitl.worlds.geometry import Floats, Geometry, compile_geometry
-from tests.worlds.world_cases import LIDARS, fans, points, random_solids, worlds
+from tests.worlds.world_cases import LIDARS, fans, points, random_solids, worlds, yaws
 
 
 def walked(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> Floats:
@@ -26,9 +27,9 @@ def walked(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -
     return out
 
 
-def swept(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> Floats:
+def swept(geometry: Geometry, point: tuple[float, float, float], fan: Floats, reach: float = math.inf) -> Floats:
     out = np.full(fan.shape[1], -1.0)
-    raycast.swept(geometry.arrays, Vec3(*point), fan, out)
+    raycast.swept(geometry.arrays, Vec3(*point), fan, reach, out)
     return out
 
 
@@ -42,10 +43,31 @@ def test_the_grid_gives_the_bits_of_brute_force(
 @given(worlds, points, fans())
 def test_plain_python_gives_the_same_bits(geometry: Geometry, point: tuple[float, float, float], fan: Floats) -> None:
     plain = np.zeros(fan.shape[1])
-    raycast.sweep_rays(geometry.arrays, Vec3(*point), fan, plain)
+    raycast.sweep_rays(geometry.arrays, Vec3(*point), fan, math.inf, plain)
     assert plain.tobytes() == swept(geometry, point, fan).tobytes()
     raycast.walk_rays(geometry.arrays, Vec3(*point), fan, plain)
     assert plain.tobytes() == swept(geometry, point, fan).tobytes()
+
+
+@given(worlds, points, fans(), st.sampled_from((0.0, 0.5, 3.0, 10.0)))
+def test_what_is_in_reach_is_not_left_out(
+    geometry: Geometry, point: tuple[float, float, float], fan: Floats, reach: float
+) -> None:
+    found = swept(geometry, point, fan, reach)
+    assert np.minimum(found, reach).tobytes() == np.minimum(walked(geometry, point, fan), reach).tobytes()
+
+
+@given(worlds, points, st.sampled_from((65, 70, 140, 541)), st.floats(0.0, 2.0 * math.pi), st.tuples(yaws, yaws, yaws))
+def test_what_is_beside_a_group_of_rays_is_left_out_and_nothing_else(
+    geometry: Geometry, point: tuple[float, float, float], count: int, view: float, angles: tuple[float, float, float]
+) -> None:
+    """A lidar's rays, level and tilted any way, and the same in disorder: then they are no fan."""
+    rays, q = planar.rays(count, view), quat_from_euler(Euler(*angles))
+    fan = np.ascontiguousarray(np.array([rotate(q, Vec3(*ray)) for ray in rays.T]).T)
+    for some in (rays, fan, np.ascontiguousarray(np.random.default_rng(1).permutation(fan, axis=1))):
+        for reach in (2.0, math.inf):
+            expected = np.minimum(walked(geometry, point, some), reach)
+            assert np.minimum(swept(geometry, point, some, reach), reach).tobytes() == expected.tobytes()
 
 
 @pytest.mark.parametrize("count", [3, 60, 400])

@@ -174,9 +174,10 @@ def measure(fleet: Records[Vehicle[Physics]], i: int, ranging: int) -> None:
     for number in range(SENSORS):
         beams = r.beams[number]
         if sensor_due(v.sensors, a, beams, number) <= v.time_us:
-            aim(body, figures_of(a, number).at, r.floor, beams)
-            directions = table_at(beams.directions, 3, beams.count)
-            scan_rays(solids_of(r), beams.origin, directions, floats_at(beams.ranges, beams.count))
+            figures = figures_of(a, number)
+            aim(body, figures.at, r.floor, beams)
+            directions, ranges = table_at(beams.directions, 3, beams.count), floats_at(beams.ranges, beams.count)
+            scan_rays(solids_of(r), beams.origin, directions, figures.range_max, ranges)
             finish(v, beams, number)
 
 

@@ -40,7 +40,7 @@ def scan(b: Body, f: Figures, solids: Solids, beams: Beams, readings: NarrowLine
         x, y = beams.rays[0, k], beams.rays[1, k]
         directions[0, k], directions[1, k], directions[2, k] = c * x - s * y, s * x + c * y, 0.0
     origin = Vec3(b.north + c * f.lidar_ahead, b.east + s * f.lidar_ahead, b.down - f.lidar_height)
-    scan_rays(solids, origin, directions, beams.ranges)
+    scan_rays(solids, origin, directions, f.range_max, beams.ranges)
     publish_readings(beams.ranges, f.range_max, readings)
 
 

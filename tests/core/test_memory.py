@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arrays at an address: the same memory in plain Python and compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+
+import numba
+import numpy as np
+import pytest
+
+from sitl.core.compile import make_jitable
+from sitl.core.kernels import law
+from sitl.core.memory import floats_at, ints_at, table_at
+
+
+@law
+def work(table: int, floats: int, ints: int) -> int:
+    """Write into arrays of shapes (2, 3), (2,) and (4,)."""
+    rows, line, numbers = table_at(table, 2, 3), floats_at(floats, 2), ints_at(ints, 4)
+    rows[1, 0] = line[1] + rows[0, 2]
+    line[0] = float(numbers[3])
+    numbers[0] = len(line) + rows.shape[0] + rows.shape[1]
+    return numbers[0]
+
+
+def compiled() -> Callable[[int, int, int], int]:
+    import_module("sitl.core.numba_records")  # tells Numba of them
+    make_jitable()
+
+    @numba.njit
+    def call(table: int, floats: int, ints: int) -> int:
+        return work(table, floats, ints)
+
+    return call  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("make", [lambda: work, compiled])
+def test_arrays_at_an_address(make: Callable[[], Callable[[int, int, int], int]]) -> None:
+    table, floats, ints = np.arange(6.0).reshape(2, 3), np.array([0.0, 0.5]), np.array([7, 7, 7, 1 << 40])
+    assert make()(table.ctypes.data, floats.ctypes.data, ints.ctypes.data) == 7
+    assert table.tolist() == [[0.0, 1.0, 2.0], [2.5, 4.0, 5.0]]
+    assert floats.tolist() == [float(1 << 40), 0.5]
+    assert ints.tolist() == [7, 7, 7, 1 << 40]
+
+
+def test_nothing_is_at_an_address_too() -> None:
+    numbers = np.zeros(1)
+    assert len(floats_at(numbers.ctypes.data, 0)) == 0
+    assert table_at(numbers.ctypes.data, 0, 9).shape == (0, 9)
