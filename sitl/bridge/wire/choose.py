@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import linecache
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import Any, get_type_hints
 
 from ...core.kernels import law
@@ -26,6 +27,7 @@ Taker = Callable[..., None]
 """``law(m, v, sender)``."""
 
 
+@cache  # every new bridge asks for that of each law
 def message_of(function: Callable[..., Any]) -> type[Message]:
     """The message that a law builds or takes: the class of its first argument.
 
