@@ -31,6 +31,8 @@ class CoreLink:
         self._vehicle, self._units = vehicle, units
         self.numbers = frozenset(message_of(builder).kind.id for builder in units.builders)
         """Messages that the core can send."""
+        self.taken = frozenset(message_of(taker).kind.id for taker in units.takers)
+        """Messages that the core acts on."""
 
     def load(self, runs_in_core: bool, progress: Progress | None = None) -> None:
         """Compile what is needed now: ``run`` only for a vehicle whose physics is in the core, too."""
