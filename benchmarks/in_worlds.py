@@ -72,7 +72,7 @@ def core_alone(pilot: Pilot) -> Callable[[], float]:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.in_worlds", description=__doc__)
     parser.add_argument("--repeats", type=int, default=7, metavar="N", help="of each row")
     repeats = parser.parse_args().repeats
     print("| vehicle | | without a world | in its world | and LASER at 10 Hz |\n|---|---|---|---|---|")

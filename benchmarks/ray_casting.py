@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import time
 from collections.abc import Callable
@@ -82,6 +83,7 @@ def pybullets(world: World, count: int) -> float:
 
 def main() -> None:
     """Print the table."""
+    argparse.ArgumentParser(prog="python -m benchmarks.ray_casting", description=__doc__).parse_args()
     print("| world | " + " | ".join(f"{count} rays" for count in RAYS) + " |\n|---|---|---|")
     reference = thirty_boxes()
     for world in (reference, *map(worlds.load, worlds.names())):

@@ -47,9 +47,9 @@ class BridgeState(NamedTuple):
 class Bridge:
     """Speaks MAVLink for one vehicle to any number of clients.
 
-    The simulation calls ``receive`` whenever it wants clients to be heard, advances the core no further than
-    ``next_due_us``, and then calls ``service``. Nothing here reads a wall clock: the same bytes at the same
-    simulated times give the same bytes.
+    The simulation calls ``receive`` whenever it wants clients to be heard. ``run`` advances the vehicle and sends what
+    the core can send, ``service`` sends the rest. Nothing here reads a wall clock: the same bytes at the same simulated
+    times give the same bytes.
     """
 
     def __init__(self, vehicle: Vehicle, *, epoch_us: int = EPOCH_US, autopilot: Autopilot | None = None) -> None:
@@ -100,6 +100,8 @@ class Bridge:
         kind = message(name)
         if kind.id in self._handlers:
             raise ValueError(f"two services handle {name}")
+        if kind.id in self.core.taken:
+            raise ValueError(f"a service handles {name}, which a law of the core takes")
         target = kind.fields.index("target_system") if "target_system" in kind.fields else -1
         self._handlers[kind.id] = (target, handler)
 
@@ -316,16 +318,20 @@ class Bridge:
                 streams.put_off(port, number, now)
 
     def _build(self, channel: Channel, number: int) -> None:
-        kind = self.telemetry[number]
-        try:
-            payload = self.by_shell[number]()
-        except (OverflowError, ValueError, struct.error):  # a number that the wire cannot carry: leave it out
-            if kind.name not in self._left_out:
-                self._left_out.add(kind.name)
-                self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
-            return
-        if payload:
-            channel.send(kind, payload)
+        kind, port = self.telemetry[number], self.shell_port
+        port.part = 0
+        while True:
+            try:
+                payload = self.by_shell[number]()
+            except (OverflowError, ValueError, struct.error):  # a number that the wire cannot carry: leave it out
+                if kind.name not in self._left_out:
+                    self._left_out.add(kind.name)
+                    self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
+                return
+            if payload:
+                channel.send(kind, payload)
+            if port.part == 0:  # all parts of it are sent
+                return
 
     def send_now(self, channel: Channel, number: int) -> bool:
         """Send one telemetry message to one channel; False when there is none of this number."""

@@ -33,12 +33,16 @@ class CoreLink:
         self._vehicle, self._units = vehicle, units
         self.numbers = frozenset(message_of(builder).kind.id for builder in units.builders)
         """Messages that the core can send."""
+        self.taken = frozenset(message_of(taker).kind.id for taker in units.takers)
+        """Messages that the core acts on."""
 
     def load(self, runs_in_core: bool, progress: Progress | None = None) -> None:
         """Compile what is needed now: ``run`` only for a vehicle whose physics is in the core, too."""
         kind, units = KINDS[self._vehicle.firmware.name], self._units
-        for unit in (units.run, units.hear) if runs_in_core else (units.tell, units.hear):
-            compiler.load(unit, kind.record_path, progress)
+        needed = (units.run, units.hear) if runs_in_core else (units.tell, units.hear)
+        compiler.build_missing(needed, kind.record_path, progress)
+        for unit in needed:
+            compiler.load(unit, kind.record_path)
 
     def _bind(self, unit: Callable[..., None]) -> Callable[..., None]:
         vehicle = self._vehicle

@@ -4,9 +4,14 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from ..core import code_cache
 from ..core import compile as compiler
+
+if TYPE_CHECKING:
+    from ..vehicle.kind import Kind
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -25,12 +30,23 @@ def cache(options: argparse.Namespace) -> int:
         print(f"deleted {code_cache.clear_cache()} compiled units from {code_cache.cache_folder()}")
     elif options.action == "build":
         with CompileProgress() as progress:
-            took = sum(compiler.build(kind.advance, kind.record_path, progress) for kind in KINDS.values())
+            took = sum(compiler.build(entries(kind), kind.record_path, progress) for kind in KINDS.values())
         print(f"built in {took:.1f} s")
     else:
         print(code_cache.cache_folder())
         for kind in KINDS.values():
-            absent = compiler.missing(kind.advance, kind.record_path)
-            for unit in compiler.reached(kind.advance):
+            units = dict.fromkeys(unit for entry in entries(kind) for unit in compiler.reached(entry))
+            absent = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
+            for unit in units:
                 print(f"  {'to build' if unit in absent else 'ready   '}  {kind.name}: {unit.name}")
     return 0
+
+
+def entries(kind: Kind) -> tuple[Callable[..., None], ...]:
+    """Units that a run of a kind of vehicle calls; a kind without a face on MAVLink is only advanced."""
+    if "mavlink" not in kind.parts:
+        return (kind.advance,)
+    from ..bridge.profile import load as load_profile
+
+    units = load_profile(kind.name).core
+    return units.run, units.hear

@@ -15,7 +15,7 @@ import platform
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -172,15 +172,16 @@ def load_unit(unit: Unit, path: str) -> Any:
     return function
 
 
-def build(entry: Callable[..., Any], path: str, progress: Progress | None = None, jobs: int = 0) -> float:
-    """Compile what the core of ``entry``, for the record type at ``path``, misses in the cache; returns the seconds.
+def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress | None = None, jobs: int = 0) -> float:
+    """Compile what ``entries``, for the record type at ``path``, miss in the cache, side by side; returns the seconds.
 
     Raises:
         BuildError: a unit failed to compile; the message holds Numba's own.
     """
     start = time.monotonic()
     with build_lock():
-        todo = sorted(missing(entry, path), key=lambda u: -_weight(u))
+        entry_of = {unit: entry for entry in entries for unit in missing(entry, path)}
+        todo = sorted(entry_of, key=lambda u: -_weight(u))
         jobs = jobs or min(len(todo), os.cpu_count() or 1)
         running: list[tuple[Unit, subprocess.Popen[str]]] = []
         done, total = 0, len(todo)
@@ -190,7 +191,7 @@ def build(entry: Callable[..., Any], path: str, progress: Progress | None = None
                     unit = todo.pop(0)
                     if progress:
                         progress(unit.name, done, total)
-                    running.append((unit, _start_worker(entry, path, unit)))
+                    running.append((unit, _start_worker(entry_of[unit], path, unit)))
                 running[0][1].poll()
                 finished = [(u, p) for u, p in running if p.poll() is not None]
                 if not finished:
@@ -230,6 +231,12 @@ def _start_worker(entry: Callable[..., Any], record: str, unit: Unit) -> subproc
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
 
+def build_missing(entries: Sequence[Callable[..., Any]], path: str, progress: Progress | None = None) -> None:
+    """The same, if anything is missing; nothing with Numba's JIT disabled."""
+    if not jit_disabled() and any(missing(entry, path) for entry in entries):
+        build(entries, path, progress)
+
+
 def load(entry: Callable[..., Any], path: str, progress: Progress | None = None) -> Any:
     """The compiled form of unit ``entry`` as a C function ``(address, count, index, *integers)``.
 
@@ -242,8 +249,7 @@ def load(entry: Callable[..., Any], path: str, progress: Progress | None = None)
     """
     if jit_disabled():
         return None
-    if missing(entry, path):
-        build(entry, path, progress)
+    build_missing((entry,), path, progress)
     units = reached(entry)  # callees before callers, so that symbols exist when needed
     for unit in units:
         load_unit(unit, path)

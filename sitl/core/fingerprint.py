@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import types
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,8 @@ def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
 
 
-def reached(entry: Callable[..., Any]) -> list[Unit]:
+@cache  # every new simulation asks, and code does not change while a process runs
+def reached(entry: Callable[..., Any]) -> tuple[Unit, ...]:
     """The units that ``entry``, a unit itself, calls, directly or not: callees before callers, ``entry`` last."""
     by_function = {id(u.function): u for u in UNITS.values()}
     found: dict[str, Unit] = {}
@@ -87,4 +89,4 @@ def reached(entry: Callable[..., Any]) -> list[Unit]:
             found[unit.name] = unit
 
     visit(entry, set())
-    return list(found.values())
+    return tuple(found.values())

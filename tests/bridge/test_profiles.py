@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge import docs
+from sitl.bridge import docs, services
 from sitl.bridge.dialect import message_by_id
 from sitl.bridge.profile import Profile, load
+from sitl.bridge.services.service import Handler, Service
 from sitl.bridge.wire.choose import message_of
 from sitl.vehicle.kinds import KINDS
 from tests.bridge.fakes import Bench
@@ -82,3 +83,17 @@ def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
 def test_every_command_says_what_it_does() -> None:
     for line in docs.commands().splitlines()[2:]:
         assert len(line.split("|")[5].strip()) > 10, line
+
+
+@pytest.mark.parametrize(
+    ("taken", "said"),
+    [("PING", "two services handle PING"), ("SET_ATTITUDE_TARGET", "SET_ATTITUDE_TARGET, which a law")],
+)
+def test_a_message_is_taken_in_one_place(taken: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Second(Service):
+        def handlers(self) -> dict[str, Handler]:
+            return {taken: lambda channel, fields, sender: None}
+
+    monkeypatch.setattr(services, "_registered", [Second])
+    with pytest.raises(ValueError, match=said):
+        Bench()

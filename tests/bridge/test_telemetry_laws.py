@@ -17,7 +17,7 @@ from sitl.bridge.profile import load
 from sitl.bridge.rover import telemetry as rover
 from sitl.bridge.telemetry import build, builder, register_message
 from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
-from sitl.bridge.telemetry.ranging import PART, scan
+from sitl.bridge.telemetry.ranging import PART, DebugFloatArray, scan
 from sitl.bridge.telemetry.sensors import simstate
 from sitl.bridge.telemetry.shell import shell_builders
 from sitl.bridge.telemetry.status import RECEIVER, system_time
@@ -30,6 +30,7 @@ from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
 from sitl.vehicle.record import Vehicle
 from sitl.vehicle.rover import Rover
+from tests.bridge.fakes import Bench
 
 HOME = (-353632620, 1491652370, 584.0)
 
@@ -170,6 +171,20 @@ def test_a_registered_law_comes_before_others(registered: Any, v: Copter) -> Non
     assert Attitude.kind.decode(made[Attitude.kind.id]()).roll == 0.0
     v.time_us = 0
     assert made[Attitude.kind.id]() == b""
+
+
+@law
+def three_parts(m: DebugFloatArray, v: Vehicle, port: Port) -> bool:
+    """DEBUG_FLOAT_ARRAY: three of them."""
+    m.array_id = port.part
+    port.part = (port.part + 1) % 3
+    return True
+
+
+def test_all_parts_of_a_registered_message_are_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(builder._registered, DebugFloatArray.kind.id, three_parts)
+    bench = Bench()
+    assert [m.array_id for m in bench.telemetry("DEBUG_FLOAT_ARRAY")] == [0, 1, 2]
 
 
 def test_a_firmwares_own_laws_come_before_shared_ones() -> None:

@@ -270,3 +270,17 @@ def test_the_demo_drives_its_mission_and_draws_it(core: Core, tmp_path: Path) ->
     assert position[:, 2].max() == pytest.approx(20.0, abs=2.5)
     assert np.hypot(position[-1, 1], position[-1, 2]) < 3.5
     assert np.hypot(position[:, 4], position[:, 5]).max() < 2.0
+
+
+def test_cache_lists_all_that_a_run_compiles(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
+    assert main(["cache", "show"]) == 0
+    lines = capsys.readouterr().out.splitlines()[1:]
+    assert all(line.startswith("  to build  ") for line in lines)
+    units = [line.removeprefix("  to build  ") for line in lines]
+    assert len(set(units)) == len(units)
+    for kind, unit in ((kind, unit) for kind in ("copter", "rover") for unit in ("advance", "hear", "tell", "run")):
+        package = "vehicle" if unit == "advance" else "bridge"
+        assert any(line.startswith(f"{kind}: {package}.{kind}.") and line.endswith(f".{unit}") for line in units)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import linecache
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import Any, get_type_hints
 
 from ...core.kernels import law
@@ -26,6 +27,7 @@ Taker = Callable[..., None]
 """``law(m, v, sender)``."""
 
 
+@cache  # every new bridge asks for that of each law
 def message_of(function: Callable[..., Any]) -> type[Message]:
     """The message that a law builds or takes: the class of its first argument.
 
@@ -44,7 +46,8 @@ def choose_builder(builders: Iterable[Builder]) -> Callable[[int, Any, Any, int]
 
     False when the vehicle has nothing to say, or none of ``builders`` builds the message.
     """
-    return _choose("build", "port", builders, "return ", "    return False\n")
+    build: Callable[[int, Any, Any, int], bool] = _choose("build", "port", builders, "return ", "    return False\n")
+    return build
 
 
 def choose_taker(takers: Iterable[Taker]) -> Callable[[int, Any, int, int], bool]:
@@ -52,7 +55,8 @@ def choose_taker(takers: Iterable[Taker]) -> Callable[[int, Any, int, int], bool
 
     False when none of ``takers`` takes it.
     """
-    return _choose("take", "sender", takers, "", "    return False\n")
+    take: Callable[[int, Any, int, int], bool] = _choose("take", "sender", takers, "", "    return False\n")
+    return take
 
 
 def choose_targets(takers: Iterable[Taker]) -> Callable[[int], int]:
@@ -62,7 +66,8 @@ def choose_targets(takers: Iterable[Taker]) -> Callable[[int], int]:
         kind = message_of(function).kind
         if "target_system" in kind.fields:
             lines += [f"    if number == {kind.id}:\n", f"        return {kind.offset_of('target_system')}\n"]
-    return _made("target", [*lines, "    return -1\n"], {})
+    target: Callable[[int], int] = _made("target", [*lines, "    return -1\n"], {})
+    return target
 
 
 def _choose(name: str, third: str, laws: Iterable[Callable[..., Any]], result: str, end: str) -> Any:
