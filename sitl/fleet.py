@@ -79,8 +79,13 @@ class Fleet:
         self._link = InProcessLink()
         shell.bridge.add_link(self._link)
         self._states: list[Snapshot] = []
+        self._before_boot_us: Array = np.zeros(count, np.int64)
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
+        self._addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
+        # Views of one field each: making one costs more than reading it.
+        self._times, self._until = self.records["time_us"], self._slots["until_us"]
+        self._needs_shell = self._slots["needs_shell"]
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
         unit = shell.bridge.profile.core.run_all
@@ -99,8 +104,8 @@ class Fleet:
     @property
     def time_us(self) -> Array:
         """Simulated time of each vehicle since it was first powered on [us], shape (count,)."""
-        before: Array = np.array([state.before_boot_us for state in self._states])
-        return before + self.records["time_us"]
+        found: Array = self._before_boot_us + self._times
+        return found
 
     # ------------------------------------------------------------------ states
 
@@ -193,21 +198,21 @@ class Fleet:
 
     def advance_us(self, step_us: int | Array, which: Sequence[int] | Array | None = None) -> None:
         """The same by microseconds, one number or one for each vehicle of ``which``."""
-        slots = self._slots
+        times, until, needs_shell = self._times, self._until, self._needs_shell
         if which is None:
-            slots["until_us"] = self.records["time_us"] + step_us
+            until[:] = times + step_us
         else:
-            slots["until_us"] = 0
-            slots["until_us"][which] = self.records["time_us"][which] + step_us
-        slots["needs_shell"] = 0
+            until[:] = 0
+            until[which] = times[which] + step_us
+        needs_shell[:] = 0
         self._run_all()
-        for index in np.flatnonzero(slots["needs_shell"]).tolist():
-            left_us = int(slots["until_us"][index]) - int(self.records["time_us"][index])
-            self._serve(index, left_us, serves=slots["needs_shell"][index] == TO_SERVE)
+        if needs_shell.any():
+            for index in np.flatnonzero(needs_shell).tolist():
+                self._serve(index, int(until[index] - times[index]), serves=needs_shell[index] == TO_SERVE)
 
     def _run_all(self) -> None:
         count, threads = len(self.records), self.threads
-        addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
+        addresses = self._addresses
         if self._pool is None:
             self._run(0, count, *addresses, self._rooms[0][0])
             return
@@ -243,6 +248,7 @@ class Fleet:
         for row in rows:
             self._records_u1[row], self._ports_u1[row] = record, port
             self._states[row] = kept
+            self._before_boot_us[row] = kept.before_boot_us
         self._slots["events_seen"][rows] = shell.v.autopilot.events.count
         self._slots["shell_us"][rows] = shell.bridge.shell_due_us()
 
