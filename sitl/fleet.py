@@ -22,7 +22,7 @@ import numpy as np
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
 from .bridge.wire.fleet import TO_SERVE, Slot
-from .bridge.wire.port import IN_BYTES, STATE, Port
+from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
@@ -86,6 +86,7 @@ class Fleet:
         # Views of one field each: making one costs more than reading it.
         self._times, self._until = self.records["time_us"], self._slots["until_us"]
         self._needs_shell = self._slots["needs_shell"]
+        self._in_size, self._out_size, self._out_count = (self.ports[n] for n in ("in_size", "out_size", "out_count"))
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
         unit = shell.bridge.profile.core.run_all
@@ -158,22 +159,25 @@ class Fleet:
     def send(self, index: int, data: bytes) -> None:
         """Bytes from a vehicle's client; it acts on them when it is advanced."""
         self._check(index)
-        port = self.ports[index]
-        size = int(port["in_size"])
-        if size + len(data) > IN_BYTES:
+        size = int(self._in_size[index])
+        end = size + len(data)
+        if end > IN_BYTES:
             self._serve(index, 0, data)
             return
-        port["incoming"][size : size + len(data)] = np.frombuffer(data, np.uint8)
-        port["in_size"] = size + len(data)
+        self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
+        self._in_size[index] = end
 
     def receive(self, index: int) -> bytes:
         """All bytes to a vehicle's client since the last call."""
         self._check(index)
-        port = self.ports[index]
-        size = int(port["out_size"])
-        data = self._extra.pop(index, b"") + port["out"][:size].tobytes()
-        port["out_size"] = port["out_count"] = 0
-        return data
+        said = self._ports_u1[index, OUT : OUT + int(self._out_size[index])].tobytes()
+        self._out_size[index] = self._out_count[index] = 0
+        return self._extra.pop(index) + said if index in self._extra else said
+
+    def drop_telemetry(self) -> None:
+        """Throw away what clients have not received."""
+        self._extra.clear()
+        self._out_size[:] = self._out_count[:] = 0
 
     def take_shell_bytes(self) -> dict[int, bytes]:
         """Bytes to clients that the ports do not hold, by vehicle: they come before those in the ports."""

@@ -100,8 +100,7 @@ class FleetVehicles(InProcessVehicles):
             fleet.put(index, state.simulation, seed)
         except (OptionError, EngineError) as error:
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
-        fleet.take_shell_bytes()
-        fleet.ports["out_size"][index] = fleet.ports["out_count"][index] = 0
+        fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
         place, angles, (_, scan, scan_us), end.mode, end.armed, _ = telemetry
         end.position_ms, end.position, end.velocity = int(place[0]), place[1:4], place[4:]
