@@ -4,8 +4,9 @@
 All in NED, metres, unit vectors; directions are stored as three rows (norths, easts, downs). The laws work on the
 arrays of a ``Geometry`` and can be called from other compiled code; ``scan`` and ``scan_from`` are for the shell.
 
-Two ways give the same bits, since the least of the same numbers is the same: ``sweep`` takes every solid to all rays at
-once (the processor does several rays with one instruction), ``walk`` takes a ray through the grid and tests the solids
+Two ways give the same bits, since the least of the same numbers is the same whoever else is tested: ``sweep`` takes
+every solid to groups of rays at once (the processor does several rays with one instruction) and leaves out what a group
+cannot meet: solids out of reach, above, below or beside it. ``walk`` takes a ray through the grid and tests the solids
 that are listed in its cells. The first is quicker until there are very many solids.
 """
 
