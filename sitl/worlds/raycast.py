@@ -157,7 +157,8 @@ def sight_of(origin: Vec3, directions: Table, reach: float) -> Sight:
         down = downs[k]
         rise = down if down < rise else rise
         fall = down if down > fall else fall
-    for first in range(0, rays, GROUP):
+    is_fan = rays > 2 * GROUP
+    for first in range(0, rays if is_fan else 0, GROUP):
         end = min(first + GROUP, rays)
         side = sides(Vec2(norths[first], easts[first]), Vec2(norths[end - 1], easts[end - 1]))
         for k in range(first, end):
@@ -168,7 +169,7 @@ def sight_of(origin: Vec3, directions: Table, reach: float) -> Sight:
     far = 1.001 * reach + _MARGIN
     top = origin.z - _MARGIN + (rise * far if rise < 0.0 else 0.0)
     bottom = origin.z + _MARGIN + (fall * far if fall > 0.0 else 0.0)
-    return Sight(far, top, bottom, rays > 2 * GROUP and outside > -_ROUNDING)
+    return Sight(far, top, bottom, is_fan and outside > -_ROUNDING)
 
 
 class Sides(NamedTuple):
