@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from .kernels import UNITS, Unit
+from .kernels import INLINED, UNITS, Unit
 from .records import Record
 
 
@@ -47,7 +47,8 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
     if id(function) in seen:
         return
     seen.add(id(function))
-    lines.append(f"def {function.__module__}.{function.__qualname__} {_code(function)}")
+    inlined = " inlined" if function in INLINED else ""
+    lines.append(f"def {function.__module__}.{function.__qualname__}{inlined} {_code(function)}")
     for name, value in _referenced(function):
         if isinstance(value, types.FunctionType):
             if id(value) in units:
