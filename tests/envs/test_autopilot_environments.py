@@ -165,7 +165,7 @@ def same(a, b):
 
 @pytest.mark.parametrize(("name", "options", "steps"), CASES)
 def test_vector_equals_singles(name, options, steps):
-    vector = gym.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", **options)
+    vector = gym.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", threads=2, **options)
     singles = gym.make_vec(name, num_envs=3, vectorization_mode="sync", **options)
     assert vector.unwrapped.robot.count == 3
     vector.action_space.seed(2)
@@ -225,6 +225,9 @@ def test_figures_are_drawn_anew():
         ({"connection": "tcp:127.0.0.1:1", "params": {"WP_SPEED": 1.0}}, "leads to one vehicle"),
         ({"gcs": "udpout:14550"}, "gcs: link 'udpout:14550': the host is missing"),
         ({"params": {"WP_SPEED": float("nan")}}, "WP_SPEED"),
+        ({"threads": 0}, "threads = 0; a whole number from 1 on"),
+        ({"threads": 2, "physics": "pybullet"}, "threads = 2: only vehicles in process on native physics"),
+        ({"threads": 2, "gcs": "udpout:127.0.0.1:14550"}, "threads = 2: only"),
         ({"action": "discrete", "setpoint": "position"}, "no discrete actions for setpoint 'position'"),
     ],
 )

@@ -180,7 +180,7 @@ class Vehicles(ABC):
         raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
 
     def simulation(self, index: int) -> Simulation:
-        """A simulation in the state of one vehicle; it may be a copy, and what is done to that does not reach the vehicle.
+        """A simulation in the state of one vehicle. It may be a copy: what is done to that does not reach the vehicle.
 
         Raises:
             EnvOptionError: the vehicle is in another process.
