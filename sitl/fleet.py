@@ -22,7 +22,7 @@ import numpy as np
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
 from .bridge.wire.fleet import TO_SERVE, Slot
-from .bridge.wire.port import IN_BYTES, STATE, Port
+from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
@@ -80,8 +80,14 @@ class Fleet:
         shell.bridge.add_link(self._link)
         self._states: list[Snapshot] = []
         self._views: dict[int, Any] = {}
+        self._before_boot_us: Array = np.zeros(count, np.int64)
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
+        self._addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
+        # Views of one field each: making one costs more than reading it.
+        self._times, self._until = self.records["time_us"], self._slots["until_us"]
+        self._needs_shell = self._slots["needs_shell"]
+        self._in_size, self._out_size, self._out_count = (self.ports[n] for n in ("in_size", "out_size", "out_count"))
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
         unit = shell.bridge.profile.core.run_all
@@ -100,8 +106,8 @@ class Fleet:
     @property
     def time_us(self) -> Array:
         """Simulated time of each vehicle since it was first powered on [us], shape (count,)."""
-        before: Array = np.array([state.before_boot_us for state in self._states])
-        return before + self.records["time_us"]
+        found: Array = self._before_boot_us + self._times
+        return found
 
     # ------------------------------------------------------------------ states
 
@@ -157,22 +163,25 @@ class Fleet:
     def send(self, index: int, data: bytes) -> None:
         """Bytes from a vehicle's client; it acts on them when it is advanced."""
         self._check(index)
-        port = self.ports[index]
-        size = int(port["in_size"])
-        if size + len(data) > IN_BYTES:
+        size = int(self._in_size[index])
+        end = size + len(data)
+        if end > IN_BYTES:
             self._serve(index, 0, data)
             return
-        port["incoming"][size : size + len(data)] = np.frombuffer(data, np.uint8)
-        port["in_size"] = size + len(data)
+        self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
+        self._in_size[index] = end
 
     def receive(self, index: int) -> bytes:
         """All bytes to a vehicle's client since the last call."""
         self._check(index)
-        port = self.ports[index]
-        size = int(port["out_size"])
-        data = self._extra.pop(index, b"") + port["out"][:size].tobytes()
-        port["out_size"] = port["out_count"] = 0
-        return data
+        said = self._ports_u1[index, OUT : OUT + int(self._out_size[index])].tobytes()
+        self._out_size[index] = self._out_count[index] = 0
+        return self._extra.pop(index) + said if index in self._extra else said
+
+    def drop_telemetry(self) -> None:
+        """Throw away what clients have not received."""
+        self._extra.clear()
+        self._out_size[:] = self._out_count[:] = 0
 
     def take_shell_bytes(self) -> dict[int, bytes]:
         """Bytes to clients that the ports do not hold, by vehicle: they come before those in the ports."""
@@ -197,21 +206,21 @@ class Fleet:
 
     def advance_us(self, step_us: int | Array, which: Sequence[int] | Array | None = None) -> None:
         """The same by microseconds, one number or one for each vehicle of ``which``."""
-        slots = self._slots
+        times, until, needs_shell = self._times, self._until, self._needs_shell
         if which is None:
-            slots["until_us"] = self.records["time_us"] + step_us
+            until[:] = times + step_us
         else:
-            slots["until_us"] = 0
-            slots["until_us"][which] = self.records["time_us"][which] + step_us
-        slots["needs_shell"] = 0
+            until[:] = 0
+            until[which] = times[which] + step_us
+        needs_shell[:] = 0
         self._run_all()
-        for index in np.flatnonzero(slots["needs_shell"]).tolist():
-            left_us = int(slots["until_us"][index]) - int(self.records["time_us"][index])
-            self._serve(index, left_us, serves=slots["needs_shell"][index] == TO_SERVE)
+        if needs_shell.any():
+            for index in np.flatnonzero(needs_shell).tolist():
+                self._serve(index, int(until[index] - times[index]), serves=needs_shell[index] == TO_SERVE)
 
     def _run_all(self) -> None:
         count, threads = len(self.records), self.threads
-        addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
+        addresses = self._addresses
         if self._pool is None:
             self._run(0, count, *addresses, self._rooms[0][0])
             return
@@ -247,6 +256,7 @@ class Fleet:
         for row in rows:
             self._records_u1[row], self._ports_u1[row] = record, port
             self._states[row] = kept
+            self._before_boot_us[row] = kept.before_boot_us
         self._slots["events_seen"][rows] = shell.v.autopilot.events.count
         self._slots["shell_us"][rows] = shell.bridge.shell_due_us()
 

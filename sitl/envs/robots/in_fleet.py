@@ -57,6 +57,7 @@ class FleetVehicles(InProcessVehicles):
         count, readings = setup.count, len(setup.angles)
         parts = -(-readings // PART)
         self._ends: Any = ClientEnd.fleet(count)
+        self._hits = self._ends["hits"]
         self._views = [ClientEnd.of(self._ends, k) for k in range(count)]
         for end in self._views:
             end.parts, end.scan_us = parts, -1
@@ -76,6 +77,7 @@ class FleetVehicles(InProcessVehicles):
         self.fleet: Fleet = self._made(
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )
+        self._ports = self.fleet.ports.ctypes.data
         shell = self.fleet.shell
         if shell.unknown_parameters:
             raise unknown("parameter", shell.unknown_parameters[0], shell.firmware.table.names())
@@ -98,8 +100,7 @@ class FleetVehicles(InProcessVehicles):
             fleet.put(index, state.simulation, seed)
         except (OptionError, EngineError) as error:
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
-        fleet.take_shell_bytes()
-        fleet.ports["out_size"][index] = fleet.ports["out_count"][index] = 0
+        fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
         place, angles, (_, scan, scan_us), end.mode, end.armed, _ = telemetry
         end.position_ms, end.position, end.velocity = int(place[0]), place[1:4], place[4:]
@@ -155,8 +156,7 @@ class FleetVehicles(InProcessVehicles):
         else:
             sends = rows
         sort = SORTS[self.setup.kind.encode[setpoint]]
-        ports = fleet.ports.ctypes.data
-        send_all(sort, sends, commands, self._ends_for_laws, self._origins, ports)
+        send_all(sort, sends, commands, self._ends_for_laws, self._origins, self._ports)
         if waits_us is None:
             fleet.advance_us(us, None if len(rows) == len(fleet) else rows)
         else:
@@ -164,7 +164,7 @@ class FleetVehicles(InProcessVehicles):
         self._read(rows)
 
     def _read(self, rows: Rows) -> None:
-        fleet, ports = self.fleet, self.fleet.ports.ctypes.data
+        fleet, ports = self.fleet, self._ports
         for index, data in fleet.take_shell_bytes().items():
             held = np.frombuffer(data, np.uint8)
             read_one(index, held.ctypes.data, len(held), self._ends_for_laws, self.scans, self._coming, ports)
@@ -177,7 +177,7 @@ class FleetVehicles(InProcessVehicles):
     @property
     def hits(self) -> npt.NDArray[np.int64]:
         """Touches so far, shape (count,)."""
-        found: npt.NDArray[np.int64] = self._ends["hits"].copy()
+        found: npt.NDArray[np.int64] = self._hits.copy()
         return found
 
     def times_us(self) -> npt.NDArray[np.int64]:
