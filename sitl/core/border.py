@@ -51,7 +51,7 @@ class Sensors(Record):
     # WHEEL_DISTANCE, of a vehicle with encoders
     wheel_count: int  # samples so far
     wheel_distance: Vec2  # rolled by the left and right driven wheel since power-on, forward positive [m]
-    # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.plants.lidar)
+    # OBSTACLE_DISTANCE, DISTANCE_SENSOR: of a vehicle in a world (written by sitl.physics.native.ranging)
     lidar_count: int  # scans so far
     lidar_time_us: int  # of the last one
     rangefinder_count: int  # readings so far

@@ -24,7 +24,7 @@ import numpy as np
 
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
 from .fingerprint import fingerprint, reached
-from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
+from .kernels import CALLED, INLINED, LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import law_options
 from .records import Record
 
@@ -97,7 +97,7 @@ def make_jitable(inline: bool = False) -> None:
     for function in LAWS:
         if id(function) not in _jitable:
             _jitable.add(id(function))
-            register_jitable(**law_options(inline or function in INLINED))(function)
+            register_jitable(**law_options((inline and function not in CALLED) or function in INLINED))(function)
     for unit in UNITS.values():
         if unit.name not in _linked:
             _linked.add(unit.name)

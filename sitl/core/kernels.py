@@ -23,6 +23,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 LAWS: list[Callable[..., Any]] = []
 INLINED: set[Callable[..., Any]] = set()
 """Laws that are never calls."""
+CALLED: set[Callable[..., Any]] = set()
+"""Laws that stay calls in units whose other laws are compiled into one function."""
 UNITS: dict[str, Unit] = {}
 
 
@@ -57,6 +59,13 @@ def law(function: F) -> F:
 def inlined(function: F) -> F:
     """Mark a law of a few instructions: in the core it is always compiled into its caller, loops over it stay fast."""
     INLINED.add(function)
+    return law(function)
+
+
+def called(function: F) -> F:
+    """Mark a law with much to do that is called from many places: it stays a call, so that the code fits the
+    processor's cache."""
+    CALLED.add(function)
     return law(function)
 
 

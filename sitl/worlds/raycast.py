@@ -4,8 +4,9 @@
 All in NED, metres, unit vectors; directions are stored as three rows (norths, easts, downs). The laws work on the
 arrays of a ``Geometry`` and can be called from other compiled code; ``scan`` and ``scan_from`` are for the shell.
 
-Two ways give the same bits, since the least of the same numbers is the same: ``sweep`` takes every solid to all rays at
-once (the processor does several rays with one instruction), ``walk`` takes a ray through the grid and tests the solids
+Two ways give the same bits, since the least of the same numbers is the same whoever else is tested: ``sweep`` takes
+every solid to groups of rays at once (the processor does several rays with one instruction) and leaves out what a group
+cannot meet: solids out of reach, above, below or beside it. ``walk`` takes a ray through the grid and tests the solids
 that are listed in its cells. The first is quicker until there are very many solids.
 """
 
@@ -156,7 +157,8 @@ def sight_of(origin: Vec3, directions: Table, reach: float) -> Sight:
         down = downs[k]
         rise = down if down < rise else rise
         fall = down if down > fall else fall
-    for first in range(0, rays, GROUP):
+    is_fan = rays > 2 * GROUP
+    for first in range(0, rays if is_fan else 0, GROUP):
         end = min(first + GROUP, rays)
         side = sides(Vec2(norths[first], easts[first]), Vec2(norths[end - 1], easts[end - 1]))
         for k in range(first, end):
@@ -167,7 +169,7 @@ def sight_of(origin: Vec3, directions: Table, reach: float) -> Sight:
     far = 1.001 * reach + _MARGIN
     top = origin.z - _MARGIN + (rise * far if rise < 0.0 else 0.0)
     bottom = origin.z + _MARGIN + (fall * far if fall > 0.0 else 0.0)
-    return Sight(far, top, bottom, rays > 2 * GROUP and outside > -_ROUNDING)
+    return Sight(far, top, bottom, is_fan and outside > -_ROUNDING)
 
 
 class Sides(NamedTuple):

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...core.algebra import limit_components, multiply, normalise, quat_from_rotation_vector, vector_at
-from ...core.kernels import law
+from ...core.kernels import called, law
 from .history import correct_past
 from .state import BA, BG, BM, POS, THETA, VEL, Ekf, N
 
@@ -35,7 +35,7 @@ def clear_row(ekf: Ekf) -> None:
         ekf.h[i] = 0.0
 
 
-@law
+@called
 def innovate(ekf: Ekf, residual: float, variance: float) -> Innovation:
     """Innovation of a measurement with row ``h``; leaves P h' in ``ph``.
 
@@ -89,7 +89,7 @@ def gate_ratio(squares: float, variances: float, nominal: float, gate: float) ->
     return squares / (k * k * (variances + nominal * nominal))
 
 
-@law
+@called
 def correct(ekf: Ekf, innovation: Innovation, kind: int) -> None:
     """Fuse the measurement that ``innovate`` looked at; ``kind``: NIS_* or NO_NIS."""
     P, ph = ekf.P, ekf.ph

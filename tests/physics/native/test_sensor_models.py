@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from sitl.core import rng
 from sitl.core.geodesy import METRES_PER_DEGE7
 from sitl.core.rng import Rng
 from sitl.core.vectors import Vec3
@@ -137,13 +138,15 @@ def test_sensor_rates(rig):
 
 
 def test_without_errors_a_sensor_shows_the_truth():
+    drawn = Rng()
+    rng.seed(drawn, 1)
     one, none, truth = Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.0, -2.0, 3.0)
-    assert imu.measure(truth, one, none, 0.0, Rng()) == truth
-    assert imu.measure(truth, 2.0 * one, one, 0.0, Rng()) == 2.0 * truth + one
+    assert imu.measure(truth, one, none, 0.0, drawn) == truth
+    assert imu.measure(truth, 2.0 * one, one, 0.0, drawn) == 2.0 * truth + one
     body = Body()
     body.pos, body.vel = truth, 2.0 * truth
-    assert gps.measure(SensorState(), body, Sensors(), Derived(), Rng()) == (truth, 2.0 * truth)
-    assert barometer.pressure_error(SensorState(), Sensors(), Derived(), Rng()) == 0.0
+    assert gps.measure(SensorState(), body, Sensors(), Derived(), drawn) == (truth, 2.0 * truth)
+    assert barometer.pressure_error(SensorState(), Sensors(), Derived(), drawn) == 0.0
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
