@@ -79,6 +79,7 @@ class Fleet:
         self._link = InProcessLink()
         shell.bridge.add_link(self._link)
         self._states: list[Snapshot] = []
+        self._views: dict[int, Any] = {}
         self._before_boot_us: Array = np.zeros(count, np.int64)
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
@@ -146,9 +147,12 @@ class Fleet:
         return made
 
     def view(self, index: int) -> Any:
-        """The record of a vehicle, by attributes."""
+        """The record of a vehicle, by attributes: no copy, it follows the vehicle."""
         self._check(index)
-        return self.kind.record.of(self.records, index)
+        view = self._views.get(index)
+        if view is None:
+            view = self._views[index] = self.kind.record.of(self.records, index)
+        return view
 
     def _check(self, index: int) -> None:
         if not 0 <= index < len(self.records):

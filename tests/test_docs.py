@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import re
 import shlex
@@ -11,6 +12,7 @@ import subprocess
 import sys
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -48,6 +50,14 @@ def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture
     assert printed.startswith(("30.", "29."))
     vehicle = scope["vehicle"]
     assert vehicle.position == pytest.approx((30.0, 10.0, 10.0), abs=1.1)  # type: ignore[attr-defined]
+
+
+def test_the_example_of_fleets_runs(core: Core) -> None:
+    (example,) = blocks(ROOT / "docs/fleets.md", "python")
+    scope: dict[str, Any] = {}
+    exec(compile(example, "docs/fleets.md", "exec"), scope)
+    ways = [math.atan2(*reversed(scope["fleet"].view(k).physics.body.pos[:2])) % math.tau for k in range(16)]
+    assert ways[1:] == pytest.approx([math.tau * k / 16 for k in range(1, 16)], abs=0.05)
 
 
 def test_the_commands_of_the_readme_are_understood() -> None:

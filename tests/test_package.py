@@ -15,6 +15,7 @@ import pytest
 
 import sitl
 from sitl import vehicles, worlds
+from sitl.fleet import Fleet
 from sitl.simulation import Simulation
 
 ROOT = Path(__file__).parents[1]
@@ -103,14 +104,14 @@ def test_a_users_own_folders_do_no_harm(wheel: Path, tmp_path: Path) -> None:
 
 
 def test_every_name_is_there() -> None:
-    assert sitl.Simulation is Simulation
+    assert sitl.Simulation is Simulation and sitl.Fleet is Fleet
     assert sitl.vehicle_names is vehicles.names and "erle_copter" in sitl.vehicle_names()
     assert sitl.world_names is worlds.names and "maze" in sitl.world_names()
     assert set(sitl.__all__) <= set(dir(sitl)) and all(hasattr(sitl, name) for name in sitl.__all__)
 
 
 def test_another_name_is_refused() -> None:
-    with pytest.raises(AttributeError, match=r"no attribute 'simulation_of'; it has Simulation, "):
+    with pytest.raises(AttributeError, match=r"no attribute 'simulation_of'; it has Fleet, Simulation, "):
         sitl.simulation_of  # noqa: B018
 
 

@@ -41,7 +41,7 @@ def test_the_rover_gets_through_the_first_corridors_of_the_maze():
 
     steps = go(env, MAZE, drive, near=1.5, most=1500)
     assert steps > 400
-    assert env.unwrapped.robot.simulation(0).v.physics.obstacles.hit_count == 0
+    assert env.unwrapped.robot.view(0).physics.obstacles.hit_count == 0
 
 
 def test_the_copter_flies_through_the_office():
@@ -85,7 +85,7 @@ def test_attitude_set_points_are_followed():
     env.reset(seed=1)
     for _ in range(10):
         env.step([0.05, 0.0, 0.0, 0.3])
-    assert env.unwrapped.robot.simulation(0).v.autopilot.estimate.euler[0] == approx(0.05, abs=0.02)
+    assert env.unwrapped.robot.view(0).autopilot.estimate.euler[0] == approx(0.05, abs=0.02)
     assert env.unwrapped.robot.velocity[0, 1] < -0.2
     assert env.unwrapped.robot.velocity[0, 2] > 0.2
     env = gym.make("sitl.envs:sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", action="continuous",

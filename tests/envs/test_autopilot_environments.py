@@ -30,9 +30,9 @@ def test_a_step_is_a_tenth_of_a_second_in_the_papers_mode(name):
     for k, reward in ((0, 5.0), (1, 1.0), (2, 1.0)):
         assert env.step(k)[1:] == (reward, False, False, {"crashed": False})
     assert env.unwrapped.robot.time[0] == approx(0.3)
-    simulation = env.unwrapped.robot.simulation(0)
-    assert simulation.v.autopilot.modes.number == MODE[name]
-    assert simulation.v.autopilot.arming.armed == 1
+    autopilot = env.unwrapped.robot.view(0).autopilot
+    assert autopilot.modes.number == MODE[name]
+    assert autopilot.arming.armed == 1
 
 
 def test_the_rover_drives_at_the_papers_speed_and_turns_left_for_left():
@@ -165,7 +165,7 @@ def same(a, b):
 
 @pytest.mark.parametrize(("name", "options", "steps"), CASES)
 def test_vector_equals_singles(name, options, steps):
-    vector = gym.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", **options)
+    vector = gym.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", threads=2, **options)
     singles = gym.make_vec(name, num_envs=3, vectorization_mode="sync", **options)
     assert vector.unwrapped.robot.count == 3
     vector.action_space.seed(2)
@@ -186,10 +186,22 @@ def test_steps_of_other_lengths_end_with_fresh_telemetry():
     for _ in range(4):
         env.step(0)
         robot = env.unwrapped.robot
-        v = robot.simulation(0).v
+        v = robot.view(0)
         assert robot.pose[0, 2] == approx(-float(v.autopilot.estimate.pos[2]), abs=0.09)
         assert robot.velocity[0, 2] == np.float32(-float(v.autopilot.estimate.vel[2]))
     assert robot.time[0] == approx(1.4)
+
+
+def test_a_view_follows_the_vehicle_and_a_simulation_is_a_copy():
+    robot = (env := gym.make(COPTER)).unwrapped.robot
+    env.reset(seed=1)
+    view, copy = robot.view(0), robot.simulation(0)
+    assert robot.link(0) is None and view.time_us == copy.v.time_us
+    began_us, state = view.time_us, bytes(view._bytes)
+    copy.advance(1.0)
+    assert bytes(view._bytes) == state
+    env.step(0)
+    assert view.time_us == began_us + 100_000 and robot.view(0) is view
 
 
 def test_figures_are_drawn_anew():
@@ -197,7 +209,7 @@ def test_figures_are_drawn_anew():
     masses = []
     for seed in (1, 2, 1):
         env.reset(seed=seed)
-        masses.append(float(env.unwrapped.robot.simulation(0).v.physics.airframe.mass))
+        masses.append(float(env.unwrapped.robot.view(0).physics.airframe.mass))
     assert masses[0] == masses[2] != masses[1]
 
 
@@ -213,6 +225,9 @@ def test_figures_are_drawn_anew():
         ({"connection": "tcp:127.0.0.1:1", "params": {"WP_SPEED": 1.0}}, "leads to one vehicle"),
         ({"gcs": "udpout:14550"}, "gcs: link 'udpout:14550': the host is missing"),
         ({"params": {"WP_SPEED": float("nan")}}, "WP_SPEED"),
+        ({"threads": 0}, "threads = 0; a whole number from 1 on"),
+        ({"threads": 2, "physics": "pybullet"}, "threads = 2: only vehicles in process on native physics"),
+        ({"threads": 2, "gcs": "udpout:127.0.0.1:14550"}, "threads = 2: only"),
         ({"action": "discrete", "setpoint": "position"}, "no discrete actions for setpoint 'position'"),
     ],
 )

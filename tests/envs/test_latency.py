@@ -51,7 +51,7 @@ def places(env, actions):
     out = []
     for action in actions:
         env.step(action)
-        out.append(tuple(env.robot.simulation(0).v.physics.body.pos))
+        out.append(tuple(env.robot.view(0).physics.body.pos))
     return out
 
 
@@ -199,12 +199,12 @@ def test_draws_come_from_a_few_sets_whose_vehicles_stay_prepared():
     found = set()
     for seed in range(6):
         env.reset(seed=seed)
-        v = env.robot.simulation(0).v
+        v = env.robot.view(0)
         found.add((float(v.physics.airframe.mass), float(v.physics.wind.speed)))
     assert len(found) == len(env.robot._vehicles._states) == 2
     other = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}).unwrapped
     other.reset(seed=11)
-    assert float(other.robot.simulation(0).v.physics.airframe.mass) in {mass for mass, _ in found}
+    assert float(other.robot.view(0).physics.airframe.mass) in {mass for mass, _ in found}
 
 
 def test_the_noise_of_a_vehicles_lidar_is_a_figure_too():
@@ -232,4 +232,4 @@ def test_a_vehicle_behind_a_socket_is_as_late(tmp_path):
 def test_a_copter_takes_off_though_its_home_is_not_its_origin():
     env = gym.make(COPTER, randomise={"lidar_noise": (0.2, 0.2)}).unwrapped  # with this noise they are 0.2 m apart
     env.reset(seed=1)
-    assert env.robot.simulation(0).v.physics.body.pos[2] == pytest.approx(-1.0, abs=0.4)
+    assert env.robot.view(0).physics.body.pos[2] == pytest.approx(-1.0, abs=0.4)

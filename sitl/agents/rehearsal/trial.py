@@ -52,7 +52,7 @@ def lidar_distance(robot: Any) -> float:
         place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
         north, east, down = to_ned(*place)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
-        v = robot.simulation(0).v
+        v = robot.view(0)
         body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
         heading = euler_of(body.q).yaw
         c, s = math.cos(heading), math.sin(heading)

@@ -119,7 +119,7 @@ def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
     """Says where the robot of an environment really is: x, y [m]. The pose of a vehicle with an autopilot is what its
     autopilot believes, which is metres off at times."""
     robot: Any = env.unwrapped.robot  # type: ignore[attr-defined]
-    if not hasattr(robot, "simulation"):
+    if not hasattr(robot, "view"):
 
         def measured() -> tuple[float, float]:
             x, y = robot.pose[0, :2].tolist()
@@ -128,7 +128,7 @@ def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
         return measured
 
     def true() -> tuple[float, float]:
-        return from_ned(*robot.simulation(0).v.physics.body.pos)[:2]
+        return from_ned(*robot.view(0).physics.body.pos)[:2]
 
     return true
 

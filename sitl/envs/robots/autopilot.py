@@ -252,12 +252,30 @@ class AutopilotRobot:
         """See ``Robot``; ``reset`` has already read the scan."""
 
     def link(self, index: int) -> Connection | None:
-        """The connection to a vehicle, after its first reset."""
+        """The connection to a vehicle, after its first reset; None before it, and for vehicles that a fleet flies (in
+        process, on native physics, without ``gcs``): they have no connection of their own."""
         return self._vehicles.links[index]
 
     def simulation(self, index: int) -> Simulation:
-        """The simulation of a vehicle in process, for values that MAVLink does not send."""
+        """A simulation in the state of a vehicle in process.
+
+        Of a vehicle that a fleet flies (see ``link``) it is a copy, made at each call, which flies on without the
+        environment. To read values, use ``view``.
+
+        Raises:
+            EnvOptionError: the vehicle is in another process.
+        """
         return self._vehicles.simulation(index)
+
+    def view(self, index: int) -> Any:
+        """The record of a vehicle in process (``sitl.vehicle.record``), for values that MAVLink does not send.
+
+        It follows the vehicle, and is to be read only.
+
+        Raises:
+            EnvOptionError: the vehicle is in another process.
+        """
+        return self._vehicles.view(index)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""

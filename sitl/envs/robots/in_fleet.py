@@ -194,6 +194,10 @@ class FleetVehicles(InProcessVehicles):
         """A copy of one vehicle: what is done to it does not reach the fleet."""
         return self.fleet.simulation(index)
 
+    def view(self, index: int) -> Any:
+        """See ``Vehicles``; no copy."""
+        return self.fleet.view(index)
+
     def photograph(self, index: int, width: int, height: int) -> Any:
         return None
 

@@ -180,8 +180,20 @@ class Vehicles(ABC):
         raise EnvOptionError(f"{self.where}: only vehicles in process have snapshots")
 
     def simulation(self, index: int) -> Simulation:
-        """The simulation of one vehicle, for values that MAVLink does not send."""
+        """A simulation in the state of one vehicle. It may be a copy: what is done to that does not reach the vehicle.
+
+        Raises:
+            EnvOptionError: the vehicle is in another process.
+        """
         raise EnvOptionError(f"{self.where}: only vehicles in process can be looked into")
+
+    def view(self, index: int) -> Any:
+        """The record of one vehicle (``sitl.vehicle.record``), for values that MAVLink does not send; to be read only.
+
+        Raises:
+            EnvOptionError: the vehicle is in another process.
+        """
+        return self.simulation(index).v
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
