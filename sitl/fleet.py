@@ -78,6 +78,7 @@ class Fleet:
         self._slots: Array = np.zeros(count, Slot.dtype)
         self._link = InProcessLink()
         shell.bridge.add_link(self._link)
+        self._is_closed = False
         self._states: list[Snapshot] = []
         self._views: dict[int, Any] = {}
         self._before_boot_us: Array = np.zeros(count, np.int64)
@@ -125,6 +126,7 @@ class Fleet:
         rows = [which] if isinstance(which, int) else list(which)
         for row in rows:
             self._check(row)
+        self._check_open()
         shell = self.shell
         shell.restore(snapshot)  # refuses what cannot be put here
         if seed is not None:
@@ -154,6 +156,10 @@ class Fleet:
             view = self._views[index] = self.kind.record.of(self.records, index)
         return view
 
+    def _check_open(self) -> None:
+        if self._is_closed:
+            raise OptionError("the fleet is closed")
+
     def _check(self, index: int) -> None:
         if not 0 <= index < len(self.records):
             raise OptionError(f"the fleet has no vehicle {index!r}; it has 0 .. {len(self.records) - 1}")
@@ -163,6 +169,7 @@ class Fleet:
     def send(self, index: int, data: bytes) -> None:
         """Bytes from a vehicle's client; it acts on them when it is advanced."""
         self._check(index)
+        self._check_open()
         size = int(self._in_size[index])
         end = size + len(data)
         if end > IN_BYTES:
@@ -206,6 +213,7 @@ class Fleet:
 
     def advance_us(self, step_us: int | Array, which: Sequence[int] | Array | None = None) -> None:
         """The same by microseconds, one number or one for each vehicle of ``which``."""
+        self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
         if which is None:
             until[:] = times + step_us
@@ -261,7 +269,8 @@ class Fleet:
         self._slots["shell_us"][rows] = shell.bridge.shell_due_us()
 
     def close(self) -> None:
-        """Close the shell and stop the threads."""
+        """Close the shell and stop the threads: the fleet can only be looked at from now on."""
+        self._is_closed = True
         if self._pool is not None:
             self._pool.shutdown()
         self.shell.close()

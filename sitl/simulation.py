@@ -208,7 +208,7 @@ class Simulation:
             except PhysicsLostError as error:
                 lost = error
             now = self._clock()
-            if shell_us <= now or now < until or self._event_count() != self._events_seen:
+            if shell_us <= now or self._event_count() != self._events_seen or bridge.is_behind(now):
                 self.serve()
             else:  # the core has sent all that is due
                 bridge.flush()

@@ -227,6 +227,15 @@ def test_what_cannot_be_asked(fleet: Fleet) -> None:
             fleet.advance(seconds)
 
 
+def test_a_closed_fleet_can_only_be_looked_at(kind: str, under_way: Snapshot) -> None:
+    fleet = Fleet(FRAMES[kind], 2, core=core_of(kind))
+    fleet.close()
+    for what in (lambda: fleet.send(0, b""), lambda: fleet.advance(0.1), lambda: fleet.put(0, under_way)):
+        with pytest.raises(OptionError, match="the fleet is closed"):
+            what()
+    assert fleet.view(0).time_us == 0
+
+
 PLAIN = """
 from sitl.fleet import Fleet
 import hashlib

@@ -271,6 +271,13 @@ class Bridge:
                 due = next_us
         return due
 
+    def is_behind(self, now_us: int) -> bool:
+        """Whether a regular message that was due by ``now_us`` (since boot) has not been sent."""
+        for channel in self.channels:  # noqa: SIM110 - each step of an environment comes here
+            if channel.port.next_us <= now_us:
+                return True
+        return False
+
     def goes_by_itself(self) -> bool:
         """Whether the core may send for several times in one run: nobody looks at the time of each frame."""
         if self.board.is_watched():
