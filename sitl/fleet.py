@@ -21,7 +21,7 @@ import numpy as np
 
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
-from .bridge.wire.fleet import TO_SERVE, Slot
+from .bridge.wire.fleet import STAYS, TO_SERVE, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core.compile import Progress
 from .core.kernels import jit_disabled
@@ -161,7 +161,7 @@ class Fleet:
             raise OptionError("the fleet is closed")
 
     def _check(self, index: int) -> None:
-        if not 0 <= index < len(self.records):
+        if not (isinstance(index, int | np.integer) and 0 <= index < len(self.records)):
             raise OptionError(f"the fleet has no vehicle {index!r}; it has 0 .. {len(self.records) - 1}")
 
     # ------------------------------------------------------------------ clients
@@ -205,20 +205,22 @@ class Fleet:
             which: numbers of the vehicles; None: all.
 
         Raises:
-            OptionError: ``seconds`` is negative or not a finite number.
+            OptionError: ``seconds`` is negative or not a finite number, or the fleet has no such vehicle.
         """
         if not (isinstance(seconds, Real) and 0.0 <= seconds < math.inf):
             raise OptionError(f"cannot advance by {seconds!r} s: a number from 0 on is needed")
+        for index in () if which is None else which:
+            self._check(index)
         self.advance_us(round(seconds * 1e6), which)
 
     def advance_us(self, step_us: int | Array, which: Sequence[int] | Array | None = None) -> None:
-        """The same by microseconds, one number or one for each vehicle of ``which``."""
+        """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
         self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
         if which is None:
             until[:] = times + step_us
         else:
-            until[:] = 0
+            until[:] = STAYS
             until[which] = times[which] + step_us
         needs_shell[:] = 0
         self._run_all()

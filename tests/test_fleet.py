@@ -222,9 +222,20 @@ def test_what_cannot_be_asked(fleet: Fleet) -> None:
     for index in (-1, N):
         with pytest.raises(OptionError, match=rf"no vehicle {index}; it has 0 \.\. 3"):
             fleet.send(index, b"")
+    for which in ([1, N], [-1], [0.5]):
+        with pytest.raises(OptionError, match="the fleet has no vehicle"):
+            fleet.advance(0.1, which)  # type: ignore[arg-type]
     for seconds in (-1.0, math.nan, math.inf):
         with pytest.raises(OptionError, match="a number from 0 on"):
             fleet.advance(seconds)
+
+
+def test_words_are_heard_at_power_on_without_time_going_by(kind: str) -> None:
+    fleet = Fleet(FRAMES[kind], 2, core=core_of(kind))
+    fleet.send(1, command(512, 148))
+    fleet.advance(0.0)
+    assert fleet.receive(0) == b"" and len(fleet.receive(1)) > 0
+    assert fleet.time_us.tolist() == [0, 0]
 
 
 def test_a_closed_fleet_can_only_be_looked_at(kind: str, under_way: Snapshot) -> None:

@@ -16,6 +16,7 @@ from pytest import approx
 
 from sitl.envs import EnvOptionError
 from sitl.envs.tasks import Task
+from sitl.errors import LinkLostError
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 MODE = {ROVER: 0, COPTER: 2}
@@ -261,3 +262,15 @@ def test_a_ground_station_sees_the_vehicle():
         assert trace(plain, [0] * 30) == trace(watched, [0] * 30)
         assert station.recv(2048)[0] == 0xFD
         watched.close()
+
+
+def test_a_closed_environment_is_opened_by_reset() -> None:
+    env = gym.make("GazeboMazeErleRoverLIDAR-v0").unwrapped
+    first, _ = env.reset(seed=1)
+    env.close()
+    env.close()
+    with pytest.raises(LinkLostError, match=r"is not open; reset\(\) opens it"):
+        env.step(0)
+    again, _ = env.reset(seed=1)
+    assert np.array_equal(again, first)
+    env.step(0)

@@ -18,13 +18,15 @@ V = TypeVar("V", bound=Vehicle)
 
 GOES_ON, TO_HEAR, TO_SERVE = 0, 1, 2
 """A client's words are the shell's; so is what happened, or what is due."""
+STAYS = -1
+"""In place of a time: the vehicle stays as it is."""
 
 
 class Slot(Record):
     """What a fleet keeps of a vehicle besides its record and its port."""
 
-    until_us: int  # where it is to go on to [since boot]
-    shell_us: int  # when the shell has something to do [since boot]
+    until_us: int  # where it is to go on to [us since boot], or STAYS
+    shell_us: int  # when the shell has something to do [us since boot]
     events_seen: int  # events that the shell has acted on
     needs_shell: int  # GOES_ON, or what the core has left to it
 
@@ -74,10 +76,10 @@ def run_slots(
     hear: Callable[[Sequence[V], int, int], None],
     run: Callable[[Sequence[V], int, int, int, int, int, int], None],
 ) -> None:
-    """The same for vehicles ``first`` .. ``last`` - 1; a vehicle whose ``until_us`` is 0 stays as it is."""
+    """The same for vehicles ``first`` .. ``last`` - 1; those whose ``until_us`` is STAYS excepted."""
     for index in range(first, last):
         slot = record_at(Slot, beside.slots + index * SLOT_SIZE)
-        if slot.until_us != 0:
+        if slot.until_us != STAYS:
             run_slot(fleet, index, beside.ports + index * SIZE, beside.ranging, slot, hear, run)
 
 

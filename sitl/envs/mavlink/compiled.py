@@ -106,7 +106,7 @@ class ClientEnd(Record):
     velocity: Vec3  # NED [m/s]
     attitude_ms: int  # of angles and rates, since boot
     euler: Euler  # [rad]
-    rates: Vec3  # of the Euler angles' message [rad/s]
+    rates: Vec3  # of the body [rad/s]
     parts: int  # of a scan
     fresh: int  # bits of the parts that have come of the scan under way
     scan_us: int  # its time
@@ -236,6 +236,7 @@ def send_setpoints(
 
 @law
 def read_position(end: ClientEnd, m: LocalPositionNed) -> None:
+    """Note position [m] and velocity [m/s], NED."""
     end.position_ms = m.time_boot_ms
     end.position = Vec3(m.x, m.y, m.z)
     end.velocity = Vec3(m.vx, m.vy, m.vz)
@@ -243,6 +244,7 @@ def read_position(end: ClientEnd, m: LocalPositionNed) -> None:
 
 @law
 def read_attitude(end: ClientEnd, m: Attitude) -> None:
+    """Note Euler angles [rad] and body rates [rad/s]."""
     end.attitude_ms = m.time_boot_ms
     end.euler = Euler(m.roll, m.pitch, m.yaw)
     end.rates = Vec3(m.rollspeed, m.pitchspeed, m.yawspeed)
@@ -250,6 +252,7 @@ def read_attitude(end: ClientEnd, m: Attitude) -> None:
 
 @law
 def begins_with(text: Ints, beginning: Ints) -> bool:
+    """Whether a text, byte by byte, begins so."""
     for k in range(beginning.shape[0]):  # noqa: SIM110 - laws know no generators
         if text[k] != beginning[k]:
             return False

@@ -177,6 +177,7 @@ class AutopilotRobot:
         waits_us: npt.NDArray[np.int64] | None = None,
     ) -> None:
         """One step of many vehicles at once."""
+        vehicles.check_open()
         interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
         for index in rows.tolist():
             now = states[index]

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from sitl.client.connection import InProcess
 from sitl.core.kernels import jit_disabled
-from sitl.errors import OptionError
+from sitl.errors import LinkLostError, OptionError
 from sitl.fleet import Fleet
 from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation, Snapshot
@@ -66,6 +66,7 @@ class FleetVehicles(InProcessVehicles):
         self._coming = self.scans.copy()
         self._origins = np.zeros((count, 3))
         self._ends_for_laws: Any = self._views if jit_disabled() else self._ends
+        self._is_open = False
         self._changed: dict[tuple[int, str, int], tuple[Snapshot, Snapshot]] = {}
         """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
         self._begun: list[tuple[Snapshot, int] | None] = [None] * count
@@ -77,6 +78,7 @@ class FleetVehicles(InProcessVehicles):
         self.fleet: Fleet = self._made(
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )
+        self._is_open = True
         self._ports = self.fleet.ports.ctypes.data
         shell = self.fleet.shell
         if shell.unknown_parameters:
@@ -94,6 +96,8 @@ class FleetVehicles(InProcessVehicles):
         return state
 
     def _put(self, index: int, state: EpisodeState, seed: int | None = None) -> None:
+        if not self._is_open:
+            self._open()
         fleet = self.fleet
         self._begun[index] = None
         try:
@@ -135,6 +139,15 @@ class FleetVehicles(InProcessVehicles):
         return simulation.snapshot()
 
     # ------------------------------------------------------------------ steps
+
+    def check_open(self) -> None:
+        """Before a step.
+
+        Raises:
+            LinkLostError: the vehicles have been closed.
+        """
+        if not self._is_open:
+            raise LinkLostError(f"{self.where} is not open; reset() opens it")
 
     def step(self, rows: Rows, us: int, setpoint: str, commands: Floats, waits_us: Rows | None = None) -> None:
         """Send a set-point to each vehicle, advance it and read its telemetry.
@@ -219,6 +232,7 @@ class FleetVehicles(InProcessVehicles):
 
     def close(self) -> None:
         self.fleet.close()
+        self._is_open = False
 
 
 def rows_of(rows: npt.NDArray[np.bool_] | None, count: int) -> Rows:
