@@ -18,8 +18,11 @@ _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def law_options(inline: bool = False) -> dict[str, Any]:
-    """Compiler options of laws: no wrappers, and IEEE division instead of Python's exception."""
-    return {"error_model": "numpy", **_NO_WRAPPERS, **({"forceinline": True} if inline else {})}
+    """Compiler options of laws: no wrappers, and IEEE division instead of Python's exception.
+
+    Without a word on inlining, a law would take it from the law inside which it is compiled first.
+    """
+    return {"error_model": "numpy", **_NO_WRAPPERS, "forceinline": inline}
 
 
 @contextlib.contextmanager

@@ -10,7 +10,7 @@ import numpy as np
 from ..autopilot.copter.firmware import FIRMWARE, update
 from ..autopilot.copter.state import Autopilot
 from ..autopilot.events import HIT_GROUND, emit
-from ..core.kernels import law, unit
+from ..core.kernels import inlined, unit
 from ..physics.native.copter import pieces
 from ..physics.native.copter.init import init
 from ..physics.native.copter.state import Physics
@@ -45,14 +45,14 @@ def fly(fleet: Sequence[Copter], index: int) -> None:
     fly_after_touch(fleet, index)
 
 
-@law
+@inlined
 def fly_after_touch(fleet: Sequence[Copter], index: int) -> None:
     """What follows a tick of physics."""
     report_touch(fleet[index])
     fly_tick(fleet, index, update)
 
 
-@law
+@inlined
 def report_touch(vehicle: Copter) -> None:
     """HIT_GROUND when the vehicle came down hard in this tick."""
     ground = vehicle.physics.ground
