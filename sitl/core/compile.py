@@ -25,7 +25,7 @@ import numpy as np
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
 from .fingerprint import fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
-from .numba_tuning import COMMON, law_options
+from .numba_tuning import law_options
 from .records import Record
 
 Progress = Callable[[str, int, int], None]
@@ -33,7 +33,7 @@ Progress = Callable[[str, int, int], None]
 
 _fingerprints: dict[tuple[str, str], str] = {}
 """(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
-_ENTRY_OPTIONS = {**COMMON, "forceinline": True}
+_ENTRY_OPTIONS = {"error_model": "numpy", "forceinline": True}
 """Of a unit's entry: its body is compiled into the function with the C signature."""
 _SYMBOLS = "symbols name records by their classes"
 """Machine code made with symbols of another kind cannot be loaded beside it."""

@@ -209,6 +209,8 @@ def _pointer_to(number: Any) -> Any:
     return pointer
 
 
+_MAKES_ARRAYS = {"_nrt": True}
+"""Numba lets no function return a new array without this."""
 _to_bytes, _to_floats, _to_ints = _pointer_to(types.uint8), _pointer_to(types.float64), _pointer_to(types.int64)
 
 
@@ -218,21 +220,21 @@ def _record_at(cls, address):  # type: ignore[no-untyped-def]
     return lambda cls, address: _as_record(cls, address)
 
 
-@overload(bytes_at)
+@overload(bytes_at, jit_options=_MAKES_ARRAYS)
 def _bytes_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_bytes(address), (count,))
 
 
-@overload(floats_at)
+@overload(floats_at, jit_options=_MAKES_ARRAYS)
 def _floats_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_floats(address), (count,))
 
 
-@overload(table_at)
+@overload(table_at, jit_options=_MAKES_ARRAYS)
 def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
     return lambda address, rows, columns: carray(_to_floats(address), (rows, columns))
 
 
-@overload(ints_at)
+@overload(ints_at, jit_options=_MAKES_ARRAYS)
 def _ints_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_ints(address), (count,))

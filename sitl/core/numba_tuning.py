@@ -18,8 +18,8 @@ _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 COMMON: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
-"""Compiler options of laws and of what calls them: IEEE division instead of Python's exception, and no counts of
-references to arrays. Laws do not allocate, and the shell holds all arrays; a count costs as much as five divisions."""
+"""Compiler options of laws and kernels: IEEE division instead of Python's exception, and no counts of references to
+arrays. Laws do not allocate, and the shell holds all arrays; a count is an atomic instruction."""
 
 
 def law_options(inline: bool = False) -> dict[str, Any]:

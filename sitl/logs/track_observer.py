@@ -89,7 +89,8 @@ class TrackObserver:
         if self._is_new:
             self._find_origin()
         place = [x + shift for x, shift in zip(self._pos(), self._shift)]
-        self._rows.append((now * 1e-6, *place, *self._vel(), *self._vehicle.v.autopilot.estimate.euler, *self._energy()))
+        euler = self._vehicle.v.autopilot.estimate.euler
+        self._rows.append((now * 1e-6, *place, *self._vel(), *euler, *self._energy()))
 
     def _rebooted(self) -> None:
         self._boot_us, self._seen, self._is_new = self._vehicle.before_boot_us, 0, True

@@ -148,25 +148,15 @@ class Sight(NamedTuple):
 
 
 @law
-def is_level(directions: Table) -> bool:
-    """Whether all directions are level."""
-    for k in range(directions.shape[1]):
-        if directions[2, k] != 0.0:
-            return False
-    return True
-
-
-@law
 def sight_of(origin: Vec3, directions: Table, reach: float) -> Sight:
     """What rays can meet within their reach [m]."""
     rise, fall, outside = 0.0, 0.0, 0.0
     norths, easts, downs = directions[0], directions[1], directions[2]
     rays = directions.shape[1]
-    if not is_level(directions):  # the quicker look: a least and a greatest are chains of comparisons
-        for k in range(rays):
-            down = downs[k]
-            rise = down if down < rise else rise
-            fall = down if down > fall else fall
+    for k in range(rays):
+        down = downs[k]
+        rise = down if down < rise else rise
+        fall = down if down > fall else fall
     is_fan = rays > 2 * GROUP
     for first in range(0, rays if is_fan else 0, GROUP):
         end = min(first + GROUP, rays)

@@ -13,8 +13,8 @@ import math
 
 from ...core.algebra import euler_of, norm
 from ...core.kernels import inlined, law
-from ..events import LANDED, emit
 from ...core.vectors import Quat
+from ..events import LANDED, emit
 from ..state import Arming
 from .control import throttle_mix
 from .control.attitude_target import cos_lean
