@@ -76,9 +76,9 @@ class Kernel(Generic[P, R]):
         function: Any = self.function()
         return function if jit_disabled() else next(iter(function.overloads.values())).entry_point  # type: ignore[no-any-return]
 
-    def bind(self, *arguments: Any) -> Callable[[], R]:
-        """The compiled function of arguments that stay in place: their types are looked at once, so that a call is
-        quick.
+    def bind(self, *arguments: Any) -> Callable[..., R]:
+        """The compiled function with its first arguments, which stay in place: their types are looked at once, so that
+        a call is quick. The types of arguments that a call adds are not looked at.
 
         Raises:
             TypeError: the types are not those of the signature.
@@ -88,10 +88,17 @@ class Kernel(Generic[P, R]):
             from numba import typeof
 
             types, given = function.signatures[0], tuple(map(typeof, arguments))
-            if given != types:
+            if not all(map(_fits, given, types)):
                 raise TypeError(f"{self.name} takes {types}, not {given}")
         call: Any = self.unchecked()
         return partial(call, *arguments)
+
+
+def _fits(given: Any, wanted: Any) -> bool:
+    """Whether a value of Numba's type ``given`` may be handed over as one of type ``wanted`` without a conversion."""
+    if getattr(wanted, "layout", "") == "A":
+        given = given.copy(layout="A") if hasattr(given, "layout") else given
+    return bool(given == wanted)
 
 
 def _signature(law: Callable[..., Any]) -> Any:

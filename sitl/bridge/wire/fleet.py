@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeVar
 
+from ...core.array_kernels import IntColumn
 from ...core.kernels import law
 from ...core.memory import record_at
 from ...core.records import Record
@@ -79,8 +80,26 @@ def run_slots(
     """The same for vehicles ``first`` .. ``last`` - 1; those whose ``until_us`` is STAYS excepted."""
     for index in range(first, last):
         slot = record_at(Slot, beside.slots + index * SLOT_SIZE)
-        if slot.until_us != STAYS:
+        if slot.until_us == STAYS:
+            slot.needs_shell = GOES_ON
+        else:
             run_slot(fleet, index, beside.ports + index * SIZE, beside.ranging, slot, hear, run)
+
+
+@law
+def set_goals(times: IntColumn, until: IntColumn, step_us: int) -> None:
+    """Let each vehicle go on for a time [us]; ``until`` is the slots' ``until_us``, shape (count,)."""
+    for k in range(times.shape[0]):
+        until[k] = times[k] + step_us
+
+
+@law
+def any_waits(needs_shell: IntColumn) -> bool:
+    """Whether any vehicle needs the shell; ``needs_shell`` is the slots', shape (count,)."""
+    for k in range(needs_shell.shape[0]):  # noqa: SIM110 - laws know no generators
+        if needs_shell[k] != GOES_ON:
+            return True
+    return False
 
 
 SLOT_SIZE = Slot.dtype.itemsize

@@ -109,6 +109,8 @@ class VehicleSetup:
     """What is simulated, without start and seed of an episode."""
     angles: Floats
     """Angles of the lidar's readings, counter-clockwise from ahead, shape (readings,) [rad]."""
+    arrays: Any
+    """What the environment knows of each vehicle (``mavlink.compiled.RobotArrays``)."""
 
 
 class Vehicles(ABC):
