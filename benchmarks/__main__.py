@@ -18,7 +18,7 @@ import numpy as np
 
 from sitl import vehicles
 from sitl.bridge.dialect import message
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
+from sitl.missions.pilot import LOCAL_NED, VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
@@ -105,6 +105,7 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
     for name in messages:
         client.set_interval(name, rate_hz)
     kind = message("SET_POSITION_TARGET_LOCAL_NED")
+    place, others = (0.0, 0.0, 0.0), (0.0,) * 7
     period_us = 1_000_000 // rate_hz
     steps = 20 * rate_hz
     got = 0
@@ -112,11 +113,8 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
     def run() -> float:
         nonlocal got
         for k in range(steps):
-            payload = kind.payload(
-                target_system=1, target_component=1, coordinate_frame=1, type_mask=VELOCITY_ONLY,
-                vx=SPEED if k % (4 * rate_hz) < 2 * rate_hz else -SPEED,
-            )  # fmt: skip
-            client.send_payload(kind, payload)
+            velocity = SPEED if k % (4 * rate_hz) < 2 * rate_hz else -SPEED
+            client.send_payload(kind, kind.pack(0, *place, velocity, *others, VELOCITY_ONLY, 1, 1, LOCAL_NED))
             simulation.advance_to(simulation.time_us + period_us)
             got += len(client.receive())
         return steps / rate_hz

@@ -24,7 +24,7 @@ import numpy as np
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
 from .bridge.wire import fleet as wire
-from .bridge.wire.fleet import STAYS, TO_SERVE, Slot
+from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core.array_kernels import Kernel
 from .core.compile import Progress
@@ -102,9 +102,11 @@ class Fleet:
         """What each thread needs to measure in the world: its address, and what keeps it alive."""
         integer: Callable[[int], Any] = int if jit_disabled() else c_int64  # converted once
         parts = [count * k // threads for k in range(threads + 1)]
-        slots = self._slots.ctypes.data
+        slots, ports = self._slots.ctypes.data, self.ports
+        self._slots["ports"] = ports.ctypes.data + ports.itemsize * np.arange(count)
+        self._slots["clients"] = 1
         self._parts = [
-            partial(run, *map(integer, (first, last, self.ports.ctypes.data, slots, room[0])))
+            partial(run, *map(integer, (first, last, slots, room[0])))
             for (first, last), room in zip(pairwise(parts), self._rooms, strict=True)
             if first < last
         ]
@@ -193,7 +195,7 @@ class Fleet:
         size = int(self._in_size[index])
         end = size + len(data)
         if end > IN_BYTES:
-            self._serve(index, 0, data)
+            self._serve(index, 0, TO_HEAR, data)
             return
         self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
         self._in_size[index] = end
@@ -251,19 +253,17 @@ class Fleet:
                 done.result()
         if self._any_waits():
             for index in np.flatnonzero(needs_shell).tolist():
-                self._serve(index, int(until[index] - times[index]), serves=needs_shell[index] == TO_SERVE)
+                self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
 
     # ------------------------------------------------------------------ what needs Python
 
-    def _serve(self, index: int, left_us: int, data: bytes = b"", serves: bool = False) -> None:
-        """Let the shell act on what the core left to it, and advance the vehicle by ``left_us``."""
+    def _serve(self, index: int, left_us: int, needs_shell: int, data: bytes = b"") -> None:
+        """Let the shell act on ``data`` and on what the core left to it, and advance the vehicle by ``left_us``."""
         shell = self.shell
         shell.restore(self.snapshot(index))
         shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
         self._link.send(data)
-        if serves:
-            shell.serve()
-        shell.bridge.receive(resume=True)
+        shell.attend(needs_shell)
         shell.advance_to(shell.time_us + max(left_us, 0))
         said = self._link.receive()
         if said:

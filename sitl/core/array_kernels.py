@@ -59,6 +59,7 @@ class Kernel(Generic[P, R]):
         self.law = law
         self.name = law.__module__.removeprefix("sitl.") + "." + law.__name__
         self._loaded: Callable[P, R] | None = None
+        self._entry: Callable[P, R] | None = None
         KERNELS[self.name] = self
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -73,8 +74,11 @@ class Kernel(Generic[P, R]):
     def unchecked(self) -> Callable[P, R]:
         """The same, without a look at the types of the arguments, which must be those of the signature: the quickest to
         call."""
-        function: Any = self.function()
-        return function if jit_disabled() else next(iter(function.overloads.values())).entry_point  # type: ignore[no-any-return]
+        if self._entry is None:
+            function: Any = self.function()
+            self._entry = function if jit_disabled() else next(iter(function.overloads.values())).entry_point
+        assert self._entry is not None
+        return self._entry
 
     def bind(self, *arguments: Any) -> Callable[..., R]:
         """The compiled function with its first arguments, which stay in place: their types are looked at once, so that
