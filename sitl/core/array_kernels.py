@@ -63,7 +63,7 @@ class Kernel(Generic[P, R]):
         KERNELS[self.name] = self
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        return self.function()(*args, **kwargs)
+        return (self._loaded or self.function())(*args, **kwargs)
 
     def function(self) -> Callable[P, R]:
         """The compiled function itself, which is a little quicker to call."""
@@ -100,6 +100,8 @@ class Kernel(Generic[P, R]):
 
 def _fits(given: Any, wanted: Any) -> bool:
     """Whether a value of Numba's type ``given`` may be handed over as one of type ``wanted`` without a conversion."""
+    if hasattr(wanted, "types") and hasattr(given, "types"):
+        return len(given.types) == len(wanted.types) and all(map(_fits, given.types, wanted.types))
     if getattr(wanted, "layout", "") == "A":
         given = given.copy(layout="A") if hasattr(given, "layout") else given
     return bool(given == wanted)

@@ -356,15 +356,23 @@ def read_row(
     read_bytes(ends[i], bytes_at(data, size), size, i, scans, coming, ports + i * SIZE)
 
 
+class Origins(NamedTuple):
+    """What a vehicle's telemetry is counted from, a row each."""
+
+    places: Table
+    """Of the vehicles' local frames, NED in the world [m], shape (vehicles, 3)."""
+    since_boot_us: IntColumn
+    """Simulated time of the vehicles, and that before the last boot, shape (vehicles,)."""
+    before_boot_us: IntLine
+
+
 @law
 def show_robots(
     ends: Records[ClientEnd],
     coming: NarrowTable,
     ports: int,
-    origins: Table,
+    origins: Origins,
     base_along: float,
-    since_boot_us: IntColumn,
-    before_boot_us: IntLine,
     robots: RobotArrays,
     rows: IntLine,
 ) -> None:
@@ -374,28 +382,25 @@ def show_robots(
         ends: one for each vehicle.
         coming: scans under way [m].
         ports: address of the vehicles' ports.
-        origins: of the vehicles' local frames, NED in the world [m], shape (vehicles, 3).
+        origins: of the vehicles.
         base_along: how far the robot's base lies ahead of the body's origin [m].
-        since_boot_us, before_boot_us: simulated time of each vehicle is their sum, shape (vehicles,).
         robots: what is written.
         rows: numbers of the vehicles.
     """
     read_ports(ends, robots.scan, coming, ports, rows)
-    state = robots.state
+    state, places = robots.state, origins.places
     for k in range(rows.shape[0]):
         i = rows[k]
         end = ends[i]
         p, v, heading = end.position, end.velocity, end.euler.yaw
         c, s = math.cos(heading), math.sin(heading)
-        x, y, z = from_ned(
-            origins[i, 0] + p.x + base_along * c, origins[i, 1] + p.y + base_along * s, origins[i, 2] + p.z
-        )
+        x, y, z = from_ned(places[i, 0] + p.x + base_along * c, places[i, 1] + p.y + base_along * s, places[i, 2] + p.z)
         state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
         state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c
         state[i, 6], state[i, 7] = -v.z, -end.rates.z
         robots.collided[i] = 1 if end.hits > 0 else 0
         end.hits = 0
-        robots.time[i] = 1e-6 * (before_boot_us[i] + since_boot_us[i] - robots.began_us[i])
+        robots.time[i] = 1e-6 * (origins.before_boot_us[i] + origins.since_boot_us[i] - robots.began_us[i])
 
 
 send_all = Kernel(send_setpoints)

@@ -26,6 +26,7 @@ from ..mavlink.compiled import (
     ROVER_POSITION,
     VELOCITY,
     ClientEnd,
+    Origins,
     read_all,
     read_one,
     send_all,
@@ -94,7 +95,8 @@ class FleetVehicles(InProcessVehicles):
         self._read_some = read_all.bind(ends, arrays.scan, coming, ports)
         self._read_bytes = read_one.bind(ends, arrays.scan, coming, ports)
         along = float(self.setup.airframe.value("base_along"))
-        self._show = show_all.bind(ends, coming, ports, self._origins, along, *fleet.clocks, arrays)
+        origins: Any = Origins(self._origins, *fleet.clocks)
+        self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
 
     # ------------------------------------------------------------------ episodes
 
