@@ -74,7 +74,7 @@ class FleetVehicles(InProcessVehicles):
         super().__init__(setup)
 
     def _open(self) -> None:
-        count, threads = self.setup.count, self.options.threads
+        count, threads = self.setup.count, self.threads
         self.fleet: Fleet = self._made(
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )

@@ -137,6 +137,8 @@ class Vehicles(ABC):
             raise EnvOptionError(
                 f"threads = {self.options.threads!r}: only vehicles in process on native physics have any"
             )
+        self.threads = self.options.threads
+        """See ``AutopilotOptions``; may be changed before the first episode."""
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
