@@ -230,6 +230,10 @@ class FleetVehicles(InProcessVehicles):
     def restore(self, index: int, state: EpisodeState) -> None:
         self._put(index, state)
 
+    def use_threads(self, threads: int) -> None:
+        super().use_threads(threads)
+        self.close()  # the next episode opens a fleet with these threads
+
     def close(self) -> None:
         self.fleet.close()
         self._is_open = False
