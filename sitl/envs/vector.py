@@ -78,7 +78,7 @@ class NavigateVector(OfSubEnvironments):
         self.generators = [None] * num_envs
         self.seeds = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
-        self._ended = np.zeros(num_envs, np.bool_)
+        self._ended, self._all = np.zeros(num_envs, np.bool_), np.ones(num_envs, np.bool_)
         self._renderers = [Renderer(session.robot, session.task, i) for i in range(num_envs)] if render_mode else []
 
     @property
@@ -175,10 +175,10 @@ class NavigateVector(OfSubEnvironments):
             self._steps[ended], rewards[ended], terminated[ended] = 0, 0.0, False
         limit = self.max_episode_steps
         truncated = np.zeros(self.num_envs, np.bool_) if limit is None else self._steps >= limit
-        moved = ~ended if again else np.ones(self.num_envs, np.bool_)
-        for renderer, has_moved in zip(self._renderers, moved.tolist(), strict=False):
-            if has_moved:
-                renderer.note()
+        moved = ~ended if again else self._all
+        if self._renderers:
+            for index in np.flatnonzero(moved).tolist():
+                self._renderers[index].note()
         self._ended = ended = terminated | truncated
         if mode is AutoresetMode.SAME_STEP and ended.any():
             observations, infos = self._end_within(ended)
@@ -227,7 +227,7 @@ class NavigateVector(OfSubEnvironments):
     def _infos(self, rows: Flags) -> dict[str, Any]:
         """Infos in Gymnasium's vector form: each array with a mask "_name" of the robots that it is valid for."""
         infos: dict[str, Any] = {}
-        if not rows.any():
+        if rows is not self._all and not rows.any():
             return infos
         for name, value in self._session.task.info(self._session.step).items():
             if value.ndim == 1:  # Gymnasium makes arrays of Python's numbers
