@@ -242,6 +242,11 @@ class AutopilotRobot:
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """See ``Robot``; ``reset`` has already read the scan."""
 
+    def use_threads(self, threads: int) -> None:
+        """Let so many threads advance the vehicles, before their first reset; without effect on vehicles that have
+        none (see ``AutopilotOptions.threads``). Their number changes no bit of the result."""
+        self._vehicles.use_threads(threads)
+
     def link(self, index: int) -> Connection | None:
         """The connection to a vehicle, after its first reset; None before it, and for vehicles that a fleet flies (in
         process, on native physics, without ``gcs``): they have no connection of their own."""

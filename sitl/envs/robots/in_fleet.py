@@ -73,7 +73,7 @@ class FleetVehicles(InProcessVehicles):
         super().__init__(setup)
 
     def _open(self) -> None:
-        count, threads = self.setup.count, self.options.threads
+        count, threads = self.setup.count, self.threads
         self.fleet: Fleet = self._made(
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )
@@ -241,6 +241,10 @@ class FleetVehicles(InProcessVehicles):
 
     def restore(self, index: int, state: EpisodeState) -> None:
         self._put(index, state)
+
+    def use_threads(self, threads: int) -> None:
+        super().use_threads(threads)
+        self.close()  # the next episode opens a fleet with these threads
 
     def close(self) -> None:
         self.fleet.close()

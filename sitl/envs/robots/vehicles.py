@@ -139,6 +139,8 @@ class Vehicles(ABC):
             raise EnvOptionError(
                 f"threads = {self.options.threads!r}: only vehicles in process on native physics have any"
             )
+        self.threads = self.options.threads
+        """See ``AutopilotOptions``."""
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
@@ -200,6 +202,10 @@ class Vehicles(ABC):
     def photograph(self, index: int, width: int, height: int) -> Any:
         """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
         return None
+
+    def use_threads(self, threads: int) -> None:
+        """Before the first episode: so many threads are to advance the vehicles, if these take any."""
+        self.threads = threads
 
     def close(self) -> None:
         """Close all connections."""
