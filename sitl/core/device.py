@@ -32,7 +32,7 @@ Generation = tuple[int, int]
 CALLED_FROM = 60
 """Lines of NVVM's language from which on a law stays a call. If all were inlined, machine code would be five times as
 long, and ``ptxas`` would work on it for more than ten minutes."""
-_known: set[str] = set()
+_known: set[Callable[..., None]] = set()
 """Units that device code can call."""
 
 
@@ -68,18 +68,6 @@ def require() -> None:
         raise MissingExtra("code for GPUs needs numba-cuda: pip install 'gym-sitl[cuda]'")
 
 
-def kernel(unit: Callable[..., None]) -> Callable[..., None]:
-    """``kernel(fleet, ticks)`` that calls ``unit(fleet, index, ticks)`` in one thread a vehicle."""
-    from numba import cuda
-
-    def advance_each(fleet: Any, ticks: int) -> None:
-        index = cuda.grid(1)
-        if index < len(fleet):
-            unit(fleet, index, ticks)
-
-    return advance_each
-
-
 def modules_of(unit: Callable[..., None], path: str, generation: Generation = (9, 0)) -> tuple[str, list[str]]:
     """Name of the kernel's entry, and its modules in LLVM's language, the entry's first.
 
@@ -95,9 +83,10 @@ def modules_of(unit: Callable[..., None], path: str, generation: Generation = (9
     from numba import types
     from numba.cuda.compiler import compile_cuda, kernel_fixup
 
+    from .device_kernel import kernel
     from .numba_records import numba_type
 
-    _make_known()
+    _make_known(unit)
     arguments = (types.Array(numba_type(record_class(path)), 1, "C"), types.int64)
     with _without_gpu(generation):
         made = compile_cuda(kernel(unit), types.void, arguments, nvvm_options={"opt": 3}, cc=generation)
@@ -117,12 +106,8 @@ def ptx_of(unit: Callable[..., None], path: str, generation: Generation = (9, 0)
     return Ptx(name, text.decode().strip("\x00").strip(), generation)
 
 
-def assemble(ptx: Ptx, level: int = 3) -> MachineCode:
+def assemble(ptx: Ptx) -> MachineCode:
     """Machine code of PTX.
-
-    Args:
-        ptx: what to translate.
-        level: of optimisation, 0 .. 3.
 
     Raises:
         MissingExtra: there is no ``ptxas``.
@@ -133,7 +118,7 @@ def assemble(ptx: Ptx, level: int = 3) -> MachineCode:
         source, out = Path(folder, "kernel.ptx"), Path(folder, "kernel.cubin")
         source.write_text(ptx.text)
         major, minor = ptx.generation
-        command = [program, "-v", f"-O{level}", f"-arch=sm_{major}{minor}", "-o", str(out), str(source)]
+        command = [program, "-v", f"-arch=sm_{major}{minor}", "-o", str(out), str(source)]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             raise BuildError(f"ptxas failed:\n{done.stderr[-2000:]}")
@@ -163,7 +148,7 @@ def _ptxas() -> str:
     return program
 
 
-def _make_known() -> None:
+def _make_known(unit: Callable[..., None]) -> None:
     """Let device code use laws, vectors and units: on a device a unit is a law, there are no symbols to link to."""
     from numba.cuda.extending import typeof_impl
     from numba.extending import overload
@@ -175,11 +160,18 @@ def _make_known() -> None:
     if not _known:
         typeof_impl.register(Value)(_typeof)
         typeof_impl.register(type(Record))(_typeof_class)
-    for unit in UNITS.values():
-        if unit.name not in _known:
-            _known.add(unit.name)
-            itself: Any = lambda *arguments, function=unit.function: function  # noqa: E731
-            overload(unit.function, jit_options=law_options(), strict=False, target="cuda")(itself)
+    for function in {*(known.function for known in UNITS.values()), unit} - _known:
+        _known.add(function)
+        overload(function, jit_options=law_options(), strict=False, target="cuda")(_giving(function))
+
+
+def _giving(function: Callable[..., None]) -> Any:
+    """What Numba asks, with types, for the function to compile."""
+
+    def given(*types: Any) -> Callable[..., None]:
+        return function
+
+    return given
 
 
 def _with_calls(module: str, kernel: str) -> str:
