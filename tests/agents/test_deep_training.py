@@ -114,7 +114,7 @@ def test_the_network_that_plays_is_the_one_that_learnt(tmp_path, algorithm):
     network, rng = Network(model), np.random.default_rng(0)
     for row in rng.uniform(-2.0, 2.0, (50, *model.observation_space.shape)).astype(np.float32):
         expected, _ = model.predict(row, deterministic=True)
-        assert network(row) == pytest.approx(expected, abs=1e-5)
+        assert network(row[None])[0] == pytest.approx(expected, abs=1e-5)
 
 
 def test_what_cannot_be_is_refused(tmp_path):
