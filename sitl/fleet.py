@@ -23,13 +23,16 @@ from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
 from .bridge.wire.fleet import STAYS, TO_SERVE, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
+from .core import rng
 from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
+from .move import Move
 from .plants.local import LocalPlant
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
 from .vehicle.core_entry import Core, bind_fleet_unit
+from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
 Array = np.ndarray[Any, Any]
@@ -98,6 +101,9 @@ class Fleet:
         """What each thread needs to measure in the world: its address, and what keeps it alive."""
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
+        self._orders: Array = MoveOrder.fleet(1)
+        self._move_all: Callable[..., None] | None = None
+        self._figures: Any = self.records["physics"]["airframe"]
         self._states = [shell.snapshot()] * count
         self.put(range(count), self._states[0])
 
@@ -133,6 +139,69 @@ class Fleet:
             shell.reseed(seed)
         self._link.receive()
         self._take_back(rows)
+
+    def move(self, which: int | Iterable[int], moves: Move | Sequence[Move], snapshot: Snapshot | None = None) -> None:
+        """Put vehicles elsewhere within this instant, with all that they know of places; see docs/fleets.md.
+
+        Args:
+            which: a vehicle, or several, each once.
+            moves: where to: one for all, or one for each.
+            snapshot: they are given its state first, as by ``put``; None: from where they are.
+
+        Raises:
+            OptionError: a move that cannot be made (a number out of its limits, a place in a solid, figures with which
+                the vehicle does not hover), or a snapshot as of ``put``; no vehicle is changed.
+        """
+        rows = [which] if isinstance(which, int | np.integer) else list(which)
+        each = [moves] * len(rows) if isinstance(moves, Move) else list(moves)
+        for row in rows:
+            self._check(row)
+        if len(each) != len(rows) or len(set(rows)) != len(rows):
+            raise OptionError(f"{len(each)} moves of vehicles {rows}: each vehicle is moved once")
+        for move in (moves,) if isinstance(moves, Move) else each:
+            move.check(self.scenario.airframe)
+        self._check_open()
+        kept = self._records_u1[rows], self._ports_u1[rows], self._slots[rows], self._before_boot_us[rows]
+        states = [self._states[row] for row in rows]
+        try:
+            if snapshot is not None:
+                self.put(rows, snapshot)
+            self._obey(rows, each)
+        except OptionError:
+            self._records_u1[rows], self._ports_u1[rows], self._slots[rows], self._before_boot_us[rows] = kept
+            for row, state in zip(rows, states):
+                self._states[row] = state
+            raise
+
+    def _obey(self, rows: list[int], moves: list[Move]) -> None:
+        kind = self.kind
+        if kind.move is None:
+            raise OptionError(f"vehicles of kind {kind.name} cannot be moved: the kind has no unit for it")
+        if self._move_all is None:
+            self._move_all = bind_fleet_unit(kind.move, kind, self.records)
+        if len(self._orders) < len(rows):
+            self._orders = MoveOrder.fleet(len(rows))
+        for k, (row, move) in enumerate(zip(rows, moves)):
+            v = self.view(row)
+            move.write(MoveOrder.of(self._orders, k), int(row), v, kind)
+            for name, value in move.figures.items():
+                self._figures[name][row] = value
+            if move.seed is not None:
+                rng.seed(v.rng, move.seed)
+        self._move_all(0, len(rows), self._orders.ctypes.data, self._rooms[0][0])
+        for row, move, result in zip(rows, moves, self._orders["result"].tolist()):
+            if result != DONE:
+                raise OptionError(self._refusal(row, move, result))
+
+    def _refusal(self, row: int, move: Move, result: int) -> str:
+        v, name = self.view(row), self.scenario.airframe.name
+        if result == IN_SOLID:
+            north, east, down = v.physics.body.pos
+            return (
+                f"vehicle {row} cannot be moved: at north {north:g}, east {east:g} m, {-down:g} m high, {name} would "
+                f"be in a solid of world {self.scenario.load_world().name!r}"  # type: ignore[union-attr]
+            )
+        return f"vehicle {row} cannot be moved: {name} does not hover with figures {dict(move.figures)}, wind {move.wind}"
 
     def snapshot(self, index: int) -> Snapshot:
         """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""
