@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from numbers import Real
 from typing import Any
 
+from .core.vectors import Vec2, Vec3
 from .errors import OptionError, did_you_mean
 from .vehicle.kind import Kind
 from .vehicle.move import MoveOrder
@@ -25,6 +26,7 @@ _FARTHEST = 100_000.0
 _HIGHEST = 10_000.0
 _FASTEST = 100.0
 _MISSION_RUNS = 1
+_known: dict[type[Airframe], dict[str, Figure]] = {}
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ class Move:
         for figure, value in zip(WIND, _three("wind", self.wind)):
             _number(figure.name, value, figure.low, figure.high, figure.unit)
         if self.figures:
-            known = {f.name: f for f in airframe.known if f.length == 1 and not f.whole}
+            known = _numbers(type(airframe))
             for name, value in self.figures.items():
                 if name not in known:
                     raise OptionError(f"figure {name!r} cannot be changed by a move{did_you_mean(name, known)}")
@@ -97,8 +99,8 @@ class Move:
         order.vehicle = vehicle
         order.says_place = self.north is not None or self.east is not None
         if order.says_place:
-            north, east, _ = body.pos
-            order.place = (north if self.north is None else self.north, east if self.east is None else self.east)
+            here = body.pos
+            order.place = Vec2(here.x if self.north is None else self.north, here.y if self.east is None else self.east)
         order.says_height = self.height is not None
         order.height = self.height or 0.0
         order.says_heading = self.heading is not None
@@ -107,7 +109,7 @@ class Move:
         if self.velocity is not None:
             if not flies:
                 self._check_along(vehicle, kind, body)
-            order.velocity = self.velocity
+            order.velocity = Vec3(*self.velocity)
         order.says_wind = self.wind is not None
         if self.wind is not None:
             order.wind_speed, order.wind_direction, order.wind_turbulence = self.wind
@@ -127,8 +129,15 @@ class Move:
             raise OptionError(f"velocity = {self.velocity!r}: vehicle {vehicle} is on the ground; {allowed}")
 
 
+def _numbers(kind: type[Airframe]) -> dict[str, Figure]:
+    """The figures that may be changed, by name."""
+    if kind not in _known:
+        _known[kind] = {f.name: f for f in kind.known if f.length == 1 and not f.whole}
+    return _known[kind]
+
+
 def _number(name: str, value: float | None, low: float, high: float, unit: str) -> None:
-    if value is None:
+    if value is None or (type(value) is float and low <= value <= high):
         return
     if not (isinstance(value, Real) and not isinstance(value, bool) and low <= value <= high):
         raise OptionError(f"{name} = {value!r}; it must be a number, {low:g} .. {high:g} {unit}".rstrip())
