@@ -16,7 +16,6 @@ import numpy.typing as npt
 from sitl.client.connection import InProcess
 from sitl.core.geodesy import offset_ne
 from sitl.core.kernels import jit_disabled
-from sitl.core.vectors import Euler, Vec3
 from sitl.errors import LinkLostError, OptionError
 from sitl.fleet import Fleet
 from sitl.move import Move
@@ -45,7 +44,7 @@ from ..options import EnvOptionError, unknown
 from .in_process import MAX_STATES, InProcessVehicles
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
-from .vehicles import EpisodeState, VehicleSetup
+from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
     override: RC, velocity: VELOCITY, position: POSITION, copter_attitude: ATTITUDE,
@@ -79,6 +78,10 @@ class FleetVehicles(InProcessVehicles):
         self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
         """Start state, seed and move of each vehicle's episode, until its first step."""
         self._prepared: Prepared | None = None
+        self._used = "", 0
+        """Kind of set-point and interval that a vehicle was last made ready for."""
+        lat, lon = setup.options.home[:2]
+        self._home = round(1e7 * lat), round(1e7 * lon)
         super().__init__(setup)
 
     def _open(self) -> None:
@@ -88,6 +91,10 @@ class FleetVehicles(InProcessVehicles):
         )
         self._is_open = True
         self._ports = self.fleet.ports.ctypes.data
+        ends, estimate = self._ends, self.fleet.records["autopilot"]["estimate"]
+        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
+        self._said = [(ends[name], estimate[field]) for name, field in pairs]
+        self._ranges = self.fleet.records["sensors"]["lidar_ranges"]
         shell = self.fleet.shell
         if shell.unknown_parameters:
             raise unknown("parameter", shell.unknown_parameters[0], shell.firmware.table.names())
@@ -107,8 +114,12 @@ class FleetVehicles(InProcessVehicles):
             if self._prepared is None or self._prepared.state is not state:
                 self._prepared = Prepared(state, self.setup, base)
             move = self._prepared.to(pose, figures, seed)
+        ready = self._changed.get((id(state.simulation), *self._used))
+        if ready is not None:  # as the last episodes went on
+            setpoint, interval_us = self._used
+            state = replace(state, simulation=ready[1], setpoint=setpoint, interval_us=interval_us)
         self._put(index, state, seed, move)
-        self._begun[index] = (state.simulation, seed, move)
+        self._begun[index] = (state.simulation if ready is None else ready[0], seed, move)
         return state if move is None else self._moved(index, state, pose)
 
     @cached_property
@@ -119,14 +130,12 @@ class FleetVehicles(InProcessVehicles):
 
     def _moved(self, index: int, state: EpisodeState, pose: Pose) -> EpisodeState:
         """After a move: what the vehicle would say now, and where its local frame is."""
-        v, end = self.fleet.view(index), self._views[index]
-        e = v.autopilot.estimate
-        pos, vel, euler, rates = np.array((*e.pos, *e.vel, *e.euler, *e.rates), np.float32).reshape(4, 3).tolist()
-        end.position, end.velocity, end.euler, end.rates = Vec3(*pos), Vec3(*vel), Euler(*euler), Vec3(*rates)
+        for end, estimate in self._said:
+            end[index] = estimate[index].astype(np.float32)  # as messages carry them
         readings = len(self.setup.angles)
-        self.scans[index, :readings] = v.sensors.lidar_ranges[:readings]
-        lat, lon = (round(1e7 * angle) for angle in self.options.home[:2])
-        north, east = offset_ne(lat, lon, e.origin_lat, e.origin_lon)
+        self.scans[index, :readings] = self._ranges[index, :readings]
+        e = self.fleet.view(index).autopilot.estimate
+        north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
         self._origins[index] = origin = north, east, -pose[2]
         return replace(state, simulation=None, telemetry=None, origin=origin)
 
@@ -156,15 +165,16 @@ class FleetVehicles(InProcessVehicles):
     def change(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
         """Set the mode and the telemetry intervals that a kind of set-point needs, without time going by."""
         begun, self._begun[index] = self._begun[index], None
+        self._used = setpoint, interval_us
         if begun is None:
-            self.fleet.put(index, self._ready(self.fleet.snapshot(index), now, setpoint, interval_us))
+            self.fleet.put(index, self._ready(self.fleet.snapshot(index), setpoint, interval_us, now))
         else:
             start, seed, move = begun
             key = (id(start), setpoint, interval_us)
             if key not in self._changed:
                 if len(self._changed) >= MAX_STATES:
                     del self._changed[next(iter(self._changed))]
-                self._changed[key] = (start, self._ready(start, now, setpoint, interval_us))
+                self._changed[key] = (start, self._ready(start, setpoint, interval_us))
             ready = self._changed[key][1]
             if move is None:
                 self.fleet.put(index, ready, seed)
@@ -172,7 +182,7 @@ class FleetVehicles(InProcessVehicles):
                 self.fleet.move(index, move, ready)
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 
-    def _ready(self, start: Snapshot, now: EpisodeState, setpoint: str, interval_us: int) -> Snapshot:
+    def _ready(self, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED) -> Snapshot:
         simulation = Simulation(self.fleet.scenario, core=self._core)
         link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
         simulation.restore(start)
