@@ -6,7 +6,6 @@ Each has its own link, and commands and telemetry are MAVLink's bytes, as for on
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -116,8 +115,7 @@ class FleetVehicles(InProcessVehicles):
             move = self._prepared.to(pose, figures, seed)
         ready = self._changed.get((id(state.simulation), *self._used))
         if ready is not None:  # as the last episodes went on
-            setpoint, interval_us = self._used
-            state = replace(state, simulation=ready[1], setpoint=setpoint, interval_us=interval_us)
+            state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)
         self._put(index, state, seed, move)
         self._begun[index] = (state.simulation if ready is None else ready[0], seed, move)
         return state if move is None else self._moved(index, state, pose)
@@ -137,7 +135,7 @@ class FleetVehicles(InProcessVehicles):
         e = self.fleet.view(index).autopilot.estimate
         north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
         self._origins[index] = origin = north, east, -pose[2]
-        return replace(state, simulation=None, telemetry=None, origin=origin)
+        return EpisodeState(None, None, origin, state.began_us, state.setpoint, state.interval_us)
 
     def _put(self, index: int, state: EpisodeState, seed: int | None = None, move: Move | None = None) -> None:
         if not self._is_open:

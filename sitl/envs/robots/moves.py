@@ -36,6 +36,7 @@ class Prepared:
         self.state, self._setup, self._pose = state, setup, pose
         record = setup.scenario.kind.record
         v = record.of(np.frombuffer(bytearray(state.simulation.record), record.dtype), 0)
+        self._along = float(setup.airframe.value("base_along"))
         wind = v.physics.wind  # type: ignore[attr-defined]
         self._wind = {"wind_speed": wind.speed, "wind_direction": wind.direction, "wind_turbulence": wind.turbulence}
 
@@ -55,7 +56,7 @@ class Prepared:
         if any(name in changed for name in _WINDS):
             speed, direction, turbulence = (changed.pop(name, self._wind[name]) for name in _WINDS)
             wind = speed, direction, turbulence
-        along = changed.get("base_along", self._setup.airframe.value("base_along"))
+        along = changed.get("base_along", self._along)
         if pose == self._pose and "base_along" not in changed:
             return Move(wind=wind, figures=changed, seed=seed)
         try:
