@@ -25,7 +25,7 @@ from .observations import OBSERVATIONS, Observation
 from .options import COMMON, EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
-from .robots.robot import LateRobot, Robot
+from .robots.robot import LateRobot, PreparedRobot, Robot
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
@@ -118,6 +118,8 @@ class Session:
         """None: commands take effect at once."""
         self.randomisation = Randomisation(ranges, self.robot, self.latency)
         self.starts = Starts(options.start, self.robot)
+        if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
+            self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")
         self.observation: Observation = _named("observation", options.observation, OBSERVATIONS, "observe")
         if not isinstance(self.action.space, gym.spaces.Discrete) and any(

@@ -36,6 +36,7 @@ from .foreign import ForeignVehicles, SocketVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
+from .moves import BEGINS
 from .robot import Floats, Pose
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
 
@@ -69,6 +70,8 @@ class AutopilotRobot:
         self._options = chosen = AutopilotOptions(**options)
         if chosen.reset not in RESETS:
             raise unknown("reset", chosen.reset, RESETS)
+        if chosen.begin not in BEGINS:
+            raise unknown("begin", chosen.begin, BEGINS)
         try:
             self.airframe = airframe = vehicles.load(chosen.frame)
         except AirframeError as error:
@@ -122,6 +125,10 @@ class AutopilotRobot:
     def set_figure(self, index: int, name: str, value: float) -> None:
         """See ``Robot``."""
         self._vehicles.changed[index][name] = value
+
+    def prepare_at(self, pose: Pose) -> None:
+        """Where a vehicle is prepared that is moved to other start poses; before the first reset."""
+        self._vehicles.base = pose
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
@@ -300,11 +307,13 @@ class AutopilotRobot:
         if not self._vehicles.has_snapshots:
             raise TypeError(f"an environment on {self._vehicles.where} cannot be pickled")
         kept = [None if state is NOT_STARTED else self.snapshot(i) for i, state in enumerate(self._states)]
-        return {"options": self._given, "kept": kept, "changed": self._vehicles.changed, "collided": self.collided}
+        vehicles = self._vehicles
+        return {"options": self._given, "kept": kept, "changed": vehicles.changed, "collided": self.collided,
+                "base": vehicles.base}  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["options"])  # type: ignore[misc]
-        self._vehicles.changed = state["changed"]
+        self._vehicles.changed, self._vehicles.base = state["changed"], state["base"]
         for index, kept in enumerate(state["kept"]):
             if kept is not None:
                 self.restore(index, kept)

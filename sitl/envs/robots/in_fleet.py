@@ -6,17 +6,21 @@ Each has its own link, and commands and telemetry are MAVLink's bytes, as for on
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from sitl.client.connection import InProcess
+from sitl.core.geodesy import offset_ne
 from sitl.core.kernels import jit_disabled
 from sitl.errors import LinkLostError, OptionError
 from sitl.fleet import Fleet
+from sitl.move import Move
 from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation, Snapshot
+from sitl.turtlebots.native import full_pose
 
 from ..mavlink.compiled import (
     ATTITUDE,
@@ -38,8 +42,9 @@ from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
 from ..options import EnvOptionError, unknown
 from .in_process import MAX_STATES, InProcessVehicles
+from .moves import BOOT, Prepared
 from .robot import Floats, Pose
-from .vehicles import EpisodeState, VehicleSetup
+from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
     override: RC, velocity: VELOCITY, position: POSITION, copter_attitude: ATTITUDE,
@@ -68,8 +73,13 @@ class FleetVehicles(InProcessVehicles):
         self._is_open = False
         self._changed: dict[tuple[int, str, int], tuple[Snapshot, Snapshot]] = {}
         """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
-        self._begun: list[tuple[Snapshot, int] | None] = [None] * count
-        """Start state and seed of each vehicle's episode, until its first step."""
+        self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
+        """Start state, seed and move of each vehicle's episode, until its first step."""
+        self._prepared: Prepared | None = None
+        self._used = "", 0
+        """Kind of set-point and interval that a vehicle was last made ready for."""
+        lat, lon = setup.options.home[:2]
+        self._home = round(1e7 * lat), round(1e7 * lon)
         super().__init__(setup)
 
     def _open(self) -> None:
@@ -89,6 +99,10 @@ class FleetVehicles(InProcessVehicles):
     def _bind(self) -> None:
         """Look up once what every step needs."""
         fleet, arrays, coming = self.fleet, self.setup.arrays, self._coming
+        estimate = fleet.records["autopilot"]["estimate"]
+        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
+        self._said = [(self._ends[name], estimate[field]) for name, field in pairs]
+        self._ranges = fleet.records["sensors"]["lidar_ranges"]
         ends: Any = self._views if jit_disabled() else self._ends
         ports = fleet.ports.ctypes.data
         self._send = send_all.bind(ends, self._origins, ports)
@@ -101,19 +115,52 @@ class FleetVehicles(InProcessVehicles):
     # ------------------------------------------------------------------ episodes
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        state = self._restored(pose, tuple(sorted(self.changed[index].items())))
-        self._put(index, state, seed)
-        self._begun[index] = (state.simulation, seed)
-        return state
+        figures = tuple(sorted(self.changed[index].items()))
+        base = self.base or self._start
+        if self.options.begin == BOOT or (pose == base and not figures):
+            state, move = self._restored(pose, figures), None
+        else:
+            state = self._restored(base, ())
+            if self._prepared is None or self._prepared.state is not state:
+                self._prepared = Prepared(state, self.setup, base)
+            move = self._prepared.to(pose, figures, seed)
+        ready = self._changed.get((id(state.simulation), *self._used))
+        if ready is not None:  # as the last episodes went on
+            state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)
+        self._put(index, state, seed, move)
+        self._begun[index] = (state.simulation if ready is None else ready[0], seed, move)
+        return state if move is None else self._moved(index, state, pose)
 
-    def _put(self, index: int, state: EpisodeState, seed: int | None = None) -> None:
+    @cached_property
+    def _start(self) -> Pose:
+        """The world's start pose for this vehicle."""
+        start = self.setup.world.start(self.setup.airframe.name)
+        return full_pose((*start.position, start.yaw), start.position[2])
+
+    def _moved(self, index: int, state: EpisodeState, pose: Pose) -> EpisodeState:
+        """After a move: what the vehicle would say now, and where its local frame is."""
+        for end, estimate in self._said:
+            end[index] = estimate[index].astype(np.float32)  # as messages carry them
+        readings = len(self.setup.angles)
+        self._scans[index, :readings] = self._ranges[index, :readings]
+        e = self.fleet.view(index).autopilot.estimate
+        north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
+        self._origins[index] = origin = north, east, -pose[2]
+        return EpisodeState(None, None, origin, state.began_us, state.setpoint, state.interval_us)
+
+    def _put(self, index: int, state: EpisodeState, seed: int | None = None, move: Move | None = None) -> None:
         if not self._is_open:
             self._open()
         fleet = self.fleet
         self._begun[index] = None
         try:
-            fleet.put(index, state.simulation, seed)
+            if move is None:
+                fleet.put(index, state.simulation, seed)
+            else:
+                fleet.move(index, move, state.simulation)
         except (OptionError, EngineError) as error:
+            if move is not None:
+                raise EnvOptionError(f"start: {error}") from None
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
         fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
@@ -127,22 +174,27 @@ class FleetVehicles(InProcessVehicles):
     def change(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
         """Set the mode and the telemetry intervals that a kind of set-point needs, without time going by."""
         begun, self._begun[index] = self._begun[index], None
+        self._used = setpoint, interval_us
         if begun is None:
-            self.fleet.put(index, self._ready(index, now, setpoint, interval_us))
+            self.fleet.put(index, self._ready(self.fleet.snapshot(index), setpoint, interval_us, now))
         else:
-            start, seed = begun
+            start, seed, move = begun
             key = (id(start), setpoint, interval_us)
             if key not in self._changed:
                 if len(self._changed) >= MAX_STATES:
                     del self._changed[next(iter(self._changed))]
-                self._changed[key] = (start, self._ready(index, now, setpoint, interval_us))
-            self.fleet.put(index, self._changed[key][1], seed)
+                self._changed[key] = (start, self._ready(start, setpoint, interval_us))
+            ready = self._changed[key][1]
+            if move is None:
+                self.fleet.put(index, ready, seed)
+            else:
+                self.fleet.move(index, move, ready)
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 
-    def _ready(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> Snapshot:
+    def _ready(self, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED) -> Snapshot:
         simulation = Simulation(self.fleet.scenario, core=self._core)
         link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
-        simulation.restore(self.fleet.snapshot(index))
+        simulation.restore(start)
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
