@@ -143,9 +143,8 @@ def main() -> None:
         for name, (run, _) in rows.items():
             found[name].append(run())
     base = statistics.median(found["CartPole-v1"])
-    print(
-        f"{f'wall time, median of {options.repeats}':36s} {'steps/s':>10s} {'x real time':>12s} CartPole = 1   steps/s, all"
-    )
+    title = f"wall time, median of {options.repeats}"
+    print(f"{title:36s} {'steps/s':>10s} {'x real time':>12s} CartPole = 1   steps/s, all")
     for name, values in found.items():
         median = statistics.median(values)
         factor, ratio = median * rows[name][1], median / base
