@@ -12,7 +12,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from ctypes import c_int64
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from numbers import Real
 from typing import Any, NamedTuple, Unpack
@@ -21,9 +23,11 @@ import numpy as np
 
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
-from .bridge.wire.fleet import STAYS, TO_SERVE, Slot
+from .bridge.wire import fleet as wire
+from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core import rng
+from .core.array_kernels import Kernel
 from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
@@ -36,6 +40,7 @@ from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
 Array = np.ndarray[Any, Any]
+set_goals, any_waits = Kernel(wire.set_goals), Kernel(wire.any_waits)
 _HELD = 8
 """Snapshots whose state is held ready, so that vehicles get it again by a copy."""
 
@@ -102,7 +107,6 @@ class Fleet:
         self._before_boot_us: Array = np.zeros(count, np.int64)
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
-        self._addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
         # Views of one field each: making one costs more than reading it.
         self._times, self._until = self.records["time_us"], self._slots["until_us"]
         self._needs_shell = self._slots["needs_shell"]
@@ -111,10 +115,23 @@ class Fleet:
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
         unit = shell.bridge.profile.core.run_all
-        self._run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
+        run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
         rangers = shell.plant.rangers if isinstance(shell.plant, LocalPlant) else None
         self._rooms = [(0, None) if rangers is None else rangers.with_own_room() for _ in range(threads)]
         """What each thread needs to measure in the world: its address, and what keeps it alive."""
+        integer: Callable[[int], Any] = int if jit_disabled() else c_int64  # converted once
+        parts = [count * k // threads for k in range(threads + 1)]
+        slots, ports = self._slots.ctypes.data, self.ports
+        self._slots["ports"] = ports.ctypes.data + ports.itemsize * np.arange(count)
+        self._slots["clients"] = 1
+        self._parts = [
+            partial(run, *map(integer, (first, last, slots, room[0])))
+            for (first, last), room in zip(pairwise(parts), self._rooms, strict=True)
+            if first < last
+        ]
+        """Each advances the vehicles of one thread."""
+        self._set_goals: Callable[[int], None] = set_goals.bind(self._times, self._until)
+        self._any_waits: Callable[[], bool] = any_waits.bind(self._needs_shell)
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
         self._orders: Array = MoveOrder.fleet(0)
@@ -126,6 +143,11 @@ class Fleet:
 
     def __len__(self) -> int:
         return len(self.records)
+
+    @property
+    def clocks(self) -> tuple[Array, Array]:
+        """Simulated time of each vehicle since it last booted, and before [us]; they stay in place, shape (count,)."""
+        return self._times, self._before_boot_us
 
     @property
     def time_us(self) -> Array:
@@ -267,7 +289,7 @@ class Fleet:
         size = int(self._in_size[index])
         end = size + len(data)
         if end > IN_BYTES:
-            self._serve(index, 0, data)
+            self._serve(index, 0, TO_HEAR, data)
             return
         self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
         self._in_size[index] = end
@@ -311,39 +333,31 @@ class Fleet:
         """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
         self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
-        if which is None:
-            until[:] = times + step_us
+        if which is None and isinstance(step_us, int):
+            self._set_goals(step_us)
         else:
+            rows = slice(None) if which is None else which
             until[:] = STAYS
-            until[which] = times[which] + step_us
-        needs_shell[:] = 0
-        self._run_all()
-        if needs_shell.any():
-            for index in np.flatnonzero(needs_shell).tolist():
-                self._serve(index, int(until[index] - times[index]), serves=needs_shell[index] == TO_SERVE)
-
-    def _run_all(self) -> None:
-        count, threads = len(self.records), self.threads
-        addresses = self._addresses
+            until[rows] = times[rows] + step_us
         if self._pool is None:
-            self._run(0, count, *addresses, self._rooms[0][0])
-            return
-        parts = zip(pairwise(count * k // threads for k in range(threads + 1)), self._rooms, strict=True)
-        runs = [self._pool.submit(self._run, a, b, *addresses, room[0]) for (a, b), room in parts if a < b]
-        for run in runs:
-            run.result()
+            for run in self._parts:
+                run()
+        else:
+            for done in [self._pool.submit(run) for run in self._parts]:
+                done.result()
+        if self._any_waits():
+            for index in np.flatnonzero(needs_shell).tolist():
+                self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
 
     # ------------------------------------------------------------------ what needs Python
 
-    def _serve(self, index: int, left_us: int, data: bytes = b"", serves: bool = False) -> None:
-        """Let the shell act on what the core left to it, and advance the vehicle by ``left_us``."""
+    def _serve(self, index: int, left_us: int, needs_shell: int, data: bytes = b"") -> None:
+        """Let the shell act on ``data`` and on what the core left to it, and advance the vehicle by ``left_us``."""
         shell = self.shell
         shell.restore(self.snapshot(index))
         shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
         self._link.send(data)
-        if serves:
-            shell.serve()
-        shell.bridge.receive(resume=True)
+        shell.attend(needs_shell)
         shell.advance_to(shell.time_us + max(left_us, 0))
         said = self._link.receive()
         if said:

@@ -104,6 +104,12 @@ class Session:
         except WorldError as error:
             raise EnvOptionError(str(error)) from None
         self.robot = robots.load(options.robot, world, count, options.robot_options)
+        scan, touched = self.robot.scan, self.robot.collided
+        if scan.dtype != np.float32 or not scan.flags.c_contiguous or touched.dtype != np.int64:
+            raise EnvOptionError(
+                f"robot {self.robot.name!r}: scan is {scan.dtype}, collided {touched.dtype}; they must be float32, "
+                "row by row in memory, and int64"
+            )
         self.count = count
         self.action = self._choose_action(options.action, options.setpoint)
         self.seconds = self._check_step_time(options.step_time)

@@ -113,6 +113,8 @@ class VehicleSetup:
     """What is simulated, without start and seed of an episode."""
     angles: Floats
     """Angles of the lidar's readings, counter-clockwise from ahead, shape (readings,) [rad]."""
+    arrays: Any
+    """What the environment knows of each vehicle (``mavlink.compiled.RobotArrays``)."""
 
 
 class Vehicles(ABC):
@@ -141,6 +143,8 @@ class Vehicles(ABC):
             raise EnvOptionError(
                 f"threads = {self.options.threads!r}: only vehicles in process on native physics have any"
             )
+        self.threads = self.options.threads
+        """See ``AutopilotOptions``."""
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
@@ -204,6 +208,10 @@ class Vehicles(ABC):
     def photograph(self, index: int, width: int, height: int) -> Any:
         """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
         return None
+
+    def use_threads(self, threads: int) -> None:
+        """Before the first episode: so many threads are to advance the vehicles, if these take any."""
+        self.threads = threads
 
     def close(self) -> None:
         """Close all connections."""
