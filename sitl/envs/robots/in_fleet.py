@@ -111,6 +111,10 @@ class FleetVehicles(InProcessVehicles):
         along = float(self.setup.airframe.value("base_along"))
         origins: Any = Origins(self._origins, *fleet.clocks)
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
+        estimate = fleet.records["autopilot"]["estimate"]
+        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
+        self._said = [(self._ends[name], estimate[field]) for name, field in pairs]
+        self._ranges = fleet.records["sensors"]["lidar_ranges"]
 
     # ------------------------------------------------------------------ episodes
 
@@ -141,8 +145,7 @@ class FleetVehicles(InProcessVehicles):
         """After a move: what the vehicle would say now, and where its local frame is."""
         for end, estimate in self._said:
             end[index] = estimate[index].astype(np.float32)  # as messages carry them
-        readings = len(self.setup.angles)
-        self._scans[index, :readings] = self._ranges[index, :readings]
+        self._scans[index] = self._ranges[index, : self._scans.shape[1]]
         e = self.fleet.view(index).autopilot.estimate
         north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
         self._origins[index] = origin = north, east, -pose[2]
