@@ -197,6 +197,31 @@ def test_a_score_is_what_an_evaluation_finds(tmp_path, options, by):
     checks.close()
 
 
+class Straight:
+    """A model that always goes forward."""
+
+    def predict(self, rows, deterministic):
+        return np.zeros(len(rows), np.int64), None
+
+
+def test_a_network_that_crashes_more_often_than_the_best_is_not_played_to_the_end(tmp_path, monkeypatch):
+    run = new(tmp_path / "run", env_options={"start": "random"}, settings={"check_episodes": 6, "check_by": "crashes"})
+    checks = checks_of(run)
+    env, steps = checks._made(), []
+    step = env.step
+    monkeypatch.setattr(env, "step", lambda actions: steps.append(1) or step(actions))
+    score = checks.score(Straight())
+    crashes, whole = -score[0], len(steps)
+    assert crashes > 1
+    for most, plays_all in ((crashes, True), (0.0, False)):
+        steps.clear()
+        checks._best = (-most, 1e6)
+        found = checks.score(Straight())
+        assert not found > checks._best and (found == score) == plays_all
+        assert (len(steps) == whole) == plays_all
+    checks.close()
+
+
 def test_a_new_run_forgets_the_best_of_another(tmp_path):
     run = new(tmp_path / "run", env=CIRCUIT2)
     (run.path / BEST).write_bytes(b"no zip")
