@@ -16,6 +16,7 @@ from .code_cache import ENTRY, cache_folder, load_entry
 from .compile import make_jitable, toolchain
 from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
+from .numba_tuning import COMMON
 from .records import FloatRows, Floats, IntRows, Ints, Records
 from .vectors import Value
 
@@ -158,5 +159,5 @@ def _load(wanted: Kernel[..., Any]) -> Callable[..., Any]:
     names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))
     source = f"# The entry of kernel {wanted.name}.\ndef {ENTRY}({names}):\n    return law({names})\n"
     module_name = "sitl_kernel_" + wanted.name.replace(".", "_")
-    compile_entry = numba.njit([signature], cache=True, error_model="numpy")
+    compile_entry = numba.njit([signature], cache=True, **COMMON)
     return load_entry(folder, module_name, source, {"law": wanted.law}, compile_entry)  # type: ignore[no-any-return]

@@ -15,7 +15,7 @@ from ..autopilot.copter.trim import trim as trim_firmware
 from ..autopilot.events import HIT_GROUND, emit
 from ..core.algebra import rotate
 from ..core.displacement import Displacement
-from ..core.kernels import law, unit
+from ..core.kernels import inlined, law, unit
 from ..core.memory import record_at
 from ..physics.native.copter import pieces
 from ..physics.native.copter.init import init
@@ -56,14 +56,14 @@ def fly(fleet: Sequence[Copter], index: int) -> None:
     fly_after_touch(fleet, index)
 
 
-@law
+@inlined
 def fly_after_touch(fleet: Sequence[Copter], index: int) -> None:
     """What follows a tick of physics."""
     report_touch(fleet[index])
     fly_tick(fleet, index, update)
 
 
-@law
+@inlined
 def report_touch(vehicle: Copter) -> None:
     """HIT_GROUND when the vehicle came down hard in this tick."""
     ground = vehicle.physics.ground

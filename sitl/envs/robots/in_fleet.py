@@ -99,6 +99,10 @@ class FleetVehicles(InProcessVehicles):
     def _bind(self) -> None:
         """Look up once what every step needs."""
         fleet, arrays, coming = self.fleet, self.setup.arrays, self._coming
+        estimate = fleet.records["autopilot"]["estimate"]
+        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
+        self._said = [(self._ends[name], estimate[field]) for name, field in pairs]
+        self._ranges = fleet.records["sensors"]["lidar_ranges"]
         ends: Any = self._views if jit_disabled() else self._ends
         ports = fleet.ports.ctypes.data
         self._send = send_all.bind(ends, self._origins, ports)
@@ -107,10 +111,6 @@ class FleetVehicles(InProcessVehicles):
         along = float(self.setup.airframe.value("base_along"))
         origins: Any = Origins(self._origins, *fleet.clocks)
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
-        estimate = fleet.records["autopilot"]["estimate"]
-        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
-        self._said = [(self._ends[name], estimate[field]) for name, field in pairs]
-        self._ranges = fleet.records["sensors"]["lidar_ranges"]
 
     # ------------------------------------------------------------------ episodes
 
@@ -141,7 +141,8 @@ class FleetVehicles(InProcessVehicles):
         """After a move: what the vehicle would say now, and where its local frame is."""
         for end, estimate in self._said:
             end[index] = estimate[index].astype(np.float32)  # as messages carry them
-        self._scans[index] = self._ranges[index, : self._scans.shape[1]]
+        readings = len(self.setup.angles)
+        self._scans[index, :readings] = self._ranges[index, :readings]
         e = self.fleet.view(index).autopilot.estimate
         north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
         self._origins[index] = origin = north, east, -pose[2]
