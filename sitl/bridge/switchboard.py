@@ -91,6 +91,8 @@ class Switchboard:
         self.dropped: list[str] = []
         """Why channels were lost or refused, for people."""
         self.taps: list[Tap] = []
+        self.client_taps: list[Tap] = []
+        """See only what clients sent."""
         self.journal: Journal | None = None
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
@@ -102,7 +104,8 @@ class Switchboard:
     def take_over(self, old: Switchboard) -> None:
         """Links, clients, sockets and taps of ``old``, which must not be used any more."""
         self._selector.close()
-        self.links, self.taps, self.dropped = old.links, old.taps, old.dropped
+        self.links, self.dropped = old.links, old.dropped
+        self.taps, self.client_taps = old.taps, old.client_taps
         self.journal = old.journal
         self._selector, self._sockets = old._selector, old._sockets
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
@@ -110,7 +113,7 @@ class Switchboard:
             link.reattach(self._add_channel)
 
     def is_watched(self) -> bool:
-        """Whether someone wants to see every frame."""
+        """Whether someone wants to see every frame that goes out."""
         return bool(self.taps) or self.journal is not None
 
     def add_link(self, link: Link) -> None:
@@ -174,9 +177,9 @@ class Switchboard:
         closed = False
         for channel in self.channels:
             peer = channel.peer
-            if channel.port.out_count:
+            if channel.port.out_count or channel.has_spooled():
                 channel.collect()
-            elif peer.waits and not peer.outbox:
+            elif peer.is_idle():
                 continue
             if self.taps and peer.outbox:
                 now = self._clock()

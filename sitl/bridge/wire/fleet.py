@@ -50,7 +50,7 @@ def run_slot(
     ranging: int,
     slot: Slot,
     hear: Callable[[Sequence[V], int, int], None],
-    run: Callable[[Sequence[V], int, int, int, int, int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int, int, int], None],
 ) -> None:
     """Let one vehicle act on what its client sent and go on to ``slot.until_us``."""
     v, port = fleet[index], record_at(Port, port_address)
@@ -61,7 +61,7 @@ def run_slot(
     if port.frame_end != 0 or events.count != slot.events_seen or wants_shell(v, ranging):
         slot.needs_shell = TO_HEAR
     elif v.time_us < slot.until_us:
-        run(fleet, index, port_address, 1, ranging, min(slot.until_us, slot.shell_us), slot.shell_us)
+        run(fleet, index, port_address, 1, ranging, 0, min(slot.until_us, slot.shell_us), slot.shell_us)
         happened = events.count != slot.events_seen or wants_shell(v, ranging)
         if happened or not slot.until_us <= v.time_us < slot.shell_us or port.next_us <= v.time_us:
             slot.needs_shell = TO_SERVE
@@ -74,7 +74,7 @@ def run_slots(
     last: int,
     beside: Beside,
     hear: Callable[[Sequence[V], int, int], None],
-    run: Callable[[Sequence[V], int, int, int, int, int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int, int, int], None],
 ) -> None:
     """The same for vehicles ``first`` .. ``last`` - 1; those whose ``until_us`` is STAYS excepted."""
     for index in range(first, last):
