@@ -133,6 +133,8 @@ class DataFlash:
         if encoder is not None:
             if self._core_samples_armed:
                 self._disarmed_us = max(self._disarmed_us, encoder.sampler.row_us)
+            if encoder.is_full:
+                self._flush()
         elif self._due_us == NEVER and not self._is_idle():
             if self._elapsed_us % POLL_US == 0:
                 self._due_us = self._elapsed_us
