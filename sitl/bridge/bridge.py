@@ -151,6 +151,11 @@ class Bridge:
 
     # ------------------------------------------------------------------ links
 
+    @property
+    def heard(self) -> int:
+        """How often clients have said something, so far."""
+        return self.board.heard
+
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
         self.board.add_link(link)
@@ -211,8 +216,10 @@ class Bridge:
         journal = board.journal
         for channel in self.channels:
             data = channel.peer.take()
-            if data and journal is not None:
-                journal.received(channel, data)
+            if data:
+                self.board.heard += 1
+                if journal is not None:
+                    journal.received(channel, data)
             if data or resume:
                 self._hear(channel, data)
         if journal is not None:

@@ -88,6 +88,8 @@ class Switchboard:
         self.links: list[Link] = []
         self.channels: list[Channel] = []
         self.ports = Ports()
+        self.heard = 0
+        """How often clients have said something."""
         self.dropped: list[str] = []
         """Why channels were lost or refused, for people."""
         self.taps: list[Tap] = []
@@ -106,7 +108,7 @@ class Switchboard:
         self._selector.close()
         self.links, self.dropped = old.links, old.dropped
         self.taps, self.client_taps = old.taps, old.client_taps
-        self.journal = old.journal
+        self.journal, self.heard = old.journal, old.heard
         self._selector, self._sockets = old._selector, old._sockets
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
