@@ -187,6 +187,7 @@ class LogEncoder:
             pack.pack("MODE", time_us, int(modes.number), int(modes.number), int(modes.reason)),
             pack.mission(time_us, v.mission.items),
         ]
+        self._samples.turn(0)
         for kind, is_set, place in _PLACES:
             if self._samples.column(is_set)[0]:
                 self._out.append(self._place(0, kind, place, time_us))
@@ -196,6 +197,7 @@ class LogEncoder:
         n = self.sampler.row
         if not n and not self._notes:
             return
+        self._samples.turn(n)
         self._edges(n)
         self._out.append(self._plan.write(n, self._notes))
         self._notes.clear()

@@ -56,7 +56,9 @@ class Samples:
         self._capacity = capacity
         self.sampler = Sampler()
         """With it the core takes rows."""
-        self._columns: dict[str, Array] = {}
+        self._columns: dict[str, tuple[int, str, slice]] = {}
+        self._table = np.zeros((0, 0), "<i8")
+        self._read: dict[str, Array] = {}
         self._taken = np.zeros(0, np.intp)
         self.rows = np.zeros((0, 0), "<i8")
 
@@ -88,7 +90,7 @@ class Samples:
         number = {word: k for k, word in enumerate(words)}
         for path, (offset, kind) in self._places.items():
             size = int(kind[2])
-            self._columns[path] = self.rows.view(kind)[:, number[offset // 8] * (8 // size) + offset % 8 // size]
+            self._columns[path] = number[offset // 8], kind, slice(offset % 8 // size, None, 8 // size)
 
     @property
     def address(self) -> int:
@@ -100,6 +102,15 @@ class Samples:
         self._words.take(self._taken, out=self.rows[k], mode="clip")
         self.sampler.row = k
 
+    def turn(self, count: int) -> None:
+        """Make columns of the rows 0 .. ``count``, in one piece each."""
+        self._table = np.ascontiguousarray(self.rows[: count + 1].T)
+        self._read.clear()
+
     def column(self, path: str) -> Array:
-        """One number of all rows, as it is in the record."""
-        return self._columns[path]
+        """One number of all rows that were turned into columns, as it is in the record."""
+        found = self._read.get(path)
+        if found is None:
+            row, kind, part = self._columns[path]
+            found = self._read[path] = self._table[row].view(kind)[part]
+        return found
