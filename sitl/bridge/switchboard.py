@@ -99,6 +99,7 @@ class Switchboard:
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
         self._sockets = 0
+        self._has_spools = False
         self._numbers = 0
         self._kept: dict[Peer, int] = {}
         """Numbers of channels of before a reboot."""
@@ -141,6 +142,7 @@ class Switchboard:
         self._numbers = max(self._numbers, number + 1)
         channel = Channel(peer, number, self._system(), self.is_watched)
         self.channels.append(channel)
+        self._has_spools = self._has_spools or channel.spool is not None
         self.ports.arrange(self.channels)
         if self.journal is not None and is_new:
             self.journal.came(channel)
@@ -164,6 +166,11 @@ class Switchboard:
     def has_sockets(self) -> bool:
         """Whether there is anything to ``read``."""
         return self._sockets > 0
+
+    @property
+    def is_outside(self) -> bool:
+        """Whether there are clients or logs that are no in-process clients."""
+        return self._sockets > 0 or self._has_spools
 
     def read(self) -> None:
         """Read all sockets."""

@@ -22,6 +22,9 @@ class _VehicleEnd(Peer):
     def is_idle(self) -> bool:
         return self.waits and not self.outbox
 
+    def accept(self, frames: bytes) -> None:
+        self.sent.append(frames)
+
     def flush(self) -> None:
         if self.outbox:
             self.sent.extend(self.outbox if self.drop is None else [f for f in self.outbox if not self.drop(f)])
