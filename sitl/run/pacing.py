@@ -84,7 +84,8 @@ class Pacing:
         took, self._looked = now - self._looked, now
         if heard != self._heard:
             self._heard, self._quiet_us = heard, 0
-        self._quiet_us += self.slice_us
+        else:
+            self._quiet_us += self.slice_us
         if self.speedup is None:
             longest = int(self.slice_us * min(_QUIET_SLICE_WALL_S / max(took, 1e-6), 2.0))
         else:
