@@ -2,7 +2,7 @@
 """``python -m benchmarks.run_rates``: ``sitl run --speedup max`` with a client over TCP, beside the core alone.
 
 The client asks for all streams at 4 Hz and then only reads; a copter hovers at 10 m, a rover stands armed. A rate is
-simulated time by CPU time of the process that serves, on systems that tell that of another process (Linux), else by wall
+simulated time by CPU time of the process that serves, where one process can see that of another (Linux), else by wall
 time; that of the core alone is measured in this process.
 """
 
