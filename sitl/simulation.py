@@ -47,6 +47,25 @@ class Observer(Protocol):
         """Look: it is ``due_us`` or the tick after; all that falls due at this time has been sent. Sets ``due_us``."""
 
 
+class Logger(Protocol):
+    """Takes rows of a vehicle's record at regular times; the core takes them for it while it runs."""
+
+    def before_run(self, in_core: bool) -> tuple[int, int]:
+        """How the next run samples.
+
+        Args:
+            in_core: physics and autopilot run in the core.
+
+        Returns:
+            Address of the ``Sampler`` that the core uses (``sitl.vehicle.sampler``), 0: none; and when the logger
+            itself wants to look next, simulated time since the start of the simulation [us].
+        """
+        ...
+
+    def after_run(self) -> None:
+        """Look at what the core took, and at the vehicle when it is time: all that falls due now has been sent."""
+
+
 @dataclass(frozen=True)
 class Snapshot:
     """Everything that a later :meth:`Simulation.restore` needs to continue bit for bit."""
@@ -110,6 +129,7 @@ class Simulation:
         """Simulated time that passed before the last reboot [us]."""
         self._reboot = False
         self.observers: list[Observer] = []
+        self.logger: Logger | None = None
         params_record = self.v.autopilot.params
         table = self.firmware.table
         table.set_defaults(params_record)
@@ -199,12 +219,16 @@ class Simulation:
             if plant.due_us < shell_us:
                 shell_us = plant.due_us
             until = shell_us if shell_us < stop else stop
+            sampler = 0
+            if self.logger is not None:
+                sampler, due_us = self.logger.before_run(plant.runs_in_core)
+                until = min(until, due_us - self.before_boot_us)
             for observer in self.observers:
                 until = min(until, observer.due_us - self.before_boot_us)
             lost = None
             try:
                 if plant.runs_in_core:
-                    bridge.run(plant.ranging, until, shell_us)
+                    bridge.run(plant.ranging, sampler, until, shell_us)
                 else:
                     plant.run(max((until - now + TICK_US - 1) // TICK_US, 1))
             except PhysicsLostError as error:
@@ -214,6 +238,8 @@ class Simulation:
                 self.serve()
             else:  # the core has sent all that is due
                 bridge.flush()
+            if self.logger is not None:
+                self.logger.after_run()
             for observer in self.observers:
                 if observer.due_us <= self.time_us:
                     observer.observe()
@@ -223,7 +249,9 @@ class Simulation:
     def _goes_there(self, time_us: int) -> bool:
         """Read what clients sent; whether the core has then gone on to ``time_us`` by itself, as mostly it does."""
         bridge, seen = self.bridge, self._events_seen
-        is_simple = self.plant.runs_in_core and not (self.observers or self._reboot or bridge.board.has_sockets)
+        is_simple = self.plant.runs_in_core and not (
+            self.observers or self.logger or self._reboot or bridge.board.is_outside
+        )
         if not is_simple or self._event_count() != seen or not bridge.goes_by_itself():
             bridge.receive()
             return False

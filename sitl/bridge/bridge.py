@@ -81,6 +81,8 @@ class Bridge:
         self.channels = self.board.channels
         self.taps = self.board.taps
         """Get every frame, in and out: ``taps.append(writer)``."""
+        self.client_taps = self.board.client_taps
+        """Get every frame that a client sent."""
         self._system = self.reader.field("autopilot.params.MAV.SYSID")
         self._time_us: Callable[[], int] = self.reader.field("time_us")
         self._event_count: Callable[[], int] = self.reader.field("autopilot.events.count")
@@ -157,6 +159,11 @@ class Bridge:
 
     # ------------------------------------------------------------------ links
 
+    @property
+    def heard(self) -> int:
+        """How often clients have said something, so far."""
+        return self.board.heard
+
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
         self.board.add_link(link)
@@ -222,8 +229,10 @@ class Bridge:
         journal = board.journal
         for channel in self.channels:
             data = channel.peer.take()
-            if data and journal is not None:
-                journal.received(channel, data)
+            if data:
+                self.board.heard += 1
+                if journal is not None:
+                    journal.received(channel, data)
             if data or resume:
                 self._hear(channel, data)
         if journal is not None:
@@ -232,7 +241,7 @@ class Bridge:
 
     def _hear(self, channel: Channel, data: bytes) -> None:
         """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
-        channel.port.stops_at_frames = bool(self.taps)
+        channel.port.stops_at_frames = bool(self.taps or self.client_taps)
         if channel.port.in_size:
             self._hear_port(channel)
         while data:
@@ -250,7 +259,7 @@ class Bridge:
                 if not channel.port.frame_end:
                     return
             frame = channel.frame()
-            for tap in self.taps:
+            for tap in (*self.taps, *self.client_taps):
                 tap.frame(self.elapsed_us, frame.raw)
             taken, channel.port.frame_end = channel.port.frame_taken, 0
             if not taken:
@@ -292,25 +301,29 @@ class Bridge:
         return False
 
     def goes_by_itself(self) -> bool:
-        """Whether the core may send for several times in one run: nobody looks at the time of each frame."""
-        if self.board.is_watched():
-            return False
-        for channel in self.channels:  # noqa: SIM110 - each step of an environment comes here
+        """Whether the core may send for several times in one run: nobody looks at each frame at its time."""
+        watched = self.board.is_watched()
+        goes = not watched
+        for channel in self.channels:
             if not channel.peer.waits:
-                return False
-        return True
+                goes = False
+            if channel.spool is not None:
+                channel.port.spool = 0 if watched else channel.spool_address
+                channel.port.congested = channel.peer.congested
+        return goes
 
-    def run(self, ranging: int, until_us: int, shell_us: int) -> None:
+    def run(self, ranging: int, sampler: int, until_us: int, shell_us: int) -> None:
         """Advance the vehicle in the core to the first tick at or after ``until_us``; measure and send what falls due.
 
         Back early when something happened that the shell must know, and at ``shell_us``, before messages are sent.
 
         Args:
             ranging: address of what it needs to measure in a world (``sitl.physics.native.ranging``); 0: it is in none.
+            sampler: address of what it logs with (``sitl.vehicle.sampler``); 0: the core logs nothing.
             until_us, shell_us: times since boot [us].
         """
         ports = self.board.ports
-        self.core.run(ports.address, ports.count, ranging, until_us, shell_us)
+        self.core.run(ports.address, ports.count, ranging, sampler, until_us, shell_us)
 
     def go_on(self, ranging: int, until_us: int, events_seen: int) -> int:
         """Let the core hear clients and ``run``, in one call. It ``goes_by_itself``, and there are no sockets.
@@ -478,7 +491,7 @@ class Bridge:
         self.flush()
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
         new.board.take_over(self.board)
-        new.taps = new.board.taps
+        new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs
         new.grants = self.grants
         return new

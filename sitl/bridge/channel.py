@@ -17,6 +17,7 @@ from .frame import Frame, encode_v1, encode_v2
 from .links.link import Peer
 from .wire.frames import COMPONENT
 from .wire.port import IN_BYTES, INCOMING, NEVER, OUT, STATE, Port
+from .wire.spool import FRAMES, Spool
 
 _FIRST = 4
 
@@ -64,6 +65,14 @@ class Channel:
         self.address = 0
         """Of the port in memory, once the bridge has given it its place."""
         self.port.version, self.port.system, self.port.next_us = 2, system, NEVER
+        self.spool: Spool | None = None
+        """What the core sends while time passes, for a client that takes frames of several times in one piece."""
+        self.spool_address = 0
+        if peer.spools:
+            self._spool_memory = Spool.fleet(1)
+            self.spool_address = int(self._spool_memory.ctypes.data)
+            self.spool = Spool.of(self._spool_memory, 0)
+            self.spool.stamped = peer.stamps
 
     @property
     def name(self) -> str:
@@ -93,7 +102,7 @@ class Channel:
     def send(self, kind: MessageType, payload: bytes) -> None:
         """Queue one message; the bridge flushes all channels when it is done."""
         port = self.port
-        if port.out_count:
+        if port.out_count or self.has_spooled():
             self.collect()
         encode = encode_v2 if port.version == 2 else encode_v1
         frame = encode(kind, payload, port.sequence, port.system, COMPONENT)
@@ -101,6 +110,10 @@ class Channel:
             port.sequence = (port.sequence + 1) & 0xFF
             port.sent += 1
             self.peer.outbox.append(frame)
+
+    def has_spooled(self) -> bool:
+        """Whether the core has sent something while time passed."""
+        return self.spool is not None and self.spool.used > 0
 
     def hand_over(self) -> None:
         """Give the frames that the core made to a peer that ``waits``, while nobody watches."""
@@ -112,7 +125,12 @@ class Channel:
 
     def collect(self) -> None:
         """Queue the frames that the core made."""
-        port = self.port
+        spool, port = self.spool, self.port
+        if spool is not None and spool.used:
+            self.peer.spooled(bytes(spool._bytes[FRAMES : FRAMES + spool.used]))
+            spool.used = 0
+        if not port.out_count:
+            return
         data = bytes(port._bytes[OUT : OUT + port.out_size])
         if port.out_count == 1 or (self.peer.joins_frames and not self._is_watched()):
             self.peer.outbox.append(data)

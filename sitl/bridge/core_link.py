@@ -59,8 +59,8 @@ class CoreLink:
         return self._bind(self._units.tell)
 
     @cached_property
-    def run(self) -> Callable[[int, int, int, int, int], None]:
-        """``run(address of ports, count, address of Ranging, until_us, shell_us)``: advance, measure, send."""
+    def run(self) -> Callable[[int, int, int, int, int, int], None]:
+        """``run(address of ports, count, of Ranging, of Sampler, until_us, shell_us)``: advance, measure, send, log."""
         return self._bind(self._units.run)
 
     @cached_property

@@ -88,13 +88,18 @@ class Switchboard:
         self.links: list[Link] = []
         self.channels: list[Channel] = []
         self.ports = Ports()
+        self.heard = 0
+        """How often clients have said something."""
         self.dropped: list[str] = []
         """Why channels were lost or refused, for people."""
         self.taps: list[Tap] = []
+        self.client_taps: list[Tap] = []
+        """See only what clients sent."""
         self.journal: Journal | None = None
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
         self._sockets = 0
+        self._has_spools = False
         self._numbers = 0
         self._kept: dict[Peer, int] = {}
         """Numbers of channels of before a reboot."""
@@ -102,15 +107,16 @@ class Switchboard:
     def take_over(self, old: Switchboard) -> None:
         """Links, clients, sockets and taps of ``old``, which must not be used any more."""
         self._selector.close()
-        self.links, self.taps, self.dropped = old.links, old.taps, old.dropped
-        self.journal = old.journal
+        self.links, self.dropped = old.links, old.dropped
+        self.taps, self.client_taps = old.taps, old.client_taps
+        self.journal, self.heard = old.journal, old.heard
         self._selector, self._sockets = old._selector, old._sockets
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
             link.reattach(self._add_channel)
 
     def is_watched(self) -> bool:
-        """Whether someone wants to see every frame."""
+        """Whether someone wants to see every frame that goes out."""
         return bool(self.taps) or self.journal is not None
 
     def add_link(self, link: Link) -> None:
@@ -136,6 +142,7 @@ class Switchboard:
         self._numbers = max(self._numbers, number + 1)
         channel = Channel(peer, number, self._system(), self.is_watched)
         self.channels.append(channel)
+        self._has_spools = self._has_spools or channel.spool is not None
         self.ports.arrange(self.channels)
         if self.journal is not None and is_new:
             self.journal.came(channel)
@@ -160,6 +167,11 @@ class Switchboard:
         """Whether there is anything to ``read``."""
         return self._sockets > 0
 
+    @property
+    def is_outside(self) -> bool:
+        """Whether there are clients or logs that are no in-process clients."""
+        return self._sockets > 0 or self._has_spools
+
     def read(self) -> None:
         """Read all sockets."""
         for key, _ in self._selector.select(0):
@@ -174,9 +186,9 @@ class Switchboard:
         closed = False
         for channel in self.channels:
             peer = channel.peer
-            if channel.port.out_count:
+            if channel.port.out_count or channel.has_spooled():
                 channel.collect()
-            elif peer.waits and not peer.outbox:
+            elif peer.is_idle():
                 continue
             if self.taps and peer.outbox:
                 now = self._clock()

@@ -44,10 +44,14 @@ class TlogWriter:
 
     def frame(self, time_us: int, raw: bytes) -> None:
         """Append one frame, sent or received at simulated ``time_us``; nothing after ``close``."""
+        self.write(_TIME.pack(self.epoch_us + time_us) + raw)
+
+    def write(self, data: bytes) -> None:
+        """Append frames, each behind its time."""
         if self._file is None:
             return
-        self._pending.append(_TIME.pack(self.epoch_us + time_us) + raw)
-        self._size += len(raw) + 8
+        self._pending.append(data)
+        self._size += len(data)
         if self._size >= _FLUSH_BYTES:
             self.flush()
 

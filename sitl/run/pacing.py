@@ -17,6 +17,9 @@ MAX = "max"
 _SLICE_WALL_S = 0.002
 _SHORTEST_US, _LONGEST_US = TICK_US, 20000
 _CATCH_UP_S = 0.05
+_QUIET_SLICE_WALL_S = 0.001
+_QUIET = 10
+"""A slice is no longer than this part of the simulated time since clients said something."""
 
 
 class SpeedupError(SitlError, ValueError):
@@ -43,6 +46,11 @@ def parse_speedup(text: str) -> float | None:
 class Pacing:
     """Holds simulated time at ``speedup`` times the wall clock, or lets it go (None).
 
+    A slice, the simulated time between two looks at clients and clock, lasts up to 2 ms of wall time and 20 ms of
+    simulated time. While no client says anything it grows, where simulated time is quick: to a tenth of the simulated
+    time since somebody did, and to 1 ms of wall time. So a client that answers is heard nearly as soon as ever, and one
+    that only reads is sent much at once.
+
     Time lost to a busy machine is caught up over the next slices, up to 50 ms of wall time; what is more is given up,
     so that a suspended laptop does not resume in a rush.
     """
@@ -52,16 +60,37 @@ class Pacing:
         self._clock = clock
         self._due = clock()
         slice_us = _LONGEST_US if speedup is None else int(speedup * _SLICE_WALL_S * 1e6)
-        self.slice_us = min(max(slice_us, _SHORTEST_US), _LONGEST_US)
+        self._least_us = min(max(slice_us, _SHORTEST_US), _LONGEST_US)
+        self.slice_us = self._least_us
         """Simulated time to advance between two looks at the wall clock [us]."""
+        self._heard, self._quiet_us, self._looked = 0, 0, clock()
 
     def after_slice(self, simulation: Simulation) -> None:
         """Wait until the next slice is due, and answer clients meanwhile: none of them can hurry the clock."""
         wait = self.wait_s()
+        self._fit_slice(simulation.bridge.heard)
         while wait > 0.0:
             if simulation.bridge.wait(wait):
                 simulation.bridge.receive()
             wait = self._due - self._clock()
+
+    def _fit_slice(self, heard: int) -> None:
+        """Choose the next slice.
+
+        Args:
+            heard: how often clients have said something so far.
+        """
+        now = self._clock()
+        took, self._looked = now - self._looked, now
+        if heard != self._heard:
+            self._heard, self._quiet_us = heard, 0
+        else:
+            self._quiet_us += self.slice_us
+        if self.speedup is None:
+            longest = int(self.slice_us * min(_QUIET_SLICE_WALL_S / max(took, 1e-6), 2.0))
+        else:
+            longest = int(self.speedup * _QUIET_SLICE_WALL_S * 1e6)
+        self.slice_us = max(min(longest, self._quiet_us // _QUIET), self._least_us)
 
     def wait_s(self) -> float:
         """Account for one slice; returns the wall time [s] to wait before the next, 0 for none."""

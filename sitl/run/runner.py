@@ -99,7 +99,7 @@ def open_log(simulation: Simulation, folder: Path, name: str) -> Path:
     link = LogLink(writer, simulation)
     bridge.add_link(link)
     bridge.stream_to(link, LOG_STREAMS)
-    bridge.taps.append(ClientFrames(writer, bridge.system))
+    bridge.client_taps.append(ClientFrames(writer, bridge.system))
     open_dataflash(simulation, path.with_suffix(".bin"))
     return path
 

@@ -104,7 +104,7 @@ def test_a_busy_client_is_answered_and_does_not_hurry_the_clock() -> None:
     class Busy:
         """A bridge whose sockets always have something to read, after a tenth of a millisecond."""
 
-        answered = 0
+        answered = heard = 0
 
         def wait(self, seconds: float) -> bool:
             clock.now += min(1e-4, seconds)

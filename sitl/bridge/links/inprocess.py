@@ -19,6 +19,9 @@ class _VehicleEnd(Peer):
         self.sent: list[bytes] = []
         self.joins_frames = self.waits = drop is None
 
+    def is_idle(self) -> bool:
+        return self.waits and not self.outbox
+
     def accept(self, frames: bytes) -> None:
         self.sent.append(frames)
 
@@ -71,15 +74,25 @@ class FrameWriter(Protocol):
         """One frame sent at ``time_us``."""
         ...
 
+    def write(self, data: bytes) -> None:
+        """Frames that stand behind their times already."""
+        ...
+
     def close(self) -> None:
         """No more frames."""
         ...
 
 
 class _LogPeer(Peer):
+    waits = spools = stamps = True
+
     def __init__(self, name: str, writer: FrameWriter, clock: Clock) -> None:
         super().__init__(name)
         self._writer, self._clock = writer, clock
+
+    def spooled(self, data: bytes) -> None:
+        self.flush()
+        self._writer.write(data)
 
     def flush(self) -> None:
         if self.outbox:

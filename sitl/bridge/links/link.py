@@ -16,6 +16,10 @@ class Peer:
     """Whether frames of the same time may be queued as one piece of bytes."""
     waits = False
     """Whether frames may be queued at any later time: nothing that the peer does depends on when they are."""
+    spools = False
+    """Whether frames of several times may be queued as one piece of bytes (``sitl.bridge.wire.spool``)."""
+    stamps = False
+    """Whether each of them then stands behind its time."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -47,6 +51,14 @@ class Peer:
     def flush(self) -> None:
         """Hand queued frames to the operating system, as far as it takes them now."""
         self.outbox.clear()
+
+    def spooled(self, data: bytes) -> None:
+        """Queue frames of several times; they come before what is queued from now on."""
+        self.outbox.append(data)
+
+    def is_idle(self) -> bool:
+        """Whether ``flush`` need not be called while nothing is queued."""
+        return False
 
     @property
     def congested(self) -> bool:

@@ -38,7 +38,7 @@ def _reserve() -> int:
 
 
 class _TcpPeer(Peer):
-    joins_frames = True
+    joins_frames = waits = spools = True
 
     def __init__(self, name: str, sock: socket.socket, link: TcpServerLink) -> None:
         super().__init__(name)

@@ -18,6 +18,8 @@ _READS_AT_ONCE = 256
 
 
 class _UdpPeer(Peer):
+    waits = True
+
     def __init__(self, name: str, sock: socket.socket, address: Address) -> None:
         super().__init__(name)
         self._socket = sock

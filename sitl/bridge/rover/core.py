@@ -12,7 +12,7 @@ from ..services.rc import rc_channels_override
 from ..telemetry.builder import compiled
 from ..wire.choose import choose_builder, choose_taker, choose_targets
 from ..wire.fleet import run_slots
-from ..wire.link import Limits, Links, hear_port, run_vehicle, tell_links
+from ..wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
 from .setpoints import attitude_target, position_target_global, position_target_local
 from .sticks import manual_control
 from .telemetry import MESSAGES
@@ -35,9 +35,13 @@ def tell(fleet: Sequence[Rover], index: int, ports: int, count: int, number: int
 
 
 @unit
-def run(fleet: Sequence[Rover], index: int, ports: int, count: int, ranging: int, until_us: int, shell_us: int) -> None:
-    """Advance; measure and send what falls due."""
-    run_vehicle(fleet, index, Links(ports, count), ranging, Limits(until_us, shell_us), advance, tell)
+def run(
+    fleet: Sequence[Rover], index: int, ports: int, count: int, ranging: int, sampler: int, until_us: int, shell_us: int
+) -> None:
+    """Advance; measure, send and log what falls due."""
+    run_vehicle(
+        fleet, index, Links(ports, count), Instruments(ranging, sampler), Limits(until_us, shell_us), advance, tell
+    )
 
 
 @unit

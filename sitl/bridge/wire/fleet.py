@@ -57,7 +57,7 @@ def run_slot(
     ranging: int,
     slot: Slot,
     hear: Callable[[Sequence[V], int, int], None],
-    run: Callable[[Sequence[V], int, int, int, int, int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int, int, int], None],
 ) -> None:
     """Let one vehicle act on what its clients sent and go on to ``slot.until_us``."""
     v = fleet[index]
@@ -66,7 +66,7 @@ def run_slot(
         slot.needs_shell = TO_HEAR
     elif v.time_us < slot.until_us:
         shell_us = slot.shell_us
-        run(fleet, index, slot.ports, slot.clients, ranging, min(slot.until_us, shell_us), shell_us)
+        run(fleet, index, slot.ports, slot.clients, ranging, 0, min(slot.until_us, shell_us), shell_us)
         happened = v.autopilot.events.count != slot.events_seen or wants_shell(v, ranging)
         is_behind = next_due(slot.ports, slot.clients) <= v.time_us
         if happened or is_behind or not slot.until_us <= v.time_us < shell_us:
@@ -81,7 +81,7 @@ def run_slots(
     slots: int,
     ranging: int,
     hear: Callable[[Sequence[V], int, int], None],
-    run: Callable[[Sequence[V], int, int, int, int, int, int], None],
+    run: Callable[[Sequence[V], int, int, int, int, int, int, int], None],
 ) -> None:
     """The same for vehicles ``first`` .. ``last`` - 1; those whose ``until_us`` is STAYS excepted.
 

@@ -16,8 +16,10 @@ from ...core.kernels import law
 from ...core.memory import bytes_at, record_at
 from ...physics.native.ranging import NEVER, Ranging, list_near, measure, scan_due
 from ...vehicle.record import Vehicle
+from ...vehicle.sampler import row_due, take_row
 from .frames import COMPONENT, copy_payload, next_frame
 from .port import INCOMING, PAYLOAD, PAYLOAD_BYTES, Port
+from .spool import spill_all
 from .streams import Builder, next_due, send, send_all_due
 
 V = TypeVar("V", bound=Vehicle)
@@ -78,6 +80,15 @@ class Links(NamedTuple):
     clients: int
 
 
+class Instruments(NamedTuple):
+    """What a vehicle measures and logs with, by address."""
+
+    ranging: int
+    """Its ``Ranging``; 0: it is in no world."""
+    sampler: int
+    """The ``Sampler`` of its log (``sitl.vehicle.sampler``); 0: the core takes no rows."""
+
+
 class Limits(NamedTuple):
     """How far a run goes."""
 
@@ -89,23 +100,29 @@ class Limits(NamedTuple):
 
 @law
 def run_vehicle(
-    fleet: Sequence[V], index: int, links: Links, ranging: int, limits: Limits, advance: Advance[V], tell: Tell[V]
+    fleet: Sequence[V],
+    index: int,
+    links: Links,
+    instruments: Instruments,
+    limits: Limits,
+    advance: Advance[V],
+    tell: Tell[V],
 ) -> None:
     """Advance to the first tick at or after ``until_us``, measuring and then sending what falls due.
 
-    Back early, at the end of the tick, when something happened that the shell must know, and when a message is due that
-    the core cannot send.
+    Back early, at the end of the tick, when something happened that the shell must know, when a message is due that the
+    core cannot send, and when what goes out, or what is logged, needs room.
 
     Args:
         fleet: the vehicle's fleet.
         index: of the vehicle.
         links: its clients.
-        ranging: address of its ``Ranging``; 0: it is in no world.
+        instruments: what it measures and logs with.
         limits: when to stop.
         advance: unit that goes on by some ticks.
         tell: unit that sends what is due.
     """
-    v = fleet[index]
+    v, ranging, sampler = fleet[index], instruments.ranging, instruments.sampler
     events, obstacles = v.autopilot.events, v.physics.obstacles
     told = events.count
     while True:
@@ -113,17 +130,23 @@ def run_vehicle(
             list_near(fleet, index, ranging)
             events.attention = False
         due = measurement_due(v, ranging)
-        stop = min(min(limits.until_us, due), next_due(links.address, links.clients))
+        stop = min(min(limits.until_us, due), min(row_due(sampler), next_due(links.address, links.clients)))
         ticks = (stop - v.time_us + TICK_US - 1) // TICK_US
         advance(fleet, index, max(ticks, 1))
         if due <= v.time_us:
             measure(fleet, index, ranging)
         if wants_shell(v, ranging) or events.count != told or v.time_us >= limits.shell_us:
             return
+        has_room = True
         if next_due(links.address, links.clients) <= v.time_us:
             tell(fleet, index, links.address, links.clients, REGULAR)
+            has_room = spill_all(links.address, links.clients, v.time_us)
             if next_due(links.address, links.clients) <= v.time_us:
                 return
+        if row_due(sampler) <= v.time_us and not take_row(sampler, v.time_us):
+            return
+        if not has_room:
+            return
         if v.time_us >= limits.until_us:
             return
 

@@ -55,6 +55,7 @@ class Port(Record):
     out_size: int  # bytes
     out_end: Ints = array(OUT_FRAMES, stored="i4")  # where each frame ends
     out: Ints = array(OUT_BYTES, stored="u1")
+    spool: int  # address of the ``Spool`` to which they go while time passes; 0: they stay here
     # in: what has come and is not acted on yet
     stops_at_frames: bool  # the shell wants to see every frame
     in_at: int

@@ -68,7 +68,6 @@ class LogEncoder:
         self._numbers = formats.number_all(every)
         self.events = EventEncoder(self._numbers)
         self._bits = bitmask
-        self._k = 0
         self._notes: list[tuple[int, int, bytes]] = []
         self._missions: list[tuple[int, Mission]] = []
         self._mission = vehicle.mission
@@ -86,25 +85,31 @@ class LogEncoder:
         for _, is_set, place in _PLACES:
             self._samples.want(is_set, place + "lat", place + "lon", place + "alt")
         self._samples.begin()
-        self._take = self._samples.taker()
-        self._take(0)
-        self.periods_us = tuple(self._plan.periods_us)
+        self._samples.take(0)
+        self.sampler, self.sampler_address = self._samples.sampler, self._samples.address
+        periods = self._plan.periods_us
+        self.sampler.period_count = len(periods)
+        self.sampler.period_us[: len(periods)] = periods
 
     # ------------------------------------------------------------------ while the vehicle moves
 
     def row(self) -> None:
         """Take a sample."""
-        self._k += 1
-        self._take(self._k)
-        if self._k == ROWS:
+        self._samples.take(self.sampler.row + 1)
+        if self.is_full:
             self.write_rows()
+
+    @property
+    def is_full(self) -> bool:
+        """Whether there is no room for more samples."""
+        return self.sampler.row == ROWS
 
     def note(self, time_us: int, pack: Callable[..., bytes], *arguments: Any) -> None:
         """Add the message ``pack(time_us, *arguments)`` between the samples; times [us since boot] never go back."""
         self._last_us = time_us = max(time_us, self._last_us)
         data = pack(time_us, *arguments)
         if data:
-            self._notes.append((self._k + 1, time_us, data))
+            self._notes.append((self.sampler.row + 1, time_us, data))
 
     def text(self, time_us: int, text: str) -> None:
         """Add a status text (MSG); time since boot [us]."""
@@ -130,7 +135,7 @@ class LogEncoder:
 
     def mission_changed(self, time_us: int) -> None:
         """Add all items of the mission; time since boot [us]."""
-        self._missions.append((self._k, self._mission))
+        self._missions.append((self.sampler.row, self._mission))
         self._mission = self._vehicle.mission
         if self._bits & bits.COMMANDS:
             self.note(time_us, self.events.mission, self._mission.items)
@@ -182,21 +187,23 @@ class LogEncoder:
             pack.pack("MODE", time_us, int(modes.number), int(modes.number), int(modes.reason)),
             pack.mission(time_us, v.mission.items),
         ]
+        self._samples.turn(0)
         for kind, is_set, place in _PLACES:
             if self._samples.column(is_set)[0]:
                 self._out.append(self._place(0, kind, place, time_us))
 
     def write_rows(self) -> None:
         """Encode the samples and messages so far."""
-        n = self._k
+        n = self.sampler.row
         if not n and not self._notes:
             return
+        self._samples.turn(n)
         self._edges(n)
         self._out.append(self._plan.write(n, self._notes))
         self._notes.clear()
         self._missions.clear()
         self._samples.rows[0] = self._samples.rows[n]
-        self._k = 0
+        self.sampler.row = 0
 
     def _edges(self, n: int) -> None:
         """Messages that follow from changes in the samples: EV, ORGN, MISE."""

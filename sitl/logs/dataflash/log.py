@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The on-board logger: an observer that keeps DataFlash logs of a vehicle in files, and hands them out.
+"""The on-board logger keeps DataFlash logs of a vehicle in files, and hands them out.
 
 LOG_BACKEND_TYPE, LOG_DISARMED and LOG_BITMASK decide, as in ArduPilot: unless LOG_DISARMED says so, a log begins with
 the first arming and pauses 15 s after each disarming. A reboot begins another.
@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
 from ... import __version__
+from ...vehicle.sampler import LONGEST_US, NEVER, next_row_us
 from ..tlog import LogError
 from .encoder import LogEncoder, Vehicle
 from .samples import place
 
 PERSIST_US = 15_000_000
 """Time after disarming during which logging continues [us]."""
-POLL_US = 100_000
+POLL_US = LONGEST_US
 """Period at which a logger that is not logging checks whether it should [us]."""
 _ALWAYS, _KEEP_FLIGHTS = (1, 2, 3), 3
 _COUNT, _ARMED, _ARMED_US = "autopilot.events.count", "autopilot.arming.armed", "autopilot.arming.armed_us"
@@ -60,7 +61,9 @@ class _File:
 
 
 class DataFlash:
-    """An observer of a simulation (``simulation.observers``), a listener and the log store of its bridge.
+    """The logger of a simulation (``simulation.logger``), a listener and the log store of its bridge.
+
+    The core takes the samples (``sitl.vehicle.sampler``); the logger itself looks when something has happened.
 
     Args:
         vehicle: the simulation.
@@ -79,6 +82,8 @@ class DataFlash:
         at = {name: place(vehicle.fleet.dtype, name)[0] // 8 for name in ("time_us", _COUNT, _ARMED, _ARMED_US)}
         self._time_at, self._count_at, self._armed_at, self._armed_us_at = at.values()
         self._closed = False
+        self._core_samples_armed = False
+        """Whether the core takes samples of an armed vehicle."""
         self._boot()
 
     def _boot(self) -> None:
@@ -105,19 +110,75 @@ class DataFlash:
         """Simulated time since boot [us]."""
         return int(self._words[self._time_at])
 
-    # ------------------------------------------------------------------ observing
+    # ------------------------------------------------------------------ looking at the vehicle
+
+    def before_run(self, in_core: bool) -> tuple[int, int]:
+        """What ``sitl.simulation.Logger`` says."""
+        encoder = self._running
+        self._core_samples_armed = False
+        if encoder is None:
+            if self._is_idle():
+                self._due_us = NEVER
+                return 0, NEVER
+            if self._due_us == NEVER:
+                self._find_due()
+        elif in_core and self._core_samples(encoder):
+            self._core_samples_armed = bool(self._words[self._armed_at])
+            return encoder.sampler_address, NEVER
+        return 0, self._next_us
+
+    def after_run(self) -> None:
+        """What ``sitl.simulation.Logger`` says."""
+        encoder = self._running
+        if encoder is not None:
+            if self._core_samples_armed:
+                self._disarmed_us = max(self._disarmed_us, encoder.sampler.row_us)
+            if encoder.is_full:
+                self._flush()
+        elif self._due_us == NEVER and not self._is_idle():
+            if self._elapsed_us % POLL_US == 0:
+                self._due_us = self._elapsed_us
+            else:
+                self._find_due()
+        if self._next_us <= self._vehicle.time_us:
+            self._look()
+
+    @property
+    def _running(self) -> LogEncoder | None:
+        """What encodes the log that is being written; None while nothing is logged."""
+        return None if self._paused else self._encoder
+
+    @property
+    def _elapsed_us(self) -> int:
+        """Simulated time since the boot that the log is of [us]."""
+        return self._vehicle.time_us - self._boot_us
+
+    @property
+    def _next_us(self) -> int:
+        """When to look next: simulated time since the start of the simulation [us]."""
+        encoder = self._running
+        return self._boot_us + (self._due_us if encoder is None else encoder.sampler.due_us)
+
+    def _is_idle(self) -> bool:
+        """Whether no log can begin before something happens."""
+        armed = self._words[self._armed_at] or self._words[self._time_at] - self._disarmed_us < PERSIST_US
+        return not (armed or self._texts or (self._on and self._disarmed in _ALWAYS))
+
+    def _core_samples(self, encoder: LogEncoder) -> bool:
+        """Whether the core can take samples until something happens: there is nothing else to be logged before."""
+        armed = self._words[self._armed_at]
+        if self._vehicle.before_boot_us != self._boot_us or not (self._on and (armed or self._disarmed in _ALWAYS)):
+            return False
+        return self._words[self._count_at] == self._count and self._vehicle.mission is encoder.mission
 
     def _find_due(self) -> None:
-        now = self._words[self._time_at]
-        if self._encoder is None or self._paused:
-            self.due_us = self._boot_us + (now // POLL_US + 1) * POLL_US
-            return
-        due = now + POLL_US
-        for period in self._encoder.periods_us:
-            due = min(due, (now // period + 1) * period)
-        self.due_us = self._boot_us + due
+        encoder = self._running
+        if encoder is None:
+            self._due_us = (self._elapsed_us // POLL_US + 1) * POLL_US
+        else:
+            encoder.sampler.due_us = next_row_us(encoder.sampler, self._now_us)
 
-    def observe(self) -> None:
+    def _look(self) -> None:
         """Take a sample, or start a log when it is due."""
         self._follow_reboot()
         armed = self._words[self._armed_at]
@@ -195,7 +256,7 @@ class DataFlash:
         if self._encoder is None or self._paused:
             self._texts.append((now, text))
             if self._words[self._armed_at]:
-                self.due_us = min(self.due_us, self._boot_us + now)  # the log begins with the next tick
+                self._due_us = min(self._due_us, now)  # the log begins with the next tick
             return
         self._catch_up()
         self._encoder.text(now, text)
@@ -279,10 +340,9 @@ def attach(simulation: Any, path: Path) -> DataFlash:
     before = bridge.logs
     if before is not None:
         before.close()
-        simulation.observers[:] = [each for each in simulation.observers if each is not before]
         bridge.listeners[:] = [each for each in bridge.listeners if each is not before]
     logger = DataFlash(simulation, path, bridge.epoch_us, f"gym-sitl {__version__}")
-    simulation.observers.append(logger)
+    simulation.logger = logger
     bridge.listeners.append(logger)
     bridge.logs = logger
     if bridge.board.journal is not None:

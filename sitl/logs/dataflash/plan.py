@@ -168,7 +168,8 @@ class Plan:
                 rows, when = ring.rows, ring.raw(TIME)
             else:
                 rows = g.due(s, times[1:], times[:-1])
-                chosen, when = Columns(samples, count, rows), samples.column(g.time)[rows + 1]
+                chosen = s if len(rows) == count else Columns(samples, count, rows)
+                when = samples.column(g.time)[rows + 1]
             if not len(rows):
                 continue
             data = g.encode(chosen, len(rows))

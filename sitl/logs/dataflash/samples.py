@@ -8,10 +8,11 @@ they mean is worked out later, for hundreds of rows at a time.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+
+from ...vehicle.sampler import Sampler
 
 Array = np.ndarray[Any, Any]
 _PATH = re.compile(r"([\w.]+)(?:\[([\d,]+)\])?$")
@@ -53,7 +54,11 @@ class Samples:
         self._words = fleet.view("<i8").reshape(len(fleet), -1)[index]
         self._places: dict[str, tuple[int, str]] = {}
         self._capacity = capacity
-        self._columns: dict[str, Array] = {}
+        self.sampler = Sampler()
+        """With it the core takes rows."""
+        self._columns: dict[str, tuple[int, str, slice]] = {}
+        self._table = np.zeros((0, 0), "<i8")
+        self._read: dict[str, Array] = {}
         self._taken = np.zeros(0, np.intp)
         self.rows = np.zeros((0, 0), "<i8")
 
@@ -78,20 +83,34 @@ class Samples:
         words = sorted({offset // 8 for offset, _ in self._places.values()})
         self._taken = np.array(words, np.intp)
         self.rows = np.zeros((self._capacity + 1, len(words)), "<i8")
+        self._memory = Sampler.fleet(1)
+        self.sampler = s = Sampler.of(self._memory, 0)
+        s.rows, s.count, s.words, s.to = self._capacity, len(words), self._taken.ctypes.data, self.rows.ctypes.data
+        s.source, s.source_words = self._words.ctypes.data, len(self._words)
         number = {word: k for k, word in enumerate(words)}
         for path, (offset, kind) in self._places.items():
             size = int(kind[2])
-            self._columns[path] = self.rows.view(kind)[:, number[offset // 8] * (8 // size) + offset % 8 // size]
+            self._columns[path] = number[offset // 8], kind, slice(offset % 8 // size, None, 8 // size)
 
-    def taker(self) -> Callable[[int], None]:
-        """A function that writes the vehicle's present numbers into a row."""
-        words, taken, rows = self._words, self._taken, list(self.rows)
+    @property
+    def address(self) -> int:
+        """Of the sampler."""
+        return int(self._memory.ctypes.data)
 
-        def take(k: int) -> None:
-            words.take(taken, out=rows[k], mode="clip")
+    def take(self, k: int) -> None:
+        """Write the vehicle's present numbers into row ``k``."""
+        self._words.take(self._taken, out=self.rows[k], mode="clip")
+        self.sampler.row = k
 
-        return take
+    def turn(self, count: int) -> None:
+        """Make columns of the rows 0 .. ``count``, in one piece each."""
+        self._table = np.ascontiguousarray(self.rows[: count + 1].T)
+        self._read.clear()
 
     def column(self, path: str) -> Array:
-        """One number of all rows, as it is in the record."""
-        return self._columns[path]
+        """One number of all rows that were turned into columns, as it is in the record."""
+        found = self._read.get(path)
+        if found is None:
+            row, kind, part = self._columns[path]
+            found = self._read[path] = self._table[row].view(kind)[part]
+        return found

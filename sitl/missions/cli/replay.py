@@ -145,7 +145,10 @@ class ReplayLog:
             self._writer.close()
             self.paths.append(runner.new_file(self._folder, self._name))
         writer = self._writer = TlogWriter(self.path, bridge.epoch_us)
-        bridge.taps.append(writer if everything else runner.ClientFrames(writer, bridge.system))
+        if everything:
+            bridge.taps.append(writer)
+        else:
+            bridge.client_taps.append(runner.ClientFrames(writer, bridge.system))
         return writer
 
     @property

@@ -122,7 +122,7 @@ def test_the_same_run_gives_the_same_bytes(driven: Run, tmp_path: Path) -> None:
 def test_logging_changes_nothing(tmp_path: Path) -> None:
     """The vehicle's record and every byte that a client gets are the same without the logger."""
     runs = Run(tmp_path / "with"), Run(tmp_path / "without")
-    runs[1].simulation.observers.clear()
+    runs[1].simulation.logger = None
     runs[1].simulation.bridge.listeners.clear()
     received = []
     for run in runs:

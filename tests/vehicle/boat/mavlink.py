@@ -18,7 +18,7 @@ from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbea
 from sitl.bridge.telemetry.shell import CAPABILITIES
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
 from sitl.bridge.wire.fleet import run_slots
-from sitl.bridge.wire.link import Limits, Links, hear_port, run_vehicle, tell_links
+from sitl.bridge.wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
 from sitl.core.kernels import law, unit
 from sitl.vehicle.record import Vehicle
 
@@ -80,8 +80,12 @@ def tell(fleet: Sequence[Boat], index: int, ports: int, count: int, number: int)
 
 
 @unit
-def run(fleet: Sequence[Boat], index: int, ports: int, count: int, ranging: int, until_us: int, shell_us: int) -> None:
-    run_vehicle(fleet, index, Links(ports, count), ranging, Limits(until_us, shell_us), advance, tell)
+def run(
+    fleet: Sequence[Boat], index: int, ports: int, count: int, ranging: int, sampler: int, until_us: int, shell_us: int
+) -> None:
+    run_vehicle(
+        fleet, index, Links(ports, count), Instruments(ranging, sampler), Limits(until_us, shell_us), advance, tell
+    )
 
 
 @unit
