@@ -17,6 +17,7 @@ import numpy as np
 from numba import carray
 from numba.core import cgutils, types
 from numba.core.compiler import Flags
+from numba.core.cpu import CPUContext
 from numba.core.datamodel import register_default
 from numba.core.datamodel.models import OpaqueModel, RecordModel
 from numba.core.imputils import lower_constant, lower_getattr_generic, lower_setattr_generic
@@ -125,11 +126,19 @@ def _place(builder: Any, context: Any, kind: RecordType, memory: Any, name: str)
     return cgutils.get_record_member(builder, memory, kind.offset(name), context.get_data_type(number)), number, count
 
 
+def _flags(context: Any) -> Any:
+    """Of a property's law; None: those of its caller, which are of another target and have the same error model."""
+    if not isinstance(context, CPUContext):
+        return None
+    flags = Flags()
+    flags.error_model = "numpy"
+    return flags
+
+
 @lower_getattr_generic(RecordType)
 def _read(context: Any, builder: Any, kind: RecordType, memory: Any, name: str) -> Any:
     if name in kind.properties:
-        signature, flags = _property(kind, name), Flags()
-        flags.error_model = "numpy"
+        signature, flags = _property(kind, name), _flags(context)
         law = context.compile_subroutine(builder, kind.properties[name], signature, flags=flags)
         return context.call_internal(builder, law.fndesc, signature, [memory])
     value = kind.values.get(name)
