@@ -71,6 +71,8 @@ class SimulatedPlant:
         if not name.startswith(PREFIX) or name not in self._table:
             return None
         parameter = self._table[name]
+        if not parameter.path:
+            return None
         if parameter.refusal(value) is None:
             self._params[name] = stored(parameter, value)
             if int(self.v.tick) == 0:

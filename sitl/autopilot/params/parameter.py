@@ -37,17 +37,21 @@ class Parameter(NamedTuple):
 
     name: str
     default: float
-    low: float
-    high: float
-    unit: str
+    low: float = -math.inf
+    high: float = math.inf
+    unit: str = ""
     """ArduPilot's unit of the value as the user sees it ("cm/s", "cdeg", "s", "" for none)."""
-    doc: str
+    doc: str = ""
     """One line, our own words."""
     kind: str = FLOAT
     read_only: bool = False
     """The firmware's own: users read it."""
     path: str = ""
-    """Where it lies in the record of parameters: "ATC.RAT_RLL.P", "RC[0].MIN"."""
+    """Where it lies in the record of parameters: "ATC.RAT_RLL.P", "RC[0].MIN"; "": not in the record."""
+    has_effect: bool = True
+    """Whether anything reads it."""
+    shown_by: str = ""
+    """The parameter that must not be 0 for this one to be in the list, or "NAME=VALUE"; "": it always is."""
 
     def refusal(self, value: float) -> str | None:
         """Why ``value`` cannot be set, or None when it can."""

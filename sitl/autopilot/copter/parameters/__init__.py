@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.records import Floats, Records
@@ -85,4 +86,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters)
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
