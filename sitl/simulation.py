@@ -66,7 +66,7 @@ class Snapshot:
     plant: bytes = b""
     """What that holds besides the record."""
     parameters: Mapping[str, float] = field(default_factory=dict)
-    """Parameters that are not in the record, as far as they were set."""
+    """Parameters without effect, as far as they were set: they are not in the record."""
 
 
 class Simulation:

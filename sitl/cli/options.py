@@ -119,9 +119,8 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
     scenario = scenario_of(options, values)
     with CompileProgress() as progress:
         simulation = Simulation(scenario, progress=progress)
-    table = simulation.firmware.table
-    idle = [name for name in values if name in table and not table[name].has_effect]
-    for names, what in ((simulation.unknown_parameters, "are not in this firmware"), (idle, "have no effect here")):
+    unknown, idle = simulation.unknown_parameters, list(simulation.parameters.kept)
+    for names, what in ((unknown, "are not in this firmware"), (idle, "have no effect here")):
         if names:
             shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")
             print(f"sitl: {len(names)} parameters of the files {what}: {shown}", file=sys.stderr)

@@ -75,7 +75,7 @@ class HilPlant(Plant):
         """The parameters of the world."""
         params = self.vehicle.v.autopilot.params
         table = self.vehicle.kind.firmware.table
-        return {p.name: float(params[p.name]) for p in table.with_effect if p.path and p.name.startswith(PREFIX)}
+        return {p.name: float(params[p.name]) for p in table.with_effect if p.name.startswith(PREFIX)}
 
     # ------------------------------------------------------------------ going on
 

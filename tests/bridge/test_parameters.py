@@ -49,6 +49,14 @@ def test_set_truncates_integers_and_tells_everyone(bench: Bench) -> None:
     assert write(bench, "NO_SUCH", 1.0) == []
 
 
+@pytest.mark.parametrize(("value", "kept"), [(300, 127), (-300, -128), (33.7, 33), (-33.7, -33)])
+def test_integers_stop_at_the_ends_of_their_type(bench: Bench, value: float, kept: int) -> None:
+    """As a real ArduPilot answers for an INT8; one with a range of its own is refused outside of it."""
+    assert write(bench, "FRSKY_OPTIONS", value)[-1].param_value == kept
+    assert write(bench, "DISARM_DELAY", value)[0].get_type() == ("PARAM_VALUE" if kept >= 0 else "STATUSTEXT")
+    assert max(kept, 10 if kept < 0 else 0) == bench.vehicle.v.autopilot.params.DISARM_DELAY
+
+
 @pytest.mark.parametrize("value", [1e9, -1e9, math.nan, math.inf, -math.inf])
 def test_what_is_out_of_range_is_refused_with_the_old_value(bench: Bench, value: float) -> None:
     before = bench.vehicle.fleet.tobytes()

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from .files import format_value
-from .table import Table, stored
+from .parameter import stored
+from .table import Table
 
 
 def page(firmware: str, table: Table) -> str:

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ...errors import SitlError
-from .parameter import FLOAT, Parameter
-from .table import Values, stored
+from .parameter import FLOAT, Parameter, stored
+from .table import Values
 
 
 class ParameterError(SitlError, ValueError):

@@ -8,13 +8,11 @@ from one (``benchmarks.ardupilot_parameters``): they are kept, sent and saved, a
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from .parameter import FLOAT, Parameter, rows
+from .parameter import Parameter, rows, stored
 from .parameters import Parameters
 
 _KEPT_LISTS = 64
@@ -24,18 +22,17 @@ class Table:
     """Parameters by position and by name.
 
     Args:
-        record: those that the firmware's laws read.
+        record: those that have an effect.
         names: file of all parameters of a real ArduPilot, in the order of its list; None: there are no others.
-        shell: those that only Python reads; nothing of the vehicle's record depends on them.
 
     Raises:
         ValueError: a name is there twice.
     """
 
-    def __init__(self, record: type[Parameters], names: Path | None = None, shell: Sequence[Parameter] = ()) -> None:
+    def __init__(self, record: type[Parameters], names: Path | None = None) -> None:
         self.record = record
-        self.with_effect = (*rows(record), *shell)
-        """In the order of the record, and the shell's."""
+        self.with_effect = tuple(rows(record))
+        """In the order of the record."""
         ours = {p.name: p for p in self.with_effect}
         if len(ours) != len(self.with_effect):
             found = [p.name for p in self.with_effect]
@@ -69,8 +66,7 @@ class Table:
     def set_defaults(self, params: Parameters) -> None:
         """Set every field of a params record to its default."""
         for p in self.with_effect:
-            if p.path:
-                params[p.name] = stored(p, p.default)
+            params[p.name] = stored(p, p.default)
 
     def listed(self, values: Values) -> tuple[Parameter, ...]:
         """Those in the list that clients get: groups that are switched off (BATT2_ while BATT2_MONITOR is 0) are not.
@@ -107,11 +103,11 @@ class Values:
     def __init__(self, table: Table, record: Any) -> None:
         self.table, self._record = table, record
         self.kept: Mapping[str, float] = {}
-        """Those that are not in the record, as far as they were set. A change replaces it: snapshots share it."""
+        """Those without effect, as far as they were set. A change replaces it: snapshots share it."""
 
     def __getitem__(self, name: str) -> float:
         parameter = self.table[name]
-        if parameter.path:
+        if parameter.has_effect:
             return float(self._record[name])
         value = self.kept.get(name)
         return stored(parameter, parameter.default) if value is None else value
@@ -125,7 +121,7 @@ class Values:
         kept: dict[str, float] = {}
         for name, value in values.items():
             parameter = self.table[name]
-            if parameter.path:
+            if parameter.has_effect:
                 self._record[name] = stored(parameter, value)
             else:
                 kept[name] = stored(parameter, value)
@@ -135,11 +131,6 @@ class Values:
     def listed(self) -> tuple[Parameter, ...]:
         """Those in the list that clients get, in its order."""
         return self.table.listed(self)
-
-
-def stored(parameter: Parameter, value: float) -> float:
-    """``value`` as the firmware keeps it: integers truncate, floats round to float32 as on the wire."""
-    return float(np.float32(value)) if parameter.kind == FLOAT else float(int(value))
 
 
 def _read(names: Path) -> Iterator[Parameter]:

@@ -16,8 +16,7 @@ import struct
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter
-from ...autopilot.params.table import stored
+from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter, stored
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER

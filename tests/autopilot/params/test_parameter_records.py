@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.parameters import TABLE as COPTER
 from sitl.autopilot.params import docs, files, parameters
-from sitl.autopilot.params.parameter import INT8, ParameterGroup, group, numbered, param, rows
-from sitl.autopilot.params.table import Table, Values, stored
+from sitl.autopilot.params.parameter import INT8, ParameterGroup, group, numbered, param, rows, stored
+from sitl.autopilot.params.table import Table, Values
 from sitl.autopilot.rover.parameters import TABLE as ROVER
 from sitl.core.record_reader import UnknownFieldError, locate
 from sitl.core.records import Floats, Records
