@@ -61,7 +61,10 @@ Note = Text | ItemReached | CurrentChanged
 
 
 class Autopilot(Protocol):
-    """What the services call."""
+    """What the services call; False: refused.
+
+    Speeds [m/s]; ``lat``, ``lon`` [1e-7 deg]; ``alt`` [m] above sea level; places in NED from the origin [m].
+    """
 
     def armed(self) -> bool: ...
     def mode(self) -> int: ...
