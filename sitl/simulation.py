@@ -15,6 +15,7 @@ from .autopilot import boot
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
+from .autopilot.params.table import Values
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.services.statustext import EventService, StatusTextService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
@@ -84,6 +85,8 @@ class Snapshot:
     """What it is simulated by."""
     plant: bytes = b""
     """What that holds besides the record."""
+    parameters: tuple[tuple[str, float], ...] = ()
+    """Parameters without effect, as far as they were set: they are not in the record."""
 
 
 class Simulation:
@@ -130,14 +133,13 @@ class Simulation:
         self._reboot = False
         self.observers: list[Observer] = []
         self.logger: Logger | None = None
-        params_record = self.v.autopilot.params
-        table = self.firmware.table
-        table.set_defaults(params_record)
+        self.firmware.table.set_defaults(self.v.autopilot.params)
+        self.parameters = Values(self.firmware.table, self.v.autopilot.params)
         label = f"airframe {self.airframe.name}"
-        unknown = files.apply(table, params_record, self.airframe.parameters, label)
+        unknown = files.apply(self.parameters, self.airframe.parameters, label)
         if unknown:
             raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
-        self.unknown_parameters = files.apply(table, params_record, scenario.params or {}, "parameters")
+        self.unknown_parameters = files.apply(self.parameters, scenario.params or {})
         """Names in ``params`` that this firmware does not have."""
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
@@ -290,6 +292,7 @@ class Simulation:
             self.world.name if self.world is not None else None,
             self.physics,
             self.plant.snapshot(),
+            tuple(self.parameters.kept.items()),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -316,6 +319,7 @@ class Simulation:
             raise
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
+        self.parameters.kept = dict(snapshot.parameters)
         self.bridge.restore(snapshot.bridge)
 
     def _physics_restarted(self) -> None:
@@ -329,7 +333,7 @@ class Simulation:
 
     def parameter_changed(self, name: str) -> None:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
-        if sim_parameters.acts_on_the_world(name):
+        if self.firmware.table[name].has_effect and sim_parameters.acts_on_the_world(name):
             self.plant.parameter_changed(name)
 
     def reseed(self, seed: int) -> None:

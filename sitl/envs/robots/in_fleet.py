@@ -40,8 +40,8 @@ from ..mavlink.preparation import set_intervals, set_mode
 from ..mavlink.setpoints import Encode, override, position, rover_attitude, rover_position, velocity
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
-from ..options import EnvOptionError, unknown
-from .in_process import MAX_STATES, InProcessVehicles
+from ..options import EnvOptionError
+from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
@@ -90,8 +90,7 @@ class FleetVehicles(InProcessVehicles):
         self._is_open = True
         self._bind()
         shell = self.fleet.shell
-        if shell.unknown_parameters:
-            raise unknown("parameter", shell.unknown_parameters[0], shell.firmware.table.names())
+        check_parameters(shell)
         self._core = shell.core
         for end in self._views:
             end.system = shell.bridge.system
