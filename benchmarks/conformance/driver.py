@@ -28,12 +28,12 @@ def loopback_up() -> None:
             return
 
 
-def describe(error: BaseException | None, module: str) -> tuple[str, str]:
-    """(what, where): the error's text on one line, and the deepest line of the vehicle's tests that it went through."""
+def describe(error: BaseException | None, test: str) -> tuple[str, str]:
+    """(what, where): the error's text on one line, and the line of the test itself that it came through."""
     if error is None:
         return "", ""
-    lines = [f for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).stem == module]
-    where = f"{module}.py:{lines[-1].lineno}" if lines else ""
+    lines = [f for f in traceback.extract_tb(error.__traceback__) if f.name == test]
+    where = f"{Path(lines[0].filename).name}:{lines[0].lineno}" if lines else ""
     return f"{type(error).__name__}: {' '.join(str(error).split())}", where
 
 
@@ -47,10 +47,10 @@ def run(vehicle: str, test: str, speedup: int, binary: str, checkout: str) -> di
         passed = bool(suite.autotest(tests=[getattr(suite, test)], allow_skips=False))
     except Exception as error:
         traceback.print_exc()
-        what, where = describe(error, module)
+        what, where = describe(error, test)
         return {"passed": False, "cause": what, "where": where}
     failed = suite.fail_list
-    what, where = describe(failed[0].exception, module) if failed else ("", "")
+    what, where = describe(failed[0].exception, test) if failed else ("", "")
     return {"passed": passed, "cause": what, "where": where}
 
 
