@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m benchmarks.fleets``: vehicles behind MAVLink in one process, alone and by the thousand.
+"""``python -m benchmarks.fleets``: vehicles in one process, alone and by the thousand.
 
-Each vehicle gets a velocity set-point and sends position and attitude ten times a simulated second. Wall time, because
-threads share the work; the repeats of all sizes take turns, and each figure is a median.
+Each copter and rover gets a velocity set-point by MAVLink and sends position and attitude ten times a simulated second;
+each Turtlebot gets its speeds directly and scans 36 beams in circuit2 after 0.6 s. Wall time, because threads share the
+work; the repeats of all sizes take turns, and each figure is a median.
 """
 
 from __future__ import annotations
@@ -22,11 +23,13 @@ from sitl.client import Client
 from sitl.fleet import Fleet
 from sitl.missions.pilot import VELOCITY_ONLY
 from sitl.simulation import Simulation, Snapshot, load_core
+from sitl.turtlebots.native import Turtlebots
 from sitl.vehicle.kinds import KINDS
 
 FRAMES = {"copter": "erle_copter", "rover": "erle_rover"}
 SIZES = (1, 16, 256, 1024, 4096)
 STEP_S = 0.1
+TURTLEBOT_STEP_S = 0.6
 
 
 def under_way(kind: str) -> Snapshot:
@@ -63,6 +66,22 @@ def flying(kind: str, start: Snapshot, count: int, threads: int) -> Callable[[],
                 fleet.send(index, frame)
             fleet.advance(STEP_S)
             fleet.drop_telemetry()
+        return steps * count / (time.perf_counter() - begun)
+
+    run()
+    return run
+
+
+def driving(count: int) -> Callable[[], float]:
+    """The same with Turtlebots."""
+    robots = Turtlebots("circuit2", count)
+    robots.commands[:] = 0.05, 0.3  # circles on the spot, free of walls
+    steps = max(8192 // count, 2)
+
+    def run() -> float:
+        begun = time.perf_counter()
+        for _ in range(steps):
+            robots.advance(TURTLEBOT_STEP_S)
         return steps * count / (time.perf_counter() - begun)
 
     run()
@@ -112,21 +131,24 @@ def main() -> None:
     starts = {kind: under_way(kind) for kind in FRAMES}
     for kind, start in starts.items():  # before other arrays are there
         costs(kind, start, min(1024, options.largest))
-    rows: dict[str, Callable[[], float]] = {"CartPole-v1": cartpole}
+    rows: dict[str, tuple[Callable[[], float], float]] = {"CartPole-v1": (cartpole, 0.02)}
     for kind, start in starts.items():
         for size in (s for s in SIZES if s <= options.largest):
             for threads in sorted({1, every if size >= 256 else 1}):
-                rows[f"{kind}, {size} vehicles, {threads} threads"] = flying(kind, start, size, threads)
+                rows[f"{kind}, {size} vehicles, {threads} thread(s)"] = (flying(kind, start, size, threads), STEP_S)
+    for size in (s for s in SIZES if s <= options.largest):
+        rows[f"turtlebot, {size} vehicles, 1 thread(s)"] = (driving(size), TURTLEBOT_STEP_S)
     found: dict[str, list[float]] = {name: [] for name in rows}
     for _ in range(options.repeats):
-        for name, run in rows.items():
+        for name, (run, _) in rows.items():
             found[name].append(run())
     base = statistics.median(found["CartPole-v1"])
-    print(f"{f'wall time, median of {options.repeats}':36s} {'steps/s':>10s} {'x real time':>12s} CartPole = 1")
+    title = f"wall time, median of {options.repeats}"
+    print(f"{title:36s} {'steps/s':>10s} {'x real time':>12s} CartPole = 1   steps/s, all")
     for name, values in found.items():
         median = statistics.median(values)
-        print(f"{name:36s} {median:10,.0f} {median * STEP_S:11,.0f}x {median / base:8.2f}")
-    print(f"{'spread, lowest .. highest':36s}", {n: f"{min(v):,.0f} .. {max(v):,.0f}" for n, v in found.items()})
+        factor, ratio = median * rows[name][1], median / base
+        print(f"{name:36s} {median:10,.0f} {factor:11,.0f}x {ratio:12.2f}   {min(values):,.0f} .. {max(values):,.0f}")
 
 
 if __name__ == "__main__":

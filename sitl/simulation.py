@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import Any, Protocol, Unpack
 
@@ -15,6 +15,7 @@ from .autopilot import boot
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
+from .autopilot.params.table import Values
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.services.statustext import StatusTextService
 from .core.compile import Progress
@@ -64,6 +65,8 @@ class Snapshot:
     """What it is simulated by."""
     plant: bytes = b""
     """What that holds besides the record."""
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    """Parameters without effect, as far as they were set: they are not in the record."""
 
 
 class Simulation:
@@ -109,14 +112,13 @@ class Simulation:
         """Simulated time that passed before the last reboot [us]."""
         self._reboot = False
         self.observers: list[Observer] = []
-        params_record = self.v.autopilot.params
-        table = self.firmware.table
-        table.set_defaults(params_record)
+        self.firmware.table.set_defaults(self.v.autopilot.params)
+        self.parameters = Values(self.firmware.table, self.v.autopilot.params)
         label = f"airframe {self.airframe.name}"
-        unknown = files.apply(table, params_record, self.airframe.parameters, label)
+        unknown = files.apply(self.parameters, self.airframe.parameters, label)
         if unknown:
             raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
-        self.unknown_parameters = files.apply(table, params_record, scenario.params or {}, "parameters")
+        self.unknown_parameters = files.apply(self.parameters, scenario.params or {})
         """Names in ``params`` that this firmware does not have."""
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
@@ -239,6 +241,7 @@ class Simulation:
             self.world.name if self.world is not None else None,
             self.physics,
             self.plant.snapshot(),
+            self.parameters.kept,
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -265,6 +268,7 @@ class Simulation:
             raise
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
+        self.parameters.kept = snapshot.parameters
         self.bridge.restore(snapshot.bridge)
 
     def _physics_restarted(self) -> None:

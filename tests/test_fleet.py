@@ -116,6 +116,7 @@ def test_what_needs_the_shell(kind: str, under_way: Snapshot, fleet: Fleet) -> N
         (2, 0): velocity(1.0) + command(512, 33) + velocity(0.5),
         (3, 1): says("PARAM_SET", target_system=1, param_id=b"WP_SPD" if kind == "copter" else b"WP_SPEED",
                      param_value=3.0, param_type=9),
+        (3, 2): says("PARAM_SET", target_system=1, param_id=b"FRSKY_OPTIONS", param_value=3.0, param_type=9),
         (4, 2): command(20),
         (4, 3): says("MISSION_COUNT", target_system=1, target_component=1, count=1),
         (6, 3): says("PARAM_REQUEST_LIST", target_system=1, target_component=1),
@@ -130,6 +131,8 @@ def test_what_needs_the_shell(kind: str, under_way: Snapshot, fleet: Fleet) -> N
     numbers = [int(record["autopilot"]["modes"]["number"]) for record in fleet.records]
     assert numbers[1] != numbers[2]
     assert int(fleet.records["time_us"][0]) < int(fleet.records["time_us"][1])  # it was rebooted
+    kept = [fleet.simulation(k).parameters["FRSKY_OPTIONS"] for k in range(N)]
+    assert kept == [s.parameters["FRSKY_OPTIONS"] for s in singles.simulations] == [0.0, 0.0, 3.0, 0.0]
 
 
 def test_more_bytes_than_a_port_holds(kind: str, under_way: Snapshot, fleet: Fleet) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import MissionItem
 from ..autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from ..autopilot.params.table import Values
 from ..physics.carried import Carried
 
 
@@ -29,6 +30,8 @@ class Vehicle(Protocol):
     """Record view of ``fleet[index]`` with attribute access."""
     firmware: Firmware
     """What flies it: its parameters, modes and name."""
+    parameters: Values
+    """The values of its parameters."""
 
     @property
     def time_us(self) -> int:
@@ -58,7 +61,10 @@ Note = Text | ItemReached | CurrentChanged
 
 
 class Autopilot(Protocol):
-    """What the services call."""
+    """What the services call; False: refused.
+
+    Speeds [m/s]; ``lat``, ``lon`` [1e-7 deg]; ``alt`` [m] above sea level; places in NED from the origin [m].
+    """
 
     def armed(self) -> bool: ...
     def mode(self) -> int: ...

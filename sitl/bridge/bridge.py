@@ -144,6 +144,8 @@ class Bridge:
             table = self.vehicle.firmware.table
             if name not in table:
                 return None
+            if not table[name].has_effect:
+                return self.vehicle.parameters[name]
             read = self._parameters[name] = self.reader.field(f"autopilot.params.{table[name].path}")
         return float(read())
 

@@ -11,6 +11,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega
 
 from ..autopilot.mission.item import COMMANDS as MISSION_COMMANDS
+from ..autopilot.params.table import Values
 from ..vehicle.kind import Kind
 from ..vehicle.kinds import BUILT_IN, DEFAULT, KINDS
 from .bridge import Bridge
@@ -82,6 +83,7 @@ class _Nobody:
         self.firmware = kind.firmware
         self.fleet = kind.record.fleet(1)
         self.v = kind.record.of(self.fleet, 0)
+        self.parameters = Values(kind.firmware.table, self.v.autopilot.params)
 
 
 def handled(name: str = DEFAULT) -> dict[str, type]:

@@ -121,10 +121,11 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
     scenario = scenario_of(options, values)
     with CompileProgress() as progress:
         simulation = Simulation(scenario, progress=progress)
-    if simulation.unknown_parameters:
-        names = simulation.unknown_parameters
-        shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")
-        print(f"sitl: {len(names)} parameters of the files are not in this firmware: {shown}", file=sys.stderr)
+    unknown, idle = simulation.unknown_parameters, list(simulation.parameters.kept)
+    for names, what in ((unknown, "are not in this firmware"), (idle, "have no effect here")):
+        if names:
+            shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")
+            print(f"sitl: {len(names)} parameters of the files {what}: {shown}", file=sys.stderr)
     return simulation
 
 

@@ -7,6 +7,7 @@ import argparse
 
 from .. import vehicles
 from ..autopilot.params import docs, files
+from ..autopilot.params.table import Values
 from ..vehicle.kinds import DEFAULT, KINDS
 from .options import check_kind
 
@@ -39,7 +40,8 @@ def params(options: argparse.Namespace) -> int:
 
     holder = table.record()
     table.set_defaults(holder)
+    values = Values(table, holder)
     if airframe:
-        files.apply(table, holder, airframe.parameters, f"airframe {airframe.name}")
-    print(files.dump(table, holder), end="")
+        files.apply(values, airframe.parameters, f"airframe {airframe.name}")
+    print(files.dump(values), end="")
     return 0

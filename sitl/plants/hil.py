@@ -74,9 +74,8 @@ class HilPlant(Plant):
     def _world(self) -> dict[str, float]:
         """The parameters of the world."""
         params = self.vehicle.v.autopilot.params
-        return {
-            name: float(params[name]) for name in self.vehicle.kind.firmware.table.names() if name.startswith(PREFIX)
-        }
+        table = self.vehicle.kind.firmware.table
+        return {p.name: float(params[p.name]) for p in table.with_effect if p.name.startswith(PREFIX)}
 
     # ------------------------------------------------------------------ going on
 

@@ -9,6 +9,7 @@ from typing import Unpack
 
 from ..autopilot import boot
 from ..autopilot.params import files
+from ..autopilot.params.table import Values
 from ..core import rng
 from ..core.compile import Progress
 from ..core.record_reader import RecordReader
@@ -202,8 +203,9 @@ def stand_alone(
     fleet = kind.record.fleet(1)
     v, table = kind.record.of(fleet, 0), kind.firmware.table
     table.set_defaults(v.autopilot.params)
-    files.apply(table, v.autopilot.params, airframe.parameters, f"airframe {airframe.name}")
-    files.apply(table, v.autopilot.params, scenario.params or {}, "parameters")
+    values = Values(table, v.autopilot.params)
+    files.apply(values, airframe.parameters, f"airframe {airframe.name}")
+    files.apply(values, scenario.params or {})
     vehicle = SimulatedVehicle(kind, airframe, fleet, 0, v, RecordReader(fleet, 0), lambda: None)
     plant = LocalPlant(vehicle, scenario, None, progress)
     restart(plant)

@@ -12,7 +12,7 @@ import socket
 import time
 from collections.abc import Callable
 
-from ..autopilot.params.table import stored
+from ..autopilot.params.parameter import stored
 from ..bridge.hil.physics_end import PhysicsEnd, text_frame
 from ..bridge.hil.protocol import BASE_PORT
 from ..bridge.links import LOCAL, LinkAddressError
@@ -71,6 +71,8 @@ class SimulatedPlant:
         if not name.startswith(PREFIX) or name not in self._table:
             return None
         parameter = self._table[name]
+        if not parameter.has_effect:
+            return None
         if parameter.refusal(value) is None:
             self._params[name] = stored(parameter, value)
             if int(self.v.tick) == 0:

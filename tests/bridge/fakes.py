@@ -14,6 +14,7 @@ from sitl.autopilot.copter.firmware import FIRMWARE as COPTER
 from sitl.autopilot.firmware import Firmware
 from sitl.autopilot.mission.notes import CurrentChanged, Text
 from sitl.autopilot.mission.validate import check_all
+from sitl.autopilot.params.table import Values
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
@@ -41,6 +42,7 @@ class FakeVehicle:
         self.reboots = 0
         self.before_boot_us = 0
         self.firmware.table.set_defaults(self.v.autopilot.params)
+        self.parameters = Values(self.firmware.table, self.v.autopilot.params)
         self.v.autopilot.arming.landed = 1
 
     @property

@@ -12,6 +12,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pymavlink.mavftp import MAVFTP
 
 from sitl.autopilot.copter.parameters import TABLE
+from sitl.bridge.services.parameters import TOLD
 from tests.bridge.fakes import Bench, Client
 
 
@@ -23,13 +24,19 @@ def write(bench: Bench, name: str, value: float, kind: int = 9) -> list[object]:
     return bench.ask(mavlink.MAVLink_param_set_message(1, 1, name.encode(), value, kind))
 
 
+def names(bench: Bench) -> list[str]:
+    """Those in the list."""
+    return [p.name for p in bench.vehicle.parameters.listed()]
+
+
 def test_read_by_name_and_index(bench: Bench) -> None:
     (answer,) = read(bench, "MAV_GCS_SYSID")
     assert (answer.param_id, answer.param_value, answer.param_type) == ("MAV_GCS_SYSID", 255.0, 4)
-    assert (answer.param_index, answer.param_count) == (65535, len(TABLE))
-    (answer,) = read(bench, index=TABLE.names().index("MAV_GCS_SYSID"))
-    assert (answer.param_id, answer.param_index) == ("MAV_GCS_SYSID", TABLE.names().index("MAV_GCS_SYSID"))
-    assert read(bench, "NO_SUCH") == read(bench, index=len(TABLE)) == read(bench, index=32767) == []
+    listed = names(bench)
+    assert (answer.param_index, answer.param_count) == (65535, len(listed))
+    (answer,) = read(bench, index=listed.index("MAV_GCS_SYSID"))
+    assert (answer.param_id, answer.param_index) == ("MAV_GCS_SYSID", listed.index("MAV_GCS_SYSID"))
+    assert read(bench, "NO_SUCH") == read(bench, index=len(listed)) == read(bench, index=32767) == []
 
 
 def test_set_truncates_integers_and_tells_everyone(bench: Bench) -> None:
@@ -42,6 +49,14 @@ def test_set_truncates_integers_and_tells_everyone(bench: Bench) -> None:
     assert write(bench, "NO_SUCH", 1.0) == []
 
 
+@pytest.mark.parametrize(("value", "kept"), [(300, 127), (-300, -128), (33.7, 33), (-33.7, -33)])
+def test_integers_stop_at_the_ends_of_their_type(bench: Bench, value: float, kept: int) -> None:
+    """As a real ArduPilot answers for an INT8; one with a range of its own is refused outside of it."""
+    assert write(bench, "FRSKY_OPTIONS", value)[-1].param_value == kept
+    assert write(bench, "DISARM_DELAY", value)[0].get_type() == ("PARAM_VALUE" if kept >= 0 else "STATUSTEXT")
+    assert max(kept, 10 if kept < 0 else 0) == bench.vehicle.v.autopilot.params.DISARM_DELAY
+
+
 @pytest.mark.parametrize("value", [1e9, -1e9, math.nan, math.inf, -math.inf])
 def test_what_is_out_of_range_is_refused_with_the_old_value(bench: Bench, value: float) -> None:
     before = bench.vehicle.fleet.tobytes()
@@ -49,6 +64,35 @@ def test_what_is_out_of_range_is_refused_with_the_old_value(bench: Bench, value:
     assert bench.vehicle.fleet.tobytes() == before
     assert [m.param_value for m in answers if m.get_type() == "PARAM_VALUE"] == [255.0]
     assert any("MAV_GCS_SYSID" in m.text for m in answers if m.get_type() == "STATUSTEXT")
+
+
+def test_what_has_no_effect_is_kept_and_told_once(bench: Bench) -> None:
+    before = bench.vehicle.fleet.tobytes()
+    answers = write(bench, "FRSKY_OPTIONS", 3.7)
+    assert [m.param_value for m in answers if m.get_type() == "PARAM_VALUE"] == [3.0], "it is an integer"
+    assert [m.text for m in answers if m.get_type() == "STATUSTEXT"] == [
+        "FRSKY_OPTIONS has no effect in this simulator"
+    ]
+    (answer,) = write(bench, "FRSKY_OPTIONS", 5.0)
+    assert (answer.param_value, answer.param_type) == (5.0, 2)
+    assert [m.param_value for m in read(bench, "FRSKY_OPTIONS")] == [5.0]
+    assert bench.vehicle.fleet.tobytes() == before
+
+
+def test_a_client_that_sets_many_without_effect_is_not_flooded(bench: Bench) -> None:
+    said = []
+    for name in [p.name for p in TABLE if not p.has_effect][: TOLD + 5]:
+        said += [m.text for m in write(bench, name, 1.0) if m.get_type() == "STATUSTEXT"]
+    assert len(said) == TOLD + 1 and said[-1] == "Others that are set have no effect either"
+
+
+def test_a_group_is_in_the_list_while_it_is_switched_on(bench: Bench) -> None:
+    count = len(names(bench))
+    (answer,) = read(bench, "BATT2_CAPACITY")
+    assert (answer.param_value, answer.param_count) == (3300.0, count) and "BATT2_CAPACITY" not in names(bench)
+    answer = write(bench, "BATT2_MONITOR", 3.0)[-1]
+    assert answer.param_count == len(names(bench)) > count and "BATT2_CAPACITY" in names(bench)
+    assert [m.param_id for m in read(bench, index=names(bench).index("BATT2_CAPACITY"))] == ["BATT2_CAPACITY"]
 
 
 def test_a_new_system_id_holds_at_once(bench: Bench) -> None:
@@ -82,9 +126,9 @@ def test_the_whole_list_even_over_a_lossy_link(bench: Bench, drop: float) -> Non
     rng = random.Random(1)
     client = bench.connect(drop_to_client=lambda _: rng.random() < drop, drop_to_vehicle=lambda _: rng.random() < drop)
     values = fetch_all(bench, client)
-    assert values.keys() == set(TABLE.names())
+    assert values.keys() == set(names(bench)) < set(TABLE.names())
     for name, value in values.items():
-        assert value == pytest.approx(bench.vehicle.v.autopilot.params[name], rel=1e-6)
+        assert value == pytest.approx(bench.vehicle.parameters[name], rel=1e-6)
 
 
 def test_the_list_is_paced(bench: Bench) -> None:
@@ -134,11 +178,13 @@ def fetch(bench: Bench, path: bytes) -> bytes:
 @pytest.mark.parametrize("query", [b"", b"?withdefaults=1"])
 def test_all_parameters(bench: Bench, query: bytes) -> None:
     bench.vehicle.v.autopilot.params.MAV_GCS_SYSID = 250.0
+    bench.vehicle.parameters["FRSKY_OPTIONS"] = 3.0
     decoded = MAVFTP.ftp_param_decode(fetch(bench, b"@PARAM/param.pck" + query))
     values = {name.decode(): value for name, value, _ in decoded.params}
-    assert len(values) == len(TABLE)
-    for p in TABLE:
-        assert values[p.name] == pytest.approx(bench.vehicle.v.autopilot.params[p.name], rel=1e-6)
+    assert list(values) == names(bench)
+    for name, value in values.items():
+        assert value == pytest.approx(bench.vehicle.parameters[name], rel=1e-6)
+    assert values["FRSKY_OPTIONS"] == 3.0
     if query:
         defaults = {name.decode(): value for name, value, _ in decoded.defaults}
         assert defaults["MAV_GCS_SYSID"] == 255.0 and values["MAV_GCS_SYSID"] == 250.0

@@ -115,7 +115,9 @@ def test_parameters(copter: Client) -> None:
     with pytest.raises(UnknownNameError, match="no parameter 'WPNAV_SPED'; near to it: WPNAV_SPEED"):
         copter.params["WPNAV_SPED"] = 1
     everything = copter.params.read_all()
-    assert set(everything) == set(copter.simulation.firmware.table.names()) and everything["WPNAV_SPEED"] == 321
+    assert (
+        set(everything) == {p.name for p in copter.simulation.parameters.listed()} and everything["WPNAV_SPEED"] == 321
+    )
 
 
 def test_a_mission(copter: Client) -> None:

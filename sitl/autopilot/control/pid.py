@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """PID controller with filters on target, error and derivative, feed-forward and a limited integrator.
 
+Target and measurement share a unit u, e.g. rad/s; the gains give the output's:
+P [output/u], I [output/(u s)], D [output s/u].
 An input that is not finite leaves the state as it is and gives zero output.
 """
 

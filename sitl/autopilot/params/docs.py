@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from .files import format_value
-from .table import Table, stored
+from .parameter import stored
+from .table import Table
 
 
 def page(firmware: str, table: Table) -> str:
@@ -17,11 +18,21 @@ def page(firmware: str, table: Table) -> str:
         "the range is what the firmware accepts.",
     ]
     section = ""
-    for p in table:
+    for p in table.with_effect:
         prefix = p.name.split("_", 1)[0]
         if prefix != section:
             section = prefix
             lines += ["", f"## {prefix}", "", "| name | default | range | unit | meaning |", "|---|---|---|---|---|"]
         default = format_value(p, stored(p, p.default))
         lines.append(f"| {p.name} | {default} | {p.low:g} .. {p.high:g} | {p.unit} | {p.doc} |")
+    others = [p for p in table if not p.has_effect]
+    if others:
+        lines += [
+            "", "## Without effect", "",
+            "ArduPilot's other parameters have no effect in this simulator. They are kept, sent, saved and loaded; who",
+            "sets one is told so. Those of a group that is switched off are not in the list that clients get; they",
+            "are read and set by name all the same.",
+            "", "| name | default | type | in the list with |", "|---|---|---|---|",
+        ]  # fmt: skip
+        lines += [f"| {p.name} | {format_value(p, stored(p, p.default))} | {p.kind} | {p.shown_by} |" for p in others]
     return "\n".join(lines) + "\n"

@@ -9,11 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from ...errors import SitlError
-from .parameter import FLOAT, Parameter
-from .table import Table, stored
+from .parameter import FLOAT, Parameter, stored
+from .table import Values
 
 
 class ParameterError(SitlError, ValueError):
@@ -50,36 +49,41 @@ def load(path: str | Path) -> dict[str, float]:
         raise ParameterError(f"parameter file {str(path)!r} is not text: {error}") from None
 
 
-def apply(table: Table, params: Any, values: Mapping[str, float], source: str = "parameters") -> list[str]:
-    """Set all values in a params record, or none of them; returns the names that this firmware does not have.
+def apply(values: Values, given: Mapping[str, float], source: str = "parameters") -> list[str]:
+    """Set a vehicle's parameters to all values given, or none of them; returns the names that its firmware lacks.
 
-    Files of a whole ArduPilot vehicle name a thousand parameters of drivers that do not exist here; they are
-    returned, so that the caller can say so.
+    Files of another version of ArduPilot have names that this one does not know; they are returned, so that the
+    caller can say so.
 
     Raises:
         ParameterError: a known parameter's value is refused; nothing was set.
     """
-    refused = [text for name, value in values.items() if name in table and (text := table[name].refusal(value))]
+    known = {name: value for name, value in given.items() if name in values.table}
+    refused = [text for name, value in known.items() if (text := values.table[name].refusal(value))]
     if refused:
         raise ParameterError(f"{source}: " + "; ".join(refused))
-    for name, value in values.items():
-        if name in table:
-            params[name] = stored(table[name], value)
-    return [name for name in values if name not in table]
+    values.update(known)
+    return [name for name in given if name not in known]
 
 
 def format_value(parameter: Parameter, value: float) -> str:
-    """A value as a .parm file shows it: whole for integers, else the shortest text that reads back the same."""
+    """A value as a .parm file shows it: whole for integers, else the shortest text that is stored as the same."""
     if parameter.kind != FLOAT:
         return str(int(value))
-    return next(text for digits in range(6, 18) if float(text := f"{value:.{digits}g}") == value or digits == 17)
+    texts = [f"{value:.{digits}g}" for digits in range(6, 18)]
+    return next((text for text in texts if stored(parameter, float(text)) == value), texts[-1])
 
 
-def dump(table: Table, params: Any) -> str:
-    """A params record as .parm text, in the table's order."""
-    return "".join(f"{p.name},{format_value(p, float(params[p.name]))}\n" for p in table)
+def dump(values: Values) -> str:
+    """A vehicle's parameters as .parm text, in the table's order.
+
+    Those are left out that have no effect, were not set, and whose group is switched off.
+    """
+    shown = {p.name for p in values.listed()} | values.kept.keys()
+    chosen = (p for p in values.table if p.has_effect or p.name in shown)
+    return "".join(f"{p.name},{format_value(p, values[p.name])}\n" for p in chosen)
 
 
-def save(table: Table, params: Any, path: str | Path) -> None:
-    """Write all parameters to a .parm file."""
-    Path(path).write_text(dump(table, params), encoding="utf-8")
+def save(values: Values, path: str | Path) -> None:
+    """Write a vehicle's parameters to a .parm file."""
+    Path(path).write_text(dump(values), encoding="utf-8")

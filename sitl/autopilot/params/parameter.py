@@ -22,11 +22,14 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
 from ...core.records import Record, array, noted, repeat
 
 FLOAT, INT8, INT16, INT32 = "float", "int8", "int16", "int32"
 
 _INTEGER_LIMITS = {INT8: 127, INT16: 32767, INT32: 2**31 - 1}
+_FLOAT_LIMIT = float(np.finfo(np.float32).max)
 
 
 class Parameter(NamedTuple):
@@ -37,31 +40,40 @@ class Parameter(NamedTuple):
 
     name: str
     default: float
-    low: float
-    high: float
-    unit: str
+    low: float = -math.inf
+    high: float = math.inf
+    unit: str = ""
     """ArduPilot's unit of the value as the user sees it ("cm/s", "cdeg", "s", "" for none)."""
-    doc: str
+    doc: str = ""
     """One line, our own words."""
     kind: str = FLOAT
     read_only: bool = False
     """The firmware's own: users read it."""
     path: str = ""
     """Where it lies in the record of parameters: "ATC.RAT_RLL.P", "RC[0].MIN"."""
+    has_effect: bool = True
+    """Whether anything reads it; the others are not in the record."""
+    shown_by: str = ""
+    """The parameter that must not be 0 for this one to be in the list, or "NAME=VALUE"; "": it always is."""
 
     def refusal(self, value: float) -> str | None:
         """Why ``value`` cannot be set, or None when it can."""
         if not isinstance(value, Real):
             return f"{self.name}: {value!r} is not a number"
-        if not math.isfinite(value):
+        if not (math.isfinite(value) and abs(value) <= _FLOAT_LIMIT):
             return f"{self.name}: {value} is not a finite number"
-        if not self.low <= value <= self.high:
+        if not self.low <= stored(self, value) <= self.high:
             unit = f" {self.unit}" if self.unit else ""
             return f"{self.name}: {value:g} is outside {self.low:g} .. {self.high:g}{unit}"
-        limit = _INTEGER_LIMITS.get(self.kind)
-        if limit is not None and abs(value) > limit + 1:
-            return f"{self.name}: {value:g} does not fit {self.kind}"
         return None
+
+
+def stored(parameter: Parameter, value: float) -> float:
+    """``value`` as the firmware keeps it: integers truncate and stop at their type's ends, floats are float32."""
+    if parameter.kind == FLOAT:
+        return float(np.float32(value))
+    limit = _INTEGER_LIMITS[parameter.kind]
+    return float(int(min(max(value, -limit - 1), limit)))
 
 
 class ParameterGroup(Record):

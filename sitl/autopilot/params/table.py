@@ -1,33 +1,51 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A firmware's parameters in one table, made from its record: the MAVLink service, .parm files and the docs page."""
+"""A firmware's parameters in one table: the MAVLink service, .parm files, logs and the docs page.
+
+Those that have an effect come from the firmware's record; all others of a real ArduPilot from a table that was asked
+from one (``benchmarks.ardupilot_parameters``): they are kept, sent and saved, and nothing reads them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import csv
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from .parameter import FLOAT, Parameter, rows
+from .parameter import Parameter, rows, stored
 from .parameters import Parameters
+
+_KEPT_LISTS = 64
 
 
 class Table:
     """Parameters by position and by name.
 
     Args:
-        record: its fields are in the order of the wire.
+        record: those that have an effect.
+        names: file of all parameters of a real ArduPilot, in the order of its list; None: there are no others.
 
     Raises:
         ValueError: a name is there twice.
     """
 
-    def __init__(self, record: type[Parameters]) -> None:
+    def __init__(self, record: type[Parameters], names: Path | None = None) -> None:
         self.record = record
-        self.parameters = tuple(rows(record))
-        self._by_name = {p.name: p for p in self.parameters}
-        if len(self._by_name) != len(self.parameters):
-            names = [p.name for p in self.parameters]
-            raise ValueError(f"parameters defined twice: {sorted({n for n in names if names.count(n) > 1})}")
+        self.with_effect = tuple(rows(record))
+        """In the order of the record."""
+        ours = {p.name: p for p in self.with_effect}
+        if len(ours) != len(self.with_effect):
+            found = [p.name for p in self.with_effect]
+            raise ValueError(f"parameters defined twice: {sorted({n for n in found if found.count(n) > 1})}")
+        theirs = {} if names is None else {p.name: p for p in _read(names)}
+        self._by_name = {
+            name: ours[name]._replace(shown_by=p.shown_by) if name in ours else p for name, p in theirs.items()
+        }
+        self._by_name.update((name, p) for name, p in ours.items() if name not in theirs)
+        self.parameters = tuple(self._by_name.values())
+        """All, in the order of the wire."""
+        self._switches = tuple(sorted({p.shown_by for p in self.parameters if p.shown_by}))
+        self._lists: dict[tuple[bool, ...], tuple[Parameter, ...]] = {}
 
     def __iter__(self) -> Iterator[Parameter]:
         return iter(self.parameters)
@@ -41,20 +59,84 @@ class Table:
     def __getitem__(self, name: str) -> Parameter:
         return self._by_name[name]
 
-    def at(self, index: int) -> Parameter:
-        """The parameter at a position on the wire."""
-        return self.parameters[index]
-
     def names(self) -> tuple[str, ...]:
         """All names, in the order of the wire."""
         return tuple(self._by_name)
 
     def set_defaults(self, params: Parameters) -> None:
         """Set every field of a params record to its default."""
-        for p in self.parameters:
+        for p in self.with_effect:
             params[p.name] = stored(p, p.default)
 
+    def listed(self, values: Values) -> tuple[Parameter, ...]:
+        """Those in the list that clients get: groups that are switched off (BATT2_ while BATT2_MONITOR is 0) are not.
 
-def stored(parameter: Parameter, value: float) -> float:
-    """``value`` as the firmware keeps it: integers truncate, floats round to float32 as on the wire."""
-    return float(np.float32(value)) if parameter.kind == FLOAT else float(int(value))
+        The others can be read and set by their names all the same.
+        """
+        states = tuple([self._is_on(values, switch) for switch in self._switches])
+        found = self._lists.get(states)
+        if found is None:
+            if len(self._lists) >= _KEPT_LISTS:
+                self._lists.clear()
+            on = dict(zip(self._switches, states, strict=True))
+            found = self._lists[states] = tuple([p for p in self.parameters if self._is_shown(p, on)])
+        return found
+
+    @staticmethod
+    def _is_on(values: Values, switch: str) -> bool:
+        name, _, wanted = switch.partition("=")
+        return values[name] == float(wanted) if wanted else values[name] != 0.0
+
+    def _is_shown(self, parameter: Parameter, on: Mapping[str, bool]) -> bool:
+        switch = parameter.shown_by
+        return not switch or (on[switch] and self._is_shown(self[switch.partition("=")[0]], on))
+
+
+class Values:
+    """The values of all parameters of one vehicle, by name.
+
+    Args:
+        table: of its firmware.
+        record: holds those with an effect.
+    """
+
+    def __init__(self, table: Table, record: Any) -> None:
+        self.table, self._record = table, record
+        self.kept: Mapping[str, float] = {}
+        """Those without effect, as far as they were set. A change replaces it: snapshots share it."""
+
+    def __getitem__(self, name: str) -> float:
+        parameter = self.table[name]
+        if parameter.has_effect:
+            return float(self._record[name])
+        value = self.kept.get(name)
+        return stored(parameter, parameter.default) if value is None else value
+
+    def __setitem__(self, name: str, value: float) -> None:
+        """Set one, as the firmware keeps it."""
+        self.update({name: value})
+
+    def update(self, values: Mapping[str, float]) -> None:
+        """Set several."""
+        kept: dict[str, float] = {}
+        for name, value in values.items():
+            parameter = self.table[name]
+            if parameter.has_effect:
+                self._record[name] = stored(parameter, value)
+            else:
+                kept[name] = stored(parameter, value)
+        if kept:
+            self.kept = {**self.kept, **kept}
+
+    def listed(self) -> tuple[Parameter, ...]:
+        """Those in the list that clients get, in its order."""
+        return self.table.listed(self)
+
+
+def _read(names: Path) -> Iterator[Parameter]:
+    """Parameters without effect, of a file of ``benchmarks.ardupilot_parameters``."""
+    with names.open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            yield Parameter(
+                row["name"], float(row["default"]), kind=row["type"], has_effect=False, shown_by=row["shown_by"]
+            )

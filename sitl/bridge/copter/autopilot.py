@@ -67,6 +67,7 @@ class CopterAutopilot(BaseAutopilot):
         return int(guided_setpoints.set_position(self._v, Vec3(*place), guided_setpoints.NO_YAW)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
+        """SPEED_TYPE of MAVLink, ``speed`` [m/s]; refused in modes that do not navigate."""
         kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
         if not table.requires_position(self.mode()):
             return False
@@ -76,6 +77,7 @@ class CopterAutopilot(BaseAutopilot):
         return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
+        """Turn to ``angle`` [rad] at ``rate`` [rad/s]; ``direction`` 1 clockwise, -1 the other way, 0 the shorter."""
         return commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:

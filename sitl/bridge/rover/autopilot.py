@@ -58,6 +58,7 @@ class RoverAutopilot(BaseAutopilot):
         return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
 
     def guided_heading(self, heading: float, speed: float) -> bool:
+        """Drive at a heading [rad] and a speed [m/s]."""
         return int(guided_setpoints.set_heading_and_speed(self._modes, self._v.time_us, heading, speed)) == 0
 
     def guided_heading_change(self, change: float, speed: float) -> bool:
@@ -67,7 +68,7 @@ class RoverAutopilot(BaseAutopilot):
         return int(code) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
-        """Airspeed (0) is ground speed (1); there are no others."""
+        """``speed`` [m/s]; airspeed (0) is ground speed (1), there are no others."""
         return bool(set_mode.change_speed(self._v, speed))
 
     def set_reversed(self, backward: bool) -> None:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
-from .parameters import ParameterService, pack_parameters
+from .parameters import pack_parameters
 from .service import Handler, Sender, Service
 
 KIND = message("FILE_TRANSFER_PROTOCOL")
@@ -106,9 +106,9 @@ class FtpService(Service):
         if path.lstrip("/") != PARAMETERS:
             self._refuse(request, FILE_NOT_FOUND)
             return
-        value, table = self.bridge.get(ParameterService).value, self.bridge.vehicle.firmware.table
+        values = self.bridge.vehicle.parameters
         packed = pack_parameters(
-            [(p, value(p.name)) for p in table], with_defaults="withdefaults=1" in query.split("&")
+            [(p, values[p.name]) for p in values.listed()], with_defaults="withdefaults=1" in query.split("&")
         )
         self._sessions[request.channel] = _Session(packed, request.sender, request.session)
         self._reply(request, struct.pack("<I", len(packed)))

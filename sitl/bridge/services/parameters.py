@@ -16,12 +16,11 @@ import struct
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter
-from ...autopilot.params.table import stored
+from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter, stored
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
-from .service import WARNING, Handler, Sender, Service
+from .service import INFO, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
 from .streams import StreamService
 
@@ -32,6 +31,8 @@ NO_INDEX = 65535
 LIST_EVERY_US = 10_000
 LIST_AT_ONCE = 10
 """A list goes out at ten parameters in 10 ms of simulated time."""
+TOLD = 10
+"""So many parameters without effect are told of, each at its first change: a client may set a thousand."""
 
 
 class ParameterService(Service):
@@ -39,8 +40,9 @@ class ParameterService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._table = bridge.vehicle.firmware.table
+        self._table, self._values = bridge.vehicle.firmware.table, bridge.vehicle.parameters
         self._lists: dict[Channel, int] = {}
+        self._told = 0
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -54,11 +56,14 @@ class ParameterService(Service):
 
     def value(self, name: str) -> float:
         """Present value, in the parameter's own unit."""
-        return float(self.bridge.vehicle.v.autopilot.params[name])
+        return self._values[name]
 
-    def _payload(self, name: str, index: int) -> bytes:
+    def _payload(self, name: str, index: int, count: int) -> bytes:
         kind = WIRE_TYPES[self._table[name].kind]
-        return VALUE.pack(self.value(name), len(self._table), index, name.encode(), kind)
+        return VALUE.pack(self._values[name], count, index, name.encode(), kind)
+
+    def _one(self, name: str) -> bytes:
+        return self._payload(name, NO_INDEX, len(self._values.listed()))
 
     # ------------------------------------------------------------------ reading
 
@@ -67,33 +72,35 @@ class ParameterService(Service):
         self.due_us = min(self.due_us, self.bridge.now_us)
 
     def snapshot(self) -> Any:
-        return (tuple((c.number, at) for c, at in self._lists.items()), self.due_us)
+        return (tuple((c.number, at) for c, at in self._lists.items()), self.due_us, self._told)
 
     def restore(self, state: Any) -> None:
-        lists, self.due_us = state
+        lists, self.due_us, self._told = state
         self._lists = {c: at for number, at in lists for c in self.bridge.channels if c.number == number}
 
     def service(self, now_us: int) -> None:
+        listed = self._values.listed() if self._lists else ()
         for channel, at in list(self._lists.items()):
             if channel.peer.congested:
                 continue
-            stop = min(at + LIST_AT_ONCE, len(self._table))
+            stop = min(at + LIST_AT_ONCE, len(listed))
             for k in range(at, stop):
-                channel.send(VALUE, self._payload(self._table.at(k).name, k))
+                channel.send(VALUE, self._payload(listed[k].name, k, len(listed)))
             self._lists[channel] = stop
-            if stop == len(self._table):
+            if stop >= len(listed):
                 del self._lists[channel]
         self.due_us = now_us + LIST_EVERY_US if self._lists else NEVER
 
     def _request_read(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if fields.param_index >= 0:
-            if fields.param_index < len(self._table):
-                name = self._table.at(fields.param_index).name
-                channel.send(VALUE, self._payload(name, fields.param_index))
+            listed = self._values.listed()
+            if fields.param_index < len(listed):
+                name = listed[fields.param_index].name
+                channel.send(VALUE, self._payload(name, fields.param_index, len(listed)))
             return
         name = fields.param_id.decode("ascii", "replace")
         if name in self._table:
-            channel.send(VALUE, self._payload(name, NO_INDEX))
+            channel.send(VALUE, self._one(name))
 
     # ------------------------------------------------------------------ writing
 
@@ -104,7 +111,7 @@ class ParameterService(Service):
         refusal = self.set(name, fields.param_value)
         if refusal is not None:
             self.bridge.get(StatusTextService).say(WARNING, refusal)
-            channel.send(VALUE, self._payload(name, NO_INDEX))
+            channel.send(VALUE, self._one(name))
 
     def set(self, name: str, value: float) -> str | None:
         """Set a parameter, in its unit, and tell every client, or say why not.
@@ -116,8 +123,10 @@ class ParameterService(Service):
         refusal = f"Param write denied ({name})" if parameter.read_only else parameter.refusal(value)
         if refusal is not None:
             return refusal
-        self.bridge.vehicle.v.autopilot.params[name] = stored(parameter, value)
-        self.bridge.broadcast(VALUE, self._payload(name, NO_INDEX))
+        if not (parameter.has_effect or name in self._values.kept):
+            self._tell(name)
+        self._values[name] = value
+        self.bridge.broadcast(VALUE, self._one(name))
         for listener in self.bridge.listeners:
             listener.parameter_set(name)
         self.bridge.autopilot.parameter_changed(name)
@@ -125,6 +134,14 @@ class ParameterService(Service):
         if name == "MAV_SYSID":
             self.bridge.refresh_identity()
         return None
+
+    def _tell(self, name: str) -> None:
+        """Tell the user that a parameter, set for the first time, does nothing here."""
+        self._told += 1
+        if self._told <= TOLD:
+            self.bridge.get(StatusTextService).say(INFO, f"{name} has no effect in this simulator")
+        elif self._told == TOLD + 1:
+            self.bridge.get(StatusTextService).say(INFO, "Others that are set have no effect either")
 
 
 MAGIC, MAGIC_WITH_DEFAULTS = 0x671B, 0x671C

@@ -35,8 +35,8 @@ from ..mavlink.preparation import set_intervals, set_mode
 from ..mavlink.setpoints import Encode, override, position, rover_attitude, rover_position, velocity
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
-from ..options import EnvOptionError, unknown
-from .in_process import MAX_STATES, InProcessVehicles
+from ..options import EnvOptionError
+from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .robot import Floats, Pose
 from .vehicles import EpisodeState, VehicleSetup
 
@@ -81,8 +81,7 @@ class FleetVehicles(InProcessVehicles):
         self._is_open = True
         self._ports = self.fleet.ports.ctypes.data
         shell = self.fleet.shell
-        if shell.unknown_parameters:
-            raise unknown("parameter", shell.unknown_parameters[0], shell.firmware.table.names())
+        check_parameters(shell)
         self._core = shell.core
         for end in self._views:
             end.system = shell.bridge.system

@@ -8,6 +8,7 @@ noise.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -38,6 +39,18 @@ WIND = {
     "wind_turbulence": ("SIM_WIND_TURB", Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0)),
 }
 """Figure -> parameter of the wind, and the figure's limits. Not every kind of vehicle feels wind."""
+
+
+def check_parameters(simulation: Simulation) -> None:
+    """Warn of parameters of an environment that have no effect.
+
+    Raises:
+        EnvOptionError: there is no such parameter.
+    """
+    if simulation.unknown_parameters:
+        raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
+    if simulation.parameters.kept:
+        warnings.warn(f"no effect in this simulator: {', '.join(simulation.parameters.kept)}", stacklevel=2)
 
 
 class InProcessVehicles(Vehicles):
@@ -95,8 +108,7 @@ class InProcessVehicles(Vehicles):
 
     def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
         simulation: Simulation = self._made(pose, figures, lambda scenario: Simulation(scenario, core=self._core))
-        if simulation.unknown_parameters:
-            raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
+        check_parameters(simulation)
         if self.setup.scenario.physics == NATIVE:
             self._core = simulation.core
         return simulation

@@ -11,6 +11,7 @@ import numpy as np
 from ...autopilot.events import EVENT_RING
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
+from ...autopilot.params.table import Values
 from ..kind import logs_of
 from . import bits, formats
 from .common import EVENT_MESSAGES
@@ -37,6 +38,7 @@ class Vehicle(Protocol):
     index: int
     v: Any
     firmware: Firmware
+    parameters: Values
     mission: Mission
     before_boot_us: int
     physics: str
@@ -175,7 +177,7 @@ class LogEncoder:
         modes = v.v.autopilot.modes
         self._out += [
             formats.head(self._described, self._numbers, time_us),
-            pack.parameters(time_us, [self._parameter(p.name) for p in v.firmware.table]),
+            pack.parameters(time_us, [self._parameter(p.name) for p in v.parameters.listed()]),
             pack.pack("VER", time_us, 3, *version[1:]),
             pack.text(time_us, described),
             pack.text(time_us, f"Airframe: {v.airframe.name}"),
@@ -234,7 +236,7 @@ class LogEncoder:
         return self.events.origin(time_us, kind, *numbers)
 
     def _parameter(self, name: str) -> tuple[str, float, float]:
-        return name, float(self._vehicle.v.autopilot.params[name]), self._vehicle.firmware.table[name].default
+        return name, self._vehicle.parameters[name], self._vehicle.firmware.table[name].default
 
     def _checks(self) -> int:
         return int(self._vehicle.v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.parameters import TABLE as COPTER
 from sitl.autopilot.params import docs, files, parameters
-from sitl.autopilot.params.parameter import INT8, ParameterGroup, group, numbered, param, rows
-from sitl.autopilot.params.table import Table, stored
+from sitl.autopilot.params.parameter import INT8, ParameterGroup, group, numbered, param, rows, stored
+from sitl.autopilot.params.table import Table, Values
 from sitl.autopilot.rover.parameters import TABLE as ROVER
 from sitl.core.record_reader import UnknownFieldError, locate
-from sitl.core.records import Floats, Records, as_dict
+from sitl.core.records import Floats, Records
 from sitl.vehicle.kinds import KINDS
 
 
@@ -57,13 +57,13 @@ class Toy(parameters.Parameters):
 
 
 @pytest.mark.parametrize("table", [COPTER, ROVER, Table(Toy)])
-def test_the_order_on_the_wire_is_the_order_in_memory(table):
+def test_rows_are_in_the_order_of_memory(table):
     params = table.record()
-    assert table.record.dtype.itemsize == 8 * len(table)
-    for k, row in enumerate(table):
+    assert table.record.dtype.itemsize == 8 * len(table.with_effect)
+    for k, row in enumerate(table.with_effect):
         assert locate(table.record.dtype, row.path) == (8 * k, "d", 1)
         params[row.name] = k
-    assert list(memoryview(params._bytes).cast("d")) == list(range(len(table)))
+    assert list(memoryview(params._bytes).cast("d")) == list(range(len(table.with_effect)))
 
 
 def test_names_paths_and_changes():
@@ -112,7 +112,11 @@ def test_what_cannot_be():
 def params():
     holder = TABLE.record()
     TABLE.set_defaults(holder)
-    return holder
+    return Values(TABLE, holder)
+
+
+def everything(values: Values) -> dict[str, float]:
+    return {p.name: values[p.name] for p in TABLE}
 
 
 def test_reads_every_separator_and_comments() -> None:
@@ -139,24 +143,24 @@ def test_a_file_that_is_not_there_is_named(tmp_path) -> None:
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e9])
 def test_a_refused_value_leaves_everything_as_it_was(params, value: float) -> None:
-    before = as_dict(params)
+    before = everything(params)
     with pytest.raises(files.ParameterError, match="ANGLE_MAX"):
-        files.apply(TABLE, params, {"WPNAV_SPEED": 300.0, "ANGLE_MAX": value})
-    assert as_dict(params) == before
+        files.apply(params, {"WPNAV_SPEED": 300.0, "FRSKY_OPTIONS": 1.0, "ANGLE_MAX": value})
+    assert everything(params) == before
 
 
 def test_unknown_names_are_returned_and_the_rest_is_set(params) -> None:
-    assert files.apply(TABLE, params, {"WPNAV_SPEED": 300.0, "NO_SUCH": 1.0}) == ["NO_SUCH"]
-    assert params.WPNAV_SPEED == 300.0
+    assert files.apply(params, {"WPNAV_SPEED": 300.0, "NO_SUCH": 1.0}) == ["NO_SUCH"]
+    assert params["WPNAV_SPEED"] == 300.0
 
 
 def test_saved_and_loaded_is_the_same_bits(params, tmp_path) -> None:
-    params.ATC_RAT_RLL_P = stored(TABLE["ATC_RAT_RLL_P"], 0.1234567)
-    before = as_dict(params)
-    files.save(TABLE, params, tmp_path / "all.parm")
-    TABLE.set_defaults(params)
-    files.apply(TABLE, params, files.load(tmp_path / "all.parm"))
-    assert as_dict(params) == before
+    params.update({"ATC_RAT_RLL_P": 0.1234567, "FRSKY_OPTIONS": 7.9, "BATT3_ARM_VOLT": 11.1})
+    files.save(params, tmp_path / "all.parm")
+    again = Values(TABLE, TABLE.record())
+    files.apply(again, files.load(tmp_path / "all.parm"))
+    assert everything(again) == everything(params)
+    assert again["FRSKY_OPTIONS"] == 7.0 and "BATT3_ARM_VOLT" not in {p.name for p in params.listed()}
 
 
 @given(st.text(max_size=200))
@@ -180,7 +184,7 @@ def test_every_parameter_accepts_its_default_and_fits_the_wire(table: Table) -> 
         assert p.refusal(p.default) is None, p
         assert 1 <= len(p.name) <= 16, p
         assert p.low <= p.high, p
-        assert p.doc, p
+        assert p.doc or not p.has_effect, p
 
 
 def test_the_documentation_page_has_every_parameter(table: Table) -> None:
@@ -188,19 +192,38 @@ def test_the_documentation_page_has_every_parameter(table: Table) -> None:
     assert all(f"| {p.name} |" in page for p in table)
 
 
-WIRE = {"2": "int8", "4": "int16", "6": "int32", "9": "float"}
+OTHER_DEFAULT = {("rover", "BATT_LOW_VOLT"), ("rover", "MIS_TOTAL")}
 
 
-@pytest.mark.parametrize("name", KINDS)
-def test_defaults_and_types_are_those_of_ardupilot(name: str) -> None:
-    """ardu*_defaults.csv: names, defaults and MAV_PARAM_TYPE that a real ArduPilot 4.7-dev reports.
-
-    What it does not have (BATT_ with the monitor off) is from the same firmware with its SITL settings.
-    """
-    rows = csv.DictReader((Path(__file__).parent / f"ardu{name}_defaults.csv").read_text().splitlines())
-    theirs = {row["name"]: (float(row["default"]), WIRE[row["mav_param_type"]]) for row in rows}
-    for p in KINDS[name].firmware.table:
+@pytest.mark.parametrize(("name", "known", "listed"), [("copter", 3400, 1335), ("rover", 3200, 1218)])
+def test_every_name_of_ardupilot_is_known_with_its_type_and_default(name: str, known: int, listed: int) -> None:
+    """As a real ArduPilot 4.7-dev tells them; ``listed`` is what it lists after boot, without files of parameters."""
+    table = KINDS[name].firmware.table
+    with (Path(parameters.__file__).parents[1] / name / "parameters" / "ardupilot.csv").open() as file:
+        theirs = {row["name"]: row for row in csv.DictReader(file)}
+    assert len(theirs) > known and list(theirs) == list(table.names())[: len(theirs)]
+    for p in table.with_effect:
         if not p.name.startswith("SIM_"):
             assert p.name in theirs, p.name
-        if p.name in theirs:
-            assert (stored(p, p.default), p.kind) == (pytest.approx(theirs[p.name][0]), theirs[p.name][1]), p.name
+    for n, row in theirs.items():
+        p = table[n]
+        assert p.kind == row["type"], n
+        if not n.startswith("SIM_") and (name, n) not in OTHER_DEFAULT:
+            assert stored(p, p.default) == pytest.approx(float(row["default"])), n
+    values = Values(table, table.record())
+    table.set_defaults(values._record)
+    assert len(values.listed()) == listed + len(table) - len(theirs)
+
+
+def test_a_group_within_a_group_is_listed_when_both_are_on(params):
+    def listed() -> set[str]:
+        return {p.name for p in params.listed()}
+
+    params["OSD1_ENABLE"] = 1
+    assert not {"OSD_UNITS", "OSD1_ALTITUDE_EN"} & listed()
+    params["OSD_TYPE"] = 1
+    assert {"OSD_UNITS", "OSD1_ALTITUDE_EN"} < listed() and "OSD2_ALTITUDE_EN" not in listed()
+    params["FRAME_CLASS"] = 1
+    assert "MOT_YAW_SV_ANGLE" not in listed()
+    params["FRAME_CLASS"] = 7
+    assert "MOT_YAW_SV_ANGLE" in listed()

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.records import Floats, Records
@@ -46,7 +47,7 @@ class Parameters(shared.Parameters):
     )
     EK3: Ekf3
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
-    FLTMODE_CH: float = param(5, 0, 8, "", "Channel that selects the mode; 0 none", INT8)
+    FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     FRAME: Frame
     FS: Failsafes
     GPS1_DELAY_MS: float
@@ -86,4 +87,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters)
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.border import RC_INPUTS
@@ -69,4 +70,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters)
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
