@@ -37,7 +37,7 @@ JSON = "JSON"
 MAVLINK_PROTOCOLS = (1.0, 2.0)
 """Values of SERIALn_PROTOCOL."""
 LOGS = Path("logs")
-FOREVER_WAIT_S = 0.2
+LOOK_S = 0.2
 """Wall time between two looks for the parent while the first client is awaited [s]."""
 
 Say = Callable[[str], None]
@@ -65,7 +65,7 @@ class Session:
         params = self._parameters(KINDS[kind].firmware.table)
         scenario = Scenario(airframe, home=line.home, params=params, physics=physics)
         self.simulation = simulation = Simulation(scenario, progress=progress)
-        self._params = simulation.v.autopilot.params
+        self._values = simulation.parameters
         self.pacing = Pacing(None)
         self._follow_speedup()
         simulation.bridge.autopilot.replace_mission(self.storage.mission)
@@ -116,9 +116,7 @@ class Session:
 
     def _speaks_mavlink(self, number: int) -> bool:
         name = f"SERIAL{number}_PROTOCOL"
-        if name in self.simulation.firmware.table:
-            return self._params[name] in MAVLINK_PROTOCOLS
-        return number < 3
+        return name in self.simulation.firmware.table and self._values[name] in MAVLINK_PROTOCOLS
 
     # ------------------------------------------------------------------ listening
 
@@ -130,12 +128,12 @@ class Session:
 
     def parameter_set(self, name: str) -> None:
         """Keep what a client has set."""
-        self.storage.keep(name, float(self._params[name]))
+        self.storage.keep(name, self._values[name])
         if name == "SIM_SPEEDUP":
             self._follow_speedup()
 
     def _follow_speedup(self) -> None:
-        speedup = float(self._params["SIM_SPEEDUP"])
+        speedup = self._values["SIM_SPEEDUP"]
         self.pacing.set_speedup(speedup if speedup > 0.0 else None)
 
     # ------------------------------------------------------------------ running
@@ -147,7 +145,7 @@ class Session:
             return
         self._say("Waiting for connection ....")
         while running() and not link.peers:
-            bridge.wait(FOREVER_WAIT_S)
+            bridge.wait(LOOK_S)
             bridge.receive()
 
     def serve(self, running: Callable[[], bool]) -> None:
