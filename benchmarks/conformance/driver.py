@@ -29,11 +29,11 @@ def loopback_up() -> None:
 
 
 def describe(error: BaseException | None, test: str) -> tuple[str, str]:
-    """(what, where): the error's text on one line, and the line of the test itself that it came through."""
+    """(what, where): the error's text on one line, and the line of the test itself that it came from."""
     if error is None:
         return "", ""
     lines = [f for f in traceback.extract_tb(error.__traceback__) if f.name == test]
-    where = f"{Path(lines[0].filename).name}:{lines[0].lineno}" if lines else ""
+    where = f"{Path(lines[0].filename).name}:{lines[0].lineno} {lines[0].line}" if lines else ""
     return f"{type(error).__name__}: {' '.join(str(error).split())}", where
 
 

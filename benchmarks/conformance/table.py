@@ -35,10 +35,14 @@ def markdown(outcomes: Sequence[Outcome], binary: str, speedup: int) -> str:
         "| vehicle | test | result | first cause | where | wall [s] |", "|---|---|---|---|---|---:|",
     ]  # fmt: skip
     for o in sorted(outcomes, key=lambda o: (o.result == "pass", o.vehicle, o.test)):
-        cause = o.cause.replace("|", "\\|")
-        cause = cause if len(cause) <= LONGEST else cause[: LONGEST - 3] + "..."
-        lines.append(f"| {o.vehicle} | {o.test} | {o.result} | {cause} | {o.where} | {o.wall_s:.0f} |")
+        cells = (o.vehicle, o.test, o.result, _cell(o.cause), _cell(o.where), f"{o.wall_s:.0f}")
+        lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
+
+
+def _cell(text: str) -> str:
+    text = text.replace("|", "\\|")
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def write(outcomes: Sequence[Outcome], binary: str, speedup: int, path: Path) -> None:
