@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import os
 import struct
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ from sitl.drop_in.statistics import SINCE_S, Statistics
 from sitl.drop_in.sticks import StickPort
 from sitl.drop_in.storage import Storage, StorageError
 from sitl.errors import OptionError
+from sitl.foreign.choice import choose
 from sitl.logs.dataflash.log import attach
 from sitl.logs.dataflash.numbered import NumberedLogs
 from sitl.simulation import Core, Simulation
@@ -116,3 +119,17 @@ def test_a_model_that_there_is_not_is_named(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path)
     with pytest.raises(OptionError, match=r"--model 'zeppelin' is none of \+, quad, .*JSON:HOST.*erle_copter"):
         Session("arducopter", parse(["--model", "zeppelin"]))
+
+
+def test_the_search_for_a_real_one_passes_our_scripts_by(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("ours", "real"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "arducopter").write_text("#!/bin/sh\n")
+        (tmp_path / name / "arducopter").chmod(0o755)
+    monkeypatch.setattr(sysconfig, "get_path", lambda name: str(tmp_path / "ours"))
+    monkeypatch.setenv("PATH", os.pathsep.join(str(tmp_path / name) for name in ("ours", "real")))
+    choice = choose("ardupilot", "copter")
+    assert choice is not None and choice.program == (tmp_path / "real" / "arducopter").resolve()
+    monkeypatch.setenv("PATH", str(tmp_path / "ours"))
+    with pytest.raises(OptionError, match="no program 'arducopter' in PATH"):
+        choose("ardupilot", "copter")
