@@ -46,7 +46,20 @@ class AvailableModes:
     array_lengths = (0, 0, 0, 0, 0, 35)
 
 
-NEWER = {AvailableModes.id: AvailableModes}
+class ComponentMetadata:
+    """COMPONENT_METADATA (https://mavlink.io/en/messages/common.html#COMPONENT_METADATA)."""
+
+    id = 397
+    msgname = "COMPONENT_METADATA"
+    crc_extra = 182
+    unpacker = struct.Struct("<II100s")
+    fieldnames = ("time_boot_ms", "file_crc", "uri")
+    fieldtypes = ("uint32_t", "uint32_t", "char")
+    ordered_fieldnames = fieldnames
+    array_lengths = (0, 0, 100)
+
+
+NEWER = {AvailableModes.id: AvailableModes, ComponentMetadata.id: ComponentMetadata}
 
 
 crc_mcrf4xx = cast("Callable[..., int]", crc16.mcrf4xx)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import random
 import struct
@@ -12,6 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pymavlink.mavftp import MAVFTP
 
 from sitl.autopilot.copter.parameters import TABLE
+from sitl.bridge.frame import Splitter
+from sitl.bridge.metadata import file_crc
 from sitl.bridge.services.parameters import TOLD
 from tests.bridge.fakes import Bench, Client
 
@@ -188,6 +191,39 @@ def test_all_parameters(bench: Bench, query: bytes) -> None:
     if query:
         defaults = {name.decode(): value for name, value, _ in decoded.defaults}
         assert defaults["MAV_GCS_SYSID"] == 255.0 and values["MAV_GCS_SYSID"] == 250.0
+
+
+def test_ground_stations_read_what_parameters_mean(bench: Bench) -> None:
+    """COMPONENT_METADATA leads to a general file, and that one to the parameters' file."""
+    bench.client.send(mavlink.MAVLink_command_long_message(1, 1, 512, 0, 397, 0, 0, 0, 0, 0, 0))
+    bench.bridge.receive()
+    frames = [f for f in Splitter().feed(bench.client.link.receive()) if f.kind.name == "COMPONENT_METADATA"]
+    said = frames[0].kind.decode(frames[0].payload)
+    assert said.uri.startswith(b"mftp://")
+    general = fetch(bench, said.uri.removeprefix(b"mftp://"))
+    assert said.file_crc == crc(general)
+    (entry,) = json.loads(general)["metadataTypes"]
+    assert entry["type"] == 1
+    data = fetch(bench, entry["uri"].removeprefix("mftp://").encode())
+    assert entry["fileCrc"] == file_crc(data)
+    told = {p["name"]: p for p in json.loads(data)["parameters"]}
+    assert list(told) == list(TABLE.names())
+    assert told["ANGLE_MAX"] == {
+        "name": "ANGLE_MAX", "type": "Int16", "group": "ANGLE", "category": "Standard", "default": 3000,
+        "shortDesc": "Greatest lean in all modes", "units": "cdeg", "min": 500, "max": 8000,
+    }  # fmt: skip
+    assert told["FRSKY_OPTIONS"]["category"] == "Without effect" and "min" not in told["FRSKY_OPTIONS"]
+    assert told["MIS_TOTAL"]["volatile"] and told["ATC_RAT_RLL_P"]["default"] == 0.135
+
+
+def crc(data: bytes) -> int:
+    """CRC-32 (polynomial 0xEDB88320, begins with 0, nothing inverted), bit by bit as MAVLink FTP's."""
+    value = 0
+    for byte in data:
+        value ^= byte
+        for _ in range(8):
+            value = value >> 1 ^ (0xEDB88320 if value & 1 else 0)
+    return value
 
 
 def test_read_in_pieces(bench: Bench) -> None:

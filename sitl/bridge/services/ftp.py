@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): reads of ``@PARAM/param.pck``.
+"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): reads of ``@PARAM/param.pck`` and ``@META/``.
 
 Everything else is refused by its own error.
 """
@@ -10,6 +10,7 @@ import struct
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from .. import metadata
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -103,15 +104,19 @@ class FtpService(Service):
 
     def _open(self, request: _Request) -> None:
         path, _, query = request.data.split(b"\0", 1)[0].decode("ascii", "replace").partition("?")
-        if path.lstrip("/") != PARAMETERS:
+        data = self._file(path.lstrip("/"), query.split("&"))
+        if data is None:
             self._refuse(request, FILE_NOT_FOUND)
             return
+        self._sessions[request.channel] = _Session(data, request.sender, request.session)
+        self._reply(request, struct.pack("<I", len(data)))
+
+    def _file(self, path: str, queries: list[str]) -> bytes | None:
         values = self.bridge.vehicle.parameters
-        packed = pack_parameters(
-            [(p, values[p.name]) for p in values.listed()], with_defaults="withdefaults=1" in query.split("&")
-        )
-        self._sessions[request.channel] = _Session(packed, request.sender, request.session)
-        self._reply(request, struct.pack("<I", len(packed)))
+        if path == PARAMETERS:
+            listed = [(p, values[p.name]) for p in values.listed()]
+            return pack_parameters(listed, with_defaults="withdefaults=1" in queries)
+        return metadata.files(values.table).get(path)
 
     def _session(self, request: _Request) -> _Session | None:
         """The client's open session; None when it has another one or none, which it is told."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ... import __version__
 from ...core.records import as_bytes
+from .. import metadata
 from ..dialect import message
 from .sensors import SimState, fill_simstate
 
@@ -52,7 +53,20 @@ def simstate(vehicle: Vehicle, profile: Profile) -> bytes:
     return bytes(as_bytes(m, m.dtype))
 
 
-SHELL_BUILDERS: dict[str, ShellBuilder] = {"AUTOPILOT_VERSION": autopilot_version}
+def component_metadata(vehicle: Vehicle, profile: Profile) -> bytes:
+    """COMPONENT_METADATA: the file that names the parameters' descriptions, to be read by FTP."""
+    general = metadata.files(vehicle.firmware.table)[metadata.GENERAL]
+    return message("COMPONENT_METADATA").payload(
+        time_boot_ms=int(vehicle.v.time_us) // 1000,
+        file_crc=metadata.file_crc(general),
+        uri=metadata.uri(metadata.GENERAL).encode(),
+    )
+
+
+SHELL_BUILDERS: dict[str, ShellBuilder] = {
+    "AUTOPILOT_VERSION": autopilot_version,
+    "COMPONENT_METADATA": component_metadata,
+}
 """What the shell builds for every vehicle, by the message's name."""
 
 
