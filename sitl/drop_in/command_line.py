@@ -25,7 +25,7 @@ _SILENT = ("unhide-groups", "synthetic-clock")
 _NO_EFFECT = ("console", "gimbal", "rtscts", "enable-fgview", "disable-fgview")
 """Flags."""
 _NO_EFFECT_WITH_VALUE = (
-    "rate", "config", "fg", "autotest-dir", "sim-port-in", "irlock-port", "start-time", "slave", "param",
+    "rate", "config", "fg", "autotest-dir", "sim-port-in", "irlock-port", "start-time", "slave",
 )  # fmt: skip
 _UARTS = {"A": 0, "B": 3, "C": 1, "D": 2, "E": 4, "F": 5, "G": 6, "H": 7}
 """Older names of serial ports."""
