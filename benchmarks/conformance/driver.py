@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import json
+import os
 import socket
 import struct
 import sys
@@ -59,4 +60,5 @@ if __name__ == "__main__":
     loopback_up()
     result = run(vehicle, test, int(speedup), binary, checkout)
     Path(report).write_text(json.dumps(result), encoding="utf-8")
-    sys.exit(0 if result["passed"] else 1)
+    sys.stdout.flush()
+    os._exit(0 if result["passed"] else 1)  # threads that a failed test leaves would wait for ever
