@@ -57,7 +57,7 @@ def test_a_table_of_what_passes_fails_and_hangs(tmp_path: Path) -> None:
     names = tmp_path / "names.txt"
     names.write_text("# tests\nBad a remark\n\nGood\n")
     out, folder = tmp_path / "table", tmp_path / "runs"
-    words = ["--suite", str(tmp_path / "suite"), "--speedup", "7", "--timeout", "20", "--out", str(out)]
+    words = ["--suite", str(tmp_path / "suite"), "--speedup", "7", "--timeout", "20", "--jobs", "2", "--out", str(out)]
     words += ["--folder", str(folder), "copter", "Hangs", f"@{names}"]
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.conformance", *words],
