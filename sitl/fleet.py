@@ -12,27 +12,48 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from ctypes import c_int64
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from numbers import Real
-from typing import Any, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 
 from .bridge.channel import ChannelState
 from .bridge.links.inprocess import InProcessLink
-from .bridge.wire.fleet import STAYS, TO_SERVE, Slot
+from .bridge.wire import fleet as wire
+from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
+from .core import rng
+from .core.array_kernels import Kernel
 from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
+from .move import Move
 from .plants.local import LocalPlant
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
 from .vehicle.core_entry import Core, bind_fleet_unit
+from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
 Array = np.ndarray[Any, Any]
+set_goals, any_waits = Kernel(wire.set_goals), Kernel(wire.any_waits)
+_HELD = 8
+"""Snapshots whose state is held ready, so that vehicles get it again by a copy."""
+
+
+class _Held(NamedTuple):
+    """What a vehicle is given of a snapshot."""
+
+    of: Snapshot | None
+    record: Array
+    port: Array
+    state: Snapshot
+    events_seen: int
+    shell_us: int
 
 
 class Fleet:
@@ -80,29 +101,53 @@ class Fleet:
         shell.bridge.add_link(self._link)
         self._is_closed = False
         self._states: list[Snapshot] = []
+        self._held: dict[int, _Held] = {}
+        """Identity of a snapshot -> its state."""
         self._views: dict[int, Any] = {}
         self._before_boot_us: Array = np.zeros(count, np.int64)
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
-        self._addresses = (self.ports.ctypes.data, self._slots.ctypes.data)
         # Views of one field each: making one costs more than reading it.
         self._times, self._until = self.records["time_us"], self._slots["until_us"]
         self._needs_shell = self._slots["needs_shell"]
+        self._events_seen, self._shell_us = self._slots["events_seen"], self._slots["shell_us"]
         self._in_size, self._out_size, self._out_count = (self.ports[n] for n in ("in_size", "out_size", "out_count"))
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
         unit = shell.bridge.profile.core.run_all
-        self._run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
+        run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
         rangers = shell.plant.rangers if isinstance(shell.plant, LocalPlant) else None
         self._rooms = [(0, None) if rangers is None else rangers.with_own_room() for _ in range(threads)]
         """What each thread needs to measure in the world: its address, and what keeps it alive."""
+        integer: Callable[[int], Any] = int if jit_disabled() else c_int64  # converted once
+        parts = [count * k // threads for k in range(threads + 1)]
+        slots, ports = self._slots.ctypes.data, self.ports
+        self._slots["ports"] = ports.ctypes.data + ports.itemsize * np.arange(count)
+        self._slots["clients"] = 1
+        self._parts = [
+            partial(run, *map(integer, (first, last, slots, room[0])))
+            for (first, last), room in zip(pairwise(parts), self._rooms, strict=True)
+            if first < last
+        ]
+        """Each advances the vehicles of one thread."""
+        self._set_goals: Callable[[int], None] = set_goals.bind(self._times, self._until)
+        self._any_waits: Callable[[], bool] = any_waits.bind(self._needs_shell)
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
+        self._orders: Array = MoveOrder.fleet(0)
+        self._order_views: list[MoveOrder] = []
+        self._move_all: Callable[..., None] | None = None
+        self._figures: Any = self.records["physics"]["airframe"]
         self._states = [shell.snapshot()] * count
         self.put(range(count), self._states[0])
 
     def __len__(self) -> int:
         return len(self.records)
+
+    @property
+    def clocks(self) -> tuple[Array, Array]:
+        """Simulated time of each vehicle since it last booted, and before [us]; they stay in place, shape (count,)."""
+        return self._times, self._before_boot_us
 
     @property
     def time_us(self) -> Array:
@@ -127,12 +172,83 @@ class Fleet:
         for row in rows:
             self._check(row)
         self._check_open()
-        shell = self.shell
-        shell.restore(snapshot)  # refuses what cannot be put here
+        held = self._held.get(id(snapshot))
+        if held is None:
+            self.shell.restore(snapshot)  # refuses what cannot be put here
+            self._link.receive()
+            held = self._take()
+            if len(self._held) >= _HELD:
+                del self._held[next(iter(self._held))]
+            self._held[id(snapshot)] = held = held._replace(of=snapshot)
+        self._give(rows, held)
         if seed is not None:
-            shell.reseed(seed)
-        self._link.receive()
-        self._take_back(rows)
+            for row in rows:
+                rng.seed(self.view(row).rng, seed)
+
+    def move(self, which: int | Iterable[int], moves: Move | Sequence[Move], snapshot: Snapshot | None = None) -> None:
+        """Put vehicles elsewhere within this instant, with all that they know of places; see docs/fleets.md.
+
+        Args:
+            which: a vehicle, or several, each once.
+            moves: where to: one for all, or one for each.
+            snapshot: they are given its state first, as by ``put``; None: from where they are.
+
+        Raises:
+            OptionError: a move that cannot be made (a number out of its limits, a place in a solid, figures with which
+                the vehicle does not hover), or a snapshot as of ``put``; no vehicle is changed.
+        """
+        rows = [which] if isinstance(which, int | np.integer) else list(which)
+        each = [moves] * len(rows) if isinstance(moves, Move) else list(moves)
+        for row in rows:
+            self._check(row)
+        if len(each) != len(rows) or len(set(rows)) != len(rows):
+            raise OptionError(f"{len(each)} moves of vehicles {rows}: each vehicle is moved once")
+        for move in (moves,) if isinstance(moves, Move) else each:
+            move.check(self.scenario.airframe)
+        self._check_open()
+        kept = [self._state_of(row) for row in rows]
+        try:
+            if snapshot is not None:
+                self.put(rows, snapshot)
+            self._obey(rows, each)
+        except OptionError:
+            for row, held in zip(rows, kept):
+                self._give([row], held)
+            raise
+
+    def _obey(self, rows: list[int], moves: list[Move]) -> None:
+        kind = self.kind
+        if kind.move is None:
+            raise OptionError(f"vehicles of kind {kind.name} cannot be moved: the kind has no unit for it")
+        if self._move_all is None:
+            self._move_all = bind_fleet_unit(kind.move, kind, self.records)
+        if len(self._order_views) < len(rows):
+            self._orders = MoveOrder.fleet(len(rows))
+            self._order_views = [MoveOrder.of(self._orders, k) for k in range(len(rows))]
+        orders = self._order_views
+        for order, row, move in zip(orders, rows, moves):
+            v = self.view(row)
+            move.write(order, int(row), v, kind)
+            for name, value in move.figures.items():
+                self._figures[name][row] = value
+            if move.seed is not None:
+                rng.seed(v.rng, move.seed)
+        self._move_all(0, len(rows), self._orders.ctypes.data, self._rooms[0][0])
+        for order, row, move in zip(orders, rows, moves):
+            if order.result != DONE:
+                raise OptionError(self._refusal(row, move, order.result))
+
+    def _refusal(self, row: int, move: Move, result: int) -> str:
+        v, name = self.view(row), self.scenario.airframe.name
+        if result == IN_SOLID:
+            north, east, down = v.physics.body.pos
+            return (
+                f"vehicle {row} cannot be moved: at north {north:g}, east {east:g} m, {-down:g} m high, {name} would "
+                f"be in a solid of world {self.scenario.load_world().name!r}"  # type: ignore[union-attr]
+            )
+        return (
+            f"vehicle {row} cannot be moved: {name} does not hover with figures {dict(move.figures)}, wind {move.wind}"
+        )
 
     def snapshot(self, index: int) -> Snapshot:
         """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""
@@ -173,7 +289,7 @@ class Fleet:
         size = int(self._in_size[index])
         end = size + len(data)
         if end > IN_BYTES:
-            self._serve(index, 0, data)
+            self._serve(index, 0, TO_HEAR, data)
             return
         self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
         self._in_size[index] = end
@@ -217,58 +333,57 @@ class Fleet:
         """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
         self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
-        if which is None:
-            until[:] = times + step_us
+        if which is None and isinstance(step_us, int):
+            self._set_goals(step_us)
         else:
+            rows = slice(None) if which is None else which
             until[:] = STAYS
-            until[which] = times[which] + step_us
-        needs_shell[:] = 0
-        self._run_all()
-        if needs_shell.any():
-            for index in np.flatnonzero(needs_shell).tolist():
-                self._serve(index, int(until[index] - times[index]), serves=needs_shell[index] == TO_SERVE)
-
-    def _run_all(self) -> None:
-        count, threads = len(self.records), self.threads
-        addresses = self._addresses
+            until[rows] = times[rows] + step_us
         if self._pool is None:
-            self._run(0, count, *addresses, self._rooms[0][0])
-            return
-        parts = zip(pairwise(count * k // threads for k in range(threads + 1)), self._rooms, strict=True)
-        runs = [self._pool.submit(self._run, a, b, *addresses, room[0]) for (a, b), room in parts if a < b]
-        for run in runs:
-            run.result()
+            for run in self._parts:
+                run()
+        else:
+            for done in [self._pool.submit(run) for run in self._parts]:
+                done.result()
+        if self._any_waits():
+            for index in np.flatnonzero(needs_shell).tolist():
+                self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
 
     # ------------------------------------------------------------------ what needs Python
 
-    def _serve(self, index: int, left_us: int, data: bytes = b"", serves: bool = False) -> None:
-        """Let the shell act on what the core left to it, and advance the vehicle by ``left_us``."""
+    def _serve(self, index: int, left_us: int, needs_shell: int, data: bytes = b"") -> None:
+        """Let the shell act on ``data`` and on what the core left to it, and advance the vehicle by ``left_us``."""
         shell = self.shell
         shell.restore(self.snapshot(index))
         shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
         self._link.send(data)
-        if serves:
-            shell.serve()
-        shell.bridge.receive(resume=True)
+        shell.attend(needs_shell)
         shell.advance_to(shell.time_us + max(left_us, 0))
         said = self._link.receive()
         if said:
             self._extra[index] = self._extra.get(index, b"") + said
-        self._take_back([index])
+        self._give([index], self._take())
 
-    def _take_back(self, rows: list[int]) -> None:
-        """Put the shell's state into the vehicles."""
+    def _take(self) -> _Held:
+        """The shell's state."""
         shell = self.shell
-        state = shell.snapshot()
+        state, port = shell.snapshot(), bytes(shell.bridge.channels[0].port._bytes)
+        slot = shell.v.autopilot.events.count, shell.bridge.shell_due_us()
         record = np.frombuffer(state.record, np.uint8)
-        port = np.frombuffer(bytes(shell.bridge.channels[0].port._bytes), np.uint8)
-        kept = replace(state, record=b"")
+        return _Held(None, record, np.frombuffer(port, np.uint8), replace(state, record=b""), *slot)
+
+    def _state_of(self, row: int) -> _Held:
+        """A vehicle's state."""
+        seen = int(self._events_seen[row]), int(self._shell_us[row])
+        return _Held(None, self._records_u1[row].copy(), self._ports_u1[row].copy(), self._states[row], *seen)
+
+    def _give(self, rows: list[int], held: _Held) -> None:
+        """Put a state into the vehicles."""
         for row in rows:
-            self._records_u1[row], self._ports_u1[row] = record, port
-            self._states[row] = kept
-            self._before_boot_us[row] = kept.before_boot_us
-        self._slots["events_seen"][rows] = shell.v.autopilot.events.count
-        self._slots["shell_us"][rows] = shell.bridge.shell_due_us()
+            self._records_u1[row], self._ports_u1[row] = held.record, held.port
+            self._states[row] = held.state
+        self._before_boot_us[rows] = held.state.before_boot_us
+        self._events_seen[rows], self._shell_us[rows] = held.events_seen, held.shell_us
 
     def close(self) -> None:
         """Close the shell and stop the threads: the fleet can only be looked at from now on."""

@@ -25,7 +25,7 @@ def test_every_figure_of_both_vehicles_is_printed(core: Core) -> None:
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     factors = [float(x) for x in re.findall(r"(\d+)x   \(", result.stdout)]
-    assert len(factors) == 10 and all(f > 0 for f in factors), result.stdout
+    assert len(factors) == 14 and all(f > 0 for f in factors), result.stdout
     assert len(re.findall(r"restore +[\d.]+ us", result.stdout)) == 2
 
 

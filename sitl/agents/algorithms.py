@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import gymnasium as gym
 
 from .errors import AgentError
+from .policies import Policies
 from .runs.config import RunConfig
 from .runs.folder import RunFolder
 from .runs.watch import Watch
@@ -26,6 +27,9 @@ class Policy(Protocol):
 
     def act(self, observation: Any) -> Any:
         """The action for an observation."""
+
+    def many(self, count: int) -> Policies:
+        """The same for ``count`` robots; each acts as a policy of its own would."""
 
 
 class Algorithm(Protocol):

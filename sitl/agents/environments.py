@@ -14,6 +14,7 @@ from sitl import envs
 
 from . import algorithms
 from .errors import AgentError
+from .runs import cores
 from .runs.config import RunConfig
 
 _Env = TypeVar("_Env")
@@ -54,12 +55,16 @@ def try_all(configs: Iterable[RunConfig]) -> None:
 
 
 def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:
-    """As ``make``, with ``count`` robots in one vector environment."""
+    """As ``make``, with ``count`` robots in one vector environment, on all cores that the run may use."""
 
     def call(given: dict[str, Any]) -> gym.vector.VectorEnv[Any, Any, Any]:
         return gym.make_vec(config.env, num_envs=count, max_episode_steps=config.max_steps, **given)
 
-    return _made(call, config, options)
+    env = _made(call, config, options)
+    use_threads = getattr(getattr(env.unwrapped, "robot", None), "use_threads", None)
+    if use_threads is not None and "threads" not in {**config.env_options, **options}:
+        use_threads(min(cores.mine(), count))
+    return env
 
 
 def _made(call: Callable[[dict[str, Any]], _Env], config: RunConfig, options: Mapping[str, Any]) -> _Env:

@@ -6,10 +6,10 @@ A log wants them more often than anything else. The core keeps them, so that the
 
 from __future__ import annotations
 
-from ..core.algebra import set_row_vector
-from ..core.kernels import law
+from ..core.algebra import euler_of, set_row_vector
+from ..core.kernels import inlined
 from ..core.records import Floats, Ints, Record, array
-from ..core.vectors import Euler, Vec3
+from ..core.vectors import Quat, Vec3
 
 INERTIAL_RING = 4
 PERIOD_US = 40_000
@@ -26,8 +26,8 @@ class InertialRing(Record):
     euler: Floats = array(INERTIAL_RING, 3)  # as estimated [rad]
 
 
-@law
-def remember(ring: InertialRing, time_us: int, acc: Vec3, gyro: Vec3, euler: Euler) -> None:
+@inlined
+def remember(ring: InertialRing, time_us: int, acc: Vec3, gyro: Vec3, q: Quat) -> None:
     """Last thing of a tick: keep a sample when it is time."""
     if time_us < ring.due_us:
         return
@@ -37,4 +37,5 @@ def remember(ring: InertialRing, time_us: int, acc: Vec3, gyro: Vec3, euler: Eul
     ring.time_us[k] = time_us
     set_row_vector(ring.acc, k, acc)
     set_row_vector(ring.gyro, k, gyro)
+    euler = euler_of(q)
     ring.euler[k, 0], ring.euler[k, 1], ring.euler[k, 2] = euler.roll, euler.pitch, euler.yaw

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from ..core.algebra import euler_of, quat_from_euler, yaw_of
 from ..core.border import Actuators, Sensors
+from ..core.kernels import law
 from ..core.records import Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .estimation.state import Ekf
@@ -22,7 +24,6 @@ class Estimate(Record):
     """What the estimator says of the vehicle."""
 
     q: Quat  # body to NED
-    euler: Euler  # roll, pitch, yaw [rad]
     rates: Vec3  # body rates without bias [rad/s], every tick
     acc_ned: Vec3  # acceleration NED, gravity removed [m/s^2], every tick
     vel: Vec3  # NED [m/s]
@@ -46,6 +47,22 @@ class Estimate(Record):
     reset_pos: Vec3  # last jump of pos [m]
     reset_vel: Vec3  # last jump of vel [m/s]
     reset_yaw: float  # last jump of yaw [rad]
+
+    @property
+    @law
+    def euler(self) -> Euler:
+        """Roll, pitch, yaw of ``q`` [rad]."""
+        return euler_of(self.q)
+
+    @euler.setter
+    def euler(self, angles: Euler | tuple[float, float, float]) -> None:
+        self.q = quat_from_euler(Euler(*angles))
+
+    @property
+    @law
+    def yaw(self) -> float:
+        """Yaw of ``q`` [rad]."""
+        return yaw_of(self.q)
 
 
 class Radio(Record):

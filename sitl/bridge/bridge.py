@@ -29,12 +29,17 @@ from .services.streams import StreamService
 from .switchboard import Switchboard
 from .telemetry.builder import shell_messages
 from .wire import streams
+from .wire.fleet import Slot
 from .wire.link import REGULAR
 from .wire.port import NEVER, Port
 
 _HEARTBEAT = message("HEARTBEAT").id
 EPOCH_US = 1_767_225_600_000_000
 """Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
+
+
+_write_goal = struct.Struct("<qqq").pack_into
+"""The first three numbers of a ``Slot``."""
 
 
 class BridgeState(NamedTuple):
@@ -60,6 +65,9 @@ class Bridge:
         self._given_autopilot = autopilot
         self.autopilot: Autopilot = autopilot if autopilot is not None else self.profile.autopilot(vehicle)
         self.core = CoreLink(vehicle, self.profile.core)
+        slots = Slot.fleet(1)
+        self._slot_memory: Any = slots.data
+        self._slot, self._slots_address = Slot.of(slots, 0), slots.ctypes.data - vehicle.index * slots.itemsize
         self.shell_port = Port()
         """In place of a client's, for messages that the shell builds."""
         self.by_shell = shell_messages(self)
@@ -164,12 +172,17 @@ class Bridge:
         """Why channels were lost or refused and messages left out, for people."""
         return self.board.dropped
 
+    def _channels_changed(self) -> None:
+        self._slot.ports, self._slot.clients = self.board.ports.address, self.board.ports.count
+
     def _channel_added(self, channel: Channel) -> None:
+        self._channels_changed()
         channel.port.epoch_us = self.epoch_us + self._before_boot_us
         for service in self.services.values():
             service.channel_added(channel)
 
     def _channel_removed(self, channel: Channel) -> None:
+        self._channels_changed()
         for service in self.services.values():
             service.channel_removed(channel)
 
@@ -300,6 +313,31 @@ class Bridge:
         """
         ports = self.board.ports
         self.core.run(ports.address, ports.count, ranging, until_us, shell_us)
+
+    def go_on(self, ranging: int, until_us: int, events_seen: int) -> int:
+        """Let the core hear clients and ``run``, in one call. It ``goes_by_itself``, and there are no sockets.
+
+        Args:
+            ranging: as for ``run``.
+            until_us: time since boot [us].
+            events_seen: events that the shell has acted on.
+
+        Returns:
+            What is left to the shell (``wire.fleet``): GOES_ON when the vehicle is there, and all has been sent.
+        """
+        channels = self.channels
+        for channel in channels:
+            data = channel.peer.take()
+            if data and not channel.takes(data):
+                for earlier in channels[: channels.index(channel)]:
+                    self._hear(earlier, b"")
+                self._hear(channel, data)
+        _write_goal(self._slot_memory, 0, until_us, self.shell_due_us(), events_seen)
+        self.core.run_all(self.vehicle.index + 1, self._slots_address, ranging)
+        for channel in channels:
+            if channel.port.out_count:
+                channel.hand_over()
+        return self._slot.needs_shell
 
     def service(self) -> None:
         """Send what has fallen due by now."""

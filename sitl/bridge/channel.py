@@ -102,6 +102,14 @@ class Channel:
             port.sent += 1
             self.peer.outbox.append(frame)
 
+    def hand_over(self) -> None:
+        """Give the frames that the core made to a peer that ``waits``, while nobody watches."""
+        port, peer = self.port, self.peer
+        if peer.outbox:  # they come first
+            peer.flush()
+        peer.accept(bytes(port._bytes[OUT : OUT + port.out_size]))
+        port.out_count = port.out_size = 0
+
     def collect(self) -> None:
         """Queue the frames that the core made."""
         port = self.port
@@ -115,14 +123,22 @@ class Channel:
 
     # ------------------------------------------------------------------ in
 
-    def feed(self, data: bytes) -> bytes:
-        """Hand bytes from the client to the port; returns those for which there is no room yet."""
+    def takes(self, data: bytes) -> bool:
+        """Hand bytes from the client to the port, if it has room for all of them."""
         port = self.port
         size = port.in_size
-        now, later = data[: IN_BYTES - size], data[IN_BYTES - size :]
-        port._bytes[INCOMING + size : INCOMING + size + len(now)] = now
-        port.in_size = size + len(now)
-        return later
+        end = size + len(data)
+        if end > IN_BYTES:
+            return False
+        port._bytes[INCOMING + size : INCOMING + end] = data
+        port.in_size = end
+        return True
+
+    def feed(self, data: bytes) -> bytes:
+        """Hand bytes from the client to the port; returns those for which there is no room yet."""
+        room = IN_BYTES - self.port.in_size
+        self.takes(data[:room])
+        return data[room:]
 
     def frame(self) -> Frame:
         """The frame that the core stopped at."""

@@ -21,7 +21,7 @@ class CoreUnits(NamedTuple):
     tell: Callable[..., None]
     run: Callable[..., None]
     run_all: Callable[..., None]
-    """The same for vehicles of a fleet (``wire/fleet.py``)."""
+    """``hear`` and ``run`` of one vehicle or many (``wire/fleet.py``)."""
     builders: tuple[Builder, ...]
     takers: tuple[Taker, ...]
 
@@ -37,9 +37,9 @@ class CoreLink:
         """Messages that the core acts on."""
 
     def load(self, runs_in_core: bool, progress: Progress | None = None) -> None:
-        """Compile what is needed now: ``run`` only for a vehicle whose physics is in the core, too."""
+        """Compile what is needed now: ``run_all`` only for a vehicle whose physics is in the core, too."""
         kind, units = KINDS[self._vehicle.firmware.name], self._units
-        needed = (units.run, units.hear) if runs_in_core else (units.tell, units.hear)
+        needed = (units.run_all, units.hear) if runs_in_core else (units.tell, units.hear)
         compiler.build_missing(needed, kind.record_path, progress)
         for unit in needed:
             compiler.load(unit, kind.record_path)
@@ -62,3 +62,8 @@ class CoreLink:
     def run(self) -> Callable[[int, int, int, int, int], None]:
         """``run(address of ports, count, address of Ranging, until_us, shell_us)``: advance, measure, send."""
         return self._bind(self._units.run)
+
+    @cached_property
+    def run_all(self) -> Callable[[int, int, int], None]:
+        """``run_all(index + 1, address of the Slot of vehicle 0, address of Ranging)``: hear, then run."""
+        return self._bind(self._units.run_all)

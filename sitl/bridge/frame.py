@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .dialect import MessageType, crc_mcrf4xx, find_message
 
@@ -73,8 +73,12 @@ class Splitter:
 
     def feed(self, data: bytes) -> list[Frame]:
         """All frames completed by ``data``, in order. Never raises."""
+        return list(map(_frame, self.cut(data)))
+
+    def cut(self, data: bytes) -> list[tuple[Any, ...]]:
+        """The same as plain tuples, with the fields of a ``Frame``: quicker."""
         buffer = self._rest + data if self._rest else bytes(data)
-        frames: list[Frame] = []
+        frames: list[tuple[Any, ...]] = []
         at, end = 0, len(buffer)
         while at < end:
             mark = buffer[at]
@@ -105,7 +109,7 @@ class Splitter:
                 self.bad_checksums += 1
                 at += 1
                 continue
-            frames.append(_frame((kind, buffer[start:stop], sequence, system, component, version, buffer[at:after])))
+            frames.append((kind, buffer[start:stop], sequence, system, component, version, buffer[at:after]))
             at = after
         self._rest = buffer[at:]
         return frames

@@ -88,7 +88,8 @@ class Endpoint:
         data = self.link.receive()
         if not data:
             return []
-        return [_received((f.kind.name, f.kind.decode(f.payload))) for f in self._splitter.feed(data)]
+        cut = self._splitter.cut(data)
+        return [_received((kind.name, kind.decode(payload))) for kind, payload, _, _, _, _, _ in cut]
 
 
 HEARTBEAT, ACK, TEXT, PARAMETER = (message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "PARAM_VALUE"))
@@ -130,7 +131,7 @@ class Inbox:
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
-        for kind, payload, _, system, component, _, _ in self._splitter.feed(data):
+        for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
             if component == AUTOPILOT and system == (self.system or system):
                 fields = kind.decode(payload)
                 self._note(kind, fields, system)

@@ -212,8 +212,14 @@ def euler_of(q: Quat) -> Euler:
     return Euler(
         math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y)),
         math.asin(s),
-        math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)),
+        yaw_of(q),
     )
+
+
+@law
+def yaw_of(q: Quat) -> float:
+    """Yaw [rad] of a rotation, the third of its Euler angles."""
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
 
 
 class Matrix3(NamedTuple):

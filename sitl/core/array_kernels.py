@@ -16,6 +16,7 @@ from .code_cache import ENTRY, cache_folder, load_entry
 from .compile import make_jitable, toolchain
 from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
+from .numba_tuning import COMMON
 from .records import FloatRows, Floats, IntRows, Ints, Records
 from .vectors import Value
 
@@ -59,10 +60,11 @@ class Kernel(Generic[P, R]):
         self.law = law
         self.name = law.__module__.removeprefix("sitl.") + "." + law.__name__
         self._loaded: Callable[P, R] | None = None
+        self._entry: Callable[P, R] | None = None
         KERNELS[self.name] = self
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        return self.function()(*args, **kwargs)
+        return (self._loaded or self.function())(*args, **kwargs)
 
     def function(self) -> Callable[P, R]:
         """The compiled function itself, which is a little quicker to call."""
@@ -73,12 +75,15 @@ class Kernel(Generic[P, R]):
     def unchecked(self) -> Callable[P, R]:
         """The same, without a look at the types of the arguments, which must be those of the signature: the quickest to
         call."""
-        function: Any = self.function()
-        return function if jit_disabled() else next(iter(function.overloads.values())).entry_point  # type: ignore[no-any-return]
+        if self._entry is None:
+            function: Any = self.function()
+            self._entry = function if jit_disabled() else next(iter(function.overloads.values())).entry_point
+        assert self._entry is not None
+        return self._entry
 
-    def bind(self, *arguments: Any) -> Callable[[], R]:
-        """The compiled function of arguments that stay in place: their types are looked at once, so that a call is
-        quick.
+    def bind(self, *arguments: Any) -> Callable[..., R]:
+        """The compiled function with its first arguments, which stay in place: their types are looked at once, so that
+        a call is quick. The types of arguments that a call adds are not looked at.
 
         Raises:
             TypeError: the types are not those of the signature.
@@ -88,10 +93,19 @@ class Kernel(Generic[P, R]):
             from numba import typeof
 
             types, given = function.signatures[0], tuple(map(typeof, arguments))
-            if given != types:
+            if not all(map(_fits, given, types)):
                 raise TypeError(f"{self.name} takes {types}, not {given}")
         call: Any = self.unchecked()
         return partial(call, *arguments)
+
+
+def _fits(given: Any, wanted: Any) -> bool:
+    """Whether a value of Numba's type ``given`` may be handed over as one of type ``wanted`` without a conversion."""
+    if hasattr(wanted, "types") and hasattr(given, "types"):
+        return len(given.types) == len(wanted.types) and all(map(_fits, given.types, wanted.types))
+    if getattr(wanted, "layout", "") == "A":
+        given = given.copy(layout="A") if hasattr(given, "layout") else given
+    return bool(given == wanted)
 
 
 def _signature(law: Callable[..., Any]) -> Any:
@@ -145,5 +159,5 @@ def _load(wanted: Kernel[..., Any]) -> Callable[..., Any]:
     names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))
     source = f"# The entry of kernel {wanted.name}.\ndef {ENTRY}({names}):\n    return law({names})\n"
     module_name = "sitl_kernel_" + wanted.name.replace(".", "_")
-    compile_entry = numba.njit([signature], cache=True, error_model="numpy")
+    compile_entry = numba.njit([signature], cache=True, **COMMON)
     return load_entry(folder, module_name, source, {"law": wanted.law}, compile_entry)  # type: ignore[no-any-return]

@@ -33,6 +33,8 @@ Progress = Callable[[str, int, int], None]
 
 _fingerprints: dict[tuple[str, str], str] = {}
 """(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
+_ENTRY_OPTIONS = {"error_model": "numpy", "forceinline": True}
+"""Of a unit's entry: its body is compiled into the function with the C signature."""
 _SYMBOLS = "symbols name records by their classes"
 """Machine code made with symbols of another kind cannot be loaded beside it."""
 _jitable: set[int] = set()
@@ -57,7 +59,8 @@ def toolchain() -> str:
     features = numba.config.CPU_FEATURES
     if features is None:
         features = llvmlite.binding.get_host_cpu_features().flatten()
-    return " ".join((*versions, platform.machine(), processor, features, repr(law_options()), _SYMBOLS))
+    options = f"{law_options()!r} {_ENTRY_OPTIONS!r}"
+    return " ".join((*versions, platform.machine(), processor, features, options, _SYMBOLS))
 
 
 def record_class(path: str) -> type[Record]:
@@ -133,7 +136,7 @@ def _body(unit: Unit) -> Any:
 
     original = unit.function
     copy = FunctionType(original.__code__, original.__globals__, original.__name__ + "_body")
-    return register_jitable(**law_options())(copy)
+    return register_jitable(**law_options(True))(copy)
 
 
 def _wrapper_source(unit: Unit) -> str:
@@ -165,7 +168,7 @@ def load_unit(unit: Unit, path: str) -> Any:
     folder, name = unit_folder(unit, path), symbol(unit, path)
     signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
     names = {"carray": numba.carray, "body": _body(unit)}
-    compile_entry = numba.cfunc(signature, cache=True, error_model="numpy")
+    compile_entry = numba.cfunc(signature, cache=True, **_ENTRY_OPTIONS)
     function = load_entry(folder, name, _wrapper_source(unit), names, compile_entry)
     llvmlite.binding.add_symbol(name, function.address)
     _loaded[unit.name, path] = function

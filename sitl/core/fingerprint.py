@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from .kernels import INLINED, UNITS, Unit
-from .records import Record
+from .records import PROPERTIES, Record
 
 
 def _code(function: types.FunctionType) -> str:
@@ -49,6 +49,9 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
     seen.add(id(function))
     inlined = " inlined" if function in INLINED else ""
     lines.append(f"def {function.__module__}.{function.__qualname__}{inlined} {_code(function)}")
+    for name in function.__code__.co_names:
+        for law in PROPERTIES.get(name, ()):
+            _walk(law, seen, units, lines)
     for name, value in _referenced(function):
         if isinstance(value, types.FunctionType):
             if id(value) in units:

@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 import zlib
 from functools import cache
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 from numba import carray
 from numba.core import cgutils, types
+from numba.core.compiler import Flags
 from numba.core.datamodel import register_default
 from numba.core.datamodel.models import OpaqueModel, RecordModel
 from numba.core.imputils import lower_constant, lower_getattr_generic, lower_setattr_generic
@@ -46,6 +47,7 @@ class RecordType(types.Record):
         super().__init__(listed, cls.dtype.itemsize, cls.dtype.isalignedstruct)
         self.values: dict[str, Any] = {f.name: _value_type(f) for f in cls.fields.values() if f.value is not None}
         """Field that reads as a value -> what it reads as."""
+        self.properties: dict[str, Any] = cls.properties
         # Numba takes types of one name for the same: classes that are made by a function may share theirs.
         self.name = f"{cls.__module__}.{cls.__qualname__}@{zlib.crc32(cls.layout().encode()):08x}"
 
@@ -97,11 +99,19 @@ def _typeof(array: Any, context: Any) -> Any:
 register_default(RecordType)(RecordModel)
 
 
+def _property(kind: RecordType, name: str) -> Any:
+    """The signature of a property's law."""
+    value = get_type_hints(kind.properties[name])["return"]
+    return (TYPES.get(value) or _SCALARS[value])(kind)
+
+
 @infer_getattr
 class _Fields(AttributeTemplate):
     key = RecordType
 
     def generic_resolve(self, record: RecordType, name: str) -> Any:
+        if name in record.properties:
+            return _property(record, name).return_type
         if name not in record.fields:
             return None
         return record.values.get(name) or record.typeof(name)
@@ -117,6 +127,11 @@ def _place(builder: Any, context: Any, kind: RecordType, memory: Any, name: str)
 
 @lower_getattr_generic(RecordType)
 def _read(context: Any, builder: Any, kind: RecordType, memory: Any, name: str) -> Any:
+    if name in kind.properties:
+        signature, flags = _property(kind, name), Flags()
+        flags.error_model = "numpy"
+        law = context.compile_subroutine(builder, kind.properties[name], signature, flags=flags)
+        return context.call_internal(builder, law.fndesc, signature, [memory])
     value = kind.values.get(name)
     if value is None:
         return record_getattr(context, builder, kind, memory, name)
@@ -194,6 +209,8 @@ def _pointer_to(number: Any) -> Any:
     return pointer
 
 
+_MAKES_ARRAYS = {"_nrt": True}
+"""Numba lets no function return a new array without this."""
 _to_bytes, _to_floats, _to_ints = _pointer_to(types.uint8), _pointer_to(types.float64), _pointer_to(types.int64)
 
 
@@ -203,21 +220,21 @@ def _record_at(cls, address):  # type: ignore[no-untyped-def]
     return lambda cls, address: _as_record(cls, address)
 
 
-@overload(bytes_at)
+@overload(bytes_at, jit_options=_MAKES_ARRAYS)
 def _bytes_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_bytes(address), (count,))
 
 
-@overload(floats_at)
+@overload(floats_at, jit_options=_MAKES_ARRAYS)
 def _floats_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_floats(address), (count,))
 
 
-@overload(table_at)
+@overload(table_at, jit_options=_MAKES_ARRAYS)
 def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
     return lambda address, rows, columns: carray(_to_floats(address), (rows, columns))
 
 
-@overload(ints_at)
+@overload(ints_at, jit_options=_MAKES_ARRAYS)
 def _ints_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_ints(address), (count,))

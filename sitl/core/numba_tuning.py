@@ -17,9 +17,17 @@ from typing import Any
 _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
+COMMON: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
+"""Compiler options of laws and kernels: IEEE division instead of Python's exception, and no counts of references to
+arrays. Laws do not allocate, and the shell holds all arrays; a count is an atomic instruction."""
+
+
 def law_options(inline: bool = False) -> dict[str, Any]:
-    """Compiler options of laws: no wrappers, and IEEE division instead of Python's exception."""
-    return {"error_model": "numpy", **_NO_WRAPPERS, **({"forceinline": True} if inline else {})}
+    """Compiler options of laws: ``COMMON``, and no wrappers.
+
+    Without a word on inlining, a law would take it from the law inside which it is compiled first.
+    """
+    return {**COMMON, **_NO_WRAPPERS, "forceinline": inline}
 
 
 @contextlib.contextmanager

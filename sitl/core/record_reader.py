@@ -26,7 +26,7 @@ class UnknownFieldError(SitlError, KeyError):
 
 
 def locate(dtype: np.dtype[Any], path: str) -> tuple[int, str, int]:
-    """(offset [bytes], struct code, number of elements) of a field: "autopilot.estimate.euler", "radio.RC[0].MIN"."""
+    """(offset [bytes], struct code, number of elements) of a field: "autopilot.estimate.vel", "radio.RC[0].MIN"."""
     offset = 0
     for part in path.split("."):
         name, _, index = part.removesuffix("]").partition("[")

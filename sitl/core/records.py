@@ -21,6 +21,13 @@ mypy know the fields::
 Numbers, booleans, vectors, quaternions and Euler angles read and write as values; arrays and nested records are
 references to the record's memory. A subclass goes on with the fields of its base, whose places it keeps; those of
 several bases follow each other, where a field of two of them is at its place in the later one.
+
+A property that is a law is read like a field, in laws too, and worked out at each read::
+
+    @property
+    @law
+    def yaw(self) -> float:
+        return yaw_of(self.q)
 """
 
 from __future__ import annotations
@@ -216,6 +223,8 @@ def _values() -> tuple[type[Value], ...]:
     return VALUES
 
 
+PROPERTIES: dict[str, list[Any]] = {}
+"""Name of a property -> the laws of that name, of all records."""
 _REFERENCES = tuple(f"_reference_{k}" for k in range(64))
 """Where a record keeps its arrays, records and rows of records, in the order of its fields."""
 
@@ -235,6 +244,8 @@ class Record(metaclass=_RecordMeta):
     """NumPy's type of the record, aligned as C does it."""
     fields: ClassVar[dict[str, Field]] = {}
     """Name -> field, in the order of memory."""
+    properties: ClassVar[dict[str, Any]] = {}
+    """Name -> law, of properties."""
     _places: ClassVar[tuple[tuple[str, Field], ...]] = ()
     _stores: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Views of the memory as numbers of one size: (attribute, letter of the numbers)."""
@@ -272,6 +283,10 @@ class Record(metaclass=_RecordMeta):
         cls.dtype = np.dtype([(f.name, f.numpy) for f in declared], align=True)
         offsets: Any = cls.dtype.fields or {}
         cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
+        own_laws = {name: p.fget for name, p in vars(cls).items() if isinstance(p, property)}
+        cls.properties = cls.properties | own_laws
+        for name, law in own_laws.items():
+            PROPERTIES.setdefault(name, []).append(law)
         cls.lay_out([f for f in cls.fields.values() if f.value is None])
         values = [field for field in cls.fields.values() if field.value is not None]
         codes = {field.code for field in values}

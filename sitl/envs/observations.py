@@ -99,8 +99,9 @@ class Digits:
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
-        out = np.empty((robot.count, self._plan.digits), np.int64)
-        _digits(robot.scan, *self._plan[:3], out)
+        every, when_inf, highest, digits = self._plan
+        out = np.empty((robot.count, digits), np.int64)
+        _digits.unchecked()(robot.scan, every, when_inf, highest, out)
         return out
 
 

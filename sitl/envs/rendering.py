@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,25 @@ def _pygame() -> Any:
     except ImportError:
         raise DependencyNotInstalled("rendering needs pygame: pip install 'gym-sitl[viz]'") from None
     return pygame
+
+
+def tile(pictures: Sequence[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
+    """Pictures of one size in a grid, row by row, about as many rows as columns; what is left over is black.
+
+    Args:
+        pictures: each of shape (height, width, 3).
+
+    Returns:
+        shape (rows * height, columns * width, 3).
+    """
+    columns = math.ceil(math.sqrt(len(pictures)))
+    rows = math.ceil(len(pictures) / columns)
+    height, width = pictures[0].shape[:2]
+    out = np.zeros((rows * height, columns * width, 3), np.uint8)
+    for k, picture in enumerate(pictures):
+        y, x = height * (k // columns), width * (k % columns)
+        out[y : y + height, x : x + width] = picture
+    return out
 
 
 class Renderer:

@@ -25,7 +25,7 @@ from .observations import OBSERVATIONS, Observation
 from .options import COMMON, EnvOptionError, unknown
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
-from .robots.robot import LateRobot, Robot
+from .robots.robot import LateRobot, PreparedRobot, Robot
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
@@ -104,6 +104,12 @@ class Session:
         except WorldError as error:
             raise EnvOptionError(str(error)) from None
         self.robot = robots.load(options.robot, world, count, options.robot_options)
+        scan, touched = self.robot.scan, self.robot.collided
+        if scan.dtype != np.float32 or not scan.flags.c_contiguous or touched.dtype != np.int64:
+            raise EnvOptionError(
+                f"robot {self.robot.name!r}: scan is {scan.dtype}, collided {touched.dtype}; they must be float32, "
+                "row by row in memory, and int64"
+            )
         self.count = count
         self.action = self._choose_action(options.action, options.setpoint)
         self.seconds = self._check_step_time(options.step_time)
@@ -112,6 +118,8 @@ class Session:
         """None: commands take effect at once."""
         self.randomisation = Randomisation(ranges, self.robot, self.latency)
         self.starts = Starts(options.start, self.robot)
+        if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
+            self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")
         self.observation: Observation = _named("observation", options.observation, OBSERVATIONS, "observe")
         if not isinstance(self.action.space, gym.spaces.Discrete) and any(

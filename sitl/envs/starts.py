@@ -16,7 +16,7 @@ from sitl.core.kernels import law
 from sitl.core.vectors import Vec2
 from sitl.turtlebots.native import full_pose
 from sitl.worlds import WorldError
-from sitl.worlds.contact import Volume, clearance, nearest_of
+from sitl.worlds.contact import Volume, clearance, distance, nearest_of
 from sitl.worlds.shapes import to_ned
 
 from .options import EnvOptionError
@@ -122,8 +122,7 @@ class ReachableCells:
         """Whether the robot can stand at x, y [m] in the world frame, with the margin."""
         north, east, down = to_ned(x, y, self.z)
         v = self._volume
-        found = clearance(self._world.geometry, north, east, down - v.top, down - v.bottom, v.radius)
-        return found.distance > self.margin
+        return distance(self._world.geometry, north, east, down - v.top, down - v.bottom, v.radius) > self.margin
 
     def draw(self, rng: np.random.Generator) -> tuple[float, float]:
         """A random reachable position: x, y [m] in the world frame."""
@@ -177,7 +176,8 @@ class Starts:
         self._draw: Callable[[np.random.Generator], Any] | None = None
         self._cells: ReachableCells | None = None
         self._z = robot.world.start(robot.name).position[2]
-        self._pose: Pose | None = None
+        self.fixed: Pose | None = None
+        """The start pose, where there is one only."""
         if isinstance(option, str) and option == "random":
             self._cells = ReachableCells(robot)
         elif isinstance(option, str) and option.startswith("random:"):
@@ -190,11 +190,11 @@ class Starts:
                 start = robot.world.start(robot.name, option)
             except WorldError as error:
                 raise EnvOptionError(f'start {option!r}: {error}, "turned" and "random"') from None
-            self._pose = self.pose((*start.position, start.yaw))
+            self.fixed = self.pose((*start.position, start.yaw))
         elif callable(option):
             self._draw = option
         else:
-            self._pose = self.pose(option)
+            self.fixed = self.pose(option)
 
     def _few(self, option: str, cells: ReachableCells) -> Callable[[np.random.Generator], Any]:
         """Draws from N random poses, for the option "random:N"."""
@@ -225,17 +225,17 @@ class Starts:
         out."""
         north, east, down = to_ned(*pose[:3])
         volume, world = self._robot.volume, self._robot.world
-        near = clearance(world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0)
-        if near.distance < 0.0:
-            solid = world.solids[near.solid]
+        room = world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0
+        if distance(*room) < 0.0:
+            solid = world.solids[clearance(*room).solid]
             what = f"{type(solid).__name__.lower()} {solid.name!r}"
             x, y, z, _ = pose
             raise EnvOptionError(f"start: ({x:g}, {y:g}, {z:g}) in world {world.name!r} is inside of {what}")
 
     def draw(self, rng: np.random.Generator) -> Pose:
         """A start pose: x, y, z [m], yaw [rad] in the world frame."""
-        if self._pose is not None:
-            return self._pose
+        if self.fixed is not None:
+            return self.fixed
         if self._cells is not None:
             x, y = self._cells.draw(rng)
             return (x, y, self._z, float(rng.uniform(-math.pi, math.pi)))

@@ -72,12 +72,12 @@ class Task:
         if crash_range is not None and not 0.0 <= crash_range < math.inf:
             raise EnvOptionError(f"crash_range = {crash_range}; it must be 0 m or more")
         self.crash_reward = crash_reward
-        self.contact_ends = contact_ends
+        self.contact_ends = bool(contact_ends)
         self._range = 0.0
 
     def prepare(self, robot: Robot) -> None:
         """Called once, before the first episode."""
-        self._range = robot.crash_range if self.crash_range is None else self.crash_range
+        self._range = float(robot.crash_range if self.crash_range is None else self.crash_range)
 
     @property
     def limit(self) -> float:
@@ -89,17 +89,12 @@ class Task:
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """Write the rewards of a step, and which episodes have ended, into two arrays of shape (count,)."""
-        crashes = _crashes(step.scan, self._range, step.robot.collided, self.contact_ends, terminated)
+        robot, count = step.robot, _crashes.unchecked()
+        crashes = count(robot.scan, self._range, robot.collided, self.contact_ends, terminated)
         step.crashed = terminated
-        first = True
-        for term in self.terms:
-            if first:
-                rewards[:] = term(step)
-                first = False
-            else:
-                rewards += term(step)
-        if first:
-            rewards[:] = 0.0
+        rewards[...] = self.terms[0](step) if self.terms else 0.0
+        for term in self.terms[1:]:
+            rewards += term(step)
         if crashes:
             rewards[terminated] = self.crash_reward
 

@@ -11,27 +11,34 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 from gymnasium.utils import seeding
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from .options import EnvOptionError, unknown
-from .rendering import Renderer
+from .rendering import Renderer, tile
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
+from .sub_environment import OfSubEnvironments, row_of
+from .tasks import Task
 
 VECTOR_RENDER_MODES = ["rgb_array"]
+Flags = npt.NDArray[np.bool_]
 
 
-class NavigateVector(VectorEnv[Any, Any, Any]):
+class NavigateVector(OfSubEnvironments):
     """Many robots, each in a world of its own; what ``gymnasium.make_vec`` gives for this package's environments.
 
-    Robot i behaves as a ``Navigate`` that was reset with ``seed + i``. As in Gymnasium's own vector environments, a
-    robot whose episode has ended is reset by the next ``step``, which ignores its action (``AutoresetMode.NEXT_STEP``).
+    Robot i behaves as a ``Navigate`` that was reset with ``seed + i``; observations, rewards and infos are those of
+    ``gymnasium.vector.SyncVectorEnv`` over such environments, in each of Gymnasium's autoreset modes.
 
     Args:
         num_envs: number of robots.
         max_episode_steps: number of steps after which an episode is truncated; None: never.
         render_mode: "rgb_array" or None.
+        autoreset_mode: when a robot whose episode has ended is reset: "NextStep", by the next ``step``, which ignores
+            its action; "SameStep", by the step that ended the episode, whose last observation and info are then
+            ``infos["final_obs"]`` and ``infos["final_info"]``; "Disabled", by ``reset`` only.
+        tiled: whether ``render`` gives one image, a grid of all robots, and not an image of each.
         options: see ``NavigateOptions``.
     """
 
@@ -47,6 +54,8 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         max_episode_steps: int | None = None,
         *,
         render_mode: str | None = None,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        tiled: bool = False,
         **options: Any,
     ) -> None:
         if num_envs < 1:
@@ -55,17 +64,21 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
             raise EnvOptionError(f"max_episode_steps = {max_episode_steps}; it must be 1 or more, or None")
         if render_mode is not None and render_mode not in VECTOR_RENDER_MODES:
             raise unknown("render_mode", render_mode, VECTOR_RENDER_MODES)
+        self.autoreset_mode = _mode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self._session = session = Session(num_envs, NavigateOptions.of(options))
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.render_mode = render_mode
+        self.tiled = tiled
         self.single_observation_space = session.observation_space
         self.single_action_space = session.action.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._generators: list[np.random.Generator | None] = [None] * num_envs
+        self.generators = [None] * num_envs
+        self.seeds = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
-        self._ended = np.zeros(num_envs, np.bool_)
+        self._ended, self._all = np.zeros(num_envs, np.bool_), np.ones(num_envs, np.bool_)
         self._renderers = [Renderer(session.robot, session.task, i) for i in range(num_envs)] if render_mode else []
 
     @property
@@ -74,63 +87,87 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         return self._session.robot
 
     @property
+    def task(self) -> Task:
+        """The task of all robots."""
+        return self._session.task
+
+    @property
     def step_time(self) -> float:
         """Simulated time of a step [s]."""
         return self._session.seconds
 
+    # ------------------------------------------------------------------ episodes
+
     def reset(  # type: ignore[override]
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """See ``gymnasium.vector.SyncVectorEnv.reset``; options: "reset_mask" (which robots), "pose"."""
+        """See ``gymnasium.vector.SyncVectorEnv.reset``.
+
+        Args:
+            seed: robot i gets ``seed + i``; or one for each robot, None for those that go on with their random numbers.
+            options: "reset_mask": which robots, booleans of shape (num_envs,); "pose": start pose of all, or a list
+                with one for each robot, None for those that start where they usually do.
+
+        Raises:
+            EnvOptionError: an option that cannot be used.
+            ValueError: not as many seeds as robots.
+        """
         if seed is None or isinstance(seed, int | np.integer):
             seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
         else:
             seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"{len(seeds)} seeds for num_envs = {self.num_envs}")
-        rows = self._reset_mask(options)
-        for index in np.flatnonzero(rows):
-            if seeds[index] is not None or self._generators[index] is None:
-                self._generators[index], _ = seeding.np_random(seeds[index])
-            self._start(int(index), options)
+        rows, poses = self._reset_mask(options), self._poses(options)
+        for index in np.flatnonzero(rows).tolist():
+            if seeds[index] is not None or self.generators[index] is None:
+                self.generators[index], self.seeds[index] = seeding.np_random(seeds[index])
+            self._start(index, options if poses is None else {**(options or {}), "pose": poses[index]})
         self._session.look(rows)
-        self._steps[rows], self._ended[rows] = 0, False
-        return self._session.observation.observe(self._session.robot), {}
+        self._steps[rows], self._ended[rows], self.closed = 0, False, False
+        return self.observe(), {}
 
-    def _reset_mask(self, options: dict[str, Any] | None) -> npt.NDArray[np.bool_]:
-        rows = np.ones(self.num_envs, np.bool_) if options is None else options.get("reset_mask")
+    def _reset_mask(self, options: dict[str, Any] | None) -> Flags:
+        rows = None if options is None else options.get("reset_mask")
         if rows is None:
             return np.ones(self.num_envs, np.bool_)
         if not isinstance(rows, np.ndarray) or rows.dtype != np.bool_ or rows.shape != (self.num_envs,):
             raise EnvOptionError(f"reset_mask = {rows!r}; it must be an array of {self.num_envs} booleans")
+        if not rows.any():
+            raise EnvOptionError("reset_mask: it must be True for one robot at least")
         return rows
 
-    def _generator(self, index: int) -> np.random.Generator:
-        generator = self._generators[index]
-        if generator is None:
-            raise gym.error.ResetNeeded("the robots stand nowhere before the first reset()")
-        return generator
+    def _poses(self, options: dict[str, Any] | None) -> Sequence[Any] | None:
+        """Start poses, one for each robot, where ``options`` has such; None: one for all, or none."""
+        given = None if options is None else options.get("pose")
+        if given is None or not any(pose is None or np.ndim(pose) == 1 for pose in given):
+            return None
+        if len(given) != self.num_envs:
+            raise EnvOptionError(f"pose: {len(given)} start poses for num_envs = {self.num_envs}")
+        poses: Sequence[Any] = given
+        return poses
 
-    def _start(self, index: int, options: dict[str, Any] | None) -> None:
-        self._session.reset(index, self._generator(index), options)
+    def _start(self, index: int, options: dict[str, Any] | None = None) -> None:
+        self._session.reset(index, self.generator(index), options)
         if self._renderers:
             self._renderers[index].start()
 
-    def step(
-        self, actions: Any
-    ) -> tuple[Any, npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], dict[str, Any]]:
+    # ------------------------------------------------------------------ steps
+
+    def step(self, actions: Any) -> tuple[Any, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """See ``gymnasium.vector.VectorEnv.step``.
 
         Raises:
             InvalidAction: there is not one action in the space for each robot.
+            ResetNeeded: before the first reset; without autoreset, when an episode has ended, too.
         """
-        session, ended = self._session, self._ended
+        session, mode = self._session, self.autoreset_mode
         self._take(actions)
-        again = bool(ended.any())
+        self.generator(0)
+        ended = self._ended
+        again = mode is not AutoresetMode.SAME_STEP and bool(ended.any())
         if again:
-            for index in np.flatnonzero(ended):
-                self._start(int(index), None)
-        self._generator(0)
+            self._start_again(ended)
         session.advance(~ended if again else None)
         self._steps += 1
         rewards, terminated = session.rewards.copy(), session.terminated.copy()
@@ -138,11 +175,40 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
             self._steps[ended], rewards[ended], terminated[ended] = 0, 0.0, False
         limit = self.max_episode_steps
         truncated = np.zeros(self.num_envs, np.bool_) if limit is None else self._steps >= limit
-        infos = self._infos(~ended)
-        self._ended = terminated | truncated
-        for renderer in self._renderers:
-            renderer.note()
-        return session.observation.observe(session.robot), rewards, terminated, truncated, infos
+        moved = ~ended if again else self._all
+        if self._renderers:
+            for index in np.flatnonzero(moved).tolist():
+                self._renderers[index].note()
+        self._ended = ended = terminated | truncated
+        if mode is AutoresetMode.SAME_STEP and ended.any():
+            observations, infos = self._end_within(ended)
+        else:
+            observations, infos = self.observe(), self._infos(moved)
+        return observations, rewards, terminated, truncated, infos
+
+    def _start_again(self, ended: Flags) -> None:
+        """Start the episodes of robots whose last one has ended."""
+        if self.autoreset_mode is AutoresetMode.DISABLED:
+            raise gym.error.ResetNeeded(
+                f"the episodes of robots {np.flatnonzero(ended).tolist()} have ended, and autoreset is disabled: "
+                'reset(options={"reset_mask": ...}) starts others'
+            )
+        for index in np.flatnonzero(ended).tolist():
+            self._start(index)
+
+    def _end_within(self, ended: Flags) -> tuple[Any, dict[str, Any]]:
+        """Reset the robots whose episodes this step has ended; returns observations and infos, as Gymnasium's
+        "SameStep" has them."""
+        session = self._session
+        last, last_info, infos = self.observe(), self._infos(ended), self._infos(~ended)
+        final = np.full(self.num_envs, None, object)
+        for index in np.flatnonzero(ended).tolist():
+            final[index] = row_of(last, index)
+        self._start_again(ended)
+        session.look(ended)
+        self._steps[ended] = 0
+        infos |= {"final_obs": final, "_final_obs": ended, "final_info": last_info, "_final_info": ended.copy()}
+        return self.observe(), infos
 
     def _take(self, actions: Any) -> None:
         check, rows = self._session.action.check, self._session.actions
@@ -158,46 +224,76 @@ class NavigateVector(VectorEnv[Any, Any, Any]):
         for index in range(count):
             rows[index] = check(actions[index])
 
-    def _infos(self, rows: npt.NDArray[np.bool_]) -> dict[str, Any]:
+    def _infos(self, rows: Flags) -> dict[str, Any]:
         """Infos in Gymnasium's vector form: each array with a mask "_name" of the robots that it is valid for."""
         infos: dict[str, Any] = {}
+        if rows is not self._all and not rows.any():
+            return infos
         for name, value in self._session.task.info(self._session.step).items():
-            masked = np.array(value)  # a copy: the array belongs to the task
+            if value.ndim == 1:  # Gymnasium makes arrays of Python's numbers
+                masked = value.astype(type(value[0].item()))
+            else:
+                masked = np.array(value)  # a copy: the array belongs to the task
             masked[~rows] = 0
             infos[name], infos["_" + name] = masked, rows.copy()
         return infos
 
-    def snapshot(self) -> list[Snapshot]:
-        """A snapshot of each robot as by ``Navigate.snapshot``, with its step count and whether its episode has
+    # ------------------------------------------------------------------ snapshots
+
+    def snapshot_of(self, index: int) -> Snapshot:
+        """A snapshot of one robot as by ``Navigate.snapshot``, with its step count and whether its episode has
         ended."""
-        return [
-            replace(
-                self._session.snapshot(index, self._generator(index)),
-                steps=int(self._steps[index]),
-                ended=bool(self._ended[index]),
-            )
-            for index in range(self.num_envs)
-        ]
+        kept = self._session.snapshot(index, self.generator(index))
+        return replace(kept, steps=int(self._steps[index]), ended=bool(self._ended[index]))
+
+    def restore_one(self, index: int, snapshot: Snapshot) -> None:
+        """Restore one robot. Snapshots of a ``Navigate`` have a step count of 0."""
+        generator = self.generators[index]
+        if generator is None:
+            generator, self.seeds[index] = seeding.np_random(0)
+        self._session.restore(index, snapshot, generator)
+        self.generators[index] = generator
+        self._steps[index], self._ended[index] = snapshot.steps, snapshot.ended
+        if self._renderers:
+            self._renderers[index].start()
+
+    def snapshot(self) -> list[Snapshot]:
+        """A snapshot of each robot: see ``snapshot_of``."""
+        return [self.snapshot_of(index) for index in range(self.num_envs)]
 
     def restore(self, snapshots: Sequence[Snapshot]) -> Any:
-        """Restore every robot; returns the observations. Snapshots of a ``Navigate`` have a step count of 0."""
+        """Restore every robot: see ``restore_one``; returns the observations."""
         if len(snapshots) != self.num_envs:
             raise EnvOptionError(f"{len(snapshots)} snapshots for num_envs = {self.num_envs}")
         for index, snapshot in enumerate(snapshots):
-            generator = self._generators[index]
-            if generator is None:
-                generator, _ = seeding.np_random(0)
-            self._session.restore(index, snapshot, generator)
-            self._generators[index] = generator
-            self._steps[index], self._ended[index] = snapshot.steps, snapshot.ended
-        for renderer in self._renderers:
-            renderer.start()
+            self.restore_one(index, snapshot)
+        return self.observe()
+
+    def observe(self) -> Any:
+        """The observations of now."""
         return self._session.observation.observe(self._session.robot)
 
-    def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
-        """An image of each robot, shape (height, width, 3), uint8; None without a render mode."""
-        return tuple(renderer.picture() for renderer in self._renderers) if self._renderers else None
+    # ------------------------------------------------------------------ pictures
+
+    def picture(self, index: int) -> npt.NDArray[np.uint8] | None:
+        """An image of one robot, shape (height, width, 3), uint8; None without a render mode."""
+        return self._renderers[index].picture() if self._renderers else None
+
+    def render(self) -> Any:
+        """An image of each robot, a tuple of arrays of shape (height, width, 3), uint8; with ``tiled`` one such array
+        with all of them in a grid, row by row; None without a render mode."""
+        if not self._renderers:
+            return None
+        pictures = tuple(renderer.picture() for renderer in self._renderers)
+        return tile(pictures) if self.tiled else pictures
 
     def close_extras(self, **kwargs: Any) -> None:
         """See ``gymnasium.vector.VectorEnv.close``."""
         self._session.robot.close()
+
+
+def _mode(given: str | AutoresetMode) -> AutoresetMode:
+    try:
+        return AutoresetMode(given)
+    except ValueError:
+        raise unknown("autoreset_mode", given, [mode.value for mode in AutoresetMode]) from None

@@ -51,9 +51,7 @@ class TrackObserver:
 
     def __init__(self, simulation: Observed) -> None:
         self._vehicle = simulation
-        self._pos, self._vel, self._euler = (
-            _reader(simulation, f"autopilot.estimate.{name}") for name in ("pos", "vel", "euler")
-        )
+        self._pos, self._vel = (_reader(simulation, f"autopilot.estimate.{name}") for name in ("pos", "vel"))
         self._energy = _reader(simulation, "autopilot.battery.consumed_wh")
         self._ready = _reader(simulation, "autopilot.estimate.origin_set")
         self._events = _reader(simulation, "autopilot.events.count")
@@ -91,7 +89,8 @@ class TrackObserver:
         if self._is_new:
             self._find_origin()
         place = [x + shift for x, shift in zip(self._pos(), self._shift)]
-        self._rows.append((now * 1e-6, *place, *self._vel(), *self._euler(), *self._energy()))
+        euler = self._vehicle.v.autopilot.estimate.euler
+        self._rows.append((now * 1e-6, *place, *self._vel(), *euler, *self._energy()))
 
     def _rebooted(self) -> None:
         self._boot_us, self._seen, self._is_new = self._vehicle.before_boot_us, 0, True

@@ -16,8 +16,7 @@ from typing import TypeVar
 
 from ..autopilot.events import HIT_OBSTACLE, emit
 from ..autopilot.inertial_ring import remember
-from ..core.algebra import euler_of
-from ..core.kernels import law
+from ..core.kernels import inlined, law
 from .record import Vehicle
 
 # EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
@@ -30,7 +29,6 @@ def observe(v: Vehicle) -> None:
     """Copy attitude, rates, velocity, position and acceleration of the body into the autopilot's estimate."""
     body, place, e = v.physics.body, v.physics.place, v.autopilot.estimate
     e.rates, e.vel, e.pos, e.acc_ned, e.q = body.rates, body.vel, body.pos, body.acc_ned, body.q
-    e.euler = euler_of(e.q)
     e.origin_lat, e.origin_lon, e.origin_alt = place.lat, place.lon, place.alt
     e.origin_set = True
     e.attitude_ok = True
@@ -55,7 +53,7 @@ def advance_ticks(fleet: Sequence[V], index: int, ticks: int, step: Tick[V], fly
             break
 
 
-@law
+@inlined
 def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
     """What follows a tick of physics: obstacles are reported, the firmware (``control``) goes from sensors to
     actuators."""
@@ -65,10 +63,10 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
         observe(vehicle)
     control(fleet, index)
     ap, sensors = vehicle.autopilot, vehicle.sensors
-    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.euler)
+    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.q)
 
 
-@law
+@inlined
 def watch_obstacles(vehicle: Vehicle) -> None:
     """HIT_OBSTACLE when the vehicle ran into a solid in this tick; back to the shell for a new list of solids."""
     obstacles = vehicle.physics.obstacles

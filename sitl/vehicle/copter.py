@@ -8,17 +8,28 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..autopilot.copter.firmware import FIRMWARE, update
+from ..autopilot.copter.move import move as move_firmware
 from ..autopilot.copter.state import Autopilot
+from ..autopilot.copter.trim import is_flying, total_thrust
+from ..autopilot.copter.trim import trim as trim_firmware
 from ..autopilot.events import HIT_GROUND, emit
-from ..core.kernels import law, unit
+from ..core.algebra import rotate
+from ..core.displacement import Displacement
+from ..core.kernels import inlined, law, unit
+from ..core.memory import record_at
 from ..physics.native.copter import pieces
 from ..physics.native.copter.init import init
+from ..physics.native.copter.prepare import prepare
 from ..physics.native.copter.state import Physics
 from ..physics.native.copter.step import step
+from ..physics.native.copter.trim import balance, command_speeds
+from ..physics.native.move import show_field
+from ..physics.native.records import GROUND_AIRBORNE
 from ..vehicles import CopterAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
+from .move import DONE, IN_SOLID, NO_HOVER, ORDER_SIZE, MoveOrder, displace, is_calm, look_around
 from .record import Vehicle
 
 QUADROTOR = 2
@@ -45,19 +56,66 @@ def fly(fleet: Sequence[Copter], index: int) -> None:
     fly_after_touch(fleet, index)
 
 
-@law
+@inlined
 def fly_after_touch(fleet: Sequence[Copter], index: int) -> None:
     """What follows a tick of physics."""
     report_touch(fleet[index])
     fly_tick(fleet, index, update)
 
 
-@law
+@inlined
 def report_touch(vehicle: Copter) -> None:
     """HIT_GROUND when the vehicle came down hard in this tick."""
     ground = vehicle.physics.ground
     if ground.hit_count > 0 and ground.hit_time_us == vehicle.time_us:
         emit(vehicle.autopilot.events, vehicle.time_us, HIT_GROUND, float(ground.hit_speed), 0.0)
+
+
+@law
+def move_autopilot(v: Copter, d: Displacement) -> None:
+    """Move the firmware."""
+    move_firmware(v.autopilot, d)
+
+
+@law
+def hover_again(v: Copter) -> bool:
+    """Let rotors, lean and what the autopilot has learnt of them fit what acts on a vehicle in the air now; False:
+    they cannot."""
+    p, motors, params = v.physics, v.autopilot.control.motors, v.autopilot.params.MOT
+    if p.ground.state != GROUND_AIRBORNE or not is_flying(motors):
+        return True
+    thrust = total_thrust(motors, v.actuators, params)
+    before = p.body.specific_force
+    found = balance(p, rotate(p.body.q, before))
+    if not (found.holds and thrust > 0.0):
+        return False
+    command_speeds(p, v.actuators.controls)
+    v.sensors.acc += p.body.specific_force - before
+    trim_firmware(v.autopilot, v.actuators, found.turn, thrust)
+    return True
+
+
+@law
+def obey(v: Copter, order: MoveOrder, ranging: int) -> int:
+    """Move one vehicle as ordered; DONE, IN_SOLID or NO_HOVER."""
+    p = v.physics
+    before, was_calm = p.body.q, is_calm(v)
+    d = displace(v, order, move_autopilot)
+    if order.other_figures:
+        prepare(p.airframe, p.derived)
+    if order.other_figures or order.says_velocity or not (was_calm and is_calm(v)):
+        if not hover_again(v):
+            return NO_HOVER
+    show_field(p, v.sensors, before)
+    return DONE if look_around(v, ranging, d) else IN_SOLID
+
+
+@unit
+def move(fleet: Sequence[Copter], index: int, count: int, orders: int, ranging: int) -> None:
+    """Move vehicles as ``count`` orders at an address say; ``index`` says nothing."""
+    for k in range(count):
+        order = record_at(MoveOrder, orders + k * ORDER_SIZE)
+        order.result = obey(fleet[order.vehicle], order, ranging)
 
 
 def apply_sim_parameters(v: Copter) -> None:
@@ -82,6 +140,7 @@ COPTER = Kind(
     advance=advance,
     fly=fly,
     step=step,
+    move=move,
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=apply_sim_parameters,

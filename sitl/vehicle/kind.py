@@ -40,6 +40,9 @@ class Kind:
     """Unit of one tick of its autopilot alone."""
     step: Callable[[Any, int], None]
     """Unit of one tick of its native physics alone."""
+    move: Callable[[Any, int, int, int, int], None] | None = None
+    """Unit ``move(fleet, index, count, orders, ranging)``: puts vehicles elsewhere (``sitl.vehicle.move``); None: they
+    cannot be."""
     pieces: Any
     """Module of the units ``begin``, ``load`` and ``sense``: a tick without the motion (``sitl.physics.engine``); None:
     only native physics simulates it."""

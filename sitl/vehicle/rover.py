@@ -6,16 +6,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..autopilot.rover.firmware import FIRMWARE, update
+from ..autopilot.rover.move import move as move_firmware
 from ..autopilot.rover.state import Autopilot
+from ..core.algebra import euler_of
+from ..core.displacement import Displacement, speed_along
 from ..core.kernels import law, unit
+from ..core.memory import record_at
+from ..core.vectors import Vec2
+from ..physics.native.move import show_field
 from ..physics.native.rover import pieces
 from ..physics.native.rover.init import init
+from ..physics.native.rover.prepare import prepare
 from ..physics.native.rover.state import Physics
 from ..physics.native.rover.step import THROTTLE_OUTPUT, step
 from ..vehicles import RoverAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
+from .move import DONE, IN_SOLID, ORDER_SIZE, MoveOrder, displace, look_around
 from .record import Vehicle
 
 GROUND_ROVER, BOAT = 10, 11
@@ -47,6 +55,35 @@ def fly(fleet: Sequence[Rover], index: int) -> None:
     drive(fleet, index)
 
 
+@law
+def move_autopilot(v: Rover, d: Displacement) -> None:
+    """Move the firmware, and the wheels, which turn with the vehicle's speed."""
+    move_firmware(v.autopilot, d)
+    wheels, speed = v.physics.wheels, speed_along(d, euler_of(v.physics.body.q).yaw)
+    wheels.forward += speed
+    wheels.speed += Vec2(speed, speed)
+
+
+@law
+def obey(v: Rover, order: MoveOrder, ranging: int) -> int:
+    """Move one vehicle as ordered; DONE or IN_SOLID."""
+    p = v.physics
+    before = p.body.q
+    d = displace(v, order, move_autopilot)
+    if order.other_figures:
+        prepare(p.airframe, p.derived)
+    show_field(p, v.sensors, before)
+    return DONE if look_around(v, ranging, d) else IN_SOLID
+
+
+@unit
+def move(fleet: Sequence[Rover], index: int, count: int, orders: int, ranging: int) -> None:
+    """Move vehicles as ``count`` orders at an address say; ``index`` says nothing."""
+    for k in range(count):
+        order = record_at(MoveOrder, orders + k * ORDER_SIZE)
+        order.result = obey(fleet[order.vehicle], order, ranging)
+
+
 def motor_output(v: Rover) -> float:
     """Control of the throttle, -1 .. 1."""
     return float(v.actuators.controls[THROTTLE_OUTPUT])
@@ -59,6 +96,7 @@ ROVER = Kind(
     advance=advance,
     fly=fly,
     step=step,
+    move=move,
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=sim_parameters.apply,

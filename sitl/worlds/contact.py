@@ -12,6 +12,8 @@ rows. The floor is no solid.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -152,7 +154,16 @@ def gather(solids: Table, place: Vec2, reach: float, rows: Table) -> Listed:
     return Listed(count, complete)
 
 
+@law
+def distance_of(
+    solids: Table, count: int, north: float, east: float, top: float, bottom: float, radius: float
+) -> float:
+    """Distance to the nearest of ``count`` solids [m]; see ``distance``."""
+    return nearest_of(solids, count, Volume(Vec2(north, east), top, bottom, radius)).distance
+
+
 _nearest = Kernel(nearest_of)
+_distance = Kernel(distance_of)
 _gather = Kernel(gather)
 
 
@@ -168,6 +179,17 @@ def clearance(geometry: Geometry, north: float, east: float, top: float, bottom:
     volume = Volume(Vec2(north, east), float(top), float(bottom), float(radius))
     found = _nearest(geometry.solids, len(geometry), volume)
     return Contact(float(found.distance), found.normal, found.solid)
+
+
+@cache
+def _quick() -> Callable[..., float]:
+    return _distance.unchecked()
+
+
+def distance(geometry: Geometry, north: float, east: float, top: float, bottom: float, radius: float) -> float:
+    """How far the nearest solid is from a robot [m], below 0 inside; takes what ``clearance`` takes, and less time."""
+    numbers = float(north), float(east), float(top), float(bottom), float(radius)
+    return float(_quick()(geometry.solids, len(geometry), *numbers))
 
 
 def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floats) -> Listed:

@@ -114,7 +114,7 @@ def test_the_network_that_plays_is_the_one_that_learnt(tmp_path, algorithm):
     network, rng = Network(model), np.random.default_rng(0)
     for row in rng.uniform(-2.0, 2.0, (50, *model.observation_space.shape)).astype(np.float32):
         expected, _ = model.predict(row, deterministic=True)
-        assert network(row) == pytest.approx(expected, abs=1e-5)
+        assert network(row[None])[0] == pytest.approx(expected, abs=1e-5)
 
 
 def test_what_cannot_be_is_refused(tmp_path):
@@ -194,6 +194,31 @@ def test_a_score_is_what_an_evaluation_finds(tmp_path, options, by):
         assert np.array_equal(seen[k], env.reset(seed=environments.seed_of(SEED, k), options=begin)[0])
     assert not np.array_equal(seen[0], seen[1])
     assert checks.score(policy.model) == pytest.approx(expected)
+    checks.close()
+
+
+class Straight:
+    """A model that always goes forward."""
+
+    def predict(self, rows, deterministic):
+        return np.zeros(len(rows), np.int64), None
+
+
+def test_a_network_that_crashes_more_often_than_the_best_is_not_played_to_the_end(tmp_path, monkeypatch):
+    run = new(tmp_path / "run", env_options={"start": "random"}, settings={"check_episodes": 6, "check_by": "crashes"})
+    checks = checks_of(run)
+    env, steps = checks._made(), []
+    step = env.step
+    monkeypatch.setattr(env, "step", lambda actions: steps.append(1) or step(actions))
+    score = checks.score(Straight())
+    crashes, whole = -score[0], len(steps)
+    assert crashes > 1
+    for most, plays_all in ((crashes, True), (0.0, False)):
+        steps.clear()
+        checks._best = (-most, 1e6)
+        found = checks.score(Straight())
+        assert not found > checks._best and (found == score) == plays_all
+        assert (len(steps) == whole) == plays_all
     checks.close()
 
 

@@ -106,7 +106,7 @@ def test_yaws_of_body_frames_count_from_the_nose(v: Copter, frame: int) -> None:
     v.autopilot.control.attitude.target_euler = (0.0, 0.0, 1.5)
     flown(v, local(VELOCITY_AND_YAW, frame))
     heading = v.autopilot.modes.auto_yaw
-    assert (heading.mode, heading.yaw, heading.offset) == (auto_yaw.FIXED, 1.5, 0.5)
+    assert (heading.mode, heading.yaw, heading.offset) == (auto_yaw.FIXED, pytest.approx(1.5), 0.5)
 
 
 @pytest.mark.parametrize(("frame", "pos", "vel"), [

@@ -79,11 +79,14 @@ def test_the_place_is_the_fix_until_there_is_an_origin(v: Copter) -> None:
 
 
 def test_attitude(v: Copter) -> None:
-    v.autopilot.estimate.euler = v.autopilot.estimate.euler.replace(roll=0.5, pitch=1e300, yaw=math.nan)
+    v.autopilot.estimate.euler = (0.5, -0.25, 2.0)
+    v.autopilot.estimate.rates = (0.125, 1e300, math.nan)
     with np.errstate(over="ignore"):
         m = says(attitude, v)
-    assert (m.time_boot_ms, m.roll, m.pitch) == (12_345, 0.5, math.inf)
-    assert math.isnan(m.yaw)
+    assert m.time_boot_ms == 12_345
+    assert (m.roll, m.pitch, m.yaw) == pytest.approx((0.5, -0.25, 2.0))
+    assert (m.rollspeed, m.pitchspeed) == (0.125, math.inf)
+    assert math.isnan(m.yawspeed)
 
 
 def test_the_controllers_of_a_firmware_that_rests() -> None:

@@ -151,8 +151,8 @@ def test_readers_give_fields_in_the_order_asked() -> None:
     fill(vehicle)
     reader = RecordReader(vehicle.fleet, 1)
     e = vehicle.v.autopilot.estimate
-    assert reader.fields("autopilot.estimate.pos", "time_us", "autopilot.estimate.euler")() == (
-        *e.pos, vehicle.v.time_us, *e.euler
+    assert reader.fields("autopilot.estimate.pos", "time_us", "autopilot.estimate.vel")() == (
+        *e.pos, vehicle.v.time_us, *e.vel
     )  # fmt: skip
     assert reader.field("sensors.gps_fix")() == vehicle.v.sensors.gps_fix
 

@@ -195,14 +195,14 @@ def test_a_drawn_latency_that_cannot_be_is_refused():
 
 
 def test_draws_come_from_a_few_sets_whose_vehicles_stay_prepared():
-    env = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}).unwrapped
+    env = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}, begin="boot").unwrapped
     found = set()
     for seed in range(6):
         env.reset(seed=seed)
         v = env.robot.view(0)
         found.add((float(v.physics.airframe.mass), float(v.physics.wind.speed)))
     assert len(found) == len(env.robot._vehicles._states) == 2
-    other = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}).unwrapped
+    other = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}, begin="boot").unwrapped
     other.reset(seed=11)
     assert float(other.robot.view(0).physics.airframe.mass) in {mass for mass, _ in found}
 

@@ -12,6 +12,7 @@ from gymnasium.error import InvalidAction, ResetNeeded
 
 from sitl.envs import EnvOptionError
 from sitl.envs.tasks import ReachGoal
+from tests.envs.vector_equality import same
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 CASES = [
@@ -22,12 +23,6 @@ CASES = [
     ),
     ("sitl/Navigate-v0", {"world": "round", "action": "continuous", "observation": "scan+pose", "task": "goal"}),
 ]
-
-
-def same(a, b):
-    if isinstance(a, dict):
-        return a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
-    return a.dtype == b.dtype and np.array_equal(a, b)
 
 
 @pytest.mark.parametrize(("name", "options"), CASES)

@@ -74,14 +74,19 @@ class Checks:
             checkpoint.save_best(self._path, model, spaces, score)
 
     def score(self, model: Any) -> checkpoint.Score:
-        """Score of the model: all episodes are played at once."""
+        """Score of the model: all episodes are played at once. It is -inf after more crashes than the best model had:
+        then the rest is not played."""
         env = self._made()
         features = Features(env.single_observation_space, self._figures.sectors)
         frames = Frames(self._count, self._figures.frames, features.width)
         actions = Actions(env.single_action_space, self._config.algorithm)
         rows = frames.begin(features(self._begun(env)))
         rewards, playing, crashes = np.zeros(self._count), np.ones(self._count, np.bool_), 0
+        by_crashes = self._figures.check_by == "crashes"
+        most = -self._best[0] if by_crashes and self._best else np.inf
         while playing.any():
+            if crashes > most:
+                return (-np.inf,)
             chosen, _ = model.predict(rows, deterministic=True)
             observations, reward, terminated, truncated, _ = env.step(actions.to_environment(chosen))
             rewards[playing] += reward[playing]
@@ -89,7 +94,7 @@ class Checks:
             playing &= ~(terminated | truncated)
             rows = frames.push(features(observations))
         mean = float(rewards.mean())
-        return (-float(crashes), mean) if self._figures.check_by == "crashes" else (mean,)
+        return (-float(crashes), mean) if by_crashes else (mean,)
 
     def _made(self) -> gym.vector.VectorEnv[Any, Any, Any]:
         if self._env is None:

@@ -14,6 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any
 
+from . import cores
 from .watch import Interrupts
 
 SendProgress = Callable[[Any], None]
@@ -60,7 +61,7 @@ def _in_processes(
     context = multiprocessing.get_context("spawn")
     messages, stop = context.SimpleQueue(), context.Event()
     others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(jobs, context, _initialise, (messages, stop))
+    pool = ProcessPoolExecutor(jobs, context, _initialise, (messages, stop, jobs))
     futures: list[Future[Any]] = []
     try:
         futures += [pool.submit(_run, work, index, item) for index, item in enumerate(items)]
@@ -88,11 +89,12 @@ def _in_processes(
             process.join()
 
 
-def _initialise(messages: Any, stop: Any) -> None:
+def _initialise(messages: Any, stop: Any, jobs: int) -> None:
     """Initialise a process: it ignores a terminal's Ctrl-C, which the main process handles for all."""
     global _messages, _stop
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _messages, _stop = messages, stop
+    cores.share_among(jobs)
 
 
 def _run(work: Work, index: int, item: Any) -> Any:

@@ -13,7 +13,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from ..deep.library import LIBRARIES
-from . import transfer
+from . import cores, transfer
 from .config import versions
 from .local import Work, sendable
 
@@ -44,6 +44,7 @@ class Worker:
         self._messages: SimpleQueue[Message] = SimpleQueue()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
+        cores.share_among(cores.count())  # Ray gives a worker one
 
     def begin(self, work: Work, item: Any, contents: Sequence[transfer.Content | bytes]) -> list[Message]:
         """Start an item.

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from copy import copy
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ import numpy as np
 from .. import environments
 from ..errors import AgentError
 from ..evaluate import moved_starts
+from ..policies import OneEach
 from ..runs.config import EPISODES, RunConfig
 from ..runs.episodes import Episode
 from ..runs.files import read_arrays, write_arrays
@@ -73,6 +75,10 @@ class TablePolicy:
             self.unknown += 1
         best = np.flatnonzero(row == row.max())
         return int(best[0] if len(best) == 1 else self._rng.choice(best))
+
+    def many(self, count: int) -> OneEach:
+        """See ``Policy``."""
+        return OneEach([copy(self) for _ in range(count)])
 
 
 JITTER = 0.1

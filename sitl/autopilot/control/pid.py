@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ...core.kernels import law
+from ...core.kernels import inlined, law
 from ...core.records import Record
 from ...core.scalars import TWO_PI, constrain, finite
 from ..params.gains import BasicPidGains, PidGains
@@ -49,21 +49,21 @@ class Blocked(NamedTuple):
     up: bool
 
 
-@law
+@inlined
 def pid_gains(group: PidGains) -> Gains:
     """Gains from parameters."""
     g = group
     return Gains(g.P, g.I, g.D, g.FF, g.D_FF, g.IMAX, g.PDMX, g.FLTT, g.FLTE, g.FLTD)
 
 
-@law
+@inlined
 def basic_gains(group: BasicPidGains, i_max: float) -> Gains:
     """Gains from parameters of a loop without a filter of the target; ``i_max`` in the unit of the output."""
     g = group
     return Gains(g.P, g.I, g.D, g.FF, 0.0, i_max, 0.0, 0.0, g.FLTE, g.FLTD)
 
 
-@law
+@inlined
 def lowpass_gain(cutoff_hz: float, dt: float) -> float:
     """Part of the difference that a first-order low-pass takes over in one period; 1 without a filter (0 Hz)."""
     x = TWO_PI * cutoff_hz * dt
@@ -72,7 +72,7 @@ def lowpass_gain(cutoff_hz: float, dt: float) -> float:
     return x / (1.0 + x)
 
 
-@law
+@inlined
 def filter_error(pid: Pid, target: float, measurement: float, dt: float, gains: Gains) -> None:
     """Bring target, error and derivative up to date."""
     if not pid.started:
@@ -90,7 +90,7 @@ def filter_error(pid: Pid, target: float, measurement: float, dt: float, gains: 
     pid.error = error
 
 
-@law
+@inlined
 def integrate(pid: Pid, dt: float, blocked: Blocked, gains: Gains) -> None:
     """Integrate the error unless that would drive the integrator in a blocked direction."""
     if gains.i == 0.0:
@@ -99,7 +99,7 @@ def integrate(pid: Pid, dt: float, blocked: Blocked, gains: Gains) -> None:
         pid.integrator = constrain(pid.integrator + pid.error * gains.i * dt, -gains.i_max, gains.i_max)
 
 
-@law
+@inlined
 def update_pid(pid: Pid, target: float, measurement: float, dt: float, saturated: bool, gains: Gains) -> float:
     """Output of a loop whose actuator reports only *that* it is saturated: then the integrator may only shrink."""
     if not (finite(target) and finite(measurement)):
@@ -114,7 +114,7 @@ def update_pid(pid: Pid, target: float, measurement: float, dt: float, saturated
     return proportional + pid.integrator + feed_forward
 
 
-@law
+@inlined
 def update_pid_directional(
     pid: Pid, target: float, measurement: float, dt: float, blocked: Blocked, gains: Gains
 ) -> float:

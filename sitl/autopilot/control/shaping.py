@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from ...core.algebra import dot2, limit_length, norm2
-from ...core.kernels import law
+from ...core.kernels import inlined, law
 from ...core.scalars import constrain, sign
 from ...core.vectors import Vec2, Vec3
 
@@ -51,7 +51,7 @@ class Limits2(NamedTuple):
     jerk_max: float
 
 
-@law
+@inlined
 def sqrt_gain(error: float, p: float, accel_max: float) -> float:
     """Correction rate per unit of ``error`` >= 0: p, or less where the rate must stay able to stop.
 
@@ -67,7 +67,7 @@ def sqrt_gain(error: float, p: float, accel_max: float) -> float:
     return math.sqrt(2.0 * accel_max * (error - 0.5 * linear)) / error
 
 
-@law
+@inlined
 def sqrt_controller(error: float, p: float, accel_max: float, dt: float) -> float:
     """Rate that takes ``error`` to zero; with ``dt`` > 0 it never passes zero within one period."""
     gain = sqrt_gain(abs(error), p, accel_max)
@@ -76,7 +76,7 @@ def sqrt_controller(error: float, p: float, accel_max: float, dt: float) -> floa
     return error * gain
 
 
-@law
+@inlined
 def sqrt_controller_2d(error: Vec2, p: float, accel_max: float, dt: float) -> Vec2:
     """The same along the direction of an error in the plane."""
     gain = sqrt_gain(norm2(error), p, accel_max)
@@ -85,7 +85,7 @@ def sqrt_controller_2d(error: Vec2, p: float, accel_max: float, dt: float) -> Ve
     return error * gain
 
 
-@law
+@inlined
 def inverse_sqrt_controller(rate: float, p: float, accel_max: float) -> float:
     """Error at which ``sqrt_controller(error, p, accel_max, 0)`` gives ``rate``: also the distance needed to stop."""
     if accel_max <= 0.0:
@@ -120,7 +120,7 @@ def limit_accel(vel: Vec2, acc: Vec2, acc_max: float) -> Vec2:
     return Vec2(u.x * along - u.y * across, u.y * along + u.x * across)
 
 
-@law
+@inlined
 def limit_accel_braking(vel: Vec2, acc: Vec2, acc_max: float) -> Vec2:
     """The same, but what slows down comes first: for shaped targets.
 
@@ -139,7 +139,7 @@ def limit_accel_braking(vel: Vec2, acc: Vec2, acc_max: float) -> Vec2:
     return Vec2(u.x * along - u.y * across, u.y * along + u.x * across)
 
 
-@law
+@inlined
 def shape_accel(target: float, acc: float, jerk_max: float, dt: float) -> float:
     """Acceleration moved towards ``target`` by at most ``jerk_max * dt`` (jerk 0: at once)."""
     if jerk_max <= 0.0:
@@ -147,7 +147,7 @@ def shape_accel(target: float, acc: float, jerk_max: float, dt: float) -> float:
     return acc + constrain(target - acc, -jerk_max * dt, jerk_max * dt)
 
 
-@law
+@inlined
 def shape_accel_2d(target: Vec2, acc: Vec2, jerk_max: float, dt: float) -> Vec2:
     """The same in the plane."""
     if jerk_max <= 0.0:
@@ -155,7 +155,7 @@ def shape_accel_2d(target: Vec2, acc: Vec2, jerk_max: float, dt: float) -> Vec2:
     return acc + limit_length(target - acc, jerk_max * dt)
 
 
-@law
+@inlined
 def shape_vel_accel(target_vel: float, target_acc: float, now: Motion, limits: Limits, dt: float) -> float:
     """New acceleration that brings the velocity to ``target_vel``, which itself accelerates with ``target_acc``.
 
@@ -167,7 +167,7 @@ def shape_vel_accel(target_vel: float, target_acc: float, now: Motion, limits: L
     return shape_accel(wanted + target_acc, now.acc, limits.jerk_max, dt)
 
 
-@law
+@inlined
 def shape_vel_accel_2d(target_vel: Vec2, target_acc: Vec2, now: Motion2, limits: Limits2, dt: float) -> Vec2:
     """The same in the plane: one limit for the length of the correction, of which braking takes its part first."""
     wanted = sqrt_controller_2d(target_vel - now.vel, limits.jerk_max / limits.acc_max, limits.jerk_max, dt)
@@ -175,7 +175,7 @@ def shape_vel_accel_2d(target_vel: Vec2, target_acc: Vec2, now: Motion2, limits:
     return shape_accel_2d(wanted + target_acc, now.acc, limits.jerk_max, dt)
 
 
-@law
+@inlined
 def shape_pos_vel_accel(target: Motion, now: Motion, limits: Limits, dt: float) -> float:
     """New acceleration that brings a point onto a moving one.
 
@@ -190,7 +190,7 @@ def shape_pos_vel_accel(target: Motion, now: Motion, limits: Limits, dt: float) 
     return shape_vel_accel(vel + target.vel, target.acc, now, limits, dt)
 
 
-@law
+@inlined
 def shape_pos_vel_accel_2d(target: Motion2, now: Motion2, limits: Limits2, dt: float) -> Vec2:
     """The same in the plane."""
     p = 0.5 * limits.jerk_max / limits.acc_max
@@ -200,7 +200,7 @@ def shape_pos_vel_accel_2d(target: Motion2, now: Motion2, limits: Limits2, dt: f
     return shape_vel_accel_2d(vel + target.vel, target.acc, now, limits, dt)
 
 
-@law
+@inlined
 def advance(now: Motion, dt: float, limit: float, pos_error: float, vel_error: float) -> Motion:
     """The motion after ``dt`` at constant acceleration.
 
@@ -216,7 +216,7 @@ def advance(now: Motion, dt: float, limit: float, pos_error: float, vel_error: f
     return Motion(now.pos + dp, now.vel + dv, now.acc)
 
 
-@law
+@inlined
 def advance_2d(now: Motion2, dt: float, limit: Vec2, pos_error: Vec2, vel_error: Vec2) -> Motion2:
     """The same in the plane; ``limit`` points where the actuators are used up, zero when they are not."""
     dp = now.vel * dt + 0.5 * now.acc * dt * dt
@@ -228,7 +228,7 @@ def advance_2d(now: Motion2, dt: float, limit: Vec2, pos_error: Vec2, vel_error:
     return Motion2(now.pos + dp, now.vel + dv, now.acc)
 
 
-@law
+@inlined
 def shape_rate(rate: float, desired: float, accel_max: float, time_constant: float, dt: float) -> float:
     """Angular velocity moved towards ``desired``: exponentially if a time constant is given, at most ``accel_max``."""
     if time_constant > 0.0:
@@ -238,7 +238,7 @@ def shape_rate(rate: float, desired: float, accel_max: float, time_constant: flo
     return desired
 
 
-@law
+@inlined
 def shape_angle(
     error: float, rate: float, time_constant: float, accel_max: float, dt: float, rate_ahead: float, rate_max: float
 ) -> float:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.kernels import law
+from ...core.kernels import inlined, law
 from .. import home
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, emit
@@ -62,7 +62,7 @@ def disarm(v: Vehicle, method: int, force: bool) -> bool:
     return not ap.arming.armed
 
 
-@law
+@inlined
 def follow_throttle(arming: Arming, modes: Modes, time_us: int) -> None:
     """Every tick: end of the arming delay, and whether the vehicle was told to fly since arming."""
     if not arming.armed:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import dot
-from ...core.kernels import law
+from ...core.kernels import inlined
 from ...core.vectors import Vec3
 from ..arming_checks import BY_CRASH
 from ..events import CRASH_DISARM, emit
@@ -24,7 +24,7 @@ ACCEL_MAX = 3.0  # [m/s^2]
 SPEED_MAX = 10.0  # [m/s]
 
 
-@law
+@inlined
 def is_crashed(attitude: AttitudeState, detector: LandingState, vel: Vec3) -> bool:
     """Whether this tick looks like a crash: far off its lean, yet neither accelerating nor fast; ``vel`` [m/s]."""
     if attitude.cos_lean > COS_LEAN_MIN or attitude.thrust_error_angle <= ANGLE_ERROR_MAX:
@@ -32,7 +32,7 @@ def is_crashed(attitude: AttitudeState, detector: LandingState, vel: Vec3) -> bo
     return landing.acceleration(detector) < ACCEL_MAX and dot(vel, vel) < SPEED_MAX * SPEED_MAX
 
 
-@law
+@inlined
 def check(v: Vehicle) -> None:
     """One tick: count, and disarm after two seconds."""
     ap = v.autopilot

@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import math
 
-from ...core.algebra import norm
-from ...core.kernels import law
+from ...core.algebra import euler_of, norm
+from ...core.kernels import inlined, law
+from ...core.vectors import Quat
 from ..events import LANDED, emit
 from ..state import Arming
 from .control import throttle_mix
+from .control.attitude_target import cos_lean
 from .control.motors import hover_throttle
 from .control.state import AttitudeState, Control, MotorsState
 from .modes import ground, table
@@ -30,6 +32,7 @@ MAYBE_TICKS = 80
 ACCEL_MAX = 1.0  # [m/s^2]
 SPEED_MAX = 1.0  # [m/s]
 LEAN_REQUEST_MAX = math.radians(15.0)
+COS_LEAN_NEAR = 0.967  # cos(roll) cos(pitch) is below this wherever roll^2 + pitch^2 is over (15 degrees)^2
 LEAN_ERROR_MAX = math.radians(30.0)
 ACCEL_MOVING = 3.0  # [m/s^2]
 _FILTER = 0.0025 / (0.0025 + 1.0 / (2.0 * math.pi))
@@ -38,27 +41,34 @@ _MIX_AT_MIN = 1.25
 _STOPPED = 0.1  # [m/s]
 
 
-@law
+@inlined
 def is_taking_off(modes: Modes) -> bool:
     """Whether the mode raises the throttle from the ground by itself and tells when it flies."""
     return modes.takeoff.user_active or table.is_taking_off(modes.number, modes)
 
 
-@law
+@inlined
 def acceleration(detector: LandingState) -> float:
     """Filtered acceleration [m/s^2]."""
     return norm(detector.acc)
 
 
-@law
+@inlined
 def leans_far(attitude: AttitudeState) -> bool:
     """Whether a lean over 15 degrees is asked for, or the lean is off by more than 30 degrees."""
-    target = attitude.target_euler
-    asked = target.roll * target.roll + target.pitch * target.pitch > LEAN_REQUEST_MAX * LEAN_REQUEST_MAX
-    return asked or attitude.thrust_error_angle > LEAN_ERROR_MAX
+    return is_far_lean(attitude.target_q) or attitude.thrust_error_angle > LEAN_ERROR_MAX
 
 
 @law
+def is_far_lean(q: Quat) -> bool:
+    """Whether roll and pitch of an attitude are over 15 degrees together."""
+    if cos_lean(q) > COS_LEAN_NEAR:
+        return False  # for certain: the angles themselves are dear
+    lean = euler_of(q)
+    return lean.roll * lean.roll + lean.pitch * lean.pitch > LEAN_REQUEST_MAX * LEAN_REQUEST_MAX
+
+
+@inlined
 def detect(v: Vehicle) -> None:
     """One tick of the detector."""
     ap = v.autopilot
@@ -74,7 +84,7 @@ def detect(v: Vehicle) -> None:
         emit(ap.events, v.time_us, LANDED, 0.0, 0.0)
 
 
-@law
+@inlined
 def count_rest(arming: Arming, at_rest: bool) -> bool:
     """Count a tick in the air ``at_rest`` or not; whether the vehicle has landed with it."""
     if not at_rest:
@@ -89,13 +99,13 @@ def count_rest(arming: Arming, at_rest: bool) -> bool:
     return False
 
 
-@law
+@inlined
 def pushes(motors: MotorsState, hover: float) -> bool:
     """Whether the motors lift more than half of the vehicle; ``hover``: throttle that lifts it."""
     return motors.throttle > 0.5 * hover and motors.spool_state == ground.IS_UNLIMITED
 
 
-@law
+@inlined
 def is_meant_to_land(modes: Modes, motors: MotorsState, vel_d: float) -> bool:
     """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
     if modes.landing.landing:
@@ -105,7 +115,7 @@ def is_meant_to_land(modes: Modes, motors: MotorsState, vel_d: float) -> bool:
     return modes.pilot.throttle_zero and motors.limit_throttle_lower and abs(vel_d) < _STOPPED
 
 
-@law
+@inlined
 def is_at_rest(control: Control, modes: Modes, vel_d: float, p: Attitude) -> bool:
     """Whether everything in this tick speaks for the ground; ``vel_d``: down [m/s]."""
     if not control.motors.limit_throttle_lower or control.attitude.mix >= _MIX_AT_MIN * p.THR_MIX_MIN:
@@ -115,7 +125,7 @@ def is_at_rest(control: Control, modes: Modes, vel_d: float, p: Attitude) -> boo
     return abs(vel_d) < SPEED_MAX and acceleration(modes.landing) <= ACCEL_MAX
 
 
-@law
+@inlined
 def set_priority(control: Control, arming: Arming, modes: Modes, vel_d: float, p: Attitude) -> None:
     """Attitude first in the air, throttle first on and near the ground; ``vel_d``: down [m/s]."""
     attitude = control.attitude

@@ -186,7 +186,7 @@ def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:
     n, e = ap.estimate.pos.x - centre.x, ap.estimate.pos.y - centre.y
     away = math.hypot(n, e)
     if away < 0.01:  # from the centre straight back, so that it looks ahead
-        yaw = ap.estimate.euler.yaw + math.pi
+        yaw = ap.estimate.yaw + math.pi
         n, e, away = math.cos(yaw), math.sin(yaw), 1.0
         distance = abs(radius)
     else:

@@ -7,7 +7,7 @@ aside. The test ends by itself, or with a disarming.
 
 from __future__ import annotations
 
-from ...core.kernels import law
+from ...core.kernels import inlined
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from ..state import Arming
@@ -68,7 +68,7 @@ def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
     return OK
 
 
-@law
+@inlined
 def run(v: Vehicle) -> None:
     """Every tick of a test, behind the mode: keep the mode's hands off the motors; end in time."""
     ap = v.autopilot

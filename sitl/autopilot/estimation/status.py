@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from ...core.algebra import euler_of
 from ...core.kernels import law
 from ..state import Estimate
 from .alignment import CALIBRATE
@@ -63,4 +62,3 @@ def publish(ekf: Ekf, estimate: Estimate, dt: float, tau: float) -> None:
     estimate.rates = ekf.last_gyro
     estimate.acc_ned = ekf.last_acc_ned
     estimate.q = ekf.q
-    estimate.euler = euler_of(ekf.q)

@@ -37,7 +37,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap.arming.landed = False
     ap.arming.crash_ticks = 0
     smart_rtl_path.begin(ap.modes.path, ap.estimate, v.time_us, ap.params.SRTL)
-    note_heading(ap.modes.simple, ap.estimate.euler.yaw)
+    note_heading(ap.modes.simple, ap.estimate.yaw)
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0
 

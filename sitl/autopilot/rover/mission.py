@@ -84,7 +84,7 @@ class RoverCommands(Commands[Vehicle]):
             nav.turns = max(item.p1, 0.0)
             nav.circle_radius = min(max(item.p3, -RADIUS_MAX), RADIUS_MAX)
         elif kind == kinds.YAW_SPEED:
-            nav.heading = math.radians(item.p1) + (ap.estimate.euler.yaw if item.p3 > 0.0 else 0.0)
+            nav.heading = math.radians(item.p1) + (ap.estimate.yaw if item.p3 > 0.0 else 0.0)
             nav.heading_speed = item.p2
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)

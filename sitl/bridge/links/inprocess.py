@@ -19,6 +19,9 @@ class _VehicleEnd(Peer):
         self.sent: list[bytes] = []
         self.joins_frames = self.waits = drop is None
 
+    def accept(self, frames: bytes) -> None:
+        self.sent.append(frames)
+
     def flush(self) -> None:
         if self.outbox:
             self.sent.extend(self.outbox if self.drop is None else [f for f in self.outbox if not self.drop(f)])

@@ -46,6 +46,10 @@ class Peer:
         """Queue one frame; ``flush`` sends it."""
         self.outbox.append(frame)
 
+    def accept(self, frames: bytes) -> None:
+        """Frames in one piece, on their way at once; of a peer that ``waits``."""
+        raise NotImplementedError
+
     def flush(self) -> None:
         """Hand queued frames to the operating system, as far as it takes them now."""
         self.outbox.clear()

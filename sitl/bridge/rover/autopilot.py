@@ -63,7 +63,7 @@ class RoverAutopilot(BaseAutopilot):
 
     def guided_heading_change(self, change: float, speed: float) -> bool:
         """Turn by an angle [rad] from the heading asked for last."""
-        yaw = self._v.autopilot.estimate.euler.yaw
+        yaw = self._v.autopilot.estimate.yaw
         code = guided_setpoints.set_heading_change_and_speed(self._modes, self._v.time_us, yaw, change, speed)
         return int(code) == 0
 

@@ -11,7 +11,7 @@ from ..core_link import CoreUnits
 from ..services.rc import rc_channels_override
 from ..telemetry.builder import compiled
 from ..wire.choose import choose_builder, choose_taker, choose_targets
-from ..wire.fleet import Beside, run_slots
+from ..wire.fleet import run_slots
 from ..wire.link import Limits, Links, hear_port, run_vehicle, tell_links
 from .setpoints import attitude_target, position_target_global, position_target_local
 from .sticks import manual_control
@@ -41,9 +41,9 @@ def run(fleet: Sequence[Rover], index: int, ports: int, count: int, ranging: int
 
 
 @unit
-def run_all(fleet: Sequence[Rover], index: int, last: int, ports: int, slots: int, ranging: int) -> None:
-    """Vehicles ``index`` .. ``last`` - 1 of a fleet act on what their clients sent, and advance."""
-    run_slots(fleet, index, last, Beside(ports, slots, ranging), hear, run)
+def run_all(fleet: Sequence[Rover], index: int, last: int, slots: int, ranging: int) -> None:
+    """Vehicles ``index`` .. ``last`` - 1 act on what their clients sent, and advance."""
+    run_slots(fleet, index, last, slots, ranging, hear, run)
 
 
 UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)

@@ -91,7 +91,7 @@ def follow(v: Rover, target: Target, backward: bool, message: int) -> None:
         if not target.use_yaw:
             set_turn_rate_and_speed(modes, v.time_us, target.yaw_rate, -speed if target.use_vel and backward else speed)
     elif target.use_yaw:
-        heading = target.yaw + v.autopilot.estimate.euler.yaw if target.relative_yaw else target.yaw
+        heading = target.yaw + v.autopilot.estimate.yaw if target.relative_yaw else target.yaw
         set_heading_and_speed(modes, v.time_us, heading, -speed if target.use_vel and backward else speed)
     elif target.use_vel:
         set_heading_and_speed(modes, v.time_us, math.atan2(target.vel.y, target.vel.x), speed)

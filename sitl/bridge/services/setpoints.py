@@ -120,7 +120,7 @@ def to_ned(vector: Vec3, frame: int, yaw: float) -> Vec3:
 @law
 def local_target(m: SetPositionTargetLocalNed, estimate: Estimate) -> Target:
     """The target of a message whose frame is one of ``LOCAL_FRAMES``."""
-    frame, yaw = m.coordinate_frame, estimate.euler.yaw
+    frame, yaw = m.coordinate_frame, estimate.yaw
     pos = to_ned(Vec3(m.x, m.y, m.z), frame, yaw)
     if frame != LOCAL_NED:
         pos = pos + estimate.pos

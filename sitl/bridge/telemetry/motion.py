@@ -64,7 +64,7 @@ def global_position_int(m: GlobalPositionInt, v: Vehicle) -> bool:
     m.vx = int16(estimate.vel.x * 100.0)
     m.vy = int16(estimate.vel.y * 100.0)
     m.vz = int16(estimate.vel.z * 100.0)
-    m.hdg = heading_cdeg(estimate.euler.yaw)
+    m.hdg = heading_cdeg(estimate.yaw)
     return True
 
 
@@ -109,7 +109,7 @@ def vfr_hud(m: VfrHud, v: Vehicle, throttle: float) -> bool:
     m.airspeed = m.groundspeed = math.hypot(estimate.vel.x, estimate.vel.y)
     m.alt = global_position(v).alt
     m.climb = -estimate.vel.z
-    m.heading = heading_cdeg(estimate.euler.yaw) // 100
+    m.heading = heading_cdeg(estimate.yaw) // 100
     m.throttle = uint16(abs(throttle) * 100.0 + 0.5)
     return True
 

@@ -7,6 +7,7 @@ The bytes are those that ``setpoints`` and ``telemetry`` of this package make an
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from sitl.bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
 from sitl.bridge.wire.message import Message
 from sitl.bridge.wire.port import INCOMING, OUT, PAYLOAD, PAYLOAD_BYTES, SIZE, Port
 from sitl.core.algebra import quat_from_euler
-from sitl.core.array_kernels import IntLine, Kernel, NarrowTable, Table
+from sitl.core.array_kernels import IntColumn, IntLine, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
 from sitl.core.memory import Bytes, bytes_at, record_at
 from sitl.core.records import Floats, Ints, Record, Records
@@ -111,9 +112,31 @@ class ClientEnd(Record):
     fresh: int  # bits of the parts that have come of the scan under way
     scan_us: int  # its time
     scans: int  # whole scans so far
-    hits: int  # touches so far
+    hits: int  # touches since they were last shown
     mode: int
     armed: bool
+
+
+class RobotArrays(NamedTuple):
+    """What an environment knows of its robots, a row each."""
+
+    scan: NarrowTable
+    """Readings of the last whole scan [m], from right to left, shape (count, readings)."""
+    state: Table
+    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; shape (count, 8)."""
+    collided: IntLine
+    """1 for each robot that touched something during the last step, shape (count,)."""
+    time: Line
+    """Since the episode began [s], shape (count,)."""
+    began_us: IntLine
+    """When the episode began [us of simulated time], shape (count,)."""
+
+
+def robot_arrays(count: int, readings: int) -> RobotArrays:
+    """For ``count`` robots at rest, of which nothing is known."""
+    scan = np.full((count, readings), np.inf, np.float32)
+    numbers = np.zeros((2, count), np.int64)
+    return RobotArrays(scan, np.zeros((count, 8)), numbers[0], np.zeros(count), numbers[1])
 
 
 # ---------------------------------------------------------------------- set-points
@@ -205,17 +228,17 @@ def write_setpoint(sort: int, commands: Table, i: int, end: ClientEnd, origin: V
 
 @law
 def send_setpoints(
-    sort: int, rows: IntLine, commands: Table, ends: Records[ClientEnd], origins: Table, ports: int
+    ends: Records[ClientEnd], origins: Table, ports: int, rows: IntLine, sort: int, commands: Table
 ) -> None:
     """Send a set-point to each vehicle of ``rows``.
 
     Args:
-        sort: of set-point.
-        rows: numbers of the vehicles.
-        commands: set-points, shape (vehicles, columns).
         ends: one for each vehicle.
         origins: of the vehicles' local frames, NED in the world [m], shape (vehicles, 3).
         ports: address of the vehicles' ports.
+        rows: numbers of the vehicles.
+        sort: of set-point.
+        commands: set-points, shape (vehicles, columns).
     """
     for k in range(rows.shape[0]):
         i = rows[k]
@@ -306,15 +329,15 @@ def read_bytes(
 
 
 @law
-def read_ports(rows: IntLine, ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int) -> None:
+def read_ports(ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int, rows: IntLine) -> None:
     """Read what each vehicle of ``rows`` has sent, and take it from its port.
 
     Args:
-        rows: numbers of the vehicles.
         ends: one for each vehicle.
-        scans: the last whole scans [m], shape (vehicles, readings rounded up to whole parts).
-        coming: those under way, of the same shape.
+        scans: the last whole scans [m], shape (vehicles, readings).
+        coming: those under way, shape (vehicles, readings rounded up to whole parts).
         ports: address of the vehicles' ports.
+        rows: numbers of the vehicles.
     """
     for k in range(rows.shape[0]):
         i = rows[k]
@@ -327,37 +350,60 @@ def read_ports(rows: IntLine, ends: Records[ClientEnd], scans: NarrowTable, comi
 
 @law
 def read_row(
-    i: int, data: int, size: int, ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int
+    ends: Records[ClientEnd], scans: NarrowTable, coming: NarrowTable, ports: int, i: int, data: int, size: int
 ) -> None:
     """Read ``size`` bytes of vehicle ``i`` at an address."""
     read_bytes(ends[i], bytes_at(data, size), size, i, scans, coming, ports + i * SIZE)
 
 
+class Origins(NamedTuple):
+    """What a vehicle's telemetry is counted from, a row each."""
+
+    places: Table
+    """Of the vehicles' local frames, NED in the world [m], shape (vehicles, 3)."""
+    since_boot_us: IntColumn
+    """Simulated time of the vehicles, and that before the last boot, shape (vehicles,)."""
+    before_boot_us: IntLine
+
+
 @law
-def place_robots(rows: IntLine, ends: Records[ClientEnd], origins: Table, base_along: float, state: Table) -> None:
-    """Where the vehicles are, for observations.
+def show_robots(
+    ends: Records[ClientEnd],
+    coming: NarrowTable,
+    ports: int,
+    origins: Origins,
+    base_along: float,
+    robots: RobotArrays,
+    rows: IntLine,
+) -> None:
+    """Read what each vehicle of ``rows`` has sent (see ``read_ports``), and write what is known of it.
 
     Args:
-        rows: numbers of the vehicles.
         ends: one for each vehicle.
-        origins: of the vehicles' local frames, NED in the world [m], shape (vehicles, 3).
+        coming: scans under way [m].
+        ports: address of the vehicles' ports.
+        origins: of the vehicles.
         base_along: how far the robot's base lies ahead of the body's origin [m].
-        state: x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; shape (vehicles, 8).
+        robots: what is written.
+        rows: numbers of the vehicles.
     """
+    read_ports(ends, robots.scan, coming, ports, rows)
+    state, places = robots.state, origins.places
     for k in range(rows.shape[0]):
         i = rows[k]
         end = ends[i]
         p, v, heading = end.position, end.velocity, end.euler.yaw
         c, s = math.cos(heading), math.sin(heading)
-        x, y, z = from_ned(
-            origins[i, 0] + p.x + base_along * c, origins[i, 1] + p.y + base_along * s, origins[i, 2] + p.z
-        )
+        x, y, z = from_ned(places[i, 0] + p.x + base_along * c, places[i, 1] + p.y + base_along * s, places[i, 2] + p.z)
         state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
         state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c
         state[i, 6], state[i, 7] = -v.z, -end.rates.z
+        robots.collided[i] = 1 if end.hits > 0 else 0
+        end.hits = 0
+        robots.time[i] = 1e-6 * (origins.before_boot_us[i] + origins.since_boot_us[i] - robots.began_us[i])
 
 
 send_all = Kernel(send_setpoints)
 read_all = Kernel(read_ports)
 read_one = Kernel(read_row)
-place_all = Kernel(place_robots)
+show_all = Kernel(show_robots)

@@ -73,7 +73,7 @@ class StepTelemetry(Inbox):
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
-        for kind, payload, _, system, component, _, _ in self._splitter.feed(data):
+        for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
             if component != AUTOPILOT or system != (self.system or system):
                 continue
             if kind is POSITION:

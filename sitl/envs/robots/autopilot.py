@@ -29,12 +29,14 @@ from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import Action, Setpoint
+from ..mavlink.compiled import robot_arrays
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_intervals, set_mode
 from ..options import COMMON, EnvOptionError, unknown
 from .foreign import ForeignVehicles, SocketVehicles
-from .in_fleet import FleetVehicles, rows_of
+from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
+from .moves import BEGINS
 from .robot import Floats, Pose
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
 
@@ -68,6 +70,8 @@ class AutopilotRobot:
         self._options = chosen = AutopilotOptions(**options)
         if chosen.reset not in RESETS:
             raise unknown("reset", chosen.reset, RESETS)
+        if chosen.begin not in BEGINS:
+            raise unknown("begin", chosen.begin, BEGINS)
         try:
             self.airframe = airframe = vehicles.load(chosen.frame)
         except AirframeError as error:
@@ -95,7 +99,10 @@ class AutopilotRobot:
             scenario = Scenario(airframe, chosen.home, params=chosen.params, world=self.world, physics=chosen.physics)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
-        setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles)
+        arrays: Any = robot_arrays(count, readings)
+        self.scan, self._state, self.collided, self.time, self._began_us = arrays
+        self.pose, self.velocity = self._state[:, :4], self._state[:, 4:]
+        setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
@@ -105,15 +112,9 @@ class AutopilotRobot:
             else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
-        self.scan = np.full((count, readings), np.inf, np.float32)
-        self.collided = np.zeros(count, np.int64)
-        self._state = np.zeros((count, 8))
-        self.pose, self.velocity = self._state[:, :4], self._state[:, 4:]
-        self.time = np.zeros(count)
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
         self._base_along = float(airframe.value("base_along"))
         self._states = [NOT_STARTED] * count
-        self._began_us = np.zeros(count, np.int64)
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
@@ -124,6 +125,10 @@ class AutopilotRobot:
     def set_figure(self, index: int, name: str, value: float) -> None:
         """See ``Robot``."""
         self._vehicles.changed[index][name] = value
+
+    def prepare_at(self, pose: Pose) -> None:
+        """Where a vehicle is prepared that is moved to other start poses; before the first reset."""
+        self._vehicles.base = pose
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
@@ -139,13 +144,13 @@ class AutopilotRobot:
 
     def apply(self, setpoint: Setpoint, commands: Floats) -> None:
         """See ``Robot``."""
-        self._setpoint, self._commands = setpoint, commands
+        self._setpoint, self._commands = setpoint, np.ascontiguousarray(commands, np.float64)
 
     def advance(self, seconds: float, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """See ``Robot``."""
         us = round(1e6 * seconds)
         if isinstance(self._vehicles, FleetVehicles):
-            self._step_all(self._vehicles, rows_of(rows, self.count), us)
+            self._step_all(self._vehicles, rows, us)
             return
         try:
             for index in range(self.count) if rows is None else np.flatnonzero(rows).tolist():
@@ -160,7 +165,7 @@ class AutopilotRobot:
         """See ``Robot``: the set-point message is sent after ``waits`` ticks."""
         us, tick_us = round(1e6 * seconds), round(1e6 * self.tick)
         if isinstance(self._vehicles, FleetVehicles):
-            self._step_all(self._vehicles, rows_of(rows, self.count), us, waits * tick_us)
+            self._step_all(self._vehicles, rows, us, waits * tick_us)
             return
         try:
             for index in range(self.count) if rows is None else np.flatnonzero(rows).tolist():
@@ -172,26 +177,18 @@ class AutopilotRobot:
     def _step_all(
         self,
         vehicles: FleetVehicles,
-        rows: npt.NDArray[np.int64],
+        rows: npt.NDArray[np.bool_] | None,
         us: int,
         waits_us: npt.NDArray[np.int64] | None = None,
     ) -> None:
         """One step of many vehicles at once."""
         vehicles.check_open()
         interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
-        for index in rows.tolist():
+        for index in vehicles.rows(rows).tolist():
             now = states[index]
             if now.setpoint != setpoint or now.interval_us != interval_us:
                 states[index] = vehicles.change(index, now, setpoint, interval_us)
-        hits = vehicles.hits
         vehicles.step(rows, us, setpoint, self._commands, waits_us)
-        self.collided[rows] = vehicles.hits[rows] > hits[rows]
-        self._place(vehicles, rows)
-
-    def _place(self, vehicles: FleetVehicles, rows: npt.NDArray[np.int64]) -> None:
-        vehicles.place(rows, self._base_along, self._state)
-        self.scan[rows] = vehicles.scans[rows, : self.scan.shape[1]]
-        self.time[rows] = 1e-6 * (vehicles.times_us()[rows] - self._began_us[rows])
 
     def _step(self, index: int, us: int, wait_us: int = 0) -> None:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
@@ -233,7 +230,7 @@ class AutopilotRobot:
         """Copy the last telemetry into the arrays."""
         self._began_us[index] = self._states[index].began_us
         if isinstance(self._vehicles, FleetVehicles):
-            self._place(self._vehicles, np.array([index]))
+            self._vehicles.show(np.array([index]))
             return
         link, now = self._vehicles.links[index], self._states[index]
         assert link is not None
@@ -251,6 +248,11 @@ class AutopilotRobot:
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """See ``Robot``; ``reset`` has already read the scan."""
+
+    def use_threads(self, threads: int) -> None:
+        """Let so many threads advance the vehicles, before their first reset; without effect on vehicles that have
+        none (see ``AutopilotOptions.threads``). Their number changes no bit of the result."""
+        self._vehicles.use_threads(threads)
 
     def link(self, index: int) -> Connection | None:
         """The connection to a vehicle, after its first reset; None before it, and for vehicles that a fleet flies (in
@@ -305,11 +307,13 @@ class AutopilotRobot:
         if not self._vehicles.has_snapshots:
             raise TypeError(f"an environment on {self._vehicles.where} cannot be pickled")
         kept = [None if state is NOT_STARTED else self.snapshot(i) for i, state in enumerate(self._states)]
-        return {"options": self._given, "kept": kept, "changed": self._vehicles.changed, "collided": self.collided}
+        vehicles = self._vehicles
+        return {"options": self._given, "kept": kept, "changed": vehicles.changed, "collided": self.collided,
+                "base": vehicles.base}  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["options"])  # type: ignore[misc]
-        self._vehicles.changed = state["changed"]
+        self._vehicles.changed, self._vehicles.base = state["changed"], state["base"]
         for index, kept in enumerate(state["kept"]):
             if kept is not None:
                 self.restore(index, kept)

@@ -6,17 +6,21 @@ Each has its own link, and commands and telemetry are MAVLink's bytes, as for on
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from sitl.client.connection import InProcess
+from sitl.core.geodesy import offset_ne
 from sitl.core.kernels import jit_disabled
 from sitl.errors import LinkLostError, OptionError
 from sitl.fleet import Fleet
+from sitl.move import Move
 from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation, Snapshot
+from sitl.turtlebots.native import full_pose
 
 from ..mavlink.compiled import (
     ATTITUDE,
@@ -26,10 +30,11 @@ from ..mavlink.compiled import (
     ROVER_POSITION,
     VELOCITY,
     ClientEnd,
-    place_all,
+    Origins,
     read_all,
     read_one,
     send_all,
+    show_all,
 )
 from ..mavlink.preparation import set_intervals, set_mode
 from ..mavlink.setpoints import Encode, override, position, rover_attitude, rover_position, velocity
@@ -37,8 +42,9 @@ from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
 from ..options import EnvOptionError
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
+from .moves import BOOT, Prepared
 from .robot import Floats, Pose
-from .vehicles import EpisodeState, VehicleSetup
+from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
     override: RC, velocity: VELOCITY, position: POSITION, copter_attitude: ATTITUDE,
@@ -57,80 +63,137 @@ class FleetVehicles(InProcessVehicles):
         count, readings = setup.count, len(setup.angles)
         parts = -(-readings // PART)
         self._ends: Any = ClientEnd.fleet(count)
-        self._hits = self._ends["hits"]
         self._views = [ClientEnd.of(self._ends, k) for k in range(count)]
         for end in self._views:
             end.parts, end.scan_us = parts, -1
-        self.scans = np.full((count, parts * PART), np.inf, np.float32)
-        """The last whole scans and beyond [m], from right to left."""
-        self._coming = self.scans.copy()
+        self._scans: npt.NDArray[np.float32] = setup.arrays.scan
+        self._coming = np.full((count, parts * PART), np.inf, np.float32)
         self._origins = np.zeros((count, 3))
-        self._ends_for_laws: Any = self._views if jit_disabled() else self._ends
+        self._all = np.arange(count)
         self._is_open = False
         self._changed: dict[tuple[int, str, int], tuple[Snapshot, Snapshot]] = {}
         """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
-        self._begun: list[tuple[Snapshot, int] | None] = [None] * count
-        """Start state and seed of each vehicle's episode, until its first step."""
+        self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
+        """Start state, seed and move of each vehicle's episode, until its first step."""
+        self._prepared: Prepared | None = None
+        self._used = "", 0
+        """Kind of set-point and interval that a vehicle was last made ready for."""
+        lat, lon = setup.options.home[:2]
+        self._home = round(1e7 * lat), round(1e7 * lon)
         super().__init__(setup)
 
     def _open(self) -> None:
-        count, threads = self.setup.count, self.options.threads
+        count, threads = self.setup.count, self.threads
         self.fleet: Fleet = self._made(
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )
         self._is_open = True
-        self._ports = self.fleet.ports.ctypes.data
+        self._bind()
         shell = self.fleet.shell
         check_parameters(shell)
         self._core = shell.core
         for end in self._views:
             end.system = shell.bridge.system
 
+    def _bind(self) -> None:
+        """Look up once what every step needs."""
+        fleet, arrays, coming = self.fleet, self.setup.arrays, self._coming
+        estimate = fleet.records["autopilot"]["estimate"]
+        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
+        self._said = [(self._ends[name], estimate[field]) for name, field in pairs]
+        self._ranges = fleet.records["sensors"]["lidar_ranges"]
+        ends: Any = self._views if jit_disabled() else self._ends
+        ports = fleet.ports.ctypes.data
+        self._send = send_all.bind(ends, self._origins, ports)
+        self._read_some = read_all.bind(ends, arrays.scan, coming, ports)
+        self._read_bytes = read_one.bind(ends, arrays.scan, coming, ports)
+        along = float(self.setup.airframe.value("base_along"))
+        origins: Any = Origins(self._origins, *fleet.clocks)
+        self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
+
     # ------------------------------------------------------------------ episodes
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        state = self._restored(pose, tuple(sorted(self.changed[index].items())))
-        self._put(index, state, seed)
-        self._begun[index] = (state.simulation, seed)
-        return state
+        figures = tuple(sorted(self.changed[index].items()))
+        base = self.base or self._start
+        if self.options.begin == BOOT or (pose == base and not figures):
+            state, move = self._restored(pose, figures), None
+        else:
+            state = self._restored(base, ())
+            if self._prepared is None or self._prepared.state is not state:
+                self._prepared = Prepared(state, self.setup, base)
+            move = self._prepared.to(pose, figures, seed)
+        ready = self._changed.get((id(state.simulation), *self._used))
+        if ready is not None:  # as the last episodes went on
+            state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)
+        self._put(index, state, seed, move)
+        self._begun[index] = (state.simulation if ready is None else ready[0], seed, move)
+        return state if move is None else self._moved(index, state, pose)
 
-    def _put(self, index: int, state: EpisodeState, seed: int | None = None) -> None:
+    @cached_property
+    def _start(self) -> Pose:
+        """The world's start pose for this vehicle."""
+        start = self.setup.world.start(self.setup.airframe.name)
+        return full_pose((*start.position, start.yaw), start.position[2])
+
+    def _moved(self, index: int, state: EpisodeState, pose: Pose) -> EpisodeState:
+        """After a move: what the vehicle would say now, and where its local frame is."""
+        for end, estimate in self._said:
+            end[index] = estimate[index].astype(np.float32)  # as messages carry them
+        readings = len(self.setup.angles)
+        self._scans[index, :readings] = self._ranges[index, :readings]
+        e = self.fleet.view(index).autopilot.estimate
+        north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
+        self._origins[index] = origin = north, east, -pose[2]
+        return EpisodeState(None, None, origin, state.began_us, state.setpoint, state.interval_us)
+
+    def _put(self, index: int, state: EpisodeState, seed: int | None = None, move: Move | None = None) -> None:
         if not self._is_open:
             self._open()
         fleet = self.fleet
         self._begun[index] = None
         try:
-            fleet.put(index, state.simulation, seed)
+            if move is None:
+                fleet.put(index, state.simulation, seed)
+            else:
+                fleet.move(index, move, state.simulation)
         except (OptionError, EngineError) as error:
+            if move is not None:
+                raise EnvOptionError(f"start: {error}") from None
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
         fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
         place, angles, (_, scan, scan_us), end.mode, end.armed, _ = telemetry
         end.position_ms, end.position, end.velocity = int(place[0]), place[1:4], place[4:]
         end.attitude_ms, end.euler, end.rates = int(angles[0]), angles[1:4], angles[4:]
-        end.scan_us, end.fresh = scan_us, 0
-        self.scans[index] = scan
+        end.scan_us, end.fresh, end.hits = scan_us, 0, 0
+        self._scans[index] = scan[: self._scans.shape[1]]
         self._origins[index] = state.origin
 
     def change(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
         """Set the mode and the telemetry intervals that a kind of set-point needs, without time going by."""
         begun, self._begun[index] = self._begun[index], None
+        self._used = setpoint, interval_us
         if begun is None:
-            self.fleet.put(index, self._ready(index, now, setpoint, interval_us))
+            self.fleet.put(index, self._ready(self.fleet.snapshot(index), setpoint, interval_us, now))
         else:
-            start, seed = begun
+            start, seed, move = begun
             key = (id(start), setpoint, interval_us)
             if key not in self._changed:
                 if len(self._changed) >= MAX_STATES:
                     del self._changed[next(iter(self._changed))]
-                self._changed[key] = (start, self._ready(index, now, setpoint, interval_us))
-            self.fleet.put(index, self._changed[key][1], seed)
+                self._changed[key] = (start, self._ready(start, setpoint, interval_us))
+            ready = self._changed[key][1]
+            if move is None:
+                self.fleet.put(index, ready, seed)
+            else:
+                self.fleet.move(index, move, ready)
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 
-    def _ready(self, index: int, now: EpisodeState, setpoint: str, interval_us: int) -> Snapshot:
+    def _ready(self, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED) -> Snapshot:
         simulation = Simulation(self.fleet.scenario, core=self._core)
         link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
-        simulation.restore(self.fleet.snapshot(index))
+        simulation.restore(start)
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
@@ -148,54 +211,49 @@ class FleetVehicles(InProcessVehicles):
         if not self._is_open:
             raise LinkLostError(f"{self.where} is not open; reset() opens it")
 
-    def step(self, rows: Rows, us: int, setpoint: str, commands: Floats, waits_us: Rows | None = None) -> None:
-        """Send a set-point to each vehicle, advance it and read its telemetry.
+    def step(
+        self,
+        which: npt.NDArray[np.bool_] | None,
+        us: int,
+        setpoint: str,
+        commands: Floats,
+        waits_us: Rows | None = None,
+    ) -> None:
+        """Send a set-point to each vehicle, advance it, read its telemetry and write what is known of it.
 
         Args:
-            rows: numbers of the vehicles.
+            which: vehicles that are meant, shape (count,); None: all.
             us: how far to advance [us].
             setpoint: kind of set-point.
-            commands: one row for each vehicle, shape (count, columns).
+            commands: float64, one row for each vehicle in one piece of memory, shape (count, columns).
             waits_us: how long each set-point is under way [us], shape (count,); None: no time.
         """
-        fleet = self.fleet
-        late = np.zeros(0, np.int64)
-        if waits_us is not None:
-            late = rows[waits_us[rows] > 0]
-            fleet.advance_us(np.minimum(waits_us[late], us), late)
-            self._read(late)
-            sends = rows[waits_us[rows] < us]
-        else:
-            sends = rows
-        sort = SORTS[self.setup.kind.encode[setpoint]]
-        send_all(sort, sends, commands, self._ends_for_laws, self._origins, self._ports)
+        fleet, rows, sort = self.fleet, self.rows(which), SORTS[self.setup.kind.encode[setpoint]]
         if waits_us is None:
-            fleet.advance_us(us, None if len(rows) == len(fleet) else rows)
+            self._send(rows, sort, commands)
+            fleet.advance_us(us, None if which is None else rows)
         else:
+            late, sends = rows[waits_us[rows] > 0], rows[waits_us[rows] < us]
+            fleet.advance_us(np.minimum(waits_us[late], us), late)
+            self._read_shell_bytes()
+            self._read_some(late)
+            self._send(sends, sort, commands)
             fleet.advance_us(us - np.minimum(waits_us[sends], us), sends)
-        self._read(rows)
+        self.show(rows)
 
-    def _read(self, rows: Rows) -> None:
-        fleet, ports = self.fleet, self._ports
-        for index, data in fleet.take_shell_bytes().items():
+    def rows(self, which: npt.NDArray[np.bool_] | None) -> Rows:
+        """Numbers of the vehicles that are meant."""
+        return self._all if which is None else np.flatnonzero(which)
+
+    def show(self, rows: Rows) -> None:
+        """Read the telemetry of vehicles and write what is known of them into ``setup.arrays``."""
+        self._read_shell_bytes()
+        self._show(rows)
+
+    def _read_shell_bytes(self) -> None:
+        for index, data in self.fleet.take_shell_bytes().items():
             held = np.frombuffer(data, np.uint8)
-            read_one(index, held.ctypes.data, len(held), self._ends_for_laws, self.scans, self._coming, ports)
-        read_all(rows, self._ends_for_laws, self.scans, self._coming, ports)
-
-    def place(self, rows: Rows, base_along: float, state: Floats) -> None:
-        """Write where vehicles are (see ``place_robots``)."""
-        place_all(rows, self._ends_for_laws, self._origins, base_along, state)
-
-    @property
-    def hits(self) -> npt.NDArray[np.int64]:
-        """Touches so far, shape (count,)."""
-        found: npt.NDArray[np.int64] = self._hits.copy()
-        return found
-
-    def times_us(self) -> npt.NDArray[np.int64]:
-        """Simulated time of every vehicle [us], shape (count,)."""
-        found: npt.NDArray[np.int64] = self.fleet.time_us
-        return found
+            self._read_bytes(index, held.ctypes.data, len(held))
 
     # ------------------------------------------------------------------ the rest
 
@@ -218,7 +276,7 @@ class FleetVehicles(InProcessVehicles):
         telemetry = (
             (end.position_ms, *end.position, *end.velocity),
             (end.attitude_ms, *end.euler, *end.rates),
-            (False, self.scans[index].copy(), end.scan_us),
+            (False, self._whole_scan(index), end.scan_us),
             end.mode,
             end.armed,
             None,
@@ -226,14 +284,19 @@ class FleetVehicles(InProcessVehicles):
         simulation = self.fleet.snapshot(index)
         return EpisodeState(simulation, telemetry, now.origin, now.began_us, now.setpoint, now.interval_us)
 
+    def _whole_scan(self, index: int) -> npt.NDArray[np.float32]:
+        """The last scan, with what fills up its last part."""
+        scan = np.full(self._coming.shape[1], np.inf, np.float32)
+        scan[: self._scans.shape[1]] = self._scans[index]
+        return scan
+
     def restore(self, index: int, state: EpisodeState) -> None:
         self._put(index, state)
+
+    def use_threads(self, threads: int) -> None:
+        super().use_threads(threads)
+        self.close()  # the next episode opens a fleet with these threads
 
     def close(self) -> None:
         self.fleet.close()
         self._is_open = False
-
-
-def rows_of(rows: npt.NDArray[np.bool_] | None, count: int) -> Rows:
-    """Numbers of the robots that are meant."""
-    return np.arange(count) if rows is None else np.flatnonzero(rows)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -118,3 +118,11 @@ class LateRobot(Robot, Protocol):
         (count,).
 
         The previous set-point holds until then; for a whole step where the wait is as long as the step."""
+
+
+@runtime_checkable
+class PreparedRobot(Protocol):
+    """A robot that is prepared at one pose and then put at others."""
+
+    def prepare_at(self, pose: Pose) -> None:
+        """Where it is prepared; before the first ``reset``."""

@@ -74,6 +74,9 @@ class AutopilotOptions:
         reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
             proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
         threads: that advance vehicles in process on native physics; their number changes no bit of the result.
+        begin: how vehicles in process on native physics come to the start of an episode: "move" (one vehicle boots and
+            takes off at the environment's start pose, once, and is moved to others, with other figures), or "boot" (it
+            boots and takes off at each start pose, with each set of figures). Others always boot.
     """
 
     frame: str | Airframe = "erle_rover"
@@ -88,6 +91,7 @@ class AutopilotOptions:
     autopilot_path: str | Path | None = None
     reset: str = SIMULATOR
     threads: int = 1
+    begin: str = "move"
 
     @classmethod
     def names(cls) -> list[str]:
@@ -109,6 +113,8 @@ class VehicleSetup:
     """What is simulated, without start and seed of an episode."""
     angles: Floats
     """Angles of the lidar's readings, counter-clockwise from ahead, shape (readings,) [rad]."""
+    arrays: Any
+    """What the environment knows of each vehicle (``mavlink.compiled.RobotArrays``)."""
 
 
 class Vehicles(ABC):
@@ -137,10 +143,14 @@ class Vehicles(ABC):
             raise EnvOptionError(
                 f"threads = {self.options.threads!r}: only vehicles in process on native physics have any"
             )
+        self.threads = self.options.threads
+        """See ``AutopilotOptions``."""
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
         """Changed figures of each vehicle: name -> value, in the figure's unit."""
+        self.base: Pose | None = None
+        """Where a vehicle is prepared that is moved to other starts; None: at the world's start pose."""
 
     @property
     def extra_figures(self) -> Mapping[str, Figure]:
@@ -198,6 +208,10 @@ class Vehicles(ABC):
     def photograph(self, index: int, width: int, height: int) -> Any:
         """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""
         return None
+
+    def use_threads(self, threads: int) -> None:
+        """Before the first episode: so many threads are to advance the vehicles, if these take any."""
+        self.threads = threads
 
     def close(self) -> None:
         """Close all connections."""

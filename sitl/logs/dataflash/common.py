@@ -226,7 +226,7 @@ GPS_ACCURACY = Message(
     time=S + "gps_time_us",
 )
 
-_EULER = tuple(A + f"estimate.euler[{k}]" for k in range(3))
+_EULER = tuple(derived.euler(E + "q", k) for k in range(3))
 FILTER = (
     Message(
         "XKF1",

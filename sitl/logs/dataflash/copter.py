@@ -15,6 +15,7 @@ from .samples import Array
 A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C = "autopilot.control."
 _MOTORS, _ATTITUDE, _NE, _D = C + "motors.", C + "attitude.", C + "pos_ne.", C + "pos_d."
+_TARGET = _ATTITUDE + "target_q"
 _SHAPED_TICKS = 8
 """Number of ticks without a run after which a position controller counts as inactive."""
 
@@ -24,12 +25,12 @@ def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
         Message(
             "ATT",
             (
-                Field("DesRoll", "f", "d", "0", _ATTITUDE + "target_euler[0]", DEG),
-                Field("Roll", "f", "d", "0", E + "euler[0]", DEG),
-                Field("DesPitch", "f", "d", "0", _ATTITUDE + "target_euler[1]", DEG),
-                Field("Pitch", "f", "d", "0", E + "euler[1]", DEG),
-                Field("DesYaw", "f", "h", "0", derived.wrapped(_ATTITUDE + "target_euler[2]")),
-                Field("Yaw", "f", "h", "0", derived.wrapped(E + "euler[2]")),
+                Field("DesRoll", "f", "d", "0", derived.euler(_TARGET, 0), DEG),
+                Field("Roll", "f", "d", "0", derived.euler(E + "q", 0), DEG),
+                Field("DesPitch", "f", "d", "0", derived.euler(_TARGET, 1), DEG),
+                Field("Pitch", "f", "d", "0", derived.euler(E + "q", 1), DEG),
+                Field("DesYaw", "f", "h", "0", derived.wrapped(derived.euler(_TARGET, 2))),
+                Field("Yaw", "f", "h", "0", derived.wrapped(derived.euler(E + "q", 2))),
                 Field("AEKF", "B", source=3),
             ),
             rate,

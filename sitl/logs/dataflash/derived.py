@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ...core.algebra import euler_of
 from ...core.geodesy import METRES_PER_DEGE7
+from ...core.vectors import Quat
 from .samples import Array
 
 DEG = 180.0 / math.pi
@@ -17,9 +19,19 @@ E, S, A = "autopilot.estimate.", "sensors.", "autopilot."
 Column = Callable[[Any], Array]
 
 
-def wrapped(path: str) -> Column:
-    """An angle of the record [rad] in degrees, 0 .. 360."""
-    return lambda s: np.mod(s(path) * DEG, 360.0)
+def wrapped(angle: str | Column) -> Column:
+    """An angle [rad], of the record or calculated, in degrees, 0 .. 360."""
+    return lambda s: np.mod((s(angle) if isinstance(angle, str) else angle(s)) * DEG, 360.0)
+
+
+def euler(path: str, axis: int) -> Column:
+    """Roll (0), pitch (1) or yaw (2) of a quaternion [rad], as the core has it to the last bit."""
+
+    def column(s: Any) -> Array:
+        rows = zip(*(part.tolist() for part in _quaternion(s, path)))
+        return np.array([euler_of(Quat(*row))[axis] for row in rows])
+
+    return column
 
 
 def difference(a: str, b: str) -> Column:

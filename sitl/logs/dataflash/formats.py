@@ -54,7 +54,7 @@ MULTIPLIERS = {
 NAME_BYTES, FORMAT_BYTES, LABEL_BYTES = 4, 16, 64
 
 Source = str | float | Callable[[Any], Any]
-"""Source of a field: the path of a number in the vehicle's record ("autopilot.estimate.euler[0]"), a constant, or a
+"""Source of a field: the path of a number in the vehicle's record ("autopilot.estimate.vel[0]"), a constant, or a
 function of the samples (``s(path)`` returns a column)."""
 RING = "@"
 """Prefix of paths of numbers in the ring of inertial samples."""

@@ -23,6 +23,7 @@ from .samples import Array
 A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C, M = "autopilot.control.", "autopilot.modes."
 _STEERING, _SPEED, _POSITION, _MOTORS = C + "steering.", C + "speed.", C + "position.", C + "motors."
+_YAW = derived.euler(E + "q", 2)
 _PATHS = (RTL, SMART_RTL)
 """Modes that follow paths all the time."""
 _RECENT = 25
@@ -30,16 +31,16 @@ _RECENT = 25
 
 
 def _attitude(fast: bool) -> Message:
-    euler = "@euler" if fast else E + "euler"
+    roll, pitch, yaw = (f"@euler[{k}]" if fast else derived.euler(E + "q", k) for k in range(3))
     return Message(
         "ATT",
         (
             Field("DesRoll", "f", "d", "0"),
-            Field("Roll", "f", "d", "0", euler + "[0]", DEG),
+            Field("Roll", "f", "d", "0", roll, DEG),
             Field("DesPitch", "f", "d", "0"),
-            Field("Pitch", "f", "d", "0", euler + "[1]", DEG),
+            Field("Pitch", "f", "d", "0", pitch, DEG),
             Field("DesYaw", "f", "h", "0"),
-            Field("Yaw", "f", "h", "0", derived.wrapped(euler + "[2]")),
+            Field("Yaw", "f", "h", "0", derived.wrapped(yaw)),
             Field("AEKF", "B", source=3),
         ),
         bits.IMU_RATE if fast else bits.MEDIUM,
@@ -141,7 +142,7 @@ NAVIGATION = Message(
         Field("WpDist", "f", "m", "0", _distance),
         Field("WpBrg", "f", "h", "0", _bearing),
         Field("DesYaw", "f", "h", "0", _heading),
-        Field("Yaw", "H", "d", "B", lambda s: np.mod(s(E + "euler[2]") * DEG * 100.0, 36000.0)),
+        Field("Yaw", "H", "d", "B", lambda s: np.mod(_YAW(s) * DEG * 100.0, 36000.0)),
         Field("XTrack", "f", "m", "0", _beside),
     ),
     bits.MEDIUM,

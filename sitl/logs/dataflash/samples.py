@@ -19,7 +19,7 @@ _KINDS = {"<f8": "<f8", "<i8": "<i8", "<f4": "<f4", "<i4": "<i4"}
 
 
 def place(dtype: np.dtype[Any], path: str) -> tuple[int, str]:
-    """(offset [bytes], type) of one number of a record: "autopilot.estimate.euler[2]", "autopilot.ekf.P[3,3]".
+    """(offset [bytes], type) of one number of a record: "autopilot.estimate.vel[2]", "autopilot.ekf.P[3,3]".
 
     Raises:
         KeyError: the record has no such number.

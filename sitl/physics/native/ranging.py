@@ -148,17 +148,34 @@ def read_ranges(rng: Rng, figures: RangerFigures, ranges: Floats, readings: Floa
 
 
 @law
+def read(v: Vehicle[Physics], beams: Beams, number: int) -> None:
+    """Write a sensor's readings of the ranges that its rays met."""
+    s, a = v.sensors, v.physics.airframe
+    readings = s.lidar_ranges[: beams.readings] if number == LIDAR else s.rangefinder_range[: beams.readings]
+    read_ranges(v.rng, figures_of(a, number), floats_at(beams.ranges, beams.count), readings)
+
+
+@law
 def finish(v: Vehicle[Physics], beams: Beams, number: int) -> None:
     """Write a sensor's readings of the ranges that its rays met, and count the scan. Ticks that are longer than the
     period leave some out."""
     s, a = v.sensors, v.physics.airframe
-    readings = s.lidar_ranges[: beams.readings] if number == LIDAR else s.rangefinder_range[: beams.readings]
-    read_ranges(v.rng, figures_of(a, number), floats_at(beams.ranges, beams.count), readings)
+    read(v, beams, number)
     taken = max(scans_taken(s, number) + 1, math.floor((v.time_us + 0.5) / period_us(a, number)) + 1)
     if number == LIDAR:
         s.lidar_count, s.lidar_time_us = taken, v.time_us
     else:
         s.rangefinder_count = taken
+
+
+@law
+def cast(v: Vehicle[Physics], r: Ranging, number: int) -> None:
+    """Turn a sensor's rays, and find what they meet."""
+    a, beams = v.physics.airframe, r.beams[number]
+    figures = figures_of(a, number)
+    aim(v.physics.body, figures.at, r.floor, beams)
+    directions, ranges = table_at(beams.directions, 3, beams.count), floats_at(beams.ranges, beams.count)
+    scan_rays(solids_of(r), beams.origin, directions, figures.range_max, ranges)
 
 
 @unit
@@ -170,15 +187,19 @@ def measure(fleet: Records[Vehicle[Physics]], i: int, ranging: int) -> None:
         ranging: address of its ``Ranging``.
     """
     v, r = fleet[i], record_at(Ranging, ranging)
-    body, a = v.physics.body, v.physics.airframe
     for number in range(SENSORS):
-        beams = r.beams[number]
-        if sensor_due(v.sensors, a, beams, number) <= v.time_us:
-            figures = figures_of(a, number)
-            aim(body, figures.at, r.floor, beams)
-            directions, ranges = table_at(beams.directions, 3, beams.count), floats_at(beams.ranges, beams.count)
-            scan_rays(solids_of(r), beams.origin, directions, figures.range_max, ranges)
-            finish(v, beams, number)
+        if sensor_due(v.sensors, v.physics.airframe, r.beams[number], number) <= v.time_us:
+            cast(v, r, number)
+            finish(v, r.beams[number], number)
+
+
+@law
+def look_again(v: Vehicle[Physics], r: Ranging) -> None:
+    """Take the last scans anew: the vehicle has been put elsewhere."""
+    for number in range(SENSORS):
+        if r.beams[number].count > 0 and scans_taken(v.sensors, number) > 0:
+            cast(v, r, number)
+            read(v, r.beams[number], number)
 
 
 @unit
@@ -197,5 +218,10 @@ def finish_scan(fleet: Records[Vehicle[Physics]], i: int, ranging: int, number: 
 @unit
 def list_near(fleet: Records[Vehicle[Physics]], i: int, ranging: int) -> None:
     """List the solids near the vehicle in its record."""
-    v, r = fleet[i], record_at(Ranging, ranging)
+    list_around(fleet[i], record_at(Ranging, ranging))
+
+
+@law
+def list_around(v: Vehicle[Physics], r: Ranging) -> None:
+    """The same."""
     list_solids(v.physics.obstacles, v.physics.body, table_at(r.solids, r.solid_count, SOLID_FIGURES), r.floor)

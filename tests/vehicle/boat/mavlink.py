@@ -17,7 +17,7 @@ from sitl.bridge.telemetry.builder import compiled
 from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
 from sitl.bridge.telemetry.shell import CAPABILITIES
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
-from sitl.bridge.wire.fleet import Beside, run_slots
+from sitl.bridge.wire.fleet import run_slots
 from sitl.bridge.wire.link import Limits, Links, hear_port, run_vehicle, tell_links
 from sitl.core.kernels import law, unit
 from sitl.vehicle.record import Vehicle
@@ -85,8 +85,8 @@ def run(fleet: Sequence[Boat], index: int, ports: int, count: int, ranging: int,
 
 
 @unit
-def run_all(fleet: Sequence[Boat], index: int, last: int, ports: int, slots: int, ranging: int) -> None:
-    run_slots(fleet, index, last, Beside(ports, slots, ranging), hear, run)
+def run_all(fleet: Sequence[Boat], index: int, last: int, slots: int, ranging: int) -> None:
+    run_slots(fleet, index, last, slots, ranging, hear, run)
 
 
 UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)

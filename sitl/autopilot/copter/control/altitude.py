@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain, finite, sign
 from ...control.pid import Blocked, Gains, basic_gains, update_pid, update_pid_directional
 from ...control.shaping import (
@@ -45,7 +45,7 @@ class AltitudeGains(NamedTuple):
     acc: Gains  # [m/s^2] to throttle
 
 
-@law
+@inlined
 def overspeed_gain(c: AltitudeState) -> float:
     """How much faster the shaping may brake while it is above its speed limits; 1 below them."""
     v = c.vel_desired
@@ -56,7 +56,7 @@ def overspeed_gain(c: AltitudeState) -> float:
     return 1.0
 
 
-@law
+@inlined
 def shaping_limits_d(c: AltitudeState, speed_up: float, speed_down: float) -> Limits:
     """Limits of the shaping with these speeds [m/s], both positive."""
     gain = overspeed_gain(c)
@@ -64,13 +64,13 @@ def shaping_limits_d(c: AltitudeState, speed_up: float, speed_down: float) -> Li
     return Limits(-speed_up, speed_down, -up, min(up, _FALL_ACCEL_MAX), c.jerk_max * gain)
 
 
-@law
+@inlined
 def desired_motion_d(c: AltitudeState) -> Motion:
     """The desired path of this tick."""
     return Motion(c.pos_desired, c.vel_desired, c.accel_desired)
 
 
-@law
+@inlined
 def advance_d(c: AltitudeState) -> None:
     """Move the desired path on by one tick."""
     moved = advance(desired_motion_d(c), DT, sign(c.limit), c.pos_error, c.vel.error)
@@ -78,7 +78,7 @@ def advance_d(c: AltitudeState) -> None:
     c.vel_desired = moved.vel
 
 
-@law
+@inlined
 def shape_pos_d(c: AltitudeState, target: Motion, speed_up: float, speed_down: float) -> None:
     """New desired acceleration towards a moving altitude."""
     c.accel_desired = shape_pos_vel_accel(target, desired_motion_d(c), shaping_limits_d(c, speed_up, speed_down), DT)
@@ -123,7 +123,7 @@ def set_pos_vel_accel_d(c: AltitudeState, target: Motion) -> None:
         input_vel_accel_d(c, 0.0, 0.0)
 
 
-@law
+@inlined
 def control_altitude(c: AltitudeState, pos: float, p: float) -> float:
     """Velocity [m/s] that takes the error of altitude away; the path waits for a vehicle that cannot keep up."""
     error = c.pos_desired - pos
@@ -143,7 +143,7 @@ def control_altitude(c: AltitudeState, pos: float, p: float) -> float:
     return sqrt_controller(error, p, accel, 0.0)
 
 
-@law
+@inlined
 def control_vertical(c: AltitudeState, now: Motion, blocked: Blocked, gains: AltitudeGains) -> float:
     """One tick of the cascade for the measured motion: throttle to be taken off that of hovering.
 
@@ -161,7 +161,7 @@ def control_vertical(c: AltitudeState, now: Motion, blocked: Blocked, gains: Alt
     return taken_off
 
 
-@law
+@inlined
 def follow_reset_d(c: AltitudeState, pos: float, jump: float, count: int) -> None:
     """When the estimate jumps to ``pos``, its velocity by ``jump``, the path jumps with it; ``count``: of the jumps."""
     if c.reset_count != count:
@@ -170,7 +170,7 @@ def follow_reset_d(c: AltitudeState, pos: float, jump: float, count: int) -> Non
         c.vel_desired += jump
 
 
-@law
+@inlined
 def altitude_gains(p: Position, hover: float) -> AltitudeGains:
     """PSC_POSZ_P, PSC_VELZ_*, PSC_ACCZ_*; the integrator may take off all of the throttle that hovers."""
     a = p.ACCZ

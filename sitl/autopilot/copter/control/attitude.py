@@ -21,7 +21,7 @@ from ....core.algebra import (
     quat_from_rotation_vector,
     quat_norm_squared,
 )
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain, finite, wrap_pi
 from ....core.vectors import Euler, Quat, Vec3
 from ...control.shaping import shape_angle, shape_rate
@@ -84,7 +84,7 @@ def shape_euler(target: Euler, rate: Vec3, lean: Lean, yaw_rate: float, shaping:
     return limit_rates(body_rates(target, shaped), shaping.rate_max)
 
 
-@law
+@inlined
 def shape_rotation(error: Vec3, rate: Vec3, rate_ahead: Vec3, shaping: Shaping, yaw_rate_max: float) -> Vec3:
     """Rates [rad/s] of a target towards an attitude ``error`` [rad] away that itself turns at ``rate_ahead``.
 
@@ -100,7 +100,7 @@ def shape_rotation(error: Vec3, rate: Vec3, rate_ahead: Vec3, shaping: Shaping, 
     return limit_rates(shaped, Vec3(limit.x, limit.y, yaw_rate_max if yaw_rate_max > 0.0 else limit.z))
 
 
-@law
+@inlined
 def shape_thrust_turn(error: Vec3, rate: Vec3, yaw_rate: float, shaping: Shaping) -> Vec3:
     """Rates [rad/s] of a target whose thrust is ``error`` [rad] away (x, y) while it turns at ``yaw_rate``."""
     tau, accel = shaping.time_constant, shaping.accel_max
@@ -112,7 +112,7 @@ def shape_thrust_turn(error: Vec3, rate: Vec3, yaw_rate: float, shaping: Shaping
     return limit_rates(shaped, shaping.rate_max)
 
 
-@law
+@inlined
 def shape_rates(rate: Vec3, wanted: Vec3, shaping: Shaping) -> Vec3:
     """Rates [rad/s] of a target that turns at ``rate``, towards the rates ``wanted``."""
     accel = shaping.accel_max
@@ -123,26 +123,26 @@ def shape_rates(rate: Vec3, wanted: Vec3, shaping: Shaping) -> Vec3:
     )
 
 
-@law
+@inlined
 def shaping_limits(p: Parameters) -> Shaping:
     """ATC_RATE_FF_ENAB, ATC_INPUT_TC, PILOT_Y_RATE_TC and the limits of acceleration and rate."""
     return Shaping(p.ATC.RATE_FF_ENAB != 0.0, p.ATC.INPUT_TC, p.PILOT.Y_RATE_TC, accel_max(p.ATC), rate_max(p.ATC))
 
 
-@law
+@inlined
 def slew_yaw_max(p: Attitude) -> float:
     """Fastest turn of modes that fly by themselves [rad/s]: ATC_SLEW_YAW, at most ATC_RATE_Y_MAX; 0: no limit."""
     slew, fastest = p.SLEW_YAW * CDEG, p.RATE_Y_MAX * DEG
     return min(slew, fastest) if fastest > 0.0 and slew > 0.0 else slew
 
 
-@law
+@inlined
 def limit_turn(rate: float, rate_max: float) -> float:
     """``rate`` within plus and minus ``rate_max``; 0: no limit."""
     return constrain(rate, -rate_max, rate_max) if rate_max > 0.0 else rate
 
 
-@law
+@inlined
 def follow_yaw_reset(control: Control, est: Estimate) -> None:
     """When the estimate's heading jumps, the target jumps with it: the vehicle does not turn."""
     attitude = control.attitude
@@ -153,7 +153,7 @@ def follow_yaw_reset(control: Control, est: Estimate) -> None:
         set_target(attitude, multiply(est.q, attitude.error_q))
 
 
-@law
+@inlined
 def advance_target(control: Control, est: Estimate, p: Parameters) -> Shaping:
     """What every input starts with: the target turns on. Returns how it may move."""
     follow_yaw_reset(control, est)
@@ -162,14 +162,14 @@ def advance_target(control: Control, est: Estimate, p: Parameters) -> Shaping:
     return shaping_limits(p)
 
 
-@law
+@inlined
 def jump(attitude: AttitudeState, q: Quat, rate: Vec3) -> None:
     """Replace the target and its angular velocity [rad/s]."""
     set_target(attitude, q)
     attitude.target_rate = rate
 
 
-@law
+@inlined
 def correct(attitude: AttitudeState, est: Estimate, p: Attitude) -> None:
     """Body-rate targets from the difference between target and estimate."""
     out = attitude_control(est.q, attitude.target_q, attitude.target_rate, est.rates, attitude_gains(p))

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import multiply, norm
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain
 from ....core.vectors import Euler, Quat, Vec3
 
@@ -20,7 +20,7 @@ class SplitError(NamedTuple):
     thrust_turn: Quat  # the thrust turn alone
 
 
-@law
+@inlined
 def angle_per_half_sine(s: float, c: float) -> float:
     """Angle / sin(angle / 2) for s = sin(angle / 2) >= 0, c = cos(angle / 2) >= 0; a series while it is small."""
     s2 = s * s
@@ -29,7 +29,7 @@ def angle_per_half_sine(s: float, c: float) -> float:
     return 2.0 * math.atan2(s, c) / s
 
 
-@law
+@inlined
 def split_error(q: Quat) -> SplitError:
     """Thrust and heading parts of a rotation. When thrust turns by 180 degrees heading has no meaning: no error."""
     n = math.sqrt(q.w * q.w + q.z * q.z)
@@ -47,7 +47,7 @@ def split_error(q: Quat) -> SplitError:
     return SplitError(Vec3(k * tx, k * ty, heading), k * s, Quat(n, tx, ty, 0.0))
 
 
-@law
+@inlined
 def thrust_quaternion(thrust: Vec3, heading: float) -> Quat:
     """Attitude whose thrust (body -z) points along the NED vector ``thrust``, with ``heading`` [rad] about it.
 

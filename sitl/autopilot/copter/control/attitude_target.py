@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ....core.algebra import conjugate, dot, euler_of, multiply, quat_norm_squared, rotate
-from ....core.kernels import law
+from ....core.algebra import conjugate, dot, multiply, quat_norm_squared, rotate
+from ....core.kernels import inlined
 from ....core.scalars import constrain, finite
 from ....core.vectors import Quat, Vec3
 from ...control.shaping import inverse_sqrt_controller, sqrt_controller
@@ -48,25 +48,25 @@ class Correction(NamedTuple):
     yaw_limited: bool
 
 
-@law
+@inlined
 def accel_max(p: Attitude) -> Vec3:
     """Angular acceleration limits of the shaping [rad/s^2] (ATC_ACCEL_*_MAX), 0 for none."""
     return Vec3(p.ACCEL_R_MAX * CDEG, p.ACCEL_P_MAX * CDEG, p.ACCEL_Y_MAX * CDEG)
 
 
-@law
+@inlined
 def rate_max(p: Attitude) -> Vec3:
     """Limits of the body rates [rad/s] (ATC_RATE_*_MAX), 0 for none."""
     return Vec3(p.RATE_R_MAX * DEG, p.RATE_P_MAX * DEG, p.RATE_Y_MAX * DEG)
 
 
-@law
+@inlined
 def attitude_gains(p: Attitude) -> AttitudeGains:
     """ATC_ANG_*_P with the limits of acceleration and rate."""
     return AttitudeGains(Vec3(p.ANG_RLL_P, p.ANG_PIT_P, p.ANG_YAW_P), accel_max(p), rate_max(p), p.RAT_YAW.P)
 
 
-@law
+@inlined
 def limit_rates(rates: Vec3, limit: Vec3) -> Vec3:
     """Body rates within ``limit`` [rad/s], roll and pitch on an ellipse; 0 is no limit."""
     p, q, r = rates.x, rates.y, rates.z
@@ -83,16 +83,14 @@ def limit_rates(rates: Vec3, limit: Vec3) -> Vec3:
     return Vec3(p, q, r)
 
 
-@law
+@inlined
 def set_target(attitude: AttitudeState, q: Quat) -> None:
     """Replace the target attitude (normalised; one that is not a number becomes the identity)."""
     n2 = quat_norm_squared(q)
-    target = q * (1.0 / math.sqrt(n2)) if finite(n2) and n2 > 1e-12 else Quat(1.0, 0.0, 0.0, 0.0)
-    attitude.target_q = target
-    attitude.target_euler = euler_of(target)
+    attitude.target_q = q * (1.0 / math.sqrt(n2)) if finite(n2) and n2 > 1e-12 else Quat(1.0, 0.0, 0.0, 0.0)
 
 
-@law
+@inlined
 def turned_by_rate(q: Quat, rate: Vec3, dt: float) -> Quat:
     """``q`` after turning at ``rate`` [rad/s, its own frame] for ``dt`` [s], by series: the angle is small."""
     half = rate * (0.5 * dt)
@@ -101,7 +99,7 @@ def turned_by_rate(q: Quat, rate: Vec3, dt: float) -> Quat:
     return multiply(q, Quat(1.0 - 0.5 * h2 + h2 * h2 / 24.0, s * half.x, s * half.y, s * half.z))
 
 
-@law
+@inlined
 def correction_rate(error: float, p: float, accel: float) -> float:
     """Roll or pitch rate [rad/s] that takes away ``error`` [rad] within half of ``accel`` [rad/s^2]; 0: no limit."""
     if accel <= 0.0:
@@ -109,7 +107,7 @@ def correction_rate(error: float, p: float, accel: float) -> float:
     return sqrt_controller(error, p, constrain(0.5 * accel, _RP_ACCEL[0], _RP_ACCEL[1]), DT)
 
 
-@law
+@inlined
 def attitude_control(q: Quat, target: Quat, target_rate: Vec3, body_rates: Vec3, gains: AttitudeGains) -> Correction:
     """Body rates that turn attitude ``q`` to ``target`` (both body to NED), which itself turns at ``target_rate``.
 
@@ -148,7 +146,7 @@ def attitude_control(q: Quat, target: Quat, target_rate: Vec3, body_rates: Vec3,
     return Correction(rate, error, error_q, angle, target, yaw_limited)
 
 
-@law
+@inlined
 def cos_lean(q: Quat) -> float:
     """Cosine of the lean of attitude ``q``."""
     return 1.0 - 2.0 * (q.x * q.x + q.y * q.y)

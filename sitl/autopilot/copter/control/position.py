@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ....core.algebra import dot2, finite2, horizontal, limit_length, norm2
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import finite
 from ....core.vectors import Vec2, Vec3
 from ...control.pid import Gains, basic_gains, lowpass_gain
@@ -40,19 +40,19 @@ class PositionGains(NamedTuple):
     vel: Gains  # [m/s] to [m/s^2]
 
 
-@law
+@inlined
 def finite_motion(target: Motion2) -> bool:
     """Whether all numbers are finite."""
     return finite2(target.pos) and finite2(target.vel) and finite2(target.acc)
 
 
-@law
+@inlined
 def desired_motion_ne(c: PositionState) -> Motion2:
     """The desired path of this tick."""
     return Motion2(c.pos_desired, c.vel_desired, c.accel_desired)
 
 
-@law
+@inlined
 def advance_ne(c: PositionState) -> None:
     """Move the desired path on by one tick."""
     moved = advance_2d(desired_motion_ne(c), DT, c.limit, c.pos_error, c.vel_error)
@@ -60,7 +60,7 @@ def advance_ne(c: PositionState) -> None:
     c.vel_desired = moved.vel
 
 
-@law
+@inlined
 def shape_pos_ne(c: PositionState, target: Motion2, speed_max: float) -> None:
     """New desired acceleration towards a moving point; the path itself is moved by ``advance_ne``."""
     limits = Limits2(speed_max, c.accel_max, c.jerk_max)
@@ -112,13 +112,13 @@ def set_pos_vel_accel_ne(c: PositionState, target: Motion2) -> None:
         brake_ne(c)
 
 
-@law
+@inlined
 def thrust_vector(c: PositionState) -> Vec3:
     """NED direction of thrust (not normalised) [m/s^2] that gives the horizontal acceleration in level flight."""
     return Vec3(c.accel_target.x, c.accel_target.y, -GRAVITY)
 
 
-@law
+@inlined
 def control_position(c: PositionState, pos: Vec2, p: float) -> Vec2:
     """Velocity [m/s] that takes the position error away; the path waits for a vehicle that cannot keep up."""
     error = c.pos_desired - pos
@@ -133,7 +133,7 @@ def control_position(c: PositionState, pos: Vec2, p: float) -> Vec2:
     return sqrt_controller_2d(error, p, c.correction_accel, 0.0)
 
 
-@law
+@inlined
 def control_velocity(c: PositionState, vel: Vec2, gains: Gains) -> Vec2:
     """Acceleration [m/s^2] that the velocity PID asks for at ``vel`` [m/s]; its filters have no target's."""
     error = c.vel_target - vel
@@ -157,7 +157,7 @@ def control_velocity(c: PositionState, vel: Vec2, gains: Gains) -> Vec2:
     return gains.p * c.vel_error + c.vel_integrator + gains.d * c.vel_derivative + gains.ff * c.vel_target
 
 
-@law
+@inlined
 def control_horizontal(c: PositionState, pos: Vec2, vel: Vec2, accel_max: float, gains: PositionGains) -> None:
     """One tick of the cascade at ``pos`` [m], ``vel`` [m/s]: ``accel_target``, at most ``accel_max`` [m/s^2]."""
     c.vel_target = control_position(c, pos, gains.pos_p) + c.vel_desired
@@ -169,7 +169,7 @@ def control_horizontal(c: PositionState, pos: Vec2, vel: Vec2, accel_max: float,
     c.accel_target = accel
 
 
-@law
+@inlined
 def follow_reset_ne(c: PositionState, pos: Vec2, jump: Vec2, count: int) -> None:
     """When the estimate jumps to ``pos``, its velocity by ``jump``, the path jumps with it; ``count``: of the jumps."""
     if c.reset_count != count:
@@ -178,7 +178,7 @@ def follow_reset_ne(c: PositionState, pos: Vec2, jump: Vec2, count: int) -> None
         c.vel_desired += jump
 
 
-@law
+@inlined
 def position_gains(p: Position) -> PositionGains:
     """PSC_POSXY_P, PSC_VELXY_*."""
     return PositionGains(p.POSXY_P, basic_gains(p.VELXY, p.VELXY.IMAX * 0.01))

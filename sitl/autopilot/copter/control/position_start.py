@@ -100,7 +100,7 @@ def init_ne(control: Control, est: Estimate, p: Parameters) -> None:
     c = control.pos_ne
     lean = control.attitude.target_euler
     if not is_active_ne(control):
-        c.accel_target = lean_accel(lean.roll, lean.pitch, est.euler.yaw)
+        c.accel_target = lean_accel(lean.roll, lean.pitch, est.yaw)
     c.accel_target = limit_length(c.accel_target, renew_accel_limit(control, p))
     start_from(c, horizontal(est.pos), horizontal(est.vel))
     c.reset_count = est.reset_ne_count

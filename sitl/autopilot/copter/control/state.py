@@ -8,6 +8,8 @@ the rest.
 
 from __future__ import annotations
 
+from ....core.algebra import euler_of, quat_from_euler
+from ....core.kernels import law
 from ....core.records import Floats, Record, array
 from ....core.vectors import Euler, Quat, Vec2, Vec3
 from ... import state as shared
@@ -23,7 +25,6 @@ class AttitudeState(Record):
     """Attitude control: the shaped target and the correction towards it."""
 
     target_q: Quat  # target frame to NED
-    target_euler: Euler  # of target_q
     target_rate: Vec3  # angular velocity of the target, target frame [rad/s]
     rate_target: Vec3  # what the rate loop follows, body frame [rad/s]
     error_q: Quat  # target frame to body frame: kept when the estimate's heading jumps
@@ -35,6 +36,16 @@ class AttitudeState(Record):
     mix: float  # priority of attitude over throttle, ATC_THR_MIX_*
     mix_desired: float
     yaw_reset_count: int  # estimate.reset_yaw_count already followed
+
+    @property
+    @law
+    def target_euler(self) -> Euler:
+        """Roll, pitch, yaw of ``target_q`` [rad]."""
+        return euler_of(self.target_q)
+
+    @target_euler.setter
+    def target_euler(self, angles: Euler | tuple[float, float, float]) -> None:
+        self.target_q = quat_from_euler(Euler(*angles))
 
 
 class RateState(Record):

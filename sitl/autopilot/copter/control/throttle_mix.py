@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain, finite
 from ..parameters import Parameters
 from ..parameters.control import Attitude
@@ -20,19 +20,19 @@ _MIX_MIN, _MIX_MAX = 0.1, 5.0
 _MIX_RISE, _MIX_FALL = 2.0, 0.5  # [1/s]
 
 
-@law
+@inlined
 def boosted(throttle: float, cos_lean: float) -> float:
     """Throttle that keeps the lift of ``throttle`` at a lean; none beyond the horizontal."""
     return throttle * constrain(10.0 * cos_lean, 0.0, 1.0) / constrain(cos_lean, 0.1, 1.0)
 
 
-@law
+@inlined
 def throttle_average_max(throttle: float, hover: float, mix: float) -> float:
     """How far the mixer may raise ``throttle`` for attitude: ``mix`` 0 not at all, 1 to that of hovering."""
     return max(throttle, throttle * max(0.0, 1.0 - mix) + hover * mix)
 
 
-@law
+@inlined
 def set_throttle_out(control: Control, p: Parameters, throttle: float, angle_boost: bool, filter_hz: float) -> None:
     """Throttle 0 .. 1 for the motors, low-passed at ``filter_hz`` [Hz] (0: not).
 

@@ -111,7 +111,7 @@ def run(v: Vehicle) -> None:
     climb = climb_rate(modes, ap.rc, control.pos_d, p)
     doing = decide(ap.arming, modes.takeoff, control.motors, climb)
     if doing in (STOPPED, LANDED_IDLE):
-        attitude.reset_yaw_target(control.attitude, est.euler.yaw)
+        attitude.reset_yaw_target(control.attitude, est.yaw)
     lean_max = math.radians(p.ANGLE_MAX * 0.01)
     lean = pilot.lean_angles(modes.pilot, lean_max, min(lean_max, lean_limit(control.attitude)))
     attitude.input_euler_roll_pitch_yaw_rate(control, est, p, lean, modes.pilot.yaw_rate)

@@ -139,7 +139,7 @@ def run(v: Vehicle) -> None:
         auto_yaw.follow_pilot(modes, ap.control.attitude, est)
     if run_command(v, modes.auto.submode):
         complete(modes.nav, ap.events, v.time_us)
-    turned = auto_yaw.has_turned(modes.auto_yaw, est.euler.yaw)
+    turned = auto_yaw.has_turned(modes.auto_yaw, est.yaw)
     check_condition(modes.nav, ap.events, v.time_us, est.pos, turned)
 
 

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import cross2, dot2, horizontal
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI, constrain, wrap_pi
 from ....core.vectors import Vec2, Vec3
 from ...state import Estimate
@@ -51,7 +51,7 @@ def set_mode(yaw: AutoYaw, mode: int, target: AttitudeState, est: Estimate) -> N
     yaw.mode = mode
     yaw.rate = 0.0
     yaw.yaw = target.target_euler.yaw
-    yaw.look_ahead = est.euler.yaw
+    yaw.look_ahead = est.yaw
 
 
 @law
@@ -194,7 +194,7 @@ def follow_pilot(modes: Modes, target: AttitudeState, est: Estimate) -> None:
         set_mode(yaw, HOLD, target, est)
 
 
-@law
+@inlined
 def point(yaw: AutoYaw, thrust: Vec3, control: Control, est: Estimate, p: Parameters) -> None:
     """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
     heading = advance(yaw, control.pos_ne, est, DT)

@@ -61,7 +61,7 @@ def rest(armed: bool, control: Control, est: Estimate, p: Parameters) -> None:
     motors = control.motors
     motors.desired_spool = GROUND_IDLE if armed else SHUT_DOWN
     if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
-        attitude.reset_yaw_target(control.attitude, est.euler.yaw)
+        attitude.reset_yaw_target(control.attitude, est.yaw)
     position_start.relax_ne(control, est, p)
     position.update_ne(control, est, p)
     altitude_start.relax_d(control, est, p, 0.0)

@@ -110,7 +110,7 @@ def descend(modes: Modes, height: float, landed_maybe: bool, control: Control, e
 
     The sticks move the landing place (LAND_REPOSITION).
     """
-    vel = stick_velocity(modes.pilot, est.euler.yaw, p)
+    vel = stick_velocity(modes.pilot, est.yaw, p)
     if landed_maybe:
         position_start.soften_for_landing_ne(control.pos_ne, est.pos)
     position.input_vel_accel_ne(control.pos_ne, vel, ZERO2)

@@ -77,7 +77,7 @@ def start(v: Vehicle) -> int:
     set_limits(control.pos_ne, p)
     if not position_start.is_active_ne(control):
         position_start.init_ne(control, est, p)
-    start_prediction(ap.modes.loiter, control.attitude.target_euler, est.euler.yaw)
+    start_prediction(ap.modes.loiter, control.attitude.target_euler, est.yaw)
     ap.modes.loiter.brake_us = v.time_us
     alt_hold.start_vertical(ap.modes.takeoff, control, est, p)
     return ACCEPTED
@@ -161,11 +161,11 @@ def run(v: Vehicle) -> None:
     set_limits(control.pos_ne, p)
     lean_max = angle_max(p)
     lean = pilot.lean_angles(modes.pilot, lean_max, min(math.radians(p.ANGLE_MAX * 0.01), lean_max))
-    predict_accel(loiter, lean, est.euler.yaw, p.ATC)
+    predict_accel(loiter, lean, est.yaw, p.ATC)
     climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
     doing = alt_hold.decide(ap.arming, modes.takeoff, control.motors, climb)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:
-        attitude.reset_yaw_target(control.attitude, est.euler.yaw)
+        attitude.reset_yaw_target(control.attitude, est.yaw)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE or doing == alt_hold.LANDED_READY:
         stand(loiter, yaw_rate, control, est, p)
     else:

@@ -146,7 +146,7 @@ def begin_descent(modes: Modes, time_us: int, control: Control, est: Estimate, p
 @law
 def run_descent(modes: Modes, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
-    position.input_vel_accel_ne(control.pos_ne, land.stick_velocity(modes.pilot, est.euler.yaw, p), ZERO2)
+    position.input_vel_accel_ne(control.pos_ne, land.stick_velocity(modes.pilot, est.yaw, p), ZERO2)
     altitude.input_pos_vel_accel_d(control.pos_d, Motion(modes.rtl.descent_d, 0.0, 0.0))
     ground.fly(modes.auto_yaw, control, est, p)
 

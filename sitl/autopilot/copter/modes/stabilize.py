@@ -39,7 +39,7 @@ def run(v: Vehicle) -> None:
     wanted = throttle(sticks, p.MOT)
     state = motors.spool_state
     if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
-        attitude.reset_yaw_target(control.attitude, ap.estimate.euler.yaw)
+        attitude.reset_yaw_target(control.attitude, ap.estimate.yaw)
         wanted = 0.0
     elif state == ground.IS_UNLIMITED and not motors.limit_throttle_lower and ap.arming.landed:
         ground.set_landed(ap.arming, False)

@@ -66,7 +66,7 @@ def spool_up(control: Control, est: Estimate, p: Parameters) -> None:
     position.update_ne(control, est, p)
     altitude_start.relax_d(control, est, p, 0.0)
     altitude.update_d(control, est, p)
-    attitude.reset_yaw_target(control.attitude, est.euler.yaw)
+    attitude.reset_yaw_target(control.attitude, est.yaw)
     keep_heading(control, est, p)
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.kernels import law, unit
+from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home
 from ...modes import REASON_INITIALISED, take_asked
@@ -79,7 +79,7 @@ def check_slowly(v: Vehicle) -> None:
     arming.disarm_idle(v)
 
 
-@law
+@inlined
 def run_mode(v: Vehicle) -> None:
     """The mode's own tick, then the change that it may have asked for."""
     ap = v.autopilot
@@ -91,14 +91,14 @@ def run_mode(v: Vehicle) -> None:
         ap.control.motors.desired_spool = ground.SHUT_DOWN
 
 
-@law
+@inlined
 def holds_height(arming: Arming, modes: Modes) -> bool:
     """Whether the vehicle flies in a mode that holds height, and is not taking off."""
     flies = arming.armed and not arming.landed and not table.has_manual_throttle(modes.number)
     return flies and not landing.is_taking_off(modes)
 
 
-@law
+@inlined
 def hovers(control: Control, vel_d: float) -> bool:
     """Whether a vehicle that holds height hovers level: its throttle is the hover throttle; ``vel_d``: down [m/s]."""
     if abs(control.pos_d.vel_desired) > 0.01 or abs(vel_d) >= _LEARN_SPEED:

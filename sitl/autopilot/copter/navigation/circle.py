@@ -76,7 +76,7 @@ def advance(nav: CopterNav) -> float:
 def run(nav: CopterNav, control: Control, est: Estimate, p: Parameters) -> float:
     """One tick around the circle, begun with the first; the turns flown so far."""
     if not nav.circle_running:
-        start(nav, est.pos, est.euler.yaw)
+        start(nav, est.pos, est.yaw)
         set_limits(nav, math.radians(p.CIRCLE.RATE), speed_ne(nav, p.WPNAV), CM * p.WPNAV.ACCEL)
     turns = advance(nav)
     follow_target(control, nav, 0.0, 0.0)

@@ -63,7 +63,7 @@ def signed_ground_speed(vel: Vec2, nose: Vec2) -> float:
 @law
 def estimate_forward_speed(s: SpeedState, estimate: Estimate, sensors: Sensors) -> ForwardSpeed:
     """Speed along the nose from the first source that knows it."""
-    heading = estimate.euler.yaw
+    heading = estimate.yaw
     nose = Vec2(math.cos(heading), math.sin(heading))
     known, speed = s.wheel_ok, s.wheel
     if estimate.status_flags & VELOCITY_HORIZ != 0:

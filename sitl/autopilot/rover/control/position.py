@@ -219,4 +219,4 @@ def follow_target(control: Control, estimate: Estimate, armed: bool, params: Par
     c.last_tick = current_tick(control)
     c.vel_target = limit_length(control_position(c, pos, psc.POS_P) + c.vel_desired, c.speed_max)
     c.accel_target = control_velocity(c, vel, basic_gains(psc.VEL, psc.VEL.IMAX)) + c.accel_desired
-    drive_towards(control, estimate.euler.yaw, params)
+    drive_towards(control, estimate.yaw, params)

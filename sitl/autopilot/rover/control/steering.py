@@ -128,7 +128,7 @@ def out_from_heading(control: Control, estimate: Estimate, heading: float, param
     """Steering demand towards ``heading`` [rad]."""
     if not finite(heading):
         return out_from_rate(control, estimate, 0.0, params)
-    error = wrap_pi(heading - estimate.euler.yaw)
+    error = wrap_pi(heading - estimate.yaw)
     return out_from_rate(control, estimate, turn_rate_from_heading(error, 0.0, params), params)
 
 

@@ -121,7 +121,7 @@ def start(v: Vehicle) -> int:
     """Enter: around where the vehicle is, beginning ahead of its nose."""
     p = v.autopilot.params.CIRC
     est = v.autopilot.estimate
-    return begin(v, Circuit(horizontal(est.pos), p.RADIUS, -1.0 if p.DIR == 1.0 else 1.0, est.euler.yaw))
+    return begin(v, Circuit(horizontal(est.pos), p.RADIUS, -1.0 if p.DIR == 1.0 else 1.0, est.yaw))
 
 
 @law
@@ -135,7 +135,7 @@ def angle_from(centre: Vec2, estimate: Estimate) -> float:
     """Direction [rad] in which the vehicle is seen from ``centre`` [m]; its heading when it is there."""
     away = horizontal(estimate.pos) - centre
     if away.x == 0.0 and away.y == 0.0:
-        return estimate.euler.yaw
+        return estimate.yaw
     return math.atan2(away.y, away.x)
 
 

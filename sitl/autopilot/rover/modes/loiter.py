@@ -35,7 +35,7 @@ def start(v: Vehicle) -> int:
     loiter.place = waypoint.stopping_point(ap.estimate, ap.params.ATC)
     sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
     loiter.speed = ap.control.speed.forward
-    loiter.heading = ap.estimate.euler.yaw
+    loiter.heading = ap.estimate.yaw
     loiter.distance = 0.0
     return ACCEPTED
 
@@ -68,7 +68,7 @@ def run(v: Vehicle) -> None:
     if loiter.distance <= ap.params.LOIT.RADIUS:
         loiter.speed = speed.accel_limited(ap.control, 0.0, ap.params.ATC)
     else:
-        aim(loiter, pos, ap.estimate.euler.yaw, ap.params)
+        aim(loiter, pos, ap.estimate.yaw, ap.params)
     drive.turn_to(ap.control, ap.estimate, ap.modes.pilot, loiter.heading, ap.params)
     speed.drive(ap.control, ap.arming.armed, loiter.speed, ap.params)
 

@@ -193,7 +193,7 @@ def heading_to_destination(nav: RoverNav, pos: Vec3) -> float:
 @law
 def heading_error(nav: RoverNav, estimate: Estimate) -> float:
     """From the nose to that heading [rad], not wrapped."""
-    return heading_to_destination(nav, estimate.pos) - estimate.euler.yaw
+    return heading_to_destination(nav, estimate.pos) - estimate.yaw
 
 
 @law

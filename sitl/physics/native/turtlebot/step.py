@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from ....core.array_kernels import Table
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI
 from ....core.vectors import Vec2
 from ....vehicles.turtlebot import Figures
@@ -28,7 +28,7 @@ class WheelSpeeds(NamedTuple):
     """[m/s]"""
 
 
-@law
+@inlined
 def wheel_speeds(f: Figures, forward: float, turn: float) -> WheelSpeeds:
     """What the wheels do for a forward speed [m/s] and a turn rate [rad/s], counter-clockwise.
 
@@ -49,7 +49,7 @@ def free_distance(f: Figures, floor: float, solids: Table, place: Vec2) -> float
     return nearest_of(solids, solids.shape[0], Volume(place, floor - f.top, floor - f.bottom, f.radius)).distance
 
 
-@law
+@inlined
 def commanded(f: Figures, c: Command, time_us: int) -> WheelSpeeds:
     """What the wheels do now: a command holds until its time-out."""
     if 1e-6 * (time_us - c.time_us) < f.command_timeout:
@@ -57,7 +57,7 @@ def commanded(f: Figures, c: Command, time_us: int) -> WheelSpeeds:
     return WheelSpeeds(0.0, 0.0)
 
 
-@law
+@inlined
 def move(b: Body, f: Figures, wheels: WheelSpeeds, solids: Table) -> None:
     """Move on by ``TICK_US``. A move that would bring the robot into a solid does not happen; it still turns.
 

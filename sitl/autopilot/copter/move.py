@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter's controllers and modes are put elsewhere with it: their targets keep their place beside the vehicle."""
+
+from __future__ import annotations
+
+from ...core.displacement import (
+    Displacement,
+    faster_ne,
+    moved,
+    moved_ne,
+    on_the_ground,
+    turned,
+    turned_attitude,
+    turned_heading,
+    turned_ne,
+)
+from ...core.kernels import law
+from ...core.vectors import Euler
+from ..move import add_to_target, move_autopilot
+from .control.state import AltitudeState, AttitudeState, PositionState
+from .modes.state import GuidedState, LoiterState, Modes
+from .navigation.state import CopterNav
+from .state import Autopilot
+
+
+@law
+def move_attitude(a: AttitudeState, d: Displacement) -> None:
+    """The attitude asked for."""
+    a.target_q = turned_attitude(d, a.target_q)
+    e = a.target_euler
+    a.target_euler = Euler(e.roll, e.pitch, turned_heading(d, e.yaw))
+
+
+@law
+def move_position(c: PositionState, d: Displacement) -> None:
+    """Horizontal path and errors."""
+    c.pos_desired, c.pos_error = moved_ne(d, c.pos_desired), turned_ne(d, c.pos_error)
+    c.vel_desired, c.vel_target = faster_ne(d, c.vel_desired), faster_ne(d, c.vel_target)
+    c.accel_desired, c.accel_target = turned_ne(d, c.accel_desired), turned_ne(d, c.accel_target)
+    c.limit, c.vel_error = turned_ne(d, c.limit), turned_ne(d, c.vel_error)
+    c.vel_derivative, c.vel_integrator = turned_ne(d, c.vel_derivative), turned_ne(d, c.vel_integrator)
+
+
+@law
+def move_altitude(c: AltitudeState, d: Displacement) -> None:
+    """Vertical path."""
+    c.pos_desired += d.shift.z
+    c.vel_desired += d.velocity.z
+    c.vel_target += d.velocity.z
+    add_to_target(c.vel, d.velocity.z)
+
+
+@law
+def move_guided(g: GuidedState, d: Displacement) -> None:
+    """GUIDED's set-point."""
+    g.pos, g.vel, g.acc, g.q = moved(d, g.pos), turned(d, g.vel), turned(d, g.acc), turned_attitude(d, g.q)
+
+
+@law
+def move_loiter(state: LoiterState, d: Displacement) -> None:
+    """LOITER's stick."""
+    state.acc, state.predicted_acc = turned_ne(d, state.acc), turned_ne(d, state.predicted_acc)
+
+
+@law
+def move_circle(nav: CopterNav, d: Displacement) -> None:
+    """A circle under way."""
+    nav.circle_centre = moved(d, nav.circle_centre)
+    nav.circle_angle = turned_heading(d, nav.circle_angle)
+
+
+@law
+def move_modes(m: Modes, d: Displacement) -> None:
+    """Set-points and places of the modes."""
+    yaw, takeoff = m.auto_yaw, m.takeoff
+    yaw.yaw, yaw.look_ahead = turned_heading(d, yaw.yaw), turned_heading(d, yaw.look_ahead)
+    yaw.roi = moved(on_the_ground(d), yaw.roi)
+    takeoff.target_d += d.shift.z
+    takeoff.no_nav_d += d.shift.z
+    takeoff.user_start_d += d.shift.z
+    move_guided(m.guided, d)
+    move_loiter(m.loiter, d)
+    m.rtl.home = moved_ne(d, m.rtl.home)
+    m.landing.acc = turned(d, m.landing.acc)
+    move_circle(m.nav, d)
+
+
+@law
+def move(ap: Autopilot, d: Displacement) -> None:
+    """Put all of the firmware elsewhere; the origin of the estimate has been moved."""
+    move_autopilot(ap, d)
+    move_attitude(ap.control.attitude, d)
+    move_position(ap.control.pos_ne, d)
+    move_altitude(ap.control.pos_d, d)
+    move_modes(ap.modes, d)

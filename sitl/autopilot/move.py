@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all firmwares keep is put elsewhere with the vehicle: estimate, home, the legs under way."""
+
+from __future__ import annotations
+
+import math
+
+from ..core.displacement import Displacement, faster, moved, on_the_ground, turned
+from ..core.geodesy import add_offset
+from ..core.kernels import law
+from .control.pid import Pid
+from .estimation.move import move_ekf, move_estimate
+from .navigation.state import Leg, Nav
+from .state import Autopilot, Estimate, HomeState
+
+
+@law
+def _nearest(x: float) -> int:
+    return math.floor(x + 0.5)
+
+
+@law
+def move_home(home: HomeState, e: Estimate, d: Displacement) -> None:
+    """Home, on the ground; the origin of the estimate has been moved."""
+    if not home.is_set:
+        return
+    home.pos = moved(on_the_ground(d), home.pos)
+    place = add_offset(e.origin_lat, e.origin_lon, home.pos.x, home.pos.y)
+    home.lat, home.lon = _nearest(place.lat), _nearest(place.lon)
+
+
+@law
+def move_leg(leg: Leg, d: Displacement) -> None:
+    """A planned leg."""
+    leg.origin, leg.unit = moved(d, leg.origin), turned(d, leg.unit)
+
+
+@law
+def move_nav(nav: Nav, d: Displacement) -> None:
+    """The command under way and its legs."""
+    nav.target = moved(d, nav.target)
+    move_leg(nav.previous, d)
+    move_leg(nav.current, d)
+    move_leg(nav.next, d)
+    nav.pos, nav.vel, nav.acc = moved(d, nav.pos), faster(d, nav.vel), turned(d, nav.acc)
+    nav.request, nav.request_next = moved(d, nav.request), moved(d, nav.request_next)
+
+
+@law
+def add_to_target(pid: Pid, change: float) -> None:
+    """The loop's target and its measurement have changed alike."""
+    pid.target += change
+
+
+@law
+def move_autopilot(ap: Autopilot, d: Displacement) -> None:
+    """Put what all firmwares share elsewhere; the origin of the estimate has been moved."""
+    if not ap.ekf.use_external:
+        move_ekf(ap.ekf, d)
+    move_estimate(ap.estimate, d)
+    move_home(ap.home, ap.estimate, d)
+    move_nav(ap.modes.nav, d)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where a vehicle of a fleet is put, and how it is then: ``Fleet.move``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from numbers import Real
+from typing import Any
+
+from .core.vectors import Vec2, Vec3
+from .errors import OptionError, did_you_mean
+from .vehicle.kind import Kind
+from .vehicle.move import MoveOrder
+from .vehicles import Airframe
+from .vehicles.figures.figure import Figure
+
+WIND = (
+    Figure("wind_speed", "m/s", "of the steady wind", 0.0, 50.0, 0.0),
+    Figure("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0),
+    Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0),
+)
+"""The numbers of ``Move.wind``."""
+_FARTHEST = 100_000.0
+_HIGHEST = 10_000.0
+_FASTEST = 100.0
+_MISSION_RUNS = 1
+_known: dict[type[Airframe], dict[str, Figure]] = {}
+
+
+@dataclass(frozen=True)
+class Move:
+    """Where a vehicle is put, and how it is then; None: as it is.
+
+    Everything that the vehicle knows of places moves along: home, origin, targets.
+
+    Args:
+        north, east: of the body's origin, from the world's origin, without a world from where the vehicles were
+            powered on, up to 100 km [m].
+        height: over the floor, above 0 up to 10 km [m]; of a vehicle in the air.
+        heading: from north towards east [rad].
+        velocity: north, east, down, up to 100 m/s [m/s]; of a vehicle in the air, or along a rover's nose.
+        wind: speed [m/s], where it comes from [deg], turbulence [m/s].
+        figures: of the airframe, that are numbers: name -> value.
+        seed: of the noise of all sensors from now on.
+    """
+
+    north: float | None = None
+    east: float | None = None
+    height: float | None = None
+    heading: float | None = None
+    velocity: tuple[float, float, float] | None = None
+    wind: tuple[float, float, float] | None = None
+    figures: Mapping[str, float] = field(default_factory=dict)
+    seed: int | None = None
+
+    def check(self, airframe: Airframe) -> None:
+        """Look at all numbers.
+
+        Raises:
+            OptionError: one that cannot be taken, named, with what is allowed.
+        """
+        place = -_FARTHEST, _FARTHEST
+        _number("north", self.north, *place, "m")
+        _number("east", self.east, *place, "m")
+        if self.height is not None:
+            _number("height", self.height, 1e-3, _HIGHEST, "m")
+        _number("heading", self.heading, -1e6, 1e6, "rad")
+        for name, value in zip(("north", "east", "down"), _three("velocity", self.velocity)):
+            _number(f"velocity {name}", value, -_FASTEST, _FASTEST, "m/s")
+        for figure, value in zip(WIND, _three("wind", self.wind)):
+            _number(figure.name, value, figure.low, figure.high, figure.unit)
+        if self.figures:
+            known = _numbers(type(airframe))
+            for name, value in self.figures.items():
+                if name not in known:
+                    raise OptionError(f"figure {name!r} cannot be changed by a move{did_you_mean(name, known)}")
+                _number(f"figure {name}", value, known[name].low, known[name].high, known[name].unit)
+
+    def write(self, order: MoveOrder, vehicle: int, v: Any, kind: Kind) -> None:
+        """Write it as the order for a vehicle.
+
+        Args:
+            order: to write.
+            vehicle: its number in the fleet.
+            v: its record.
+            kind: of vehicle.
+
+        Raises:
+            OptionError: this vehicle cannot be moved so now.
+        """
+        if v.autopilot.modes.nav.mission_state == _MISSION_RUNS:
+            raise OptionError(f"vehicle {vehicle} flies a mission, whose items stay where they are: it cannot be moved")
+        flies = kind.flies and v.physics.ground.state == 0
+        if self.height is not None and not flies:
+            raise OptionError(f"height = {self.height!r}: vehicle {vehicle} is not in the air")
+        body = v.physics.body
+        order.vehicle = vehicle
+        order.says_place = self.north is not None or self.east is not None
+        if order.says_place:
+            here = body.pos
+            order.place = Vec2(here.x if self.north is None else self.north, here.y if self.east is None else self.east)
+        order.says_height = self.height is not None
+        order.height = self.height or 0.0
+        order.says_heading = self.heading is not None
+        order.heading = self.heading or 0.0
+        order.says_velocity = self.velocity is not None
+        if self.velocity is not None:
+            if not flies:
+                self._check_along(vehicle, kind, body)
+            order.velocity = Vec3(*self.velocity)
+        order.says_wind = self.wind is not None
+        if self.wind is not None:
+            order.wind_speed, order.wind_direction, order.wind_turbulence = self.wind
+        order.other_figures = bool(self.figures)
+
+    def _check_along(self, vehicle: int, kind: Kind, body: Any) -> None:
+        """Refuse a velocity that a vehicle on the ground cannot have."""
+        assert self.velocity is not None
+        q = body.q
+        heading = self.heading
+        if heading is None:
+            heading = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+        north, east, down = self.velocity
+        across = east * math.cos(heading) - north * math.sin(heading)
+        if kind.flies or abs(across) > 1e-6 or down != 0.0:
+            allowed = "its motors are off" if kind.flies else "it drives along its nose only"
+            raise OptionError(f"velocity = {self.velocity!r}: vehicle {vehicle} is on the ground; {allowed}")
+
+
+def _numbers(kind: type[Airframe]) -> dict[str, Figure]:
+    """The figures that may be changed, by name."""
+    if kind not in _known:
+        _known[kind] = {f.name: f for f in kind.known if f.length == 1 and not f.whole}
+    return _known[kind]
+
+
+def _number(name: str, value: float | None, low: float, high: float, unit: str) -> None:
+    if value is None or (type(value) is float and low <= value <= high):
+        return
+    if not (isinstance(value, Real) and not isinstance(value, bool) and low <= value <= high):
+        raise OptionError(f"{name} = {value!r}; it must be a number, {low:g} .. {high:g} {unit}".rstrip())
+
+
+def _three(name: str, value: Any) -> Any:
+    if value is None:
+        return ()
+    try:
+        found = tuple(value)
+    except TypeError:
+        found = ()
+    if len(found) != 3:
+        raise OptionError(f"{name} = {value!r}; three numbers are needed")
+    return found

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Units for tests of device code; run as a program, it runs a kernel in the simulator that numba-cuda has."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from sitl.core.vectors import Vec3
+from sitl.physics.native.turtlebot.state import TICK_US, Turtlebot
+from sitl.physics.native.turtlebot.step import commanded
+
+RECORD = "sitl.physics.native.turtlebot.state.Turtlebot"
+WAY = Vec3(0.1, 0.2, 0.3)
+
+
+def roll(fleet: Sequence[Turtlebot], index: int, ticks: int) -> None:
+    """Wheels turn, time goes on; sums of products, a square root, a vector that is a constant."""
+    v = fleet[index]
+    for _ in range(ticks):
+        speeds = commanded(v.figures, v.command, v.time_us)
+        v.command.forward = 0.999 * v.command.forward + 0.01 * speeds.left
+        v.command.turn = math.sqrt(v.command.turn * v.command.turn + 0.1 * speeds.right) + (WAY * 2.0).y
+        v.time_us += TICK_US
+
+
+def fleet_of(count: int):
+    """Turtlebots that differ."""
+    from sitl.vehicles.turtlebot import AIRFRAME
+
+    fleet = Turtlebot.fleet(count)
+    fleet["figures"] = AIRFRAME.record()
+    for k in range(count):
+        fleet["command"]["forward"][k], fleet["command"]["turn"][k] = 0.1 + 0.01 * k, 0.3 - 0.02 * k
+    return fleet
+
+
+def simulate() -> None:
+    """``NUMBA_ENABLE_CUDASIM=1``: five vehicles in two blocks of four threads."""
+    from numba import cuda
+
+    from sitl.core.device_kernel import kernel
+
+    here, there = fleet_of(5), fleet_of(5)
+    for k in range(5):
+        roll([Turtlebot.of(here, n) for n in range(5)], k, 7)
+    cuda.jit(kernel(roll))[2, 4]([Turtlebot.of(there, n) for n in range(5)], 7)
+    assert here.tobytes() == there.tobytes() != fleet_of(5).tobytes()
+    print("the same")
+
+
+if __name__ == "__main__":
+    simulate()

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Training libraries learn on vector environments as these are, where the libraries are installed."""
+
+from __future__ import annotations
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import sitl.envs
+from sitl.envs import PAPER
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.filterwarnings("ignore"),  # of the libraries
+]
+SCAN = {"observation": "scan", "max_episode_steps": 40}
+CONTINUOUS = {**SCAN, "action": "continuous", "world": "maze", "start": "random"}
+
+
+def weights(module):
+    return [values.detach().numpy().copy() for values in module.parameters()]
+
+
+def has_learnt(before, after):
+    return all(np.isfinite(b).all() for b in after) and any(not np.array_equal(a, b) for a, b in zip(before, after))
+
+
+@pytest.mark.parametrize("name", [*PAPER, "sitl/Navigate-v0"])
+def test_stable_baselines3(name):
+    library = pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
+    from sitl.envs.sb3 import Sb3VecEnv
+
+    env = Sb3VecEnv(name, num_envs=8, max_episode_steps=20)
+    model = library.PPO("MlpPolicy", env, n_steps=32, batch_size=64, n_epochs=2, seed=1, device="cpu")
+    before = weights(model.policy)
+    model.learn(1024)
+    assert model.num_timesteps == 1024 and has_learnt(before, weights(model.policy))
+    env.close()
+
+
+@pytest.mark.parametrize("algorithm", ["DQN", "A2C", "SAC", "TD3"])
+def test_other_algorithms_of_stable_baselines3(algorithm):
+    library = pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
+    from sitl.envs.sb3 import Sb3VecEnv
+
+    options = CONTINUOUS if algorithm in ("SAC", "TD3") else SCAN
+    env = Sb3VecEnv("sitl/Navigate-v0", num_envs=8, **options)
+    replay = {} if algorithm == "A2C" else {"learning_starts": 100, "buffer_size": 1000}
+    model = getattr(library, algorithm)("MlpPolicy", env, seed=1, device="cpu", **replay)
+    before = weights(model.policy)
+    model.learn(800)
+    assert has_learnt(before, weights(model.policy))
+    env.close()
+
+
+@pytest.mark.parametrize("name", ["sitl/Navigate-v0", "GazeboOfficeErleCopterLIDAR-v0"])
+def test_a_loop_in_one_file(name):
+    """PPO as CleanRL has it: a vector environment that resets in the next step, arrays of all robots, one update."""
+    torch = pytest.importorskip("torch", reason="needs the extra 'rl'")
+    torch.manual_seed(0)
+    envs = gym.wrappers.vector.RecordEpisodeStatistics(gym.make_vec(name, num_envs=8, **SCAN))
+    width, steps = int(np.prod(envs.single_observation_space.shape)), 64
+
+    def net(out):
+        return torch.nn.Sequential(torch.nn.Linear(width, 32), torch.nn.Tanh(), torch.nn.Linear(32, out))
+
+    actor, critic = net(int(envs.single_action_space.n)), net(1)
+    before = weights(actor), weights(critic)
+    optimiser = torch.optim.Adam([*actor.parameters(), *critic.parameters()], 1e-3)
+    seen, taken, paid, done = [], [], [], []
+    observation, _ = envs.reset(seed=1)
+    episodes, ended = 0, np.zeros(8, np.bool_)
+    for _ in range(steps):
+        row = torch.as_tensor(observation)
+        action = torch.distributions.Categorical(logits=actor(row).detach()).sample()
+        seen.append(row), taken.append(action), done.append(torch.as_tensor(ended))
+        observation, reward, terminated, truncated, infos = envs.step(action.numpy())
+        paid.append(torch.as_tensor(reward, dtype=torch.float32))
+        ended = terminated | truncated
+        episodes += int(infos["_episode"].sum()) if "episode" in infos else 0
+    rows, actions = torch.stack(seen), torch.stack(taken)
+    with torch.no_grad():
+        values = critic(rows)[..., 0]
+        value, following, returns = critic(torch.as_tensor(observation))[:, 0], torch.as_tensor(ended), []
+        for t in reversed(range(steps)):
+            value = paid[t] + 0.99 * value * ~following
+            following = done[t]
+            returns.insert(0, value)
+    goal = torch.stack(returns)
+    chances = torch.distributions.Categorical(logits=actor(rows)).log_prob(actions)
+    ratio = (chances - chances.detach()).exp()
+    loss = -(ratio * (goal - values)).mean() + 0.5 * ((critic(rows)[..., 0] - goal) ** 2).mean()
+    optimiser.zero_grad(), loss.backward(), optimiser.step()
+    assert episodes > 0 and has_learnt(before[0], weights(actor)) and has_learnt(before[1], weights(critic))
+    envs.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("sitl/Navigate-v0", SCAN),
+        ("sitl/Navigate-v0", CONTINUOUS),
+        ("GazeboMazeErleRoverLIDAR-v0", SCAN),
+    ],
+)
+def test_skrl(tmp_path, name, options):
+    pytest.importorskip("skrl", reason="needs skrl")
+    torch = pytest.importorskip("torch", reason="needs the extra 'rl'")
+    from skrl.agents.torch.ppo import PPO, PPO_CFG
+    from skrl.envs.wrappers.torch import wrap_env
+    from skrl.memories.torch import RandomMemory
+    from skrl.models.torch import CategoricalMixin, DeterministicMixin, GaussianMixin, Model
+    from skrl.trainers.torch import SequentialTrainer
+
+    env = wrap_env(gym.make_vec(name, num_envs=8, **options), wrapper="gymnasium")
+    discrete = isinstance(env.action_space, gym.spaces.Discrete)
+    where = {"observation_space": env.observation_space, "action_space": env.action_space, "device": env.device}
+
+    def body(model, out):
+        model.net = torch.nn.Sequential(torch.nn.Linear(model.num_observations, 32), torch.nn.Tanh(),
+                                        torch.nn.Linear(32, out))  # fmt: skip
+
+    class Policy(CategoricalMixin if discrete else GaussianMixin, Model):
+        def __init__(self):
+            Model.__init__(self, **where)
+            (CategoricalMixin if discrete else GaussianMixin).__init__(
+                self, **({} if discrete else {"clip_actions": True})
+            )
+            body(self, self.num_actions)
+            self.log_std = torch.nn.Parameter(torch.full((self.num_actions,), -1.0))
+
+        def compute(self, inputs, role):
+            out = self.net(inputs["observations"].float())
+            return (out, {}) if discrete else (out, {"log_std": self.log_std})
+
+    class Value(DeterministicMixin, Model):
+        def __init__(self):
+            Model.__init__(self, **where)
+            DeterministicMixin.__init__(self)
+            body(self, 1)
+
+        def compute(self, inputs, role):
+            return self.net(inputs["observations"].float()), {}
+
+    models = {"policy": Policy(), "value": Value()}
+    config = PPO_CFG()
+    config.rollouts, config.learning_epochs, config.mini_batches = 16, 2, 2
+    config.experiment.directory, config.experiment.write_interval = str(tmp_path), 0
+    config.experiment.checkpoint_interval = 0
+    agent = PPO(models=models, memory=RandomMemory(memory_size=16, num_envs=8, device=env.device), cfg=config,
+                observation_space=env.observation_space, action_space=env.action_space, device=env.device)  # fmt: skip
+    before = weights(models["value"])
+    SequentialTrainer(
+        cfg={"timesteps": 64, "headless": True, "disable_progressbar": True}, env=env, agents=agent
+    ).train()
+    assert has_learnt(before, weights(models["value"]))
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("sitl/Navigate-v0", SCAN), ("sitl/Navigate-v0", CONTINUOUS), ("GazeboMazeErleRoverLIDAR-v0", SCAN)],
+)
+def test_rllib(name, options):
+    pytest.importorskip("ray.rllib", reason="needs ray[rllib]")
+    from ray.rllib.algorithms.ppo import PPOConfig
+
+    config = (
+        PPOConfig()
+        .environment(f"{sitl.envs.__name__}:{name}", env_config=options)
+        .env_runners(num_env_runners=0, num_envs_per_env_runner=8, gym_env_vectorize_mode="vector_entry_point")
+        .training(train_batch_size=512, minibatch_size=128, num_epochs=2)
+        .debugging(seed=1)
+    )
+    algorithm = config.build_algo()
+    try:
+        assert type(algorithm.env_runner.env.unwrapped).__name__.endswith("Vector")
+        result = algorithm.train()
+        assert result["env_runners"]["num_env_steps_sampled"] >= 512
+        assert np.isfinite(result["learners"]["default_policy"]["total_loss"])
+    finally:
+        algorithm.stop()
