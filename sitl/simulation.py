@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any, Protocol, Unpack
 
@@ -66,7 +66,7 @@ class Snapshot:
     """What it is simulated by."""
     plant: bytes = b""
     """What that holds besides the record."""
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: tuple[tuple[str, float], ...] = ()
     """Parameters without effect, as far as they were set: they are not in the record."""
 
 
@@ -264,7 +264,7 @@ class Simulation:
             self.world.name if self.world is not None else None,
             self.physics,
             self.plant.snapshot(),
-            self.parameters.kept,
+            tuple(self.parameters.kept.items()),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -291,7 +291,7 @@ class Simulation:
             raise
         self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
         self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
-        self.parameters.kept = snapshot.parameters
+        self.parameters.kept = dict(snapshot.parameters)
         self.bridge.restore(snapshot.bridge)
 
     def _physics_restarted(self) -> None:
@@ -305,7 +305,7 @@ class Simulation:
 
     def parameter_changed(self, name: str) -> None:
         """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
-        if sim_parameters.acts_on_the_world(name):
+        if self.firmware.table[name].has_effect and sim_parameters.acts_on_the_world(name):
             self.plant.parameter_changed(name)
 
     def reseed(self, seed: int) -> None:

@@ -279,7 +279,7 @@ def test_any_messages_at_any_phase(phases: Phases, data: st.DataObject) -> None:
 def test_any_parameters_at_any_phase(phases: Phases, data: st.DataObject) -> None:
     """The flight may be poor, the state stays defined."""
     simulation, client = phases.go(data.draw(st.sampled_from(phases.names)))
-    names = st.sampled_from(simulation.kind.firmware.table.names())
+    names = st.sampled_from([p.name for p in simulation.kind.firmware.table.with_effect])
     changes = st.lists(st.tuples(names, st.one_of(numbers, st.floats(0.0, 1000.0, width=32))), max_size=6)
     for name, value in data.draw(changes):
         system = int(simulation.v.autopilot.params.MAV_SYSID)

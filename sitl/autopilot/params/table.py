@@ -102,8 +102,8 @@ class Values:
 
     def __init__(self, table: Table, record: Any) -> None:
         self.table, self._record = table, record
-        self.kept: Mapping[str, float] = {}
-        """Those without effect, as far as they were set. A change replaces it: snapshots share it."""
+        self.kept: dict[str, float] = {}
+        """Those without effect, as far as they were set."""
 
     def __getitem__(self, name: str) -> float:
         parameter = self.table[name]
@@ -118,15 +118,12 @@ class Values:
 
     def update(self, values: Mapping[str, float]) -> None:
         """Set several."""
-        kept: dict[str, float] = {}
         for name, value in values.items():
             parameter = self.table[name]
             if parameter.has_effect:
                 self._record[name] = stored(parameter, value)
             else:
-                kept[name] = stored(parameter, value)
-        if kept:
-            self.kept = {**self.kept, **kept}
+                self.kept[name] = stored(parameter, value)
 
     def listed(self) -> tuple[Parameter, ...]:
         """Those in the list that clients get, in its order."""

@@ -65,7 +65,7 @@ class Faulty(Client):
             return Fault(self, {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence})
         if what == "station":
             return Fault(self, {}, silent=True)
-        has_motors = "SIM_ENGINE_FAIL" in self.simulation.kind.firmware.table
+        has_motors = any(p.name == "SIM_ENGINE_FAIL" for p in self.simulation.kind.firmware.table.with_effect)
         if what == "motor" and has_motors:
             return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})
         known = [name for name in FAULTS if name != "motor" or has_motors]

@@ -47,9 +47,9 @@ def test_rates_are_as_declared(log: dict[str, list[Any]]) -> None:
 
 
 def test_all_parameters_are_in_it(driven: Run, log: dict[str, list[Any]]) -> None:
-    table = driven.simulation.firmware.table
+    listed = driven.simulation.parameters.listed()
     values = {m.Name: (m.Value, m.Default) for m in log["PARM"]}
-    assert values.keys() == set(table.names())
+    assert values.keys() == {p.name for p in listed}
     assert values["LOG_BACKEND_TYPE"] == (1.0, 1.0)
 
 
