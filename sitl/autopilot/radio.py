@@ -60,7 +60,7 @@ def stick_channel(params: RcMap, stick: int) -> int:
         channel = int(params.PITCH)
     elif stick == THROTTLE:
         channel = int(params.THROTTLE)
-    return channel - 1 if 1 <= channel <= 8 else stick
+    return channel - 1 if 1 <= channel <= RC_INPUTS else stick
 
 
 @law
@@ -111,7 +111,7 @@ def receive(rc: Radio, sensors: Sensors, params: Parameters, time_us: int, throt
     if overridden or (rc.has_receiver and not is_real):
         rc.receiver_us = time_us
     elif rc.has_receiver:
-        rc.receiver_us = max(rc.receiver_us, sensors.rc_time_us)
+        rc.receiver_us = max(rc.receiver_us, min(sensors.rc_time_us, time_us))
     fresh = time_us - rc.receiver_us < timeout * 1e6
     rc.receiver_ok = fresh and stick_pulse(rc, params.RCMAP, THROTTLE) > 0
 

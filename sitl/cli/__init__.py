@@ -14,9 +14,9 @@ from importlib import metadata
 
 from .. import __version__
 from ..errors import SitlError
-from . import cache, demo, execute, params, physics, run, world
+from . import cache, demo, drop_in, execute, params, physics, run, world
 
-COMMANDS = (run, execute, demo, physics, params, world, cache)
+COMMANDS = (run, drop_in, execute, demo, physics, params, world, cache)
 GROUP = "sitl.commands"
 
 

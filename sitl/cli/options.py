@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -75,6 +76,7 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)"
     )
+    parser._negative_number_matcher = re.compile(r"-[\d.]")  # a value such as -35.3,149.1,584,0 is no option
     parser.add_argument("--home", type=home, metavar="LAT,LON,ALT,HEADING", help="start")
     parser.add_argument(
         "--physics", default=NATIVE, metavar="NAME", help=f"what simulates it: {', '.join(FORMS)} (default {NATIVE})"

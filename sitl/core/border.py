@@ -15,8 +15,8 @@ from .vectors import Vec2, Vec3
 LIDAR_SAMPLES = 360
 """Readings of a scan that there is room for."""
 
-RC_INPUTS = 12
-"""Channels of HIL_RC_INPUTS_RAW."""
+RC_INPUTS = 16
+"""Channels of a receiver."""
 
 NarrowVec3 = Annotated[Vec3, Stored("f4")]
 """A vector at float32 precision, as HIL_SENSOR carries it."""
@@ -60,7 +60,7 @@ class Sensors(Record):
     rangefinder_range: Floats = array(1, stored="f4")  # looking down [m]; inf: nothing in range
     # HIL_RC_INPUTS_RAW: frames of a receiver that the physics side has; without any there is a simulated transmitter
     rc_count: int  # frames so far
-    rc_time_us: int  # of the last one
+    rc_time_us: int  # of the last one; in the future: it is repeated until then
     rc_channels: Ints = array(RC_INPUTS, stored="i8")  # pulses [us]; 0 unknown
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sysconfig
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,10 +61,17 @@ def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | 
     usual = KINDS[vehicle].programs.get(kind)
     if usual is None and not wanted:
         raise OptionError(f"autopilot {text!r}: no program for a {vehicle} is known; name it: {kind}:PROGRAM")
-    found = shutil.which(os.path.expanduser(wanted) if wanted else str(usual))
+    found = shutil.which(os.path.expanduser(wanted)) if wanted else _in_path(str(usual))
     if found is None:
         if not wanted:
             raise OptionError(f"autopilot {text!r}: no program {usual!r} in PATH; say where it is: {kind}:PROGRAM")
         why = "is not a program that may be run" if Path(wanted).expanduser().exists() else "is not there"
         raise OptionError(f"autopilot {text!r}: program {wanted!r} {why}")
     return Choice(kind, Path(found).resolve())
+
+
+def _in_path(name: str) -> str | None:
+    """A program in PATH that is not one of our own scripts, which have the same names."""
+    own = sysconfig.get_path("scripts")
+    folders = [folder for folder in os.environ.get("PATH", os.defpath).split(os.pathsep) if folder != own]
+    return shutil.which(name, path=os.pathsep.join(folders))

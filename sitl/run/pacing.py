@@ -56,9 +56,13 @@ class Pacing:
     """
 
     def __init__(self, speedup: float | None, clock: Callable[[], float] = time.monotonic) -> None:
-        self.speedup = speedup
         self._clock = clock
-        self._due = clock()
+        self.set_speedup(speedup)
+
+    def set_speedup(self, speedup: float | None) -> None:
+        """Another speed-up from now on."""
+        self.speedup = speedup
+        self._due = self._clock()
         slice_us = _LONGEST_US if speedup is None else int(speedup * _SLICE_WALL_S * 1e6)
         self._least_us = min(max(slice_us, _SHORTEST_US), _LONGEST_US)
         self.slice_us = self._least_us

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...core.border import RC_INPUTS
 from ...core.records import Records
 from .estimator import Ekf3
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
-from .system import Arming, Battery, Failsafes, Log, Mavlink, Mission, StreamRates
+from .system import Arming, Battery, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
 
 
 class Parameters(ParameterGroup):
@@ -30,7 +31,7 @@ class Parameters(ParameterGroup):
     MAV: Mavlink
     MAV1: StreamRates
     MIS: Mission
-    RC: Records[RcChannel] = numbered(RcChannel, 8, DZ=(20, 20, 30, 20, 0, 0, 0, 0))
+    RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(20, 20, 30, 20) + 12 * (0,))
     RC_OVERRIDE_TIME: float = param(
         3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"
     )
@@ -39,6 +40,7 @@ class Parameters(ParameterGroup):
         400.0, 0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SIM: Simulated
+    STAT: Statistics
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

@@ -19,7 +19,7 @@ class RcChannel(ParameterGroup):
 class RcMap(ParameterGroup):
     """RCMAP_: which stick is on which channel."""
 
-    ROLL: float = param(1, 1, 8, "", "Channel of the roll stick", INT8)
-    PITCH: float = param(2, 1, 8, "", "Channel of the pitch stick", INT8)
-    THROTTLE: float = param(3, 1, 8, "", "Channel of the throttle stick", INT8)
-    YAW: float = param(4, 1, 8, "", "Channel of the yaw stick", INT8)
+    ROLL: float = param(1, 1, 16, "", "Channel of the roll stick", INT8)
+    PITCH: float = param(2, 1, 16, "", "Channel of the pitch stick", INT8)
+    THROTTLE: float = param(3, 1, 16, "", "Channel of the throttle stick", INT8)
+    YAW: float = param(4, 1, 16, "", "Channel of the yaw stick", INT8)

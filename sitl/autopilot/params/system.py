@@ -83,3 +83,14 @@ class Mission(ParameterGroup):
 
     TOTAL: float = param(1, 0, 32766, "", "Items in the mission, home included; read only", INT16, read_only=True)
     RESTART: float = param(0, 0, 1, "", "On entering AUTO: 0 resume the mission, 1 start again", INT8)
+
+
+class Statistics(ParameterGroup):
+    """STAT_: kept by the drop-in executables; the core does not read these."""
+
+    BOOTCNT: float = param(0, 0, 32767, "", "Boots so far", INT16)
+    FLTTIME: float = param(0, 0, 2147483647, "s", "Time in flight so far, up to the last half minute", INT32)
+    RUNTIME: float = param(0, 0, 2147483647, "s", "Time running so far, up to the last half minute", INT32)
+    RESET: float = param(
+        1, 0, 2147483647, "s", "When these were set to zero, since 2016-01-01; write 0 to set them to zero", INT32
+    )

@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...core.border import RC_INPUTS
 from ..dialect import MessageType, message
 from .protocol import LATEST_US, RefusedError
 
 KIND, CHANNELS = message("HIL_RC_INPUTS_RAW"), message("RC_CHANNELS")
 UNUSED = 65535
+CARRIED = 12
+"""Channels of a frame."""
 LOWEST, HIGHEST = 800, 2200
 """No receiver gives other pulses [us]."""
 _STRONGEST = 254
@@ -31,8 +32,8 @@ def frame_for(is_foreign: bool, time_us: int, pulses: Sequence[int]) -> tuple[Me
 
 def sticks_payload(time_us: int, pulses: Sequence[int]) -> bytes:
     """A frame of up to twelve channels."""
-    given = [int(pulse) for pulse in pulses][:RC_INPUTS]
-    return KIND.pack(time_us, *given, *(UNUSED,) * (RC_INPUTS - len(given)), _STRONGEST)
+    given = [int(pulse) for pulse in pulses][:CARRIED]
+    return KIND.pack(time_us, *given, *(UNUSED,) * (CARRIED - len(given)), _STRONGEST)
 
 
 class SticksReader:
@@ -60,5 +61,5 @@ class SticksReader:
     def write(self, values: tuple[int, list[int]]) -> None:
         """Put a frame into the record."""
         s = self._sensors
-        s.rc_time_us, s.rc_channels[:] = values
+        s.rc_time_us, s.rc_channels[:CARRIED] = values
         s.rc_count += 1

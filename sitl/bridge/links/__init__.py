@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-from ...errors import SitlError
 from .inprocess import InProcessLink, LogLink
-from .link import Link, Peer
-from .tcp import TcpServerLink
+from .link import Link, LinkAddressError, Peer
+from .tcp import TcpClientLink, TcpServerLink
 from .udp import UdpInLink, UdpOutLink
 
 __all__ = [
-    "InProcessLink", "Link", "LinkAddressError", "LogLink", "Peer", "TcpServerLink", "UdpInLink", "UdpOutLink",
-    "open_link",
+    "InProcessLink", "Link", "LinkAddressError", "LogLink", "Peer", "TcpClientLink", "TcpServerLink", "UdpInLink",
+    "UdpOutLink", "open_link",
 ]  # fmt: skip
 
 ALLOWED = (
@@ -19,10 +18,6 @@ ALLOWED = (
     "tcp:[HOST:]PORT or tcpin:[HOST:]PORT (listen for connections)"
 )
 LOCAL = "127.0.0.1"
-
-
-class LinkAddressError(SitlError, ValueError):
-    """A link text that cannot be understood, or an address that cannot be opened."""
 
 
 def parse(text: str) -> tuple[str, str, int]:

@@ -6,7 +6,13 @@ from __future__ import annotations
 import selectors
 from collections.abc import Callable
 
+from ...errors import SitlError
+
 Selector = selectors.BaseSelector
+
+
+class LinkAddressError(SitlError, ValueError):
+    """A link text that cannot be understood, or an address that cannot be opened."""
 
 
 class Peer:

@@ -16,13 +16,15 @@ import selectors
 import socket
 from collections.abc import Callable
 
-from .link import Link, Peer, Selector
+from .link import Link, LinkAddressError, Peer, Selector
 
 CONGESTED_BYTES = 1 << 18
 """With this much unsent, telemetry to the client waits (``Peer.congested``)."""
 QUEUE_BYTES = 1 << 22
 """With this much unsent, the client is dropped."""
 MOST_CONNECTIONS = 64
+CONNECT_S = 5.0
+"""Wall time to connect to a client that listens [s]."""
 _READ_BYTES = 1 << 16
 
 
@@ -40,7 +42,7 @@ def _reserve() -> int:
 class _TcpPeer(Peer):
     joins_frames = waits = spools = True
 
-    def __init__(self, name: str, sock: socket.socket, link: TcpServerLink) -> None:
+    def __init__(self, name: str, sock: socket.socket, link: TcpServerLink | TcpClientLink) -> None:
         super().__init__(name)
         self._socket = sock
         self._link = link
@@ -187,6 +189,44 @@ class TcpServerLink(Link):
             os.close(self._reserve)
             self._reserve = -1
         self._socket.close()
+        super().close()
+
+
+class TcpClientLink(Link):
+    """Connects to ``host:port``, where a client listens; when that leaves, the link stays empty.
+
+    Raises:
+        LinkAddressError: nobody listens there.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        super().__init__(f"tcpclient:{host}:{port}")
+        try:
+            self._socket = socket.create_connection((host, port), CONNECT_S)
+            refuse_echo(self._socket)
+        except OSError as error:
+            raise LinkAddressError(f"link {self.name} cannot be opened: {error.strerror or error}") from None
+        self._socket.setblocking(False)
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._selector: Selector | None = None
+        self._peer = _TcpPeer(self.name, self._socket, self)
+        self.add_peer(self._peer)
+
+    def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
+        self._selector = selector
+        selector.register(self._socket, selectors.EVENT_READ, self._peer.readable)
+        super().attach(selector, on_peer)
+
+    def forget(self, peer: Peer, sock: socket.socket) -> None:
+        """Stop watching the closed connection."""
+        if self._selector is not None:
+            self._selector.unregister(sock)
+        sock.close()
+        self.peers.clear()
+
+    def close(self) -> None:
+        self._peer.flush()
+        self._peer.drop("vehicle closed")
         super().close()
 
 

@@ -65,11 +65,14 @@ def prearm_checks(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
+FORCE_REBOOT = 20190226.0
+
+
 def reboot(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """246: p1 1 or 3 reboots the autopilot, when disarmed."""
+    """246: p1 1 or 3 reboots the autopilot, when disarmed or when p6 is 20190226."""
     if command.p1 not in (1.0, 3.0):
         return UNSUPPORTED
-    if bridge.autopilot.armed():
+    if bridge.autopilot.armed() and command.p6 != FORCE_REBOOT:
         return FAILED
     bridge.vehicle.request_reboot()
     return ACCEPTED

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from hashlib import sha1
 from typing import TYPE_CHECKING
 
+from ... import __version__
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
@@ -29,6 +31,8 @@ FLIGHT_VERSION = (4, 7, 0, 0)
 
 The ArduPilot whose behaviour and parameter names this firmware follows.
 """
+VERSION_DIGITS = tuple(sha1(f"gym-sitl {__version__}".encode()).hexdigest()[:8].encode())
+"""What tells this program's versions apart: eight hexadecimal digits, as tools expect of a commit."""
 
 
 def autopilot_version(vehicle: Vehicle, profile: Profile) -> bytes:
@@ -37,7 +41,7 @@ def autopilot_version(vehicle: Vehicle, profile: Profile) -> bytes:
     return message("AUTOPILOT_VERSION").payload(
         capabilities=profile.capabilities,
         flight_sw_version=major << 24 | minor << 16 | patch << 8 | kind,
-        flight_custom_version=tuple(b"gym-sitl"),
+        flight_custom_version=VERSION_DIGITS,
         uid=1,
     )
 

@@ -36,13 +36,16 @@ class Entry(NamedTuple):
     """Size so far [bytes]."""
 
 
-class _File:
+class LogFile:
+    """A log that is being written, or was."""
+
     def __init__(self, path: Path, unix_us: int) -> None:
         self.path, self.time_utc, self.size = path, unix_us // 1_000_000, 0
         self.flown = False
         self.handle: BinaryIO | None = path.open("xb")
 
     def append(self, data: bytes) -> None:
+        """Write bytes at its end; LogError when that fails."""
         if self.handle is None or not data:
             return
         try:
@@ -54,6 +57,7 @@ class _File:
         self.size += len(data)
 
     def close(self) -> None:
+        """No more is written."""
         handle, self.handle = self.handle, None
         if handle is not None:
             with contextlib.suppress(OSError):
@@ -75,7 +79,7 @@ class DataFlash:
     def __init__(self, vehicle: Vehicle, path: str | Path, epoch_us: int, version: str = "gym-sitl") -> None:
         self.path, self.epoch_us = Path(path), epoch_us
         self._vehicle, self._version = vehicle, version
-        self._files: list[_File] = []
+        self._files: list[LogFile] = []
         self._started = 0
         words = memoryview(vehicle.fleet.view("<i8").reshape(len(vehicle.fleet), -1)[vehicle.index])
         self._words = words
@@ -89,7 +93,7 @@ class DataFlash:
     def _boot(self) -> None:
         self._boot_us = self._vehicle.before_boot_us
         self._encoder: LogEncoder | None = None
-        self._file: _File | None = None
+        self._file: LogFile | None = None
         self._paused = False
         self._disarmed_us = -PERSIST_US
         self._since_us = 0
@@ -231,7 +235,7 @@ class DataFlash:
                 self._encoder.text(time_us, text)
         self._texts.clear()
 
-    def _new_file(self, unix_us: int) -> _File:
+    def _new_file(self, unix_us: int) -> LogFile:
         while True:
             self._started += 1
             k = self._started
@@ -240,7 +244,7 @@ class DataFlash:
                 if path.exists():
                     continue
                 path.parent.mkdir(parents=True, exist_ok=True)
-                file = _File(path, unix_us)
+                file = LogFile(path, unix_us)
             except OSError as error:
                 self._on = False  # say it once
                 raise LogError(f"log {str(path)!r} cannot be written: {error.strerror or error}") from None
@@ -331,17 +335,17 @@ class DataFlash:
                 file.path.unlink()
 
 
-def attach(simulation: Any, path: Path) -> DataFlash:
+def attach(simulation: Any, path: Path, kind: type[DataFlash] | None = None) -> DataFlash:
     """Keep on-board logs (.bin) at ``path``, as LOG_BACKEND_TYPE and LOG_DISARMED say; clients can download them.
 
-    A logger that is there already ends.
+    A logger that is there already ends. ``kind``: another class of loggers, which knows what ``path`` is.
     """
     bridge = simulation.bridge
     before = bridge.logs
     if before is not None:
         before.close()
         bridge.listeners[:] = [each for each in bridge.listeners if each is not before]
-    logger = DataFlash(simulation, path, bridge.epoch_us, f"gym-sitl {__version__}")
+    logger = (kind or DataFlash)(simulation, path, bridge.epoch_us, f"gym-sitl {__version__}")
     simulation.logger = logger
     bridge.listeners.append(logger)
     bridge.logs = logger

@@ -211,7 +211,7 @@ def test_sticks() -> None:
     other = Vehicle()
     taker = sticks.SticksReader(other.v)
     taker.write(taker.read(sticks.sticks_payload(5000, (1500, 1100, 1900))))
-    assert other.v.sensors.rc_channels.tolist() == [1500, 1100, 1900] + [0] * 9
+    assert other.v.sensors.rc_channels.tolist() == [1500, 1100, 1900] + [0] * 13
     assert (other.v.sensors.rc_count, other.v.sensors.rc_time_us) == (1, 5000)
     with pytest.raises(RefusedError, match="chan2_raw = 3000"):
         taker.read(sticks.sticks_payload(5000, (1500, 3000)))

@@ -12,7 +12,7 @@ from ...params.estimator import Ekf3
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.system import Arming, Log, Mavlink, Mission, StreamRates
+from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
 from .flight import Circle, Guided, Land, Legs, Loiter, Pilot, Rtl, TakeOff, Waypoints
@@ -71,6 +71,7 @@ class Parameters(shared.Parameters):
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SIM: Simulated
+    STAT: Statistics
     THR_DZ: float = param(
         100,
         0,

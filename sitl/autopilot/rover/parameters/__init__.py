@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
@@ -13,7 +14,7 @@ from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Log, Mavlink, StreamRates
+from ...params.system import Arming, Log, Mavlink, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, ServoOutput
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
@@ -52,7 +53,7 @@ class Parameters(shared.Parameters):
         0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
     )
     PSC: Position
-    RC: Records[RcChannel] = numbered(RcChannel, 8, DZ=(30, 0, 30, 30, 0, 0, 0, 0))
+    RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(30, 0, 30, 30) + 12 * (0,))
     RC_OVERRIDE_TIME: float
     RCMAP: RcMap
     RTL_SPEED: float = param(0.0, 0.0, 100.0, "m/s", "Speed of the way home; 0: WP_SPEED")
@@ -61,6 +62,7 @@ class Parameters(shared.Parameters):
     SIM: Simulated
     SIMPLE_TYPE: float = param(0, 0, 1, "", "Stick forwards: 0 the heading when armed, 1 north", INT8)
     SRTL: SmartRtl
+    STAT: Statistics
     STICK_MIXING: float = param(0, 0, 1, "", "1: the steering stick adds to the autopilot's steering", INT8)
     TURN_RADIUS: float = param(0.9, 0.0, 100.0, "m", "Turning radius at low speed and full steering")
     WP: Legs

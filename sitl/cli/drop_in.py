@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl arducopter``, ``sitl ardurover``, and the installed scripts of these names."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from ..drop_in import server
+from ..drop_in.command_line import HELP, HelpWanted
+from ..errors import SitlError
+from .progress import CompileProgress
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the commands; their words are ArduPilot's, so that none of them is an option here."""
+    for program, vehicle in server.PROGRAMS.items():
+        text = f"run a {vehicle} in place of ArduPilot's {program}"
+        parser = commands.add_parser(program, help=text, add_help=False, prefix_chars="\0")
+        parser.add_argument("words", nargs="*", metavar="OPTION")
+        parser.set_defaults(function=lambda options: run(options.command, options.words))
+
+
+def run(program: str, words: Sequence[str]) -> int:
+    """Run the executable; returns the exit code."""
+    try:
+        with CompileProgress() as progress:
+            return server.run(program, words, progress)
+    except HelpWanted:
+        print(f"usage: {program} [option ...]\n\n{HELP}", end="")
+        return 0
+
+
+def _main(program: str) -> int:
+    try:
+        return run(program, sys.argv[1:])
+    except SitlError as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+
+
+def arducopter() -> int:
+    """The installed script."""
+    return _main("arducopter")
+
+
+def ardurover() -> int:
+    """The installed script."""
+    return _main("ardurover")

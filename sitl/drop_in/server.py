@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs a vehicle as ArduPilot's simulator does: waits for the first client, keeps parameters, ends with its parent."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from .. import vehicles
+from ..autopilot.params import files
+from ..autopilot.params.table import Table
+from ..bridge.links import Link
+from ..core.compile import Progress
+from ..errors import OptionError
+from ..logs.dataflash.log import attach
+from ..logs.dataflash.numbered import NumberedLogs
+from ..run import runner
+from ..run.pacing import Pacing
+from ..scenario import Scenario
+from ..simulation import Simulation
+from ..vehicle.kinds import KINDS
+from . import serial_ports
+from .command_line import SERIAL_PORTS, CommandLine, parse
+from .statistics import Statistics
+from .sticks import StickPort
+from .storage import Storage
+
+PROGRAMS = {"arducopter": "copter", "ardurover": "rover"}
+MODELS = {
+    "copter": {"+": "ardupilot_quad", "quad": "ardupilot_quad", "copter": "ardupilot_quad"},
+    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover"},
+}
+"""ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
+JSON = "JSON"
+MAVLINK_PROTOCOLS = (1.0, 2.0)
+"""Values of SERIALn_PROTOCOL."""
+LOGS = Path("logs")
+LOOK_S = 0.2
+"""Wall time between two looks for the parent while the first client is awaited [s]."""
+
+Say = Callable[[str], None]
+
+
+class Session:
+    """A vehicle with all that belongs to its executable.
+
+    Args:
+        program: "arducopter" or "ardurover".
+        line: its command line.
+        say: prints a line.
+        progress: told of each unit that is compiled.
+
+    Raises:
+        SitlError: an option, a file or a port that cannot be taken, named.
+    """
+
+    def __init__(self, program: str, line: CommandLine, say: Say = print, progress: Progress | None = None) -> None:
+        self._line, self._say = line, say
+        path = Path(f"{program}-storage.json")
+        self.storage = Storage.wiped(path) if line.wipe else Storage(path)
+        kind = PROGRAMS[program]
+        airframe, physics = _model(kind, line)
+        params = self._parameters(KINDS[kind].firmware.table)
+        scenario = Scenario(airframe, home=line.home, params=params, physics=physics)
+        self.simulation = simulation = Simulation(scenario, progress=progress)
+        self._values = simulation.parameters
+        self.pacing = Pacing(None)
+        self._follow_speedup()
+        simulation.bridge.autopilot.replace_mission(self.storage.mission)
+        simulation.bridge.autopilot.take_notes()
+        self._mission = simulation.mission
+        simulation.bridge.listeners.append(self)
+        self._statistics = Statistics(simulation, self.storage.keep)
+        self._awaited: Link | None = None
+        self._open_ports()
+        attach(simulation, LOGS, NumberedLogs)
+        self.storage.write()
+
+    def _parameters(self, table: Table) -> dict[str, float]:
+        """Of default files, storage and command line; what the firmware does not take is told and left out."""
+        values: dict[str, float] = {}
+        for path in self._line.defaults:
+            values.update(files.load(path))
+        values.update(self.storage.parameters)
+        if self._line.sysid is not None:
+            values["MAV_SYSID"] = self._line.sysid
+        if self._line.speedup is not None:
+            values["SIM_SPEEDUP"] = self._line.speedup
+        self._tell("parameters that this firmware does not have", [name for name in values if name not in table])
+        known = {name: value for name, value in values.items() if name in table}
+        refusals = {name: text for name, value in known.items() if (text := table[name].refusal(value))}
+        for text in refusals.values():
+            self._say(f"not taken: {text}")
+        return {name: value for name, value in known.items() if name not in refusals}
+
+    def _tell(self, what: str, names: Sequence[str]) -> None:
+        if names:
+            self._say(f"{len(names)} {what}: {', '.join(names)}")
+
+    def _open_ports(self) -> None:
+        line, bridge = self._line, self.simulation.bridge
+        for number in range(SERIAL_PORTS):
+            if not self._speaks_mavlink(number):
+                continue
+            link = serial_ports.open_port(line, number)
+            if link is not None:
+                bridge.add_link(link)
+                self._say(f"MAVLink on SERIAL{number}: {link.name}")
+                if serial_ports.waits(line.devices[number]) and self._awaited is None:
+                    self._awaited = link
+        sticks = StickPort(self.simulation.v, line.address, line.sticks_port)
+        bridge.add_link(sticks)
+        self._say(f"sticks on {sticks.name}")
+
+    def _speaks_mavlink(self, number: int) -> bool:
+        name = f"SERIAL{number}_PROTOCOL"
+        return name in self.simulation.firmware.table and self._values[name] in MAVLINK_PROTOCOLS
+
+    # ------------------------------------------------------------------ listening
+
+    def said(self, severity: int, text: str) -> None:
+        """Texts are for clients."""
+
+    def reached(self, seq: int) -> None:
+        """Progress is for clients."""
+
+    def parameter_set(self, name: str) -> None:
+        """Keep what a client has set."""
+        self.storage.keep(name, self._values[name])
+        if name == "SIM_SPEEDUP":
+            self._follow_speedup()
+
+    def _follow_speedup(self) -> None:
+        speedup = self._values["SIM_SPEEDUP"]
+        self.pacing.set_speedup(speedup if speedup > 0.0 else None)
+
+    # ------------------------------------------------------------------ running
+
+    def wait_for_client(self, running: Callable[[], bool]) -> None:
+        """Time stands until somebody is connected to the port that waits for it."""
+        link, bridge = self._awaited, self.simulation.bridge
+        if link is None:
+            return
+        self._say("Waiting for connection ....")
+        while running() and not link.peers:
+            bridge.wait(LOOK_S)
+            bridge.receive()
+
+    def serve(self, running: Callable[[], bool]) -> None:
+        """Go on until ``running()`` is false."""
+        self.wait_for_client(running)
+        self._follow_speedup()  # time begins now
+        runner.serve(self.simulation, self.pacing, running=running, on_slice=self._after_slice)
+
+    def _after_slice(self) -> None:
+        self._statistics.follow()
+        mission = self.simulation.mission
+        if mission is not self._mission:
+            self._mission = mission
+            self.storage.keep_mission(mission.items)
+        self.storage.write()
+        dropped = self.simulation.bridge.dropped
+        while dropped:
+            self._say(dropped.pop(0))
+
+    def close(self) -> None:
+        """Keep everything and close all."""
+        self.storage.write()
+        self.simulation.close()
+
+
+def _model(kind: str, line: CommandLine) -> tuple[str, str]:
+    """Airframe and physics."""
+    models: Mapping[str, str] = MODELS[kind]
+    first = next(iter(models.values()))
+    name, _, address = line.model.partition(":")
+    if name == JSON:
+        host, port = line.physics
+        return first, f"json:{address or host}:{port}"
+    if line.model in ("", *models):
+        return models.get(line.model, first), "native"
+    own = line.model.replace("-", "_")
+    if own in vehicles.names(kind):
+        return own, "native"
+    known = ", ".join((*models, f"{JSON}:HOST", *vehicles.names(kind)))
+    raise OptionError(f"--model {line.model!r} is none of {known}")
+
+
+def run(program: str, words: Sequence[str], progress: Progress | None = None) -> int:
+    """The executable: returns its exit code.
+
+    Raises:
+        SitlError: an option, a file or a port that cannot be taken, named.
+        HelpWanted: ``--help``.
+    """
+    parent = os.getppid()  # before the core is compiled: it may end meanwhile
+    line = parse(words)
+    say: Say = lambda text: print(text, flush=True)  # noqa: E731 - tools read along
+    if line.without_effect:
+        say(f"no effect in this simulator: {', '.join(line.without_effect)}")
+    session = Session(program, line, say, progress)
+    stopped: list[int] = []
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), lambda number, _: stopped.append(number))
+    try:
+        session.serve(lambda: not stopped and os.getppid() == parent)
+    finally:
+        session.close()
+    return 0

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the autopilot keeps when it is switched off, as a file: parameters that were set, and the mission."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from ..autopilot.mission.item import MissionItem
+from ..errors import SitlError
+
+
+class StorageError(SitlError):
+    """The file cannot be read or written, or is something else."""
+
+
+class Storage:
+    """Parameters by name and mission items, read from ``path`` if it is there.
+
+    Raises:
+        StorageError: the file is there and cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.parameters: dict[str, float] = {}
+        self.mission: tuple[MissionItem, ...] = ()
+        self._is_changed = False
+        try:
+            kept = json.loads(path.read_text(encoding="utf-8"))
+            self.parameters = {str(name): float(value) for name, value in kept["parameters"].items()}
+            self.mission = tuple(MissionItem(*item) for item in kept["mission"])
+        except FileNotFoundError:
+            return
+        except OSError as error:
+            raise StorageError(f"storage {str(path)!r} cannot be read: {error.strerror or error}") from None
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise StorageError(f"storage {str(path)!r} is damaged ({error!r}); -w begins anew") from None
+
+    @classmethod
+    def wiped(cls, path: Path) -> Storage:
+        """Without anything of before.
+
+        Raises:
+            StorageError: the file of before cannot be removed.
+        """
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            raise StorageError(f"storage {str(path)!r} cannot be wiped: {error.strerror or error}") from None
+        return cls(path)
+
+    def keep(self, name: str, value: float) -> None:
+        """Keep a parameter."""
+        self.parameters[name] = value
+        self._is_changed = True
+
+    def keep_mission(self, items: tuple[MissionItem, ...]) -> None:
+        """Keep a mission, home first."""
+        self.mission = items
+        self._is_changed = True
+
+    def write(self) -> None:
+        """Write the file if something has changed: whole, or not at all.
+
+        Raises:
+            StorageError: it cannot be written.
+        """
+        if not self._is_changed:
+            return
+        self._is_changed = False
+        text = json.dumps({"parameters": self.parameters, "mission": self.mission}, indent=0)
+        beside = self.path.with_name(self.path.name + ".new")
+        try:
+            beside.write_text(text, encoding="utf-8")
+            os.replace(beside, self.path)
+        except OSError as error:
+            raise StorageError(f"storage {str(self.path)!r} cannot be written: {error.strerror or error}") from None

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sticks, storage, statistics and numbered logs, in this process."""
+
+from __future__ import annotations
+
+import os
+import struct
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from sitl.autopilot.mission.item import NAV_WAYPOINT, MissionItem, home_item
+from sitl.drop_in.command_line import parse
+from sitl.drop_in.server import Session
+from sitl.drop_in.statistics import SINCE_S, Statistics
+from sitl.drop_in.sticks import StickPort
+from sitl.drop_in.storage import Storage, StorageError
+from sitl.errors import OptionError
+from sitl.foreign.choice import choose
+from sitl.logs.dataflash.log import attach
+from sitl.logs.dataflash.numbered import NumberedLogs
+from sitl.simulation import Core, Simulation
+
+
+@pytest.fixture
+def simulation(core: Core) -> Simulation:
+    return Simulation("ardupilot_quad", core=core)
+
+
+def test_sixteen_sticks_reach_the_radio_and_stay(simulation: Simulation) -> None:
+    port = StickPort(simulation.v, "127.0.0.1", 0)
+    rc = simulation.v.autopilot.rc
+    port.hear(struct.pack("<16H", *range(1200, 1216)))
+    simulation.advance(30.0)  # no other frame: the receiver repeats the last one
+    assert [int(pulse) for pulse in rc.channels] == [*range(1200, 1216), 0, 0]
+    assert rc.receiver_ok
+    port.hear(struct.pack("<8H", 0, *range(1301, 1308)))
+    simulation.advance(0.1)
+    assert [int(pulse) for pulse in rc.channels] == [1200, *range(1301, 1308), *range(1208, 1216), 0, 0]
+    port.close()
+
+
+def test_a_failing_transmitter_is_lost_although_sticks_come(simulation: Simulation) -> None:
+    port = StickPort(simulation.v, "127.0.0.1", 0)
+    port.hear(struct.pack("<16H", *(1500,) * 16))
+    simulation.advance(1.0)
+    assert simulation.v.autopilot.rc.receiver_ok
+    simulation.v.autopilot.params.SIM.RC_FAIL = 1
+    simulation.parameter_changed("SIM_RC_FAIL")
+    simulation.advance(3.0)
+    assert not simulation.v.autopilot.rc.receiver_ok
+    port.close()
+
+
+def test_storage_keeps_and_forgets(tmp_path: Path) -> None:
+    path = tmp_path / "kept.json"
+    storage = Storage(path)
+    storage.write()
+    assert not path.exists(), "nothing to keep"
+    items = (home_item(1, 2, 3.0), MissionItem(NAV_WAYPOINT, x=5, y=6, z=7.5))
+    storage.keep("WPNAV_SPEED", 450.0)
+    storage.keep_mission(items)
+    storage.write()
+    again = Storage(path)
+    assert (again.parameters, again.mission) == ({"WPNAV_SPEED": 450.0}, items)
+    assert [file.name for file in tmp_path.iterdir()] == ["kept.json"]
+    assert Storage.wiped(path).parameters == {} and not path.exists()
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", '{"parameters": {"A": "b"}, "mission": []}', '{"parameters": 5}'])
+def test_damaged_storage_is_named(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "kept.json"
+    path.write_text(text)
+    with pytest.raises(StorageError, match=r"kept.json' is damaged .*-w begins anew"):
+        Storage(path)
+
+
+def test_statistics_count_boots_and_time(simulation: Simulation) -> None:
+    kept: dict[str, float] = {}
+    statistics = Statistics(simulation, kept.__setitem__)
+    params = simulation.v.autopilot.params
+    assert kept == {"STAT_BOOTCNT": 1.0} and params["STAT_BOOTCNT"] == 1.0
+    for _ in range(95):
+        simulation.advance(1.0)
+        statistics.follow()
+    assert (params["STAT_RUNTIME"], params["STAT_FLTTIME"]) == (90.0, 0.0), "kept each half minute"
+    simulation.request_reboot()
+    simulation.advance(0.0)
+    statistics.follow()
+    assert params["STAT_BOOTCNT"] == kept["STAT_BOOTCNT"] == 2.0
+    params["STAT_RESET"] = 0.0
+    simulation.advance(1.0)
+    statistics.follow()
+    assert [params[f"STAT_{name}"] for name in ("BOOTCNT", "RUNTIME")] == [0.0, 0.0]
+    assert params["STAT_RESET"] == simulation.bridge.epoch_us // 1_000_000 + 96 - SINCE_S
+
+
+def test_logs_are_numbered_over_runs(core: Core, tmp_path: Path) -> None:
+    folder = tmp_path / "logs"
+    for number in (1, 2):
+        simulation = Simulation("ardupilot_quad", core=core, params={"LOG_DISARMED": 1})
+        logs = attach(simulation, folder, NumberedLogs)
+        simulation.advance(2.0)
+        entries = logs.entries()
+        assert [entry.number for entry in entries] == list(range(1, number + 1)), "those of earlier runs, too"
+        path = folder / f"{number:08d}.BIN"
+        assert logs.read(number, 0, 1 << 30) == path.read_bytes() and entries[-1].size == path.stat().st_size > 1000
+        simulation.close()
+        assert (folder / "LASTLOG.TXT").read_bytes() == b"%d\r\n" % number
+    simulation = Simulation("ardupilot_quad", core=core, params={"LOG_DISARMED": 1})
+    logs = attach(simulation, folder, NumberedLogs)
+    logs.erase()
+    assert list(folder.iterdir()) == [] and logs.entries() == []
+    simulation.close()
+
+
+def test_a_model_that_there_is_not_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OptionError, match=r"--model 'zeppelin' is none of \+, quad, .*JSON:HOST.*erle_copter"):
+        Session("arducopter", parse(["--model", "zeppelin"]))
+
+
+def test_the_search_for_a_real_one_passes_our_scripts_by(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("ours", "real"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "arducopter").write_text("#!/bin/sh\n")
+        (tmp_path / name / "arducopter").chmod(0o755)
+    monkeypatch.setattr(sysconfig, "get_path", lambda name: str(tmp_path / "ours"))
+    monkeypatch.setenv("PATH", os.pathsep.join(str(tmp_path / name) for name in ("ours", "real")))
+    choice = choose("ardupilot", "copter")
+    assert choice is not None and choice.program == (tmp_path / "real" / "arducopter").resolve()
+    monkeypatch.setenv("PATH", str(tmp_path / "ours"))
+    with pytest.raises(OptionError, match="no program 'arducopter' in PATH"):
+        choose("ardupilot", "copter")
