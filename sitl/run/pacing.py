@@ -67,7 +67,7 @@ class Pacing:
         self._least_us = min(max(slice_us, _SHORTEST_US), _LONGEST_US)
         self.slice_us = self._least_us
         """Simulated time to advance between two looks at the wall clock [us]."""
-        self._heard, self._quiet_us, self._looked = 0, 0, clock()
+        self._heard, self._quiet_us, self._looked = 0, 0, self._clock()
 
     def after_slice(self, simulation: Simulation) -> None:
         """Wait until the next slice is due, and answer clients meanwhile: none of them can hurry the clock."""
