@@ -13,6 +13,7 @@ import time
 import timeit
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -79,6 +80,28 @@ def drawn(name: str, steps: int) -> Callable[[], float]:
     return run
 
 
+MASSES = {_ROVER: {"mass": (2.0, 3.0)}, _COPTER: {"mass": (1.0, 1.3)}}
+
+
+def print_resets(repeats: int) -> None:
+    """Time of resets of each kind."""
+    for name, masses in MASSES.items():
+        both = {"start": "random", "randomise": masses}
+        kinds: tuple[tuple[str, dict[str, Any], int], ...] = (
+            ("same start", {}, 200),
+            ("new pose", {"start": "random"}, 200),
+            ("new figures", {"randomise": masses}, 200),
+            ("new pose and figures", both, 200),
+            ("the same by boot", {**both, "begin": "boot"}, 2),
+        )
+        for kind, given, number in kinds:
+            env = gym.make(name, **given).unwrapped
+            env.reset(seed=0)
+            env.step(0)
+            found = timeit.repeat(env.reset, number=number, repeat=repeats, timer=time.process_time)
+            print(f"{name + ', reset: ' + kind:58s} {statistics.median(found) * 1e6 / number:10.1f} us")
+
+
 def main() -> None:
     """Print every figure, and its ratio to CartPole-v1's of the same run."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.envs")
@@ -119,6 +142,7 @@ def main() -> None:
         for call, run_call in calls:
             found = timeit.repeat(run_call, number=200, repeat=options.repeats, timer=time.process_time)
             print(f"{name + ', ' + call:58s} {statistics.median(found) * 1e6 / 200:10.1f} us")
+    print_resets(options.repeats)
 
 
 if __name__ == "__main__":

@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .errors import SitlError
     from .fleet import Fleet
+    from .move import Move
     from .simulation import Simulation
     from .vehicles import names as vehicle_names
     from .worlds import names as world_names
 
 __version__ = "0.1.0"
 
-__all__ = ["Fleet", "Simulation", "SitlError", "__version__", "vehicle_names", "world_names"]
+__all__ = ["Fleet", "Move", "Simulation", "SitlError", "__version__", "vehicle_names", "world_names"]
 
 _LAZY = {
     "Fleet": ("fleet", "Fleet"),
+    "Move": ("move", "Move"),
     "Simulation": ("simulation", "Simulation"),
     "SitlError": ("errors", "SitlError"),
     "vehicle_names": ("vehicles", "names"),

@@ -53,11 +53,14 @@ def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture
 
 
 def test_the_example_of_fleets_runs(core: Core) -> None:
-    (example,) = blocks(ROOT / "docs/fleets.md", "python")
+    example, moves = blocks(ROOT / "docs/fleets.md", "python")
     scope: dict[str, Any] = {}
     exec(compile(example, "docs/fleets.md", "exec"), scope)
     ways = [math.atan2(*reversed(scope["fleet"].view(k).physics.body.pos[:2])) % math.tau for k in range(16)]
     assert ways[1:] == pytest.approx([math.tau * k / 16 for k in range(1, 16)], abs=0.05)
+    exec(compile(moves, "docs/fleets.md", "exec"), scope)
+    places = [scope["fleet"].view(k).physics.body.pos.x for k in range(4)]
+    assert places == pytest.approx([0.0, 20.0, 40.0, 60.0], abs=0.5)
 
 
 def test_the_commands_of_the_readme_are_understood() -> None:

@@ -55,7 +55,8 @@ def law(function: F) -> F:
 
 
 def inlined(function: F) -> F:
-    """Mark a law of a few instructions: in the core it is always compiled into its caller, loops over it stay fast."""
+    """Mark a law that is never a call in the core: one of a few instructions, or one that runs every tick and is called
+    in few places."""
     INLINED.add(function)
     return law(function)
 

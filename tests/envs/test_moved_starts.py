@@ -99,7 +99,7 @@ def test_a_moved_episode_is_like_one_that_was_booted_there(name):
         assert np.linalg.norm(ends[0] - ends[1]) < 0.15
         assert max(errors) < 2.5
         near = np.maximum(*scans) < 9.0
-        assert np.median(np.abs(scans[0] - scans[1])[near]) < (0.01 if name == ROVER else 0.8)
+        assert np.median(np.abs(scans[0][near] - scans[1][near])) < (0.01 if name == ROVER else 0.8)
 
 
 def test_another_pose_costs_no_other_preparation_and_boot_does():
@@ -146,5 +146,5 @@ def test_what_cannot_be_is_refused():
         with pytest.raises(EnvOptionError, match=complaint):
             env.reset(options={"pose": pose})
     heavy = make(COPTER, randomise={"mass": lambda rng: 25.0})
-    with pytest.raises(EnvOptionError, match="does not hover with figures {'mass': 25.0}"):
+    with pytest.raises(EnvOptionError, match="does not hover with figures"):
         heavy.reset(seed=0)

@@ -15,7 +15,6 @@ from ...core.displacement import (
     turned_ne,
 )
 from ...core.kernels import law
-from ...core.vectors import Euler
 from ..move import add_to_target, move_autopilot
 from .control.state import AltitudeState, AttitudeState, PositionState
 from .modes.state import GuidedState, LoiterState, Modes
@@ -27,8 +26,6 @@ from .state import Autopilot
 def move_attitude(a: AttitudeState, d: Displacement) -> None:
     """The attitude asked for."""
     a.target_q = turned_attitude(d, a.target_q)
-    e = a.target_euler
-    a.target_euler = Euler(e.roll, e.pitch, turned_heading(d, e.yaw))
 
 
 @law

@@ -9,7 +9,6 @@ from ...core.border import Actuators
 from ...core.kernels import law
 from ...core.scalars import constrain
 from ...core.vectors import Quat, Vec2, Vec3
-from ..estimation.move import set_attitude
 from .control.attitude_target import set_target
 from .control.motors import MOTORS, SPOOLING_UP, THROTTLE_UNLIMITED, hover_throttle
 from .control.state import GRAVITY, Control, MotorsState
@@ -57,7 +56,7 @@ def lean_acceleration(q: Quat) -> Vec2:
 def lean(ap: Autopilot, turn: Quat) -> None:
     """The body has leant by ``turn`` (NED): the estimate knows, attitude and velocity loops ask for it."""
     ap.ekf.q = multiply(turn, ap.ekf.q)
-    set_attitude(ap.estimate, multiply(turn, ap.estimate.q))
+    ap.estimate.q = multiply(turn, ap.estimate.q)
     attitude, position = ap.control.attitude, ap.control.pos_ne
     before = lean_acceleration(attitude.target_q)
     set_target(attitude, multiply(turn, attitude.target_q))

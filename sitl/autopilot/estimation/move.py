@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from ...core.algebra import euler_of
 from ...core.displacement import (
     Displacement,
     faster,
@@ -16,7 +15,6 @@ from ...core.displacement import (
 )
 from ...core.kernels import law
 from ...core.records import Floats
-from ...core.vectors import Quat
 from ..state import Estimate
 from .covariance import turn_frame
 from .state import RING, Ekf
@@ -68,11 +66,4 @@ def move_estimate(e: Estimate, d: Displacement) -> None:
     """Put what the filter last said elsewhere; its origin is not touched."""
     e.vel, e.pos, e.acc_ned = faster(d, e.vel), moved(d, e.pos), turned(d, e.acc_ned)
     e.reset_pos, e.reset_vel = turned(d, e.reset_pos), turned(d, e.reset_vel)
-    set_attitude(e, turned_attitude(d, e.q))
-
-
-@law
-def set_attitude(e: Estimate, q: Quat) -> None:
-    """An attitude, body to NED."""
-    e.q = q
-    e.euler = euler_of(q)
+    e.q = turned_attitude(d, e.q)

@@ -99,10 +99,6 @@ class FleetVehicles(InProcessVehicles):
     def _bind(self) -> None:
         """Look up once what every step needs."""
         fleet, arrays, coming = self.fleet, self.setup.arrays, self._coming
-        estimate = fleet.records["autopilot"]["estimate"]
-        pairs = ("position", "pos"), ("velocity", "vel"), ("euler", "euler"), ("rates", "rates")
-        self._said = [(self._ends[name], estimate[field]) for name, field in pairs]
-        self._ranges = fleet.records["sensors"]["lidar_ranges"]
         ends: Any = self._views if jit_disabled() else self._ends
         ports = fleet.ports.ctypes.data
         self._send = send_all.bind(ends, self._origins, ports)
@@ -111,6 +107,7 @@ class FleetVehicles(InProcessVehicles):
         along = float(self.setup.airframe.value("base_along"))
         origins: Any = Origins(self._origins, *fleet.clocks)
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
+        self._ranges = fleet.records["sensors"]["lidar_ranges"]
 
     # ------------------------------------------------------------------ episodes
 
@@ -139,11 +136,10 @@ class FleetVehicles(InProcessVehicles):
 
     def _moved(self, index: int, state: EpisodeState, pose: Pose) -> EpisodeState:
         """After a move: what the vehicle would say now, and where its local frame is."""
-        for end, estimate in self._said:
-            end[index] = estimate[index].astype(np.float32)  # as messages carry them
-        readings = len(self.setup.angles)
-        self._scans[index, :readings] = self._ranges[index, :readings]
-        e = self.fleet.view(index).autopilot.estimate
+        end, e = self._views[index], self.fleet.view(index).autopilot.estimate
+        said = np.array([*e.pos, *e.vel, *e.euler, *e.rates], np.float32).tolist()  # as messages carry them
+        end.position, end.velocity, end.euler, end.rates = said[:3], said[3:6], said[6:9], said[9:]
+        self._scans[index] = self._ranges[index, : self._scans.shape[1]]
         north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
         self._origins[index] = origin = north, east, -pose[2]
         return EpisodeState(None, None, origin, state.began_us, state.setpoint, state.interval_us)
