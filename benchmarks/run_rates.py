@@ -88,11 +88,12 @@ class Client:
         return (passed[1] - passed[0]) / (clock() - start)
 
 
-def rates(vehicle: str, log_bits: str | None, seconds: float, repeats: int) -> list[float]:
-    """Rates of ``sitl run``; ``log_bits``: whether a ``.bin`` is written, too (LOG_BACKEND_TYPE)."""
+def rates(vehicle: str, backend: str, seconds: float, repeats: int) -> list[float]:
+    """Rates of ``sitl run``; ``backend``: "1" when a ``.bin`` is written, too, else "0" (LOG_BACKEND_TYPE)."""
     with tempfile.TemporaryDirectory() as folder:
         parameters = Path(folder) / "vehicle.parm"
-        parameters.write_text(f"LOG_BACKEND_TYPE {log_bits}\nDISARM_DELAY 0\n")
+        stays_armed = "DISARM_DELAY 0\n" if vehicle == "copter" else ""
+        parameters.write_text(f"LOG_BACKEND_TYPE {backend}\n{stays_armed}")
         command = [sys.executable, "-m", "sitl", "run", vehicle, "--speedup", "max", "--tcp", "0", "--out", "none"]
         command += ["--quiet", "--log-dir", folder, "--params", str(parameters)]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from ...core.algebra import euler_of
+from ...core.array_kernels import Kernel, Table
 from ...core.geodesy import METRES_PER_DEGE7
+from ...core.kernels import law
 from ...core.vectors import Quat
 from .samples import Array
 
@@ -24,12 +26,28 @@ def wrapped(angle: str | Column) -> Column:
     return lambda s: np.mod((s(angle) if isinstance(angle, str) else angle(s)) * DEG, 360.0)
 
 
+@law
+def euler_of_rows(rows: Table, angles: Table) -> None:
+    """Roll, pitch and yaw [rad], shape (n, 3), of quaternions, shape (n, 4)."""
+    for k in range(rows.shape[0]):
+        found = euler_of(Quat(rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3]))
+        angles[k, 0] = found.roll
+        angles[k, 1] = found.pitch
+        angles[k, 2] = found.yaw
+
+
+_eulers = Kernel(euler_of_rows)
+
+
 def euler(path: str, axis: int) -> Column:
     """Roll (0), pitch (1) or yaw (2) of a quaternion [rad], as the core has it to the last bit."""
 
     def column(s: Any) -> Array:
-        rows = zip(*(part.tolist() for part in _quaternion(s, path)))
-        return np.array([euler_of(Quat(*row))[axis] for row in rows])
+        rows = np.stack(_quaternion(s, path), axis=1)
+        angles = np.empty((len(rows), 3))
+        _eulers(rows, angles)
+        found: Array = angles[:, axis]
+        return found
 
     return column
 

@@ -166,7 +166,7 @@ class DataFlash:
     def _is_idle(self) -> bool:
         """Whether no log can begin before something happens."""
         armed = self._words[self._armed_at] or self._words[self._time_at] - self._disarmed_us < PERSIST_US
-        return not (armed or self._texts or (self._on and self._disarmed in _ALWAYS))
+        return not (self._texts or (self._on and (armed or self._disarmed in _ALWAYS)))
 
     def _core_samples(self, encoder: LogEncoder) -> bool:
         """Whether the core can take samples until something happens: there is nothing else to be logged before."""

@@ -104,13 +104,14 @@ class Group:
             due &= s.raw(self.when) != 0
         return np.flatnonzero(due)
 
-    def encode(self, s: Columns, count: int) -> bytes:
-        """The bytes of ``count`` rows, all that ``s`` has."""
+    def encode(self, s: Columns, count: int) -> list[bytes]:
+        """The bytes of each of ``count`` rows, all that ``s`` has."""
         out = np.empty(count, self.dtype)
         out[:] = self.template
         for name, f in self._jobs:
             out[name][f.label] = values(f, s)
-        return out.tobytes()
+        data, size = out.tobytes(), self.dtype.itemsize
+        return [data[at : at + size] for at in range(0, len(data), size)]
 
 
 def values(f: Field, s: Columns) -> Array:
@@ -172,13 +173,11 @@ class Plan:
                 when = samples.column(g.time)[rows + 1]
             if not len(rows):
                 continue
-            data = g.encode(chosen, len(rows))
-            size = g.dtype.itemsize
-            pieces += [data[at : at + size] for at in range(0, len(data), size)]
+            pieces += g.encode(chosen, len(rows))
             keys.append(np.stack((when, rows + 1, np.full(len(rows), number)), axis=1))
-        key = np.concatenate(keys)
-        order = np.lexsort((key[:, 2], key[:, 1], key[:, 0]))
-        return b"".join([pieces[k] for k in order.tolist()])
+        when, row, number = np.concatenate(keys).T
+        order = np.argsort((when * (count + 2) + row) * (len(self.groups) + 1) + number, kind="stable")
+        return b"".join(map(pieces.__getitem__, order.tolist()))
 
 
 def _want(samples: Samples, source: Source) -> None:
