@@ -139,7 +139,13 @@ def test_a_mission_is_saved_by_switch(core: Core) -> None:
     move_switch(p, 7, HIGH)
     p.hold()
     items = p.simulation.mission.items
-    assert [item.command for item in items] == [c.NAV_WAYPOINT, c.NAV_TAKEOFF, c.NAV_WAYPOINT, c.NAV_WAYPOINT, c.NAV_LAND]
+    assert [item.command for item in items] == [
+        c.NAV_WAYPOINT,
+        c.NAV_TAKEOFF,
+        c.NAV_WAYPOINT,
+        c.NAV_WAYPOINT,
+        c.NAV_LAND,
+    ]
     assert items[2].z == pytest.approx(15.0, abs=0.5)
     there = np.hypot(*np.subtract(items[3][6:8], p.lat_lon(*p.pos[:2]))) * 0.0111
     assert 0.5 < there < np.hypot(*p.pos[:2])
