@@ -6,6 +6,21 @@ from __future__ import annotations
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
+class Acro(ParameterGroup):
+    """ACRO_: ACRO, and the turn rates of SPORT."""
+
+    BAL_ROLL: float = param(1.0, 0.0, 3.0, "1/s", "Roll turns back to level at so many times its lean")
+    BAL_PITCH: float = param(1.0, 0.0, 3.0, "1/s", "Pitch turns back to level at so many times its lean")
+    TRAINER: float = param(
+        2, 0, 2, "", "0: none, 1: levels with the sticks centred, 2: levels and limits the lean", INT8
+    )
+    THR_MID: float = param(0.0, 0.0, 1.0, "", "Throttle in the middle of the stick; 0: that of hovering")
+    RP_RATE: float = param(360.0, 1.0, 1080.0, "deg/s", "Roll and pitch rate at full stick")
+    RP_EXPO: float = param(0.3, -0.5, 0.95, "", "Softness of the roll and pitch sticks around the middle")
+    Y_RATE: float = param(202.5, 1.0, 360.0, "deg/s", "Yaw rate at full stick")
+    Y_EXPO: float = param(0.0, -1.0, 1.0, "", "Softness of the yaw stick around the middle")
+
+
 class Circle(ParameterGroup):
     """CIRCLE_: circles."""
 

@@ -13,6 +13,7 @@ from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.copter import pilot
 from sitl.autopilot.copter.control.state import AltitudeState, Control, MotorsState
 from sitl.autopilot.copter.modes import (
+    acro,
     alt_hold,
     auto,
     auto_yaw,
@@ -38,12 +39,13 @@ from sitl.autopilot.copter.modes.state import (
 from sitl.autopilot.copter.modes.table import MODES, NAMES
 from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.copter.parameters.flight import Land, Legs, Pilot, Rtl
+from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, Rtl
 from sitl.autopilot.events import Events
 from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from sitl.autopilot.state import Arming
 from sitl.core.scalars import wrap_pi
-from sitl.core.vectors import Vec2, Vec3
+from sitl.core.vectors import Euler, Vec2, Vec3
+from tests.autopilot.copter.steady_copter import make
 
 ANGLES = st.floats(-3.1, 3.1)
 
@@ -252,3 +254,31 @@ def test_hovering_is_level_and_at_rest(
     control = Control()
     control.pos_d.vel_desired, control.attitude.cos_lean, control.motors.throttle = climb, cos_lean, throttle
     assert update.hovers(control, vel_d) == hovers
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_body_rates_of_the_sticks_stay_within_theirs(roll: float, pitch: float, yaw: float) -> None:
+    sticks, p = PilotState(), Acro()
+    sticks.roll, sticks.pitch, sticks.yaw = roll, pitch, yaw
+    p.RP_RATE, p.Y_RATE, p.RP_EXPO = 360.0, 200.0, 0.3
+    rates = acro.stick_rates(sticks, p)
+    assert abs(rates.x) <= math.radians(360.0) + 1e-9 and abs(rates.z) <= math.radians(200.0) + 1e-9
+    assert rates.x * roll >= 0.0 and rates.y * pitch >= 0.0 and rates.z * yaw >= 0.0
+
+
+@pytest.mark.parametrize(
+    ("trainer", "stick", "wanted"), ((0, 0.0, 0.0), (1, 0.0, -20.0), (1, 0.25, -15.0), (2, 1.0, -20.0))
+)
+def test_the_trainer_turns_back_to_level(trainer: int, stick: float, wanted: float) -> None:
+    sticks, lean = PilotState(), Euler(math.radians(20.0), 0.0, 0.0)
+    p = make().autopilot.params
+    sticks.yaw, p.ACRO.TRAINER = stick, float(trainer)
+    rates = acro.trained_rates(Vec3(0.0, 0.0, 0.0), sticks, lean, p)
+    assert math.degrees(rates.x) == pytest.approx(wanted)
+
+
+@given(st.floats(-3.0, 3.0))
+def test_the_trainer_pushes_back_to_the_limit(angle: float) -> None:
+    rate = acro.limiting_rate(angle, math.radians(30.0), 6.0, 20.0)
+    assert rate * angle <= 0.0 and (rate == 0.0) == (abs(angle) <= math.radians(30.0))
+    assert 0.5 * rate * rate <= 20.0 * max(abs(angle) - math.radians(30.0), 0.0) + 1e-9, "it can still be stopped there"
