@@ -66,6 +66,15 @@ class LoiterState(Record):
     brake_us: int  # when the sticks were released
 
 
+class CircleState(Record):
+    """CIRCLE: what the parameters and then the pilot ask for."""
+
+    radius: float  # [m]
+    radius_set: float  # CIRCLE_RADIUS when it was last taken over [m]
+    rate: float  # [rad/s], positive clockwise
+    may_turn_back: bool  # the rate is zero and the roll stick was centred since: it may turn either way
+
+
 class RtlState(Record):
     """RTL."""
 
@@ -125,6 +134,7 @@ class Modes(shared.Modes):
     takeoff: TakeoffState
     guided: GuidedState
     loiter: LoiterState
+    circle: CircleState
     rtl: RtlState
     land: LandState
     auto: AutoState

@@ -9,7 +9,7 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import acro, alt_hold, auto, brake, guided, land, loiter, rtl, stabilize
+from . import acro, alt_hold, auto, brake, circle, guided, land, loiter, rtl, stabilize
 from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
@@ -22,6 +22,7 @@ MODES: tuple[CopterMode, ...] = with_registered(
         guided.MODE,
         loiter.MODE,
         rtl.MODE,
+        circle.MODE,
         land.MODE,
         brake.MODE,
     ),

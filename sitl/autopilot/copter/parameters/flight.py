@@ -26,6 +26,14 @@ class Circle(ParameterGroup):
 
     RADIUS: float = param(1000.0, 0.0, 200000.0, "cm", "Radius when a mission gives none")
     RATE: float = param(20.0, -90.0, 90.0, "deg/s", "Greatest turn rate around the circle")
+    OPTIONS: float = param(
+        1,
+        0,
+        15,
+        "",
+        "CIRCLE: 1 sticks change radius and rate, 2 the nose points along the circle, 4 around where it is",
+        INT16,
+    )
 
 
 class Guided(ParameterGroup):

@@ -26,8 +26,10 @@ from sitl.autopilot.copter.modes import (
     takeoff,
     update,
 )
+from sitl.autopilot.copter.modes import circle as circle_mode
 from sitl.autopilot.copter.modes.state import (
     AutoYaw,
+    CircleState,
     GuidedState,
     LandState,
     LoiterState,
@@ -282,3 +284,21 @@ def test_the_trainer_pushes_back_to_the_limit(angle: float) -> None:
     rate = acro.limiting_rate(angle, math.radians(30.0), 6.0, 20.0)
     assert rate * angle <= 0.0 and (rate == 0.0) == (abs(angle) <= math.radians(30.0))
     assert 0.5 * rate * rate <= 20.0 * max(abs(angle) - math.radians(30.0), 0.0) + 1e-9, "it can still be stopped there"
+
+
+@given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), max_size=30), st.floats(-1.5, 1.5))
+def test_the_rate_of_a_circle_turns_back_only_after_the_stick_was_centred(
+    sticks: list[tuple[float, float]], rate: float
+) -> None:
+    state, pilot_sticks = CircleState(), PilotState()
+    state.radius, state.rate = 10.0, rate
+    for pilot_sticks.roll, pilot_sticks.pitch in sticks:
+        before = state.rate
+        for _ in range(100):
+            circle_mode.steer(state, pilot_sticks, state.rate, 10.0)
+        assert state.radius >= 0.0 and abs(state.rate) <= math.radians(90.0)
+        if pilot_sticks.roll == 0.0:
+            assert state.rate == before
+        else:
+            assert abs(state.rate - before) <= math.radians(0.25) + 1e-9
+            assert before * state.rate >= 0.0
