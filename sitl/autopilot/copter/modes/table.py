@@ -9,7 +9,7 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import acro, alt_hold, auto, brake, circle, guided, land, loiter, rtl, stabilize
+from . import acro, alt_hold, auto, brake, circle, flip, guided, guided_nogps, land, loiter, poshold, rtl, stabilize
 from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
@@ -24,7 +24,10 @@ MODES: tuple[CopterMode, ...] = with_registered(
         rtl.MODE,
         circle.MODE,
         land.MODE,
+        flip.MODE,
+        poshold.MODE,
         brake.MODE,
+        guided_nogps.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""

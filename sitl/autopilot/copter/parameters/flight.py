@@ -88,6 +88,13 @@ class Pilot(ParameterGroup):
     Y_RATE_TC: float = param(0.0, 0.0, 1.0, "s", "Time constant of the yaw stick")
 
 
+class PosHold(ParameterGroup):
+    """PHLD_: POSHOLD."""
+
+    BRAKE_RATE: float = param(8, 1, 100, "deg/s", "How fast it leans back to stop", INT16)
+    BRAKE_ANGLE: float = param(3000, 100, 8000, "cdeg", "Greatest lean that stops it", INT16)
+
+
 class Rtl(ParameterGroup):
     """RTL_: RTL."""
 
