@@ -66,6 +66,42 @@ class LoiterState(Record):
     brake_us: int  # when the sticks were released
 
 
+class CircleState(Record):
+    """CIRCLE: what the parameters and then the pilot ask for."""
+
+    radius: float  # [m]
+    radius_set: float  # CIRCLE_RADIUS when it was last taken over [m]
+    rate: float  # [rad/s], positive clockwise
+    may_turn_back: bool  # the rate is zero and the roll stick was centred since: it may turn either way
+
+
+class PosHoldAxis(Record):
+    """POSHOLD: roll or pitch."""
+
+    phase: int  # poshold.py: FLOWN, BRAKING, STOPPED
+    lean: float  # wanted, without that against the wind [rad]
+    since_us: int  # when it began to brake
+
+
+class PosHoldState(Record):
+    """POSHOLD."""
+
+    roll: PosHoldAxis
+    pitch: PosHoldAxis
+    holding: bool  # the position controller leans it
+    wind: Vec2  # acceleration of the lean that holding needs, NE [m/s^2]
+
+
+class FlipState(Record):
+    """FLIP."""
+
+    phase: int  # flip.py: BEGINNING, TURNING, RECOVERING
+    roll: float  # the way round: 1 right, -1 left, 0 not
+    pitch: float  # 1 back, -1 forward, 0 not
+    start_us: int
+    level: Quat  # attitude at the start, body to NED
+
+
 class RtlState(Record):
     """RTL."""
 
@@ -133,6 +169,9 @@ class Modes(shared.Modes):
     takeoff: TakeoffState
     guided: GuidedState
     loiter: LoiterState
+    circle: CircleState
+    poshold: PosHoldState
+    flip: FlipState
     rtl: RtlState
     land: LandState
     auto: AutoState

@@ -9,12 +9,26 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import alt_hold, auto, brake, guided, land, loiter, rtl, stabilize
+from . import acro, alt_hold, auto, brake, circle, flip, guided, guided_nogps, land, loiter, poshold, rtl, stabilize
 from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
     "copter",
-    (stabilize.MODE, alt_hold.MODE, auto.MODE, guided.MODE, loiter.MODE, rtl.MODE, land.MODE, brake.MODE),
+    (
+        stabilize.MODE,
+        acro.MODE,
+        alt_hold.MODE,
+        auto.MODE,
+        guided.MODE,
+        loiter.MODE,
+        rtl.MODE,
+        circle.MODE,
+        land.MODE,
+        flip.MODE,
+        poshold.MODE,
+        brake.MODE,
+        guided_nogps.MODE,
+    ),
 )
 """In the order of AVAILABLE_MODES."""
 NAMES = {mode.number: mode.name for mode in MODES}
