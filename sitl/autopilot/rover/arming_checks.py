@@ -10,6 +10,7 @@ from ..arming_checks import (
     CHECK_GPS,
     CHECK_RC,
     EKF_FAILSAFE,
+    EMERGENCY_STOP,
     GPS_FIX,
     MODE,
     MODE_BY_RUDDER,
@@ -70,6 +71,8 @@ def check(v: Vehicle) -> int:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
     failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
+    if ap.arming.emergency_stop:
+        failed |= EMERGENCY_STOP
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     return failed if allows_arming(modes.number) else failed | MODE

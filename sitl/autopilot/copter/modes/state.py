@@ -147,6 +147,14 @@ class PilotState(Record):
     throttle_zero_us: int  # when last above zero
 
 
+class SimpleState(Record):
+    """SIMPLE and SUPER_SIMPLE."""
+
+    number: int  # simple.py: OFF, SIMPLE, SUPER_SIMPLE
+    heading: float  # forwards in SIMPLE [rad]
+    heading_from_home: float  # forwards in SUPER_SIMPLE [rad]
+
+
 class LandingState(Record):
     """What the landing detector filters."""
 
@@ -168,6 +176,7 @@ class Modes(shared.Modes):
     land: LandState
     auto: AutoState
     pilot: PilotState
+    simple: SimpleState
     landing: LandingState
     arming_delay: bool  # armed less than 2 s ago: motors wait
     nav: CopterNav

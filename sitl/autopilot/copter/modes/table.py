@@ -46,6 +46,7 @@ MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
 CLIMB_STICK = numbers(MODES, "climb_stick")
 NEED_POSITION = numbers(MODES, "needs_position")
 AUTONOMOUS = numbers(MODES, "autonomous")
+IGNORE_SIMPLE = (-1, *numbers(MODES, "ignores_simple"))  # never empty: Numba needs a type
 ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
 
 
@@ -83,3 +84,9 @@ def is_autonomous(number: int) -> bool:
 def arms_at_any_throttle(number: int) -> bool:
     """Whether a ground station may arm the mode whatever the throttle stick says."""
     return number in ARM_AT_ANY_THROTTLE
+
+
+@law
+def ignores_simple(number: int) -> bool:
+    """Whether SIMPLE and SUPER_SIMPLE do nothing in the mode."""
+    return number in IGNORE_SIMPLE

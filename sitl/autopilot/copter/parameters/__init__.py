@@ -73,7 +73,9 @@ class Parameters(shared.Parameters):
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SIM: Simulated
+    SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
     STAT: Statistics
+    SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     THR_DZ: float = param(
         100,
         0,
