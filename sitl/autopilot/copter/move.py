@@ -77,6 +77,8 @@ def move_modes(m: Modes, d: Displacement) -> None:
     takeoff.user_start_d += d.shift.z
     move_guided(m.guided, d)
     move_loiter(m.loiter, d)
+    m.poshold.wind = turned_ne(d, m.poshold.wind)
+    m.flip.level = turned_attitude(d, m.flip.level)
     simple = m.simple
     simple.heading = turned_heading(d, simple.heading)
     simple.heading_from_home = turned_heading(d, simple.heading_from_home)

@@ -37,7 +37,7 @@ def land(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """22: p7 height above home [m]. In GUIDED, LOITER, ALT_HOLD, armed, on the ground or in the climb; else FAILED."""
+    """22: p7 height above home [m]. Armed in GUIDED, LOITER, ALT_HOLD, POSHOLD, landed or in the climb; else FAILED."""
     if command.frame != GLOBAL_RELATIVE_ALT:
         return DENIED
     return ACCEPTED if _copter(bridge).takeoff(command.z) else FAILED

@@ -129,5 +129,12 @@ def run(v: Vehicle) -> None:
 
 
 MODE = CopterMode(
-    number=CIRCLE, name="CIRCLE", start=start, run=run, needs_position=True, autonomous=True, may_arm=never_arms
+    number=CIRCLE,
+    name="CIRCLE",
+    start=start,
+    run=run,
+    needs_position=True,
+    autonomous=True,
+    ignores_simple=True,
+    may_arm=never_arms,
 )

@@ -123,4 +123,4 @@ def run(v: Vehicle) -> None:
     throttle_mix.set_throttle_out(control, p, wanted, False, p.PILOT.THR_FILT)
 
 
-MODE = CopterMode(number=FLIP, name="FLIP", start=start, run=run, may_arm=never_arms)
+MODE = CopterMode(number=FLIP, name="FLIP", start=start, run=run, ignores_simple=True, may_arm=never_arms)

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.auto import AUTO
 from sitl.autopilot.copter.modes.brake import BRAKE
+from sitl.autopilot.copter.modes.circle import CIRCLE
+from sitl.autopilot.copter.modes.flip import FLIP
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
+from sitl.autopilot.copter.modes.poshold import POSHOLD
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
 from sitl.autopilot.copter.modes.table import NAMES
@@ -28,7 +33,7 @@ from sitl.autopilot.modes import (
 )
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
-ALL = tuple(NAMES)
+ALL = tuple(number for number in NAMES if number != FLIP)
 
 
 @pytest.mark.parametrize("number", ALL)
@@ -38,7 +43,7 @@ def test_disarmed_any_mode_may_be_selected_even_without_position_or_mission(vehi
     assert vehicle.autopilot.modes.number == number
 
 
-@pytest.mark.parametrize("number", (-1, 1, 7, 8, 16, 18, 99, 2**40))
+@pytest.mark.parametrize("number", (-1, 8, 10, 13, 99, 2**40))
 def test_unknown_modes_are_refused_and_change_nothing_but_the_event(vehicle, number):
     assert set_mode.request(vehicle, number, REASON_GCS) == NO_SUCH_MODE
     assert vehicle.autopilot.modes.number == STABILIZE
@@ -50,7 +55,7 @@ def test_in_flight_without_position_only_modes_that_do_without(flying, number):
     fly(flying, STABILIZE)
     ap = flying.autopilot
     ap.modes.mission_count, ap.estimate.position_ok = 5, 0
-    needs = number in (AUTO, GUIDED, LOITER, RTL, BRAKE)
+    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE)
     assert set_mode.request(flying, number, REASON_GCS) == (REQUIRES_POSITION if needs else ACCEPTED)
 
 
@@ -59,6 +64,25 @@ def test_in_flight_with_position_and_mission_everything_goes(flying, number):
     flying.autopilot.modes.mission_count = 5
     assert set_mode.request(flying, number, REASON_GCS) == ACCEPTED
     assert flying.autopilot.modes.number == number
+
+
+@pytest.mark.parametrize(
+    ("mode", "landed", "throttle_zero", "roll", "cause"),
+    (
+        (STABILIZE, False, False, 0.0, ACCEPTED),
+        (STABILIZE, False, True, 0.0, INIT_FAILED),
+        (ALT_HOLD, False, True, 0.0, ACCEPTED),
+        (ALT_HOLD, True, False, 0.0, INIT_FAILED),
+        (ALT_HOLD, False, False, 0.8, INIT_FAILED),
+        (LOITER, False, False, 0.0, INIT_FAILED),
+    ),
+)
+def test_a_flip_begins_in_flight_near_level_in_some_modes(flying, mode, landed, throttle_zero, roll, cause):
+    ap = fly(flying, mode).autopilot
+    ap.arming.landed, ap.modes.pilot.throttle_zero = landed, throttle_zero
+    ap.estimate.q = ap.estimate.q.replace(w=math.cos(roll / 2), x=math.sin(roll / 2))
+    assert set_mode.request(flying, FLIP, REASON_GCS) == cause
+    assert ap.modes.number == (FLIP if cause == ACCEPTED else mode)
 
 
 def test_auto_needs_a_mission_in_flight(flying):
