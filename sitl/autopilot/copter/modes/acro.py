@@ -111,4 +111,4 @@ def run(v: Vehicle) -> None:
     throttle_mix.set_throttle_out(control, p, wanted, False, p.PILOT.THR_FILT)
 
 
-MODE = CopterMode(number=ACRO, name="ACRO", run=run, manual_throttle=True)
+MODE = CopterMode(number=ACRO, name="ACRO", run=run, manual_throttle=True, ignores_simple=True)
