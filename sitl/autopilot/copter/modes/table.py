@@ -46,7 +46,7 @@ MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
 CLIMB_STICK = numbers(MODES, "climb_stick")
 NEED_POSITION = numbers(MODES, "needs_position")
 AUTONOMOUS = numbers(MODES, "autonomous")
-IGNORE_SIMPLE = (-1, *numbers(MODES, "ignores_simple"))  # never empty: Numba needs a type
+IGNORE_SIMPLE = numbers(MODES, "ignores_simple")
 ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
 
 

@@ -7,7 +7,8 @@ import math
 
 import pytest
 
-from sitl.autopilot.copter.modes import simple
+from sitl.autopilot.copter.modes import simple, table
+from sitl.autopilot.copter.modes.acro import ACRO
 from sitl.autopilot.copter.modes.state import PilotState, SimpleState
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.core.vectors import Vec3
@@ -44,3 +45,7 @@ def test_bits_of_the_mode_switch(position: int, number: int) -> None:
     params = TABLE.record()
     params["SIMPLE"], params["SUPER_SIMPLE"] = 0b000101, 0b000110
     assert simple.of_position(position, params) == number
+
+
+def test_acro_flies_by_the_nose() -> None:
+    assert [number for number in table.ALL if table.ignores_simple(number)] == [ACRO]
