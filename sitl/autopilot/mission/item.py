@@ -40,6 +40,10 @@ IMAGE_START_CAPTURE = 2000
 IMAGE_STOP_CAPTURE = 2001
 VIDEO_START_CAPTURE = 2500
 VIDEO_STOP_CAPTURE = 2501
+FENCE_COMMANDS = FENCE_RETURN_POINT, FENCE_INCLUSION, FENCE_EXCLUSION, FENCE_CIRCLE, FENCE_CIRCLE_OUT = range(
+    5000, 5005
+)
+RALLY_POINT = 5100
 
 GLOBAL, MISSION, RELATIVE, GLOBAL_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT = 0, 2, 3, 5, 6, 10, 11
 """MAV_FRAMEs; MISSION counts as GLOBAL for a command with a place."""
@@ -87,8 +91,10 @@ COMMANDS = {
     IMAGE_STOP_CAPTURE: Command("ImageStopCapture", False, False),
     VIDEO_START_CAPTURE: Command("VideoStartCapture", False, False),
     VIDEO_STOP_CAPTURE: Command("VideoStopCapture", False, False),
+    **dict.fromkeys(FENCE_COMMANDS, Command("Fence", False, True)),
+    RALLY_POINT: Command("Rally", False, True),
 }
-"""Every command that mission files may hold; ``commands.Commands.taken`` says which a firmware takes."""
+"""Every command that lists of items may hold; ``commands.Commands.taken`` says which missions of a firmware take."""
 
 CAMERA_COMMANDS = (
     DO_DIGICAM_CONFIGURE,
