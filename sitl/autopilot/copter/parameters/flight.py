@@ -19,7 +19,7 @@ class Guided(ParameterGroup):
     OPTIONS: float = param(
         0, 0, 1023, "", "1 armed by the transmitter, 4 ignores the yaw stick, 8 SET_ATTITUDE_TARGET has thrust", INT32
     )
-    TIMEOUT: float = param(3.0, 0.1, 60.0, "s", "Velocity, acceleration and attitude set-points are good for so long")
+    TIMEOUT: float = param(3.0, 0.1, 3600.0, "s", "Velocity, acceleration and attitude set-points are good for so long")
 
 
 class Land(ParameterGroup):
