@@ -8,7 +8,6 @@ import sys
 from collections.abc import Sequence
 
 from ..drop_in import server
-from ..drop_in.command_line import HELP, HelpWanted
 from ..errors import SitlError
 from .progress import CompileProgress
 
@@ -24,12 +23,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(program: str, words: Sequence[str]) -> int:
     """Run the executable; returns the exit code."""
-    try:
-        with CompileProgress() as progress:
-            return server.run(program, words, progress)
-    except HelpWanted:
-        print(f"usage: {program} [option ...]\n\n{HELP}", end="")
-        return 0
+    with CompileProgress() as progress:
+        return server.run(program, words, progress)
 
 
 def _main(program: str) -> int:

@@ -64,6 +64,7 @@ and of this program:
 class CommandLine:
     """What the arguments say."""
 
+    help: bool
     wipe: bool
     model: str
     """"" when none is given."""
@@ -84,15 +85,10 @@ class CommandLine:
     """Options that were given, and have no effect."""
 
 
-class HelpWanted(Exception):
-    """``--help``."""
-
-
 def parse(words: Sequence[str]) -> CommandLine:
     """Understand the arguments. A value may begin with a minus, and be joined to its option ("-I0", "--home=-35,...").
 
     Raises:
-        HelpWanted: ``--help``.
         OptionError: an option that ArduPilot's simulator does not have either, or a value that cannot be taken.
     """
     short = "".join(letter + (":" if name in _WITH_VALUE else "") for letter, name in _SHORT.items())
@@ -114,11 +110,10 @@ def parse(words: Sequence[str]) -> CommandLine:
             devices[int(name[6:])] = value
         elif name.startswith("uart"):
             devices[_UARTS[name[4:]]] = value
-    if "help" in given:
-        raise HelpWanted
     step = PORTS_AN_INSTANCE * whole(given, "instance", 0, 5000)
     without = [f"--{name}" for name in given if name in (*_NO_EFFECT, *_NO_EFFECT_WITH_VALUE)]
     return CommandLine(
+        help="help" in given,
         wipe="wipe" in given,
         model=given.get("model", ""),
         home=home(given["home"]) if "home" in given else None,

@@ -22,7 +22,7 @@ from ..scenario import Scenario
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
 from . import serial_ports
-from .command_line import SERIAL_PORTS, CommandLine, parse
+from .command_line import HELP, SERIAL_PORTS, CommandLine, parse
 from .statistics import Statistics
 from .sticks import StickPort
 from .storage import Storage
@@ -193,10 +193,12 @@ def run(program: str, words: Sequence[str], progress: Progress | None = None) ->
 
     Raises:
         SitlError: an option, a file or a port that cannot be taken, named.
-        HelpWanted: ``--help``.
     """
     parent = os.getppid()  # before the core is compiled: it may end meanwhile
     line = parse(words)
+    if line.help:
+        print(f"usage: {program} [option ...]\n\n{HELP}", end="")
+        return 0
     say: Say = lambda text: print(text, flush=True)  # noqa: E731 - tools read along
     if line.without_effect:
         say(f"no effect in this simulator: {', '.join(line.without_effect)}")

@@ -54,7 +54,7 @@ def _values(parameter: Parameter) -> st.SearchStrategy[float]:
 
 
 def _settings(kind: str) -> st.SearchStrategy[dict[str, float]]:
-    ours = [p for p in KINDS[kind].firmware.table if p.name.startswith(GROUPS) and not p.read_only]
+    ours = [p for p in KINDS[kind].firmware.table.with_effect if p.name.startswith(GROUPS) and not p.read_only]
     one = st.sampled_from(ours).flatmap(lambda p: st.tuples(st.just(p.name), _values(p)))
     return st.lists(one, min_size=1, max_size=8).map(dict)
 

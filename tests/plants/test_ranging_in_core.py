@@ -75,12 +75,12 @@ def test_the_core_does_not_return_to_measure(cores: dict[str, Core]) -> None:
     simulation.advance(30.0)
     v, snapshot = simulation.v, simulation.snapshot()
     end = (30 + SECONDS) * 1_000_000
-    simulation.bridge.run(simulation.plant.ranging, end, NEVER)
+    simulation.bridge.run(simulation.plant.ranging, 0, end, NEVER)
     assert (v.time_us, v.sensors.lidar_count) == (end, end // 100_000 + 1)
     once = simulation.fleet.tobytes()
     simulation.restore(snapshot)
     while v.time_us < end:
-        simulation.bridge.run(simulation.plant.ranging, v.time_us + TICK_US, NEVER)
+        simulation.bridge.run(simulation.plant.ranging, 0, v.time_us + TICK_US, NEVER)
     assert simulation.fleet.tobytes() == once
 
 
@@ -92,9 +92,9 @@ def test_solids_are_listed_before_the_next_tick(cores: dict[str, Core]) -> None:
     o.rows[:] = 0.0
     o.clear = 0.0
     before = simulation.v.time_us
-    simulation.bridge.run(simulation.plant.ranging, before + TICK_US, NEVER)
+    simulation.bridge.run(simulation.plant.ranging, 0, before + TICK_US, NEVER)
     assert o.wanted and simulation.v.autopilot.events.attention
-    simulation.bridge.run(simulation.plant.ranging, before + 10 * TICK_US, NEVER)
+    simulation.bridge.run(simulation.plant.ranging, 0, before + 10 * TICK_US, NEVER)
     assert simulation.v.time_us == before + 10 * TICK_US
     assert not o.wanted and not simulation.v.autopilot.events.attention
     assert o.count > 0 and o.north == pytest.approx(simulation.v.physics.body.pos.x) and o.rows[0].any()

@@ -15,8 +15,10 @@ import numpy as np
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.estimation import update
 from sitl.core import compile as compiler
+from sitl.core.algebra import euler_of
 from sitl.core.earth_field import field_ned
 from sitl.core.geodesy import add_offset, offset_ne
+from sitl.core.vectors import Quat
 from sitl.vehicle.copter import Copter
 
 DT = 0.0025
@@ -187,7 +189,7 @@ def sense(truth: Truth, take_off: float, seed: int, noise: Noise | None = None) 
     return Flight(truth, *samples, fixes, take_off)
 
 
-KEPT = ("pos", "vel", "q", "euler", "rates", "acc_ned")
+KEPT = ("pos", "vel", "q", "rates", "acc_ned")
 
 
 def load_tick(sensors: Any, flight: Flight, k: int) -> None:
@@ -228,6 +230,7 @@ def play(flight: Flight, fleet: np.ndarray, tick: Any = None, spoil: Any = None)
         tick(fleet)
         for name in KEPT:
             out[name][k] = estimate[name]
+    out["euler"] = np.array([euler_of(Quat(*q)) for q in out["q"]])
     return out
 
 
