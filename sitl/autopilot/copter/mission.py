@@ -40,6 +40,8 @@ KINDS = {
     commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
     commands.NAV_LAND: kinds.LAND,
     commands.NAV_DELAY: kinds.DELAY,
+    commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
+    commands.NAV_VTOL_LAND: kinds.LAND,
 }
 OTHERS = (
     commands.CONDITION_DELAY,
@@ -51,7 +53,10 @@ OTHERS = (
     commands.DO_SET_ROI_LOCATION,
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
+    commands.DO_JUMP_TAG,
+    *commands.MARKS,
     *commands.CAMERA_COMMANDS,
+    *commands.DEVICE_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME)

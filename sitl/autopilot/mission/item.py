@@ -31,6 +31,15 @@ DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
 NAV_SET_YAW_SPEED = 213
 DO_GUIDED_LIMITS = 222
+DO_RETURN_PATH_START = 188
+DO_LAND_START = 189
+NAV_VTOL_TAKEOFF = 84
+NAV_VTOL_LAND = 85
+DO_GRIPPER = 211
+DO_SPRAYER = 216
+JUMP_TAG = 600
+DO_JUMP_TAG = 601
+DO_WINCH = 42600
 DO_DIGICAM_CONFIGURE = 202
 DO_DIGICAM_CONTROL = 203
 DO_MOUNT_CONTROL = 205
@@ -82,6 +91,15 @@ COMMANDS = {
     DO_SET_ROI_NONE: Command("SetROI", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
+    DO_RETURN_PATH_START: Command("ReturnPathStart", False, True),
+    DO_LAND_START: Command("LandStart", False, True),
+    NAV_VTOL_TAKEOFF: Command("VTOLTakeoff", True, True),
+    NAV_VTOL_LAND: Command("VTOLLand", True, True),
+    DO_GRIPPER: Command("Gripper", False, False),
+    DO_SPRAYER: Command("Sprayer", False, False),
+    JUMP_TAG: Command("JumpTag", False, False),
+    DO_JUMP_TAG: Command("DoJumpTag", False, False),
+    DO_WINCH: Command("Winch", False, False),
     DO_DIGICAM_CONFIGURE: Command("DigiCamCfg", False, False),
     DO_DIGICAM_CONTROL: Command("DigiCamCtrl", False, False),
     DO_MOUNT_CONTROL: Command("MountControl", False, False),
@@ -108,6 +126,11 @@ CAMERA_COMMANDS = (
     VIDEO_STOP_CAPTURE,
 )
 """Taken, as surveys hold them, and without effect: no vehicle here has a camera."""
+
+DEVICE_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
+"""Likewise: no vehicle here has a gripper, a sprayer or a winch."""
+MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
+"""Mark a place in the mission: nothing is done there."""
 
 RELATIVE_FRAMES = (RELATIVE, RELATIVE_INT)
 TERRAIN_FRAMES = (TERRAIN, TERRAIN_INT)
