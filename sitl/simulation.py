@@ -12,6 +12,7 @@ from typing import Any, Protocol, Unpack
 import numpy as np
 
 from .autopilot import boot
+from .autopilot.aux_functions import AuxFunctions
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
@@ -358,12 +359,14 @@ class Simulation:
         boot.clear(self.v)
         self.plant.power_on()
         self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
+        self.aux = AuxFunctions(self, self.firmware.aux_functions)
         self.firmware.power_on(self.v)
         self.kind.apply_sim_parameters(self.v)
         self.v.autopilot.ekf.use_external = self.estimator == "truth"
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
+        self.bridge.tell(self.aux.attend())  # first: what switches do makes events of its own
         self.v.autopilot.events.attention = False
         self.bridge.on_events()
         self.bridge.tell(self.sequencer.attend())

@@ -17,6 +17,7 @@ from .state import BatteryState, Radio, Sensors
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
 BY_RUDDER = 0
 BY_MAVLINK = 1
+BY_SWITCH = 2
 BY_MOTOR_TEST = 3
 BY_TERMINATION = 5
 BY_BATTERY_FAILSAFE = 7
@@ -55,7 +56,9 @@ WAYPOINT_SPEED = 8388608
 THROTTLE_OFF_CENTRE = 16777216
 STEERING_OFF_CENTRE = 33554432
 MODE_BY_RUDDER = 67108864
-NO_MISSION = 134217728
+NO_MISSION = 536870912
+EMERGENCY_STOP = 134217728
+INTERLOCK = 268435456
 
 
 TEXTS = {
@@ -87,6 +90,8 @@ TEXTS = {
     STEERING_OFF_CENTRE: "Roll (RC1) is not neutral",
     MODE_BY_RUDDER: "Mode not rudder-armable",
     NO_MISSION: "Mode requires mission",
+    EMERGENCY_STOP: "Motors Emergency Stopped",
+    INTERLOCK: "Motor Interlock Enabled",
 }
 
 # ARMING_CHECK

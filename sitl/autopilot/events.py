@@ -38,6 +38,8 @@ CIRCLE_ADAPTED = 26  # rover; a: what (circle.py), b: the value now
 COMMAND_ARRIVED = 27  # rover: the navigation command under way is at its place, b: its count (nav.command_count)
 HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
 SETPOINT_IGNORED = 29  # rover: it has an acceleration; a: number of the MAVLink message
+AUX_SWITCH = 30  # a: channel, b: position (aux_switch.py), negative the first one since boot
+SIMPLE_CHANGED = 31  # copter; a: 0 off, 1 SIMPLE, 2 SUPER_SIMPLE
 
 
 class Events(Record):

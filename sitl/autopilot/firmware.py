@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from .aux_functions import AuxFunction
 from .mission.commands import Commands
 from .params.table import Table
 
@@ -25,3 +26,5 @@ class Firmware:
     """Starts its rooms on the cleared record of a vehicle whose parameters are set."""
     commands: Commands
     """What its missions may hold and how that is run."""
+    aux_functions: Mapping[int, AuxFunction] = field(default_factory=dict)
+    """What its switches can do, by number."""

@@ -15,6 +15,11 @@ def _nearest(x: float) -> int:
     return int(x + 0.5) if x >= 0.0 else int(x - 0.5)
 
 
+def set_text(home: HomeState) -> str:
+    """What the rover says of a new home."""
+    return f"Set HOME to {home.lat * 1e-7:.7g} {home.lon * 1e-7:.7g} at {home.alt:.2f}m"
+
+
 @law
 def set_here(home: HomeState, est: Estimate) -> bool:
     """Home is where the vehicle is; False without an origin."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from ..core.algebra import euler_of, quat_from_euler, yaw_of
-from ..core.border import Actuators, Sensors
+from ..core.border import RC_INPUTS, Actuators, Sensors
 from ..core.kernels import law
 from ..core.records import Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
@@ -74,6 +74,11 @@ class Radio(Record):
     has_receiver: bool  # a receiver is fitted
     receiver_us: int  # last good frame
     receiver_ok: bool
+    override_blocked: bool  # a switch forbids overrides
+    switch_position: Ints = array(RC_INPUTS, stored="i8")  # of channels with RCn_OPTION (aux_switch.py); 0 none yet
+    switch_candidate: Ints = array(RC_INPUTS, stored="i8")
+    switch_us: Ints = array(RC_INPUTS, stored="i8")  # since when the candidate is there
+    switch_events: int  # events that the switches' functions have seen (written by the shell)
 
 
 class HomeState(Record):
@@ -109,6 +114,9 @@ class Arming(Record):
     idle_us: int  # armed on the ground with throttle down, for DISARM_DELAY
     crash_ticks: int
     prearm_ok: bool  # SYS_STATUS health bit MAV_SYS_STATUS_PREARM_CHECK
+    emergency_stop: bool  # a switch keeps the motors from turning
+    interlock_used: bool  # a channel is the motor interlock
+    interlock_on: bool  # and lets the motors turn
 
 
 class Failsafe(Record):

@@ -39,6 +39,7 @@ class BaseAutopilot:
         self._vehicle: Vehicle = vehicle
         self._v = vehicle.v
         self._sequencer = lambda: vehicle.sequencer
+        self._aux = lambda: vehicle.aux
         self._notes: list[Note] = []
 
     def take_notes(self) -> list[Note]:
@@ -81,6 +82,11 @@ class BaseAutopilot:
 
     def set_mode(self, number: int) -> bool:
         return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events
+
+    def run_aux_function(self, number: int, position: int) -> bool:
+        ok, notes = self._aux().run(number, position)
+        self._notes.extend(notes)
+        return bool(ok)
 
     # ------------------------------------------------------------------ home, origin, parameters
 

@@ -25,7 +25,14 @@ from .wire.choose import message_of
 
 def page(text: str) -> str:
     """``docs/mavlink.md``: its template with the tables put in for their names in braces."""
-    tables = {"commands": commands, "received": received, "sent": sent, "modes": modes, "missions": missions}
+    tables = {
+        "commands": commands,
+        "received": received,
+        "sent": sent,
+        "modes": modes,
+        "missions": missions,
+        "switches": switches,
+    }
     for name, table in tables.items():
         text = text.replace(f"{{{name}}}", table())
     return text
@@ -143,3 +150,9 @@ def missions() -> str:
     tables = {name: {n: MISSION_COMMANDS[n] for n in KINDS[name].firmware.commands.taken} for name in BUILT_IN}
     rows = [(n, command_name(n), whose, "yes" if c.is_nav else "no") for n, c, whose in _by_firmware(tables)]
     return _table(("number", "command", "vehicle", "navigation"), rows)
+
+
+def switches() -> str:
+    """Functions of switches by number."""
+    tables = {name: {n: f.doc for n, f in KINDS[name].firmware.aux_functions.items()} for name in BUILT_IN}
+    return _table(("function", "vehicle", "what it does"), [(n, whose, doc) for n, doc, whose in _by_firmware(tables)])

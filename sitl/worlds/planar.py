@@ -55,6 +55,15 @@ def first_of(a: Span, b: Span) -> float:
 
 
 @law
+def over_rectangle(start: Vec2, half: Vec2, direction: Vec3) -> Span:
+    """Where a ray is over or under a rectangle; arguments as for a box."""
+    length = crossing(-half.x - start.x, half.x - start.x, direction.x)
+    width = crossing(-half.y - start.y, half.y - start.y, direction.y)
+    enter = length.enter if length.enter > width.enter else width.enter
+    return Span(enter, length.leave if length.leave < width.leave else width.leave)
+
+
+@law
 def to_box(start: Vec2, half: Vec2, heights: Span, direction: Vec3) -> float:
     """Range to a box.
 
@@ -64,11 +73,7 @@ def to_box(start: Vec2, half: Vec2, heights: Span, direction: Vec3) -> float:
         heights: top and bottom, down from where the ray starts [m].
         direction: the ray's, along the box's own axes, and down.
     """
-    length = crossing(-half.x - start.x, half.x - start.x, direction.x)
-    width = crossing(-half.y - start.y, half.y - start.y, direction.y)
-    enter = length.enter if length.enter > width.enter else width.enter
-    leave = length.leave if length.leave < width.leave else width.leave
-    return first_of(Span(enter, leave), crossing(heights.enter, heights.leave, direction.z))
+    return first_of(over_rectangle(start, half, direction), crossing(heights.enter, heights.leave, direction.z))
 
 
 @law

@@ -41,7 +41,7 @@ from .geometry import (
     Geometry,
     Solids,
 )
-from .planar import INF, TINY, Span, crossing, to_box, to_cylinder, to_floor
+from .planar import INF, TINY, Span, crossing, first_of, over_rectangle, to_box, to_cylinder, to_floor
 
 MANY = 128
 """From so many solids on a scan walks through the grid: measured, see docs/worlds.md."""
@@ -232,12 +232,26 @@ class Group(NamedTuple):
 
 
 @inlined
-def sweep_group(f: Face, offset: Vec2, group: Group) -> None:
-    """Test one solid for all rays of a group; ``offset``: the origin, from the solid's middle (north, east) [m]."""
+def sweep_group(f: Face, offset: Vec2, is_wall: bool, group: Group) -> None:
+    """Test one solid for all rays of a group.
+
+    Args:
+        f: the solid.
+        offset: the origin, from the solid's middle (north, east) [m].
+        is_wall: all rays stay between its top and bottom within their reach: a division less for each.
+        group: the rays.
+    """
     norths, easts, downs, ranges = group.norths, group.easts, group.downs, group.ranges
     if f.radius > 0.0:
         for k in range(len(ranges)):
             met = to_cylinder(offset, f.radius, f.heights, Vec3(norths[k], easts[k], downs[k]))
+            ranges[k] = met if met < ranges[k] else ranges[k]
+    elif is_wall:
+        c, s = f.cos, f.sin
+        for k in range(len(ranges)):
+            vn, ve = norths[k], easts[k]
+            over = over_rectangle(f.start, f.half, Vec3(c * vn + s * ve, c * ve - s * vn, downs[k]))
+            met = first_of(over, Span(0.0, INF))
             ranges[k] = met if met < ranges[k] else ranges[k]
     else:
         c, s = f.cos, f.sin
@@ -266,14 +280,16 @@ def sweep_rays(solids: Solids, origin: Vec3, directions: Table, reach: float, ou
         if abs(f.start.x) - f.half.x > far or abs(f.start.y) - f.half.y > far:
             continue
         offset = Vec2(origin.x - rows[j, NORTH], origin.y - rows[j, EAST])
+        is_wall = rows[j, TOP] < sight.top and rows[j, BOTTOM] > sight.bottom
         if not sight.is_fan:
-            sweep_group(f, offset, whole)
+            sweep_group(f, offset, is_wall, whole)
             continue
         for first in range(0, rays, GROUP):
             end = min(first + GROUP, rays)
             side = sides(Vec2(norths[first], easts[first]), Vec2(norths[end - 1], easts[end - 1]))
             if not is_behind(f, side.left) and not is_behind(f, side.right):
-                sweep_group(f, offset, Group(norths[first:end], easts[first:end], downs[first:end], out[first:end]))
+                group = Group(norths[first:end], easts[first:end], downs[first:end], out[first:end])
+                sweep_group(f, offset, is_wall, group)
 
 
 @law

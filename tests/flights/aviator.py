@@ -10,7 +10,8 @@ from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.pilots.witness import MIDDLE, Item, Witness
 
-STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+STABILIZE, ACRO, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, CIRCLE, LAND = 0, 1, 2, 3, 4, 5, 6, 7, 9
+SPORT, FLIP, POSHOLD, BRAKE, GUIDED_NOGPS, AUTO_RTL = 13, 14, 16, 17, 20, 27
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
 
 

@@ -11,7 +11,21 @@ from sitl.autopilot.mission import item as c
 from sitl.core import records
 from sitl.missions.pilot import VELOCITY_ONLY
 from sitl.simulation import Core
-from tests.flights.aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
+from tests.flights.aviator import (
+    ACRO,
+    ALT_HOLD,
+    AUTO,
+    BRAKE,
+    CIRCLE,
+    GUIDED,
+    LAND,
+    LOITER,
+    POSHOLD,
+    RTL,
+    STABILIZE,
+    Aviator,
+    Item,
+)
 
 TICKS = 60
 
@@ -62,6 +76,10 @@ PHASES: dict[str, Callable[[Aviator], None]] = {
     "stabilize": by_sticks(STABILIZE),
     "alt_hold": by_sticks(ALT_HOLD),
     "loiter": by_sticks(LOITER),
+    "acro": by_sticks(ACRO),
+    "poshold": by_sticks(POSHOLD),
+    "circle": then(CIRCLE, 2.0),
+    "poshold, braking": then(POSHOLD, 1.0),
     "brake": then(BRAKE, 0.5),
     "rtl, on the way": then(RTL, 3.0),
     "land, descending": then(LAND, 2.0),

@@ -10,7 +10,7 @@ from ..events import ARMED, ARMING_REFUSED, emit
 from ..state import Arming
 from .arming_checks import MANDATORY, arm_checks, check
 from .control.motors import ARMING_DELAY_US
-from .modes import ground
+from .modes import ground, simple
 from .modes.state import Modes
 from .modes.table import has_manual_throttle
 from .state import Vehicle
@@ -25,7 +25,8 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     arming = ap.arming
     if arming.armed:
         return 0
-    failed = check(v) | arm_checks(ap.modes, ap.rc, ap.params, method)
+    turns = arming.interlock_used and arming.interlock_on
+    failed = check(v) | arm_checks(ap.modes, ap.rc, ap.params, method, turns)
     if (not force and failed != 0) or (failed & MANDATORY) != 0:
         emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
         return failed
@@ -39,6 +40,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     arming.crash_ticks = 0
     ap.modes.arming_delay = True
     ap.modes.auto_yaw.armed = ap.estimate.yaw
+    simple.begin(ap.modes.simple, ap.estimate.yaw)
     ap.modes.takeoff.user_active = False
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0

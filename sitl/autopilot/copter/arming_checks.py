@@ -11,8 +11,10 @@ from ..arming_checks import (
     BY_RUDDER,
     CHECK_GPS,
     CHECK_RC,
+    EMERGENCY_STOP,
     FRAME,
     GPS_FIX,
+    INTERLOCK,
     LEANING,
     MODE,
     NEED_ALTITUDE,
@@ -75,13 +77,15 @@ def check(v: Vehicle) -> int:
         failed |= NO_MISSION
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    if ap.arming.emergency_stop:
+        failed |= EMERGENCY_STOP
     return failed if p.FRAME.CLASS == 1.0 else failed | FRAME
 
 
 @law
-def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int) -> int:
-    """Failed checks that count only at the moment of arming by ``method``."""
-    failed = 0
+def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, turns: bool) -> int:
+    """Failed checks that count only at the moment of arming by ``method``; ``turns``: the interlock says so."""
+    failed = INTERLOCK if turns else 0
     mode = modes.number
     if not may_arm(mode, p, method):
         failed |= MODE

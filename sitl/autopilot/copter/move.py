@@ -77,6 +77,9 @@ def move_modes(m: Modes, d: Displacement) -> None:
     takeoff.user_start_d += d.shift.z
     move_guided(m.guided, d)
     move_loiter(m.loiter, d)
+    simple = m.simple
+    simple.heading = turned_heading(d, simple.heading)
+    simple.heading_from_home = turned_heading(d, simple.heading_from_home)
     m.rtl.home = moved_ne(d, m.rtl.home)
     m.landing.acc = turned(d, m.landing.acc)
     move_circle(m.nav, d)

@@ -7,23 +7,26 @@ The attitude error is a small rotation of the NED frame (true = exp(error) * est
     velocity'  = velocity + attitude x dv - R dt acc_bias     (dv: specific force summed over the step, NED)
     position'  = position + dt velocity
 
-and needs no rates. P' = F P F' + Q is two sweeps of rows with a transposition between. Source of the
-error-state formulation: Sola, "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508,
-section 7 (global errors).
+and needs no rates. P' = F P F' + Q is two sweeps of rows with a transposition between. Biases stay: where their rows
+and columns are the same numbers, the second sweep would give their columns what the first gave.
+Source of the error-state formulation: Sola, "Quaternion kinematics for the error-state Kalman filter",
+arXiv:1711.02508, section 7 (global errors).
 """
 
 from __future__ import annotations
 
 import math
 
-from ...core.algebra import apply, cross, rotation_matrix, scaled
+from ...core.algebra import Matrix3, apply, cross, rotation_matrix, scaled
 from ...core.kernels import inlined, law
 from ...core.records import Floats
-from ...core.vectors import Quat, Vec3
+from ...core.vectors import Vec3
 from ..params.estimator import Ekf3
 from . import noise
-from .state import BA, BG, BM, POS, THETA, VEL, N
+from .state import BA, BG, BM, POS, THETA, VEL, Ekf, N
 
+MOVING = 9
+"""States that a prediction changes: attitude, velocity, position."""
 MAX_VARIANCE = (1.0, 1e4, 1e8, 0.1, 25.0, 1.0)  # attitude, velocity, position, gyro, acc and mag bias
 MIN_VARIANCE = (1e-9, 1e-6, 1e-6, 1e-13, 1e-9, 1e-11)
 
@@ -39,26 +42,34 @@ def _set_column(P: Floats, first: int, j: int, v: Vec3) -> None:
 
 
 @inlined
-def _transition(P: Floats, q: Quat, dv: Vec3, dt: float) -> None:
-    """P := F P, rows at a time."""
-    turn = scaled(rotation_matrix(q), dt)
-    for j in range(N):
-        _set_column(P, POS, j, _column(P, POS, j) + dt * _column(P, VEL, j))
-    for j in range(N):
-        change = cross(_column(P, THETA, j), dv) - apply(turn, _column(P, BA, j))
-        _set_column(P, VEL, j, _column(P, VEL, j) + change)
-    for j in range(N):
-        _set_column(P, THETA, j, _column(P, THETA, j) - apply(turn, _column(P, BG, j)))
+def _advance_column(P: Floats, turn: Matrix3, dv: Vec3, dt: float, j: int) -> None:
+    """A column of F P in place of that of P; ``turn``: R dt."""
+    attitude, vel = _column(P, THETA, j), _column(P, VEL, j)
+    _set_column(P, POS, j, _column(P, POS, j) + dt * vel)
+    _set_column(P, VEL, j, vel + (cross(attitude, dv) - apply(turn, _column(P, BA, j))))
+    _set_column(P, THETA, j, attitude - apply(turn, _column(P, BG, j)))
 
 
 @inlined
-def predict(P: Floats, q: Quat, dv: Vec3, dt: float, params: Ekf3) -> None:
-    """Covariance after ``dt`` [s] at attitude ``q`` in which the specific force NED summed up to ``dv`` [m/s]."""
-    _transition(P, q, dv, dt)
-    for i in range(N):
+def predict(ekf: Ekf, params: Ekf3) -> None:
+    """Covariance after ``step_dt`` in which the specific force summed up to ``step_dv``."""
+    P, dv, dt = ekf.P, ekf.step_dv, ekf.step_dt
+    turn = scaled(rotation_matrix(ekf.q), dt)
+    columns = MOVING if ekf.biases_mirrored else N
+    for j in range(N):
+        _advance_column(P, turn, dv, dt, j)
+    for i in range(columns):
         for j in range(i):
             P[i, j], P[j, i] = P[j, i], P[i, j]
-    _transition(P, q, dv, dt)
+    for i in range(columns, N):
+        for j in range(MOVING):
+            P[i, j] = P[j, i]
+    if ekf.biases_mirrored:
+        for j in range(MOVING):  # loops of known length become vector instructions
+            _advance_column(P, turn, dv, dt, j)
+    else:
+        for j in range(N):
+            _advance_column(P, turn, dv, dt, j)
     gyro, acc = noise.GYRO * params.GYRO_P_NSE, noise.ACC * params.ACC_P_NSE
     gyro_bias, acc_bias = noise.GYRO_BIAS * params.GBIAS_P_NSE, noise.ACC_BIAS * params.ABIAS_P_NSE
     mag_bias = noise.MAG_BIAS * params.MAGB_P_NSE
@@ -68,13 +79,14 @@ def predict(P: Floats, q: Quat, dv: Vec3, dt: float, params: Ekf3) -> None:
         P[BG + k, BG + k] += gyro_bias * gyro_bias * dt
         P[BA + k, BA + k] += acc_bias * acc_bias * dt
         P[BM + k, BM + k] += mag_bias * mag_bias * dt
-    symmetrise(P)
+    symmetrise(P, columns)
+    ekf.biases_mirrored = True
 
 
 @inlined
-def symmetrise(P: Floats) -> None:
-    """Replace P by the mean of P and its transpose."""
-    for i in range(N):
+def symmetrise(P: Floats, count: int) -> None:
+    """Replace the first rows and columns of P by the mean of them and their transpose."""
+    for i in range(count):
         for j in range(i):
             mean = 0.5 * (P[i, j] + P[j, i])
             P[i, j] = mean

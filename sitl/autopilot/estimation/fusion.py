@@ -99,6 +99,7 @@ def correct(ekf: Ekf, innovation: Innovation, kind: int) -> None:
         ekf.dx[i] += gain * innovation.value
         for j in range(N):
             P[i, j] -= gain * ph[j]
+    ekf.biases_mirrored = False
     if kind >= 0:
         ekf.nis_sum[kind] += innovation.value * innovation.value * inverse
         ekf.nis_count[kind] += 1

@@ -32,6 +32,7 @@ class Ekf(Record):
     acc_bias: Vec3  # [m/s^2]
     mag_bias: Vec3  # [gauss]
     P: Floats = array(N, N)  # covariance of the error state
+    biases_mirrored: bool  # P's rows and columns of the biases are the same numbers, to the last bit
     dx: Floats = array(N)  # error found by the fusions of this step, not yet put into the nominal state
     h: Floats = array(N)  # measurement row, scratch of one fusion
     ph: Floats = array(N)  # P times the transposed measurement row, scratch of one fusion

@@ -62,7 +62,7 @@ def step(fleet: Records[Vehicle], i: int) -> None:
     v = fleet[i]
     ap = v.autopilot
     ekf, estimate, params, armed = ap.ekf, ap.estimate, ap.params.EK3, ap.arming.armed
-    covariance.predict(ekf.P, ekf.q, ekf.step_dv, ekf.step_dt, params)
+    covariance.predict(ekf, params)
     alignment.begin_step(ekf)
     history.keep(ekf)
     fused = barometer.fuse(ekf, estimate, params)

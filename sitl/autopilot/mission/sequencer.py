@@ -106,6 +106,11 @@ class Sequencer:
         self._set_current(nav, 0, notes)
         return notes
 
+    def extend_mission(self, v: Vehicle, mission: Mission) -> None:
+        """Take a mission that begins as the present one and has more items; what is run of it stays as it is."""
+        self._holder.mission = mission
+        self._publish(v)
+
     def may_clear(self, v: Vehicle) -> bool:
         """Whether MISSION_CLEAR_ALL is taken: not while the mission runs."""
         return v.autopilot.modes.nav.mission_state != RUNNING

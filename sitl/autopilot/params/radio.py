@@ -14,6 +14,7 @@ class RcChannel(ParameterGroup):
     MAX: float = param(1900, 800, 2200, "us", "Greatest pulse of channel {n}", INT16)
     REVERSED: float = param(0, 0, 1, "", "Channel {n} works the other way round", INT8)
     DZ: float = param(20, 0, 200, "us", "Dead zone of channel {n}", INT16)
+    OPTION: float = param(0, 0, 32767, "", "Function of a switch on channel {n}; 0 none", INT16)
 
 
 class RcMap(ParameterGroup):

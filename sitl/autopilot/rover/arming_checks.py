@@ -10,6 +10,7 @@ from ..arming_checks import (
     CHECK_GPS,
     CHECK_RC,
     EKF_FAILSAFE,
+    EMERGENCY_STOP,
     GPS_FIX,
     MODE,
     MODE_BY_RUDDER,
@@ -74,6 +75,8 @@ def check(v: Vehicle) -> int:
     failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
     if modes.number == AUTO and modes.mission_count < 2:
         failed |= NO_MISSION
+    if ap.arming.emergency_stop:
+        failed |= EMERGENCY_STOP
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     return failed if allows_arming(modes.number) else failed | MODE

@@ -7,6 +7,7 @@ from ...core.kernels import law
 from ...core.records import Records
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
+from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
 from .control.update import init as init_control
 from .control.update import update as control
 from .mission import COMMANDS
@@ -35,4 +36,4 @@ def power_on(v: Vehicle) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS)
+FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
-from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, table
+from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission.notes import Text
@@ -18,6 +18,7 @@ from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
+_SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 
 
 class CopterAutopilot(BaseAutopilot):
@@ -29,6 +30,8 @@ class CopterAutopilot(BaseAutopilot):
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.MOTOR_TEST:
             return [Text(INFO, "starting motor test" if a else "finished motor test")]
+        if code == events.SIMPLE_CHANGED:
+            return [Text(INFO, _SIMPLE[int(a)])]
         return super().texts_of(code, a, b)
 
     def start_mission(self) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.guided import GUIDED, takes_attitudes
 from ...autopilot.copter.modes.guided_setpoints import (
     NO_YAW,
     YawSetpoint,
@@ -105,7 +105,7 @@ def is_finite(target: Target) -> bool:
 def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
     """Fly an attitude, or body rates."""
     mask = m.type_mask
-    if v.autopilot.modes.number != GUIDED or (mask & THRUST_IGNORED) != 0:
+    if not takes_attitudes(v.autopilot.modes.number) or (mask & THRUST_IGNORED) != 0:
         return
     rates = Vec3(
         0.0 if (mask & ROLL_RATE_IGNORED) != 0 else m.body_roll_rate,

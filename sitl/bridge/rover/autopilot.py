@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...autopilot import events
+from ...autopilot import events, home
 from ...autopilot.mission.notes import ItemReached, Text
 from ...autopilot.rover import arming, failsafe, motor_test, texts
 from ...autopilot.rover.control import servos
@@ -85,8 +85,6 @@ class RoverAutopilot(BaseAutopilot):
         return self._told_home(super().set_home(lat, lon, alt))
 
     def _told_home(self, ok: bool) -> bool:
-        home = self._v.autopilot.home
         if ok:
-            place = f"{int(home.lat) * 1e-7:.7g} {int(home.lon) * 1e-7:.7g} at {float(home.alt):.2f}m"
-            self._say(INFO, [f"Set HOME to {place}"])
+            self._say(INFO, [home.set_text(self._v.autopilot.home)])
         return ok

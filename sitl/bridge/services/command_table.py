@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...autopilot.aux_switch import LOW
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
@@ -167,6 +168,15 @@ def do_set_mode(bridge: Bridge, channel: Channel, command: Command) -> int:
     return set_mode(bridge, int(command.p2))
 
 
+def aux_function(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """218: p1 function of a switch, p2 0 low, 1 middle, 2 high."""
+    if command.p2 not in (0.0, 1.0, 2.0) or command.p1 != int(command.p1):
+        return DENIED
+    ok = bridge.autopilot.run_aux_function(int(command.p1), LOW + int(command.p2))
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
+
+
 def return_to_launch(bridge: Bridge, channel: Channel, command: Command) -> int:
     """20: changes to RTL; FAILED when the mode cannot be entered."""
     return set_mode(bridge, bridge.profile.rtl)
@@ -272,6 +282,7 @@ COMMANDS: dict[int, Entry] = {
     181: Entry(set_relay, required=(1, 2)),
     183: Entry(set_servo, required=(1, 2)),
     192: Entry(reposition, required=(5, 6, 7), place=True, int_only=True),
+    218: Entry(aux_function, required=(1, 2)),
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),
     400: Entry(arm_disarm, required=(1,)),

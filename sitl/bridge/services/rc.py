@@ -102,6 +102,8 @@ def note_ground_station(v: Vehicle) -> None:
 @law
 def override(v: Vehicle, k: int, pulse: int) -> None:
     """Override channel ``k`` (from 0) with a pulse [us]; 0 gives it back."""
+    if v.autopilot.rc.override_blocked:
+        return
     v.autopilot.rc.override[k] = pulse
     v.autopilot.rc.override_us[k] = v.time_us
 

@@ -129,7 +129,7 @@ def test_mode_switch_changes_the_mode_when_it_moves_and_only_then(vehicle):
         for _ in range(n):
             send(vehicle, 1500, 1500, 1000, 1500, pulse)
             pilot.read(vehicle)
-            switch.read_mode(vehicle)
+            switch.read_switches(vehicle)
             wait(vehicle, 0.02)
 
     frames(1800)

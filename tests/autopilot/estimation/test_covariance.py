@@ -26,6 +26,16 @@ def _matrix(q: np.ndarray) -> np.ndarray:
     return np.eye(3) + 2 * w * cross + 2 * cross @ cross
 
 
+def _predict(P: np.ndarray, q: np.ndarray, dv: np.ndarray, dt: float, mirrored: bool = False) -> np.ndarray:
+    params, ekf = Ekf3(), Ekf()
+    for name in params.fields:
+        params[name] = 1.0
+    ekf.P[:], ekf.q, ekf.step_dv, ekf.step_dt = P, Quat(*q), Vec3(*dv), dt
+    ekf.biases_mirrored = mirrored
+    covariance.predict(ekf, params)
+    return np.array(ekf.P)
+
+
 @given(st.integers(0, 10000))
 @settings(max_examples=20, deadline=None)
 def test_prediction_is_f_p_f_transposed_plus_noise(seed: int) -> None:
@@ -38,16 +48,24 @@ def test_prediction_is_f_p_f_transposed_plus_noise(seed: int) -> None:
     F[THETA : THETA + 3, BG : BG + 3] = -dt * R
     F[VEL : VEL + 3, BA : BA + 3] = -dt * R
     F[VEL : VEL + 3, THETA : THETA + 3] = -np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-    params = Ekf3()
-    for name in params.fields:
-        params[name] = 1.0
-    covariance.predict(P, Quat(*q), Vec3(*a), dt, params)
+    P = _predict(P, q, a, dt)
     added = P - F @ before @ F.T
     assert np.allclose(added, np.diag(np.diag(added)), atol=1e-12)
     noisy = [k for first in (THETA, VEL, BG, BA, BM) for k in range(first, first + 3)]
     assert np.all(np.diag(added)[noisy] > 0)
     assert np.diag(added)[POS : POS + 3] == pytest.approx(0.0, abs=1e-12)
     assert np.array_equal(P, P.T)
+
+
+@given(st.integers(0, 10000), st.floats(-4, 4))
+@settings(max_examples=20, deadline=None)
+def test_prediction_of_mirrored_biases_is_the_same_to_the_last_bit(seed: int, angle: float) -> None:
+    r = np.random.default_rng(seed)
+    P, q, dv = _random(r), r.normal(size=4), r.normal(size=3)
+    P = 0.5 * (P + P.T)
+    covariance.turn_frame(P, angle)
+    q /= np.linalg.norm(q)
+    assert np.array_equal(_predict(P, q, dv, 0.0125, mirrored=True), _predict(P, q, dv, 0.0125))
 
 
 @given(st.integers(0, 10000), st.floats(-4, 4))

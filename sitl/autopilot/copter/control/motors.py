@@ -176,10 +176,16 @@ def drive_test_motor(motors: MotorsState) -> None:
 
 
 @law
+def may_turn(arming: Arming) -> bool:
+    """Whether the motors may turn: armed, and no switch forbids it."""
+    return arming.armed and not arming.emergency_stop and (arming.interlock_on or not arming.interlock_used)
+
+
+@law
 def drive_motors(motors: MotorsState, arming: Arming, p: Parameters, time_us: int) -> None:
     """Everything between the demands of the controllers and ``motors.actuator``; ``time_us`` since boot."""
     filter_throttle(motors, arming.armed)
-    spool(motors, arming.armed and time_us - arming.armed_us >= ARMING_DELAY_US, p.MOT)
+    spool(motors, may_turn(arming) and time_us - arming.armed_us >= ARMING_DELAY_US, p.MOT)
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:

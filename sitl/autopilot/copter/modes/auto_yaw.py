@@ -29,6 +29,7 @@ FIXED = 3  # CONDITION_YAW
 LOOK_AHEAD = 4  # along the course flown
 RATE = 7  # turn rate from a set-point
 ANGLE_RATE = 6  # angle that moves at a rate, from a set-point
+CIRCLE = 8  # angle and rate are the mode's
 PILOT_RATE = 9
 
 _COURSE_SPEED = 1.0  # slower than this the course says nothing [m/s]
@@ -179,6 +180,8 @@ def advance(yaw: AutoYaw, path: PositionState, est: Estimate, dt: float) -> Head
         return Heading(yaw.yaw, rate, True)
     if yaw.mode == ANGLE_RATE:
         yaw.yaw = wrap_pi(yaw.yaw + yaw.rate * dt)
+        return Heading(yaw.yaw, yaw.rate, True)
+    if yaw.mode == CIRCLE:
         return Heading(yaw.yaw, yaw.rate, True)
     return Heading(0.0, yaw.rate if yaw.mode in (RATE, PILOT_RATE) else 0.0, False)
 

@@ -25,6 +25,7 @@ from .mode import CopterMode
 from .state import GuidedState, Modes
 
 GUIDED = 4
+GUIDED_NOGPS = 20
 
 # What it is doing (``modes.guided.submode``)
 TAKEOFF = 0
@@ -59,6 +60,12 @@ def start_submode(guided: GuidedState, submode: int, control: Control, est: Esti
     guided.vel = ZERO
     guided.acc = ZERO
     ground.start_position_control(control, est, p)
+
+
+@law
+def takes_attitudes(mode: int) -> bool:
+    """Whether a mode flies SET_ATTITUDE_TARGET."""
+    return mode in (GUIDED, GUIDED_NOGPS)
 
 
 @law

@@ -123,7 +123,8 @@ def set_attitude(v: Vehicle, use_attitude: bool, q: Quat, rates: Vec3, thrust: f
     GUID_OPTIONS bit 8 the thrust.
     """
     ap = v.autopilot
-    code = refusal(ap.modes.number, is_usable_vector(rates) and is_usable(thrust), NO_YAW)
+    mode = GUIDED if guided.takes_attitudes(ap.modes.number) else ap.modes.number
+    code = refusal(mode, is_usable_vector(rates) and is_usable(thrust), NO_YAW)
     size = math.sqrt(quat_norm_squared(q)) if use_attitude else 1.0
     if code == OK and not 0.5 <= size <= 2.0:
         code = OUT_OF_RANGE if size == size else NOT_FINITE

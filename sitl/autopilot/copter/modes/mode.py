@@ -49,6 +49,8 @@ class CopterMode(Mode[Vehicle]):
     """Controls the position when there is one, but does without."""
     arms_at_any_throttle: bool = False
     """A ground station may arm it whatever the throttle stick says."""
+    ignores_simple: bool = False
+    """SIMPLE and SUPER_SIMPLE do not turn the sticks."""
     may_arm: Callable[[Parameters, int], bool] = always_arms
     """Law: whether it may be armed by a method (BY_*)."""
     is_landing: Callable[[Modes], bool] = no

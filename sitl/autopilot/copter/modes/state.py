@@ -67,6 +67,42 @@ class LoiterState(Record):
     brake_us: int  # when the sticks were released
 
 
+class CircleState(Record):
+    """CIRCLE: what the parameters and then the pilot ask for."""
+
+    radius: float  # [m]
+    radius_set: float  # CIRCLE_RADIUS when it was last taken over [m]
+    rate: float  # [rad/s], positive clockwise
+    may_turn_back: bool  # the rate is zero and the roll stick was centred since: it may turn either way
+
+
+class PosHoldAxis(Record):
+    """POSHOLD: roll or pitch."""
+
+    phase: int  # poshold.py: FLOWN, BRAKING, STOPPED
+    lean: float  # wanted, without that against the wind [rad]
+    since_us: int  # when it began to brake
+
+
+class PosHoldState(Record):
+    """POSHOLD."""
+
+    roll: PosHoldAxis
+    pitch: PosHoldAxis
+    holding: bool  # the position controller leans it
+    wind: Vec2  # acceleration of the lean that holding needs, NE [m/s^2]
+
+
+class FlipState(Record):
+    """FLIP."""
+
+    phase: int  # flip.py: BEGINNING, TURNING, RECOVERING
+    roll: float  # the way round: 1 right, -1 left, 0 not
+    pitch: float  # 1 back, -1 forward, 0 not
+    start_us: int
+    level: Quat  # attitude at the start, body to NED
+
+
 class RtlState(Record):
     """RTL."""
 
@@ -112,6 +148,14 @@ class PilotState(Record):
     throttle_zero_us: int  # when last above zero
 
 
+class SimpleState(Record):
+    """SIMPLE and SUPER_SIMPLE."""
+
+    number: int  # simple.py: OFF, SIMPLE, SUPER_SIMPLE
+    heading: float  # forwards in SIMPLE [rad]
+    heading_from_home: float  # forwards in SUPER_SIMPLE [rad]
+
+
 class LandingState(Record):
     """What the landing detector filters."""
 
@@ -126,10 +170,14 @@ class Modes(shared.Modes):
     takeoff: TakeoffState
     guided: GuidedState
     loiter: LoiterState
+    circle: CircleState
+    poshold: PosHoldState
+    flip: FlipState
     rtl: RtlState
     land: LandState
     auto: AutoState
     pilot: PilotState
+    simple: SimpleState
     landing: LandingState
     arming_delay: bool  # armed less than 2 s ago: motors wait
     nav: CopterNav

@@ -1,26 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pilot's transmitter commands: the mode switch, and arming with the yaw stick."""
+"""What the pilot's transmitter commands: switches, and arming with the yaw stick."""
 
 from __future__ import annotations
 
 from ....core.kernels import law
+from ... import aux_switch
 from ...arming_checks import BY_RUDDER
 from ...mode_switch import is_rudder_held, moved_to, rudder_command
-from ...modes import REASON_RC
+from ...modes import ACCEPTED, REASON_RC
 from .. import arming
 from ..state import Vehicle
+from . import simple
 from .set_mode import request
 
 
 @law
-def read_mode(v: Vehicle) -> None:
-    """After each frame: a new position of the switch changes the mode."""
+def read_switches(v: Vehicle) -> None:
+    """After each frame: a new position of the mode switch changes the mode, other switches are the shell's."""
     ap = v.autopilot
     if ap.modes.failsafe.radio:
         return
     now = moved_to(ap.modes.pilot, ap.rc, int(ap.params.FLTMODE_CH), v.time_us)
-    if now >= 0:
-        request(v, int(ap.params.FLTMODE[now]), REASON_RC)
+    if now >= 0 and request(v, int(ap.params.FLTMODE[now]), REASON_RC) == ACCEPTED:
+        simple.follow_mode_switch(v, now)
+    aux_switch.watch(ap.rc, ap.arming, ap.events, v.time_us, ap.params)
 
 
 @law

@@ -9,12 +9,26 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import alt_hold, auto, brake, guided, land, loiter, rtl, stabilize
+from . import acro, alt_hold, auto, brake, circle, flip, guided, guided_nogps, land, loiter, poshold, rtl, stabilize
 from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
     "copter",
-    (stabilize.MODE, alt_hold.MODE, auto.MODE, guided.MODE, loiter.MODE, rtl.MODE, land.MODE, brake.MODE),
+    (
+        stabilize.MODE,
+        acro.MODE,
+        alt_hold.MODE,
+        auto.MODE,
+        guided.MODE,
+        loiter.MODE,
+        rtl.MODE,
+        circle.MODE,
+        land.MODE,
+        flip.MODE,
+        poshold.MODE,
+        brake.MODE,
+        guided_nogps.MODE,
+    ),
 )
 """In the order of AVAILABLE_MODES."""
 NAMES = {mode.number: mode.name for mode in MODES}
@@ -32,6 +46,7 @@ MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
 CLIMB_STICK = numbers(MODES, "climb_stick")
 NEED_POSITION = numbers(MODES, "needs_position")
 AUTONOMOUS = numbers(MODES, "autonomous")
+IGNORE_SIMPLE = (-1, *numbers(MODES, "ignores_simple"))  # never empty: Numba needs a type
 ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
 
 
@@ -69,3 +84,9 @@ def is_autonomous(number: int) -> bool:
 def arms_at_any_throttle(number: int) -> bool:
     """Whether a ground station may arm the mode whatever the throttle stick says."""
     return number in ARM_AT_ANY_THROTTLE
+
+
+@law
+def ignores_simple(number: int) -> bool:
+    """Whether SIMPLE and SUPER_SIMPLE do nothing in the mode."""
+    return number in IGNORE_SIMPLE

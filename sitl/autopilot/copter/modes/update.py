@@ -13,7 +13,7 @@ from .. import arming, crash, failsafe, landing, motor_test, pilot
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
-from . import ground, set_mode, switch, table
+from . import ground, set_mode, simple, switch, table
 from .stabilize import STABILIZE
 from .state import Modes
 
@@ -64,9 +64,20 @@ def update(fleet: Records[Vehicle], i: int) -> None:
 def read_transmitter(v: Vehicle) -> None:
     """50 times a second."""
     pilot.read(v)
+    turn_sticks(v)
     failsafe.watch_radio(v)
-    switch.read_mode(v)
+    switch.read_switches(v)
     switch.read_rudder(v)
+
+
+@law
+def turn_sticks(v: Vehicle) -> None:
+    """SIMPLE and SUPER_SIMPLE."""
+    ap = v.autopilot
+    if ap.estimate.position_ok and ap.home.is_set:
+        simple.look_from_home(ap.modes.simple, ap.estimate.pos, ap.home.pos)
+    if not table.ignores_simple(ap.modes.number):
+        simple.turn_sticks(ap.modes.pilot, ap.modes.simple, ap.estimate.yaw)
 
 
 @law

@@ -15,7 +15,7 @@ from ...params.registered import with_registered
 from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Circle, Guided, Land, Legs, Loiter, Pilot, Rtl, TakeOff, Waypoints
+from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -29,6 +29,7 @@ class Frame(ParameterGroup):
 class Parameters(shared.Parameters):
     """The copter's parameters, in the order of the wire."""
 
+    ACRO: Acro
     ANGLE_MAX: float = param(3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16)
     ARMING: Arming
     ATC: Attitude
@@ -60,6 +61,7 @@ class Parameters(shared.Parameters):
     MAV1: StreamRates
     MIS: Mission
     MOT: Motors
+    PHLD: PosHold
     PILOT: Pilot
     PSC: Position
     RC: Records[RcChannel]
@@ -71,7 +73,9 @@ class Parameters(shared.Parameters):
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SIM: Simulated
+    SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
     STAT: Statistics
+    SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     THR_DZ: float = param(
         100,
         0,

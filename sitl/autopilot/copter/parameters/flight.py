@@ -6,11 +6,34 @@ from __future__ import annotations
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
+class Acro(ParameterGroup):
+    """ACRO_: ACRO, and the turn rates of SPORT."""
+
+    BAL_ROLL: float = param(1.0, 0.0, 3.0, "1/s", "Roll turns back to level at so many times its lean")
+    BAL_PITCH: float = param(1.0, 0.0, 3.0, "1/s", "Pitch turns back to level at so many times its lean")
+    TRAINER: float = param(
+        2, 0, 2, "", "0: none, 1: levels with the sticks centred, 2: levels and limits the lean", INT8
+    )
+    THR_MID: float = param(0.0, 0.0, 1.0, "", "Throttle in the middle of the stick; 0: that of hovering")
+    RP_RATE: float = param(360.0, 1.0, 1080.0, "deg/s", "Roll and pitch rate at full stick")
+    RP_EXPO: float = param(0.3, -0.5, 0.95, "", "Softness of the roll and pitch sticks around the middle")
+    Y_RATE: float = param(202.5, 1.0, 360.0, "deg/s", "Yaw rate at full stick")
+    Y_EXPO: float = param(0.0, -1.0, 1.0, "", "Softness of the yaw stick around the middle")
+
+
 class Circle(ParameterGroup):
     """CIRCLE_: circles."""
 
     RADIUS: float = param(1000.0, 0.0, 200000.0, "cm", "Radius when a mission gives none")
     RATE: float = param(20.0, -90.0, 90.0, "deg/s", "Greatest turn rate around the circle")
+    OPTIONS: float = param(
+        1,
+        0,
+        15,
+        "",
+        "CIRCLE: 1 sticks change radius and rate, 2 the nose points along the circle, 4 around where it is",
+        INT16,
+    )
 
 
 class Guided(ParameterGroup):
@@ -63,6 +86,13 @@ class Pilot(ParameterGroup):
     Y_RATE: float = param(202.5, 1.0, 360.0, "deg/s", "Turn rate at full stick")
     Y_EXPO: float = param(0.0, -0.5, 1.0, "", "Softness of the yaw stick around the middle")
     Y_RATE_TC: float = param(0.0, 0.0, 1.0, "s", "Time constant of the yaw stick")
+
+
+class PosHold(ParameterGroup):
+    """PHLD_: POSHOLD."""
+
+    BRAKE_RATE: float = param(8, 1, 100, "deg/s", "How fast it leans back to stop", INT16)
+    BRAKE_ANGLE: float = param(3000, 100, 8000, "cdeg", "Greatest lean that stops it", INT16)
 
 
 class Rtl(ParameterGroup):

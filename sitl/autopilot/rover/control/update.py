@@ -28,7 +28,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     """Carry out what the mode of vehicle ``i`` asked for and write its actuators."""
     v = fleet[i]
     ap = v.autopilot
-    armed = ap.arming.armed
+    armed = ap.arming.armed and not ap.arming.emergency_stop
     forward_speed.sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
     motors.drive_motors(ap.control, armed, ap.params)
     servos.write_actuators(ap.control.motors, v.actuators, ap.rc, armed, ap.params)

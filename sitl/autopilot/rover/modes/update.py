@@ -7,7 +7,7 @@ from ....core.algebra import dot2, horizontal
 from ....core.kernels import law, unit
 from ....core.records import Records
 from ....core.vectors import Vec3
-from ... import battery, home
+from ... import aux_switch, battery, home
 from ...arming_checks import BY_RUDDER
 from ...events import Events
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery
@@ -81,6 +81,7 @@ def read_transmitter(v: Vehicle) -> None:
         now = moved_to(sticks, ap.rc, int(p.MODE_CH), v.time_us)
         if now >= 0:
             set_mode.request(v, int(p.MODE[now]), REASON_RC)
+        aux_switch.watch(ap.rc, ap.arming, ap.events, v.time_us, p)
     armed = ap.arming.armed
     moving = is_moving(ap.control.motors, armed, p)
     command = stick_command(sticks, modes.number, armed, moving, p.ARMING.RUDDER)

@@ -13,37 +13,46 @@ from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.copter import pilot
 from sitl.autopilot.copter.control.state import AltitudeState, Control, MotorsState
 from sitl.autopilot.copter.modes import (
+    acro,
     alt_hold,
     auto,
     auto_yaw,
+    flip,
     ground,
     guided,
     guided_setpoints,
     land,
     loiter,
+    poshold,
     rtl,
     takeoff,
     update,
 )
+from sitl.autopilot.copter.modes import circle as circle_mode
 from sitl.autopilot.copter.modes.state import (
     AutoYaw,
+    CircleState,
+    FlipState,
     GuidedState,
     LandState,
     LoiterState,
     Modes,
     PilotState,
+    PosHoldAxis,
     RtlState,
     TakeoffState,
 )
 from sitl.autopilot.copter.modes.table import MODES, NAMES
 from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.copter.parameters.flight import Land, Legs, Pilot, Rtl
+from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl
 from sitl.autopilot.events import Events
 from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from sitl.autopilot.state import Arming
+from sitl.core.algebra import quat_from_euler
 from sitl.core.scalars import wrap_pi
-from sitl.core.vectors import Vec2, Vec3
+from sitl.core.vectors import Euler, Vec2, Vec3
+from tests.autopilot.copter.steady_copter import make
 
 ANGLES = st.floats(-3.1, 3.1)
 
@@ -252,3 +261,117 @@ def test_hovering_is_level_and_at_rest(
     control = Control()
     control.pos_d.vel_desired, control.attitude.cos_lean, control.motors.throttle = climb, cos_lean, throttle
     assert update.hovers(control, vel_d) == hovers
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_body_rates_of_the_sticks_stay_within_theirs(roll: float, pitch: float, yaw: float) -> None:
+    sticks, p = PilotState(), Acro()
+    sticks.roll, sticks.pitch, sticks.yaw = roll, pitch, yaw
+    p.RP_RATE, p.Y_RATE, p.RP_EXPO = 360.0, 200.0, 0.3
+    rates = acro.stick_rates(sticks, p)
+    assert abs(rates.x) <= math.radians(360.0) + 1e-9 and abs(rates.z) <= math.radians(200.0) + 1e-9
+    assert rates.x * roll >= 0.0 and rates.y * pitch >= 0.0 and rates.z * yaw >= 0.0
+
+
+@pytest.mark.parametrize(
+    ("trainer", "stick", "wanted"), ((0, 0.0, 0.0), (1, 0.0, -20.0), (1, 0.25, -15.0), (2, 1.0, -20.0))
+)
+def test_the_trainer_turns_back_to_level(trainer: int, stick: float, wanted: float) -> None:
+    sticks, lean = PilotState(), Euler(math.radians(20.0), 0.0, 0.0)
+    p = make().autopilot.params
+    sticks.yaw, p.ACRO.TRAINER = stick, float(trainer)
+    rates = acro.trained_rates(Vec3(0.0, 0.0, 0.0), sticks, lean, p)
+    assert math.degrees(rates.x) == pytest.approx(wanted)
+
+
+@given(st.floats(-3.0, 3.0))
+def test_the_trainer_pushes_back_to_the_limit(angle: float) -> None:
+    rate = acro.limiting_rate(angle, math.radians(30.0), 6.0, 20.0)
+    assert rate * angle <= 0.0 and (rate == 0.0) == (abs(angle) <= math.radians(30.0))
+    assert 0.5 * rate * rate <= 20.0 * max(abs(angle) - math.radians(30.0), 0.0) + 1e-9, "it can still be stopped there"
+
+
+@given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), max_size=30), st.floats(-1.5, 1.5))
+def test_the_rate_of_a_circle_turns_back_only_after_the_stick_was_centred(
+    sticks: list[tuple[float, float]], rate: float
+) -> None:
+    state, pilot_sticks = CircleState(), PilotState()
+    state.radius, state.rate = 10.0, rate
+    for pilot_sticks.roll, pilot_sticks.pitch in sticks:
+        before = state.rate
+        for _ in range(100):
+            circle_mode.steer(state, pilot_sticks, state.rate, 10.0)
+        assert state.radius >= 0.0 and abs(state.rate) <= math.radians(90.0)
+        if pilot_sticks.roll == 0.0:
+            assert state.rate == before
+        else:
+            assert abs(state.rate - before) <= math.radians(0.25) + 1e-9
+            assert before * state.rate >= 0.0
+
+
+def brakes() -> PosHold:
+    p = PosHold()
+    p.BRAKE_RATE, p.BRAKE_ANGLE = 8.0, 3000.0
+    return p
+
+
+@given(st.floats(-20.0, 20.0))
+def test_the_lean_that_brakes_grows_with_the_speed(speed: float) -> None:
+    lean = math.degrees(poshold.brake_lean(speed, brakes()))
+    assert lean * speed >= 0.0 and abs(lean) <= 30.0
+    assert abs(math.degrees(poshold.brake_lean(1.1 * speed, brakes()))) >= abs(lean)
+
+
+def test_a_stick_that_is_let_go_of_brakes_at_its_rate_until_the_axis_is_slow() -> None:
+    axis, p, speed, time_us = PosHoldAxis(), brakes(), 5.0, 0
+    poshold.advance_axis(axis, -0.4, speed, time_us, p)
+    assert (axis.phase, axis.lean) == (poshold.FLOWN, -0.4), "the stick's lean at once"
+    poshold.advance_axis(axis, -0.1, speed, time_us, p)
+    assert -0.4 < axis.lean < -0.39, "back with a time constant"
+    while axis.phase != poshold.STOPPED:
+        before, time_us = axis.lean, time_us + 2500
+        poshold.advance_axis(axis, 0.0, speed, time_us, p)
+        speed -= 9.8 * math.tan(axis.lean) * 0.0025
+        if axis.phase == poshold.BRAKING and before > -math.radians(2.0):
+            assert abs(axis.lean - before) <= math.radians(8.0) * 0.0025 + 1e-9
+    assert abs(speed) < 0.1 and 2.0 < time_us * 1e-6 < 5.0
+    poshold.advance_axis(axis, 0.2, 0.0, time_us, p)
+    assert (axis.phase, axis.lean) == (poshold.FLOWN, 0.2)
+
+
+def test_a_brake_that_never_stops_ends() -> None:
+    axis, p = PosHoldAxis(), brakes()
+    axis.phase = poshold.BRAKING
+    poshold.advance_axis(axis, 0.0, 3.0, 8_500_000, p)
+    assert axis.phase == poshold.BRAKING
+    poshold.advance_axis(axis, 0.0, 3.0, 8_500_001, p)
+    assert axis.phase == poshold.STOPPED
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "way"),
+    ((0.0, 0.0, (1.0, 0.0)), (-0.5, 0.0, (-1.0, 0.0)), (0.5, 0.5, (0.0, 1.0)), (0.0, -0.5, (0.0, -1.0))),
+)
+def test_a_flip_goes_round_once(roll: float, pitch: float, way: tuple[float, float]) -> None:
+    state, sticks = FlipState(), PilotState()
+    sticks.roll, sticks.pitch = roll, pitch
+    flip.choose(state, sticks)
+    assert (state.roll, state.pitch) == way
+    state.level = quat_from_euler(Euler(0.0, 0.0, 0.7))
+    phases = []
+    for k in range(361):
+        angle = math.radians(float(k))
+        done = flip.advance(state, quat_from_euler(Euler(way[0] * angle, way[1] * angle, 0.7)))
+        phases.append(int(state.phase))
+        if done:
+            break
+    assert done and 354 <= k <= 356
+    assert phases.index(flip.TURNING) == 45
+    assert phases.index(flip.RECOVERING) in ((270, 271) if way[0] else (315, 316))
+
+
+@pytest.mark.parametrize(("phase", "wanted"), ((flip.BEGINNING, 0.6), (flip.TURNING, 0.16), (flip.RECOVERING, 0.6)))
+def test_the_throttle_of_a_flip(phase: int, wanted: float) -> None:
+    state = FlipState()
+    state.phase = phase
+    assert flip.throttle(state, 0.4) == pytest.approx(wanted)

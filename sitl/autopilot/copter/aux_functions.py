@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter's auxiliary functions."""
+
+from __future__ import annotations
+
+from .. import aux_functions as shared
+from ..aux_functions import AuxFunction, Holder
+from ..aux_switch import HIGH, LOW, MOTOR_INTERLOCK
+from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
+from ..mission.notes import INFO, Note, Text
+from . import arming
+from .modes import simple
+from .modes.auto import AUTO
+from .modes.set_mode import request
+from .modes.table import NAMES
+
+TAKEOFF_LEAST = 1.0
+"""Height of a take-off that is saved, at least [m]."""
+
+_MODES = {2: 14, 4: 6, 16: 3, 17: 15, 18: 9, 33: 17, 37: 18, 42: 21, 52: 1, 55: 4, 56: 5, 57: 23, 60: 24, 68: 0, 69: 16,
+          70: 2, 71: 22, 72: 7, 73: 11, 99: 27, 151: 28}  # fmt: skip
+"""Function -> mode, as far as the firmware has the mode."""
+
+
+def _save_waypoint(holder: Holder, position: int) -> list[Note]:
+    """The first one is preceded by a take-off; with the throttle closed it is a landing."""
+    ap = holder.v.autopilot
+    if position != HIGH or ap.modes.number == AUTO or not ap.arming.armed:
+        return []
+    item = shared.item_here(holder)
+    items: list[MissionItem] = []
+    if not holder.sequencer.mission.present:
+        items.append(MissionItem(NAV_TAKEOFF, RELATIVE, z=max(item.z, TAKEOFF_LEAST)))
+    if ap.modes.pilot.throttle <= 0.0:
+        item = item._replace(command=NAV_LAND)
+    shared.append_items(holder, [*items, item])
+    return []
+
+
+def _interlock(holder: Holder, position: int) -> list[Note]:
+    holder.v.autopilot.arming.interlock_on = position != LOW
+    return []
+
+
+def _simple(holder: Holder, position: int) -> list[Note]:
+    simple.choose(holder.v, simple.OFF if position == LOW else simple.SIMPLE)
+    return []
+
+
+def _super_simple(holder: Holder, position: int) -> list[Note]:
+    simple.choose(holder.v, position - LOW)
+    return []
+
+
+def _reset_heading(holder: Holder, position: int) -> list[Note]:
+    if position != HIGH:
+        return []
+    ap = holder.v.autopilot
+    simple.begin(ap.modes.simple, ap.estimate.yaw)
+    return [Text(INFO, "Simple heading reset")]
+
+
+FUNCTIONS = shared.by_number(
+    (
+        *shared.COMMON,
+        *(shared.change_mode(number, NAMES[mode], mode, request) for number, mode in _MODES.items() if mode in NAMES),
+        AuxFunction(3, _simple, "high or middle: SIMPLE; low: off"),
+        AuxFunction(7, _save_waypoint, "high, armed, not in AUTO: adds the place to the mission", "SaveWaypoint"),
+        AuxFunction(13, _super_simple, "high: SUPER_SIMPLE; middle: SIMPLE; low: off"),
+        AuxFunction(MOTOR_INTERLOCK, _interlock, "low: motors stand; else they may turn", "MotorInterlock"),
+        AuxFunction(152, _reset_heading, "high: the heading now is forwards in SIMPLE"),
+        shared.arm_or_disarm(153, arming),
+        shared.arm_or_disarm(154, arming),
+    )
+)
