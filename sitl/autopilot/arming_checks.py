@@ -56,6 +56,7 @@ WAYPOINT_SPEED = 8388608
 THROTTLE_OFF_CENTRE = 16777216
 STEERING_OFF_CENTRE = 33554432
 MODE_BY_RUDDER = 67108864
+NO_MISSION = 536870912
 EMERGENCY_STOP = 134217728
 INTERLOCK = 268435456
 
@@ -88,6 +89,7 @@ TEXTS = {
     THROTTLE_OFF_CENTRE: "Throttle (RC3) is not neutral",
     STEERING_OFF_CENTRE: "Roll (RC1) is not neutral",
     MODE_BY_RUDDER: "Mode not rudder-armable",
+    NO_MISSION: "Mode requires mission",
     EMERGENCY_STOP: "Motors Emergency Stopped",
     INTERLOCK: "Motor Interlock Enabled",
 }

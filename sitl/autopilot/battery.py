@@ -27,3 +27,13 @@ def monitor(battery: BatteryState, sensors: Sensors, params: Battery) -> None:
         battery.remaining_pct = constrain(100.0 * left / params.CAPACITY, 0.0, 100.0)
     else:
         battery.remaining_pct = -1.0
+
+
+def set_left(battery: BatteryState, params: Battery, percent: float) -> bool:
+    """MAV_CMD_BATTERY_RESET: so much of BATT_CAPACITY is left [%]; False without a monitor of the current."""
+    if params.MONITOR < 4.0 or params.CAPACITY <= 0.0:
+        return False
+    battery.consumed_mah = params.CAPACITY * (1.0 - percent / 100.0)
+    battery.consumed_wh = battery.consumed_mah * battery.voltage / 1000.0
+    battery.remaining_pct = percent
+    return True

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..autopilot import events, home
+from ..autopilot import battery, events, home
 from ..autopilot.estimation import aiding
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
@@ -103,6 +103,10 @@ class BaseAutopilot:
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
         ap = self._v.autopilot
         return aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(int(lat), int(lon), float(alt)))
+
+    def set_battery_left(self, percent: float) -> bool:
+        ap = self._v.autopilot
+        return battery.set_left(ap.battery, ap.params.BATT, percent)
 
     def parameter_changed(self, name: str) -> None:
         changed = getattr(self._vehicle, "parameter_changed", None)

@@ -22,6 +22,7 @@ from .profile import load
 from .services import all_services
 from .services.commands import Grants
 from .services.log_download import LogStore
+from .services.mission import MissionService
 from .services.service import Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.statustext import EventService
@@ -492,6 +493,7 @@ class Bridge:
         """
         self.flush()
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
+        new.get(MissionService).follow(self.get(MissionService))
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

@@ -51,7 +51,12 @@ def first_sentence(thing: Any) -> str:
 
 def command_name(number: int) -> str:
     """MAV_CMD_... without the beginning."""
-    return str(ardupilotmega.enums["MAV_CMD"][number].name.removeprefix("MAV_CMD_"))
+    known = ardupilotmega.enums["MAV_CMD"]
+    return str(known[number].name.removeprefix("MAV_CMD_")) if number in known else NEWER[number]
+
+
+NEWER = {611: "DO_SET_GLOBAL_ORIGIN"}
+"""Commands that a release of pymavlink does not know yet."""
 
 
 def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> str:

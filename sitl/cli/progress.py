@@ -18,7 +18,7 @@ class CompileProgress:
     def __call__(self, unit: str, done: int, total: int) -> None:
         if self._bar is None:
             print("Compiling the core (once; later starts load it from the cache)", file=sys.stderr)
-            self._bar = tqdm(total=total, unit="unit", leave=False, file=sys.stderr, disable=None)
+            self._bar = tqdm(total=total, unit="unit", leave=False, file=sys.stderr, disable=None, ascii=True)
         self._bar.set_description(unit)
         self._bar.update(done - self._bar.n)
 

@@ -21,7 +21,7 @@ def command_int(bench: Bench, number: int, frame: int, x: int, y: int, z: float,
     return int(acks[0].result)
 
 
-@pytest.mark.parametrize("number", [0, 16, 34, 182, 2000, 31010, 42424, 65535])
+@pytest.mark.parametrize("number", [0, 16, 34, 182, 2000, 31010, 42423, 65535])
 def test_what_is_unknown_is_unsupported(bench: Bench, number: int) -> None:
     assert bench.command(number) == UNSUPPORTED
     assert command_int(bench, number, 0, 0, 0, 0.0) == UNSUPPORTED
@@ -172,6 +172,39 @@ GUIDED = 15
 def test_what_only_copters_do_is_unsupported(rover_bench: Bench, number: int) -> None:
     assert rover_bench.command(number, 1) == UNSUPPORTED
     assert rover_bench.autopilot.calls == []
+
+
+def test_origin(bench: Bench) -> None:
+    for frame, x, y in ((0, 0, 0), (0, 1, 2_140_000_000), (3, 1, 1)):
+        assert command_int(bench, 611, frame, x, y, 0.0) == DENIED
+    assert bench.autopilot.calls == []
+    assert command_int(bench, 611, 5, -233223320, 1234567800, 23.67) == ACCEPTED
+    assert bench.autopilot.calls == [("set_origin", -233223320, 1234567800, pytest.approx(23.67))]
+    bench.autopilot.ok = False
+    assert command_int(bench, 611, 0, -233223320, 1234567800, 23.67) == FAILED
+
+
+def test_a_battery_is_reset(rover_bench: Bench) -> None:
+    assert rover_bench.command(42651, 65535, 56) == ACCEPTED
+    for mask, left in ((0, 56), (1, 101), (1, -1)):
+        assert rover_bench.command(42651, mask, left) == DENIED
+    assert rover_bench.command(42651, 2, 56) == FAILED
+    assert rover_bench.autopilot.calls == [("set_battery_left", 56.0)]
+
+
+def test_the_banner_and_a_compass_that_needs_no_calibration(bench: Bench) -> None:
+    (banner,) = bench.ask(mavlink.MAVLink_command_long_message(1, 1, 42428, 0, *[0] * 7), "STATUSTEXT")
+    assert banner.text.startswith("ArduCopter V4.7.0")
+    (report,) = bench.ask(mavlink.MAVLink_command_long_message(1, 1, 42424, 0, *[0] * 7), "MAG_CAL_REPORT")
+    assert (report.cal_status, report.autosaved, report.ofs_x) == (4, 1, 0.0)
+    assert bench.command(42425) == bench.command(42426) == ACCEPTED
+    bench.vehicle.v.autopilot.arming.armed = 1
+    assert bench.command(42424) == FAILED
+
+
+def test_vertical_take_off_and_landing_are_the_copters_own(bench: Bench) -> None:
+    assert bench.command(84, 0, 0, 0, 0, 0, 0, 15) == bench.command(85) == ACCEPTED
+    assert bench.autopilot.calls == [("takeoff", 15.0), ("set_mode", 9)]
 
 
 def test_speed(rover_bench: Bench) -> None:

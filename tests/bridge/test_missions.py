@@ -201,21 +201,75 @@ def test_clear_and_empty_upload(bench: Bench) -> None:
 
 
 def test_too_many(bench: Bench) -> None:
-    (ack,) = bench.ask(count(60000), "MISSION_ACK")
-    assert ack.type == NO_SPACE
+    text, ack = bench.ask(count(60000), "STATUSTEXT", "MISSION_ACK")
+    assert ack.type == NO_SPACE and text.text == "Only 724 items are supported"
 
 
-@pytest.mark.parametrize("kind", [1, 2])
-def test_fence_and_rally_are_empty(bench: Bench, kind: int) -> None:
+@pytest.mark.parametrize(("kind", "command", "total"), [(1, 5003, "FENCE_TOTAL"), (2, 5100, "RALLY_TOTAL")])
+def test_fence_and_rally_points_are_kept(bench: Bench, kind: int, command: int, total: str) -> None:
     bench.autopilot.items = old = tuple(SQUARE)
-    (n,) = bench.ask(mavlink.MAVLink_mission_request_list_message(1, 1, kind))
-    assert (n.get_type(), n.count, n.mission_type) == ("MISSION_COUNT", 0, kind)
-    (ack,) = bench.ask(count(3, kind), "MISSION_ACK")
-    assert (ack.type, ack.mission_type) == (UNSUPPORTED, kind)
-    for message in (count(0, kind), mavlink.MAVLink_mission_clear_all_message(1, 1, kind)):
-        (ack,) = bench.ask(message, "MISSION_ACK")
-        assert (ack.type, ack.mission_type) == (ACCEPTED, kind)
-    assert bench.autopilot.items is old
+    points = [MissionItem(command, 3, p1=50.0, x=HOME[0] + k, y=HOME[1], z=20.0) for k in range(3)]
+
+    def listed() -> int:
+        (n,) = bench.ask(mavlink.MAVLink_mission_request_list_message(1, 1, kind))
+        assert (n.get_type(), n.mission_type) == ("MISSION_COUNT", kind)
+        return int(n.count)
+
+    def put() -> None:
+        requests = bench.ask(count(3, kind))
+        for k, point in enumerate(points):
+            assert [(m.get_type(), m.seq, m.mission_type) for m in requests] == [("MISSION_REQUEST", k, kind)]
+            requests = bench.ask(item_int(k, point, kind=kind), "MISSION_REQUEST", "MISSION_ACK")
+        assert [(m.get_type(), m.type, m.mission_type) for m in requests] == [("MISSION_ACK", ACCEPTED, kind)]
+        assert listed() == bench.vehicle.parameters[total] == 3
+
+    assert listed() == 0
+    for clear in (count(0, kind), *(mavlink.MAVLink_mission_clear_all_message(1, 1, k) for k in (kind, 255))):
+        put()
+        (got,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 2, kind))
+        assert (got.command, got.x, got.param1, got.mission_type, got.current) == (command, HOME[0] + 2, 50.0, kind, 0)
+        assert bench.autopilot.items is old
+        (ack,) = bench.ask(clear, "MISSION_ACK")
+        assert ack.type == ACCEPTED and listed() == bench.vehicle.parameters[total] == 0
+
+
+def test_lists_take_only_their_items(bench: Bench) -> None:
+    for kind, command in ((0, 5003), (1, 16), (1, 5100), (2, 5001)):
+        bench.ask(count(2, kind))
+        (ack,) = bench.ask(item_int(0, MissionItem(command, 3, x=HOME[0], y=HOME[1]), kind=kind), "MISSION_ACK")
+        assert (ack.type, ack.mission_type) == (UNSUPPORTED, kind)
+    for kind in (3, 255):
+        (ack,) = bench.ask(count(2, kind), "MISSION_ACK")
+        assert ack.type == UNSUPPORTED
+
+
+def test_fences_outlive_a_reboot_and_a_restore(bench: Bench) -> None:
+    bench.ask(count(1, 1))
+    bench.ask(item_int(0, MissionItem(5003, 3, p1=50.0, x=HOME[0], y=HOME[1]), kind=1))
+    kept = bench.bridge.snapshot()
+    bench.bridge = bench.bridge.successor()
+    ask = mavlink.MAVLink_mission_request_list_message(1, 1, 1)
+    assert bench.ask(ask, "MISSION_COUNT")[0].count == 1
+    bench.ask(count(0, 1))
+    bench.bridge.restore(kept)
+    assert bench.ask(ask, "MISSION_COUNT")[0].count == 1
+
+
+def test_a_partial_write_waits_for_the_upload_under_way(bench: Bench) -> None:
+    bench.ask(count(10, 1))
+    (ack,) = bench.ask(mavlink.MAVLink_mission_write_partial_list_message(1, 1, 3, 3, 1), "MISSION_ACK")
+    assert ack.type == DENIED
+    bench.run(8.1)
+    (ack,) = bench.client.receive("MISSION_ACK")
+    assert (ack.type, ack.mission_type) == (CANCELLED, 1)
+
+
+def test_who_uploads_can_clear_instead(bench: Bench) -> None:
+    bench.ask(count(3))
+    (ack,) = bench.ask(mavlink.MAVLink_mission_clear_all_message(1, 1), "MISSION_ACK")
+    assert ack.type == ACCEPTED
+    bench.run(10.0)
+    assert not bench.client.receive("MISSION_ACK", "MISSION_REQUEST")
 
 
 def test_set_current(bench: Bench) -> None:

@@ -12,7 +12,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from sitl.autopilot.copter.modes.table import NAMES
 from sitl.autopilot.rover.modes.table import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
-from tests.bridge.fakes import Bench
+from sitl.core.vectors import Vec3
+from tests.bridge.fakes import HOME, Bench
 
 SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512
 ALL_GROUPS = {
@@ -185,8 +186,20 @@ def test_its_own_parameters(rover_bench: Bench) -> None:
 def test_version(rover_bench: Bench) -> None:
     ask = mavlink.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
     (version,) = rover_bench.ask(ask, "AUTOPILOT_VERSION")
-    recorded = 0xF1EF
-    assert version.capabilities & ~recorded == 0 and version.capabilities & 0x1C0 == 0x1C0
+    assert version.capabilities == 0xF1EF  # a recorded rover's
+
+
+def test_high_latency_by_request(bench: Bench) -> None:
+    bench.vehicle.locate()
+    estimate, v = bench.vehicle.v.autopilot.estimate, bench.vehicle.v
+    estimate.pos, estimate.vel = Vec3(100.0, 0.0, -20.0), Vec3(0.0, 3.0, -1.5)
+    v.autopilot.battery.remaining_pct = -1.0
+    (m,) = bench.telemetry("HIGH_LATENCY2")
+    assert (m.latitude, m.longitude, m.altitude) == (pytest.approx(HOME[0] + 8983, abs=2), HOME[1], 604)
+    assert (m.groundspeed, m.climb_rate, m.heading, m.battery, m.temperature_air) == (15, 15, 0, -1, -128)
+    assert m.failure_flags & 1 == 0
+    v.sensors.gps_fix = 1
+    assert bench.telemetry("HIGH_LATENCY2")[0].failure_flags & 1 == 1
 
 
 def test_modes(rover_bench: Bench) -> None:

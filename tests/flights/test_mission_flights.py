@@ -213,3 +213,47 @@ def test_rtl_in_a_corner_and_back(core: Core, frame: str) -> None:
     p.wait_disarmed(90.0)
     assert np.abs(p.since(start)[:, 7:9]).max() < 31.0
     assert p.pos[:2] == pytest.approx([30.0, 30.0], abs=1.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "item", "axis", "speeds"),
+    [
+        ("WPNAV_SPEED", Item(c.NAV_WAYPOINT, (900.0, 0.0), 10.0), 0, (10.0, 7.0, 9.0)),
+        ("WPNAV_SPEED_UP", Item(c.NAV_WAYPOINT, (0.0, 0.0), 900.0), 2, (-2.5, -6.0, -2.0)),
+    ],
+)
+def test_speeds_set_in_flight_hold_at_once(
+    core: Core, name: str, item: Item, axis: int, speeds: tuple[float, ...]
+) -> None:
+    p = Aviator(core, AIRFRAMES[0]).ready()
+    p.start_mission(UP, item)
+    p.fly(60.0, lambda: 1 in p.reached)
+    for k, speed in enumerate(speeds):
+        if k > 0:
+            p.set_parameter(name, 100.0 * abs(speed))
+        p.fly(12.0)
+        assert p.vel[axis] == pytest.approx(speed, abs=0.2)
+
+
+@pytest.mark.parametrize(("behaviour", "turns"), [(0.0, False), (1.0, True), (2.0, False), (3.0, True)])
+def test_return_turns_to_the_heading_of_arming(core: Core, behaviour: float, turns: bool) -> None:
+    p = Aviator(core, AIRFRAMES[0], WP_YAW_BEHAVIOR=behaviour).ready()
+    before = heading_at(p, p.now)
+    turn = Item(c.CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 1.0))
+    p.start_mission(UP, turn, Item(c.NAV_WAYPOINT, (0.0, -25.0), 10.0), Item(c.NAV_RETURN_TO_LAUNCH))
+    p.fly(120.0, lambda: not p.armed)
+    off = (heading_at(p, p.now) - before + 180.0) % 360.0 - 180.0
+    assert not p.armed and (abs(off) < 5.0) == turns
+
+
+def test_a_take_off_never_descends(core: Core) -> None:
+    p = Aviator(core, AIRFRAMES[0]).ready()
+    p.start_mission(Item(c.NAV_TAKEOFF, None, -10.0), Item(c.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
+    start = p.now
+    p.fly(60.0, lambda: not p.armed)
+    assert p.reached == [1, 2] and not p.armed
+    assert -p.since(start)[:, 3].min() == pytest.approx(1.0, abs=0.3)
+    p = Aviator(core, AIRFRAMES[0]).ready()
+    p.start_mission(UP, Item(c.NAV_TAKEOFF, None, 3.0), Item(c.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
+    p.fly(60.0, lambda: 3 in p.reached)
+    assert -p.pos[2] == pytest.approx(10.0, abs=0.5)

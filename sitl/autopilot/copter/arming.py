@@ -39,6 +39,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     arming.idle_us = v.time_us
     arming.crash_ticks = 0
     ap.modes.arming_delay = True
+    ap.modes.auto_yaw.armed = ap.estimate.yaw
     simple.begin(ap.modes.simple, ap.estimate.yaw)
     ap.modes.takeoff.user_active = False
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)

@@ -19,6 +19,7 @@ from ..arming_checks import (
     MODE,
     NEED_ALTITUDE,
     NEED_POSITION,
+    NO_MISSION,
     RUDDER_DISABLED,
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
@@ -30,6 +31,7 @@ from ..arming_checks import (
 from ..params.system import Arming
 from ..state import Estimate, Radio
 from . import pilot
+from .modes.auto import AUTO
 from .modes.state import Modes
 from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
 from .parameters import Parameters
@@ -71,6 +73,8 @@ def check(v: Vehicle) -> int:
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    if ap.modes.number == AUTO and ap.modes.mission_count < 2:
+        failed |= NO_MISSION
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:

@@ -26,6 +26,8 @@ EDGE = 3.0
 """A vehicle this near to the circle starts it where it is [m]."""
 WIDEST = 2550.0
 """Greatest radius of circles that ArduPilot's mission storage holds [m]."""
+LEAST_CLIMB = 1.0
+"""Of a take-off from the ground [m]."""
 CLIMB_SPEED, DESCENT_SPEED = 2, 3
 """SPEED_TYPE of DO_CHANGE_SPEED; 0 and 1 are both horizontal."""
 
@@ -38,6 +40,8 @@ KINDS = {
     commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
     commands.NAV_LAND: kinds.LAND,
     commands.NAV_DELAY: kinds.DELAY,
+    commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
+    commands.NAV_VTOL_LAND: kinds.LAND,
 }
 OTHERS = (
     commands.CONDITION_DELAY,
@@ -49,7 +53,10 @@ OTHERS = (
     commands.DO_SET_ROI_LOCATION,
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
+    commands.DO_JUMP_TAG,
+    *commands.MARKS,
     *commands.CAMERA_COMMANDS,
+    *commands.DEVICE_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME)
@@ -90,7 +97,7 @@ class CopterCommands(Commands[Vehicle]):
             PLANNER.begin(ap, time_us, point(ap, item, here).replace(z=here.z))  # at the present height
         else:
             _end_path(nav)
-            nav.target = here.replace(z=down(ap, item)) if kind == kinds.TAKEOFF else here
+            nav.target = here.replace(z=_take_off_to(ap, item)) if kind == kinds.TAKEOFF else here
         command.give(nav, kind, seq)
         nav.circle_running = False
         nav.has_place = not item.no_place
@@ -161,6 +168,12 @@ class CopterCommands(Commands[Vehicle]):
             nav.speed_ne = speed
         PLANNER.change_speed(v.autopilot)
         return True
+
+
+def _take_off_to(ap: Autopilot, item: MissionItem) -> float:
+    """Down coordinate of a take-off's end [m]: never below the vehicle, from the ground at least a metre up."""
+    least = LEAST_CLIMB if ap.arming.landed else 0.0
+    return min(down(ap, item), ap.estimate.pos.z - least)
 
 
 def set_roi(v: Vehicle, item: MissionItem) -> None:

@@ -31,6 +31,15 @@ DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
 NAV_SET_YAW_SPEED = 213
 DO_GUIDED_LIMITS = 222
+DO_RETURN_PATH_START = 188
+DO_LAND_START = 189
+NAV_VTOL_TAKEOFF = 84
+NAV_VTOL_LAND = 85
+DO_GRIPPER = 211
+DO_SPRAYER = 216
+JUMP_TAG = 600
+DO_JUMP_TAG = 601
+DO_WINCH = 42600
 DO_DIGICAM_CONFIGURE = 202
 DO_DIGICAM_CONTROL = 203
 DO_MOUNT_CONTROL = 205
@@ -40,6 +49,10 @@ IMAGE_START_CAPTURE = 2000
 IMAGE_STOP_CAPTURE = 2001
 VIDEO_START_CAPTURE = 2500
 VIDEO_STOP_CAPTURE = 2501
+FENCE_COMMANDS = FENCE_RETURN_POINT, FENCE_INCLUSION, FENCE_EXCLUSION, FENCE_CIRCLE, FENCE_CIRCLE_OUT = range(
+    5000, 5005
+)
+RALLY_POINT = 5100
 
 GLOBAL, MISSION, RELATIVE, GLOBAL_INT, RELATIVE_INT, TERRAIN, TERRAIN_INT = 0, 2, 3, 5, 6, 10, 11
 """MAV_FRAMEs; MISSION counts as GLOBAL for a command with a place."""
@@ -78,6 +91,15 @@ COMMANDS = {
     DO_SET_ROI_NONE: Command("SetROI", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
+    DO_RETURN_PATH_START: Command("ReturnPathStart", False, True),
+    DO_LAND_START: Command("LandStart", False, True),
+    NAV_VTOL_TAKEOFF: Command("VTOLTakeoff", True, True),
+    NAV_VTOL_LAND: Command("VTOLLand", True, True),
+    DO_GRIPPER: Command("Gripper", False, False),
+    DO_SPRAYER: Command("Sprayer", False, False),
+    JUMP_TAG: Command("JumpTag", False, False),
+    DO_JUMP_TAG: Command("DoJumpTag", False, False),
+    DO_WINCH: Command("Winch", False, False),
     DO_DIGICAM_CONFIGURE: Command("DigiCamCfg", False, False),
     DO_DIGICAM_CONTROL: Command("DigiCamCtrl", False, False),
     DO_MOUNT_CONTROL: Command("MountControl", False, False),
@@ -87,8 +109,10 @@ COMMANDS = {
     IMAGE_STOP_CAPTURE: Command("ImageStopCapture", False, False),
     VIDEO_START_CAPTURE: Command("VideoStartCapture", False, False),
     VIDEO_STOP_CAPTURE: Command("VideoStopCapture", False, False),
+    **dict.fromkeys(FENCE_COMMANDS, Command("Fence", False, True)),
+    RALLY_POINT: Command("Rally", False, True),
 }
-"""Every command that mission files may hold; ``commands.Commands.taken`` says which a firmware takes."""
+"""Every command that lists of items may hold; ``commands.Commands.taken`` says which missions of a firmware take."""
 
 CAMERA_COMMANDS = (
     DO_DIGICAM_CONFIGURE,
@@ -102,6 +126,11 @@ CAMERA_COMMANDS = (
     VIDEO_STOP_CAPTURE,
 )
 """Taken, as surveys hold them, and without effect: no vehicle here has a camera."""
+
+DEVICE_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
+"""Likewise: no vehicle here has a gripper, a sprayer or a winch."""
+MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
+"""Mark a place in the mission: nothing is done there."""
 
 RELATIVE_FRAMES = (RELATIVE, RELATIVE_INT)
 TERRAIN_FRAMES = (TERRAIN, TERRAIN_INT)

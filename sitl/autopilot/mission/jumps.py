@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DO_JUMP: from a number in the mission to the next item that is not a jump.
+"""DO_JUMP and DO_JUMP_TAG: from a number in the mission to the next item that is not a jump.
+
+A tag that is nowhere ends the mission, as a number beyond its end does.
 
 How often each jump was run is kept in the record, so that a snapshot of the vehicle has it.
 """
@@ -9,7 +11,7 @@ from __future__ import annotations
 from collections.abc import MutableMapping
 
 from ..navigation.state import Nav
-from .item import DO_JUMP
+from .item import DO_JUMP, DO_JUMP_TAG
 from .mission import Mission
 
 LONGEST = 100
@@ -50,15 +52,16 @@ def following(
         item = mission.get(seq)
         if item is None:
             return 0
-        if item.command != DO_JUMP:
+        if item.command not in (DO_JUMP, DO_JUMP_TAG):
             return seq
+        place = int(item.p1) if item.command == DO_JUMP else mission.tagged(int(item.p1))
         times, done = int(item.p2), counts.get(seq, 0)
         known = seq in counts or len(counts) < room
         if (times == FOREVER or done < times) and known:
             counts[seq] = done if times == FOREVER else done + 1
             if taken is not None:
                 taken.append((seq, counts[seq], times))
-            seq = int(item.p1)
+            seq = place
         else:
             seq += 1
     return 0

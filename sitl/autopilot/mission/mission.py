@@ -11,7 +11,7 @@ from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
 from ...errors import SitlError
-from .item import COMMANDS, MissionItem, home_item
+from .item import COMMANDS, JUMP_TAG, MissionItem, home_item
 from .validate import ACCEPTED, check_all
 
 RESULT_NAMES = {
@@ -68,6 +68,11 @@ class Mission:
     def get(self, seq: int) -> MissionItem | None:
         """Item ``seq`` that can be flown, None when there is none (0 is home)."""
         return self.items[seq] if 1 <= seq < len(self.items) else None
+
+    def tagged(self, tag: int) -> int:
+        """Number of the first JUMP_TAG item with this tag, 0 when there is none."""
+        marks = (k for k, item in enumerate(self.items) if item.command == JUMP_TAG and int(item.p1) == tag)
+        return next(marks, 0)
 
     def with_home(self, lat: int, lon: int, alt: float) -> Mission:
         """The same with item 0 saying home [degE7, m above mean sea level]; an empty mission stays empty."""

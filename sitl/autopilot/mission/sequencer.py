@@ -32,7 +32,7 @@ from ..navigation.state import (
 from ..state import Vehicle
 from . import jumps
 from .commands import Commands
-from .item import NAV_TAKEOFF, MissionItem
+from .item import NAV_TAKEOFF, NAV_VTOL_TAKEOFF, MissionItem
 from .mission import Mission
 from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
 
@@ -79,7 +79,7 @@ class Sequencer:
         ap.params.MIS.TOTAL = float(len(mission))
         ap.modes.mission_count = len(mission)
         first = mission.get(jumps.next_nav(mission, 1, {}, JUMPS))
-        ap.modes.mission_takes_off = first is not None and first.command == NAV_TAKEOFF
+        ap.modes.mission_takes_off = first is not None and first.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
 
     def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
         """Take a new mission. One under way goes on: with its present command, from the start if that has changed.

@@ -14,6 +14,7 @@ from ..arming_checks import (
     GPS_FIX,
     MODE,
     MODE_BY_RUDDER,
+    NO_MISSION,
     NO_OUTPUTS,
     NOT_INITIALISED,
     RUDDER_DISABLED,
@@ -29,6 +30,7 @@ from ..params.system import Arming
 from ..state import Estimate
 from .control import servos
 from .control.motors import is_skid
+from .modes.auto import AUTO
 from .modes.state import Modes, PilotState
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .parameters import Parameters
@@ -71,6 +73,8 @@ def check(v: Vehicle) -> int:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
     failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
+    if modes.number == AUTO and modes.mission_count < 2:
+        failed |= NO_MISSION
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):

@@ -44,7 +44,10 @@ OTHERS = (
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
     commands.DO_GUIDED_LIMITS,
+    commands.DO_JUMP_TAG,
+    *commands.MARKS,
     *commands.CAMERA_COMMANDS,
+    *commands.DEVICE_COMMANDS,
 )
 
 

@@ -9,11 +9,15 @@ from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
 from ...autopilot.copter.modes.auto_yaw import Turn
+from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission.notes import Text
+from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
 from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
+LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
+"""Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 
 
@@ -79,6 +83,15 @@ class CopterAutopilot(BaseAutopilot):
             return bool(self._sequencer().change_speed(self._v, kind, speed))
         ap = self._v.autopilot
         return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
+
+    def parameter_changed(self, name: str) -> None:
+        """Speeds of legs that are set while AUTO flies one hold from there on, whatever the mission said before."""
+        super().parameter_changed(name)
+        nav = self._v.autopilot.modes.nav
+        field = LEG_SPEEDS.get(name)
+        if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:
+            setattr(nav, field, 0.0)
+            PLANNER.change_speed(self._v.autopilot)
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
         """Turn to ``angle`` [rad] at ``rate`` [rad/s]; ``direction`` 1 clockwise, -1 the other way, 0 the shorter."""

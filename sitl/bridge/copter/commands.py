@@ -32,12 +32,12 @@ def loiter(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def land(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """21: changes to LAND, where the vehicle is; the command's place is not used (as in ArduCopter)."""
+    """21, 85: changes to LAND, where the vehicle is; the command's place is not used (as in ArduCopter)."""
     return set_mode(bridge, LAND)
 
 
 def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """22: p7 height above home [m]. Armed in GUIDED, LOITER, ALT_HOLD, POSHOLD, landed or in the climb; else FAILED."""
+    """22, 84: p7 height above home [m]. Armed in GUIDED, LOITER, ALT_HOLD, POSHOLD, landed or climbing; else FAILED."""
     if command.frame != GLOBAL_RELATIVE_ALT:
         return DENIED
     return ACCEPTED if _copter(bridge).takeoff(command.z) else FAILED
@@ -116,10 +116,11 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 COMMANDS: dict[int, Entry] = {
     **command_table.COMMANDS,
-    **command_table.COMMANDS,
     17: Entry(loiter),
     21: Entry(land),
     22: Entry(takeoff, required=(7,)),
+    84: Entry(takeoff, required=(7,)),
+    85: Entry(land),
     115: Entry(condition_yaw, required=(1,)),
     178: Entry(change_speed, required=(1, 2)),
     185: Entry(terminate, required=(1,)),

@@ -90,15 +90,19 @@ def vfr_hud(m: VfrHud, v: Copter) -> bool:
 
 class ExtendedSysState(Message, name="EXTENDED_SYS_STATE"):
     landed_state: int
+    vtol_state: int
 
 
 ON_GROUND, IN_AIR, TAKING_OFF, LANDING = 1, 2, 3, 4
+MULTICOPTER = 3
+"""MAV_VTOL_STATE_MC"""
 
 
 @law
 def extended_sys_state(m: ExtendedSysState, v: Copter) -> bool:
     """EXTENDED_SYS_STATE: on the ground, taking off, in the air, landing."""
     modes = v.autopilot.modes
+    m.vtol_state = MULTICOPTER
     climbs = modes.number == GUIDED and modes.guided.submode == 0
     if modes.number == AUTO and modes.nav.command_kind == TAKEOFF:
         climbs = True

@@ -63,7 +63,6 @@ def yaw_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 COMMANDS: dict[int, Entry] = {
     **command_table.COMMANDS,
-    **command_table.COMMANDS,
     178: Entry(change_speed, required=(1, 2)),
     194: Entry(set_reverse, required=(1,)),
     195: Entry(roi),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from ...autopilot.aux_switch import LOW
 from ..channel import Channel
 from ..dialect import message
+from ..telemetry.shell import banner
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
 from .home import HomeService
 from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from ..bridge import Bridge
 
 
+MAG_CAL_REPORT = message("MAG_CAL_REPORT")
+CALIBRATED = 4
+"""MAG_CAL_SUCCESS"""
 HOME_POSITION, AUTOPILOT_VERSION = message("HOME_POSITION").id, message("AUTOPILOT_VERSION").id
 
 
@@ -101,6 +105,34 @@ def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
     There is no storage to read, write or reset.
     """
     return DENIED
+
+
+def calibrate_compass(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42424: the simulated compass needs none: success is reported at once, with offsets of zero."""
+    if bridge.autopilot.armed():
+        bridge.get(StatusTextService).say(NOTICE, "Disarm to allow calibration")
+        return FAILED
+    fields = {"cal_mask": 1, "cal_status": CALIBRATED, "autosaved": 1, "fitness": 0.0}
+    channel.send(MAG_CAL_REPORT, MAG_CAL_REPORT.payload(**fields))
+    return ACCEPTED
+
+
+def end_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42425, 42426: accepted or cancelled: the calibration has ended already."""
+    return ACCEPTED
+
+
+def send_banner(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42428: the version as a text."""
+    bridge.get(StatusTextService).say(INFO, banner(bridge.profile))
+    return ACCEPTED
+
+
+def reset_battery(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42651: p1 bits of batteries, p2 charge left [%]; FAILED when there is no such battery."""
+    if not (0.0 < command.p1 <= 65535.0 and 0.0 <= command.p2 <= 100.0):
+        return DENIED
+    return ACCEPTED if int(command.p1) & 1 and bridge.autopilot.set_battery_left(command.p2) else FAILED
 
 
 FORCE_ARM, FORCE = 2989.0, 21196.0
@@ -197,6 +229,13 @@ def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
 
+def set_origin(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """611: the estimator's origin, altitude above mean sea level; FAILED when it has one already."""
+    if command.frame not in FRAMES_AMSL or (command.lat == 0 and command.lon == 0):
+        return DENIED
+    return _home_result(bridge, bridge.autopilot.set_origin(command.lat, command.lon, command.z))
+
+
 def _home_result(bridge: Bridge, ok: bool) -> int:
     bridge.say_pending()
     if ok:
@@ -227,6 +266,11 @@ COMMANDS: dict[int, Entry] = {
     245: Entry(storage),
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
+    42424: Entry(calibrate_compass),
+    42425: Entry(end_compass_calibration),
+    42426: Entry(end_compass_calibration),
+    42428: Entry(send_banner),
+    42651: Entry(reset_battery, required=(1, 2)),
     410: Entry(get_home),
     510: Entry(get_interval, required=(1,)),
     511: Entry(set_interval, required=(1, 2)),
@@ -242,4 +286,5 @@ COMMANDS: dict[int, Entry] = {
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),
     400: Entry(arm_disarm, required=(1,)),
+    611: Entry(set_origin, required=(5, 6, 7), place=True, long_frame=0),
 }

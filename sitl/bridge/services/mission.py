@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The mission protocol (https://mavlink.io/en/services/mission.html), vehicle side.
 
-An upload is collected apart and replaces the mission only when it is complete and valid; until then the old
-one stands.
+An upload is collected apart and replaces the list (mission, fence, rally points) only when it is complete and valid;
+until then the old one stands.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from ...autopilot.mission.item import MissionItem, home_item
+from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem, home_item
 from ...autopilot.mission.validate import MAX_ITEMS
 from ..channel import Channel
 from ..dialect import message
@@ -34,6 +34,14 @@ from .setpoints import SetpointService
 from .statustext import StatusTextService
 
 MISSION, FENCE, RALLY, ALL = 0, 1, 2, 255
+"""MAV_MISSION_TYPE"""
+TOTALS = {FENCE: "FENCE_TOTAL", RALLY: "RALLY_TOTAL"}
+"""Parameters that count the items."""
+RECEIVED = {
+    MISSION: "Flight plan received",
+    FENCE: "Fence received; it has no effect in this simulator",
+    RALLY: "Rally points received; they have no effect in this simulator",
+}
 ACK, COUNT, REQUEST = message("MISSION_ACK"), message("MISSION_COUNT"), message("MISSION_REQUEST")
 MISSION_CURRENT = message("MISSION_CURRENT").id
 GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
@@ -41,14 +49,15 @@ GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
 
 
 class MissionService(Service):
-    """Missions: upload, download, clear, set current, partial write; fences and rally points are answered as empty."""
+    """Missions: upload, download, clear, set current, partial write; fences and rally points are kept, no more."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._taken = bridge.vehicle.firmware.commands.taken
+        self._taken = {MISSION: bridge.vehicle.firmware.commands.taken, FENCE: FENCE_COMMANDS, RALLY: (RALLY_POINT,)}
+        self._lists: dict[int, tuple[MissionItem, ...]] = {FENCE: (), RALLY: ()}
         self.upload: Upload | None = None
-        self._last: tuple[Channel, Sender, int] | None = None
-        """Who uploaded last, and the number of the last item: its acknowledgement may have been lost."""
+        self._last: tuple[Channel, Sender, int, int] | None = None
+        """Who uploaded last, what, and the number of the last item: its acknowledgement may have been lost."""
         self._home = bridge.reader.fields("autopilot.home.lat", "autopilot.home.lon", "autopilot.home.alt")
 
     def handlers(self) -> dict[str, Handler]:
@@ -71,6 +80,10 @@ class MissionService(Service):
         if self._last is not None and self._last[0] is channel:
             self._last = None
 
+    def follow(self, before: MissionService) -> None:
+        """Fences and rally points outlive a reboot."""
+        self._lists = dict(before._lists)
+
     def _ack(self, channel: Channel, sender: Sender, result: int, kind: int = MISSION) -> None:
         system, component = sender
         fields = {
@@ -83,41 +96,62 @@ class MissionService(Service):
 
     # ------------------------------------------------------------------ upload
 
+    def _items(self, kind: int) -> tuple[MissionItem, ...]:
+        """A list as it is now."""
+        return self.bridge.autopilot.mission_items() if kind == MISSION else self._lists[kind]
+
+    def _replace(self, kind: int, items: tuple[MissionItem, ...]) -> int:
+        """Replace a list whole; the MAV_MISSION_RESULT."""
+        if kind == MISSION:
+            return int(self.bridge.autopilot.replace_mission(items))
+        self._lists[kind] = items
+        values = self.bridge.vehicle.parameters
+        if TOTALS[kind] in values.table:
+            values[TOTALS[kind]] = len(items)
+        return ACCEPTED
+
+    def _is_mine(self, channel: Channel, sender: Sender) -> bool:
+        """Whether no upload is under way, or this sender's."""
+        return self.upload is None or (self.upload.channel, self.upload.sender) == (channel, sender)
+
     def _may_start(self, channel: Channel, sender: Sender, kind: int) -> bool:
         """Whether this sender may upload now; answers if not. A sender may begin its own upload anew."""
-        if self.upload is not None and (self.upload.channel, self.upload.sender) != (channel, sender):
+        if not self._is_mine(channel, sender):
             self._ack(channel, sender, DENIED, kind)
             return False
         return True
 
     def _count(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
-        if kind != MISSION:
-            empty = kind in (FENCE, RALLY) and fields.count == 0
-            self._ack(channel, sender, ACCEPTED if empty else UNSUPPORTED, kind)
+        if kind not in self._taken:
+            self._ack(channel, sender, UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
             self.upload = None
             if fields.count > MAX_ITEMS:
-                self._ack(channel, sender, NO_SPACE)
-            elif fields.count == 0:
-                self._ack(channel, sender, ACCEPTED if self.bridge.autopilot.clear_mission() else ERROR)
+                self.bridge.get(StatusTextService).say(WARNING, f"Only {MAX_ITEMS} items are supported")
+                self._ack(channel, sender, NO_SPACE, kind)
+            elif fields.count == 0:  # taken while the mission runs, too: it has come to its end then
+                self._ack(channel, sender, self._replace(kind, ()), kind)
+                self.bridge.say_pending()
             else:
-                self._begin(channel, sender, 0, fields.count, ())
+                self._begin(channel, sender, kind, 0, fields.count, ())
 
     def _write_partial(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        if fields.mission_type != MISSION:
-            self._ack(channel, sender, UNSUPPORTED, fields.mission_type)
-        elif self._may_start(channel, sender, MISSION):
-            self.upload = None
-            items = self.bridge.autopilot.mission_items()
-            first, last = fields.start_index, fields.end_index
-            if not 0 <= first <= last < len(items):
-                self._ack(channel, sender, INVALID_SEQUENCE)
-            else:
-                self._begin(channel, sender, first, last + 1, items)
+        kind = fields.mission_type
+        first, last = fields.start_index, fields.end_index
+        if kind not in self._taken:
+            self._ack(channel, sender, UNSUPPORTED, kind)
+        elif self.upload is not None:
+            self._ack(channel, sender, DENIED, kind)
+        elif not 0 <= first <= last < len(self._items(kind)):
+            self._ack(channel, sender, INVALID_SEQUENCE, kind)
+        else:
+            self._begin(channel, sender, kind, first, last + 1, self._items(kind))
 
-    def _begin(self, channel: Channel, sender: Sender, first: int, stop: int, base: tuple[MissionItem, ...]) -> None:
-        self.upload = Upload(channel, sender, first, stop, base, self.bridge.now_us)
+    def _begin(
+        self, channel: Channel, sender: Sender, kind: int, first: int, stop: int, base: tuple[MissionItem, ...]
+    ) -> None:
+        self.upload = Upload(channel, sender, kind, first, stop, base, self.bridge.now_us)
         self._last = None
         self._request_next(self.upload)
 
@@ -125,34 +159,35 @@ class MissionService(Service):
         system, component = upload.sender
         upload.asked(self.bridge.now_us)
         fields = {"target_system": system, "target_component": component, "seq": upload.next}
+        fields["mission_type"] = upload.kind
         upload.channel.send(REQUEST, REQUEST.payload(**fields))
 
     def _item_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        self._item(channel, fields, sender, *from_int(fields, self._taken))
+        self._item(channel, fields, sender, *from_int(fields, self._taken.get(fields.mission_type, ())))
 
     def _item_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if self.upload is not None and fields.current not in (GUIDED_TARGET, ALTITUDE_CHANGE) and fields.seq == 0:
             say = self.bridge.get(StatusTextService).say
             say(WARNING, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")
-        self._item(channel, fields, sender, *from_float(fields, self._taken))
+        self._item(channel, fields, sender, *from_float(fields, self._taken.get(fields.mission_type, ())))
 
     def _item(self, channel: Channel, fields: Any, sender: Sender, item: MissionItem, result: int) -> None:
         kind = fields.mission_type
-        if kind != MISSION:
+        if kind not in self._taken:
             self._ack(channel, sender, UNSUPPORTED, kind)
             return
-        if fields.current in (GUIDED_TARGET, ALTITUDE_CHANGE):
+        if kind == MISSION and fields.current in (GUIDED_TARGET, ALTITUDE_CHANGE):
             if result == ACCEPTED:
                 target = self.bridge.get(SetpointService).mission_item_target
                 result = ACCEPTED if target(item, fields.current == ALTITUDE_CHANGE) else ERROR
             self._ack(channel, sender, result)
             return
         upload = self.upload
-        if upload is None:
-            repeated = self._last == (channel, sender, fields.seq)
-            self._ack(channel, sender, ACCEPTED if repeated else ERROR)
-        elif (upload.channel, upload.sender) != (channel, sender):
-            self._ack(channel, sender, DENIED)
+        if upload is None or upload.kind != kind:
+            repeated = self._last == (channel, sender, kind, fields.seq)
+            self._ack(channel, sender, ACCEPTED if repeated else ERROR, kind)
+        elif not self._is_mine(channel, sender):
+            self._ack(channel, sender, DENIED, kind)
         elif fields.seq == upload.next - 1 and fields.seq >= upload.first:
             self._request_next(upload)  # our request for the next was lost, or this is a repeat
         elif fields.seq != upload.next:
@@ -168,16 +203,16 @@ class MissionService(Service):
 
     def _finish(self, upload: Upload) -> None:
         self.upload = None
-        result = self.bridge.autopilot.replace_mission(upload.merged())
-        self._ack(upload.channel, upload.sender, result)
+        result = self._replace(upload.kind, upload.merged())
+        self._ack(upload.channel, upload.sender, result, upload.kind)
         if result == ACCEPTED:
-            self._last = (upload.channel, upload.sender, upload.stop - 1)
-            self.bridge.get(StatusTextService).say(INFO, "Flight plan received")
+            self._last = (upload.channel, upload.sender, upload.kind, upload.stop - 1)
+            self.bridge.get(StatusTextService).say(INFO, RECEIVED[upload.kind])
         self.bridge.say_pending()
 
     def _cancel(self, result: int) -> None:
         if self.upload is not None:
-            self._ack(self.upload.channel, self.upload.sender, result)
+            self._ack(self.upload.channel, self.upload.sender, result, self.upload.kind)
             self.upload = None
 
     def _ack_received(self, channel: Channel, fields: Any, sender: Sender) -> None:
@@ -186,7 +221,7 @@ class MissionService(Service):
         The end of a download is acknowledged in the same way and needs no action.
         """
         upload = self.upload
-        if upload is not None and (upload.channel, upload.sender) == (channel, sender) and fields.type != ACCEPTED:
+        if upload is not None and self._is_mine(channel, sender) and fields.type != ACCEPTED:
             self.upload = None
 
     def snapshot(self) -> Any:
@@ -194,10 +229,11 @@ class MissionService(Service):
         return (
             None if self.upload is None else self.upload.snapshot(),
             None if last is None else (last[0].number, *last[1:]),
+            (self._lists[FENCE], self._lists[RALLY]),
         )
 
     def restore(self, state: Any) -> None:
-        upload, last = state
+        upload, last, (self._lists[FENCE], self._lists[RALLY]) = state
         by_number = {c.number: c for c in self.bridge.channels} if upload or last else {}
         self.upload = Upload.restored(upload, by_number[upload[0]]) if upload and upload[0] in by_number else None
         self._last = (by_number[last[0]], *last[1:]) if last and last[0] in by_number else None
@@ -219,12 +255,11 @@ class MissionService(Service):
 
     def _request_list(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
-        if kind not in (MISSION, FENCE, RALLY):
+        if kind not in self._taken:
             self._ack(channel, sender, UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
-            count = len(self.bridge.autopilot.mission_items()) if kind == MISSION else 0
             target = {"target_system": sender[0], "target_component": sender[1]}
-            channel.send(COUNT, COUNT.payload(count=count, mission_type=kind, **target))
+            channel.send(COUNT, COUNT.payload(count=len(self._items(kind)), mission_type=kind, **target))
 
     def _request_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
         self._send_item(channel, fields, sender, to_int)
@@ -233,30 +268,32 @@ class MissionService(Service):
         self._send_item(channel, fields, sender, to_float)
 
     def _send_item(self, channel: Channel, fields: Any, sender: Sender, pack: Any) -> None:
-        items: tuple[MissionItem, ...] = ()
-        if fields.mission_type == MISSION:
-            # item 0 is home, which can be read even of an empty mission (DroneKit's download waits for it)
-            items = self.bridge.autopilot.mission_items() or (home_item(*self._home()),)
-        if fields.mission_type not in (MISSION, FENCE, RALLY):
-            self._ack(channel, sender, UNSUPPORTED, fields.mission_type)
-        elif fields.seq >= len(items):
-            self._ack(channel, sender, INVALID_SEQUENCE, fields.mission_type)
+        kind = fields.mission_type
+        if kind not in self._taken:
+            self._ack(channel, sender, UNSUPPORTED, kind)
+            return
+        items = self._items(kind)
+        if kind == MISSION and not items:  # item 0, home, can be read all the same (DroneKit's download waits for it)
+            items = (home_item(*self._home()),)
+        if fields.seq >= len(items):
+            self._ack(channel, sender, INVALID_SEQUENCE, kind)
         else:
-            is_current = fields.seq == self.bridge.autopilot.current_item()
-            channel.send(*pack(items[fields.seq], fields.seq, is_current, sender))
+            is_current = kind == MISSION and fields.seq == self.bridge.autopilot.current_item()
+            channel.send(*pack(items[fields.seq], fields.seq, is_current, sender, kind))
 
     # ------------------------------------------------------------------ the rest
 
     def _clear_all(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
-        if kind not in (MISSION, FENCE, RALLY, ALL):
+        if kind not in (*self._taken, ALL):
             self._ack(channel, sender, INVALID, kind)
-        elif self.upload is not None:
-            self._ack(channel, sender, DENIED, kind)
-        elif kind in (FENCE, RALLY):
-            self._ack(channel, sender, ACCEPTED, kind)
-        else:
-            self._ack(channel, sender, ACCEPTED if self.bridge.autopilot.clear_mission() else ERROR, kind)
+        elif self._may_start(channel, sender, kind):
+            self.upload = None
+            cleared = kind not in (MISSION, ALL) or self.bridge.autopilot.clear_mission()
+            for other in (FENCE, RALLY):
+                if cleared and kind in (other, ALL):
+                    self._replace(other, ())
+            self._ack(channel, sender, ACCEPTED if cleared else ERROR, kind)
 
     def _set_current(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if self.bridge.autopilot.set_current_item(fields.seq, False):

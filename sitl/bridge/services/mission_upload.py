@@ -48,25 +48,25 @@ def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[Missio
     return item, check(item, taken)
 
 
-def _common(item: MissionItem, seq: int, is_current: bool, target: Sender) -> dict[str, Any]:
+def _common(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> dict[str, Any]:
     return {
         "param1": item.p1, "param2": item.p2, "param3": item.p3, "param4": item.p4, "z": item.z, "seq": seq,
         "command": item.command, "frame": item.frame, "autocontinue": item.autocontinue,
         "current": int(is_current),
-        "target_system": target[0], "target_component": target[1],
+        "target_system": target[0], "target_component": target[1], "mission_type": kind,
     }  # fmt: skip
 
 
-def to_int(item: MissionItem, seq: int, is_current: bool, target: Sender) -> tuple[MessageType, bytes]:
+def to_int(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> tuple[MessageType, bytes]:
     """MISSION_ITEM_INT of an item."""
-    return ITEM_INT, ITEM_INT.payload(x=item.x, y=item.y, **_common(item, seq, is_current, target))
+    return ITEM_INT, ITEM_INT.payload(x=item.x, y=item.y, **_common(item, seq, is_current, target, kind))
 
 
-def to_float(item: MissionItem, seq: int, is_current: bool, target: Sender) -> tuple[MessageType, bytes]:
+def to_float(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> tuple[MessageType, bytes]:
     """MISSION_ITEM of an item."""
     known = COMMANDS.get(item.command)
     scale = 1e-7 if known is None or known.has_place else 1.0
-    return ITEM, ITEM.payload(x=item.x * scale, y=item.y * scale, **_common(item, seq, is_current, target))
+    return ITEM, ITEM.payload(x=item.x * scale, y=item.y * scale, **_common(item, seq, is_current, target, kind))
 
 
 ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID = range(6)
@@ -79,12 +79,15 @@ ASK_AGAIN_US = 1_000_000
 
 
 class Upload:
-    """Items ``first`` .. ``stop - 1``, collected in order; ``base`` is what a partial write goes into."""
+    """Items ``first`` .. ``stop - 1`` of a list (MAV_MISSION_TYPE ``kind``), collected in order; ``base`` is what a
+    partial write goes into.
+    """
 
     def __init__(
         self,
         channel: Channel,
         sender: Sender,
+        kind: int,
         first: int,
         stop: int,
         base: tuple[MissionItem, ...],
@@ -92,6 +95,7 @@ class Upload:
     ) -> None:
         self.channel = channel
         self.sender = sender
+        self.kind = kind
         self.first = first
         self.stop = stop
         self.next = first
@@ -103,13 +107,22 @@ class Upload:
     def snapshot(self) -> tuple[Any, ...]:
         """Immutable; begins with the channel's number."""
         times = (self.deadline_us, self._ask_us)
-        return (self.channel.number, self.sender, self.first, self.stop, self._base, tuple(self._items), *times)
+        return (
+            self.channel.number,
+            self.sender,
+            self.kind,
+            self.first,
+            self.stop,
+            self._base,
+            tuple(self._items),
+            *times,
+        )
 
     @classmethod
     def restored(cls, state: tuple[Any, ...], channel: Channel) -> Upload:
         """The upload as it was."""
-        _, sender, first, stop, base, items, deadline_us, ask_us = state
-        upload = cls(channel, sender, first, stop, base, 0)
+        _, sender, kind, first, stop, base, items, deadline_us, ask_us = state
+        upload = cls(channel, sender, kind, first, stop, base, 0)
         upload._items, upload.next = list(items), first + len(items)
         upload.deadline_us, upload._ask_us = deadline_us, ask_us
         return upload

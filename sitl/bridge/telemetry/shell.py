@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from hashlib import sha1
 from typing import TYPE_CHECKING
@@ -11,7 +12,9 @@ from ... import __version__
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
+from .motion import global_position
 from .sensors import SimState, fill_simstate
+from .units import boot_ms, heading_cdeg, int16, percent, uint16
 
 if TYPE_CHECKING:
     from ..autopilot_api import Vehicle
@@ -21,10 +24,11 @@ ShellBuilder = Callable[["Vehicle", "Profile"], bytes]
 """``build(vehicle, profile)``: the payload now; empty when there is nothing to say."""
 
 MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, FTP = 0x1, 0x2, 0x4, 0x8, 0x20
+COMPASS_CALIBRATION, FENCE, RALLY = 0x1000, 0x4000, 0x8000
 SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = 0x40, 0x80, 0x100, 0x800, 0x2000
 CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
-CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2
-"""What every firmware can; ArduPilot's 0xF1EF without what does not exist here (compass calibration, fence, rally)."""
+CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2 | COMPASS_CALIBRATION | FENCE | RALLY
+"""What every firmware can: ArduPilot's. A compass calibration succeeds at once; fences and rally points are kept."""
 
 FLIGHT_VERSION = (4, 7, 0, 0)
 """Major, minor, patch, type (0: development).
@@ -44,6 +48,44 @@ def autopilot_version(vehicle: Vehicle, profile: Profile) -> bytes:
         flight_custom_version=VERSION_DIGITS,
         uid=1,
     )
+
+
+def banner(profile: Profile) -> str:
+    """The text that tells firmware and version."""
+    major, minor, patch, _ = FLIGHT_VERSION
+    return f"{profile.firmware} V{major}.{minor}.{patch}-dev (gym-sitl {__version__})"
+
+
+def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
+    """HIGH_LATENCY2: the state in 42 bytes; the target is home; there is no air temperature (-128)."""
+    v = vehicle.v
+    ap = v.autopilot
+    velocity, here = ap.estimate.vel, global_position(v)
+    failures = 0 if v.sensors.gps_fix >= FIX_3D else GPS_FAILED
+    failures |= 0 if ap.rc.receiver_ok else RECEIVER_FAILED
+    failures |= 0 if ap.modes.failsafe.ekf == 0 else ESTIMATE_FAILED
+    return message("HIGH_LATENCY2").payload(
+        timestamp=boot_ms(int(v.time_us)),
+        type=profile.mav_type,
+        autopilot=ARDUPILOTMEGA,
+        custom_mode=int(ap.modes.number) & 0xFFFF,
+        latitude=int(here.lat),
+        longitude=int(here.lon),
+        altitude=int16(here.alt),
+        target_altitude=int16(ap.home.alt),
+        heading=heading_cdeg(ap.estimate.yaw) // 200,
+        groundspeed=min(uint16(5.0 * math.hypot(velocity.x, velocity.y)), 255),
+        climb_rate=min(max(int16(-10.0 * velocity.z), -128), 127),
+        temperature_air=-128,
+        battery=percent(ap.battery.remaining_pct),
+        wp_num=uint16(float(ap.modes.nav.mission_current)),
+        failure_flags=failures,
+    )
+
+
+ARDUPILOTMEGA, FIX_3D = 3, 3
+GPS_FAILED, RECEIVER_FAILED, ESTIMATE_FAILED = 1, 256, 4096
+"""HL_FAILURE_FLAG"""
 
 
 def simstate(vehicle: Vehicle, profile: Profile) -> bytes:
@@ -66,6 +108,7 @@ def component_metadata(vehicle: Vehicle, profile: Profile) -> bytes:
 SHELL_BUILDERS: dict[str, ShellBuilder] = {
     "AUTOPILOT_VERSION": autopilot_version,
     "COMPONENT_METADATA": component_metadata,
+    "HIGH_LATENCY2": high_latency,
 }
 """What the shell builds for every vehicle, by the message's name."""
 

@@ -58,12 +58,15 @@ def test_forcing_skips_all_but_the_position_that_the_mode_needs(vehicle):
 @pytest.mark.parametrize("mode", (RTL, LAND, BRAKE, AUTO))
 def test_modes_that_cannot_be_armed(vehicle, mode):
     vehicle.autopilot.modes.number = mode
+    vehicle.autopilot.modes.mission_count = 2
     assert arming.arm(vehicle, BY_MAVLINK, False) == (False, ["Arm: Mode not armable"])
 
 
 def test_auto_can_be_armed_with_the_option(vehicle):
     vehicle.autopilot.modes.number = AUTO
     vehicle.autopilot.params.AUTO_OPTIONS = 1.0
+    assert arming.arm(vehicle, BY_MAVLINK, False) == (False, ["Arm: Mode requires mission"])
+    vehicle.autopilot.modes.mission_count = 2
     assert arming.arm(vehicle, BY_MAVLINK, False) == (True, [])
 
 

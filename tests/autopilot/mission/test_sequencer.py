@@ -38,6 +38,8 @@ from sitl.autopilot.navigation.state import (
     STOPPED,
     WAYPOINT,
 )
+from sitl.autopilot.navigation.state import TAKEOFF as TAKE_OFF
+from sitl.autopilot.rover.mission import COMMANDS as ROVER
 from sitl.core.vectors import Vec3
 from sitl.vehicle.copter import Copter
 
@@ -50,6 +52,16 @@ SPEED = MissionItem(c.DO_CHANGE_SPEED, p1=1.0, p2=5.0)
 def jump(target: int, times: int) -> MissionItem:
     """DO_JUMP."""
     return MissionItem(c.DO_JUMP, p1=float(target), p2=float(times))
+
+
+def tag(number: int) -> MissionItem:
+    """JUMP_TAG."""
+    return MissionItem(c.JUMP_TAG, p1=float(number))
+
+
+def to_tag(number: int, times: int) -> MissionItem:
+    """DO_JUMP_TAG."""
+    return MissionItem(c.DO_JUMP_TAG, p1=float(number), p2=float(times))
 
 
 class Vehicle:
@@ -141,6 +153,9 @@ def test_disarming_starts_again() -> None:
         ([WP, WP, jump(1, 2), WP], [1, 2, 1, 2, 1, 2, 4]),
         ([WP, jump(1, 0), WP], [1, 3]),
         ([WP, WP, jump(2, 1), jump(1, 1), WP], [1, 2, 2, 1, 2, 5]),
+        ([tag(7), WP, tag(8), WP, to_tag(8, 2), WP], [2, 4, 4, 4, 6]),
+        ([WP, to_tag(8, 1), WP, tag(8), WP], [1, 5]),
+        ([WP, to_tag(9, 1), WP], [1]),
         ([WP, jump(4, 1), WP, WP], [1, 4]),
         ([WP, jump(99, 1), WP], [1]),
         ([WP, jump(0, 1), WP], [1]),
@@ -409,3 +424,18 @@ def test_no_mission_breaks_it(listed: list[MissionItem], todo: list[str]) -> Non
         assert np.isfinite(p.nav.target).all()
         if p.nav.mission_state == RUNNING:
             assert p.nav.command_kind != NONE
+
+
+@pytest.mark.parametrize("number", [*c.MARKS, *c.DEVICE_COMMANDS])
+def test_marks_and_devices_that_are_not_fitted_are_passed(number: int) -> None:
+    p = Vehicle(WP, MissionItem(number), WP).start()
+    assert p.order() == [1, 3]
+    assert number in COPTER.taken and number in ROVER.taken
+
+
+def test_vertical_take_off_and_landing_are_the_copters_own() -> None:
+    p = Vehicle(MissionItem(c.NAV_VTOL_TAKEOFF, z=10.0), MissionItem(c.NAV_VTOL_LAND)).start()
+    assert p.v.autopilot.modes.mission_takes_off and p.nav.command_kind == TAKE_OFF
+    p.complete()
+    assert p.nav.command_kind == LAND
+    assert c.NAV_VTOL_LAND not in ROVER.taken

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""RTL: climbs, flies home along a planned leg, waits, lands (or stays at RTL_ALT_FINAL)."""
+"""RTL: climbs, flies home along a planned leg, turns as when armed, waits, lands (or stays at RTL_ALT_FINAL)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..parameters.flight import Rtl
 from ..state import Vehicle
 from . import auto_yaw, ground, land
 from .mode import CopterMode, never_arms
-from .state import Modes, RtlState
+from .state import AutoYaw, Modes, RtlState
 
 RTL = 6
 
@@ -128,8 +128,17 @@ def run_way(modes: Modes, events: Events, time_us: int, control: Control, est: E
         if reached:
             rtl.state = LOITER
             rtl.loiter_us = time_us
-    elif time_us - rtl.loiter_us >= p.RTL.LOIT_TIME * 1000.0:
+            turn_back(modes.auto_yaw, control, p)
+    elif auto_yaw.has_turned(modes.auto_yaw, est.yaw) and time_us - rtl.loiter_us >= p.RTL.LOIT_TIME * 1000.0:
         begin_descent(modes, time_us, control, est, p)
+
+
+@law
+def turn_back(yaw: AutoYaw, control: Control, p: Parameters) -> None:
+    """Over home: turn to the heading of arming, unless WP_YAW_BEHAVIOR keeps the heading on the way home."""
+    if auto_yaw.default_mode(int(p.WP.YAW_BEHAVIOR), True) != auto_yaw.HOLD:
+        start = control.attitude.target_euler.yaw
+        auto_yaw.turn_to(yaw, auto_yaw.Turn(yaw.armed, 0.0, 0, False), start, auto_yaw.slew_max(p.ATC))
 
 
 @law

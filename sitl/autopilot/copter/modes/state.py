@@ -23,6 +23,7 @@ class AutoYaw(Record):
     slew: float  # FIXED: greatest turn rate [rad/s], 0 no limit
     look_ahead: float  # last course flown faster than 1 m/s [rad]
     roi: Vec3  # point to look at, NED [m]
+    armed: float  # heading when it was armed [rad]
 
 
 class TakeoffState(Record):

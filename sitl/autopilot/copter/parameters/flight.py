@@ -7,7 +7,7 @@ from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
 class Acro(ParameterGroup):
-    """ACRO_: ACRO, and the turn rates of SPORT."""
+    """ACRO_: rates and trainer of ACRO."""
 
     BAL_ROLL: float = param(1.0, 0.0, 3.0, "1/s", "Roll turns back to level at so many times its lean")
     BAL_PITCH: float = param(1.0, 0.0, 3.0, "1/s", "Pitch turns back to level at so many times its lean")
@@ -42,7 +42,7 @@ class Guided(ParameterGroup):
     OPTIONS: float = param(
         0, 0, 1023, "", "1 armed by the transmitter, 4 ignores the yaw stick, 8 SET_ATTITUDE_TARGET has thrust", INT32
     )
-    TIMEOUT: float = param(3.0, 0.1, 60.0, "s", "Velocity, acceleration and attitude set-points are good for so long")
+    TIMEOUT: float = param(3.0, 0.1, 3600.0, "s", "Velocity, acceleration and attitude set-points are good for so long")
 
 
 class Land(ParameterGroup):

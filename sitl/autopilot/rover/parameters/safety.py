@@ -38,7 +38,7 @@ class Failsafes(system.Failsafes):
     )
     THR_VALUE: float = param(910, 800, 2200, "us", "Throttle pulse below which the radio is lost", INT16)
     GCS_ENABLE: float = param(
-        0, 0, 2, "", "Ground station: 0 not watched, 1 FS_ACTION when lost, 2 the same but AUTO goes on", INT8
+        0, 0, 127, "", "Ground station: 0 not watched, 2 FS_ACTION when lost but AUTO goes on, others FS_ACTION", INT8
     )
     GCS_TIMEOUT: float = param(5.0, 2.0, 120.0, "s", "Silence of the ground station that counts as lost")
     CRASH_CHECK: float = param(0, 0, 2, "", "Crash or block: 0 not watched, 1 HOLD, 2 HOLD and disarm", INT8)
