@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from . import tree
-from .pilot import ARM, MODES, START, TAKEOFF, Item, Pilot
+from .pilot import ARM, DRAWN, MODES, START, TAKEOFF, Item, Pilot
 
 KEEP = 65535
 POSITION, VELOCITY = 0xDF8, 0xDC7
@@ -273,7 +273,7 @@ def by_dice(frame: str, kind: str, seed: int, seconds: float = 100.0) -> Pilot:
     while pilot.now < 60.0 + seconds:
         deed = dice.randrange(7)
         if deed == 0:
-            pilot.set_mode(dice.choice(list(MODES[kind])))
+            pilot.set_mode(dice.choice(DRAWN[kind]))
         elif deed == 1:
             pilot.set_mode("GUIDED")
             values = {name: dice.uniform(-4.0, 4.0) * value for name, value in ALL.items()} | {"z": -10.0}

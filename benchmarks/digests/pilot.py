@@ -29,12 +29,20 @@ STREAMED = (
 """Sent at 2 Hz, besides all stream groups at 4 Hz."""
 ARM, SET_MODE, TAKEOFF, START, REBOOT = 400, 176, 22, 300, 246
 MODES = {
-    "copter": {"STABILIZE": 0, "ALT_HOLD": 2, "AUTO": 3, "GUIDED": 4, "LOITER": 5, "RTL": 6, "LAND": 9, "BRAKE": 17},
+    "copter": {
+        "STABILIZE": 0, "ACRO": 1, "ALT_HOLD": 2, "AUTO": 3, "GUIDED": 4, "LOITER": 5, "RTL": 6, "CIRCLE": 7, "LAND": 9,
+        "FLIP": 14, "POSHOLD": 16, "BRAKE": 17, "GUIDED_NOGPS": 20,
+    },
     "rover": {
         "MANUAL": 0, "ACRO": 1, "STEERING": 3, "HOLD": 4, "LOITER": 5, "SIMPLE": 7, "CIRCLE": 9, "AUTO": 10,
         "RTL": 11, "SMART_RTL": 12, "GUIDED": 15,
     },
 }  # fmt: skip
+DRAWN = {
+    "copter": ("STABILIZE", "ALT_HOLD", "AUTO", "GUIDED", "LOITER", "RTL", "LAND", "BRAKE"),
+    "rover": tuple(MODES["rover"]),
+}
+"""Modes of random flights; a new mode is not added, so that the flights stay those of older versions."""
 KINDS = {message.msgname: message for message in mavlink.mavlink_map.values()}
 
 

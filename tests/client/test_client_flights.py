@@ -134,7 +134,7 @@ def test_a_mission(copter: Client) -> None:
 
 def test_a_mission_that_is_refused(copter: Client) -> None:
     with pytest.raises(MissionRefusedError, match="the mission was refused: unsupported command") as failure:
-        copter.upload([copter.item("NAV_WAYPOINT"), copter.item("NAV_VTOL_TAKEOFF")])
+        copter.upload([copter.item("NAV_WAYPOINT"), copter.item("NAV_FENCE_RETURN_POINT")])
     assert failure.value.result == 3
 
 

@@ -9,6 +9,8 @@ import pytest
 
 from sitl.autopilot.copter.modes import simple, table
 from sitl.autopilot.copter.modes.acro import ACRO
+from sitl.autopilot.copter.modes.circle import CIRCLE
+from sitl.autopilot.copter.modes.flip import FLIP
 from sitl.autopilot.copter.modes.state import PilotState, SimpleState
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.core.vectors import Vec3
@@ -47,5 +49,5 @@ def test_bits_of_the_mode_switch(position: int, number: int) -> None:
     assert simple.of_position(position, params) == number
 
 
-def test_acro_flies_by_the_nose() -> None:
-    assert [number for number in table.ALL if table.ignores_simple(number)] == [ACRO]
+def test_acro_circle_and_flip_fly_by_the_nose() -> None:
+    assert [number for number in table.ALL if table.ignores_simple(number)] == [ACRO, CIRCLE, FLIP]
