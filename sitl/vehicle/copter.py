@@ -32,8 +32,8 @@ from .kind import Kind
 from .move import DONE, IN_SOLID, NO_HOVER, ORDER_SIZE, MoveOrder, displace, is_calm, look_around
 from .record import Vehicle
 
-QUADROTOR = 2
-OTHER_MULTIROTORS = (13, 14, 15, 29, 35)
+QUADROTOR, HEXAROTOR, OCTOROTOR = 2, 13, 14
+OTHER_MULTIROTORS = (HEXAROTOR, OCTOROTOR, 15, 29, 35)
 """MAV_TYPE of hexarotor, octorotor, tricopter, dodecarotor, decarotor."""
 
 

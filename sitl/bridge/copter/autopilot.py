@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test
+from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
@@ -18,6 +19,7 @@ from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
+FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 
 
@@ -49,17 +51,18 @@ class CopterAutopilot(BaseAutopilot):
     def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
         """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front."""
         motor = position - 1
-        if in_order and 0 <= motor < motor_test.MOTORS:
-            motor = motor_test.motor_in_order(int(self._v.autopilot.params.FRAME.TYPE), motor)
+        order = frames.order(self._v.autopilot.params)
+        if in_order and 0 <= motor < len(order):
+            motor = order[motor]
         answer = int(motor_test.start(self._v, motor, throttle, seconds))
         if answer == motor_test.NOT_LANDED:
             self._say(CRITICAL, ["Motor Test: vehicle not landed"])
         return answer == motor_test.OK
 
     def set_servo(self, number: int, pulse: int) -> bool:
-        """Outputs behind the motors' are free; motors are the mixer's."""
-        actuators = self._v.actuators
-        if not motor_test.MOTORS < number <= len(actuators.pwm):
+        """Outputs without a motor are free."""
+        actuators, motors = self._v.actuators, self._v.autopilot.control.motors
+        if not 0 < number <= len(actuators.pwm) or number - 1 in motors.output[: motors.count]:
             return False
         actuators.pwm[number - 1] = pulse
         actuators.controls[number - 1] = (pulse - 1500) / 500.0
@@ -85,8 +88,11 @@ class CopterAutopilot(BaseAutopilot):
         return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def parameter_changed(self, name: str) -> None:
-        """Speeds of legs that are set while AUTO flies one hold from there on, whatever the mission said before."""
+        """A frame that is set while disarmed holds at once; speeds of legs that are set while AUTO flies one hold from
+        there on, whatever the mission said before."""
         super().parameter_changed(name)
+        if name.startswith(FRAME_PARAMETERS) and not self.armed():
+            frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params)
         nav = self._v.autopilot.modes.nav
         field = LEG_SPEEDS.get(name)
         if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:

@@ -8,7 +8,7 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.table import MODES, NEED_POSITION
 from ...autopilot.navigation.state import TAKEOFF
 from ...core.kernels import law
-from ...vehicle.copter import QUADROTOR, Copter
+from ...vehicle.copter import HEXAROTOR, OCTOROTOR, QUADROTOR, Copter
 from ..telemetry import channels, motion, status
 from ..telemetry.channels import RcChannels
 from ..telemetry.heartbeat import (
@@ -30,8 +30,16 @@ from . import targets
 
 
 @law
+def mav_type(motors: int) -> int:
+    """MAV_TYPE of a multicopter by its number of motors."""
+    if motors == 6:
+        return HEXAROTOR
+    return OCTOROTOR if motors == 8 else QUADROTOR
+
+
+@law
 def heartbeat(m: Heartbeat, v: Copter) -> bool:
-    """HEARTBEAT: quadrotor, ArduPilot, mode number, armed bit."""
+    """HEARTBEAT: kind of multicopter, ArduPilot, mode number, armed bit."""
     arming, modes, failsafe = v.autopilot.arming, v.autopilot.modes, v.autopilot.modes.failsafe
     base = CUSTOM_MODE | STABILIZED | MANUAL_INPUT
     if modes.number in NEED_POSITION:  # holds or changes the position by itself
@@ -41,7 +49,7 @@ def heartbeat(m: Heartbeat, v: Copter) -> bool:
     state = STANDBY if arming.landed else ACTIVE
     if failsafe.gcs or failsafe.radio or failsafe.battery != 0 or failsafe.ekf != 0:
         state = CRITICAL
-    return fill_heartbeat(m, v, QUADROTOR, base, state)
+    return fill_heartbeat(m, v, mav_type(v.autopilot.control.motors.count), base, state)
 
 
 POSITION_MODES = tuple(mode.number for mode in MODES if mode.needs_position or mode.uses_position)

@@ -9,7 +9,7 @@ from ... import battery, home
 from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, crash, failsafe, landing, motor_test, pilot
+from .. import arming, crash, failsafe, landing, motor_test, pilot, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -55,6 +55,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     motor_test.run(v)
     landing.detect(v)
     crash.check(v)
+    thrust_loss.check(v)
     landing.set_priority(ap.control, ap.arming, ap.modes, ap.estimate.vel.z, ap.params.ATC)
     if tick % _LEARN_TICKS == 0 and holds_height(ap.arming, ap.modes) and hovers(ap.control, ap.estimate.vel.z):
         learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, _LEARN_TICKS * DT)
