@@ -119,9 +119,11 @@ def move(fleet: Sequence[Copter], index: int, count: int, orders: int, ranging: 
 
 
 def apply_sim_parameters(v: Copter) -> None:
-    """SIM_ parameters of all kinds, and a copter's failing motors."""
+    """SIM_ parameters of all kinds, and those of a copter's motors."""
     sim_parameters.apply(v)
     params, rotors = v.autopilot.params, v.physics.rotors
+    rotors.telemetry = params.SIM.ESC_TELEM != 0
+    rotors.rpm_armed, rotors.rpm_max = params.SIM.ESC_ARM_RPM, 60.0 * params.SIM.VIB_MOT_MAX
     for k in range(len(rotors.efficiency)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
         rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0

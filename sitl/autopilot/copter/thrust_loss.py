@@ -8,7 +8,7 @@ import math
 
 from ...core.kernels import inlined, law
 from ..events import THRUST_LOST, emit
-from .control.mixer import watch_balance
+from .control.mixer import BOOST_MOTORS, watch_balance
 from .control.state import AttitudeState, MotorsState
 from .state import Vehicle
 
@@ -58,9 +58,10 @@ def watch(v: Vehicle) -> None:
     watched = (
         ap.arming.armed and not ap.arming.landed and not motors.boosting and int(ap.params.FLIGHT_OPTIONS) & _OFF == 0
     )
+    if motors.count < BOOST_MOTORS:
+        watch_balance(motors, 1.0, 0.0)
     motors.loss_ticks = motors.loss_ticks + 1 if watched and is_level(ap.control.attitude) else 0
     if motors.loss_ticks >= TRIGGER_TICKS:
         motors.loss_ticks = 0
-        watch_balance(motors, 1.0, 0.0)
         motors.boosting = True
         emit(ap.events, v.time_us, THRUST_LOST, float(motors.strongest + 1), 0.0)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...autopilot import events
-from ...autopilot.copter import arming, failsafe, motor_test
+from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
 from ...autopilot.copter.modes.auto_yaw import Turn
@@ -19,6 +19,7 @@ from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
+_BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 
@@ -32,6 +33,8 @@ class CopterAutopilot(BaseAutopilot):
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.MOTOR_TEST:
             return [Text(INFO, "starting motor test" if a else "finished motor test")]
+        if code == events.TAKEOFF_BLOCKED:
+            return [Text(CRITICAL, f"Takeoff blocked: {_BLOCKED[int(a)]}")]
         if code == events.SIMPLE_CHANGED:
             return [Text(INFO, _SIMPLE[int(a)])]
         return super().texts_of(code, a, b)

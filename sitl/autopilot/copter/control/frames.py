@@ -125,6 +125,7 @@ def load_frame(motors: MotorsState, p: Parameters) -> None:
     factors = _halves([-m.right for m in frame]), _halves([m.forward for m in frame]), _halves([m.yaw for m in frame])
     for k, (roll, pitch, yaw) in enumerate(zip(*factors, strict=True)):
         motors.roll_factor[k], motors.pitch_factor[k], motors.yaw_factor[k] = roll, pitch, yaw
+        motors.yaw_range[k] = 1.0 / abs(yaw)
     functions = [int(p.SERVO[k].FUNCTION) for k in range(len(p.SERVO))]
     for k in range(MOTORS_MAX):
         wanted = _FIRST_FUNCTION + k

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain
 from .state import DT, MotorsState
 
@@ -36,28 +36,35 @@ class Demands(NamedTuple):
     throttle_max: float  # 0 .. 1
 
 
-@law
+@inlined
 def between(ratio: float, boosted: float, normal: float) -> float:
     """From ``normal`` at a ratio of 0 to ``boosted`` at 1."""
     return ratio * boosted + (1.0 - ratio) * normal
 
 
-@law
-def yaw_room(yaw: float, factor: float, middle: float) -> float:
-    """How much of a yaw demand a motor has room for that takes ``factor`` of it, at a thrust of ``middle``."""
-    left = 1.0 - middle if yaw * factor > 0.0 else middle
-    return max(left, 0.0) / abs(factor)
+@inlined
+def yaw_room(motors: MotorsState, k: int, yaw: float, middle: float) -> float:
+    """How much of a yaw demand motor ``k`` has room for, at a thrust of ``middle``."""
+    left = 1.0 - middle if yaw * motors.yaw_factor[k] > 0.0 else middle
+    return max(left, 0.0) * motors.yaw_range[k]
 
 
-@law
-def mix(motors: MotorsState, demands: Demands, yaw_headroom: float) -> float:
-    """Fill ``motors.thrust`` and raise the limit flags; returns the throttle (mean thrust) that came out.
+class Boost(NamedTuple):
+    """How thrust is boosted."""
+
+    failing: int  # motor that is taken to fail; -1 none
+    ratio: float  # 0 .. 1: how far it is left out
+
+
+@inlined
+def mix(motors: MotorsState, count: int, demands: Demands, yaw_headroom: float, boosted: Boost) -> float:
+    """Fill ``motors.thrust`` of the first ``count`` and raise the limit flags; returns the throttle (mean thrust) that
+    came out.
 
     ``yaw_headroom`` 0 .. 1: thrust kept for yaw even where roll and pitch want it all.
     """
     roll, pitch, yaw, throttle = demands.roll, demands.pitch, demands.yaw, demands.throttle
-    boost = motors.boost_ratio
-    failing = motors.strongest if motors.boosting else -1
+    failing, boost = boosted.failing, boosted.ratio
     throttle_max = between(boost, 1.0, demands.throttle_max)
     if throttle <= 0.0:
         throttle = 0.0
@@ -70,14 +77,14 @@ def mix(motors: MotorsState, demands: Demands, yaw_headroom: float) -> float:
     # What yaw may use: the room of the tightest motor with the throttle where roll and pitch have most of it.
     centre = min(0.5, throttle_avg_max)
     room = 1.0
-    for k in range(motors.count):
+    for k in range(count):
         thrust = roll * motors.roll_factor[k] + pitch * motors.pitch_factor[k]
         motors.thrust[k] = thrust
         if k != failing:
-            room = min(room, yaw_room(yaw, motors.yaw_factor[k], centre + thrust))
+            room = min(room, yaw_room(motors, k, yaw, centre + thrust))
     room = max(room, between(boost, _BOOST_HEADROOM, yaw_headroom))
     if failing >= 0:
-        tight = yaw_room(yaw, motors.yaw_factor[failing], centre + motors.thrust[failing])
+        tight = yaw_room(motors, failing, yaw, centre + motors.thrust[failing])
         room = between(boost, room, min(room, tight))
     if abs(yaw) > room:
         yaw = constrain(yaw, -room, room)
@@ -85,7 +92,7 @@ def mix(motors: MotorsState, demands: Demands, yaw_headroom: float) -> float:
 
     low = 1.0
     high = -1.0
-    for k in range(motors.count):
+    for k in range(count):
         thrust = motors.thrust[k] + yaw * motors.yaw_factor[k]
         motors.thrust[k] = thrust
         low = min(low, thrust)
@@ -116,11 +123,18 @@ def mix(motors: MotorsState, demands: Demands, yaw_headroom: float) -> float:
     elif rise > 1.0 - (base + high):
         rise = 1.0 - (base + high)
         motors.limit_throttle_upper = True
-    for k in range(motors.count):
-        thrust = base + rise + scale * motors.thrust[k]
-        motors.thrust[k] = thrust
-        motors.thrust_slow[k] += _SLOW_GAIN * (thrust - motors.thrust_slow[k])
+    for k in range(count):
+        motors.thrust[k] = base + rise + scale * motors.thrust[k]
     return base + rise
+
+
+@law
+def mix_many(motors: MotorsState, demands: Demands, yaw_headroom: float) -> float:
+    """``mix`` of so many motors that one may be left out."""
+    boosted = Boost(motors.strongest if motors.boosting else -1, motors.boost_ratio)
+    out = mix(motors, motors.count, demands, yaw_headroom, boosted)
+    watch_balance(motors, out, demands.throttle_max)
+    return out
 
 
 @law
@@ -128,7 +142,8 @@ def watch_balance(motors: MotorsState, out: float, throttle_max: float) -> None:
     """Which motor works hardest, and whether boosting may end; ``out``: what ``mix`` gave, ``throttle_max``: 0 .. 1."""
     largest, total = 0.0, 0.0
     for k in range(motors.count):
-        thrust = motors.thrust_slow[k]
+        thrust = motors.thrust_slow[k] + _SLOW_GAIN * (motors.thrust[k] - motors.thrust_slow[k])
+        motors.thrust_slow[k] = thrust
         total += thrust
         if thrust > largest:
             largest = thrust

@@ -129,6 +129,7 @@ class MotorsState(Record):
     roll_factor: Floats = array(MOTORS_MAX)  # parts of the demands that each motor takes, -0.5 .. 0.5
     pitch_factor: Floats = array(MOTORS_MAX)
     yaw_factor: Floats = array(MOTORS_MAX)
+    yaw_range: Floats = array(MOTORS_MAX)  # one over the size of the yaw factor
     output: Ints = array(MOTORS_MAX, stored="i8")  # of each motor 0 ..; -1: it has none
     thrust: Floats = array(MOTORS_MAX)  # of each motor 0 .. 1, compensated
     thrust_slow: Floats = array(MOTORS_MAX)  # the same, low-passed
@@ -147,6 +148,8 @@ class MotorsState(Record):
     current_max: float  # highest seen [A]
     voltage_reference: float  # highest voltage seen [V]
     current_reference: float  # at that moment [A]
+    blocked: bool  # by the take-off check: the motors idle
+    warned_us: int  # when the check last said why
     test_motor: int  # motor test: 1 .., 0 none
     test_actuator: float  # of that motor
     test_until_us: int

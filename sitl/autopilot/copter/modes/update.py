@@ -9,7 +9,7 @@ from ... import battery, home
 from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, crash, failsafe, landing, motor_test, pilot, thrust_loss
+from .. import arming, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -89,6 +89,7 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.watch_battery(v)
     failsafe.watch_estimate(v)
     arming.disarm_idle(v)
+    takeoff_check.check(v)
 
 
 @inlined

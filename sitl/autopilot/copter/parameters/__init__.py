@@ -15,7 +15,7 @@ from ...params.registered import with_registered
 from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
+from .flight import Acro, Circle, Follow, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -58,6 +58,7 @@ class Parameters(shared.Parameters):
     FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
+    FOLL: Follow
     FRAME: Frame
     FS: Failsafes
     GPS1_DELAY_MS: float
@@ -77,6 +78,9 @@ class Parameters(shared.Parameters):
     RC_OVERRIDE_TIME: float
     RC_FS_TIMEOUT: float = param(1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost")
     RCMAP: RcMap
+    RPM1_TYPE: float = param(
+        0, 0, 5, "", "RPM message: 0 none, 5 mean speed of the motors as told by their controllers", INT8
+    )
     RTL: Rtl
     SCHED_LOOP_RATE: float = param(
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.copter.control import motors, rate
 from sitl.autopilot.copter.control.frames import FRAMES, HEXA, OCTA, PLUS, QUAD, X, frame_of, load_frame, order
-from sitl.autopilot.copter.control.mixer import Demands, follow_boost, mix, watch_balance
+from sitl.autopilot.copter.control.mixer import Demands, follow_boost, mix_many
 from sitl.autopilot.copter.control.state import MotorsState, RateState
 from sitl.autopilot.copter.parameters import TABLE, Parameters
 from sitl.autopilot.copter.parameters.control import Attitude
@@ -34,7 +34,7 @@ def made(frame) -> tuple[MotorsState, Parameters]:
 def run(frame, roll, pitch, yaw, throttle, avg_max=None, throttle_max=1.0, headroom=0.2):
     motors, _ = made(frame)
     avg = throttle if avg_max is None else avg_max
-    out = mix(motors, Demands(roll, pitch, yaw, throttle, avg, throttle_max), headroom)
+    out = mix_many(motors, Demands(roll, pitch, yaw, throttle, avg, throttle_max), headroom)
     return motors, out
 
 
@@ -172,8 +172,7 @@ def fail_motor(motors: MotorsState, demands: Demands, ticks: int) -> float:
     """Let the mixer work for a while as it does in flight; returns what it gave."""
     out = 0.0
     for _ in range(ticks):
-        out = mix(motors, demands, 0.2)
-        watch_balance(motors, out, demands.throttle_max)
+        out = mix_many(motors, demands, 0.2)
         follow_boost(motors, 0.005, 0.005)
     return out
 
@@ -184,9 +183,9 @@ def test_boosting_lifts_the_limit_that_the_failing_motor_sets():
     before = fail_motor(motors, demands, 400)
     assert motors.strongest == 0 and motors.limit_throttle_upper and before == pytest.approx(0.7)
     motors.boosting = True
-    assert mix(motors, demands, 0.2) == pytest.approx(0.7)
+    assert mix_many(motors, demands, 0.2) == pytest.approx(0.7)
     motors.boost_ratio = 1.0
-    assert mix(motors, demands, 0.2) == pytest.approx(1.0 - 0.3 * 0.5**0.5) and motors.thrust[0] > 1.0
+    assert mix_many(motors, demands, 0.2) == pytest.approx(1.0 - 0.3 * 0.5**0.5) and motors.thrust[0] > 1.0
 
 
 def test_boosting_ends_when_the_motors_share_the_work_again():
