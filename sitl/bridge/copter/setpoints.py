@@ -27,7 +27,7 @@ from ...core.vectors import Vec3
 from ...vehicle.copter import Copter
 from ..places import local_place
 from ..services.command import GLOBAL_FRAMES
-from ..services.follow import OtherPosition, take_position
+from ..services.follow import take_position
 from ..services.setpoints import (
     ATTITUDE_IGNORED,
     BODY_YAW_RATE_IGNORED,
@@ -46,6 +46,7 @@ from ..services.setpoints import (
     local_target,
     rotation,
 )
+from ..telemetry.motion import GlobalPositionInt
 
 OVER_HOME = 1
 """FOLL_ALT_TYPE"""
@@ -125,7 +126,7 @@ def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
 
 
 @law
-def other_position(m: OtherPosition, v: Copter, sender: int) -> None:
+def other_position(m: GlobalPositionInt, v: Copter, sender: int) -> None:
     """Where another vehicle is, for FOLLOW."""
     take_position(m, v, sender, v.autopilot.params.FOLL.ALT_TYPE == OVER_HOME)
 

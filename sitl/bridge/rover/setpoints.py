@@ -29,7 +29,7 @@ from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
 from ..places import local_place
 from ..services.command import GLOBAL, GLOBAL_FRAMES
-from ..services.follow import OtherPosition, take_position
+from ..services.follow import take_position
 from ..services.setpoints import (
     BODY_YAW_RATE_IGNORED,
     LOCAL_FRAMES,
@@ -44,6 +44,7 @@ from ..services.setpoints import (
     local_target,
     rotation,
 )
+from ..telemetry.motion import GlobalPositionInt
 
 if TYPE_CHECKING:
     from .autopilot import RoverAutopilot
@@ -70,7 +71,7 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Rover, sender: int)
 
 
 @law
-def other_position(m: OtherPosition, v: Rover, sender: int) -> None:
+def other_position(m: GlobalPositionInt, v: Rover, sender: int) -> None:
     """Where another vehicle is, for FOLLOW."""
     take_position(m, v, sender, False)
 

@@ -40,12 +40,8 @@ class FollowTarget(Message, name="FOLLOW_TARGET"):
     est_capabilities: int
 
 
-class OtherPosition(GlobalPositionInt, name="GLOBAL_POSITION_INT"):
-    """degE7, mm above sea level and above home, cm/s, centidegrees."""
-
-
 @law
-def take_position(m: OtherPosition, v: Vehicle, sender: int, over_home: bool) -> None:
+def take_position(m: GlobalPositionInt, v: Vehicle, sender: int, over_home: bool) -> None:
     """GLOBAL_POSITION_INT of another vehicle; ``over_home``: its height above home counts, not that above the sea."""
     ap = v.autopilot
     lead, p = ap.modes.follow, ap.params.FOLL

@@ -180,7 +180,7 @@ def fail_motor(motors: MotorsState, demands: Demands, ticks: int) -> float:
 def test_boosting_lifts_the_limit_that_the_failing_motor_sets():
     motors, _ = made((OCTA, PLUS))
     demands = Demands(0.0, 0.6, 0.0, 0.8, 0.8, 1.0)  # nose up: motor 1, in front, is at its limit
-    before = fail_motor(motors, demands, 400)
+    before = fail_motor(motors, demands, 800)
     assert motors.strongest == 0 and motors.limit_throttle_upper and before == pytest.approx(0.7)
     motors.boosting = True
     assert mix_many(motors, demands, 0.2) == pytest.approx(0.7)
