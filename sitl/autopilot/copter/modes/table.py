@@ -42,8 +42,8 @@ MODES: tuple[CopterMode, ...] = with_registered(
         flip.MODE,
         poshold.MODE,
         brake.MODE,
-        follow.MODE,
         guided_nogps.MODE,
+        follow.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""
