@@ -85,6 +85,17 @@ def test_a_frame_that_there_is_not_is_not_armed(core: Core) -> None:
     assert p.ask(400, 1) == 0
 
 
+def test_a_frame_that_is_not_the_vehicles_is_told(core: Core) -> None:
+    warning = "FRAME_CLASS 3 has 8 motors, this vehicle 4 rotors"
+    p = Aviator(core, "ardupilot_quad").ready()
+    assert not p.said("FRAME_CLASS")
+    p.set_parameter("FRAME_CLASS", 3)
+    assert p.said(warning)
+    p = Aviator(core, "ardupilot_quad", FRAME_CLASS=3).ready()
+    p.arm()
+    assert p.said(warning)
+
+
 def test_speed_controllers_tell_what_turns(core: Core) -> None:
     p = Aviator(core, "erle_copter", RPM1_TYPE=5).hover()
     speeds = np.array(p.simulation.v.physics.rotors.speed[:4]) * 60.0 / math.tau

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from ...autopilot import events
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
@@ -15,7 +16,7 @@ from ...autopilot.mission.notes import Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
-from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
+from ..base_autopilot import CRITICAL, INFO, WARNING, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
@@ -29,6 +30,17 @@ class CopterAutopilot(BaseAutopilot):
 
     _arming, _failsafe, _set_mode = arming, failsafe, set_mode
     _auto = auto.AUTO
+
+    def __init__(self, vehicle: Any) -> None:
+        super().__init__(vehicle)
+        self._check_frame()
+
+    def _check_frame(self) -> None:
+        """Warn of a frame that is not the airframe's: the vehicle would tip over."""
+        motors, rotors = int(self._v.autopilot.control.motors.count), int(self._v.physics.airframe.rotor_count)
+        if motors not in (0, rotors):
+            number = self._v.autopilot.params.FRAME.CLASS
+            self._say(WARNING, [f"FRAME_CLASS {number:.0f} has {motors} motors, this vehicle {rotors} rotors"])
 
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.MOTOR_TEST:
@@ -96,6 +108,7 @@ class CopterAutopilot(BaseAutopilot):
         super().parameter_changed(name)
         if name.startswith(FRAME_PARAMETERS) and not self.armed():
             frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params)
+            self._check_frame()
         nav = self._v.autopilot.modes.nav
         field = LEG_SPEEDS.get(name)
         if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:
