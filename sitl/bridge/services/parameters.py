@@ -127,7 +127,8 @@ class ParameterService(Service):
             return refusal
         range_text = parameter.out_of_range(value)
         if range_text is not None and value != self._values[name]:
-            self.bridge.get(StatusTextService).say(INFO, range_text)
+            used = parameter.used(stored(parameter, value))
+            self.bridge.get(StatusTextService).say(INFO, f"{range_text}: {used:g} is used")
         if not (parameter.has_effect or name in self._values.kept):
             self._tell(name)
         self._values[name] = value
