@@ -39,6 +39,8 @@ class Estimate(Record):
     variance_pos: float
     variance_hgt: float
     variance_mag: float
+    innovation_vel_d: float  # estimate minus measurement, of the last GPS fix [m/s]
+    innovation_pos_d: float  # of the last barometer mean [m]
     attitude_ok: bool  # aligned in tilt and yaw
     position_ok: bool  # GPS in use: modes that need a position may be armed
     reset_ne_count: int  # counts jumps of horizontal position/velocity, so that controllers can follow
@@ -100,6 +102,9 @@ class BatteryState(Record):
     consumed_mah: float
     consumed_wh: float
     remaining_pct: float
+    driver: int  # BATT_MONITOR as it was at power-on, where it is one that exists; 0 none
+    healthy: bool
+    healthy_us: int  # when it last was
 
 
 class Arming(Record):
@@ -129,6 +134,7 @@ class Failsafe(Record):
     battery: int  # 0 none, 1 low, 2 critical
     battery_low_us: int  # since when below the low limit; 0 not
     battery_critical_us: int
+    battery_missing: bool  # its monitor has failed in flight
     ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
     ekf_count: int  # tenths of a second of bad variance
     ekf_vel: float  # filtered variances

@@ -24,7 +24,7 @@ from .services import all_services
 from .services.commands import Grants
 from .services.log_download import LogStore
 from .services.mission import MissionService
-from .services.service import Handler, Listener, Service
+from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.statustext import EventService
 from .services.streams import StreamService
@@ -77,6 +77,7 @@ class Bridge:
         self.telemetry = {number: message_by_id(number) for number in self.core.numbers | self.by_shell.keys()}
         """Every message that can be sent by its number."""
         self._left_out: set[str] = set()
+        self._asked: list[tuple[Channel, int]] = []
         self.board = Switchboard(
             lambda: self.system, lambda: self.elapsed_us, self._channel_added, self._channel_removed
         )
@@ -407,6 +408,22 @@ class Bridge:
                 if channel.port.part == 0:  # all parts of it are sent: many need the room several times
                     break
         return number in self.telemetry
+
+    def send_after_answer(self, channel: Channel, number: int) -> int:
+        """Send one telemetry message behind the answer to the command that asks for it, as ArduPilot does.
+
+        Returns:
+            The answer: ACCEPTED, or FAILED when there is no message of this number.
+        """
+        if number not in self.telemetry:
+            return FAILED
+        self._asked.append((channel, number))
+        return ACCEPTED
+
+    def send_asked(self) -> None:
+        """The command has been answered."""
+        while self._asked:
+            self.send_now(*self._asked.pop(0))
 
     def broadcast(self, kind: MessageType, payload: bytes) -> None:
         """Send to every channel."""

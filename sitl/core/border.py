@@ -56,6 +56,9 @@ class Sensors(Record):
     esc_time_us: int  # of the last one
     esc_motors: int
     esc_rpm: Floats = array(ESCS, stored="f4")
+    # two more compasses; zero where there are none
+    mag2: NarrowVec3  # field, body [gauss]
+    mag3: NarrowVec3
     # WHEEL_DISTANCE, of a vehicle with encoders
     wheel_count: int  # samples so far
     wheel_distance: Vec2  # rolled by the left and right driven wheel since power-on, forward positive [m]

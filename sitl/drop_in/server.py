@@ -72,10 +72,13 @@ class Session:
         self.storage = Storage.wiped(path) if line.wipe else Storage(path)
         kind = PROGRAMS[program]
         airframe, physics = _model(kind, line)
-        params = self._parameters(KINDS[kind].firmware.table)
-        scenario = Scenario(airframe, home=line.home, params=params, physics=physics)
+        table = KINDS[kind].firmware.table
+        params = self._parameters(table)
+        in_range = {name: table[name].used(value) for name, value in params.items()}
+        scenario = Scenario(airframe, home=line.home, params=in_range, physics=physics)
         self.simulation = simulation = Simulation(scenario, progress=progress)
         self._values = simulation.parameters
+        self._values.update(params)  # values out of range are kept as they are, and told so
         self.pacing = Pacing(None)
         self._follow_speedup()
         simulation.bridge.autopilot.replace_mission(self.storage.mission)
@@ -100,7 +103,7 @@ class Session:
             values["SIM_SPEEDUP"] = self._line.speedup
         self._tell("parameters that this firmware does not have", [name for name in values if name not in table])
         known = {name: value for name, value in values.items() if name in table}
-        refusals = {name: text for name, value in known.items() if (text := table[name].refusal(value))}
+        refusals = {name: text for name, value in known.items() if (text := table[name].no_number(value))}
         for text in refusals.values():
             self._say(f"not taken: {text}")
         return {name: value for name, value in known.items() if name not in refusals}

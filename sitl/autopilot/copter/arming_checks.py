@@ -69,7 +69,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
-    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p.ARMING)
+    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)

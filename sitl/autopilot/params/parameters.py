@@ -12,7 +12,7 @@ from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
-from .system import Arming, Battery, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
+from .system import Arming, Battery, Compass, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
 
 
 class Parameters(ParameterGroup):
@@ -24,6 +24,7 @@ class Parameters(ParameterGroup):
 
     ARMING: Arming
     BATT: Battery
+    COMPASS: Compass
     EK3: Ekf3
     FOLL: Follow
     FS: Failsafes

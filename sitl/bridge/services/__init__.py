@@ -2,6 +2,7 @@
 """MAVLink's microservices (https://mavlink.io/en/services/)."""
 
 from .commands import CommandService
+from .config_error import ConfigErrorService
 from .ftp import FtpService
 from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
@@ -26,6 +27,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     PingService,
     EventService,
     PreArmService,
+    ConfigErrorService,
     FtpService,
     LogDownloadService,
 )

@@ -105,6 +105,18 @@ class AltitudeState(Record):
     control_ratio: float  # 0 .. 2, falls while the descent runs away
 
 
+class VibrationState(Record):
+    """Vibration that biases the vertical acceleration (vibration.py), and the height's own rate of change."""
+
+    found: bool  # height is controlled by that rate, and with other gains
+    since_us: int  # since when the estimate tells of it; 0 it does not
+    good_us: int  # since when it no longer does, while ``found``; 0 it does
+    # complementary filter, down positive
+    pos: float  # [m]
+    vel: float  # [m/s]
+    bias: float  # of the acceleration [m/s^2]
+
+
 class MotorsState(Record):
     """Spool, mixer and motor outputs."""
 
@@ -163,4 +175,5 @@ class Control(shared.Control):
     rate: RateState
     pos_ne: PositionState
     pos_d: AltitudeState
+    vibration: VibrationState
     motors: MotorsState

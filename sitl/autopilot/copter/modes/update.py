@@ -33,7 +33,7 @@ def init(v: Vehicle) -> None:
     ap.modes.reason = REASON_INITIALISED
     ap.arming.landed = True
     ap.arming.landed_maybe = True
-    ap.battery.remaining_pct = -1.0
+    battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.rc, ap.modes.pilot)
 
 
@@ -84,10 +84,11 @@ def turn_sticks(v: Vehicle) -> None:
 @law
 def check_slowly(v: Vehicle) -> None:
     """Ten times a second."""
-    battery.monitor(v.autopilot.battery, v.sensors, v.autopilot.params.BATT)
+    battery.monitor(v.autopilot.battery, v.sensors, v.autopilot.params.BATT, v.time_us)
     failsafe.watch_gcs(v)
     failsafe.watch_battery(v)
     failsafe.watch_estimate(v)
+    failsafe.watch_vibration(v)
     arming.disarm_idle(v)
     takeoff_check.check(v)
 

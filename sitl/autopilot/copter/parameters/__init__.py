@@ -12,7 +12,7 @@ from ...params.estimator import Ekf3
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
 from .flight import Acro, Circle, Follow, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
@@ -51,6 +51,7 @@ class Parameters(shared.Parameters):
     )
     BATT: Battery
     CIRCLE: Circle
+    COMPASS: Compass
     DISARM_DELAY: float = param(
         10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8
     )

@@ -32,6 +32,7 @@ class Failsafes(system.Failsafes):
         0.8, 0.0, 2.0, "", "Test ratio of the estimator that counts as bad; 0 switches the check off"
     )
     EKF_FILT: float = param(5.0, 0.0, 10.0, "Hz", "Low-pass of the test ratios")
+    VIBE_ENABLE: float = param(1, 0, 1, "", "1: height is held without accelerations that vibration spoils", INT8)
     CRASH_CHECK: float = param(1, 0, 1, "", "Disarm after a crash", INT8)
     OPTIONS: float = param(
         16, 0, 127, "", "Goes on: 1 AUTO, 4 GUIDED without radio; 2 AUTO, 16 pilot modes without GCS; 8 LAND", INT32

@@ -15,7 +15,7 @@ from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Log, Mavlink, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
@@ -30,6 +30,7 @@ class Parameters(shared.Parameters):
     ATC: Attitude
     BATT: Battery
     CIRC: Circle
+    COMPASS: Compass
     CRASH_ANGLE: float = param(0, 0, 60, "deg", "Lean that counts as a crash at once; 0: none does", INT8)
     CRUISE: Cruise
     SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
