@@ -55,7 +55,7 @@ UBLOX_M8: dict[str, float] = {
 SITL_GPS: dict[str, float] = {
     # ArduPilot's simulated receiver: no noise (SIM_GPS1_NOISE 0, SIM_GPS1_VERR 0), only the integers' steps.
     "gps_rate": 5.0,  # [Hz] SIM_GPS1_HZ
-    "gps_delay": 0.1,  # [s] SIM_GPS1_LAG_MS 100
+    "gps_delay": 0.1325,  # [s] SIM_GPS1_LAG_MS 100, and what comes on top: recorded positions are 33 ms late
     "gps_start": 2.0,  # [s] first message
     "gps_fix_time": 9.8,  # [s] recording: receiver detected 9.8 s after boot
     "gps_noise_horizontal": 0.0,  # [m]
