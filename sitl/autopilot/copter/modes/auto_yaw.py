@@ -204,4 +204,5 @@ def point(yaw: AutoYaw, thrust: Vec3, control: Control, est: Estimate, p: Parame
     if heading.absolute:
         attitude.input_thrust_vector_heading(control, est, p, thrust, heading)
     else:
-        attitude.input_thrust_vector_heading_rate(control, est, p, thrust, heading.rate)
+        turn = attitude.limit_turn(heading.rate, attitude.slew_yaw_max(p.ATC))
+        attitude.input_thrust_vector_heading_rate(control, est, p, thrust, turn)
