@@ -91,9 +91,9 @@ def test_the_lean_of_sticks_stays_within_the_limit(roll: float, pitch: float, an
 
 @given(st.floats(0.0, 1.0))
 def test_the_climb_of_the_stick_is_continuous_and_within_its_speeds(throttle: float) -> None:
-    climb = pilot.climb_of_stick(throttle, 0.1, 2.5, 1.5)
+    climb = pilot.climb_of_stick(throttle, 0.48, 0.1, 2.5, 1.5)
     assert -1.5 - 1e-12 <= climb <= 2.5 + 1e-12
-    assert pilot.climb_of_stick(throttle + 1e-6, 0.1, 2.5, 1.5) == pytest.approx(climb, abs=1e-4)
+    assert pilot.climb_of_stick(throttle + 1e-6, 0.48, 0.1, 2.5, 1.5) == pytest.approx(climb, abs=1e-4)
 
 
 @pytest.mark.parametrize(("thrust", "climb"), ((0.0, -1.5), (0.5, 0.0), (1.0, 2.5)))
