@@ -28,8 +28,10 @@ SITL_IMU: dict[str, float] = {
     "acc_scale_error": 0.001,  # [1] INS_ACCSCAL of the recording's parameters
     "acc_range": 156.9,  # [m/s^2] 16 g
     "gyro_noise_density": 2.0e-5,  # [rad/s/sqrt(Hz)] uniform +-0.04 deg/s: 0.0004 rad/s a sample at 400 Hz
-    "gyro_random_walk": 1.1e-4,  # [rad/s^2/sqrt(Hz)] 0.05 deg/s after a minute, as SIM_DRIFT_SPEED
-    "gyro_bias_time": 150.0,  # [s] half of SIM_DRIFT_TIME: a drift that comes and goes
+    "gyro_random_walk": 0.0,  # [rad/s^2/sqrt(Hz)] none
+    "gyro_bias_time": 0.0,  # [s]
+    "gyro_drift_speed": 1.4544e-5,  # [rad/s^2] SIM_DRIFT_SPEED 0.05 deg/s a minute
+    "gyro_drift_time": 300.0,  # [s] SIM_DRIFT_TIME 5 minutes
     "gyro_turn_on_bias": 0.0,  # [rad/s]
     "gyro_range": 34.9,  # [rad/s] 2000 deg/s
 }
