@@ -37,6 +37,18 @@ def fastest(speeds: np.ndarray) -> float:
     return float(speeds.max()) if len(speeds) else float("nan")
 
 
+def arrivals(f: Flyer, start: float, told_with_next: tuple[int, ...]) -> dict[int, float]:
+    """Times [s] since the start at which mission items were reached.
+
+    ``told_with_next``: items after which the next is done at once; of the two, ArduPilot tells the second alone.
+    """
+    reached = {seq: time - start for time, seq in f.telemetry.reached}
+    for seq in told_with_next:
+        if seq not in reached and seq + 1 in reached:
+            reached[seq] = reached[seq + 1]
+    return reached
+
+
 def take_off_and_land(f: Flyer) -> None:
     """GUIDED take-off to 10 m; a higher and a lower place; LAND."""
     f.be_ready()
@@ -348,7 +360,7 @@ def mission(f: Flyer) -> None:
     f.send_command("MISSION_START")
     start = f.now
     t = f.fly(200.0, lambda: not f.armed)
-    reached = {seq: time - start for time, seq in f.telemetry.reached}
+    reached = arrivals(f, start, (3,))
     for seq in (1, 2, 3, 5, 7, 8):
         f.note(f"AUTO: item {seq} reached", "s", reached.get(seq, float("nan")))
     f.note("AUTO: disarmed", "s", float(t.t[-1]))

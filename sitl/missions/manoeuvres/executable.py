@@ -21,7 +21,7 @@ from sitl.errors import LinkLostError, OptionError
 PROGRAMS = {"copter": ("arducopter", "quad"), "rover": ("ardurover", "rover")}
 """Name of the executable and its model, by kind of vehicle."""
 CALIBRATION = {
-    **{f"INS_ACC{k}OFFS_{axis}": 0.001 for k in ("", 2) for axis in "XYZ"},
+    **{f"INS_ACC{k}{of}_{axis}": x for k in ("", 2) for of, x in (("OFFS", 0.001), ("SCAL", 1.001)) for axis in "XYZ"},
     **dict(zip((f"COMPASS_OFS{k}_{axis}" for k in ("", 2, 3) for axis in "XYZ"), (5, 13, -18) * 3, strict=True)),
 }
 """What arming asks for: accelerometers that count as calibrated, and the offsets of the simulated compasses."""

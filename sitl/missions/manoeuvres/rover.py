@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .copter import fastest, slowest, step_figures
+from .copter import arrivals, fastest, slowest, step_figures
 from .flyer import Flyer
 
 STEERING, THROTTLE = 1, 3
@@ -44,6 +44,7 @@ def velocities(f: Flyer) -> None:
     _stop(f, "stop from 3 m/s")
     f.set_velocity(0.0, 3.0)
     f.delay(6.0)
+    f.set_velocity(0.0, 3.0)
     f._stop_sending("velocity")
     _stop(f, "silence at 3 m/s")
 
@@ -68,7 +69,7 @@ def manual(f: Flyer) -> None:
     for name, pulse in (("1600 us", 1600), ("full", 1900)):
         f.sticks({THROTTLE: pulse})
         t = f.fly(3.0)
-        f.note(f"MANUAL, throttle {name}: speed after 1 s", "m/s", t.at(t.speed, 1.0))
+        f.note(f"MANUAL, throttle {name}: 2 m/s", "s", t.crossing(t.speed, 2.0))
         f.note(f"MANUAL, throttle {name}: speed after 3 s", "m/s", t.at(t.speed, 3.0))
         f.sticks({})
         t = f.fly(3.0)
@@ -146,7 +147,7 @@ def mission(f: Flyer) -> None:
     f.change_mode("AUTO")
     start = f.now
     t = f.fly(120.0, lambda: 8 in f.reached)
-    reached = {seq: time - start for time, seq in f.telemetry.reached}
+    reached = arrivals(f, start, (2, 4, 6))
     for seq in (1, 2, 4, 6, 8):
         f.note(f"AUTO: item {seq} reached", "s", reached.get(seq, float("nan")))
     f.note("AUTO: peak speed", "m/s", float(t.speed.max()))
@@ -162,6 +163,23 @@ def mission(f: Flyer) -> None:
     f.note("AUTO: speed in reverse", "m/s", fastest(t.speed[back]))
     stop = f.fly(6.0)
     f.note("AUTO: rolls on at the end", "m", stop.covered)
+
+
+def stick_mixing(f: Flyer) -> None:
+    """AUTO with the steering stick out, STICK_MIXING 1."""
+    f.params["STICK_MIXING"] = 1
+    f.sticks({})
+    f.be_ready("HOLD")
+    f.transfer([f.item("NAV_WAYPOINT", 0.0, 0.0), f.item("NAV_WAYPOINT", 400.0, 0.0)])
+    f.arm()
+    f.delay(2.0)
+    f.change_mode("AUTO")
+    f.delay(6.0)
+    for pulse in (1420, 1300):
+        f.sticks({STEERING: pulse})
+        t = f.fly(8.0)
+        f.note(f"steering stick {pulse} us in AUTO: turned", "deg", float(t.yaw[-1]))
+        f.note(f"steering stick {pulse} us in AUTO: speed", "m/s", t.mean(t.speed, 4.0))
 
 
 def away_and_home(f: Flyer, mode: str) -> None:
@@ -211,5 +229,5 @@ def stops(f: Flyer) -> None:
 
 FLIGHTS = {
     flight.__name__: flight
-    for flight in (velocities, positions, manual, acro, steering, mission, rtl, smart_rtl, stops)
+    for flight in (velocities, positions, manual, acro, steering, mission, stick_mixing, rtl, smart_rtl, stops)
 }
