@@ -9,6 +9,7 @@ from sitl.autopilot.params import docs
 from sitl.bridge import docs as mavlink
 from sitl.missions import compare, engines
 from sitl.missions.figures import table
+from sitl.missions.manoeuvres import __main__ as manoeuvres
 from sitl.physics.engines import BACKENDS
 from sitl.scenario import ESTIMATORS
 from sitl.vehicle.kinds import KINDS
@@ -88,7 +89,8 @@ def main() -> None:
         for kind in compare.FLIGHTS
         for estimator in ESTIMATORS
     }
-    (HERE / "comparison.md").write_text(COMPARISON.format(**tables), encoding="utf-8")
+    text = f"{COMPARISON.format(**tables)}\n{manoeuvres.kept_beside_ours()}"
+    (HERE / "comparison.md").write_text(text, encoding="utf-8")
     template = (HERE / "templates" / "mavlink.md").read_text(encoding="utf-8")
     (HERE / "mavlink.md").write_text(mavlink.page(template), encoding="utf-8")
     for name, kind in KINDS.items():

@@ -47,12 +47,14 @@ def fly_ours(kind: str, names: Sequence[str] = (), seed: int = 0) -> dict[str, F
     return found
 
 
-def fly_executable(path: Path, kind: str, names: Sequence[str], speedup: int) -> tuple[dict[str, Figures], str]:
+def fly_executable(
+    path: Path, kind: str, names: Sequence[str], speedup: int, instance: int = 0
+) -> tuple[dict[str, Figures], str]:
     """The figures of an executable, and its version."""
     found, version = {}, ""
     params = vehicles.load(FRAMES[kind]).parameters
     for name, flight in chosen(kind, names).items():
-        with executable.started(executable.find(path, kind), kind, HOME, BOOT_SPEEDUP, params) as connection:
+        with executable.started(executable.find(path, kind), kind, HOME, BOOT_SPEEDUP, params, instance) as connection:
             flyer = Flyer(connection, RATES_HZ[kind])
             version = _version(flyer)
             flyer.wait_ready()
@@ -88,6 +90,16 @@ def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) 
             own = [row for row in part if row.flight == flight]
             parts.append(f"{FLIGHTS[kind][flight].__doc__}\n\n{table.markdown(own)}\n")
     return "\n".join(parts)
+
+
+def kept_beside_ours() -> str:
+    """The same with the kept figures of both kinds of vehicles."""
+    found, described = {}, {}
+    for kind in sorted(FLIGHTS):
+        kept = table.kept(kind)
+        found[kind] = table.rows(fly_ours(kind), kept["figures"])
+        described[kind] = f"ArduPilot {kept['version']} of {kept['date']}"
+    return section(found, described)
 
 
 def parser() -> argparse.ArgumentParser:

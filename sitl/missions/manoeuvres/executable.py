@@ -26,6 +26,7 @@ CALIBRATION = {
 }
 """What arming asks for: accelerometers that count as calibrated, and the offsets of the simulated compasses."""
 PORT = 5760
+"""Of instance 0; each next one has 10 more."""
 IN_NAMESPACE = "SITL_MANOEUVRES_IN_NAMESPACE"
 _NAMESPACES = (("unshare", "--net"), ("unshare", "--net", "--map-root-user"))
 _SET_FLAGS, _UP_AND_RUNNING = 0x8914, 0x1 | 0x40  # SIOCSIFFLAGS, IFF_UP | IFF_RUNNING (netdevice(7))
@@ -62,7 +63,7 @@ def enter_namespace() -> None:
 
 @contextmanager
 def started(
-    path: Path, kind: str, home: tuple[float, ...], speedup: int, params: Mapping[str, float]
+    path: Path, kind: str, home: tuple[float, ...], speedup: int, params: Mapping[str, float], instance: int = 0
 ) -> Iterator[RealTime]:
     """The executable, started in a folder of its own, and the connection to it; it ends with the block.
 
@@ -72,6 +73,7 @@ def started(
         home: latitude, longitude [deg], altitude [m], heading [deg].
         speedup: simulated seconds a second.
         params: what differs from the firmware's defaults.
+        instance: its number, which its ports follow from.
 
     Raises:
         LinkLostError: it does not listen.
@@ -82,13 +84,13 @@ def started(
             "".join(f"{name} {value}\n" for name, value in {**CALIBRATION, **params}.items()), encoding="ascii"
         )
         command = [
-            str(path), "-w", "-I0", "--model", PROGRAMS[kind][1], "--speedup", str(speedup),
+            str(path), "-w", f"-I{instance}", "--model", PROGRAMS[kind][1], "--speedup", str(speedup),
             "--home", ",".join(f"{x:.10g}" for x in home), "--defaults", str(defaults),
         ]  # fmt: skip
         with open(os.devnull, "wb") as nowhere:
             process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=nowhere, stderr=nowhere)
         try:
-            connection = _connected(process)
+            connection = _connected(process, PORT + 10 * instance)
             try:
                 yield connection
             finally:
@@ -98,11 +100,11 @@ def started(
             process.wait()
 
 
-def _connected(process: subprocess.Popen[bytes]) -> RealTime:
+def _connected(process: subprocess.Popen[bytes], port: int) -> RealTime:
     stop = time.monotonic() + _START_S
     while True:
         try:
-            found = connect(f"tcp:127.0.0.1:{PORT}", patience=_START_S, warn=lambda _: None)
+            found = connect(f"tcp:127.0.0.1:{port}", patience=_START_S, warn=lambda _: None)
         except LinkLostError:
             if process.poll() is not None or time.monotonic() > stop:
                 raise
