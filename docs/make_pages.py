@@ -40,9 +40,10 @@ this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both s
 
 - *take-off: 0.1 m.* The recorded vehicle lifts its first 10 cm more slowly, in its own ground truth too; from 5 m on
   the times agree.
-- *3 m/s east: 2.85 m/s* (95 % of the step) *with the true state.* Both curves are almost level there, and little speed is
-  much time. With the filter it agrees: the simulated receiver is 33 ms later than the filter takes it for, as the recorded
-  one (its position is 0.1 m behind the truth at 3 m/s), and the position loop (PSC_POSXY_P 1) makes that up as speed.
+- *3 m/s east: 2.85 m/s* (95 % of the step) *with the true state.* Both curves are almost level there, and little
+  speed is much time. With the filter it agrees: the simulated receiver is 33 ms later than the filter takes it for,
+  as the recorded one (its position is 0.1 m behind the truth at 3 m/s), and the position loop (PSC_POSXY_P 1) makes
+  that up as speed.
 
 ## Rover, with the Kalman filter
 
@@ -54,15 +55,16 @@ this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both s
 
 ### Where it differs by more than 5 % or 0.5 m, and why
 
-- *AUTO: item 1 reached with the true state*, and with it the times of the later items and the path since AUTO began. The
-  rover stands with its tail to the first waypoint. Path time runs only as fast as the vehicle moves along the leg, and at
-  the first moment that is decided by the estimate's errors: the recorded estimate goes 0.03 m/s towards the waypoint while
-  the recorded vehicle stands still, so its target gets away; with the true state ours stands. It is the estimator, not the
-  loop: with the filter, a receiver as late as the recorded one and gyros that drift as ArduPilot's simulated ones do
-  (SIM_DRIFT_SPEED on all axes), our estimate goes 0.01 m/s and the first waypoint is reached after 10.4 s. With the recorded
-  velocity put into our estimate it is reached as recorded (`tests/autopilot/rover/modes/test_rover_square.py`).
-- *HOLD: below 0.5 m/s and 0.1 m/s.* The recorded estimate is 0.03 m/s slower than the recorded vehicle, which itself still does
-  0.10 m/s after 6.0 s; then RTL begins (a dash: it was not so slow by then).
+- *AUTO: item 1 reached with the true state*, and with it the times of the later items and the path since AUTO began.
+  The rover stands with its tail to the first waypoint. Path time runs only as fast as the vehicle moves along the
+  leg, and at the first moment that is decided by the estimate's errors: the recorded estimate goes 0.03 m/s towards
+  the waypoint while the recorded vehicle stands still, so its target gets away; with the true state ours stands. It
+  is the estimator, not the loop: with the filter, a receiver as late as the recorded one and gyros that drift as
+  ArduPilot's simulated ones do (SIM_DRIFT_SPEED on all axes), our estimate goes 0.01 m/s and the first waypoint is
+  reached after 10.4 s. With the recorded velocity put into our estimate it is reached as recorded
+  (`tests/autopilot/rover/modes/test_rover_square.py`).
+- *HOLD: below 0.5 m/s and 0.1 m/s.* The recorded estimate is 0.03 m/s slower than the recorded vehicle, which itself
+  still does 0.10 m/s after 6.0 s; then RTL begins (a dash: it was not so slow by then).
 - *errors at the end* of the position targets differ by centimetres: GUIDED stops as soon as the target has come within
   WP_RADIUS, wherever the vehicle is then.
 """
