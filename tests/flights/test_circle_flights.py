@@ -37,7 +37,7 @@ def test_it_circles_the_point_ahead_and_looks_at_it(core: Core, frame: str) -> N
     p.sticks(18.0)
     away = p.since(start)[:, 1:3] - centre
     radius = np.hypot(away[:, 0], away[:, 1])
-    assert 9.0 < radius.min() and radius.max() < 10.2 and radius.mean() < 9.9, "behind its target, and so inside of the circle"
+    assert radius.min() > 9.0 and radius.max() < 10.2 and radius.mean() < 9.9, "behind its target: inside of the circle"
     speed = float(np.hypot(*p.vel[:2]))
     assert speed == pytest.approx(3.3, abs=0.15), "a real ArduPilot with these parameters: 3.3 m/s"
     assert abs(off_centre(p, centre)) < 5.0
