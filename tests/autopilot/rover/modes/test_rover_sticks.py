@@ -82,10 +82,10 @@ def test_hold_does_nothing() -> None:
 
 def test_acro_stick_is_a_turn_rate() -> None:
     rover = in_mode(ACRO, ACRO_TURN_RATE=60.0)
-    rover.sticks(throttle=1605)
+    rover.sticks(throttle=1600)
     rover.run(8.0)
     rover.sticks(steering=1765)
-    rover.run(3.0)
+    rover.run(5.0)
     assert float(rover.ap.estimate.rates[2]) == pytest.approx(math.radians(30.0), rel=0.05)
 
 
