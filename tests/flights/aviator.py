@@ -11,7 +11,7 @@ from sitl.simulation import Core
 from tests.pilots.witness import MIDDLE, Item, Witness
 
 STABILIZE, ACRO, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, CIRCLE, LAND = 0, 1, 2, 3, 4, 5, 6, 7, 9
-SPORT, FLIP, POSHOLD, BRAKE, GUIDED_NOGPS, AUTO_RTL = 13, 14, 16, 17, 20, 27
+SPORT, FLIP, POSHOLD, BRAKE, GUIDED_NOGPS, SMART_RTL, AUTO_RTL = 13, 14, 16, 17, 20, 21, 27
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.kernels import inlined, law
-from .. import home
+from .. import home, smart_rtl_path
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, emit
 from ..state import Arming
@@ -41,6 +41,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap.modes.arming_delay = True
     ap.modes.auto_yaw.armed = ap.estimate.yaw
     simple.begin(ap.modes.simple, ap.estimate.yaw)
+    smart_rtl_path.begin(ap.modes.path, ap.estimate.pos, ap.estimate.position_ok, v.time_us, ap.params.SRTL)
     ap.modes.takeoff.user_active = False
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0

@@ -104,9 +104,9 @@ class FlipState(Record):
 
 
 class RtlState(Record):
-    """RTL."""
+    """RTL and SMART_RTL."""
 
-    state: int  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING
+    state: int  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING; smart_rtl.py: CLEAN_UP, FOLLOW, PRE_LAND
     return_d: float  # height of the way home, NED [m]
     descent_d: float  # where RTL_ALT_FINAL ends, NED [m]
     home: Vec2  # NE [m]
@@ -174,6 +174,7 @@ class Modes(shared.Modes):
     poshold: PosHoldState
     flip: FlipState
     rtl: RtlState
+    path: shared.PathState
     land: LandState
     auto: AutoState
     pilot: PilotState

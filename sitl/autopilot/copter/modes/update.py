@@ -13,12 +13,13 @@ from .. import arming, crash, failsafe, landing, motor_test, pilot
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
-from . import ground, set_mode, simple, switch, table
+from . import ground, set_mode, simple, smart_rtl, switch, table
 from .stabilize import STABILIZE
 from .state import Modes
 
 _TENTH = 40  # ticks
 _QUARTER = 100
+_THIRD = 133
 _LEARN_TICKS = 4
 _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
@@ -50,6 +51,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     if tick % _QUARTER == 12:
         home.set_first(ap.home, ap.estimate)
         ap.arming.prearm_ok = arming.check(v) == 0
+    if tick % _THIRD == 36:
+        smart_rtl.record(v)
     arming.follow_throttle(ap.arming, ap.modes, v.time_us)
     run_mode(v)
     motor_test.run(v)

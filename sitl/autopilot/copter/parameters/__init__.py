@@ -15,7 +15,7 @@ from ...params.registered import with_registered
 from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
+from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, SmartRtl, TakeOff, Waypoints
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -74,6 +74,7 @@ class Parameters(shared.Parameters):
     )
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
+    SRTL: SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     THR_DZ: float = param(

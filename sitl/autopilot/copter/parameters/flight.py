@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...params import system
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
@@ -106,6 +107,12 @@ class Rtl(ParameterGroup):
     )
     SPEED: float = param(0, 0, 2000, "cm/s", "Speed of the way home; 0 as WPNAV_SPEED", INT16)
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
+
+
+class SmartRtl(system.SmartRtl):
+    """SRTL_: SMART_RTL, and its path."""
+
+    OPTIONS: float = param(0, 0, 4, "", "4: the yaw stick does nothing on the way back", INT32)
 
 
 class TakeOff(ParameterGroup):
