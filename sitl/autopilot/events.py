@@ -40,6 +40,8 @@ HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
 SETPOINT_IGNORED = 29  # rover: it has an acceleration; a: number of the MAVLink message
 AUX_SWITCH = 30  # a: channel, b: position (aux_switch.py), negative the first one since boot
 SIMPLE_CHANGED = 31  # copter; a: 0 off, 1 SIMPLE, 2 SUPER_SIMPLE
+THROW_STAGE = 33  # copter; a: stage (throw.py)
+ZIGZAG_DID = 34  # copter; a: what (zigzag.py), b: line of the sweep, 0 none
 PATH_LOW = 35  # SMART_RTL: there is little room for its path
 NO_WAY_BACK = 36  # copter: a failsafe cannot enter SMART_RTL; a: what it does instead (failsafe_actions.py)
 

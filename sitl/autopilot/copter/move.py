@@ -84,6 +84,8 @@ def move_modes(m: Modes, d: Displacement) -> None:
     simple.heading_from_home = turned_heading(d, simple.heading_from_home)
     m.rtl.home = moved_ne(d, m.rtl.home)
     move_path(m.path, d)
+    m.throw.target_d += d.shift.z
+    m.zigzag.a, m.zigzag.b = moved_ne(d, m.zigzag.a), moved_ne(d, m.zigzag.b)
     m.landing.acc = turned(d, m.landing.acc)
     move_circle(m.nav, d)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test
-from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
+from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table, throw, zigzag
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission.notes import Text
@@ -37,6 +37,10 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(WARNING, smart_rtl_path.lost_text(int(a)))]
         if code == events.NO_WAY_BACK:
             return [Text(WARNING, f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
+        if code == events.THROW_STAGE:
+            return [Text(INFO, throw.TEXTS[int(a)])]
+        if code == events.ZIGZAG_DID:
+            return [Text(INFO, zigzag.text(int(a), int(b), int(self._v.autopilot.params.ZIGZ.LINE_NUM)))]
         return super().texts_of(code, a, b)
 
     def start_mission(self) -> bool:

@@ -103,6 +103,39 @@ class FlipState(Record):
     level: Quat  # attitude at the start, body to NED
 
 
+class DriftState(Record):
+    """DRIFT."""
+
+    side_speed: float  # that the yaw stick asks for, low-passed, right positive [m/s]
+    brake: float  # 0 .. 1: how far the brake is applied
+
+
+class ThrowState(Record):
+    """THROW."""
+
+    stage: int  # throw.py: DISARMED, WAITING, ...
+    released_us: int  # when it last began to look like a throw; 0 not yet
+    released_speed: float  # down then [m/s]
+    target_d: float  # height to stop at, NED [m]
+    passed_on: bool  # the next mode was asked for
+
+
+class ZigZagState(Record):
+    """ZIGZAG."""
+
+    stage: int  # zigzag.py: STORING, BY_STICKS, BY_ITSELF
+    a: Vec2  # NE [m]
+    b: Vec2
+    has_a: bool
+    has_b: bool
+    point: int  # last flown to
+    reached_us: int  # when the end of the way was reached; 0 not yet
+    sweeping: bool  # goes on from line to line
+    suspended: bool  # a sweep was given back to the sticks, and may go on
+    sideways: bool  # on the way to where the next line begins
+    line: int  # of the sweep
+
+
 class RtlState(Record):
     """RTL and SMART_RTL."""
 
@@ -173,6 +206,9 @@ class Modes(shared.Modes):
     circle: CircleState
     poshold: PosHoldState
     flip: FlipState
+    drift: DriftState
+    throw: ThrowState
+    zigzag: ZigZagState
     rtl: RtlState
     path: shared.PathState
     land: LandState

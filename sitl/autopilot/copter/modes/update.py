@@ -14,6 +14,7 @@ from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
 from . import ground, set_mode, simple, smart_rtl, switch, table
+from .drift import DRIFT
 from .stabilize import STABILIZE
 from .state import Modes
 
@@ -108,7 +109,8 @@ def run_mode(v: Vehicle) -> None:
 @inlined
 def holds_height(arming: Arming, modes: Modes) -> bool:
     """Whether the vehicle flies in a mode that holds height, and is not taking off."""
-    flies = arming.armed and not arming.landed and not table.has_manual_throttle(modes.number)
+    by_stick = table.has_manual_throttle(modes.number) or modes.number == DRIFT
+    flies = arming.armed and not arming.landed and not by_stick
     return flies and not landing.is_taking_off(modes)
 
 

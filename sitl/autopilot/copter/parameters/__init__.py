@@ -15,7 +15,22 @@ from ...params.registered import with_registered
 from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, SmartRtl, TakeOff, Waypoints
+from .flight import (
+    Acro,
+    Circle,
+    Guided,
+    Land,
+    Legs,
+    Loiter,
+    Pilot,
+    PosHold,
+    Rtl,
+    SmartRtl,
+    TakeOff,
+    Throw,
+    Waypoints,
+    ZigZag,
+)
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -85,9 +100,11 @@ class Parameters(shared.Parameters):
         "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
         INT16,
     )
+    THROW: Throw
     TKOFF: TakeOff
     WP: Waypoints
     WPNAV: Legs
+    ZIGZ: ZigZag
 
 
 if not TYPE_CHECKING:

@@ -54,7 +54,11 @@ class Failsafes(system.Failsafes):
 
 
 class Simulated(simulation.Simulated):
-    """SIM_: with failing motors."""
+    """SIM_: with failing motors, and a shove."""
 
     ENGINE_FAIL: float = param(0, 0, 255, "", "Motors that fail: 1 motor 1, 2 motor 2, 4 motor 3, ...", INT32)
     ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust that failing motors keep")
+    SHOVE_X: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, forward")
+    SHOVE_Y: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, right")
+    SHOVE_Z: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, down")
+    SHOVE_TIME: float = param(0, 0, 60000, "ms", "Set: shoves for so long, and is 0 again", INT32)
