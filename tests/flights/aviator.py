@@ -11,18 +11,7 @@ from sitl.simulation import Core
 from tests.pilots.witness import MIDDLE, Item, Witness
 
 STABILIZE, ACRO, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, CIRCLE, LAND, DRIFT = 0, 1, 2, 3, 4, 5, 6, 7, 9, 11
-SPORT, FLIP, POSHOLD, BRAKE, THROW, GUIDED_NOGPS, SMART_RTL, ZIGZAG, AUTO_RTL = (
-    11,
-    13,
-    14,
-    16,
-    17,
-    18,
-    20,
-    21,
-    24,
-    27,
-)
+SPORT, FLIP, POSHOLD, BRAKE, THROW, GUIDED_NOGPS, SMART_RTL, ZIGZAG, AUTO_RTL = 13, 14, 16, 17, 18, 20, 21, 24, 27
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
 
 
