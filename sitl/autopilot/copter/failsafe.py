@@ -32,6 +32,8 @@ from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
     DO_RTL,
+    DO_SMART_RTL,
+    DO_SMART_RTL_OR_LAND,
     DO_STOP,
     NOTHING,
     act,
@@ -48,7 +50,18 @@ from .modes.land import LAND
 from .modes.table import is_autonomous, requires_position
 from .state import Vehicle
 
-__all__ = ["DO_BRAKE", "DO_LAND", "DO_RTL", "DO_STOP", "NOTHING", "act", "terminate", "text"]
+__all__ = [
+    "DO_BRAKE",
+    "DO_LAND",
+    "DO_RTL",
+    "DO_SMART_RTL",
+    "DO_SMART_RTL_OR_LAND",
+    "DO_STOP",
+    "NOTHING",
+    "act",
+    "terminate",
+    "text",
+]
 
 # FS_OPTIONS bits
 _RADIO_AUTO, _GCS_AUTO, _RADIO_GUIDED, _GCS_PILOT = 1, 2, 4, 16
