@@ -34,14 +34,14 @@ CONTINUE_LANDING = 8
 
 @law
 def radio_action(choice: int) -> int:
-    """What FS_THR_ENABLE means."""
-    return _RADIO[choice] if 0 <= choice < len(_RADIO) else NOTHING
+    """What FS_THR_ENABLE means; unknown numbers LAND."""
+    return _RADIO[choice] if 0 <= choice < len(_RADIO) else DO_LAND
 
 
 @law
 def gcs_action(choice: int) -> int:
-    """What FS_GCS_ENABLE means."""
-    return _GCS[choice] if 0 <= choice < len(_GCS) else NOTHING
+    """What FS_GCS_ENABLE means; unknown numbers RTL."""
+    return _GCS[choice] if 0 <= choice < len(_GCS) else DO_RTL
 
 
 @law

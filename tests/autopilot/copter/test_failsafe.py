@@ -49,14 +49,15 @@ def lose_gcs(v):
 
 
 @pytest.mark.parametrize(
-    ("choice", "mode"), ((0, GUIDED), (1, RTL), (3, SMART_RTL), (4, SMART_RTL), (5, LAND), (6, RTL), (7, BRAKE))
+    ("choice", "mode"),
+    ((0, GUIDED), (1, RTL), (3, SMART_RTL), (4, SMART_RTL), (5, LAND), (6, RTL), (7, BRAKE), (99, RTL), (-1, RTL)),
 )
 def test_ground_station_lost(flying, choice, mode):
     lay_path(flying)
     flying.autopilot.params.FS_GCS_ENABLE = float(choice)
     lose_gcs(flying)
     assert flying.autopilot.modes.number == mode
-    assert flying.autopilot.modes.failsafe.gcs == int(choice > 0)
+    assert flying.autopilot.modes.failsafe.gcs == int(choice != 0)
 
 
 def test_a_ground_station_that_never_was_is_not_lost(flying):
@@ -88,6 +89,39 @@ def test_options_let_a_mode_go_on_without_ground_station(flying, mode, options, 
     assert (flying.autopilot.modes.number == mode) == stays
 
 
+@pytest.mark.parametrize(
+    ("mode", "options", "says", "after"),
+    (
+        (LOITER, 0, "GCS Failsafe", RTL),
+        (LOITER, 16, "GCS Failsafe - Continuing Pilot Control", LOITER),
+        (AUTO, 2, "GCS Failsafe - Continuing Auto Mode", AUTO),
+        (LAND, 8, "GCS Failsafe - Continuing Landing", LAND),
+        (LAND, 0, "GCS Failsafe", RTL),
+        (GUIDED, 26, "GCS Failsafe", RTL),
+    ),
+)
+def test_what_follows_a_lost_ground_station_is_said(flying, mode, options, says, after):
+    fly(flying, mode)
+    flying.autopilot.params.FS_GCS_ENABLE = 1.0
+    flying.autopilot.params.FS_OPTIONS = float(options)
+    lose_gcs(flying)
+    ring = flying.autopilot.events
+    found = [k for k in range(ring.count) if ring.code[k] == FAILSAFE]
+    assert [failsafe.text(int(ring.a[k]), int(ring.b[k])) for k in found] == [says]
+    assert flying.autopilot.modes.number == after
+
+
+def test_what_follows_a_lost_radio_is_said(flying):
+    ap = flying.autopilot
+    ap.params.FS_OPTIONS = 4.0
+    ap.rc.channels[2] = 950
+    for _ in range(3):
+        failsafe.watch_radio(flying)
+    k = ap.events.count - 1
+    said = failsafe.text(int(ap.events.a[k]), int(ap.events.b[k]))
+    assert (ap.modes.number, said) == (GUIDED, "Radio Failsafe - Continuing Guided Mode")
+
+
 def test_on_the_ground_a_failsafe_disarms(flying):
     flying.autopilot.arming.landed = 1
     flying.autopilot.params.FS_GCS_ENABLE = 1.0
@@ -96,7 +130,8 @@ def test_on_the_ground_a_failsafe_disarms(flying):
 
 
 @pytest.mark.parametrize(
-    ("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, SMART_RTL), (5, SMART_RTL), (6, RTL), (7, BRAKE))
+    ("choice", "mode"),
+    ((0, LOITER), (1, RTL), (3, LAND), (4, SMART_RTL), (5, SMART_RTL), (6, RTL), (7, BRAKE), (99, LAND)),
 )
 def test_radio_lost_after_three_frames(flying, choice, mode):
     lay_path(flying)

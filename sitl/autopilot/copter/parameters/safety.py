@@ -12,13 +12,13 @@ class Battery(system.Battery):
 
     FS_LOW_ACT: float = param(
         0,
-        0,
-        7,
+        -128,
+        127,
         "",
         "When low: 0 nothing, 1 LAND, 2 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 stops motors, 7 BRAKE or LAND",
         INT8,
     )
-    FS_CRT_ACT: float = param(0, 0, 7, "", "When critical: as BATT_FS_LOW_ACT", INT8)
+    FS_CRT_ACT: float = param(0, -128, 127, "", "When critical: as BATT_FS_LOW_ACT", INT8)
 
 
 class Failsafes(system.Failsafes):
@@ -26,8 +26,8 @@ class Failsafes(system.Failsafes):
 
     GCS_ENABLE: float = param(
         0,
-        0,
-        7,
+        -128,
+        127,
         "",
         "Ground station lost: 0 nothing, 1 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 LAND, 7 BRAKE or LAND",
         INT8,
@@ -35,8 +35,8 @@ class Failsafes(system.Failsafes):
     GCS_TIMEOUT: float = param(5.0, 2.0, 120.0, "s", "Silence of the ground station that counts as lost")
     THR_ENABLE: float = param(
         1,
-        0,
-        7,
+        -128,
+        127,
         "",
         "Radio lost: 0 nothing, 1 RTL, 3 LAND, 4 SMART_RTL or RTL, 5 SMART_RTL or LAND, 7 BRAKE or LAND",
         INT8,
