@@ -33,13 +33,17 @@ MOTOR_TEST = 21  # a: 1 begins, 0 has ended; b: motor
 DESTINATION_REACHED = 22  # rover, end of a way home; a: mode
 GUIDED_REACHED = 23  # rover: the position target of GUIDED
 CRASH_HOLD = 24  # rover: crashed or blocked
-PATH_LOST = 25  # rover: SMART_RTL has no path any more; a: reason (smart_rtl_path.py)
+PATH_LOST = 25  # SMART_RTL has no path any more; a: reason (smart_rtl_path.py)
 CIRCLE_ADAPTED = 26  # rover; a: what (circle.py), b: the value now
 COMMAND_ARRIVED = 27  # rover: the navigation command under way is at its place, b: its count (nav.command_count)
 HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
 SETPOINT_IGNORED = 29  # rover: it has an acceleration; a: number of the MAVLink message
 AUX_SWITCH = 30  # a: channel, b: position (aux_switch.py), negative the first one since boot
 SIMPLE_CHANGED = 31  # copter; a: 0 off, 1 SIMPLE, 2 SUPER_SIMPLE
+THROW_STAGE = 33  # copter; a: stage (throw.py)
+ZIGZAG_DID = 34  # copter; a: what (zigzag.py), b: line of the sweep, 0 none
+PATH_LOW = 35  # SMART_RTL: there is little room for its path
+NO_WAY_BACK = 36  # copter: a failsafe cannot enter SMART_RTL; a: what it does instead (failsafe_actions.py)
 
 
 class Events(Record):

@@ -54,7 +54,7 @@ class BaseAutopilot:
         if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
             return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
         if code == events.FAILSAFE:
-            text = self._failsafe.text(int(a), bool(b))
+            text = self._failsafe.text(int(a), int(b))
             return [Text(WARNING, text)] if text else []
         return []
 

@@ -9,7 +9,25 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import acro, alt_hold, auto, brake, circle, flip, guided, guided_nogps, land, loiter, poshold, rtl, stabilize
+from . import (
+    acro,
+    alt_hold,
+    auto,
+    brake,
+    circle,
+    drift,
+    flip,
+    guided,
+    guided_nogps,
+    land,
+    loiter,
+    poshold,
+    rtl,
+    smart_rtl,
+    stabilize,
+    throw,
+    zigzag,
+)
 from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
@@ -24,10 +42,14 @@ MODES: tuple[CopterMode, ...] = with_registered(
         rtl.MODE,
         circle.MODE,
         land.MODE,
+        drift.MODE,
         flip.MODE,
         poshold.MODE,
         brake.MODE,
+        throw.MODE,
         guided_nogps.MODE,
+        smart_rtl.MODE,
+        zigzag.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""
@@ -46,6 +68,7 @@ MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
 CLIMB_STICK = numbers(MODES, "climb_stick")
 NEED_POSITION = numbers(MODES, "needs_position")
 AUTONOMOUS = numbers(MODES, "autonomous")
+IDLE_ARMED = numbers(MODES, "idles_armed")
 IGNORE_SIMPLE = numbers(MODES, "ignores_simple")
 ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
 
@@ -84,6 +107,12 @@ def is_autonomous(number: int) -> bool:
 def arms_at_any_throttle(number: int) -> bool:
     """Whether a ground station may arm the mode whatever the throttle stick says."""
     return number in ARM_AT_ANY_THROTTLE
+
+
+@law
+def idles_armed(number: int) -> bool:
+    """Whether the vehicle stays armed on the ground."""
+    return number in IDLE_ARMED
 
 
 @law

@@ -15,7 +15,22 @@ from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
+from .flight import (
+    Acro,
+    Circle,
+    Guided,
+    Land,
+    Legs,
+    Loiter,
+    Pilot,
+    PosHold,
+    Rtl,
+    SmartRtl,
+    TakeOff,
+    Throw,
+    Waypoints,
+    ZigZag,
+)
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -75,6 +90,7 @@ class Parameters(shared.Parameters):
     )
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
+    SRTL: SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     THR_DZ: float = param(
@@ -85,9 +101,11 @@ class Parameters(shared.Parameters):
         "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
         INT16,
     )
+    THROW: Throw
     TKOFF: TakeOff
     WP: Waypoints
     WPNAV: Legs
+    ZIGZ: ZigZag
 
 
 if not TYPE_CHECKING:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...params import system
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
@@ -108,11 +109,31 @@ class Rtl(ParameterGroup):
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
 
 
+class SmartRtl(system.SmartRtl):
+    """SRTL_: SMART_RTL, and its path."""
+
+    OPTIONS: float = param(0, 0, 4, "", "4: the yaw stick does nothing on the way back", INT32)
+
+
 class TakeOff(ParameterGroup):
     """TKOFF_: take-off."""
 
     SLEW_TIME: float = param(2.0, 0.25, 5.0, "s", "From zero to full throttle on the ground")
     THR_MAX: float = param(0.9, 0.0, 0.9, "", "Throttle at which it is taken to fly")
+
+
+class Throw(ParameterGroup):
+    """THROW_: THROW."""
+
+    MOT_START: float = param(0, 0, 1, "", "Motors before the throw: 0 off, 1 idle", INT8)
+    ALT_MIN: float = param(0, 0, 32767, "m", "Least height above home of a throw; 0 any", INT16)
+    ALT_MAX: float = param(0, 0, 32767, "m", "Greatest height above home of a throw; 0 any", INT16)
+    ALT_DCSND: float = param(1.0, 0.0, 50.0, "m", "Dropped, it stops so far below where it was upright")
+    ALT_ACSND: float = param(3.0, 0.0, 50.0, "m", "Thrown, it stops so far above where it was upright")
+    NEXTMODE: float = param(
+        18, 0, 127, "", "Then: 3 AUTO, 4 GUIDED, 5 LOITER, 6 RTL, 9 LAND, 17 BRAKE, else THROW", INT8
+    )
+    TYPE: float = param(0, 0, 1, "", "0 thrown upwards, 1 dropped", INT8)
 
 
 class Waypoints(ParameterGroup):
@@ -122,6 +143,16 @@ class Waypoints(ParameterGroup):
         2, 0, 3, "", "Heading: 0 kept, 1 to the next waypoint, 2 the same but kept in RTL, 3 along the course", INT8
     )
     NAVALT_MIN: float = param(0.0, 0.0, 5.0, "m", "No leaning below this height in take-off and landing")
+
+
+class ZigZag(ParameterGroup):
+    """ZIGZ_: ZIGZAG."""
+
+    AUTO_ENABLE: float = param(0, 0, 1, "", "1: function 83 of a switch sweeps from line to line", INT8)
+    WP_DELAY: float = param(0, 0, 127, "s", "Wait at the end of each way", INT8)
+    SIDE_DIST: float = param(4.0, 0.1, 100.0, "m", "Distance of the lines of a sweep")
+    DIRECTION: float = param(0, 0, 3, "", "Side of a sweep: 0 forward, 1 right, 2 backward, 3 left of the nose", INT8)
+    LINE_NUM: float = param(0, -1, 32767, "", "Lines of a sweep; 0: one way sideways only, -1: no end", INT16)
 
 
 class Legs(ParameterGroup):

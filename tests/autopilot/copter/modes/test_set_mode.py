@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from sitl.autopilot import smart_rtl_path
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.auto import AUTO
@@ -18,6 +19,7 @@ from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.poshold import POSHOLD
 from sitl.autopilot.copter.modes.rtl import RTL
+from sitl.autopilot.copter.modes.smart_rtl import SMART_RTL
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
 from sitl.autopilot.copter.modes.table import NAMES
 from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
@@ -33,7 +35,8 @@ from sitl.autopilot.modes import (
 )
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
-ALL = tuple(number for number in NAMES if number != FLIP)
+WITH_CONDITIONS = (FLIP, SMART_RTL)
+ALL = tuple(number for number in NAMES if number not in WITH_CONDITIONS)
 
 
 @pytest.mark.parametrize("number", ALL)
@@ -102,6 +105,16 @@ def test_auto_armed_on_the_ground_needs_a_take_off_first(flying):
 def test_rtl_needs_a_home_in_flight(flying):
     flying.autopilot.home.is_set = 0
     assert set_mode.request(flying, RTL, REASON_GCS) == INIT_FAILED
+
+
+def test_smart_rtl_needs_a_path(flying):
+    assert set_mode.request(flying, SMART_RTL, REASON_GCS) == INIT_FAILED
+    ap = flying.autopilot
+    smart_rtl_path.begin(ap.modes.path, ap.estimate.pos, True, flying.time_us, ap.params.SRTL)
+    ap.estimate.position_ok = 0
+    assert set_mode.request(flying, SMART_RTL, REASON_GCS) == REQUIRES_POSITION
+    ap.estimate.position_ok = 1
+    assert set_mode.request(flying, SMART_RTL, REASON_GCS) == ACCEPTED
 
 
 def test_stabilize_on_the_ground_with_raised_throttle_is_refused(flying):
