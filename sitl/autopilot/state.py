@@ -142,6 +142,28 @@ class Failsafe(Record):
     ekf_mag: float
 
 
+class FollowState(Record):
+    """Another vehicle, which FOLLOW follows (follow.py). NED from the origin."""
+
+    sender: int  # its system id; 0 none heard so far
+    update_us: int  # its last report
+    told_pos: Vec3  # of that report [m]
+    told_vel: Vec3  # [m/s]
+    told_acc: Vec3  # [m/s^2]
+    told_heading: float  # [rad]
+    told_heading_rate: float  # [rad/s]
+    is_known: bool  # the motion that is followed:
+    pos: Vec3  # [m]
+    vel: Vec3  # [m/s]
+    acc: Vec3  # [m/s^2]
+    heading: float  # [rad]
+    heading_rate: float  # [rad/s]
+    heading_acc: float  # [rad/s^2]
+    tells_more: bool  # it sends FOLLOW_TARGET: its GLOBAL_POSITION_INT is not needed
+    keeps_distance: bool  # no offsets are given:
+    distance: Vec3  # the place beside it is this, as FOLL_OFS_TYPE says [m]
+
+
 class Modes(Record):
     """The modes: what those of all firmwares share."""
 
@@ -153,6 +175,7 @@ class Modes(Record):
     wanted_reason: int
     mission_count: int  # items of the mission, home included (written by the shell)
     mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
+    follow: FollowState
     nav: Nav
 
 

@@ -29,7 +29,17 @@ from .storage import Storage
 
 PROGRAMS = {"arducopter": "copter", "ardurover": "rover"}
 MODELS = {
-    "copter": {"+": "ardupilot_quad", "quad": "ardupilot_quad", "copter": "ardupilot_quad"},
+    "copter": {
+        "+": "ardupilot_quad",
+        "quad": "ardupilot_quad",
+        "copter": "ardupilot_quad",
+        "x": "ardupilot_x",
+        "hexa": "ardupilot_hexa",
+        "hexax": "ardupilot_hexa_x",
+        "octa": "ardupilot_octa",
+        "octa-quad": "ardupilot_octa_quad",
+        "y6": "ardupilot_y6",
+    },
     "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover"},
 }
 """ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""

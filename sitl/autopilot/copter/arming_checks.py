@@ -79,7 +79,7 @@ def check(v: Vehicle) -> int:
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
-    return failed if p.FRAME.CLASS == 1.0 else failed | FRAME
+    return failed if ap.control.motors.count > 0 else failed | FRAME
 
 
 @law

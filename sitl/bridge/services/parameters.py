@@ -136,6 +136,7 @@ class ParameterService(Service):
         for listener in self.bridge.listeners:
             listener.parameter_set(name)
         self.bridge.autopilot.parameter_changed(name)
+        self.bridge.tell(self.bridge.autopilot.take_notes())
         self.bridge.get(StreamService).parameter_changed(name)
         if name == "MAV_SYSID":
             self.bridge.refresh_identity()

@@ -99,7 +99,7 @@ def set_fields(v, **fields):
 @pytest.mark.parametrize(
     ("fields", "text"),
     (
-        ({"params__FRAME_CLASS": 0.0}, "Motors: Check frame class and type"),
+        ({"control__motors__count": 0}, "Motors: Check frame class and type"),
         ({"control__attitude__cos_lean": 0.8}, "Leaning"),
         ({"rc__receiver_ok": 0}, "RC not found"),
         (

@@ -17,6 +17,7 @@ from . import (
     circle,
     drift,
     flip,
+    follow,
     guided,
     guided_nogps,
     land,
@@ -49,6 +50,7 @@ MODES: tuple[CopterMode, ...] = with_registered(
         throw.MODE,
         guided_nogps.MODE,
         smart_rtl.MODE,
+        follow.MODE,
         zigzag.MODE,
     ),
 )

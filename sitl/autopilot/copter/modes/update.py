@@ -9,7 +9,7 @@ from ... import battery, home
 from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, crash, failsafe, landing, motor_test, pilot
+from .. import arming, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -59,6 +59,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     motor_test.run(v)
     landing.detect(v)
     crash.check(v)
+    thrust_loss.check(v)
     landing.set_priority(ap.control, ap.arming, ap.modes, ap.estimate.vel.z, ap.params.ATC)
     if tick % _LEARN_TICKS == 0 and holds_height(ap.arming, ap.modes) and hovers(ap.control, ap.estimate.vel.z):
         learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, _LEARN_TICKS * DT)
@@ -93,6 +94,7 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.watch_estimate(v)
     failsafe.watch_vibration(v)
     arming.disarm_idle(v)
+    takeoff_check.check(v)
 
 
 @inlined
