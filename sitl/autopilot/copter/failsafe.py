@@ -52,6 +52,7 @@ from .modes.guided import GUIDED
 from .modes.land import LAND
 from .modes.state import Modes
 from .modes.table import is_autonomous, is_landing, requires_position
+from .parameters.safety import Battery
 from .state import Vehicle
 
 __all__ = [
@@ -70,7 +71,7 @@ __all__ = [
 # FS_OPTIONS bits
 _RADIO_AUTO, _GCS_AUTO, _RADIO_GUIDED, _GCS_PILOT = 1, 2, 4, 16
 
-ACTS, DISARMS, LANDING_GOES_ON, AUTO_GOES_ON, GUIDED_GOES_ON, PILOT_GOES_ON = 1, 2, 3, 4, 5, 6
+ACTS, DISARMS, LANDING_GOES_ON, AUTO_GOES_ON, GUIDED_GOES_ON, PILOT_GOES_ON, BATTERY_LANDS = 1, 2, 3, 4, 5, 6, 7
 """What follows the loss of a link: second number of its FAILSAFE."""
 _ENDINGS = {
     DISARMS: "Disarming",
@@ -88,6 +89,8 @@ EKF_COUNT = 10
 
 def text(which: int, how: int) -> str | None:
     """Status text of a FAILSAFE event, None when there is none."""
+    if how == BATTERY_LANDS:
+        return "Radio + Battery Failsafe - Continuing Landing"
     said = failsafe_checks.text(which, how != 0)
     return f"{said} - {_ENDINGS[how]}" if said and how in _ENDINGS else said
 
@@ -101,7 +104,7 @@ def watch_radio(v: Vehicle) -> None:
     if not count_radio(fs, enabled != 0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)):
         return
     if fs.radio:
-        how = follows(modes, ap.arming, without_radio(modes.number, options), options)
+        how = follows(modes, ap.arming, without_radio(modes.number, options), options, battery_lands(fs, p.BATT))
         lose(v, RADIO, how, radio_action(enabled), REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
     else:
         report(ap.events, v.time_us, RADIO, False)
@@ -139,14 +142,27 @@ def without_gcs(mode: int, options: int) -> int:
 
 
 @law
-def follows(modes: Modes, arming: Arming, otherwise: int, options: int) -> int:
-    """What follows the loss of a link in this state; ``otherwise``: when nothing else does."""
+def battery_lands(fs: Failsafe, params: Battery) -> bool:
+    """Whether the battery is why the vehicle comes down: that must go on."""
+    choice = int(params.FS_CRT_ACT) if fs.battery == 2 else int(params.FS_LOW_ACT)
+    return fs.battery != 0 and battery_action(choice) in (DO_LAND, DO_STOP)
+
+
+@law
+def follows(modes: Modes, arming: Arming, otherwise: int, options: int, for_battery: bool) -> int:
+    """What follows the loss of a link in this state.
+
+    ``otherwise``: when nothing else does; ``for_battery``: a landing is the battery's.
+    """
     if not arming.armed:
         return ACTS
     if is_idle(modes, arming.landed):
         return DISARMS
-    if is_landing(modes.number, modes) and (options & CONTINUE_LANDING) != 0:
-        return LANDING_GOES_ON
+    if is_landing(modes.number, modes):
+        if for_battery:
+            return BATTERY_LANDS
+        if (options & CONTINUE_LANDING) != 0:
+            return LANDING_GOES_ON
     return otherwise
 
 
@@ -156,7 +172,7 @@ def lose(v: Vehicle, which: int, how: int, action: int, reason: int, method: int
     emit(v.autopilot.events, v.time_us, FAILSAFE, float(which), float(how))
     if how in (ACTS, DISARMS):
         act(v, action, reason, method)
-    elif how == LANDING_GOES_ON:
+    elif how in (LANDING_GOES_ON, BATTERY_LANDS):
         act(v, DO_LAND, reason, method)
 
 
@@ -171,7 +187,7 @@ def watch_gcs(v: Vehicle) -> None:
         return
     fs.gcs = lost
     if lost:
-        how = follows(modes, ap.arming, without_gcs(modes.number, options), options)
+        how = follows(modes, ap.arming, without_gcs(modes.number, options), options, False)
         lose(v, GCS, how, gcs_action(int(p.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
     else:
         report(ap.events, v.time_us, GCS, False)

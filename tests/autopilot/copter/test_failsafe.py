@@ -122,6 +122,19 @@ def test_what_follows_a_lost_radio_is_said(flying):
     assert (ap.modes.number, said) == (GUIDED, "Radio Failsafe - Continuing Guided Mode")
 
 
+@pytest.mark.parametrize(("action", "after"), ((1, LAND), (2, RTL), (0, RTL)))
+def test_a_lost_radio_does_not_end_a_landing_for_the_battery(flying, action, after):
+    fly(flying, LAND)
+    ap = flying.autopilot
+    ap.params.BATT_FS_CRT_ACT, ap.modes.failsafe.battery = float(action), 2
+    ap.rc.channels[2] = 950
+    for _ in range(3):
+        failsafe.watch_radio(flying)
+    said = {failsafe.text(int(a), int(b)) for a, b in zip(ap.events.a, ap.events.b, strict=True)}
+    assert ap.modes.number == after
+    assert ("Radio + Battery Failsafe - Continuing Landing" in said) == (after == LAND)
+
+
 def test_on_the_ground_a_failsafe_disarms(flying):
     flying.autopilot.arming.landed = 1
     flying.autopilot.params.FS_GCS_ENABLE = 1.0
