@@ -27,7 +27,7 @@ def throw(p: Aviator, forward: float = -20.0, down: float = -30.0, milliseconds:
     p.set_parameter("SIM_SHOVE_X", forward)
     p.set_parameter("SIM_SHOVE_Z", down)
     start = p.now
-    p.set_parameter("SIM_SHOVE_TIME", milliseconds)
+    p.send("PARAM_SET", param_id=b"SIM_SHOVE_TIME", param_value=milliseconds, param_type=9)  # soon 0 again
     return start
 
 
@@ -42,8 +42,7 @@ def test_thrown_up_it_starts_its_motors_climbs_on_and_stops(core: Core) -> None:
     p.fly(12.0)
     assert p.mode == THROW
     thrown = p.since(start)
-    assert -thrown[:, 6].min() == pytest.approx(8.7, abs=0.7), "8.7 m/s upwards,"
-    assert -thrown[:, 4].min() == pytest.approx(8.3, abs=0.7), "8.3 m/s backwards"
+    assert 8.0 < -thrown[:, 4].min() < 10.0 and 8.0 < -thrown[:, 6].min() < 10.2, "the shove, less drag and weight"
     assert when(p, "throw detected", start) == pytest.approx(0.8, abs=0.25)
     assert when(p, "uprighting", start) == pytest.approx(1.3, abs=0.4)
     assert when(p, "height achieved", start) == pytest.approx(2.6, abs=0.7)
@@ -59,14 +58,14 @@ def test_waits_for_ever_and_may_be_disarmed(core: Core) -> None:
     p = armed(core)
     p.fly(15.0)
     assert p.ap.arming.armed and p.on_ground, "no DISARM_DELAY"
-    assert p.simulation.v.physics.rotors.speed[0] == 0.0, "motors stand"
+    assert p.simulation.v.actuators.controls[0] == 0.0, "motors stand"
     assert p.ask(400, 0) == 0
 
 
 def test_motors_may_idle_before_the_throw(core: Core) -> None:
     p = armed(core, THROW_MOT_START=1.0)
     p.fly(2.0)
-    assert p.simulation.v.physics.rotors.speed[0] > 0.0 and p.on_ground
+    assert p.simulation.v.actuators.controls[0] == pytest.approx(0.1) and p.on_ground
     start = throw(p)
     p.fly(5.0)
     assert when(p, "uprighting", start) < 1.2

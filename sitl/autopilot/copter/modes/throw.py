@@ -166,7 +166,8 @@ def fly(v: Vehicle, stage: int) -> None:
     if stage == UPRIGHTING:
         throttle_mix.set_throttle_out(control, p, _HALF_THROTTLE, False, p.PILOT.THR_FILT)
     elif stage == TO_HEIGHT:
-        altitude.input_pos_vel_accel_d(control.pos_d, Motion(ap.modes.throw.target_d, 0.0, 0.0))
+        # the target is given outright, not approached softly: it fell
+        altitude.set_pos_vel_accel_d(control.pos_d, Motion(ap.modes.throw.target_d, 0.0, 0.0))
         altitude.update_d(control, est, p)
     else:
         ground.brake(control)
