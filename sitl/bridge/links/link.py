@@ -87,6 +87,8 @@ class Link:
     def __init__(self, name: str) -> None:
         self.name = name
         self.peers: list[Peer] = []
+        self.is_high_latency = False
+        """Of clients that come from now on: HIGH_LATENCY2 is all their telemetry (services/high_latency.py)."""
         self._received = 0
         self._takes_unsigned = False
         self.refusals: list[str] = []

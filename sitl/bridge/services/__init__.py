@@ -4,6 +4,7 @@
 from .commands import CommandService
 from .config_error import ConfigErrorService
 from .ftp import FtpService
+from .high_latency import HighLatencyService
 from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
@@ -19,6 +20,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,
     HeartbeatService,
     StreamService,
+    HighLatencyService,
     CommandService,
     ParameterService,
     MissionService,

@@ -15,6 +15,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
+from .high_latency import HighLatencyService
 from .home import HomeService
 from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
 from .statustext import StatusTextService
@@ -43,6 +44,12 @@ def get_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
 def request_message(bridge: Bridge, channel: Channel, command: Command) -> int:
     """512: sends message p1 once; FAILED when there is none."""
     return int(bridge.get(StreamService).request_message(channel, command))
+
+
+def control_high_latency(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """2600: p1 1 sends HIGH_LATENCY2 on links of high latency, 0 does not."""
+    bridge.get(HighLatencyService).switch(command.p1 != 0.0)
+    return ACCEPTED
 
 
 def get_home(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -273,6 +280,7 @@ COMMANDS: dict[int, Entry] = {
     510: Entry(get_interval, required=(1,)),
     511: Entry(set_interval, required=(1, 2)),
     512: Entry(request_message, required=(1,)),
+    2600: Entry(control_high_latency, required=(1,)),
     520: Entry(request_version, required=(1,)),
     20: Entry(return_to_launch),
     176: Entry(do_set_mode, required=(1, 2)),

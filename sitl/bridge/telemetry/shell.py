@@ -57,7 +57,7 @@ def banner(profile: Profile) -> str:
 
 
 def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
-    """HIGH_LATENCY2: the state in 42 bytes; the target is home; there is no air temperature (-128)."""
+    """HIGH_LATENCY2: the state in 42 bytes; the target is home; the air's temperature is the barometer's [degC]."""
     v = vehicle.v
     ap = v.autopilot
     velocity, here = ap.estimate.vel, global_position(v)
@@ -76,7 +76,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
         heading=heading_cdeg(ap.estimate.yaw) // 200,
         groundspeed=min(uint16(5.0 * math.hypot(velocity.x, velocity.y)), 255),
         climb_rate=min(max(int16(-10.0 * velocity.z), -128), 127),
-        temperature_air=-128,
+        temperature_air=min(max(round(v.sensors.temperature), -127), 127),
         battery=percent(ap.battery.remaining_pct),
         wp_num=uint16(float(ap.modes.nav.mission_current)),
         failure_flags=failures,

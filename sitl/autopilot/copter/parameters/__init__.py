@@ -15,7 +15,23 @@ from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Follow, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
+from .flight import (
+    Acro,
+    Circle,
+    Follow,
+    Guided,
+    Land,
+    Legs,
+    Loiter,
+    Pilot,
+    PosHold,
+    Rtl,
+    SmartRtl,
+    TakeOff,
+    Throw,
+    Waypoints,
+    ZigZag,
+)
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -89,6 +105,7 @@ class Parameters(shared.Parameters):
     SERVO: Records[Output] = numbered(Output, 16)
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
+    SRTL: SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     THR_DZ: float = param(
@@ -99,9 +116,11 @@ class Parameters(shared.Parameters):
         "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
         INT16,
     )
+    THROW: Throw
     TKOFF: TakeOff
     WP: Waypoints
     WPNAV: Legs
+    ZIGZ: ZigZag
 
 
 if not TYPE_CHECKING:

@@ -15,10 +15,10 @@ from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Compass, Log, Mavlink, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
-from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
+from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
 from .safety import Battery, Failsafes
 
 
