@@ -390,12 +390,23 @@ class Bridge:
                     self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
                 return
             if payload:
-                channel.send(kind, payload)
+                channel.put(kind, payload)
             if port.part == 0:  # all parts of it are sent
                 return
 
     def send_now(self, channel: Channel, number: int) -> bool:
-        """Send one telemetry message to one channel; False when there is none of this number."""
+        """Answer a client with one telemetry message, for logs too; False when there is none of this number."""
+        for log in self.board.logs:
+            if log is not channel:
+                self._send_one(log, number)
+        return self._send_one(channel, number)
+
+    def send_to_all(self, number: int) -> None:
+        """Send one telemetry message to every channel."""
+        for channel in self.channels:
+            self._send_one(channel, number)
+
+    def _send_one(self, channel: Channel, number: int) -> bool:
         if number in self.by_shell:
             self._build(channel, number)
         elif number in self.core.numbers:
@@ -410,16 +421,17 @@ class Bridge:
     def broadcast(self, kind: MessageType, payload: bytes) -> None:
         """Send to every channel."""
         for channel in self.channels:
-            channel.send(kind, payload)
+            channel.put(kind, payload)
 
     def flush(self) -> None:
         """Hand everything queued to the links."""
         self.board.flush()
 
     def beat(self) -> None:
-        """While time stands: a HEARTBEAT to every channel."""
+        """While time stands: a HEARTBEAT to every client; logs do not depend on how long it stands."""
         for channel in self.channels:
-            self.send_now(channel, _HEARTBEAT)
+            if not channel.peer.is_log:
+                self._send_one(channel, _HEARTBEAT)
         if self.board.journal is not None:
             self.board.journal.beat()
         self.flush()

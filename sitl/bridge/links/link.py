@@ -26,6 +26,8 @@ class Peer:
     """Whether frames of several times may be queued as one piece of bytes (``sitl.bridge.wire.spool``)."""
     stamps = False
     """Whether each of them then stands behind its time."""
+    is_log = False
+    """Whether it is a log, which gets what other clients are answered, too."""
 
     def __init__(self, name: str) -> None:
         self.name = name
