@@ -37,7 +37,8 @@ WAITS = {
     "signal.setitimer": "signal.signal(signal.SIGALRM, lambda *_: None); signal.setitimer(signal.ITIMER_REAL, 2); "
     "time.sleep(1); left = signal.getitimer(signal.ITIMER_REAL)[0]; assert 0.01 < left < 1.01, left; signal.pause()",
     "setitimer with an interval": "signal.signal(signal.SIGALRM, lambda *_: None); "
-    "signal.setitimer(signal.ITIMER_REAL, 0.8, 0.6); [signal.pause() for _ in range(3)]",
+    "signal.setitimer(signal.ITIMER_REAL, 0.8, 0.6); [signal.pause() for _ in range(3)]; "
+    "signal.alarm(0)",
     "alarm that is put off": "signal.signal(signal.SIGALRM, lambda *_: None); signal.alarm(1); signal.alarm(2); "
     "signal.pause()",
     "timer_create": "subprocess.run(['timeout', '2', 'sleep', '60'])",
