@@ -188,6 +188,9 @@ class Bridge:
         channel.port.epoch_us = self.epoch_us + self._before_boot_us
         for service in self.services.values():
             service.channel_added(channel)
+        for link in self.board.links:
+            if link.rates_hz and channel.peer in link.peers:
+                self._stream(channel, link.rates_hz)
 
     def _channel_removed(self, channel: Channel) -> None:
         self._channels_changed()
@@ -195,18 +198,24 @@ class Bridge:
             service.channel_removed(channel)
 
     def stream_to(self, link: Link, rates_hz: Mapping[str, int]) -> None:
-        """Send stream groups to every client of ``link``: {"EXTRA1": 10, ...}, names as in MAV1_EXTRA1.
+        """Send stream groups to each client of ``link``, later ones too and after a reboot, until it asks otherwise.
+
+        {"EXTRA1": 10, ...} [Hz], names as in MAV1_EXTRA1.
 
         Raises:
             KeyError: there is no such group.
         """
         if self.board.journal is not None:
             self.board.journal.streams(link, rates_hz)
-        groups = {ending: number for number, (ending, _) in self.profile.groups.items()}
+        link.rates_hz = dict(rates_hz)
         for channel in self.channels:
             if channel.peer in link.peers:
-                for name, rate in rates_hz.items():
-                    self.get(StreamService).set_group(channel, groups[name], rate)
+                self._stream(channel, rates_hz)
+
+    def _stream(self, channel: Channel, rates_hz: Mapping[str, int]) -> None:
+        groups = {ending: number for number, (ending, _) in self.profile.groups.items()}
+        for name, rate in rates_hz.items():
+            self.get(StreamService).set_group(channel, groups[name], rate)
 
     def close(self) -> None:
         """Flush and close everything."""

@@ -127,6 +127,42 @@ def test_datagrams_hold_whole_frames(core: Core) -> None:
     simulation.close()
 
 
+def test_udp_clients_are_streamed_to_from_their_beginning_and_after_a_reboot(core: Core) -> None:
+    simulation = Simulation(core=core)
+    link = UdpInLink()
+    simulation.bridge.add_link(link)
+    runner.stream_everything(simulation, link, 5)
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sock.connect(link.local_address)
+    beat = message("HEARTBEAT")
+    heard = simulation.bridge.heard
+    sock.send(encode_v2(beat, beat.payload(), 0, 255, 190))  # a client that asks for nothing
+    while simulation.bridge.heard == heard:
+        simulation.bridge.wait(5.0)
+        simulation.bridge.receive()
+    sock.setblocking(False)
+    for _ in range(2):
+        pieces = list[bytes]()
+        for _ in range(10):
+            simulation.advance(1.0)
+            while data := received(sock):
+                pieces.append(data)
+        frames = list(Splitter().feed(b"".join(pieces)))
+        for name in ("ATTITUDE", "GPS_RAW_INT", "VFR_HUD", "SYS_STATUS"):
+            assert count_of(frames, name) == 50, name
+        simulation.request_reboot()
+        simulation.advance(0.0)
+    simulation.close()
+
+
+def received(sock: socket.socket) -> bytes:
+    """A datagram; nothing when there is none."""
+    try:
+        return sock.recv(1 << 16)
+    except BlockingIOError:
+        return b""
+
+
 class StepByStep:
     """A tap that looks at every frame, and a logger that takes every sample itself."""
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import selectors
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from ...errors import SitlError
 
@@ -85,6 +85,8 @@ class Link:
         self.peers: list[Peer] = []
         self.refusals: list[str] = []
         """Why clients were turned away; the switchboard takes them."""
+        self.rates_hz: Mapping[str, int] = {}
+        """Stream groups that each client gets from its beginning (``sitl.bridge.bridge.Bridge.stream_to``)."""
         self._on_peer: Callable[[Peer], None] | None = None
 
     def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
