@@ -51,6 +51,7 @@ class Parameters(shared.Parameters):
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     FRAME: Frame
     FS: Failsafes
+    GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 roll, 2 pitch, 4 yaw, 8 vertical", INT16)
     GPS1_DELAY_MS: float
     GUID: Guided
     INITIAL_MODE: float

@@ -35,6 +35,7 @@ class Parameters(shared.Parameters):
     EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7)
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
     FS: Failsafes
+    GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 steering, 2 speed", INT16)
     GPS1_DELAY_MS: float
     GUID_OPTIONS: float = param(
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
