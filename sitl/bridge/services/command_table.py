@@ -87,7 +87,7 @@ LEVEL, SIMPLE_ACCELEROMETER = 2.0, 4.0
 
 
 def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """241: p1 1 gyros, p3 1 barometer, p5 2 level, 4 accelerometers: simulated ones need none, success is said at once."""
+    """241: p1 1 gyros, p3 1 barometer, p5 2 level, 4 accelerometers: none is needed, success is said at once."""
     say = bridge.get(StatusTextService).say
     if bridge.autopilot.armed():
         say(NOTICE, "Disarm to allow calibration")
