@@ -152,9 +152,10 @@ def test_available_modes(bench: Bench) -> None:
 RECORDED = {
     "AHRS", "AHRS2", "ATTITUDE", "BATTERY_STATUS", "EKF_STATUS_REPORT", "GLOBAL_POSITION_INT", "GPS_RAW_INT",
     "HEARTBEAT", "LOCAL_POSITION_NED", "MEMINFO", "MISSION_CURRENT", "POWER_STATUS", "RAW_IMU", "RC_CHANNELS",
-    "RC_CHANNELS_SCALED", "SCALED_PRESSURE", "SERVO_OUTPUT_RAW", "SIMSTATE", "SYSTEM_TIME", "SYS_STATUS", "VFR_HUD", "VIBRATION",
+    "RC_CHANNELS_SCALED", "SCALED_PRESSURE", "SERVO_OUTPUT_RAW", "SIMSTATE", "SYSTEM_TIME", "SYS_STATUS", "VFR_HUD",
+    "VIBRATION",
 }  # fmt: skip
-"""What a real ArduRover sends once a second in MANUAL, but for second sensors and vibration."""
+"""What a real ArduRover sends once a second in MANUAL, but for second sensors."""
 IN_GUIDED = {"NAV_CONTROLLER_OUTPUT"}
 
 
