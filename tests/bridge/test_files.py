@@ -13,7 +13,7 @@ from sitl.bridge.services.mission import FENCE, MissionService
 from tests.bridge.fakes import Bench
 from tests.bridge.test_parameters import ACK, NAK, fetch, request, unpack
 
-LIST, CRC = 3, 14
+TERMINATE, LIST, CREATE, WRITE, CRC = 1, 3, 6, 7, 14
 INVALID_SIZE, END_OF_FILE, NOT_FOUND = 3, 6, 10
 WAYPOINT, POLYGON = 16, 5001
 
@@ -98,6 +98,30 @@ def test_missions_are_read_as_files(bench: Bench) -> None:
     fields = [struct.unpack_from("<4fiifHHBBBBBB", fence, head.size + 38 * k) for k in range(3)]
     assert [(f[4], f[7], f[8], f[13]) for f in fields] == [(item.x, k, POLYGON, FENCE) for k, item in enumerate(items)]
     assert fetch(bench, b"@MISSION/rally.dat") == head.pack(0x763D, 2, 0, 0, 0)
+
+
+def put(bench: Bench, path: bytes, data: bytes) -> list[int]:
+    """Write a file in pieces; results of the answers."""
+    steps = [request(CREATE, path)]
+    steps += [request(WRITE, data[at : at + 90], offset=at) for at in range(0, len(data), 90)]
+    steps.append(request(TERMINATE))
+    answers = [answer for step in steps for answer in bench.ask(step, "FILE_TRANSFER_PROTOCOL")]
+    return [unpack(answer)[0][2] for answer in answers]
+
+
+def test_missions_are_taken_as_files(bench: Bench) -> None:
+    places = ((-353632620, 0.0), (-353630000, 15.0), (-353620000, 20.0), (-353610000, 20.0), (-353600000, 20.0))
+    items = tuple(MissionItem(WAYPOINT, 3, 0.0, 0.0, 0.0, 0.0, lat, 1491652370, z, 1) for lat, z in places)
+    service = bench.bridge.get(MissionService)
+    service._replace(0, items)
+    written = fetch(bench, b"@MISSION/mission.dat")
+    service._replace(0, ())
+    assert put(bench, b"@MISSION/mission.dat", written) == [ACK] * 5
+    assert fetch(bench, b"@MISSION/mission.dat") == written
+    for bad in (written[:-1], b"\0" * 10, written.replace(struct.pack("<H", WAYPOINT), struct.pack("<H", 9999))):
+        assert put(bench, b"@MISSION/mission.dat", bad)[-1] == NAK
+        assert fetch(bench, b"@MISSION/mission.dat") == written, "the old one stays"
+    assert put(bench, b"@SYS/uarts.txt", b"x")[0] == NAK
 
 
 def test_the_links_are_told(bench: Bench) -> None:

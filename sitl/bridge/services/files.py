@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files that MAVLink FTP serves: parameters, missions, logs, links, and what parameters mean.
+"""The files that MAVLink FTP serves: parameters, missions (which it takes, too), logs, links, what parameters mean.
 
 As ArduPilot's: ``@SYS/`` tells of the running system, ``@MISSION/`` has mission, fence and rally points as items of
 MISSION_ITEM_INT behind a header of five numbers, ``logs/`` the on-board logs.
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from .. import metadata
 from .mission import FENCE, MISSION, RALLY, MissionService
-from .mission_upload import to_int
+from .mission_upload import ITEM_INT, to_int
 from .parameters import pack_parameters
 
 if TYPE_CHECKING:
@@ -69,6 +69,18 @@ def pack_mission(bridge: Bridge, kind: int) -> bytes:
     items = service.items(kind) or service.home_alone(kind)
     parts = [to_int(item, k, False, (0, 0), kind)[1].ljust(_ITEM_BYTES, b"\0") for k, item in enumerate(items)]
     return MISSION_HEADER.pack(MISSION_MAGIC, kind, 0, 0, len(items)) + b"".join(parts)
+
+
+def write(bridge: Bridge, path: str, data: bytes) -> bool:
+    """Take a file of ``MISSIONS`` in place of what it holds; False, and that stays, when it is none or not valid."""
+    if len(data) < MISSION_HEADER.size:
+        return False
+    *head, count = MISSION_HEADER.unpack_from(data)
+    if head != [MISSION_MAGIC, MISSIONS[path], 0, 0] or len(data) != MISSION_HEADER.size + count * _ITEM_BYTES:
+        return False
+    starts = range(MISSION_HEADER.size, len(data), _ITEM_BYTES)
+    rows = [ITEM_INT.decode(data[at : at + _ITEM_BYTES]) for at in starts]
+    return bridge.get(MissionService).take(MISSIONS[path], rows)
 
 
 def _system(bridge: Bridge) -> Mapping[str, Reader]:

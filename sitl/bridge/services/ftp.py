@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): lists and reads the files of ``files.py``, and their CRC-32.
+"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): lists and reads the files of ``files.py``, tells their CRC-32,
+and takes missions as files.
 
 Everything else is refused by its own error.
 """
@@ -21,8 +22,19 @@ KIND = message("FILE_TRANSFER_PROTOCOL")
 HEADER = struct.Struct("<HBBBBBBI")
 """sequence, session, opcode, size, request opcode, burst complete, padding, offset"""
 DATA_BYTES = 239
-TERMINATE, RESET, LIST, OPEN_READ, READ, CRC, BURST_READ, ACK, NAK = 1, 2, 3, 4, 5, 14, 15, 128, 129
-INVALID_DATA_SIZE, INVALID_SESSION, END_OF_FILE, UNKNOWN_COMMAND, FILE_NOT_FOUND = 3, 4, 6, 7, 10
+TERMINATE, RESET, LIST, OPEN_READ, READ, CREATE, WRITE, CRC, BURST_READ = 1, 2, 3, 4, 5, 6, 7, 14, 15
+ACK, NAK = 128, 129
+FAIL, INVALID_DATA_SIZE, INVALID_SESSION, END_OF_FILE, UNKNOWN_COMMAND, FILE_PROTECTED, FILE_NOT_FOUND = (
+    1,
+    3,
+    4,
+    6,
+    7,
+    9,
+    10,
+)
+MOST_WRITTEN = 1 << 20
+"""Bytes of a file that is written."""
 BURST_EVERY_US = 10_000
 BURST_AT_ONCE = 10
 """Packets every 10 ms of simulated time."""
@@ -44,8 +56,10 @@ class _Request(NamedTuple):
 class _Session:
     """The one file that a client has open."""
 
-    def __init__(self, data: bytes, sender: Sender, number: int) -> None:
+    def __init__(self, data: bytes, sender: Sender, number: int, written: str = "") -> None:
         self.data, self.sender, self.number = data, sender, number
+        self.written = written
+        """Path of a file that is being written; "": it is read."""
         self.burst: _Request | None = None
         """The next packet of the burst under way."""
 
@@ -60,6 +74,8 @@ class FtpService(Service):
             LIST: self._list,
             CRC: self._crc,
             OPEN_READ: self._open,
+            CREATE: self._create,
+            WRITE: self._write,
             READ: self._read,
             BURST_READ: self._burst,
             TERMINATE: self._end,
@@ -101,6 +117,10 @@ class FtpService(Service):
         found = self._sessions.get(request.channel)
         if found is not None and (request.opcode == RESET or found.number == request.session):
             del self._sessions[request.channel]
+            if found.written and request.opcode == TERMINATE:
+                if not files.write(self.bridge, found.written, found.data):
+                    self._refuse(request, FAIL)
+                    return
         self._reply(request, b"", request.offset)
 
     def _open(self, request: _Request) -> None:
@@ -108,6 +128,25 @@ class FtpService(Service):
         if data is not None:
             self._sessions[request.channel] = _Session(data, request.sender, request.session)
             self._reply(request, struct.pack("<I", len(data)))
+
+    def _create(self, request: _Request) -> None:
+        path = self._path(request).lstrip("/")
+        if path in files.MISSIONS:
+            self._sessions[request.channel] = _Session(b"", request.sender, request.session, path)
+            self._reply(request, b"")
+        else:
+            self._refuse(request, FILE_PROTECTED)
+
+    def _write(self, request: _Request) -> None:
+        found = self._session(request)
+        if found is None:
+            return
+        end = request.offset + len(request.data)
+        if not found.written or end > MOST_WRITTEN:
+            self._refuse(request, FAIL)
+            return
+        found.data = found.data[: request.offset].ljust(request.offset, b"\0") + request.data + found.data[end:]
+        self._reply(request, struct.pack("<I", len(request.data)), request.offset)
 
     def _crc(self, request: _Request) -> None:
         data = self._file(request)
@@ -175,7 +214,8 @@ class FtpService(Service):
 
     def snapshot(self) -> Any:
         sessions = tuple(
-            (c.number, (s.data, s.sender, s.number), s.burst and s.burst[1:]) for c, s in self._sessions.items()
+            (channel.number, (s.data, s.sender, s.number, s.written), s.burst and s.burst[1:])
+            for channel, s in self._sessions.items()
         )
         return (sessions, self.due_us)
 

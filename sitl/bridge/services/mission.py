@@ -7,6 +7,7 @@ until then the old one stands.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem, home_item
@@ -113,6 +114,17 @@ class MissionService(Service):
         if TOTALS[kind] in values.table:
             values[TOTALS[kind]] = len(items)
         return ACCEPTED
+
+    def take(self, kind: int, rows: Sequence[Any]) -> bool:
+        """Replace a list by fields of MISSION_ITEM_INT; False, and it stays, when one is refused or an upload runs."""
+        taken = [from_int(fields, self._taken[kind]) for fields in rows]
+        if self.upload is not None or len(rows) > MAX_ITEMS or any(result != ACCEPTED for _, result in taken):
+            return False
+        done = self._replace(kind, tuple(item for item, _ in taken)) == ACCEPTED
+        if done:
+            self.bridge.get(StatusTextService).say(INFO, RECEIVED[kind])
+        self.bridge.say_pending()
+        return done
 
     def _is_mine(self, channel: Channel, sender: Sender) -> bool:
         """Whether no upload is under way, or this sender's."""
