@@ -126,7 +126,8 @@ def test_system_commands(bench: Bench) -> None:
     assert bench.command(246, 2) == UNSUPPORTED
     assert bench.command(245, 0) == DENIED
     assert bench.command(241, 1) == ACCEPTED
-    assert bench.command(241, 0, 0, 0, 0, 4) == TEMPORARILY_REJECTED
+    assert bench.command(241, 0, 0, 0, 0, 4) == ACCEPTED
+    assert bench.command(241, 0, 1) == UNSUPPORTED
     assert bench.command(185, 0) == FAILED
     assert bench.command(246, 1) == ACCEPTED and bench.vehicle.reboots == 1
     bench.vehicle.v.autopilot.arming.armed = 1

@@ -88,20 +88,25 @@ def reboot(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
+LEVEL, SIMPLE_ACCELEROMETER = 2.0, 4.0
+
+
 def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """241: the simulated sensors need none; what a ground station waits for is said."""
+    """241: p1 1 gyros, p3 1 barometer, p5 2 level, 4 accelerometers: none is needed, success is said at once."""
     say = bridge.get(StatusTextService).say
     if bridge.autopilot.armed():
         say(NOTICE, "Disarm to allow calibration")
         return FAILED
-    if command.p1 == 1.0 or command.p5 == 2.0:
+    if command.p1 == 1.0 or command.p5 in (LEVEL, SIMPLE_ACCELEROMETER):
         say(INFO, "Initialising ArduPilot")
+        if command.p5 == LEVEL:
+            say(INFO, "Trim OK: roll=0.00 pitch=0.00 yaw=0.00")
         return ACCEPTED
     if command.p3 == 1.0:
         say(INFO, "Updating barometer calibration")
         say(INFO, "Barometer calibration complete")
         return ACCEPTED
-    return TEMPORARILY_REJECTED if command.p5 == 4.0 else UNSUPPORTED
+    return UNSUPPORTED
 
 
 def storage(bridge: Bridge, channel: Channel, command: Command) -> int:

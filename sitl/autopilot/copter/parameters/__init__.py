@@ -78,6 +78,7 @@ class Parameters(shared.Parameters):
     FOLL: Follow
     FRAME: Frame
     FS: Failsafes
+    GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 roll, 2 pitch, 4 yaw, 8 vertical", INT16)
     GPS1_DELAY_MS: float
     GUID: Guided
     INITIAL_MODE: float

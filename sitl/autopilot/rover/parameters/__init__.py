@@ -38,6 +38,7 @@ class Parameters(shared.Parameters):
     FOLL: Follow
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
     FS: Failsafes
+    GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 steering, 2 speed", INT16)
     GPS1_DELAY_MS: float
     GUID_OPTIONS: float = param(
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
