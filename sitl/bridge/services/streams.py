@@ -158,4 +158,4 @@ class StreamService(Service):
         """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
         if int(command.p1) == AVAILABLE_MODES.id:
             return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
-        return ACCEPTED if self.bridge.send_now(channel, int(command.p1)) else FAILED
+        return self.bridge.send_after_answer(channel, int(command.p1))

@@ -37,7 +37,7 @@ def measure(truth: Vec3, scale: Vec3, bias: Vec3, noise: float, rng: Rng) -> Vec
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
     a, s, d, body = p.airframe, p.sensors, p.derived, p.body
-    acc = measure(body.specific_force, s.acc_scale, s.acc_bias + s.acc_walk, d.acc_noise, rng)
+    acc = measure(body.specific_force, s.acc_scale, s.acc_bias + s.acc_walk + s.acc_fault, d.acc_noise, rng)
     sensors.acc = saturate(acc, a.acc_range)
     gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise, rng)
     sensors.gyro = saturate(gyro, a.gyro_range)
