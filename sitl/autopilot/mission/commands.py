@@ -43,8 +43,8 @@ class Commands(ABC, Generic[V]):
         """Make a navigation command the one under way (``navigation.state``: ``command_*``), with the legs it needs."""
 
     @abstractmethod
-    def look_ahead(self, v: V, item: MissionItem | None) -> None:
-        """The navigation command after the one under way, None at the end: plan a leg that is joined without a stop."""
+    def look_ahead(self, v: V, item: MissionItem | None, after: MissionItem | None) -> None:
+        """The two navigation commands after the one under way, None at the end: plan what is joined without a stop."""
 
     def arrived(self, v: V, seq: int, item: MissionItem) -> list[Note]:
         """The command under way has come to its place and waits there (COMMAND_ARRIVED)."""
