@@ -182,8 +182,9 @@ class Fleet:
             self._held[id(snapshot)] = held = held._replace(of=snapshot)
         self._give(rows, held)
         if seed is not None:
-            for row in rows:
-                rng.seed(self.view(row).rng, seed)
+            at = self.kind.record.fields["rng"].offset
+            for row in rows:  # a view of the whole record would cost more than all else here
+                rng.seed(rng.Rng(self._records_u1[row].data[at : at + rng.Rng.dtype.itemsize]), seed)
 
     def move(self, which: int | Iterable[int], moves: Move | Sequence[Move], snapshot: Snapshot | None = None) -> None:
         """Put vehicles elsewhere within this instant, with all that they know of places; see docs/fleets.md.

@@ -7,6 +7,7 @@ All times are simulated microseconds.
 from __future__ import annotations
 
 import struct
+from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -176,7 +177,7 @@ class Bridge:
         self.board.remove_link(link)
 
     @property
-    def dropped(self) -> list[str]:
+    def dropped(self) -> deque[str]:
         """Why channels were lost or refused and messages left out, for people."""
         return self.board.dropped
 

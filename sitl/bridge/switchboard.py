@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import selectors
+from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from .channel import Channel, Ports
 from .links.link import Link, Peer
+
+MAX_NOTES = 1000
 
 
 class Tap(Protocol):
@@ -90,8 +93,8 @@ class Switchboard:
         self.ports = Ports()
         self.heard = 0
         """How often clients have said something."""
-        self.dropped: list[str] = []
-        """Why channels were lost or refused, for people."""
+        self.dropped: deque[str] = deque(maxlen=MAX_NOTES)
+        """Why channels were lost or refused, for people; the oldest are forgotten where nobody takes them."""
         self.taps: list[Tap] = []
         self.client_taps: list[Tap] = []
         """See only what clients sent."""

@@ -118,7 +118,7 @@ def run_script(
         if page is not None:
             pace = ScriptPace(Pacer(page, "max" if factor is None else factor))
         try:
-            script = subprocess.Popen(command) if page is None else start_script(command, page)
+            script = subprocess.Popen(command) if page is None else start_script(command, page, ends_with_us=True)
         except OSError as error:
             raise OptionError(f"command {command[0]!r} cannot be started: {error.strerror or error}") from None
         stack.callback(end, script, page)

@@ -7,6 +7,7 @@ import argparse
 import math
 import signal
 import sys
+from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,7 +45,7 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
     plant = build_plant(options)
     links: list[Link] = []
     log: TlogWriter | None = None
-    messages: list[str] = []
+    messages: deque[str] = deque()
     try:
         if choice.program is not None and choice.kind == ARDUPILOT:  # PX4 speaks UDP itself
             links = open_links(options)

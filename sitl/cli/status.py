@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from collections import deque
 from collections.abc import Callable
 
 from ..plants.local import LocalPlant
@@ -25,7 +26,7 @@ class Line:
     """
 
     def __init__(
-        self, messages: list[str], time_us: Callable[[], int], describe: Callable[[float], str], enabled: bool
+        self, messages: deque[str], time_us: Callable[[], int], describe: Callable[[float], str], enabled: bool
     ) -> None:
         self._messages, self._time_us, self._describe = messages, time_us, describe
         self._enabled = enabled and sys.stderr.isatty()
@@ -37,7 +38,7 @@ class Line:
     def refresh(self) -> None:
         """Print the messages, and rewrite the line when it is due."""
         while self._messages:
-            print(f"\r{self._messages.pop(0)}".ljust(self._width), file=sys.stderr, flush=True)
+            print(f"\r{self._messages.popleft()}".ljust(self._width), file=sys.stderr, flush=True)
         now = time.monotonic()
         if not self._enabled or now < self._next:
             return
@@ -88,7 +89,7 @@ def clients(simulation: Simulation) -> int:
 class PlantStatus(Line):
     """Of a vehicle whose autopilot is another program, from the physics' state."""
 
-    def __init__(self, plant: LocalPlant, messages: list[str], enabled: bool = True) -> None:
+    def __init__(self, plant: LocalPlant, messages: deque[str], enabled: bool = True) -> None:
         reader = plant.vehicle.reader
         read = reader.fields("time_us", "physics.body.pos", "physics.body.vel")
 
@@ -106,4 +107,4 @@ class PlantStatus(Line):
         """End the line and print pending messages."""
         super().close()
         while self._said:
-            print(self._said.pop(0), file=sys.stderr)
+            print(self._said.popleft(), file=sys.stderr)

@@ -163,7 +163,7 @@ class Session:
         self.storage.write()
         dropped = self.simulation.bridge.dropped
         while dropped:
-            self._say(dropped.pop(0))
+            self._say(dropped.popleft())
 
     def close(self) -> None:
         """Keep everything and close all."""

@@ -31,7 +31,17 @@ def script_environment(page: ClockPage, env: Mapping[str, str] | None = None) ->
 
 
 def start_script(
-    argv: Sequence[str], page: ClockPage, env: Mapping[str, str] | None = None, **options: Any
+    argv: Sequence[str],
+    page: ClockPage,
+    env: Mapping[str, str] | None = None,
+    ends_with_us: bool = False,
+    **options: Any,
 ) -> subprocess.Popen:
-    """Start `argv` on the clock of `page` and return at once; `options` go to subprocess.Popen."""
-    return subprocess.Popen(list(argv), env=script_environment(page, env), **options)
+    """Start `argv` on the clock of `page` and return at once; `options` go to subprocess.Popen.
+
+    With `ends_with_us` it gets SIGTERM when the thread that calls this ends, also by SIGKILL.
+    """
+    environment = script_environment(page, env)
+    if ends_with_us:
+        environment["SITL_WARP_PARENT"] = str(os.getpid())
+    return subprocess.Popen(list(argv), env=environment, **options)

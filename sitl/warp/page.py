@@ -22,6 +22,7 @@ import os
 import struct
 import tempfile
 import time
+from pathlib import Path
 
 MAGIC = 0x3150524157495453
 PAGE_BYTES = 4096
@@ -31,6 +32,8 @@ PID_SLOTS = 256
 FOREVER_NS = 2**63 - 1
 
 WAITING, RUNNING, RELEASED = 0, 1, 2
+
+_PREFIX, _SUFFIX = "sitl-clock-", ".page"
 
 _HEADER = struct.Struct("<QQqqq")
 _LINE = struct.Struct("<QqqdqQQ")
@@ -55,7 +58,8 @@ class ClockPage:
         """
         if folder is None:
             folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
-        file, self.path = tempfile.mkstemp(prefix="sitl-clock-", suffix=".page", dir=folder)
+        _remove_orphans(folder)
+        file, self.path = tempfile.mkstemp(prefix=_PREFIX, suffix=_SUFFIX, dir=folder)
         try:
             os.ftruncate(file, PAGE_BYTES)
             self._map = mmap.mmap(file, PAGE_BYTES)
@@ -172,3 +176,21 @@ class PageReader:
         if state == WAITING:
             return sim_ns / 1000
         return min(sim_ns + max(time.monotonic_ns() - wall_ns, 0) * rate, max(ceiling_ns, sim_ns)) / 1000
+
+
+def _remove_orphans(folder: str) -> None:
+    """Remove the pages of simulators that were killed before they could."""
+    for path in Path(folder).glob(f"{_PREFIX}*{_SUFFIX}"):
+        with contextlib.suppress(ValueError, OSError):  # just being made, or another user's
+            if not _is_alive(PageReader(str(path)).writer):
+                path.unlink()
+
+
+def _is_alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True

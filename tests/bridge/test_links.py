@@ -89,26 +89,33 @@ def test_a_tcp_client_that_does_not_read_cannot_stall_the_vehicle(bench: Bench) 
     bench.bridge.close()
 
 
-def test_tcp_refuses_more_clients_than_it_takes(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tcp, "MOST_CONNECTIONS", 2)
+def test_a_silent_tcp_client_gives_way_to_another_one(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tcp, "MAX_CONNECTIONS", 2)
     link = TcpServerLink(0)
     bench.bridge.add_link(link)
     clients = []
-    for _ in range(4):
+    for k in range(4):
         clients.append(socket.create_connection(link.local_address, timeout=5.0))
         receive(bench)
+        if k == 0:
+            clients[0].send(b"something")
+            receive(bench)
     assert len(bench.bridge.channels) == 3
-    assert clients[2].recv(1) == b"" and clients[3].recv(1) == b""
-    assert len(bench.bridge.dropped) == 1 and "there are 2" in bench.bridge.dropped[0]
+    assert clients[1].recv(1) == b"" and clients[2].recv(1) == b""
+    assert len(bench.bridge.dropped) == 2
+    assert all("more than 2 clients; silent for longest" in note for note in bench.bridge.dropped)
     clients[0].close()
     receive(bench)
     assert len(bench.bridge.channels) == 2
-    clients.append(socket.create_connection(link.local_address, timeout=5.0))
-    receive(bench)
-    assert len(bench.bridge.channels) == 3
     bench.bridge.close()
     for c in clients:
         c.close()
+
+
+def test_notes_that_nobody_takes_are_few(bench: Bench) -> None:
+    for k in range(3000):
+        bench.bridge.dropped.append(f"client {k} is gone")
+    assert len(bench.bridge.dropped) == 1000 and bench.bridge.dropped[-1] == "client 2999 is gone"
 
 
 class _NoRoom:

@@ -26,6 +26,7 @@ from sitl.bridge.wire.choose import message_of
 from sitl.bridge.wire.port import Port
 from sitl.core.geodesy import METRES_PER_DEGE7, longitude_scale
 from sitl.core.kernels import law
+from sitl.core.vectors import Vec3
 from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
 from sitl.vehicle.record import Vehicle
@@ -76,6 +77,15 @@ def test_the_place_is_the_fix_until_there_is_an_origin(v: Copter) -> None:
     assert here.lat == pytest.approx(HOME[0] + 100.0 / METRES_PER_DEGE7, abs=1)
     assert here.lon == pytest.approx(HOME[1] + 200.0 / scale, abs=2)
     assert here.alt == 589.0
+
+
+@pytest.mark.parametrize(("east_m", "lon"), [(50.0, -1799995508), (-50.0, 1799995508)])
+def test_longitudes_go_on_behind_180_degrees(v: Copter, east_m: float, lon: int) -> None:
+    estimate = v.autopilot.estimate
+    estimate.origin_set, estimate.origin_lat = True, 0
+    estimate.origin_lon = 1800000000 if east_m > 0 else -1800000000
+    estimate.pos = Vec3(0.0, east_m, 0.0)
+    assert global_position(v).lon == lon
 
 
 def test_attitude(v: Copter) -> None:

@@ -8,6 +8,7 @@ bounds are wide and may be missed twice.
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -102,6 +103,27 @@ def test_clock_of_a_killed_simulator_runs_on():
     )
     done = subprocess.run([sys.executable, "-c", simulator], capture_output=True, text=True, timeout=60)
     assert done.stdout.splitlines()[-1] == "ended"
+
+
+def test_a_killed_command_takes_its_script_along_and_its_page_goes_with_the_next():
+    need_library()
+    command = (
+        "import sys, os, signal; from sitl.warp import ClockPage, start_script\n"
+        "page = ClockPage(); page.publish(5_000_000, 50.0)\n"
+        "forever = 'import time; print(1, flush=True); time.sleep(1e9); print(2)'\n"
+        "start_script([sys.executable, '-u', '-c', forever], page, ends_with_us=True)\n"
+        "print(page.path, flush=True); sys.stdin.readline(); os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    running = subprocess.Popen(
+        [sys.executable, "-c", command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert running.stdout is not None and running.stdin is not None
+    lines = {running.stdout.readline().strip(), running.stdout.readline().strip()}
+    (path,) = lines - {"1"}
+    left, _ = running.communicate("go on\n", timeout=60)  # returns when the script has closed its output, too
+    assert left == "" and Path(path).exists()
+    with ClockPage() as page:
+        assert not Path(path).exists() and Path(page.path).exists()
 
 
 def test_time_is_never_seen_going_back_across_threads():

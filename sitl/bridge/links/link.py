@@ -31,6 +31,8 @@ class Peer:
         self.name = name
         self.closed = False
         self.why_closed = ""
+        self.last_received = 0
+        """Number of the last piece of bytes that came from it on its link; 0 before the first."""
         self._inbox: list[bytes] = []
         self.outbox: list[bytes] = []
 
@@ -81,6 +83,7 @@ class Link:
     def __init__(self, name: str) -> None:
         self.name = name
         self.peers: list[Peer] = []
+        self._received = 0
         self.refusals: list[str] = []
         """Why clients were turned away; the switchboard takes them."""
         self._on_peer: Callable[[Peer], None] | None = None
@@ -99,6 +102,16 @@ class Link:
         self._on_peer = on_peer
         for peer in self.peers:
             on_peer(peer)
+
+    def deliver(self, peer: Peer, data: bytes) -> None:
+        """Bytes from a peer of this link."""
+        self._received += 1
+        peer.last_received = self._received
+        peer.deliver(data)
+
+    def silent_for_longest(self) -> Peer:
+        """The peer to go when there is no room for another; one that never said anything is first."""
+        return min(self.peers, key=lambda peer: peer.last_received)
 
     def add_peer(self, peer: Peer) -> None:
         self.peers.append(peer)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink over TCP: the vehicle listens, up to 64 clients connect; none of them can stall it.
-
-A TCP connection that leads back to itself.
+"""MAVLink over TCP: the vehicle listens, up to 64 clients connect; none of them can stall it or keep others out.
 
 Who tries to connect to a port of this machine where nobody listens yet gets, once in some ten thousand times, that very
 port as its own, and is connected with itself: it would hear its own words, and keep the port from whom it waits for.
@@ -22,7 +20,8 @@ CONGESTED_BYTES = 1 << 18
 """With this much unsent, telemetry to the client waits (``Peer.congested``)."""
 QUEUE_BYTES = 1 << 22
 """With this much unsent, the client is dropped."""
-MOST_CONNECTIONS = 64
+MAX_CONNECTIONS = 64
+"""With so many, the client that was silent for longest gives way to another one."""
 CONNECT_S = 5.0
 """Wall time to connect to a client that listens [s]."""
 _READ_BYTES = 1 << 16
@@ -76,7 +75,7 @@ class _TcpPeer(Peer):
             self.drop(f"connection lost: {error.strerror or error}")
             return
         if data:
-            self.deliver(data)
+            self._link.deliver(self, data)
         else:
             self.drop("client closed the connection")
 
@@ -155,10 +154,10 @@ class TcpServerLink(Link):
             if error.errno in _NO_ROOM:
                 self._make_room(error)
             return  # else gone again before we looked
-        if len(self.peers) >= MOST_CONNECTIONS:
-            self._refuse(f"there are {MOST_CONNECTIONS}, as many as are taken")
-            sock.close()
-            return
+        if len(self.peers) >= MAX_CONNECTIONS:
+            silent = self.silent_for_longest()
+            if isinstance(silent, _TcpPeer):
+                silent.drop(f"more than {MAX_CONNECTIONS} clients; silent for longest")
         sock.setblocking(False)
         with contextlib.suppress(OSError):  # some systems refuse it when the client has gone already
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -13,7 +13,7 @@ from .link import Link, Peer, Selector
 Address = tuple[str, int]
 DATAGRAM_BYTES = 1400
 """Frames are packed into datagrams up to this size, so that they pass an Ethernet without being cut up."""
-MOST_PEERS = 64
+MAX_PEERS = 64
 _READS_AT_ONCE = 256
 
 
@@ -24,8 +24,6 @@ class _UdpPeer(Peer):
         super().__init__(name)
         self._socket = sock
         self.address = address
-        self.last_received = 0
-        """Number of the last datagram that came from it on this link."""
 
     def flush(self) -> None:
         datagram = b""
@@ -54,7 +52,6 @@ class _UdpLink(Link):
             self._socket.close()
             raise
         self._by_address: dict[Address, _UdpPeer] = {}
-        self._received = 0
         self._selector: Selector | None = None
 
     @property
@@ -71,10 +68,10 @@ class _UdpLink(Link):
     def _peer(self, address: Address) -> _UdpPeer:
         peer = self._by_address.get(address)
         if peer is None:
-            if len(self._by_address) >= MOST_PEERS:
-                silent = min(self._by_address.values(), key=lambda p: p.last_received)
-                silent.closed, silent.why_closed = True, f"more than {MOST_PEERS} peers; silent for longest"
-                del self._by_address[silent.address]
+            if len(self._by_address) >= MAX_PEERS:
+                silent = self.silent_for_longest()
+                silent.closed, silent.why_closed = True, f"more than {MAX_PEERS} peers; silent for longest"
+                self._by_address = {at: one for at, one in self._by_address.items() if one is not silent}
                 self.peers.remove(silent)
             peer = _UdpPeer(f"{self.name} {address[0]}:{address[1]}", self._socket, address)
             self._by_address[address] = peer
@@ -89,10 +86,7 @@ class _UdpLink(Link):
                 return
             except OSError:
                 continue  # an earlier datagram was refused (ICMP); the socket is still good
-            self._received += 1
-            peer = self._peer(address)
-            peer.last_received = self._received
-            peer.deliver(data)
+            self.deliver(self._peer(address), data)
 
     def close(self) -> None:
         if self._selector is not None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...core.geodesy import METRES_PER_DEGE7, longitude_scale
+from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
 from ...vehicle.record import Vehicle
@@ -32,8 +32,8 @@ def global_position(v: Vehicle) -> GlobalPosition:
         north = estimate.pos.x / METRES_PER_DEGE7
         middle = int32(estimate.origin_lat + 0.5 * north) >> 12 << 12  # the same cosine for 0.4 mdeg of latitude
         scale = longitude_scale(float(middle)) * METRES_PER_DEGE7
-        lat, lon = int32(estimate.origin_lat + north), int32(estimate.origin_lon + estimate.pos.y / scale)
-        return GlobalPosition(lat, lon, estimate.origin_alt - estimate.pos.z)
+        lat, lon = estimate.origin_lat + north, wrap_longitude(estimate.origin_lon + estimate.pos.y / scale)
+        return GlobalPosition(int32(lat), int32(lon), estimate.origin_alt - estimate.pos.z)
     if gps.gps_fix >= 3:
         return GlobalPosition(gps.gps_lat, gps.gps_lon, gps.gps_alt * 1e-3)
     return GlobalPosition(0, 0, 0.0)

@@ -155,8 +155,10 @@ def make(
     if command not in COMMANDS:
         known = ", ".join(f"{number} {c.name}" for number, c in COMMANDS.items())
         raise MissionFileError(f"{where}: command {command} is not known here; known are {known}")
-    for k in (0, 1, 2, 3, 6):
+    for k in range(7):
         if math.isfinite(values[k]) and abs(values[k]) > LARGEST:
+            if k in (4, 5) and COMMANDS[command].has_place:
+                raise MissionFileError(f"{where}: {_reason(validate.INVALID_PARAM1 + k, command, frame, values)}")
             raise MissionFileError(
                 f"{where}: parameter {k + 1} is {values[k]}: it is within +-{LARGEST:.2g}, MAVLink's single precision"
             )

@@ -49,6 +49,9 @@ __attribute__((constructor)) static void attach(void) {
     munmap(p, WARP_PAGE_BYTES);
     return;
   }
+  // The script of a command that is killed ends, too: what it talks to is gone.
+  const char *parent = getenv("SITL_WARP_PARENT");
+  if (parent && atoi(parent) == (int)getppid()) prctl(PR_SET_PDEATHSIG, SIGTERM, 0, 0, 0);
   // The kernel may end any wait 50 us late to save power: 5 ms of simulated time at 100x.
   prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0);
   clock_.page = p;

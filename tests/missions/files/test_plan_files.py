@@ -160,6 +160,8 @@ def test_numbers_beyond_what_can_be_sent_are_refused() -> None:
     """Parameters travel in single precision; Python reads no whole number of thousands of digits."""
     with pytest.raises(MissionFileError, match=r"items\[0\]: parameter 1 is 1e\+39"):
         plan.parse(text(entry(params=[1e39, 0, 0, 0, 0, 0, 0])), "m")
+    with pytest.raises(MissionFileError, match=r"items\[0\]: longitude 1e\+308 is not within -180 .. 180 degrees"):
+        plan.parse(text(entry(params=[0, 0, 0, 0, 47.0, 1e308, 10.0])), "m")
     with pytest.raises(MissionFileError, match=r"^m: .*4300 digits"):
         plan.parse(text(entry()).replace('"version": 1', '"version": ' + "1" * 5000), "m")
 
