@@ -291,3 +291,20 @@ def test_a_mission_ends_at_a_spline_waypoint(core: Core) -> None:
     p.fly(5.0)
     assert p.mode == AUTO and p.armed
     assert p.pos == pytest.approx([60.0, 40.0, -60.0], abs=1.0)
+
+
+def test_loiter_to_altitude(core: Core) -> None:
+    """Up on the way, then straight down, and up and down where it is: times as ArduPilot 4.7 takes them."""
+    p, _ = fly(
+        core, "ardupilot_quad", UP, Item(c.NAV_LOITER_TO_ALT, (30.0, 0.0), 40.0),
+        Item(c.NAV_LOITER_TO_ALT, None, 20.0), Item(c.NAV_LOITER_TO_ALT, (30.0, 30.0), 20.0),
+        Item(c.NAV_LOITER_TO_ALT, None, 5.0), Item(c.NAV_RETURN_TO_LAUNCH),
+    )  # fmt: skip
+    assert p.reached == [1, 2, 3, 4, 5, 6]
+    taken = [p.reached_at(seq) - p.reached_at(seq - 1) for seq in range(2, 6)]
+    assert taken == pytest.approx([17.0, 16.35, 8.25, 12.95], rel=0.05, abs=0.5)
+    rows = p.since(0.0)
+    places = [rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(seq))), 1:4] for seq in range(2, 6)]
+    for place, wanted in zip(places, [(30, 0, -40), (30, 0, -20), (30, 30, -20), (30, 30, -5)], strict=True):
+        assert np.hypot(*(place[:2] - wanted[:2])) < 2.2
+        assert place[2] == pytest.approx(wanted[2], abs=0.5)

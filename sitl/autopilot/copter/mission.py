@@ -41,6 +41,7 @@ KINDS = {
     commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
     commands.NAV_LAND: kinds.LAND,
     commands.NAV_DELAY: kinds.DELAY,
+    commands.NAV_LOITER_TO_ALT: kinds.LOITER_TO_ALT,
     commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_VTOL_LAND: kinds.LAND,
 }
@@ -90,7 +91,7 @@ class CopterCommands(Commands[Vehicle]):
         here, _ = PLANNER.origin_of_next(ap, time_us)
         if item.command == commands.NAV_SPLINE_WAYPOINT:
             PLANNER.begin_spline(ap, time_us, point(ap, item, here))
-        elif kind in LEGS:
+        elif kind in (*LEGS, kinds.LOITER_TO_ALT):
             PLANNER.begin(ap, time_us, point(ap, item, here))
         elif kind == kinds.DELAY:
             PLANNER.begin(ap, time_us, here)

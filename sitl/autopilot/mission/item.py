@@ -16,6 +16,7 @@ NAV_LOITER_TIME = 19
 NAV_RETURN_TO_LAUNCH = 20
 NAV_LAND = 21
 NAV_TAKEOFF = 22
+NAV_LOITER_TO_ALT = 31
 NAV_SPLINE_WAYPOINT = 82
 NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
@@ -76,6 +77,7 @@ COMMANDS = {
     NAV_RETURN_TO_LAUNCH: Command("RTL", True, False),
     NAV_LAND: Command("Land", True, True),
     NAV_TAKEOFF: Command("Takeoff", True, True),
+    NAV_LOITER_TO_ALT: Command("LoitAltitude", True, True),
     NAV_SPLINE_WAYPOINT: Command("SplineWP", True, True),
     NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
