@@ -6,8 +6,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import cast
 
 from sitl.autopilot.copter.navigation import spline
+from sitl.autopilot.copter.navigation.state import CopterNav
 from sitl.autopilot.mission import item as commands
 from sitl.autopilot.mission.place import down, point
 from sitl.core.algebra import dot
@@ -87,7 +89,8 @@ class PathWatch:
             self._end = self._in_plane(point(ap, item, start))
             self._legs = [*before, (start, self._end)]
         elif item.command == commands.NAV_SPLINE_WAYPOINT:
-            marks = [spline.place(ap.modes.nav.spline, k / PIECES) for k in range(PIECES + 1)]
+            curve = cast("CopterNav", ap.modes.nav).spline
+            marks = [spline.place(curve, k / PIECES) for k in range(PIECES + 1)]
             self._end = marks[-1]
             self._legs = [*before, *pairwise(marks)]
         elif item.command == commands.NAV_TAKEOFF:

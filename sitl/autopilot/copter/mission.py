@@ -59,6 +59,7 @@ OTHERS = (
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.DEVICE_COMMANDS,
+    *commands.OUTPUT_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NAV_LOITER_TIME)

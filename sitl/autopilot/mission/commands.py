@@ -12,7 +12,7 @@ from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
 from ..state import Vehicle
 from . import item as commands
 from .item import MissionItem
-from .notes import Note
+from .notes import Note, OutputItem
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
@@ -69,6 +69,8 @@ class Commands(ABC, Generic[V]):
             nav.condition_distance = item.p1
         elif item.command == commands.DO_SET_HOME:
             set_home(v.autopilot, item)
+        elif item.command in commands.OUTPUT_COMMANDS:
+            return [OutputItem(item)]
         return []
 
     @abstractmethod

@@ -48,6 +48,7 @@ OTHERS = (
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.DEVICE_COMMANDS,
+    *commands.OUTPUT_COMMANDS,
 )
 
 

@@ -123,7 +123,7 @@ class ParameterService(Service):
         refusal = f"Param write denied ({name})" if parameter.read_only else parameter.refusal(value)
         if refusal is not None:
             return refusal
-        if not (parameter.has_effect or name in self._values.kept):
+        if not (parameter.has_effect or parameter.doc or name in self._values.kept):
             self._tell(name)
         self._values[name] = value
         self.bridge.broadcast(VALUE, self._one(name))
