@@ -168,7 +168,9 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_
     """Fuse velocity and position of a fix taken at ``when_us``; whether one of them passed its gate."""
     age = 1e-6 * (ekf.now_us - when_us)
     past = past_at(ekf, when_us)
-    velocity = fuse_velocity(ekf, 0.01 * sensors.gps_vel - past.vel, params)
+    residual = 0.01 * sensors.gps_vel - past.vel
+    estimate.innovation_vel_d = -residual.z
+    velocity = fuse_velocity(ekf, residual, params)
     estimate.variance_vel = math.sqrt(velocity)
     position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
     estimate.variance_pos = math.sqrt(position)
