@@ -14,6 +14,7 @@ from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
+from ...relays import MEANINGS
 from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
@@ -126,4 +127,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)
