@@ -91,8 +91,8 @@ def test_the_middle_gives_back_to_the_sticks_and_the_yaw_stick_turns_it_meanwhil
 )
 def test_the_side_of_a_sweep_is_that_of_the_nose(core: Core, direction: int, north: float) -> None:
     p = with_points(core, ZIGZ_AUTO_ENABLE=1.0, ZIGZ_SIDE_DIST=6.0, ZIGZ_DIRECTION=float(direction))
-    p.hold(yaw=1700)
-    assert p.fly(8.0, lambda: 60.0 < p.euler[2] < 80.0)
+    p.hold(yaw=1600)
+    assert p.fly(8.0, lambda: 40.0 < p.euler[2] < 60.0)
     p.sticks(3.0)
     here = p.pos.copy()
     switch(p, SWEEP, B)
