@@ -26,6 +26,7 @@ from .services.log_download import LogStore
 from .services.mission import MissionService
 from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
+from .services.signing import SigningService
 from .services.statustext import EventService
 from .services.streams import StreamService
 from .switchboard import Switchboard
@@ -35,7 +36,7 @@ from .wire.fleet import Slot
 from .wire.link import REGULAR
 from .wire.port import NEVER, Port
 
-_HEARTBEAT = message("HEARTBEAT").id
+_HEARTBEAT, _SETUP_SIGNING = message("HEARTBEAT").id, message("SETUP_SIGNING").id
 EPOCH_US = 1_767_225_600_000_000
 """Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
 
@@ -106,6 +107,8 @@ class Bridge:
             self.services[kind] = service
             for name, handler in service.handlers().items():
                 self._add_handler(name, handler)
+        self._signing: SigningService = self.get(SigningService)
+        self.board.signer = self._signing
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
         self._stateful = [s for s in self.services.values() if type(s).snapshot is not Service.snapshot]
 
@@ -238,6 +241,8 @@ class Bridge:
                 self.board.heard += 1
                 if journal is not None:
                     journal.received(channel, data)
+                if self._signing.concerns(channel):
+                    data = self._signing.received(channel, data)
             if data or resume:
                 self._hear(channel, data)
         if journal is not None:
@@ -264,8 +269,9 @@ class Bridge:
                 if not channel.port.frame_end:
                     return
             frame = channel.frame()
-            for tap in (*self.taps, *self.client_taps):
-                tap.frame(self.elapsed_us, frame.raw)
+            if frame.kind.id != _SETUP_SIGNING:  # a key is not for logs
+                for tap in (*self.taps, *self.client_taps):
+                    tap.frame(self.elapsed_us, frame.raw)
             taken, channel.port.frame_end = channel.port.frame_taken, 0
             if not taken:
                 self._dispatch(channel, frame)
@@ -512,6 +518,7 @@ class Bridge:
         self.flush()
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
         new.get(MissionService).follow(self.get(MissionService))
+        new.get(SigningService).follow(self._signing)
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

@@ -12,6 +12,8 @@ from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
 from ..bridge.links import Link
+from ..bridge.services.signing import SigningService
+from ..bridge.signing import WINDOW
 from ..core.compile import Progress
 from ..errors import OptionError
 from ..logs.dataflash.log import attach
@@ -85,6 +87,8 @@ class Session:
         simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
+        if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again
+            simulation.bridge.get(SigningService).restore(kept._replace(timestamp=kept.timestamp + WINDOW))
         simulation.bridge.listeners.append(self)
         self._statistics = Statistics(simulation, self.storage.keep)
         self._awaited: Link | None = None
@@ -124,6 +128,8 @@ class Session:
             if link is not None:
                 self._serial[f"SERIAL{number}_PROTOCOL"] = link
                 link.is_high_latency = self._values[f"SERIAL{number}_PROTOCOL"] == HIGH_LATENCY
+                if number == 0:
+                    link.take_unsigned()
                 bridge.add_link(link)
                 self._say(f"MAVLink on SERIAL{number}: {link.name}")
                 if serial_ports.waits(line.devices[number]) and self._awaited is None:
@@ -180,13 +186,20 @@ class Session:
         if mission is not self._mission:
             self._mission = mission
             self.storage.keep_mission(mission.items)
+        self._keep_key()
         self.storage.write()
         dropped = self.simulation.bridge.dropped
         while dropped:
             self._say(dropped.popleft())
 
+    def _keep_key(self, with_time: bool = False) -> None:
+        state = self.simulation.bridge.get(SigningService).snapshot()
+        if state.key != self.storage.signing.key or (with_time and state.key):
+            self.storage.keep_signing(state)
+
     def close(self) -> None:
         """Keep everything and close all."""
+        self._keep_key(with_time=True)
         self.storage.write()
         self.simulation.close()
 

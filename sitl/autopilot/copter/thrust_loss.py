@@ -25,9 +25,9 @@ _OFF = 1
 @inlined
 def may_be_lost(attitude: AttitudeState, motors: MotorsState, vel_d: float) -> bool:
     """Whether throttle is used up and the vehicle sinks all the same; ``vel_d``: down [m/s]."""
-    if vel_d <= 0.0 or attitude.throttle_in < THROTTLE_LOW:
+    if attitude.throttle_in < THROTTLE_HIGH and not motors.limit_throttle_upper:  # first, since seldom otherwise
         return False
-    return attitude.throttle_in >= THROTTLE_HIGH or motors.limit_throttle_upper
+    return attitude.throttle_in >= THROTTLE_LOW and vel_d > 0.0
 
 
 @law
@@ -44,10 +44,10 @@ def check(v: Vehicle) -> None:
     """One tick: count, and boost after a second."""
     ap = v.autopilot
     attitude, motors = ap.control.attitude, ap.control.motors
-    if not may_be_lost(attitude, motors, ap.estimate.vel.z):
+    if may_be_lost(attitude, motors, ap.estimate.vel.z):
+        watch(v)
+    elif motors.loss_ticks != 0:
         motors.loss_ticks = 0
-        return
-    watch(v)
 
 
 @law

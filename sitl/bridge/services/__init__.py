@@ -12,6 +12,7 @@ from .mission import MissionService
 from .parameters import ParameterService
 from .service import Service
 from .setpoints import SetpointService
+from .signing import SigningService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
 
@@ -32,6 +33,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     ConfigErrorService,
     FtpService,
     LogDownloadService,
+    SigningService,
 )
 """In the order in which they act when several are due at the same time."""
 _registered: list[type[Service]] = []

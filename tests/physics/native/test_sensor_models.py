@@ -62,6 +62,20 @@ def test_noise_scale_zero_is_the_truth(rig):
     assert list(s.mag) == approx(r.p.place.field, abs=1e-7)
 
 
+def test_the_gyros_of_ardupilots_airframes_drift_and_come_back(rig):
+    """SIM_DRIFT_SPEED 0.05 deg/s a minute on all axes, for SIM_DRIFT_TIME 5 minutes, then back."""
+    r = rig()
+    a, s = r.p.airframe, r.p.sensors
+    for tick in range(0, 240_000, imu.WALK_TICKS):
+        imu.drift(s, a, tick)
+        if tick == 120_000 - imu.WALK_TICKS:
+            assert list(s.gyro_walk) == approx([math.radians(0.25)] * 3, rel=1e-3)
+    assert list(s.gyro_walk) == approx([0.0] * 3, abs=1e-9)
+    a.gyro_drift_speed = 0.0
+    imu.drift(s, a, 0)
+    assert list(s.gyro_walk) == approx([0.0] * 3, abs=1e-9)
+
+
 def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
     r = rig(gps_fix_time=0.01, gps_start=0.01)
     p, s = r.p, r.v.sensors
@@ -73,7 +87,7 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
         if s.gps_count != before:
             arrivals.append(tick)
             north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
-            then = tick - 40  # 100 ms ago
+            then = tick - 53  # 132.5 ms ago
             assert north == approx(0.0025 * then * 10.0, abs=0.006)  # steps of 1e-7 degree
             assert s.gps_time_us == tick * 2500
     assert np.diff(arrivals).tolist() == [80] * (len(arrivals) - 1)

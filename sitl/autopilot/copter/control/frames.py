@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from ..parameters import Parameters
 from .state import MOTORS_MAX, MotorsState
+from .state import QUAD as MOTORS_OF_QUAD
 
 QUAD, HEXA, OCTA, OCTAQUAD, Y6 = 1, 2, 3, 4, 5
 """FRAME_CLASS"""
@@ -132,6 +133,7 @@ def load_frame(motors: MotorsState, p: Parameters) -> None:
         if k < len(frame) and wanted not in functions and functions[k] == 0:
             p.SERVO[k].FUNCTION = functions[k] = wanted
         motors.output[k] = functions.index(wanted) if wanted in functions else -1
+    motors.is_plain_quad = list(motors.output[: motors.count]) == list(range(MOTORS_OF_QUAD))
 
 
 def _halves(parts: list[float]) -> list[float]:

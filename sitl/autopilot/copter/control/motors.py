@@ -15,7 +15,7 @@ from ...state import Actuators, Arming
 from ..parameters import Parameters
 from ..parameters.control import Motors
 from .mixer import Boost, Demands, follow_boost, mix, mix_many, watch_balance
-from .state import DT, MotorsState
+from .state import DT, QUAD, MotorsState
 from .thrust_curve import command_from_thrust
 
 # desired_spool
@@ -23,8 +23,6 @@ DESIRED_SHUT_DOWN, DESIRED_GROUND_IDLE, DESIRED_THROTTLE_UNLIMITED = 0, 1, 2
 # spool_state
 SHUT_DOWN, GROUND_IDLE, SPOOLING_UP, THROTTLE_UNLIMITED, SPOOLING_DOWN = 0, 1, 2, 3, 4
 
-QUAD = 4
-"""Motors of the frame whose loops are unrolled."""
 ARMING_DELAY_US = 2_000_000
 """Motors stand still for this long after arming [us]: time to step back (ArduPilot's)."""
 _HOVER_TIME = 10.0  # time constant of hover-throttle learning [s]
@@ -197,14 +195,14 @@ def drive_motors(motors: MotorsState, arming: Arming, p: Parameters, time_us: in
         motors.throttle_out = 0.0
     else:
         demands = compensated_demands(motors)
-        if motors.count == QUAD:
+        if motors.is_plain_quad:
             out = mix(motors, QUAD, demands, p.MOT.YAW_HEADROOM * 0.001, Boost(-1, 0.0))
             if motors.boosting:
                 watch_balance(motors, out, demands.throttle_max)
         else:
             out = mix_many(motors, demands, p.MOT.YAW_HEADROOM * 0.001)
         motors.throttle_out = out / motors.compensation_gain
-    if motors.count == QUAD:
+    if motors.is_plain_quad:
         command_motors(motors, QUAD, p.MOT)
     else:
         command_motors(motors, motors.count, p.MOT)
@@ -217,19 +215,17 @@ def write_actuators(motors: MotorsState, actuators: Actuators, armed: bool, pwm_
     """Pulses between ``pwm_min`` and ``pwm_max`` [us] and 0 .. 1 controls; disarmed motors get ``pwm_min`` and 0."""
     shortest, span = (pwm_min, pwm_max - pwm_min) if pwm_max > pwm_min else (1000, 1000)
     actuators.armed = armed
-    if motors.count == QUAD:
-        write_outputs(motors, QUAD, actuators, shortest, span)
+    if motors.is_plain_quad:
+        for k in range(QUAD):
+            write_output(actuators, k, shortest + int(span * motors.actuator[k]), armed)
     else:
-        write_outputs(motors, motors.count, actuators, shortest, span)
+        for k in range(motors.count):
+            if motors.output[k] >= 0:
+                write_output(actuators, motors.output[k], shortest + int(span * motors.actuator[k]), armed)
 
 
 @inlined
-def write_outputs(motors: MotorsState, count: int, actuators: Actuators, shortest: int, span: int) -> None:
-    """Those of the first ``count`` motors; pulses are ``shortest`` to ``span`` more [us]."""
-    armed = actuators.armed
-    for k in range(count):
-        pulse = shortest + int(span * motors.actuator[k])
-        output = motors.output[k]
-        if output >= 0:
-            actuators.pwm[output] = pulse
-            actuators.controls[output] = constrain((pulse - 1000) * 0.001, 0.0, 1.0) if armed else 0.0
+def write_output(actuators: Actuators, output: int, pulse: int, armed: bool) -> None:
+    """One pulse [us], and the control that it stands for."""
+    actuators.pwm[output] = pulse
+    actuators.controls[output] = constrain((pulse - 1000) * 0.001, 0.0, 1.0) if armed else 0.0

@@ -19,7 +19,7 @@ DT = 0.0025
 """Period of every law in this room [s]: one autopilot tick."""
 GRAVITY = 9.80665
 """[m/s^2]"""
-MOTORS_MAX = 8
+MOTORS_MAX, QUAD = 8, 4
 
 
 class AttitudeState(Record):
@@ -138,6 +138,7 @@ class MotorsState(Record):
     limit_throttle_lower: bool
     limit_throttle_upper: bool
     count: int  # motors of the frame; 0: there is no such frame
+    is_plain_quad: bool  # four motors on outputs 1 to 4: most vehicles, so their loops are unrolled
     roll_factor: Floats = array(MOTORS_MAX)  # parts of the demands that each motor takes, -0.5 .. 0.5
     pitch_factor: Floats = array(MOTORS_MAX)
     yaw_factor: Floats = array(MOTORS_MAX)

@@ -81,7 +81,9 @@ def run(v: Vehicle) -> None:
     ap = v.autopilot
     control, est, sticks, p = ap.control, ap.estimate, ap.modes.pilot, ap.params
     state = ap.modes.drift
-    wanted = assisted(pilot.throttle_out(sticks.throttle_filtered, hover_throttle(p.MOT)), -est.vel.z)
+    wanted = assisted(
+        pilot.throttle_out(sticks.throttle_filtered, pilot.throttle_middle(p), hover_throttle(p.MOT)), -est.vel.z
+    )
     if ground.spool_by_stick(ap.arming, sticks.throttle_zero, control.motors):
         attitude.reset_yaw_target(control.attitude, est.yaw)
         wanted = 0.0
