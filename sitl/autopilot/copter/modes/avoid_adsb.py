@@ -3,16 +3,25 @@
 
 from __future__ import annotations
 
+from ....core.kernels import law
+from ..state import Vehicle
 from . import guided
 from .mode import CopterMode, never_arms
 
 AVOID_ADSB = 19
 
+
+@law
+def run(v: Vehicle) -> None:
+    """One tick: GUIDED without set-points."""
+    guided.run(v)
+
+
 MODE = CopterMode(
     number=AVOID_ADSB,
     name="AVOID_ADSB",
     start=guided.start,
-    run=guided.run,
+    run=run,
     needs_position=True,
     autonomous=True,
     may_arm=never_arms,
