@@ -126,10 +126,10 @@ class Session:
                 continue
             link = serial_ports.open_port(line, number)
             if link is not None:
-                self._serial[f"SERIAL{number}_PROTOCOL"] = link
-                link.is_high_latency = self._values[f"SERIAL{number}_PROTOCOL"] == HIGH_LATENCY
                 if number == 0:
                     link.take_unsigned()
+                self._serial[f"SERIAL{number}_PROTOCOL"] = link
+                link.is_high_latency = self._values[f"SERIAL{number}_PROTOCOL"] == HIGH_LATENCY
                 bridge.add_link(link)
                 self._say(f"MAVLink on SERIAL{number}: {link.name}")
                 if serial_ports.waits(line.devices[number]) and self._awaited is None:
