@@ -18,6 +18,7 @@ from .events import Events
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
+from .vibration import Vibration
 
 
 class Estimate(Record):
@@ -219,6 +220,7 @@ class Autopilot(Record):
     control: Control
     events: Events
     inertial: InertialRing
+    vibration: Vibration
 
 
 class Vehicle(Protocol):

@@ -21,7 +21,7 @@ def command_int(bench: Bench, number: int, frame: int, x: int, y: int, z: float,
     return int(acks[0].result)
 
 
-@pytest.mark.parametrize("number", [0, 16, 34, 182, 2000, 31010, 42423, 65535])
+@pytest.mark.parametrize("number", [0, 16, 34, 187, 2000, 31010, 42423, 65535])
 def test_what_is_unknown_is_unsupported(bench: Bench, number: int) -> None:
     assert bench.command(number) == UNSUPPORTED
     assert command_int(bench, number, 0, 0, 0, 0.0) == UNSUPPORTED
@@ -126,7 +126,8 @@ def test_system_commands(bench: Bench) -> None:
     assert bench.command(246, 2) == UNSUPPORTED
     assert bench.command(245, 0) == DENIED
     assert bench.command(241, 1) == ACCEPTED
-    assert bench.command(241, 0, 0, 0, 0, 4) == TEMPORARILY_REJECTED
+    assert bench.command(241, 0, 0, 0, 0, 4) == ACCEPTED
+    assert bench.command(241, 0, 1) == UNSUPPORTED
     assert bench.command(185, 0) == FAILED
     assert bench.command(246, 1) == ACCEPTED and bench.vehicle.reboots == 1
     bench.vehicle.v.autopilot.arming.armed = 1

@@ -21,7 +21,7 @@ ALL_GROUPS = {
     "RAW_IMU", "SCALED_PRESSURE", "SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT",
     "NAV_CONTROLLER_OUTPUT", "SERVO_OUTPUT_RAW", "RC_CHANNELS", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED",
     "ATTITUDE", "SIMSTATE", "AHRS2", "VFR_HUD", "AHRS", "SYSTEM_TIME", "BATTERY_STATUS",
-    "EKF_STATUS_REPORT",
+    "EKF_STATUS_REPORT", "WIND", "VIBRATION",
 }  # fmt: skip
 
 
@@ -49,6 +49,15 @@ def test_all_streams_at_4_hz(bench: Bench) -> None:
     assert {name for name, n in found.items() if n == 40} == ALL_GROUPS
     bench.ask(request_stream(0, 4, start=0))
     assert set(counts(bench, 5.0)) <= {"HEARTBEAT", "TIMESYNC"}
+
+
+def test_pid_tuning_comes_with_its_group_and_mask(bench: Bench) -> None:
+    bench.ask(request_stream(10, 4))
+    assert counts(bench, 5.0)["PID_TUNING"] == 0
+    bench.vehicle.v.autopilot.params["GCS_PID_MASK"] = 5.0
+    bench.client.receive()
+    bench.run(5.0)
+    assert Counter(m.axis for m in bench.client.receive("PID_TUNING")) == {1: 20, 3: 20}
 
 
 def test_each_client_has_its_own_streams_and_sequence(bench: Bench) -> None:
@@ -161,8 +170,9 @@ RECORDED = {
     "AHRS", "AHRS2", "ATTITUDE", "BATTERY_STATUS", "EKF_STATUS_REPORT", "GLOBAL_POSITION_INT", "GPS_RAW_INT",
     "HEARTBEAT", "LOCAL_POSITION_NED", "MEMINFO", "MISSION_CURRENT", "POWER_STATUS", "RAW_IMU", "RC_CHANNELS",
     "RC_CHANNELS_SCALED", "SCALED_PRESSURE", "SERVO_OUTPUT_RAW", "SIMSTATE", "SYSTEM_TIME", "SYS_STATUS", "VFR_HUD",
+    "VIBRATION",
 }  # fmt: skip
-"""What a real ArduRover sends once a second in MANUAL, but for second sensors and vibration."""
+"""What a real ArduRover sends once a second in MANUAL, but for second sensors."""
 IN_GUIDED = {"NAV_CONTROLLER_OUTPUT"}
 
 

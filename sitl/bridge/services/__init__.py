@@ -9,6 +9,7 @@ from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
+from .outputs import OutputService
 from .parameters import ParameterService
 from .service import Service
 from .setpoints import SetpointService
@@ -33,6 +34,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     ConfigErrorService,
     FtpService,
     LogDownloadService,
+    OutputService,
     SigningService,
 )
 """In the order in which they act when several are due at the same time."""

@@ -9,6 +9,7 @@ from hashlib import sha1
 from typing import TYPE_CHECKING
 
 from ... import __version__
+from ...autopilot import relays
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
@@ -105,10 +106,22 @@ def component_metadata(vehicle: Vehicle, profile: Profile) -> bytes:
     )
 
 
+def relay_status(vehicle: Vehicle, profile: Profile) -> bytes:
+    """RELAY_STATUS: which relays there are and which of them are on, a bit each."""
+    values = vehicle.parameters
+    fitted = relays.fitted(values) if relays.MASK in values.table else []
+    return message("RELAY_STATUS").payload(
+        time_boot_ms=boot_ms(int(vehicle.v.time_us)),
+        on=sum(1 << relay for relay in fitted if relays.is_on(values, relay)),
+        present=sum(1 << relay for relay in fitted),
+    )
+
+
 SHELL_BUILDERS: dict[str, ShellBuilder] = {
     "AUTOPILOT_VERSION": autopilot_version,
     "COMPONENT_METADATA": component_metadata,
     "HIGH_LATENCY2": high_latency,
+    "RELAY_STATUS": relay_status,
 }
 """What the shell builds for every vehicle, by the message's name."""
 

@@ -167,6 +167,17 @@ def meminfo(m: MemInfo, v: Vehicle) -> bool:
     return True
 
 
+class AvailableModesMonitor(Message, name="AVAILABLE_MODES_MONITOR"):
+    seq: int
+
+
+@law
+def available_modes_monitor(m: AvailableModesMonitor, v: Vehicle) -> bool:
+    """AVAILABLE_MODES_MONITOR: a number that changes when the list of modes does, which it never does: 0."""
+    m.seq = 0
+    return True
+
+
 class SystemTime(Message, name="SYSTEM_TIME"):
     time_unix_usec: int
     time_boot_ms: int
@@ -220,5 +231,5 @@ def mission_current(m: MissionCurrent, v: Vehicle, auto: int) -> bool:
 
 
 MESSAGES = (
-    ekf_status_report, battery_status, power_status, meminfo, system_time, timesync,
+    ekf_status_report, battery_status, power_status, meminfo, system_time, timesync, available_modes_monitor,
 )  # fmt: skip

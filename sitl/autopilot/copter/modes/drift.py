@@ -14,11 +14,10 @@ from ....core.scalars import constrain
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.attitude import Lean
-from ..control.motors import hover_throttle
 from ..control.state import DT
 from ..control.throttle_mix import lean_limit
 from ..state import Vehicle
-from . import ground
+from . import ground, stabilize
 from .mode import CopterMode
 from .state import DriftState, Modes
 
@@ -81,14 +80,12 @@ def run(v: Vehicle) -> None:
     ap = v.autopilot
     control, est, sticks, p = ap.control, ap.estimate, ap.modes.pilot, ap.params
     state = ap.modes.drift
-    wanted = assisted(
-        pilot.throttle_out(sticks.throttle_filtered, pilot.throttle_middle(p), hover_throttle(p.MOT)), -est.vel.z
-    )
+    wanted = assisted(stabilize.throttle(sticks, p), -est.vel.z)
     if ground.spool_by_stick(ap.arming, sticks.throttle_zero, control.motors):
         attitude.reset_yaw_target(control.attitude, est.yaw)
         wanted = 0.0
-    most = math.radians(p.ANGLE_MAX * 0.01)
-    stick = pilot.lean_angles(sticks, most, min(most, lean_limit(control.attitude)))
+    limit = math.radians(p.ANGLE_MAX * 0.01)
+    stick = pilot.lean_angles(sticks, limit, min(limit, lean_limit(control.attitude)))
     c, s = math.cos(est.yaw), math.sin(est.yaw)
     forward, right = est.vel.x * c + est.vel.y * s, est.vel.y * c - est.vel.x * s
     rate = turn_rate(stick.roll, forward, math.radians(p.ACRO.Y_RATE))

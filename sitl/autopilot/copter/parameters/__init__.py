@@ -14,6 +14,7 @@ from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
+from ...relays import MEANINGS
 from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
@@ -78,6 +79,7 @@ class Parameters(shared.Parameters):
     FOLL: Follow
     FRAME: Frame
     FS: Failsafes
+    GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 roll, 2 pitch, 4 yaw, 8 vertical", INT16)
     GPS1_DELAY_MS: float
     GUID: Guided
     INITIAL_MODE: float
@@ -125,4 +127,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)
