@@ -11,13 +11,14 @@ from typing import Protocol
 from ..core.algebra import euler_of, quat_from_euler, yaw_of
 from ..core.border import RC_INPUTS, Actuators, Sensors
 from ..core.kernels import law
-from ..core.records import Ints, Record, array
+from ..core.records import Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .estimation.state import Ekf
 from .events import Events
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
+from .vibration import Vibration
 
 
 class Estimate(Record):
@@ -179,6 +180,26 @@ class Modes(Record):
     nav: Nav
 
 
+PATH_POINTS = 500
+"""Room of SMART_RTL's path; SRTL_POINTS are used."""
+
+
+class PathState(Record):
+    """The path that SMART_RTL goes back along (``smart_rtl_path``)."""
+
+    active: bool  # points are recorded
+    home_saved: bool
+    points: int  # on the path; point 0 is home
+    simplified: int  # so many from the start need no second look
+    good_us: int  # last good position
+    saved_us: int  # last point that found room
+    told_us: int  # when it was last said that there is little room
+    n: Floats = array(PATH_POINTS)  # NED [m]
+    e: Floats = array(PATH_POINTS)
+    d: Floats = array(PATH_POINTS)
+    keep: Ints = array(PATH_POINTS, stored="i8")  # for the simplification
+
+
 class Control(Record):
     """The controllers: what those of all firmwares share."""
 
@@ -199,6 +220,7 @@ class Autopilot(Record):
     control: Control
     events: Events
     inertial: InertialRing
+    vibration: Vibration
 
 
 class Vehicle(Protocol):

@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from ..autopilot.mission.item import MissionItem
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -24,6 +25,7 @@ from .services import all_services
 from .services.commands import Grants
 from .services.log_download import LogStore
 from .services.mission import MissionService
+from .services.outputs import OutputService
 from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
@@ -193,6 +195,9 @@ class Bridge:
         channel.port.epoch_us = self.epoch_us + self._before_boot_us
         for service in self.services.values():
             service.channel_added(channel)
+        for link in self.board.links:
+            if link.rates_hz and channel.peer in link.peers:
+                self._stream(channel, link.rates_hz)
 
     def _channel_removed(self, channel: Channel) -> None:
         self._channels_changed()
@@ -200,18 +205,24 @@ class Bridge:
             service.channel_removed(channel)
 
     def stream_to(self, link: Link, rates_hz: Mapping[str, int]) -> None:
-        """Send stream groups to every client of ``link``: {"EXTRA1": 10, ...}, names as in MAV1_EXTRA1.
+        """Send stream groups to each client of ``link``, later ones too and after a reboot, until it asks otherwise.
+
+        {"EXTRA1": 10, ...} [Hz], names as in MAV1_EXTRA1.
 
         Raises:
             KeyError: there is no such group.
         """
         if self.board.journal is not None:
             self.board.journal.streams(link, rates_hz)
-        groups = {ending: number for number, (ending, _) in self.profile.groups.items()}
+        link.rates_hz = dict(rates_hz)
         for channel in self.channels:
             if channel.peer in link.peers:
-                for name, rate in rates_hz.items():
-                    self.get(StreamService).set_group(channel, groups[name], rate)
+                self._stream(channel, rates_hz)
+
+    def _stream(self, channel: Channel, rates_hz: Mapping[str, int]) -> None:
+        groups = {ending: number for number, (ending, _) in self.profile.groups.items()}
+        for name, rate in rates_hz.items():
+            self.get(StreamService).set_group(channel, groups[name], rate)
 
     def close(self) -> None:
         """Flush and close everything."""
@@ -398,12 +409,23 @@ class Bridge:
                     self.dropped.append(f"{kind.name} is left out: it cannot carry the vehicle's numbers")
                 return
             if payload:
-                channel.send(kind, payload)
+                channel.put(kind, payload)
             if port.part == 0:  # all parts of it are sent
                 return
 
     def send_now(self, channel: Channel, number: int) -> bool:
-        """Send one telemetry message to one channel; False when there is none of this number."""
+        """Answer a client with one telemetry message, for logs too; False when there is none of this number."""
+        for log in self.board.logs:
+            if log is not channel:
+                self._send_one(log, number)
+        return self._send_one(channel, number)
+
+    def send_to_all(self, number: int) -> None:
+        """Send one telemetry message to every channel."""
+        for channel in self.channels:
+            self._send_one(channel, number)
+
+    def _send_one(self, channel: Channel, number: int) -> bool:
         if number in self.by_shell:
             self._build(channel, number)
         elif number in self.core.numbers:
@@ -434,16 +456,17 @@ class Bridge:
     def broadcast(self, kind: MessageType, payload: bytes) -> None:
         """Send to every channel."""
         for channel in self.channels:
-            channel.send(kind, payload)
+            channel.put(kind, payload)
 
     def flush(self) -> None:
         """Hand everything queued to the links."""
         self.board.flush()
 
     def beat(self) -> None:
-        """While time stands: a HEARTBEAT to every channel."""
+        """While time stands: a HEARTBEAT to every client; logs do not depend on how long it stands."""
         for channel in self.channels:
-            self.send_now(channel, _HEARTBEAT)
+            if not channel.peer.is_log:
+                self._send_one(channel, _HEARTBEAT)
         if self.board.journal is not None:
             self.board.journal.beat()
         self.flush()
@@ -477,6 +500,10 @@ class Bridge:
         if notes:
             self.get(EventService).notes(notes)
             self.flush()
+
+    def carry_out(self, item: MissionItem) -> None:
+        """Do what a mission asks of servo outputs and relays."""
+        self.get(OutputService).carry_out(item)
 
     def say_pending(self) -> None:
         """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""

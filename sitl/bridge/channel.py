@@ -6,7 +6,7 @@ What the core needs of it is in its port, a record (``wire/port.py``).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -57,10 +57,12 @@ class Channel:
     It speaks MAVLink 2, except to a client that has only ever been heard in MAVLink 1.
     """
 
-    def __init__(self, peer: Peer, number: int, system: int, is_watched: Callable[[], bool]) -> None:
+    def __init__(
+        self, peer: Peer, number: int, system: int, is_watched: Callable[[], bool], logs: Sequence[Channel] = ()
+    ) -> None:
         self.peer = peer
         self.number = number
-        self._is_watched = is_watched
+        self._is_watched, self._logs = is_watched, logs
         self.port = Port()
         self.address = 0
         """Of the port in memory, once the bridge has given it its place."""
@@ -100,6 +102,13 @@ class Channel:
     # ------------------------------------------------------------------ out
 
     def send(self, kind: MessageType, payload: bytes) -> None:
+        """Answer this client: queue one message for it and for all logs."""
+        self.put(kind, payload)
+        for log in self._logs:
+            if log is not self:
+                log.put(kind, payload)
+
+    def put(self, kind: MessageType, payload: bytes) -> None:
         """Queue one message; the bridge flushes all channels when it is done."""
         port = self.port
         if port.out_count or self.has_spooled():

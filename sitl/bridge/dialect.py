@@ -59,7 +59,20 @@ class ComponentMetadata:
     array_lengths = (0, 0, 100)
 
 
-NEWER = {AvailableModes.id: AvailableModes, ComponentMetadata.id: ComponentMetadata}
+class AvailableModesMonitor:
+    """AVAILABLE_MODES_MONITOR (https://mavlink.io/en/messages/common.html#AVAILABLE_MODES_MONITOR)."""
+
+    id = 437
+    msgname = "AVAILABLE_MODES_MONITOR"
+    crc_extra = 30
+    unpacker = struct.Struct("<B")
+    fieldnames = ("seq",)
+    fieldtypes = ("uint8_t",)
+    ordered_fieldnames = fieldnames
+    array_lengths = (0,)
+
+
+NEWER = {kind.id: kind for kind in (AvailableModes, ComponentMetadata, AvailableModesMonitor)}
 
 
 crc_mcrf4xx = cast("Callable[..., int]", crc16.mcrf4xx)

@@ -107,6 +107,8 @@ class Switchboard:
     ) -> None:
         self.links: list[Link] = []
         self.channels: list[Channel] = []
+        self.logs: list[Channel] = []
+        """Those of the channels that get what the others are answered."""
         self.ports = Ports()
         self.heard = 0
         """How often clients have said something."""
@@ -161,8 +163,10 @@ class Switchboard:
         is_new = peer not in self._kept
         number = self._kept.pop(peer, self._numbers)
         self._numbers = max(self._numbers, number + 1)
-        channel = Channel(peer, number, self._system(), self.is_watched)
+        channel = Channel(peer, number, self._system(), self.is_watched, self.logs)
         self.channels.append(channel)
+        if peer.is_log:
+            self.logs.append(channel)
         self._has_spools = self._has_spools or channel.spool is not None
         self.ports.arrange(self.channels)
         if self.journal is not None and is_new:
@@ -172,6 +176,8 @@ class Switchboard:
     def _forget_closed(self) -> None:
         for channel in [c for c in self.channels if c.peer.closed]:
             self.channels.remove(channel)
+            if channel in self.logs:
+                self.logs.remove(channel)
             self.ports.arrange(self.channels)
             if channel.peer.why_closed:
                 self.dropped.append(f"{channel.name}: {channel.peer.why_closed}")

@@ -109,7 +109,8 @@ def open_links(options: argparse.Namespace) -> list[Link]:
     step = 10 * options.instance
     outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS] if options.out is None else options.out
     links: list[Link] = [open_link(text) for text in outputs if text != "none"]
-    links.append(runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp))
+    ports = options.tcp or [runner.BASE_TCP_PORT + step]  # the autopilot's own program has the others
+    links += [runner.tcp_server(port) for port in ports]
     return links
 
 

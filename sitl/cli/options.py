@@ -60,6 +60,13 @@ def port(text: str) -> int:
     return int(text)
 
 
+def stream_rate(text: str) -> int:
+    """A rate of telemetry [Hz]; -1 for none of its own."""
+    if text != "-1" and not (text.isdigit() and int(text) <= 400):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a rate (0 .. 400 Hz, or -1)")
+    return int(text)
+
+
 def seconds(text: str) -> float:
     """A positive number of simulated seconds."""
     try:

@@ -8,7 +8,7 @@ import signal
 from functools import partial
 from pathlib import Path
 
-from ..bridge.links import Link, open_link
+from ..bridge.links import Link, TcpServerLink, UdpInLink, UdpOutLink, open_link
 from ..foreign.choice import choose
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup
@@ -16,7 +16,7 @@ from ..run.standstill import serve_lockstep
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
 from . import foreign, recordings
-from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds
+from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
 from .status import StatusLine
 
 
@@ -35,14 +35,29 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Options of everything that serves a vehicle."""
-    ports = " and ".join(f"udp:127.0.0.1:{p}" for p in runner.OUTPUT_PORTS)
+    ports = ", ".join(f"udp:127.0.0.1:{p}" for p in runner.OUTPUT_PORTS)
+    more = ", ".join(map(str, (runner.BASE_TCP_PORT, *runner.MORE_TCP_PORTS)))
     parser.add_argument(
         "--instance", type=instance, default=0, metavar="N", help="adds 10 N to every default port and N to MAV_SYSID"
     )
     parser.add_argument(
         "--out", action="append", metavar="udp:HOST:PORT", help=f"send there (repeatable; default {ports}; or 'none')"
     )
-    parser.add_argument("--tcp", type=port, metavar="PORT", help="TCP port to serve (default 5760; 0: a free one)")
+    parser.add_argument(
+        "--tcp",
+        action="append",
+        type=port,
+        metavar="PORT",
+        help=f"serve it (repeatable; default {more}; 0: any)",
+    )
+    parser.add_argument(
+        "--streamrate",
+        type=stream_rate,
+        default=runner.STREAM_RATE_HZ,
+        metavar="N",
+        help=f"telemetry to UDP clients until they ask otherwise [Hz] (default {runner.STREAM_RATE_HZ}; "
+        "-1: as the MAV1_ parameters say)",
+    )
     parser.add_argument("--duration", type=seconds, metavar="SIM_SECONDS", help="stop after this simulated time")
     parser.add_argument("--quiet", action="store_true", help="no status line")
     recordings.add_recording_option(parser)
@@ -50,7 +65,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
 
 
 def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
-    """Build the simulation, open its links and its log, and say where they are; also gives the TCP port and the log."""
+    """Build the simulation, open its links and its log, and say where they are; also gives the first TCP port."""
     step = 10 * options.instance
     if options.out is None:
         outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS]
@@ -58,8 +73,8 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
         outputs = [text for text in options.out if text != "none"]
     folder = open_folder(options.log_dir)
     links: list[Link] = [open_link(text) for text in outputs]
-    tcp = runner.tcp_server(runner.BASE_TCP_PORT + step if options.tcp is None else options.tcp)
-    links.append(tcp)
+    servers = open_servers(options)
+    links += servers
     if getattr(options, "from_file", None) is not None:
         simulation = recordings.resume(options)
     else:
@@ -67,10 +82,18 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
         recordings.record(simulation, options)
     for link in links:
         simulation.bridge.add_link(link)
+        if isinstance(link, (UdpInLink, UdpOutLink)) and options.streamrate >= 0:
+            runner.stream_everything(simulation, link, options.streamrate)
         print(f"MAVLink on {link.name}")
     log = runner.open_log(simulation, folder, f"{simulation.airframe.name}-{options.instance}")
     print(f"log: {log}", flush=True)
-    return simulation, tcp.local_address[1], log
+    return simulation, servers[0].local_address[1], log
+
+
+def open_servers(options: argparse.Namespace) -> list[TcpServerLink]:
+    """Listen on the TCP ports of the options, or on those of the instance."""
+    ports = options.tcp or [10 * options.instance + p for p in (runner.BASE_TCP_PORT, *runner.MORE_TCP_PORTS)]
+    return [runner.tcp_server(number) for number in ports]
 
 
 def run(options: argparse.Namespace) -> int:

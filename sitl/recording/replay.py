@@ -147,7 +147,7 @@ class Replay:
             bridge.remove_link(self._links.pop(number))
         elif kind is EntryKind.CONNECTED:
             link = self._links[read_varint(entry.data, 0)[0]]
-            peer = ReplayedPeer(link.name, self.simulation, self._flips[number], link.writer)
+            peer = ReplayedPeer(link.name, self.simulation, self._flips[number], link.kind == LOG, link.writer)
             peer.is_signed = link.kind not in (LOG, IN_PROCESS)
             self._peers[number] = peer
             link.add_peer(peer)

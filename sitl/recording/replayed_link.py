@@ -19,10 +19,13 @@ class Flip(NamedTuple):
 
 
 class ReplayedPeer(Peer):
-    """A client of the recording: it is sent frames, and reads as slowly as it did."""
+    """A client of the recording, or its log: it is sent frames, and reads as slowly as it did."""
 
-    def __init__(self, name: str, clock: Clock, flips: list[Flip], writer: FrameWriter | None = None) -> None:
+    def __init__(
+        self, name: str, clock: Clock, flips: list[Flip], is_log: bool = False, writer: FrameWriter | None = None
+    ) -> None:
         super().__init__(name)
+        self.is_log = is_log
         self._clock, self._flips, self._writer = clock, flips, writer
         self._sent = 0
         self._congested = False

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from ..bridge.channel import COMPONENT
-from ..bridge.links import LinkAddressError, LogLink
+from ..bridge.links import Link, LinkAddressError, LogLink
 from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpOutLink
 from ..logs.dataflash.log import DataFlash, attach
@@ -18,8 +18,12 @@ from .standstill import Patience
 
 HOST = "127.0.0.1"
 BASE_TCP_PORT = 5760
-OUTPUT_PORTS = (14550, 14540)
-"""Where QGroundControl, MAVProxy and MAVSDK listen by default."""
+MORE_TCP_PORTS = (5762, 5763)
+"""Where ArduPilot's simulator listens, too."""
+OUTPUT_PORTS = (14550, 14551, 14540)
+"""Where QGroundControl, MAVProxy and MAVSDK listen by default; scripts listen on 14551 beside a ground station."""
+STREAM_RATE_HZ = 4
+"""Of all stream groups to UDP clients unless told otherwise, as MAVProxy asks for."""
 LOG_STREAMS = {
     "EXTRA1": 10,
     "POSITION": 10,
@@ -57,6 +61,12 @@ def tcp_server(port: int) -> TcpServerLink:
 def send_to_free_port(simulation: Simulation, port: int) -> None:
     """Send telemetry to a local UDP port that a script of ours will listen on."""
     simulation.bridge.add_link(UdpOutLink(HOST, port))
+
+
+def stream_everything(simulation: Simulation, link: Link, rate_hz: int) -> None:
+    """Send all stream groups to every client of a link at a rate, until it asks otherwise."""
+    bridge = simulation.bridge
+    bridge.stream_to(link, {ending: rate_hz for ending, _ in bridge.profile.groups.values()})
 
 
 class ClientFrames:

@@ -16,6 +16,7 @@ from typing import TypeVar
 
 from ..autopilot.events import HIT_OBSTACLE, emit
 from ..autopilot.inertial_ring import remember
+from ..autopilot.vibration import update_vibration
 from ..core.kernels import inlined, law
 from .record import Vehicle
 
@@ -63,6 +64,7 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
         observe(vehicle)
     control(fleet, index)
     ap, sensors = vehicle.autopilot, vehicle.sensors
+    update_vibration(ap.vibration, sensors.acc)
     remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.q)
 
 

@@ -248,7 +248,7 @@ def test_read_in_pieces(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize(("message", "error"), [
-    (request(OPEN, b"@SYS/tasks.txt"), 10), (request(OPEN, b"\xff\xfe"), 10), (request(LIST, b"/"), 7),
+    (request(OPEN, b"@SYS/threads.txt"), 10), (request(OPEN, b"\xff\xfe"), 10), (request(LIST, b"dir"), 10),
     (request(16), 7),
     (request(READ, size=10), 4), (request(BURST, size=10), 4), (request(OPEN, size=255), 3),
 ])  # fmt: skip

@@ -144,6 +144,38 @@ def test_a_scan_goes_on_where_the_port_says(v: Copter) -> None:
     assert all(map(math.isnan, second.data[2:]))
 
 
+def tuned(law: Any, v: Vehicle, mask: int, loops: int) -> list[Any]:
+    """All parts of PID_TUNING that are sent."""
+    port, found = Port(), []
+    v.autopilot.params["GCS_PID_MASK"] = mask
+    for _ in range(loops):
+        found.append(says(law, v, port))
+    assert port.part == 0
+    return [said for said in found if said is not None]
+
+
+def test_loops_are_told_by_the_bits_of_gcs_pid_mask(v: Copter) -> None:
+    rate, params = v.autopilot.control.rate, v.autopilot.params
+    rate.roll.target, rate.roll.error, rate.roll.integrator, rate.roll.derivative = 0.5, 0.2, 0.03, 4.0
+    params.ATC.RAT_RLL.P, params.ATC.RAT_RLL.D, params.ATC.RAT_RLL.FF = 0.1, 0.01, 0.3
+    v.autopilot.estimate.rates = Vec3(0.3, 0.0, 0.0)
+    v.autopilot.control.pos_d.accel.integrator = -0.02
+    assert tuned(copter.pid_tuning, v, 0, 4) == []
+    (roll,) = tuned(copter.pid_tuning, v, 1, 4)
+    assert (roll.axis, roll.PDmod) == (1, 1.0)
+    assert (roll.desired, roll.achieved, roll.P, roll.I, roll.D, roll.FF) == pytest.approx(
+        (0.5, 0.3, 0.02, 0.03, 0.04, 0.15)
+    )
+    assert [said.axis for said in tuned(copter.pid_tuning, v, 0b1110, 4)] == [2, 3, 4]
+    assert pytest.approx(-20.0) == tuned(copter.pid_tuning, v, 8, 4)[0].I  # thousandths of throttle
+    r = Rover()
+    r.autopilot.estimate.rates = Vec3(0.0, 0.0, 0.1)
+    r.autopilot.control.speed.forward = 1.5
+    steering, speed = tuned(rover.pid_tuning, r, 511, 2)
+    assert (steering.axis, steering.achieved) == (5, pytest.approx(math.degrees(0.1), rel=1e-6))
+    assert (speed.axis, speed.achieved) == (4, 1.5)
+
+
 def test_the_truth_is_that_of_hil(v: Copter) -> None:
     body = v.physics.body
     body.q, body.rates = (0.6, 0.8, 0.0, 0.0), (0.1, 0.2, math.nan)

@@ -23,7 +23,7 @@ def installed(package: str) -> bool:
     return True
 
 
-@pytest.mark.parametrize("name", ["ground", "flight", "setpoints", "missions"])
+@pytest.mark.parametrize("name", ["ground", "flight", "setpoints", "missions", "as_published"])
 def test_mavsdk(fly: Fly, name: str) -> None:
     pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
     fly(SCRIPTS / f"mavsdk_{name}.py", MAVSDK)
@@ -57,6 +57,11 @@ def test_mavsdk_grpc(fly: Fly, vehicle: str) -> None:
 def test_dronekit(fly: Fly, vehicle: str) -> None:
     script = {"copter": "dronekit_flight.py", "rover": "dronekit_rover.py"}[vehicle]
     fly(SCRIPTS / script, UDP, vehicle=vehicle)
+
+
+@pytest.mark.skipif(not installed("dronekit"), reason="DroneKit is not installed")
+def test_dronekit_attitudes(fly: Fly) -> None:
+    fly(SCRIPTS / "dronekit_attitude.py", UDP)
 
 
 @pytest.mark.skipif(not installed("MAVProxy"), reason="MAVProxy is not installed")

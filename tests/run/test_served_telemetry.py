@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from pymavlink import mavutil
 
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Frame, Splitter, encode_v2
@@ -126,6 +127,42 @@ def test_datagrams_hold_whole_frames(core: Core) -> None:
     simulation.close()
 
 
+def test_udp_clients_are_streamed_to_from_their_beginning_and_after_a_reboot(core: Core) -> None:
+    simulation = Simulation(core=core)
+    link = UdpInLink()
+    simulation.bridge.add_link(link)
+    runner.stream_everything(simulation, link, 5)
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sock.connect(link.local_address)
+    beat = message("HEARTBEAT")
+    heard = simulation.bridge.heard
+    sock.send(encode_v2(beat, beat.payload(), 0, 255, 190))  # a client that asks for nothing
+    while simulation.bridge.heard == heard:
+        simulation.bridge.wait(5.0)
+        simulation.bridge.receive()
+    sock.setblocking(False)
+    for _ in range(2):
+        pieces = list[bytes]()
+        for _ in range(10):
+            simulation.advance(1.0)
+            while data := received(sock):
+                pieces.append(data)
+        frames = list(Splitter().feed(b"".join(pieces)))
+        for name in ("ATTITUDE", "GPS_RAW_INT", "VFR_HUD", "SYS_STATUS"):
+            assert count_of(frames, name) == 50, name
+        simulation.request_reboot()
+        simulation.advance(0.0)
+    simulation.close()
+
+
+def received(sock: socket.socket) -> bytes:
+    """A datagram; nothing when there is none."""
+    try:
+        return sock.recv(1 << 16)
+    except BlockingIOError:
+        return b""
+
+
 class StepByStep:
     """A tap that looks at every frame, and a logger that takes every sample itself."""
 
@@ -192,6 +229,40 @@ def test_logs_do_not_depend_on_how_far_the_core_goes(frame: str, tmp_path: Path)
     for stamp, frame_then in stamps:
         if frame_then.kind.name == "ATTITUDE":
             assert frame_then.kind.decode(frame_then.payload).time_boot_ms == stamp // 1000 - epoch_ms
+
+
+def test_a_log_holds_once_what_each_client_is_answered(core: Core, tmp_path: Path) -> None:
+    simulation = Simulation(core=core)
+    log = runner.open_log(simulation, tmp_path, "run")
+    first, second = Endpoint(), Endpoint(system=254)
+    for client in (first, second):
+        simulation.bridge.add_link(client.link)
+    simulation.advance(2.0)
+    first.send("PARAM_REQUEST_LIST", target_system=1, target_component=1)
+    for client in (first, second):
+        client.send("PARAM_REQUEST_READ", target_system=1, target_component=1, param_index=-1, param_id=b"RTL_ALT")
+        client.command(512, message("AUTOPILOT_VERSION").id)
+        client.command(512, message("SCALED_PRESSURE").id)
+        client.send("MISSION_REQUEST_LIST", target_system=1, target_component=1)
+        client.send("MISSION_REQUEST_INT", target_system=1, target_component=1, seq=5)  # refused by a MISSION_ACK
+    simulation.advance(5.0)
+    first.send("PARAM_SET", target_system=1, target_component=1, param_id=b"RTL_ALT", param_value=2200.0, param_type=9)
+    simulation.advance(5.0)
+    simulation.close()
+    answers = {"PARAM_VALUE", "AUTOPILOT_VERSION", "COMMAND_ACK", "MISSION_COUNT", "MISSION_ACK"}
+    told = [[m for m in client.receive() if m.name in answers] for client in (first, second)]
+    assert {m.name for m in told[1]} == answers
+    splitter = Splitter()
+    logged = [f for _, raw in read_tlog(log) for f in splitter.feed(raw) if (f.system, f.component) == (1, 1)]
+    assert without_gap(logged)
+    for name in answers:
+        of_clients = sum(m.name == name for one in told for m in one)
+        assert count_of(logged, name) == of_clients - (name == "PARAM_VALUE"), name  # one was sent to both
+    assert count_of(logged, "SCALED_PRESSURE") >= 2
+    read = mavutil.mavlink_connection(str(log))
+    while read.recv_match() is not None:
+        pass
+    assert read.params["RTL_ALT"] == 2200.0 and len(read.params) == len(simulation.bridge.vehicle.parameters.listed())
 
 
 def test_slices_grow_while_nobody_says_anything() -> None:

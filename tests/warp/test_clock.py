@@ -35,11 +35,19 @@ WAITS = {
     "asyncio.wait_for": "swallow(TimeoutError, asyncio.run, wait_for())",
     "child process": "subprocess.run(['sleep', '2'])",
     "signal.alarm": "signal.signal(signal.SIGALRM, lambda *_: None); signal.alarm(2); signal.pause()",
+    "signal.setitimer": "signal.signal(signal.SIGALRM, lambda *_: None); signal.setitimer(signal.ITIMER_REAL, 2); "
+    "time.sleep(1); left = signal.getitimer(signal.ITIMER_REAL)[0]; assert 0.01 < left < 1.01, left; signal.pause()",
+    "setitimer with an interval": "signal.signal(signal.SIGALRM, lambda *_: None); "
+    "signal.setitimer(signal.ITIMER_REAL, 0.8, 0.6); [signal.pause() for _ in range(3)]; "
+    "signal.alarm(0)",
+    "alarm that is put off": "signal.signal(signal.SIGALRM, lambda *_: None); signal.alarm(1); signal.alarm(2); "
+    "signal.pause()",
+    "timer_create": "subprocess.run(['timeout', '2', 'sleep', '60'])",
     "signal.sigtimedwait": "signal.sigtimedwait([signal.SIGUSR1], 2)",
 }
 
 # The kernel keeps these in wall time, so they end early where the simulation falls behind on a busy machine.
-KEPT_BY_KERNEL = {"SO_RCVTIMEO", "signal.alarm"}
+KEPT_BY_KERNEL = {"SO_RCVTIMEO"}
 
 PROGRAM = """
 import asyncio, json, queue, select, signal, socket, struct, subprocess, threading, time
@@ -70,6 +78,26 @@ def test_wait_lasts_as_long_in_simulated_time(name):
 
     patiently(check)
     assert shortest >= 1.99
+
+
+def test_an_alarm_is_not_early_where_the_speed_changes():
+    code = """
+import json, signal, time
+signal.signal(signal.SIGALRM, lambda *_: None)
+start = time.monotonic()
+signal.setitimer(signal.ITIMER_REAL, 3)  # while the script waits, time goes 200 times as fast as now
+time.sleep(2)
+while time.monotonic() - start < 2.05:
+    pass
+signal.pause()
+print(json.dumps([time.monotonic() - start]))
+"""
+
+    def check() -> None:
+        (lasted,) = run_python(code, "max")
+        assert 2.99 <= lasted < 3.0 + LATE_S
+
+    patiently(check)
 
 
 def test_whole_run_agrees_with_the_simulator():

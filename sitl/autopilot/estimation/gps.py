@@ -136,6 +136,7 @@ def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3) -> float:
     down = innovate_state(ekf, VEL + 2, residual.z, d)
     squares = north.value * north.value + east.value * east.value + down.value * down.value
     variances = north.variance + east.variance + down.variance
+    ekf.innovation_vel = Vec3(north.value, east.value, down.value)
     n, v = params.VELNE_M_NSE, params.VELD_M_NSE
     ratio = gate_ratio(squares, variances, math.sqrt(2.0 * n * n + v * v), params.VEL_I_GATE)
     if not ratio >= 1.0:
@@ -154,6 +155,7 @@ def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
     north = innovate_position(ekf, 0, age, residual.x, variance)
     east = innovate_position(ekf, 1, age, residual.y, variance)
     squares = north.value * north.value + east.value * east.value
+    ekf.innovation_pos = Vec3(north.value, east.value, ekf.innovation_pos.z)
     nominal = math.sqrt(2.0) * params.POSNE_M_NSE
     ratio = gate_ratio(squares, north.variance + east.variance, nominal, params.POS_I_GATE)
     if not ratio >= 1.0:

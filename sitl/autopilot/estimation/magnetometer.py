@@ -143,6 +143,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
         return True
     _set_row(ekf)
     innovation = innovate(ekf, residual, variance)
+    ekf.innovation_yaw = innovation.value
     nominal = params.MAG_M_NSE / math.sqrt(h2)
     ratio = gate_ratio(innovation.value * innovation.value, innovation.variance, nominal, params.YAW_I_GATE)
     estimate.variance_mag = math.sqrt(ratio)

@@ -102,6 +102,10 @@ class Ekf(Record):
     gps_vel_fused_us: int
     hold_us: int  # last zero-velocity or held-position fusion
     hold_pos: Vec2  # NE position held [m]
+    # last innovations (measured minus expected), fused or not, for logs
+    innovation_vel: Vec3  # GPS [m/s]
+    innovation_pos: Vec3  # GPS north and east, barometer down [m]
+    innovation_yaw: float  # magnetometer [rad]
     # consistency: normalised innovation squared, sums and counts since the filter started
     nis_sum: Floats = array(4)  # GPS position, GPS velocity, barometer, magnetometer
     nis_count: Ints = array(4, stored="i8")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...autopilot import events
+from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
@@ -35,9 +35,12 @@ PROFILE = Profile(
         3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
         4: ("RAW_CTRL", ()),
         6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
-        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2")),
+        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2", "PID_TUNING")),
         11: ("EXTRA2", ("VFR_HUD",)),
-        12: ("EXTRA3", ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT")),
+        12: (
+            "EXTRA3",
+            ("AHRS", "WIND", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION"),
+        ),
     },
     commands=COMMANDS,
     set_points=CopterSetpoints,
@@ -45,6 +48,7 @@ PROFILE = Profile(
         events.ARMED: (INFO, "Arming motors"),
         events.DISARMED: (INFO, "Disarming motors"),
         events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
+        events.PATH_LOW: (INFO, smart_rtl_path.LOW_TEXT),
         events.THRUST_LOST: (EMERGENCY, "Potential Thrust Loss ({a:.0f})"),
         events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
     },

@@ -86,7 +86,7 @@ class FrameWriter(Protocol):
 
 
 class _LogPeer(Peer):
-    waits = spools = stamps = True
+    waits = spools = stamps = is_log = True
     is_signed = False
 
     def __init__(self, name: str, writer: FrameWriter, clock: Clock) -> None:
@@ -106,7 +106,7 @@ class _LogPeer(Peer):
 
 
 class LogLink(Link):
-    """With stream rates of its own, a log does not depend on what clients asked for."""
+    """A log has streams at rates of its own, whatever clients asked for, and all that they are answered."""
 
     def __init__(self, writer: FrameWriter, clock: Clock) -> None:
         super().__init__("log")

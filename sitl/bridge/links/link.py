@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import selectors
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from ...errors import SitlError
 
@@ -30,6 +30,8 @@ class Peer:
     """Whether frames to and from it are signed once the vehicle has a key (``sitl.bridge.signing``)."""
     takes_unsigned = False
     """Whether its frames are heard without signature then, too."""
+    is_log = False
+    """Whether it is a log, which gets what other clients are answered, too."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -87,10 +89,14 @@ class Link:
     def __init__(self, name: str) -> None:
         self.name = name
         self.peers: list[Peer] = []
+        self.is_high_latency = False
+        """Of clients that come from now on: HIGH_LATENCY2 is all their telemetry (services/high_latency.py)."""
         self._received = 0
         self._takes_unsigned = False
         self.refusals: list[str] = []
         """Why clients were turned away; the switchboard takes them."""
+        self.rates_hz: Mapping[str, int] = {}
+        """Stream groups that each client gets from its beginning (``sitl.bridge.bridge.Bridge.stream_to``)."""
         self._on_peer: Callable[[Peer], None] | None = None
 
     def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:

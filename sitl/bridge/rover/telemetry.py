@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...autopilot.control.pid import pid_gains
 from ...autopilot.modes import numbers
 from ...autopilot.rover.control.servos import LEFT, OUTPUTS, RIGHT
 from ...autopilot.rover.modes.auto import AUTO
@@ -29,8 +30,10 @@ from ..telemetry.heartbeat import (
 )
 from ..telemetry.motion import VfrHud
 from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
-from ..telemetry.units import boot_ms, int16
+from ..telemetry.tuning import STEERING, VERTICAL, PidTuning, fill_tuning, next_loop
+from ..telemetry.units import DEG, boot_ms, int16
 from ..wire.message import Message
+from ..wire.port import Port
 from . import targets
 
 MANUAL_MODES = (*numbers(MODES, "manual_input"), INITIALISING)
@@ -165,7 +168,22 @@ def wheel_distance(m: WheelDistance, v: Rover) -> bool:
     return v.sensors.wheel_count > 0
 
 
+@law
+def pid_tuning(m: PidTuning, v: Rover, port: Port) -> bool:
+    """PID_TUNING: one each for the loops of turn rate [deg/s] and speed [m/s] with bits 1 and 2 of GCS_PID_MASK"""
+    params, control = v.autopilot.params, v.autopilot.control
+    loop = next_loop(port, 2, params.GCS_PID_MASK)
+    if loop == 0:
+        gains = pid_gains(params.ATC.STR_RAT)
+        fill_tuning(m, STEERING, control.steering.rate, v.autopilot.estimate.rates.z, gains, 1.0)
+        m.desired *= DEG
+        m.achieved *= DEG
+    elif loop == 1:
+        fill_tuning(m, VERTICAL, control.speed.loop, control.speed.forward, pid_gains(params.ATC.SPEED), 1.0)
+    return loop >= 0
+
+
 MESSAGES = (
     heartbeat, sys_status, mission_current, rc_channels, extended_sys_state, vfr_hud, rc_channels_scaled,
-    wheel_distance, *targets.MESSAGES,
+    wheel_distance, pid_tuning, *targets.MESSAGES,
 )  # fmt: skip

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): reads of ``@PARAM/param.pck`` and ``@META/``.
+"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): lists and reads the files of ``files.py``, tells their CRC-32,
+and takes missions as files.
 
 Everything else is refused by its own error.
 """
@@ -10,20 +11,30 @@ import struct
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from .. import metadata
 from ..channel import Channel
 from ..dialect import message
+from ..metadata import file_crc
 from ..wire.port import NEVER
-from .parameters import pack_parameters
+from . import files
 from .service import Handler, Sender, Service
 
 KIND = message("FILE_TRANSFER_PROTOCOL")
 HEADER = struct.Struct("<HBBBBBBI")
 """sequence, session, opcode, size, request opcode, burst complete, padding, offset"""
 DATA_BYTES = 239
-TERMINATE, RESET, OPEN_READ, READ, BURST_READ, ACK, NAK = 1, 2, 4, 5, 15, 128, 129
-INVALID_DATA_SIZE, INVALID_SESSION, END_OF_FILE, UNKNOWN_COMMAND, FILE_NOT_FOUND = 3, 4, 6, 7, 10
-PARAMETERS = "@PARAM/param.pck"
+TERMINATE, RESET, LIST, OPEN_READ, READ, CREATE, WRITE, CRC, BURST_READ = 1, 2, 3, 4, 5, 6, 7, 14, 15
+ACK, NAK = 128, 129
+FAIL, INVALID_DATA_SIZE, INVALID_SESSION, END_OF_FILE, UNKNOWN_COMMAND, FILE_PROTECTED, FILE_NOT_FOUND = (
+    1,
+    3,
+    4,
+    6,
+    7,
+    9,
+    10,
+)
+MOST_WRITTEN = 1 << 20
+"""Bytes of a file that is written."""
 BURST_EVERY_US = 10_000
 BURST_AT_ONCE = 10
 """Packets every 10 ms of simulated time."""
@@ -45,8 +56,10 @@ class _Request(NamedTuple):
 class _Session:
     """The one file that a client has open."""
 
-    def __init__(self, data: bytes, sender: Sender, number: int) -> None:
+    def __init__(self, data: bytes, sender: Sender, number: int, written: str = "") -> None:
         self.data, self.sender, self.number = data, sender, number
+        self.written = written
+        """Path of a file that is being written; "": it is read."""
         self.burst: _Request | None = None
         """The next packet of the burst under way."""
 
@@ -58,7 +71,11 @@ class FtpService(Service):
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
         self._operations: dict[int, Callable[[_Request], None]] = {
+            LIST: self._list,
+            CRC: self._crc,
             OPEN_READ: self._open,
+            CREATE: self._create,
+            WRITE: self._write,
             READ: self._read,
             BURST_READ: self._burst,
             TERMINATE: self._end,
@@ -100,23 +117,72 @@ class FtpService(Service):
         found = self._sessions.get(request.channel)
         if found is not None and (request.opcode == RESET or found.number == request.session):
             del self._sessions[request.channel]
+            if found.written and request.opcode == TERMINATE:
+                if not files.write(self.bridge, found.written, found.data):
+                    self._refuse(request, FAIL)
+                    return
         self._reply(request, b"", request.offset)
 
     def _open(self, request: _Request) -> None:
-        path, _, query = request.data.split(b"\0", 1)[0].decode("ascii", "replace").partition("?")
-        data = self._file(path.lstrip("/"), query.split("&"))
+        data = self._file(request)
+        if data is not None:
+            self._sessions[request.channel] = _Session(data, request.sender, request.session)
+            self._reply(request, struct.pack("<I", len(data)))
+
+    def _create(self, request: _Request) -> None:
+        path = self._path(request).lstrip("/")
+        if path in files.MISSIONS:
+            self._sessions[request.channel] = _Session(b"", request.sender, request.session, path)
+            self._reply(request, b"")
+        else:
+            self._refuse(request, FILE_PROTECTED)
+
+    def _write(self, request: _Request) -> None:
+        found = self._session(request)
+        if found is None:
+            return
+        end = request.offset + len(request.data)
+        if not found.written or end > MOST_WRITTEN:
+            self._refuse(request, FAIL)
+            return
+        found.data = found.data[: request.offset].ljust(request.offset, b"\0") + request.data + found.data[end:]
+        self._reply(request, struct.pack("<I", len(request.data)), request.offset)
+
+    def _crc(self, request: _Request) -> None:
+        data = self._file(request)
+        if data is not None:
+            self._reply(request, struct.pack("<I", file_crc(data)))
+
+    def _path(self, request: _Request) -> str:
+        return request.data.split(b"\0", 1)[0].decode("ascii", "replace")
+
+    def _file(self, request: _Request) -> bytes | None:
+        """What is in the file that is asked for; None when there is none, which the client is told."""
+        path, _, query = self._path(request).partition("?")
+        data = files.read(self.bridge, path.lstrip("/"), query.split("&"))
         if data is None:
             self._refuse(request, FILE_NOT_FOUND)
-            return
-        self._sessions[request.channel] = _Session(data, request.sender, request.session)
-        self._reply(request, struct.pack("<I", len(data)))
+        return data
 
-    def _file(self, path: str, queries: list[str]) -> bytes | None:
-        values = self.bridge.vehicle.parameters
-        if path == PARAMETERS:
-            listed = [(p, values[p.name]) for p in values.listed()]
-            return pack_parameters(listed, with_defaults="withdefaults=1" in queries)
-        return metadata.files(values.table).get(path)
+    def _list(self, request: _Request) -> None:
+        """Entries of a folder from number ``offset`` on, as many as go into a packet."""
+        if not request.data:
+            self._refuse(request, INVALID_DATA_SIZE)
+            return
+        entries = files.listing(self.bridge, self._path(request))
+        if entries is None:
+            self._refuse(request, FILE_NOT_FOUND)
+            return
+        told = b""
+        for entry in entries[request.offset :]:
+            more = entry.encode("ascii", "replace") + b"\0"
+            if len(told) + len(more) > DATA_BYTES:
+                break
+            told += more
+        if told:
+            self._reply(request, told, request.offset)
+        else:
+            self._refuse(request, END_OF_FILE)
 
     def _session(self, request: _Request) -> _Session | None:
         """The client's open session; None when it has another one or none, which it is told."""
@@ -148,7 +214,8 @@ class FtpService(Service):
 
     def snapshot(self) -> Any:
         sessions = tuple(
-            (c.number, (s.data, s.sender, s.number), s.burst and s.burst[1:]) for c, s in self._sessions.items()
+            (channel.number, (s.data, s.sender, s.number, s.written), s.burst and s.burst[1:])
+            for channel, s in self._sessions.items()
         )
         return (sessions, self.due_us)
 

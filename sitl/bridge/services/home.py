@@ -40,8 +40,7 @@ class HomeService(Service):
         home, origin = self._home(), self._origin()
         for number, now, sent in ((ORIGIN, origin, self._sent_origin), (HOME, home, self._sent_home)):
             if now != sent and now[0]:
-                for channel in self.bridge.channels:
-                    self.bridge.send_now(channel, number)
+                self.bridge.send_to_all(number)
         self._sent_home, self._sent_origin = home, origin
 
     def _set_origin(self, channel: Channel, m: Any, sender: Sender) -> None:

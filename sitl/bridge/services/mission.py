@@ -7,6 +7,7 @@ until then the old one stands.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem, home_item
@@ -96,9 +97,13 @@ class MissionService(Service):
 
     # ------------------------------------------------------------------ upload
 
-    def _items(self, kind: int) -> tuple[MissionItem, ...]:
+    def items(self, kind: int) -> tuple[MissionItem, ...]:
         """A list as it is now."""
         return self.bridge.autopilot.mission_items() if kind == MISSION else self._lists[kind]
+
+    def home_alone(self, kind: int) -> tuple[MissionItem, ...]:
+        """Item 0, home, can be read of an empty mission all the same (DroneKit's download waits for it)."""
+        return (home_item(*self._home()),) if kind == MISSION else ()
 
     def _replace(self, kind: int, items: tuple[MissionItem, ...]) -> int:
         """Replace a list whole; the MAV_MISSION_RESULT."""
@@ -109,6 +114,17 @@ class MissionService(Service):
         if TOTALS[kind] in values.table:
             values[TOTALS[kind]] = len(items)
         return ACCEPTED
+
+    def take(self, kind: int, rows: Sequence[Any]) -> bool:
+        """Replace a list by fields of MISSION_ITEM_INT; False, and it stays, when one is refused or an upload runs."""
+        taken = [from_int(fields, self._taken[kind]) for fields in rows]
+        if self.upload is not None or len(rows) > MAX_ITEMS or any(result != ACCEPTED for _, result in taken):
+            return False
+        done = self._replace(kind, tuple(item for item, _ in taken)) == ACCEPTED
+        if done:
+            self.bridge.get(StatusTextService).say(INFO, RECEIVED[kind])
+        self.bridge.say_pending()
+        return done
 
     def _is_mine(self, channel: Channel, sender: Sender) -> bool:
         """Whether no upload is under way, or this sender's."""
@@ -143,10 +159,10 @@ class MissionService(Service):
             self._ack(channel, sender, UNSUPPORTED, kind)
         elif self.upload is not None:
             self._ack(channel, sender, DENIED, kind)
-        elif not 0 <= first <= last < len(self._items(kind)):
+        elif not 0 <= first <= last < len(self.items(kind)):
             self._ack(channel, sender, INVALID_SEQUENCE, kind)
         else:
-            self._begin(channel, sender, kind, first, last + 1, self._items(kind))
+            self._begin(channel, sender, kind, first, last + 1, self.items(kind))
 
     def _begin(
         self, channel: Channel, sender: Sender, kind: int, first: int, stop: int, base: tuple[MissionItem, ...]
@@ -259,7 +275,7 @@ class MissionService(Service):
             self._ack(channel, sender, UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
             target = {"target_system": sender[0], "target_component": sender[1]}
-            channel.send(COUNT, COUNT.payload(count=len(self._items(kind)), mission_type=kind, **target))
+            channel.send(COUNT, COUNT.payload(count=len(self.items(kind)), mission_type=kind, **target))
 
     def _request_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
         self._send_item(channel, fields, sender, to_int)
@@ -272,9 +288,7 @@ class MissionService(Service):
         if kind not in self._taken:
             self._ack(channel, sender, UNSUPPORTED, kind)
             return
-        items = self._items(kind)
-        if kind == MISSION and not items:  # item 0, home, can be read all the same (DroneKit's download waits for it)
-            items = (home_item(*self._home()),)
+        items = self.items(kind) or self.home_alone(kind)
         if fields.seq >= len(items):
             self._ack(channel, sender, INVALID_SEQUENCE, kind)
         else:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Text
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -54,7 +54,7 @@ class StatusTextService(Service):
     @staticmethod
     def _send(channel: Channel, pieces: list[bytes]) -> None:
         for payload in pieces if channel.version == 2 else pieces[:1]:
-            channel.send(KIND, payload)
+            channel.put(KIND, payload)
 
 
 BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Ready"))
@@ -136,8 +136,7 @@ class EventService(Service):
             altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
             say(INFO, f"Field Elevation Set: {altitude:.0f}m")
         elif code == core.MODE_CHANGED:
-            for channel in self.bridge.channels:
-                self.bridge.send_now(channel, HEARTBEAT)
+            self.bridge.send_to_all(HEARTBEAT)
         else:
             self.notes(self.bridge.autopilot.texts_of(code, a, b))
 
@@ -150,9 +149,10 @@ class EventService(Service):
                 self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
                 for listener in self.bridge.listeners:
                     listener.reached(note.seq)
+            elif isinstance(note, OutputItem):
+                self.bridge.carry_out(note.item)
             elif isinstance(note, CurrentChanged):
-                for channel in self.bridge.channels:
-                    self.bridge.send_now(channel, MISSION_CURRENT)
+                self.bridge.send_to_all(MISSION_CURRENT)
 
 
 EVERY_US = 30_000_000

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ...autopilot.vibration import vibration_levels
 from ...core.algebra import euler_of
 from ...core.constants import GRAVITY
 from ...core.kernels import law
@@ -178,4 +179,25 @@ def simstate(m: SimState, v: Vehicle) -> bool:
     return True
 
 
-MESSAGES = (raw_imu, scaled_imu, highres_imu, scaled_pressure, simstate)
+class VibrationMessage(Message, name="VIBRATION"):
+    time_usec: int
+    vibration_x: float
+    vibration_y: float
+    vibration_z: float
+    clipping_0: int
+
+
+@law
+def vibration(m: VibrationMessage, v: Vehicle) -> bool:
+    """VIBRATION: level on each axis [m/s^2], filtered at 5 and 2 Hz as ArduPilot's; samples beyond 15.5 g."""
+    shakes = v.autopilot.vibration
+    levels = vibration_levels(shakes)
+    m.time_usec = v.time_us
+    m.vibration_x = levels.x
+    m.vibration_y = levels.y
+    m.vibration_z = levels.z
+    m.clipping_0 = shakes.clips
+    return True
+
+
+MESSAGES = (raw_imu, scaled_imu, highres_imu, scaled_pressure, simstate, vibration)

@@ -156,7 +156,18 @@ SENSORS = (
         bits.IMU,
         when=S + "baro_count",
     ),
-)
+    Message(
+        "VIBE",
+        (
+            Field("IMU", "B", "#"),
+            *(Field(f"Vibe{axis}", "f", "o", "0", derived.root(f"{A}vibration.squares[{k}]"))
+              for k, axis in enumerate("XYZ")),
+            Field("Clip", "I", source=A + "vibration.clips"),
+        ),
+        bits.MEDIUM,
+        bits.IMU,
+    ),
+)  # fmt: skip
 
 
 def battery(resting: Source, resistance: Source = 0.0) -> Message:
@@ -263,6 +274,22 @@ FILTER = (
         when=derived.estimates,
     ),
     Message(
+        "XKF3",
+        (
+            Field("C", "B", "#"),
+            *(Field(f"IV{axis}", "c", "n", "B", f"{K}innovation_vel[{k}]", -1.0) for k, axis in enumerate("NED")),
+            *(Field(f"IP{axis}", "c", "m", "B", f"{K}innovation_pos[{k}]", -1.0) for k, axis in enumerate("NED")),
+            *(Field(f"IM{axis}", "h", "G", "C") for axis in "XYZ"),
+            Field("IYAW", "c", "d", "B", K + "innovation_yaw", -DEG),
+            Field("IVT", "c", "?", "?"),
+            Field("RErr", "f"),
+            Field("ErSc", "f"),
+        ),
+        bits.MEDIUM,
+        _ATTITUDE,
+        when=derived.estimates,
+    ),
+    Message(
         "XKF4",
         (
             Field("C", "B", "#"),
@@ -309,7 +336,7 @@ FILTER = (
         when=derived.estimates,
     ),
 )  # fmt: skip
-"""XKF3, the innovations, is missing: the filter keeps none."""
+"""XKF3 has ArduPilot's sign, expected minus measured; of the magnetometer only the yaw is fused."""
 
 _BODY, _PLACE = "physics.body.", "physics.place."
 

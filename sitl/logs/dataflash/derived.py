@@ -67,6 +67,11 @@ def length(*paths: str) -> Column:
     return lambda s: np.sqrt(sum(s(path) ** 2 for path in paths))
 
 
+def root(path: str) -> Column:
+    """Square root of a number."""
+    return lambda s: np.sqrt(s(path))
+
+
 def _latitude(lat0: Array, north: Array) -> Array:
     return lat0 + north / METRES_PER_DEGE7
 

@@ -24,6 +24,7 @@ void *warp_next(const char *name) {
 #if defined(__x86_64__) && defined(__GLIBC__)
   // Condition variables have two versions on x86-64; plain dlsym may give the pre-2002 one.
   if (!strncmp(name, "pthread_cond_", 13)) f = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.2");
+  if (!strncmp(name, "timer_", 6)) f = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.3"); // and timers, with other numbers
 #endif
   return f ? f : dlsym(RTLD_NEXT, name);
 }

@@ -17,6 +17,8 @@ int warp_active(void);
 int64_t warp_wall_until(int64_t deadline_ns);
 // Nanoseconds of wall time that `sim_ns` of simulated time last at the present rate; at least 1.
 int64_t warp_wall_length(int64_t sim_ns);
+// Sets a timer of signals.c to a simulated deadline [ns] (0: stops it); 0 when `id` is none of those, else 1 and `result`.
+int warp_set_signal_timer(timer_t id, int64_t deadline, int64_t interval, struct itimerspec *before, int *result);
 struct timeval warp_wall_timeval(struct timeval sim);
 // The same, the other way round.
 int64_t warp_sim_length(int64_t wall_ns);

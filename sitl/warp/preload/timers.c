@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Timers the kernel keeps: set once in wall time for the rate of that moment. Where the clock slows down later they go
+// Timers the kernel keeps (those that send signals are in signals.c): set once in wall time for the rate of that moment. Where the clock slows down later they go
 // off early: event loops (asio, which MAVSDK is built on) then find nothing due and set the timer again.
 #define _GNU_SOURCE
 #include "clock.h"
@@ -47,6 +47,11 @@ int timerfd_gettime(int fd, struct itimerspec *now) {
 int timer_settime(timer_t id, int flags, const struct itimerspec *next, struct itimerspec *before) {
   WARP_REAL(int, timer_settime, timer_t, int, const struct itimerspec *, struct itimerspec *);
   if (!warp_active()) return real_timer_settime(id, flags, next, before);
+  int64_t value = warp_from_spec(&next->it_value), deadline = value ? warp_after(value) : 0;
+  if (value && flags & TIMER_ABSTIME) deadline = warp_at(warp_clock_of(&next->it_value), &next->it_value);
+  if (value && deadline < 1) deadline = 1;
+  int done;
+  if (warp_set_signal_timer(id, deadline, warp_from_spec(&next->it_interval), before, &done)) return done;
   struct itimerspec wall = to_wall(next, flags & TIMER_ABSTIME);
   int result = real_timer_settime(id, 0, &wall, before);
   if (!result && before)
@@ -59,33 +64,4 @@ struct timeval warp_wall_timeval(struct timeval t) {
   if (!ns) return t;
   int64_t wall = warp_wall_length(ns);
   return (struct timeval){wall / WARP_SECOND, (wall % WARP_SECOND + 999) / 1000};
-}
-
-static struct timeval lengthen_timeval(struct timeval t) {
-  int64_t sim = warp_sim_length(t.tv_sec * WARP_SECOND + t.tv_usec * 1000ll);
-  return (struct timeval){sim / WARP_SECOND, sim % WARP_SECOND / 1000};
-}
-
-int setitimer(__itimer_which_t which, const struct itimerval *restrict next, struct itimerval *restrict before) {
-  WARP_REAL(int, setitimer, __itimer_which_t, const struct itimerval *, struct itimerval *);
-  if (!warp_active() || which != ITIMER_REAL || !next) return real_setitimer(which, next, before);
-  struct itimerval wall = {warp_wall_timeval(next->it_interval), warp_wall_timeval(next->it_value)};
-  int result = real_setitimer(which, &wall, before);
-  if (!result && before)
-    *before = (struct itimerval){lengthen_timeval(before->it_interval), lengthen_timeval(before->it_value)};
-  return result;
-}
-
-int getitimer(__itimer_which_t which, struct itimerval *now) {
-  WARP_REAL(int, getitimer, __itimer_which_t, struct itimerval *);
-  int result = real_getitimer(which, now);
-  if (!result && warp_active() && which == ITIMER_REAL)
-    *now = (struct itimerval){lengthen_timeval(now->it_interval), lengthen_timeval(now->it_value)};
-  return result;
-}
-
-unsigned int alarm(unsigned int seconds) {
-  struct itimerval before, next = {.it_value = {.tv_sec = seconds}};
-  if (setitimer(ITIMER_REAL, &next, &before) != 0) return 0;
-  return (unsigned int)(before.it_value.tv_sec + (before.it_value.tv_usec > 0));
 }

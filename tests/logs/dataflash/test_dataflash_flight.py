@@ -15,7 +15,7 @@ from tests.logs.dataflash.conftest import Run, read_log
 
 COMMON = {
     "FMT", "FMTU", "UNIT", "MULT", "PARM", "VER", "MSG", "MODE", "ARM", "EV", "ORGN", "ATT", "IMU", "BARO", "MAG",
-    "GPS", "GPA", "BAT", "RCIN", "RCOU", "POS", "PSCN", "PSCE", "SIM",
+    "GPS", "GPA", "BAT", "VIBE", "RCIN", "RCOU", "POS", "PSCN", "PSCE", "SIM",
 }  # fmt: skip
 OWN = {"copter": {"RATE", "CTUN", "PSCD", "MOTB", "PIDR"}, "rover": {"THR", "STER", "NTUN", "PIDS", "PIDA"}}
 
@@ -99,6 +99,12 @@ def test_the_log_has_the_records_own_numbers(driven: Run, log: dict[str, list[An
     assert ring.acc[last, 2] == pytest.approx(float(v.sensors.acc[2]), abs=0.5)
     assert [getattr(log["RCOU"][-1], f"C{k}") for k in range(1, 5)] == v.actuators.pwm[:4].tolist()
     assert log["MAG"][-1].MagX == pytest.approx(1000.0 * float(v.sensors.mag[0]), abs=0.6)
+
+
+def test_vibration_is_that_of_the_accelerometer(driven: Run, log: dict[str, list[Any]]) -> None:
+    shakes, last = driven.simulation.v.autopilot.vibration, log["VIBE"][-1]
+    assert (last.VibeX, last.VibeZ) == pytest.approx((shakes.squares.x**0.5, shakes.squares.z**0.5), rel=1e-5)
+    assert 0.001 < last.VibeX < 5.0 and last.Clip == shakes.clips == 0
 
 
 def test_mavlogdump_reads_it(driven: Run) -> None:

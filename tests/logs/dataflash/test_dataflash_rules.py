@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pymavlink import DFReader
 
@@ -15,6 +17,8 @@ from sitl.logs.dataflash.encoder import EVERY_BIT
 from sitl.logs.dataflash.formats import Field, Message
 from sitl.logs.kind import logs_of
 from sitl.logs.tlog import LogError
+from sitl.run import runner
+from sitl.simulation import Simulation
 from tests.logs.dataflash.conftest import Run, read_log
 
 
@@ -163,3 +167,21 @@ def test_head_describes_types_units_and_multipliers(tmp_path: Path) -> None:
     assert (described.get_unit("TimeUS"), described.get_unit("Ang")) == ("\u00b5s", "deg")
     assert described.instance_field == "I"
     log.close()
+
+
+def test_the_filter_tells_its_innovations(tmp_path: Path) -> None:
+    simulation = Simulation("erle_copter", seed=3, params={"LOG_DISARMED": 1})
+    path = tmp_path / "run.bin"
+    runner.open_dataflash(simulation, path)
+    simulation.advance(90.0)
+    ekf = simulation.v.autopilot.ekf
+    simulation.close()
+    log = read_log(path)
+    last, used = log["XKF3"][-1], [m for m in log["XKF3"] if m.TimeUS > 60e6]
+    vel, pos = ekf.innovation_vel, ekf.innovation_pos
+    assert pytest.approx((-vel.x, -vel.y, -vel.z), abs=0.006) == (last.IVN, last.IVE, last.IVD)
+    assert pytest.approx((-pos.x, -pos.y, -pos.z), abs=0.006) == (last.IPN, last.IPE, last.IPD)
+    assert pytest.approx(-math.degrees(ekf.innovation_yaw), abs=0.006) == last.IYAW
+    for name, most in (("IVN", 1.0), ("IPE", 3.0), ("IPD", 2.0), ("IYAW", 5.0)):  # at rest: noise about zero
+        values = np.array([getattr(m, name) for m in used])
+        assert 0.0 < np.std(values) < most and abs(np.mean(values)) < 0.5 * most, name

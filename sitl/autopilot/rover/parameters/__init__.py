@@ -15,10 +15,11 @@ from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Compass, Log, Mavlink, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
+from ...relays import MEANINGS
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
-from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
+from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
 from .safety import Battery, Failsafes
 
 
@@ -38,6 +39,7 @@ class Parameters(shared.Parameters):
     FOLL: Follow
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
     FS: Failsafes
+    GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 steering, 2 speed", INT16)
     GPS1_DELAY_MS: float
     GUID_OPTIONS: float = param(
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
@@ -75,4 +77,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The files that MAVLink FTP serves: parameters, missions (which it takes, too), logs, links, what parameters mean.
+
+As ArduPilot's: ``@SYS/`` tells of the running system, ``@MISSION/`` has mission, fence and rally points as items of
+MISSION_ITEM_INT behind a header of five numbers, ``logs/`` the on-board logs.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from .. import metadata
+from .mission import FENCE, MISSION, RALLY, MissionService
+from .mission_upload import ITEM_INT, to_int
+from .parameters import pack_parameters
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+
+PARAMETERS = "@PARAM/param.pck"
+LOGS = "logs"
+MISSIONS = {"@MISSION/mission.dat": MISSION, "@MISSION/fence.dat": FENCE, "@MISSION/rally.dat": RALLY}
+MISSION_MAGIC = 0x763D
+MISSION_HEADER = struct.Struct("<HHHHH")
+"""magic, MAV_MISSION_TYPE, options (0), first item (0), number of items"""
+_ITEM_BYTES = 38
+Reader = Callable[[], bytes]
+
+
+def read(bridge: Bridge, path: str, queries: list[str]) -> bytes | None:
+    """What is in a file now; None: there is none.
+
+    Args:
+        path: without a slash before it.
+        queries: what stands behind its "?".
+    """
+    values = bridge.vehicle.parameters
+    if path == PARAMETERS:
+        listed = [(p, values[p.name]) for p in values.listed()]
+        return pack_parameters(listed, with_defaults="withdefaults=1" in queries)
+    if path in MISSIONS:
+        return pack_mission(bridge, MISSIONS[path])
+    if path in _system(bridge):
+        return _system(bridge)[path]()
+    if path in _logs(bridge) and bridge.logs is not None:
+        number, size = _logs(bridge)[path]
+        return bridge.logs.read(number, 0, size)
+    return metadata.files(values.table).get(path)
+
+
+def listing(bridge: Bridge, path: str) -> list[str] | None:
+    """Entries of a folder, as FTP tells them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
+    sizes = {name: len(file()) for name, file in _system(bridge).items()}
+    sizes |= {name: size for name, (_, size) in _logs(bridge).items()}
+    folder = path.strip("/")
+    folder = "" if folder == "." else folder
+    if folder:
+        found = [f"F{name[len(folder) + 1 :]}\t{size}" for name, size in sizes.items() if name.startswith(folder + "/")]
+        return found or None
+    folders = {name.split("/")[0] for name in sizes}
+    return ["D.", "D..", *(f"D{name}" for name in sorted(folders))]
+
+
+def pack_mission(bridge: Bridge, kind: int) -> bytes:
+    """Mission, fence or rally points as a file."""
+    service = bridge.get(MissionService)
+    items = service.items(kind) or service.home_alone(kind)
+    parts = [to_int(item, k, False, (0, 0), kind)[1].ljust(_ITEM_BYTES, b"\0") for k, item in enumerate(items)]
+    return MISSION_HEADER.pack(MISSION_MAGIC, kind, 0, 0, len(items)) + b"".join(parts)
+
+
+def write(bridge: Bridge, path: str, data: bytes) -> bool:
+    """Take a file of ``MISSIONS`` in place of what it holds; False, and that stays, when it is none or not valid."""
+    if len(data) < MISSION_HEADER.size:
+        return False
+    *head, count = MISSION_HEADER.unpack_from(data)
+    if head != [MISSION_MAGIC, MISSIONS[path], 0, 0] or len(data) != MISSION_HEADER.size + count * _ITEM_BYTES:
+        return False
+    starts = range(MISSION_HEADER.size, len(data), _ITEM_BYTES)
+    rows = [ITEM_INT.decode(data[at : at + _ITEM_BYTES]) for at in starts]
+    return bridge.get(MissionService).take(MISSIONS[path], rows)
+
+
+def _system(bridge: Bridge) -> Mapping[str, Reader]:
+    return {"@SYS/uarts.txt": lambda: _links(bridge), "@SYS/tasks.txt": lambda: b"TasksV2\n"}
+
+
+def _links(bridge: Bridge) -> bytes:
+    lines = [
+        f"SERIAL{channel.number} TX={channel.port.sent:8d} RX={channel.port.received:8d} messages ({channel.name})"
+        for channel in bridge.channels
+    ]
+    return "\n".join(["UARTV1", *lines, ""]).encode("ascii", "replace")
+
+
+def _logs(bridge: Bridge) -> dict[str, tuple[int, int]]:
+    """Name of each log -> its number and size."""
+    entries = bridge.logs.entries() if bridge.logs is not None else ()
+    return {f"{LOGS}/{entry.number:08d}.BIN": (entry.number, entry.size) for entry in entries}
