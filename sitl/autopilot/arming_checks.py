@@ -7,11 +7,16 @@ ARMING_CHECK selects which optional checks count.
 
 from __future__ import annotations
 
+from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
+from ..core.vectors import Vec3
 from . import radio
+from .battery import is_healthy
+from .failsafe_checks import is_low, is_used_up
 from .params.parameters import Parameters
 from .params.radio import RcMap
-from .params.system import Arming
+from .params.simulation import Axes
+from .params.system import Arming, Compass
 from .state import BatteryState, Radio, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
@@ -59,12 +64,19 @@ MODE_BY_RUDDER = 67108864
 NO_MISSION = 536870912
 EMERGENCY_STOP = 134217728
 INTERLOCK = 268435456
-
+BATTERY_UNHEALTHY = 1 << 30
+BATTERY_CAPACITY_FAILSAFE = 1 << 31
+BATTERY_CRITICAL_VOLTAGE = 1 << 32
+BATTERY_CRITICAL_CAPACITY = 1 << 33
+BATTERY_CAPACITY_ORDER = 1 << 34
+BATTERY_VOLTAGE_ORDER = 1 << 35
+COMPASSES = 1 << 36
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
     BAROMETER: "Barometer not healthy",
     COMPASS: "Compass not healthy",
+    COMPASSES: "Compasses inconsistent",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -79,6 +91,12 @@ TEXTS = {
     BATTERY_VOLTAGE: "Battery 1 below minimum arming voltage",
     BATTERY_CAPACITY: "Battery 1 below minimum arming capacity",
     BATTERY_FAILSAFE: "Battery 1 low voltage failsafe",
+    BATTERY_UNHEALTHY: "Battery 1 unhealthy",
+    BATTERY_CAPACITY_FAILSAFE: "Battery 1 low capacity failsafe",
+    BATTERY_CRITICAL_VOLTAGE: "Battery 1 critical voltage failsafe",
+    BATTERY_CRITICAL_CAPACITY: "Battery 1 critical capacity failsafe",
+    BATTERY_CAPACITY_ORDER: "Battery 1 capacity failsafe critical >= low",
+    BATTERY_VOLTAGE_ORDER: "Battery 1 voltage failsafe critical >= low",
     FRAME: "Motors: Check frame class and type",
     MODE: "Mode not armable",
     RUDDER_DISABLED: "Rudder arming disabled",
@@ -97,6 +115,11 @@ TEXTS = {
 # ARMING_CHECK
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
 
+COMPASS_COS, COMPASS_FLAT_COS = 0.0, 0.5
+"""Of the greatest angles between two compasses' fields: 90 degrees in space, 60 in the x-y plane."""
+COMPASS_FLAT_DIFFERENCE = 0.2
+"""Greatest difference of their x-y components [gauss]."""
+
 _READY_US = 2_450_000
 _ACCELS_US = 13_400_000
 _GYROS_US = 23_400_000
@@ -110,15 +133,47 @@ def wants(params: Arming, check: int) -> bool:
 
 
 @law
-def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, params: Arming) -> int:
+def differs(field: Vec3, other: Vec3) -> bool:
+    """Whether a compass shows another field than the first: by angle in space, by angle or length in the x-y plane."""
+    size = norm(field) * norm(other)
+    flat, other_flat = horizontal(field), horizontal(other)
+    flat_size = norm2(flat) * norm2(other_flat)
+    if flat_size <= 0.0:
+        return True
+    if dot(field, other) < size * COMPASS_COS or dot2(flat, other_flat) < flat_size * COMPASS_FLAT_COS:
+        return True
+    return norm2(flat - other_flat) > COMPASS_FLAT_DIFFERENCE
+
+
+@law
+def calibrated(field: Vec3, offset: Axes) -> Vec3:
+    """What a compass shows [gauss], with its COMPASS_OFS [mGauss] added."""
+    return field + 1e-3 * Vec3(offset.X, offset.Y, offset.Z)
+
+
+@law
+def compass_checks(sensors: Sensors, params: Compass) -> int:
+    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
+    second, third = sensors.mag2, sensors.mag3
+    if params.USE2 > 0.0 and dot(second, second) > 0.0 and differs(sensors.mag, calibrated(second, params.OFS2)):
+        return COMPASSES
+    if params.USE3 > 0.0 and dot(third, third) > 0.0 and differs(sensors.mag, calibrated(third, params.OFS3)):
+        return COMPASSES
+    return 0
+
+
+@law
+def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, p: Parameters) -> int:
     """Failed checks of sensors and attitude."""
-    failed = 0
+    failed, params = 0, p.ARMING
     if time_us < _READY_US:
         failed |= NOT_INITIALISED
     if sensors.baro_count == 0 and wants(params, CHECK_BARO):
         failed |= BAROMETER
     if sensors.mag_count == 0 and wants(params, CHECK_COMPASS):
         failed |= COMPASS
+    elif wants(params, CHECK_COMPASS):
+        failed |= compass_checks(sensors, p.COMPASS)
     if wants(params, CHECK_INS):
         if time_us < _ACCELS_US:
             failed |= ACCELS
@@ -131,17 +186,30 @@ def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, params: Arm
 
 @law
 def battery_checks(battery: BatteryState, level: int, params: Parameters) -> int:
-    """Failed checks of the battery; ``level``: 0, or what the failsafe found (``failsafe.battery``)."""
+    """The first failed check of the battery; ``level``: 0, or what the failsafe found (``failsafe.battery``)."""
     limits = params.BATT
-    failed = 0
-    if limits.MONITOR > 0.0 and wants(params.ARMING, CHECK_BATTERY):
-        if battery.voltage < limits.ARM_VOLT:
-            failed |= BATTERY_VOLTAGE
-        if limits.ARM_MAH > 0.0 and limits.CAPACITY - battery.consumed_mah < limits.ARM_MAH:
-            failed |= BATTERY_CAPACITY
-        if level != 0:
-            failed |= BATTERY_FAILSAFE
-    return failed
+    if not wants(params.ARMING, CHECK_BATTERY):
+        return 0
+    if not is_healthy(battery.driver, limits):
+        return BATTERY_UNHEALTHY
+    if battery.driver == 0:
+        return 0
+    voltage, used = battery.voltage, battery.consumed_mah
+    if is_low(voltage, limits.ARM_VOLT):
+        return BATTERY_VOLTAGE
+    if is_used_up(used, limits.ARM_MAH, limits):
+        return BATTERY_CAPACITY
+    if level != 0 or is_low(voltage, limits.LOW_VOLT):
+        return BATTERY_FAILSAFE
+    if is_used_up(used, limits.LOW_MAH, limits):
+        return BATTERY_CAPACITY_FAILSAFE
+    if is_low(voltage, limits.CRT_VOLT):
+        return BATTERY_CRITICAL_VOLTAGE
+    if is_used_up(used, limits.CRT_MAH, limits):
+        return BATTERY_CRITICAL_CAPACITY
+    if limits.LOW_MAH > 0.0 and limits.CRT_MAH >= limits.LOW_MAH:
+        return BATTERY_CAPACITY_ORDER
+    return BATTERY_VOLTAGE_ORDER if limits.LOW_VOLT > 0.0 and limits.CRT_VOLT >= limits.LOW_VOLT else 0
 
 
 @law

@@ -12,11 +12,36 @@ PERIOD_S = 0.1
 """Called ten times a second."""
 
 
+VOLTAGE, VOLTAGE_AND_CURRENT = 3, 4
+"""BATT_MONITOR: those that exist."""
+
+
+def power_on(battery: BatteryState, params: Battery) -> None:
+    """BATT_MONITOR chooses the monitor now, and until the next power-on."""
+    kind = int(params.MONITOR)
+    battery.driver = kind if kind in (VOLTAGE, VOLTAGE_AND_CURRENT) else 0
+    battery.remaining_pct = -1.0
+    battery.healthy = True
+
+
 @law
-def monitor(battery: BatteryState, sensors: Sensors, params: Battery) -> None:
-    """Read the sensor and count the charge; without a monitor everything is unknown (remaining -1)."""
-    measures_current = params.MONITOR >= 4.0
-    battery.voltage = sensors.battery_voltage if params.MONITOR >= 3.0 else 0.0
+def is_healthy(driver: int, params: Battery) -> bool:
+    """Whether the monitor is the one that BATT_MONITOR asks for, and can measure; without one nothing is wrong."""
+    return int(params.MONITOR) == driver and (driver == 0 or params.VOLT_PIN >= 0.0)
+
+
+@law
+def monitor(battery: BatteryState, sensors: Sensors, params: Battery, time_us: int) -> None:
+    """Read the sensor and count the charge; without a monitor everything is unknown (remaining -1).
+
+    A monitor that is not healthy keeps what it measured last.
+    """
+    battery.healthy = is_healthy(battery.driver, params)
+    if not battery.healthy and battery.driver != 0:
+        return
+    battery.healthy_us = time_us
+    measures_current = battery.driver >= VOLTAGE_AND_CURRENT
+    battery.voltage = sensors.battery_voltage if battery.driver >= VOLTAGE else 0.0
     battery.current = sensors.battery_current if measures_current else 0.0
     if measures_current:
         hours = PERIOD_S / 3600.0

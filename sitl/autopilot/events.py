@@ -40,6 +40,10 @@ HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
 SETPOINT_IGNORED = 29  # rover: it has an acceleration; a: number of the MAVLink message
 AUX_SWITCH = 30  # a: channel, b: position (aux_switch.py), negative the first one since boot
 SIMPLE_CHANGED = 31  # copter; a: 0 off, 1 SIMPLE, 2 SUPER_SIMPLE
+THRUST_LOST = 40  # copter; a: motor 1 .. that seems to fail
+TAKEOFF_BLOCKED = 41  # copter; a: why (takeoff_check.py)
+FOLLOW_OFFSET = 42  # FOLLOW keeps the distance that it has; a: 1 in the lead's frame, 0 north, east, down
+FOLLOW_OFF = 43  # FOLLOW was asked for while FOLL_ENABLE is 0
 
 
 class Events(Record):

@@ -19,6 +19,9 @@ GCS = 2
 BATTERY_LOW = 3
 BATTERY_CRITICAL = 4
 EKF = 5
+BATTERY_MISSING = 8
+VIBRATION = 9
+"""More are each firmware's own (6, 7)."""
 
 _ON = {
     RADIO: "Radio Failsafe",
@@ -26,8 +29,15 @@ _ON = {
     BATTERY_LOW: "Battery 1 is low",
     BATTERY_CRITICAL: "Battery 1 is critical",
     EKF: "EKF Failsafe",
+    BATTERY_MISSING: "Battery 1 is missing",
+    VIBRATION: "Vibration compensation ON",
 }
-_OFF = {RADIO: "Radio Failsafe Cleared", GCS: "GCS Failsafe Cleared", EKF: "EKF Failsafe Cleared"}
+_OFF = {
+    RADIO: "Radio Failsafe Cleared",
+    GCS: "GCS Failsafe Cleared",
+    EKF: "EKF Failsafe Cleared",
+    VIBRATION: "Vibration compensation OFF",
+}
 
 
 def text(which: int, on: bool) -> str | None:
@@ -105,6 +115,19 @@ def report_battery(events: Events, time_us: int, level: int) -> None:
     """Report a battery that has become low (``level`` 1) or critical (2); 0: nothing."""
     if level != 0:
         report(events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
+
+
+UNHEALTHY_US = 5_000_000
+"""A monitor that fails for longer than this in flight is missing."""
+
+
+@law
+def watch_monitor(fs: Failsafe, battery: BatteryState, armed: bool, events: Events, time_us: int) -> None:
+    """Ten times a second: tell once that the battery's monitor has failed, unless worse is known of the battery."""
+    lasts = time_us - battery.healthy_us > UNHEALTHY_US
+    if armed and lasts and battery.driver != 0 and fs.battery == 0 and not fs.battery_missing:
+        fs.battery_missing = True
+        report(events, time_us, BATTERY_MISSING, True)
 
 
 _EKF_PERIOD_S = 0.1

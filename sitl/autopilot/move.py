@@ -60,3 +60,4 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     move_estimate(ap.estimate, d)
     move_home(ap.home, ap.estimate, d)
     move_nav(ap.modes.nav, d)
+    ap.modes.follow.is_known, ap.modes.follow.update_us = False, 0  # reports count from where the origin was

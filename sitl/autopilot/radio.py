@@ -51,6 +51,14 @@ def ranged(pulse: int, channel: RcChannel) -> float:
 
 
 @law
+def ranged_middle(channel: RcChannel) -> float:
+    """What ``ranged`` gives, 0 .. 1, for a throttle stick in the middle of its channel; below 0.5 by the dead zone."""
+    low, high, dead = channel.MIN, channel.MAX, channel.DZ
+    middle = (0.5 * (high - low) - dead) / (high - low - dead) if high > low + dead else 0.0
+    return middle if middle > 0.0 else 0.5
+
+
+@law
 def stick_channel(params: RcMap, stick: int) -> int:
     """Channel of ROLL, PITCH, THROTTLE or YAW, from 0 on."""
     channel = int(params.YAW)

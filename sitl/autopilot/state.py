@@ -40,6 +40,8 @@ class Estimate(Record):
     variance_pos: float
     variance_hgt: float
     variance_mag: float
+    innovation_vel_d: float  # estimate minus measurement, of the last GPS fix [m/s]
+    innovation_pos_d: float  # of the last barometer mean [m]
     attitude_ok: bool  # aligned in tilt and yaw
     position_ok: bool  # GPS in use: modes that need a position may be armed
     reset_ne_count: int  # counts jumps of horizontal position/velocity, so that controllers can follow
@@ -101,6 +103,9 @@ class BatteryState(Record):
     consumed_mah: float
     consumed_wh: float
     remaining_pct: float
+    driver: int  # BATT_MONITOR as it was at power-on, where it is one that exists; 0 none
+    healthy: bool
+    healthy_us: int  # when it last was
 
 
 class Arming(Record):
@@ -130,11 +135,34 @@ class Failsafe(Record):
     battery: int  # 0 none, 1 low, 2 critical
     battery_low_us: int  # since when below the low limit; 0 not
     battery_critical_us: int
+    battery_missing: bool  # its monitor has failed in flight
     ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
     ekf_count: int  # tenths of a second of bad variance
     ekf_vel: float  # filtered variances
     ekf_pos: float
     ekf_mag: float
+
+
+class FollowState(Record):
+    """Another vehicle, which FOLLOW follows (follow.py). NED from the origin."""
+
+    sender: int  # its system id; 0 none heard so far
+    update_us: int  # its last report
+    told_pos: Vec3  # of that report [m]
+    told_vel: Vec3  # [m/s]
+    told_acc: Vec3  # [m/s^2]
+    told_heading: float  # [rad]
+    told_heading_rate: float  # [rad/s]
+    is_known: bool  # the motion that is followed:
+    pos: Vec3  # [m]
+    vel: Vec3  # [m/s]
+    acc: Vec3  # [m/s^2]
+    heading: float  # [rad]
+    heading_rate: float  # [rad/s]
+    heading_acc: float  # [rad/s^2]
+    tells_more: bool  # it sends FOLLOW_TARGET: its GLOBAL_POSITION_INT is not needed
+    keeps_distance: bool  # no offsets are given:
+    distance: Vec3  # the place beside it is this, as FOLL_OFS_TYPE says [m]
 
 
 class Modes(Record):
@@ -148,6 +176,7 @@ class Modes(Record):
     wanted_reason: int
     mission_count: int  # items of the mission, home included (written by the shell)
     mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
+    follow: FollowState
     nav: Nav
 
 

@@ -53,6 +53,10 @@ class BaseAutopilot:
             return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
         if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
             return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
+        if code == events.FOLLOW_OFF:
+            return [Text(WARNING, "Set FOLL_ENABLE = 1")]
+        if code == events.FOLLOW_OFFSET:
+            return [Text(INFO, f"{'Relative' if a else 'N-E-D'} follow offset loaded")]
         if code == events.FAILSAFE:
             text = self._failsafe.text(int(a), bool(b))
             return [Text(WARNING, text)] if text else []

@@ -24,8 +24,9 @@ from .services import all_services
 from .services.commands import Grants
 from .services.log_download import LogStore
 from .services.mission import MissionService
-from .services.service import Handler, Listener, Service
+from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
+from .services.signing import SigningService
 from .services.statustext import EventService
 from .services.streams import StreamService
 from .switchboard import Switchboard
@@ -35,7 +36,7 @@ from .wire.fleet import Slot
 from .wire.link import REGULAR
 from .wire.port import NEVER, Port
 
-_HEARTBEAT = message("HEARTBEAT").id
+_HEARTBEAT, _SETUP_SIGNING = message("HEARTBEAT").id, message("SETUP_SIGNING").id
 EPOCH_US = 1_767_225_600_000_000
 """Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
 
@@ -77,6 +78,7 @@ class Bridge:
         self.telemetry = {number: message_by_id(number) for number in self.core.numbers | self.by_shell.keys()}
         """Every message that can be sent by its number."""
         self._left_out: set[str] = set()
+        self._asked: list[tuple[Channel, int]] = []
         self.board = Switchboard(
             lambda: self.system, lambda: self.elapsed_us, self._channel_added, self._channel_removed
         )
@@ -105,6 +107,8 @@ class Bridge:
             self.services[kind] = service
             for name, handler in service.handlers().items():
                 self._add_handler(name, handler)
+        self._signing: SigningService = self.get(SigningService)
+        self.board.signer = self._signing
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
         self._stateful = [s for s in self.services.values() if type(s).snapshot is not Service.snapshot]
 
@@ -246,6 +250,8 @@ class Bridge:
                 self.board.heard += 1
                 if journal is not None:
                     journal.received(channel, data)
+                if self._signing.concerns(channel):
+                    data = self._signing.received(channel, data)
             if data or resume:
                 self._hear(channel, data)
         if journal is not None:
@@ -272,8 +278,9 @@ class Bridge:
                 if not channel.port.frame_end:
                     return
             frame = channel.frame()
-            for tap in (*self.taps, *self.client_taps):
-                tap.frame(self.elapsed_us, frame.raw)
+            if frame.kind.id != _SETUP_SIGNING:  # a key is not for logs
+                for tap in (*self.taps, *self.client_taps):
+                    tap.frame(self.elapsed_us, frame.raw)
             taken, channel.port.frame_end = channel.port.frame_taken, 0
             if not taken:
                 self._dispatch(channel, frame)
@@ -428,6 +435,22 @@ class Bridge:
                     break
         return number in self.telemetry
 
+    def send_after_answer(self, channel: Channel, number: int) -> int:
+        """Send one telemetry message behind the answer to the command that asks for it, as ArduPilot does.
+
+        Returns:
+            The answer: ACCEPTED, or FAILED when there is no message of this number.
+        """
+        if number not in self.telemetry:
+            return FAILED
+        self._asked.append((channel, number))
+        return ACCEPTED
+
+    def send_asked(self) -> None:
+        """The command has been answered."""
+        while self._asked:
+            self.send_now(*self._asked.pop(0))
+
     def broadcast(self, kind: MessageType, payload: bytes) -> None:
         """Send to every channel."""
         for channel in self.channels:
@@ -516,6 +539,7 @@ class Bridge:
         self.flush()
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
         new.get(MissionService).follow(self.get(MissionService))
+        new.get(SigningService).follow(self._signing)
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

@@ -22,6 +22,23 @@ class Tap(Protocol):
         ...
 
 
+class Signer(Protocol):
+    """Signs frames on their way out."""
+
+    @property
+    def is_on(self) -> bool:
+        """Whether there is a key."""
+        ...
+
+    def concerns(self, channel: Channel) -> bool:
+        """Whether frames to this client are signed."""
+        ...
+
+    def sent(self, channel: Channel, frames: list[bytes]) -> list[bytes]:
+        """The frames, signed."""
+        ...
+
+
 class Journal(Protocol):
     """Is told of everything that comes to the vehicle from outside, and of what goes out (a recording).
 
@@ -101,6 +118,7 @@ class Switchboard:
         self.client_taps: list[Tap] = []
         """See only what clients sent."""
         self.journal: Journal | None = None
+        self.signer: Signer | None = None
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
         self._sockets = 0
@@ -121,8 +139,8 @@ class Switchboard:
             link.reattach(self._add_channel)
 
     def is_watched(self) -> bool:
-        """Whether someone wants to see every frame that goes out."""
-        return bool(self.taps) or self.journal is not None
+        """Whether every frame that goes out has to be seen by someone, or signed."""
+        return bool(self.taps) or self.journal is not None or (self.signer is not None and self.signer.is_on)
 
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
@@ -204,6 +222,8 @@ class Switchboard:
                 for tap in self.taps:
                     for raw in peer.outbox:
                         tap.frame(now, raw)
+            if peer.outbox and self.signer is not None and self.signer.concerns(channel):
+                peer.outbox[:] = self.signer.sent(channel, peer.outbox)
             if self.journal is not None:
                 if peer.outbox:
                     self.journal.sent(channel, peer.outbox)

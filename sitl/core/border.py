@@ -15,6 +15,9 @@ from .vectors import Vec2, Vec3
 LIDAR_SAMPLES = 360
 """Readings of a scan that there is room for."""
 
+ESCS = 8
+"""Motors with a speed controller that there is room for."""
+
 RC_INPUTS = 16
 """Channels of a receiver."""
 
@@ -48,6 +51,14 @@ class Sensors(Record):
     # BATTERY_STATUS
     battery_voltage: Float32  # [V]
     battery_current: Float32  # [A]
+    # ESC_TELEMETRY, of a vehicle whose speed controllers tell how fast motors turn
+    esc_count: int  # samples so far
+    esc_time_us: int  # of the last one
+    esc_motors: int
+    esc_rpm: Floats = array(ESCS, stored="f4")
+    # two more compasses; zero where there are none
+    mag2: NarrowVec3  # field, body [gauss]
+    mag3: NarrowVec3
     # WHEEL_DISTANCE, of a vehicle with encoders
     wheel_count: int  # samples so far
     wheel_distance: Vec2  # rolled by the left and right driven wheel since power-on, forward positive [m]

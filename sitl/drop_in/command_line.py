@@ -38,7 +38,7 @@ _WITH_VALUE = (
 
 HELP = """options (those of ArduPilot's simulator):
   -w, --wipe             forget parameters and mission of earlier runs
-  -M, --model MODEL      +, quad, rover, ..., or JSON:HOST: physics at HOST
+  -M, --model MODEL      +, x, hexa, octa, rover, ..., or JSON:HOST: physics at HOST
   -O, --home LAT,LON,ALT,HEADING
                          start (degrees, degrees, metres, degrees)
   -s, --speedup K        simulated seconds a second (0: as fast as it goes)

@@ -12,6 +12,8 @@ from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
 from ..bridge.links import Link
+from ..bridge.services.signing import SigningService
+from ..bridge.signing import WINDOW
 from ..core.compile import Progress
 from ..errors import OptionError
 from ..logs.dataflash.log import attach
@@ -29,7 +31,17 @@ from .storage import Storage
 
 PROGRAMS = {"arducopter": "copter", "ardurover": "rover"}
 MODELS = {
-    "copter": {"+": "ardupilot_quad", "quad": "ardupilot_quad", "copter": "ardupilot_quad"},
+    "copter": {
+        "+": "ardupilot_quad",
+        "quad": "ardupilot_quad",
+        "copter": "ardupilot_quad",
+        "x": "ardupilot_x",
+        "hexa": "ardupilot_hexa",
+        "hexax": "ardupilot_hexa_x",
+        "octa": "ardupilot_octa",
+        "octa-quad": "ardupilot_octa_quad",
+        "y6": "ardupilot_y6",
+    },
     "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover"},
 }
 """ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
@@ -62,15 +74,20 @@ class Session:
         self.storage = Storage.wiped(path) if line.wipe else Storage(path)
         kind = PROGRAMS[program]
         airframe, physics = _model(kind, line)
-        params = self._parameters(KINDS[kind].firmware.table)
-        scenario = Scenario(airframe, home=line.home, params=params, physics=physics)
+        table = KINDS[kind].firmware.table
+        params = self._parameters(table)
+        in_range = {name: table[name].used(value) for name, value in params.items()}
+        scenario = Scenario(airframe, home=line.home, params=in_range, physics=physics)
         self.simulation = simulation = Simulation(scenario, progress=progress)
         self._values = simulation.parameters
+        self._values.update(params)  # values out of range are kept as they are, and told so
         self.pacing = Pacing(None)
         self._follow_speedup()
         simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
+        if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again
+            simulation.bridge.get(SigningService).restore(kept._replace(timestamp=kept.timestamp + WINDOW))
         simulation.bridge.listeners.append(self)
         self._statistics = Statistics(simulation, self.storage.keep)
         self._awaited: Link | None = None
@@ -90,7 +107,7 @@ class Session:
             values["SIM_SPEEDUP"] = self._line.speedup
         self._tell("parameters that this firmware does not have", [name for name in values if name not in table])
         known = {name: value for name, value in values.items() if name in table}
-        refusals = {name: text for name, value in known.items() if (text := table[name].refusal(value))}
+        refusals = {name: text for name, value in known.items() if (text := table[name].no_number(value))}
         for text in refusals.values():
             self._say(f"not taken: {text}")
         return {name: value for name, value in known.items() if name not in refusals}
@@ -106,6 +123,8 @@ class Session:
                 continue
             link = serial_ports.open_port(line, number)
             if link is not None:
+                if number == 0:
+                    link.take_unsigned()
                 bridge.add_link(link)
                 self._say(f"MAVLink on SERIAL{number}: {link.name}")
                 if serial_ports.waits(line.devices[number]) and self._awaited is None:
@@ -160,13 +179,20 @@ class Session:
         if mission is not self._mission:
             self._mission = mission
             self.storage.keep_mission(mission.items)
+        self._keep_key()
         self.storage.write()
         dropped = self.simulation.bridge.dropped
         while dropped:
             self._say(dropped.popleft())
 
+    def _keep_key(self, with_time: bool = False) -> None:
+        state = self.simulation.bridge.get(SigningService).snapshot()
+        if state.key != self.storage.signing.key or (with_time and state.key):
+            self.storage.keep_signing(state)
+
     def close(self) -> None:
         """Keep everything and close all."""
+        self._keep_key(with_time=True)
         self.storage.write()
         self.simulation.close()
 

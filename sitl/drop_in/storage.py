@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the autopilot keeps when it is switched off, as a file: parameters that were set, and the mission."""
+"""What the autopilot keeps when it is switched off, as a file: parameters, mission, signing key."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 
 from ..autopilot.mission.item import MissionItem
+from ..bridge.signing import KEY_BYTES, OFF, SigningState
 from ..errors import SitlError
 
 
@@ -26,11 +27,16 @@ class Storage:
         self.path = path
         self.parameters: dict[str, float] = {}
         self.mission: tuple[MissionItem, ...] = ()
+        self.signing = OFF
         self._is_changed = False
         try:
             kept = json.loads(path.read_text(encoding="utf-8"))
             self.parameters = {str(name): float(value) for name, value in kept["parameters"].items()}
             self.mission = tuple(MissionItem(*item) for item in kept["mission"])
+            key, timestamp = kept.get("signing", ("", 0))
+            self.signing = SigningState(bytes.fromhex(key), int(timestamp))
+            if len(self.signing.key) not in (0, KEY_BYTES):
+                raise ValueError(f"a signing key of {len(self.signing.key)} bytes")
         except FileNotFoundError:
             return
         except OSError as error:
@@ -61,6 +67,11 @@ class Storage:
         self.mission = items
         self._is_changed = True
 
+    def keep_signing(self, state: SigningState) -> None:
+        """Keep the key and the time stamp."""
+        self.signing = SigningState(state.key, state.timestamp)
+        self._is_changed = True
+
     def write(self) -> None:
         """Write the file if something has changed: whole, or not at all.
 
@@ -70,7 +81,10 @@ class Storage:
         if not self._is_changed:
             return
         self._is_changed = False
-        text = json.dumps({"parameters": self.parameters, "mission": self.mission}, indent=0)
+        kept: dict[str, object] = {"parameters": self.parameters, "mission": self.mission}
+        if self.signing.key:
+            kept["signing"] = (self.signing.key.hex(), self.signing.timestamp)
+        text = json.dumps(kept, indent=0)
         beside = self.path.with_name(self.path.name + ".new")
         try:
             beside.write_text(text, encoding="utf-8")

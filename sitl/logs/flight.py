@@ -18,7 +18,7 @@ Series = np.ndarray[Any, Any]
 COLUMNS = {
     "LOCAL_POSITION_NED": ("x", "y", "z", "vx", "vy", "vz"),
     "ATTITUDE": ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed"),
-    "SERVO_OUTPUT_RAW": ("servo1_raw", "servo2_raw", "servo3_raw", "servo4_raw"),
+    "SERVO_OUTPUT_RAW": tuple(f"servo{k}_raw" for k in range(1, 9)),
     "VFR_HUD": ("throttle", "groundspeed"),
 }
 

@@ -95,9 +95,9 @@ def attitude(axis: Any, flight: Flight) -> None:
 
 
 def motors(axis: Any, flight: Flight) -> None:
-    """Outputs 1 to 4 over time."""
+    """Outputs 1 to 8 over time, as far as they are used."""
     outputs = flight["SERVO_OUTPUT_RAW"]
-    for column in range(1, 5):
+    for column in (column for column in range(1, 9) if outputs[:, column].any()):
         axis.plot(outputs[:, 0], outputs[:, column], lw=0.7, label=f"motor {column}")
     axis.set(ylabel="output [us]")
 

@@ -23,7 +23,7 @@ from ..vehicles import Airframe, AirframeError
 from ..worlds import World, WorldError
 from . import identity
 from .entries import Entry, EntryKind, RecordingError, of_state, read_varint
-from .recorder import LOG, Recorder
+from .recorder import IN_PROCESS, LOG, Recorder
 from .recording import Recording
 from .replayed_link import Flip, ReplayedLink, ReplayedPeer
 
@@ -148,6 +148,7 @@ class Replay:
         elif kind is EntryKind.CONNECTED:
             link = self._links[read_varint(entry.data, 0)[0]]
             peer = ReplayedPeer(link.name, self.simulation, self._flips[number], link.kind == LOG, link.writer)
+            peer.is_signed = link.kind not in (LOG, IN_PROCESS)
             self._peers[number] = peer
             link.add_peer(peer)
         elif kind is EntryKind.DISCONNECTED:

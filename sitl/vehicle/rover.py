@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from ..autopilot.rover.firmware import FIRMWARE, update
@@ -28,6 +29,10 @@ from .record import Vehicle
 
 GROUND_ROVER, BOAT = 10, 11
 """MAV_TYPE"""
+SIMULATED_ENCODER = 10
+"""WENC_TYPE"""
+ENCODER_TICKS = 8
+"""They are read 50 times a second, as ArduPilot's."""
 
 
 class Rover(Vehicle):
@@ -84,6 +89,14 @@ def move(fleet: Sequence[Rover], index: int, count: int, orders: int, ranging: i
         order.result = obey(fleet[order.vehicle], order, ranging)
 
 
+def apply_sim_parameters(v: Rover) -> None:
+    """SIM_ parameters of all kinds, and the simulated wheel encoders that WENC_TYPE asks for."""
+    sim_parameters.apply(v)
+    wheels, p = v.physics.wheels, v.autopilot.params.WENC
+    wheels.encoder_period = ENCODER_TICKS if p.TYPE == SIMULATED_ENCODER else 0
+    wheels.encoder_step = 2.0 * math.pi * p.RADIUS / p.CPR
+
+
 def motor_output(v: Rover) -> float:
     """Control of the throttle, -1 .. 1."""
     return float(v.actuators.controls[THROTTLE_OUTPUT])
@@ -99,7 +112,7 @@ ROVER = Kind(
     move=move,
     pieces=pieces,
     init_physics=init,
-    apply_sim_parameters=sim_parameters.apply,
+    apply_sim_parameters=apply_sim_parameters,
     default_frame="erle_rover",
     mav_type=GROUND_ROVER,
     other_mav_types=(BOAT,),

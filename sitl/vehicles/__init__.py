@@ -31,7 +31,10 @@ __all__ = [
     "to_data",
 ]
 
-_MODULES = ("erle_copter", "ardupilot_quad", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover")
+_MODULES = (
+    "erle_copter", "ardupilot_quad", "ardupilot_x", "ardupilot_hexa", "ardupilot_hexa_x", "ardupilot_octa",
+    "ardupilot_octa_quad", "ardupilot_y6", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover",
+)  # fmt: skip
 GROUP = "sitl.airframes"
 """Entry points of airframes of other packages: name -> Airframe."""
 

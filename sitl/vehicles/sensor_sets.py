@@ -28,8 +28,10 @@ SITL_IMU: dict[str, float] = {
     "acc_scale_error": 0.001,  # [1] INS_ACCSCAL of the recording's parameters
     "acc_range": 156.9,  # [m/s^2] 16 g
     "gyro_noise_density": 2.0e-5,  # [rad/s/sqrt(Hz)] uniform +-0.04 deg/s: 0.0004 rad/s a sample at 400 Hz
-    "gyro_random_walk": 1.1e-4,  # [rad/s^2/sqrt(Hz)] 0.05 deg/s after a minute, as SIM_DRIFT_SPEED
-    "gyro_bias_time": 150.0,  # [s] half of SIM_DRIFT_TIME: a drift that comes and goes
+    "gyro_random_walk": 0.0,  # [rad/s^2/sqrt(Hz)] none
+    "gyro_bias_time": 0.0,  # [s]
+    "gyro_drift_speed": 1.4544e-5,  # [rad/s^2] SIM_DRIFT_SPEED 0.05 deg/s a minute
+    "gyro_drift_time": 300.0,  # [s] SIM_DRIFT_TIME 5 minutes
     "gyro_turn_on_bias": 0.0,  # [rad/s]
     "gyro_range": 34.9,  # [rad/s] 2000 deg/s
 }
@@ -55,7 +57,7 @@ UBLOX_M8: dict[str, float] = {
 SITL_GPS: dict[str, float] = {
     # ArduPilot's simulated receiver: no noise (SIM_GPS1_NOISE 0, SIM_GPS1_VERR 0), only the integers' steps.
     "gps_rate": 5.0,  # [Hz] SIM_GPS1_HZ
-    "gps_delay": 0.1,  # [s] SIM_GPS1_LAG_MS 100
+    "gps_delay": 0.1325,  # [s] SIM_GPS1_LAG_MS 100, and what comes on top: recorded positions are 33 ms late
     "gps_start": 2.0,  # [s] first message
     "gps_fix_time": 9.8,  # [s] recording: receiver detected 9.8 s after boot
     "gps_noise_horizontal": 0.0,  # [m]

@@ -6,7 +6,7 @@ came.
 seconds after the row before), the result, and mode, arming and status texts afterwards. They were recorded from
 unmodified SITLs; the commands' unrecorded parameters are those that the rows' results imply. ``ours`` is where this
 firmware answers otherwise: its calibrations measure nothing and do not hold the GPS up, so that it can be armed, and
-its motors tested, right after them; and a parameter out of its range is not taken.
+its motors tested, right after them.
 """
 
 from __future__ import annotations

@@ -54,14 +54,27 @@ def test_set_truncates_integers_and_tells_everyone(bench: Bench) -> None:
 
 @pytest.mark.parametrize(("value", "kept"), [(300, 127), (-300, -128), (33.7, 33), (-33.7, -33)])
 def test_integers_stop_at_the_ends_of_their_type(bench: Bench, value: float, kept: int) -> None:
-    """As a real ArduPilot answers for an INT8; one with a range of its own is refused outside of it."""
+    """As a real ArduPilot answers for an INT8; of one with a range of its own the nearest value in range is used."""
     assert write(bench, "FRSKY_OPTIONS", value)[-1].param_value == kept
-    assert write(bench, "DISARM_DELAY", value)[0].get_type() == ("PARAM_VALUE" if kept >= 0 else "STATUSTEXT")
-    assert max(kept, 10 if kept < 0 else 0) == bench.vehicle.v.autopilot.params.DISARM_DELAY
+    assert write(bench, "DISARM_DELAY", value)[-1].param_value == kept
+    assert max(kept, 0) == bench.vehicle.v.autopilot.params.DISARM_DELAY
 
 
-@pytest.mark.parametrize("value", [1e9, -1e9, math.nan, math.inf, -math.inf])
-def test_what_is_out_of_range_is_refused_with_the_old_value(bench: Bench, value: float) -> None:
+def test_a_value_out_of_range_is_kept_and_the_nearest_in_range_is_used(bench: Bench) -> None:
+    *texts, answer = write(bench, "GUID_TIMEOUT", 7200.0)
+    assert "".join(m.text for m in texts) == "GUID_TIMEOUT: 7200 is outside 0.1 .. 3600 s: 3600 is used"
+    assert answer.param_value == 7200.0
+    assert bench.vehicle.v.autopilot.params.GUID_TIMEOUT == 3600.0
+    assert [m.param_value for m in read(bench, "GUID_TIMEOUT")] == [7200.0]
+    (answer,) = write(bench, "GUID_TIMEOUT", 7200.0)
+    assert answer.param_value == 7200.0, "told once"
+    (answer,) = write(bench, "GUID_TIMEOUT", 5.0)
+    assert answer.param_value == 5.0 == bench.vehicle.v.autopilot.params.GUID_TIMEOUT
+    assert "GUID_TIMEOUT" not in bench.vehicle.parameters.kept
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_is_refused_with_the_old_value(bench: Bench, value: float) -> None:
     before = bench.vehicle.fleet.tobytes()
     answers = write(bench, "MAV_GCS_SYSID", value)
     assert bench.vehicle.fleet.tobytes() == before

@@ -58,6 +58,8 @@ def test_messages_that_laws_take(profile: Profile) -> None:
         "SET_ATTITUDE_TARGET",
         "RC_CHANNELS_OVERRIDE",
         "MANUAL_CONTROL",
+        "GLOBAL_POSITION_INT",
+        "FOLLOW_TARGET",
     }
 
 

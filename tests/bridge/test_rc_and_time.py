@@ -69,6 +69,12 @@ def test_timesync_and_ping(bench: Bench) -> None:
     assert bench.ask(mavlink.MAVLink_ping_message(99, 7, 1, 1)) == []
 
 
+def test_an_answer_at_time_zero_is_no_request(bench: Bench) -> None:
+    bench.vehicle.v.time_us = 0
+    (answer,) = bench.ask(mavlink.MAVLink_timesync_message(0, 42))
+    assert (answer.tc1, answer.ts1) == (1, 42)
+
+
 def test_home_and_origin(bench: Bench) -> None:
     bench.ask(mavlink.MAVLink_set_gps_global_origin_message(1, *HOME[:2], 584000))
     assert bench.autopilot.calls == [("set_origin", *HOME[:2], 584.0)]

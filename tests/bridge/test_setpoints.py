@@ -135,7 +135,7 @@ def test_what_cannot_be_flown_stops(v: Copter, message: Any) -> None:
 @pytest.mark.parametrize("message", [
     local(ONLY_ACCELERATION | 0x200),  # a force is not an acceleration
     local(ONLY_ACCELERATION | 0x200, a=NAN3),
-    local(ONLY_POSITION, p=(2e7, 0, 0)),  # too far for the firmware
+    local(ONLY_POSITION, p=(2e9, 0, 0)),  # too far for the firmware
     place(6, 2_000_000_000, 10.0), place(6, HOME[0], 10.0, lon=1_800_000_001),
     attitude(7 | 64), attitude(0, (0, 0, 0, 0)), attitude(0, (1e-4, 0, 0, 0)), attitude(0, (math.nan, 0, 0, 0)),
     attitude(0, (math.inf, 0, 0, 0)), attitude(7, thrust=math.inf), attitude(7, thrust=math.nan),

@@ -104,6 +104,22 @@ def test_get_interval(bench: Bench) -> None:
     assert interval(0) == 1_000_000
 
 
+def test_the_default_of_a_message_is_the_rate_that_its_group_was_asked_for(bench: Bench) -> None:
+    """A client's own: SET_MESSAGE_INTERVAL 0 after REQUEST_DATA_STREAM goes back to the stream's rate."""
+    other = bench.connect(system=250)
+    bench.ask(request_stream(0, 4))
+    bench.command(SET_INTERVAL, 30, 100_000)
+    moment = bench.bridge.snapshot()
+    bench.ask(request_stream(0, 2))
+    assert bench.command(SET_INTERVAL, 30, 0) == 0
+    assert counts(bench, 10.0)["ATTITUDE"] == 20
+    bench.bridge.restore(moment)
+    assert bench.command(SET_INTERVAL, 30, 0) == 0
+    other.receive()
+    assert counts(bench, 10.0)["ATTITUDE"] in (40, 41)  # the first is late: only the bridge was put back
+    assert not other.receive("ATTITUDE")
+
+
 def test_the_longest_interval_can_be_told(bench: Bench) -> None:
     assert bench.command(SET_INTERVAL, 30, 3.0e9) == 0
     ask = mavlink.MAVLink_command_long_message(1, 1, GET_INTERVAL, 0, 30, 0, 0, 0, 0, 0, 0)

@@ -171,7 +171,8 @@ def test_sensor_health_is_what_the_firmware_knows(bench: Bench) -> None:
     ekf.bad_imu = 3
     assert health() == compass | barometer | gps | ahrs
     v.time_us += 5_000_000
-    ekf.use_external = v.autopilot.params.BATT_MONITOR = 4
+    ekf.use_external = v.autopilot.battery.healthy = True
+    v.autopilot.params.BATT_MONITOR = 4
     assert health() == gyro | compass | barometer | ahrs | battery, "the truth needs no filter; the GPS is silent"
     v.autopilot.modes.failsafe.battery = 1
     assert not health() & battery
@@ -184,7 +185,7 @@ def test_gps_accuracies(bench: Bench) -> None:
     assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (65535, 65535, 0, 0, 0)
     sensors.gps_fix = 3
     raw = get(bench, "GPS_RAW_INT")
-    assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (120, 200, 360, 1000, 0)
+    assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (120, 200, 360, 1000, 120)
 
 
 def test_no_channels_without_receiver_or_override(bench: Bench) -> None:

@@ -22,10 +22,14 @@ def turned(d: Driver, since: float) -> float:
 
 
 def share(d: Driver, pulse: int, channel: int) -> float:
-    """-1 .. 1 that a pulse [us] of a centred channel stands for, with its travel and dead zone."""
+    """-1 .. 1 that a pulse [us] of a centred channel stands for, with its travel and dead zone.
+
+    The throttle stick (channel 3) counts in whole percent.
+    """
     end = float(getattr(d.ap.params, f"RC{channel}_{'MAX' if pulse > 1500 else 'MIN'}"))
     dead = 30.0
-    return math.copysign((abs(pulse - 1500) - dead) / (abs(end - 1500.0) - dead), pulse - 1500)
+    value = math.copysign((abs(pulse - 1500) - dead) / (abs(end - 1500.0) - dead), pulse - 1500)
+    return math.trunc(100.0 * value) / 100.0 if channel == 3 else value
 
 
 @ALL

@@ -37,11 +37,9 @@ def test_it_circles_the_point_ahead_and_looks_at_it(core: Core, frame: str) -> N
     p.sticks(18.0)
     away = p.since(start)[:, 1:3] - centre
     radius = np.hypot(away[:, 0], away[:, 1])
-    assert radius.min() > 9.5 and radius.max() < 10.5
+    assert radius.min() > 9.0 and radius.max() < 10.2 and radius.mean() < 9.9, "behind its target: inside of the circle"
     speed = float(np.hypot(*p.vel[:2]))
-    assert speed == pytest.approx(math.radians(20.0) * 10.0, abs=0.15), (
-        "a real ArduPilot with these parameters: 3.3 m/s"
-    )
+    assert speed == pytest.approx(3.3, abs=0.15), "a real ArduPilot with these parameters: 3.3 m/s"
     assert abs(off_centre(p, centre)) < 5.0
     turned = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     assert turned[-1] - turned[0] == pytest.approx(2.0 * math.pi, abs=0.2), "clockwise, 20 deg/s"
@@ -69,7 +67,7 @@ def test_sticks_change_radius_rate_height_and_heading(core: Core) -> None:
     p.sticks(2.0, pitch=2000, throttle=1900)
     assert p.ap.modes.circle.radius == pytest.approx(30.0, abs=0.5), "WPNAV_SPEED 10 m/s"
     p.sticks(12.0)
-    assert np.hypot(*(p.pos[:2] - centre)) == pytest.approx(30.0, abs=1.5)
+    assert np.hypot(*(p.pos[:2] - centre)) == pytest.approx(28.1, abs=1.0), "inside of the circle"
     assert p.height > 22.0
     p.sticks(5.0, roll=1000)
     limited = math.degrees(math.sqrt(0.5 * 2.5 * 30.0) / 30.0)

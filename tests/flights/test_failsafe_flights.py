@@ -89,6 +89,55 @@ def test_battery(core: Core, params: dict, mode: int) -> None:
     assert p.said("Battery 1 is")
 
 
+def test_voltage_of_the_simulated_battery(core: Core) -> None:
+    """Low, then critical, each after its ten seconds; BATTERY_STATUS tells of it; on the ground nobody arms with it."""
+    p = Aviator(core, "ardupilot_quad", BATT_LOW_VOLT=11.5, BATT_CRT_VOLT=10.5, BATT_FS_LOW_ACT=2, BATT_FS_CRT_ACT=1)
+    p.hover(20.0)
+    p.set_parameter("SIM_BATT_VOLTAGE", 11.4)
+    p.fly(9.0)
+    assert (p.mode, p.ap.battery.voltage) == (GUIDED, pytest.approx(11.4))
+    p.fly(2.0)
+    assert p.mode == RTL and p.said("Battery 1 is low") and p.ap.modes.failsafe.battery == 1
+    p.set_parameter("SIM_BATT_VOLTAGE", 10.4)
+    p.fly(11.0)
+    assert p.mode == LAND and p.said("Battery 1 is critical") and p.ap.modes.failsafe.battery == 2
+    p.wait_disarmed(60.0)
+    p.set_mode(GUIDED)
+    assert p.ask(ARM, 1) == 4 and p.said("Battery 1 low voltage failsafe")
+
+
+def test_a_battery_monitor_that_fails_in_flight(core: Core) -> None:
+    p = Aviator(core).hover()
+    p.set_parameter("BATT_VOLT_PIN", -1)
+    p.fly(4.5)
+    assert not p.said("Battery 1 is missing")
+    p.fly(1.0)
+    assert p.said("Battery 1 is missing") and p.mode == GUIDED
+    assert p.set_mode(LAND)
+    p.wait_disarmed(60.0)
+    p.set_mode(GUIDED)
+    assert p.ask(ARM, 1) == 4 and p.said("Battery 1 unhealthy")
+
+
+@pytest.mark.parametrize("enabled", [0, 1])
+def test_vibration_spoils_the_height_unless_it_is_compensated(core: Core, enabled: int) -> None:
+    """A bias of 2 m/s^2: three seconds later the compensated copter is back at its height, the other one above it."""
+    p = Aviator(core, "ardupilot_quad", FS_VIBE_ENABLE=enabled).hover(20.0)
+    p.sticks(0.5)
+    p.set_mode(LOITER)
+    p.sticks(1.0)
+    p.set_parameter("SIM_ACC1_BIAS_Z", 2.0)
+    p.sticks(4.5)
+    assert p.said("Vibration compensation ON") == bool(enabled)
+    assert (p.height < 22.5) == bool(enabled), p.height
+    assert p.set_mode(LAND)
+    p.fly(40.0, lambda: p.height < 2.0)
+    assert p.height < 2.0
+    p.set_parameter("SIM_ACC1_BIAS_Z", 0.0)
+    p.fly(25.0)
+    assert p.said("Vibration compensation OFF") == bool(enabled)
+
+
 @BOTH
 @pytest.mark.parametrize(("mode", "then"), [(LOITER, LAND), (GUIDED, LAND), (RTL, LAND), (ALT_HOLD, ALT_HOLD)])
 def test_gps_lost(core: Core, frame: str, mode: int, then: int) -> None:

@@ -131,7 +131,7 @@ def test_rtl_waits_over_home(core: Core) -> None:
         p = Aviator(core, "ardupilot_quad", RTL_LOIT_TIME=wait).hover()
         p.set_mode(RTL)
         start = p.now
-        p.wait_disarmed(80.0)
+        assert p.fly(80.0, lambda p=p: p.height < 1.0)
         times.append(p.now - start)
     assert times[1] - times[0] == pytest.approx(5.0, abs=0.3)
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -62,7 +64,7 @@ def test_stabilize_flies_by_throttle_and_lean(core: Core, frame: str) -> None:
     for axis, name in ((0, "roll"), (1, "pitch")):
         for pulse, lean in ((1900, 30.0), (1100, -30.0), (1700, 14.2)):
             p.sticks(1.5, throttle=1550, **{name: pulse})
-            assert p.euler[axis] == pytest.approx(lean, abs=1.0)
+            assert math.degrees(p.ap.estimate.euler[axis]) == pytest.approx(lean, abs=1.0)
         p.sticks(1.0, throttle=1550)
         assert abs(p.euler[axis]) < 1.0
 

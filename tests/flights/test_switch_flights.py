@@ -178,7 +178,7 @@ def flown_north(p: Aviator, seconds: float = 3.0) -> tuple[float, float]:
 def test_in_simple_forwards_is_the_heading_of_arming(core: Core) -> None:
     p = hover(core, 3)
     first = float(np.radians(p.euler[2]))
-    p.sticks(2.0, yaw=1700)
+    p.sticks(2.0, yaw=1600)
     p.sticks(1.0)
     turned = float(np.radians(p.euler[2])) - first
     assert abs(np.sin(turned)) > 0.3, "it has turned"

@@ -24,7 +24,7 @@ def test_airframes_are_complete_and_their_parameters_accepted(name):
     record = airframe.record()
     assert record.dtype == Figures.dtype
     assert record["mass"] == airframe.figures["mass"]
-    assert record["rotor_count"] == 4
+    assert record["rotor_count"] == len(airframe.rotors)
     assert sum(record["rotor_direction"]) == 0.0
     for parameter, value in airframe.parameters.items():
         assert parameter in TABLE

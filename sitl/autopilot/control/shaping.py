@@ -121,25 +121,6 @@ def limit_accel(vel: Vec2, acc: Vec2, acc_max: float) -> Vec2:
 
 
 @inlined
-def limit_accel_braking(vel: Vec2, acc: Vec2, acc_max: float) -> Vec2:
-    """The same, but what slows down comes first: for shaped targets.
-
-    A point that passes its goal at speed then brakes, where ``limit_accel`` would circle it for ever.
-    """
-    speed = norm2(vel)
-    if acc_max <= 0.0 or dot2(acc, acc) <= acc_max * acc_max or speed < 1e-9:
-        return limit_accel(vel, acc, acc_max)
-    u = vel / speed
-    along = acc.x * u.x + acc.y * u.y
-    if along >= 0.0:
-        return limit_accel(vel, acc, acc_max)
-    along = max(along, -acc_max)
-    room = math.sqrt(max(acc_max * acc_max - along * along, 0.0))
-    across = constrain(acc.y * u.x - acc.x * u.y, -room, room)
-    return Vec2(u.x * along - u.y * across, u.y * along + u.x * across)
-
-
-@inlined
 def shape_accel(target: float, acc: float, jerk_max: float, dt: float) -> float:
     """Acceleration moved towards ``target`` by at most ``jerk_max * dt`` (jerk 0: at once)."""
     if jerk_max <= 0.0:
@@ -169,9 +150,9 @@ def shape_vel_accel(target_vel: float, target_acc: float, now: Motion, limits: L
 
 @inlined
 def shape_vel_accel_2d(target_vel: Vec2, target_acc: Vec2, now: Motion2, limits: Limits2, dt: float) -> Vec2:
-    """The same in the plane: one limit for the length of the correction, of which braking takes its part first."""
+    """The same in the plane: one limit for the length of the correction, so that velocities change along a line."""
     wanted = sqrt_controller_2d(target_vel - now.vel, limits.jerk_max / limits.acc_max, limits.jerk_max, dt)
-    wanted = limit_accel_braking(now.vel, wanted, limits.acc_max)
+    wanted = limit_length(wanted, limits.acc_max)
     return shape_accel_2d(wanted + target_acc, now.acc, limits.jerk_max, dt)
 
 

@@ -69,7 +69,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
-    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p.ARMING)
+    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
@@ -79,7 +79,7 @@ def check(v: Vehicle) -> int:
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
-    return failed if p.FRAME.CLASS == 1.0 else failed | FRAME
+    return failed if ap.control.motors.count > 0 else failed | FRAME
 
 
 @law

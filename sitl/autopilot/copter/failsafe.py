@@ -9,6 +9,7 @@ from ..failsafe_checks import (
     EKF,
     GCS,
     RADIO,
+    VIBRATION,
     battery_fell_to,
     is_estimate_bad,
     is_gcs_lost,
@@ -16,6 +17,7 @@ from ..failsafe_checks import (
     report,
     report_battery,
     text,
+    watch_monitor,
 )
 from ..modes import (
     ACCEPTED,
@@ -25,6 +27,7 @@ from ..modes import (
     REASON_RADIO_FAILSAFE,
 )
 from ..state import Failsafe
+from .control import vibration
 from .failsafe_actions import (
     DO_BRAKE,
     DO_LAND,
@@ -116,6 +119,7 @@ def watch_battery(v: Vehicle) -> None:
     ap, p = v.autopilot, v.autopilot.params
     level = battery_fell_to(ap.modes.failsafe, ap.battery, ap.arming.armed, v.time_us, p.BATT)
     report_battery(ap.events, v.time_us, level)
+    watch_monitor(ap.modes.failsafe, ap.battery, ap.arming.armed, ap.events, v.time_us)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
@@ -174,6 +178,16 @@ def act_on_estimate(v: Vehicle) -> None:
             return
         land_with_pause(v, REASON_EKF_FAILSAFE)
     ap.modes.land.with_position = False
+
+
+@law
+def watch_vibration(v: Vehicle) -> None:
+    """Ten times a second: vertical control without the measured acceleration, when that runs away (FS_VIBE_ENABLE)."""
+    ap = v.autopilot
+    watched = ap.arming.armed and ap.params.FS.VIBE_ENABLE > 0.0
+    change = vibration.watch(ap.control.vibration, ap.estimate, watched, v.time_us)
+    if change != vibration.NOTHING:
+        report(ap.events, v.time_us, VIBRATION, change == vibration.BEGINS)
 
 
 def terminate(v: Vehicle) -> None:

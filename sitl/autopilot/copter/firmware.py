@@ -8,6 +8,7 @@ from ...core.records import Records
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
 from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
+from .control.frames import load_frame
 from .control.update import init as init_control
 from .control.update import update as control
 from .mission import COMMANDS
@@ -28,6 +29,7 @@ def update(fleet: Records[Vehicle], index: int) -> None:
 
 def power_on(v: Vehicle) -> None:
     """Start the rooms of the firmware on a cleared record whose parameters are set."""
+    load_frame(v.autopilot.control.motors, v.autopilot.params)
     init_control(v.autopilot.control, v.autopilot.estimate, v.autopilot.params)
     init_modes(v)
 

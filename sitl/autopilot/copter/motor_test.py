@@ -11,7 +11,6 @@ from ...core.kernels import inlined
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from ..state import Arming
-from .control.motors import MOTORS
 from .control.state import MotorsState
 from .modes import ground
 from .state import Vehicle
@@ -26,22 +25,14 @@ BAD_MOTOR = 3
 BAD_THROTTLE = 4
 BAD_TIME = 5
 
-_PLUS_ORDER = (2, 0, 3, 1)
-_X_ORDER = (0, 3, 1, 2)
-
-
-def motor_in_order(frame_type: int, position: int) -> int:
-    """Motor 0 .. 3 at ``position`` 0 .. 3 clockwise from the front (front right for X)."""
-    return _PLUS_ORDER[position] if frame_type == 0 else _X_ORDER[position]
-
 
 def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float, seconds: float) -> int:
-    """OK, or why motor 0 .. 3 is not turned so."""
+    """OK, or why motor 0 .. is not turned so."""
     if not arming.landed:
         return NOT_LANDED
     if arming.armed and motors.test_motor == 0:
         return ARMED
-    if motor < 0 or motor >= MOTORS:
+    if motor < 0 or motor >= motors.count:
         return BAD_MOTOR
     if not 0.0 <= throttle <= 1.0:
         return BAD_THROTTLE
@@ -49,7 +40,7 @@ def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float, se
 
 
 def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
-    """Turn motor 0 .. 3 at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
+    """Turn motor 0 .. at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
 
     A test under way goes on with the new motor, throttle and time.
     """

@@ -94,4 +94,6 @@ def move(ap: Autopilot, d: Displacement) -> None:
     move_attitude(ap.control.attitude, d)
     move_position(ap.control.pos_ne, d)
     move_altitude(ap.control.pos_d, d)
+    ap.control.vibration.pos += d.shift.z
+    ap.control.vibration.vel += d.velocity.z
     move_modes(ap.modes, d)

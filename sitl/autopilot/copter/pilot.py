@@ -18,6 +18,7 @@ from ..radio import (
     YAW,
     expo,
     ranged,
+    ranged_middle,
     receive,
     stick_channel,
     stick_position,
@@ -117,10 +118,16 @@ def lean_angles(pilot: PilotState, angle_max: float, limit: float) -> Lean:
 
 
 @law
-def climb_of_stick(throttle: float, dead: float, speed_up: float, speed_down: float) -> float:
-    """Climb rate [m/s], up positive, of a throttle stick 0 .. 1; 0 within ``dead`` of the middle."""
-    top = 0.5 + dead
-    bottom = 0.5 - dead
+def throttle_middle(p: Parameters) -> float:
+    """Where the throttle stick 0 .. 1 is in its middle."""
+    return ranged_middle(p.RC[stick_channel(p.RCMAP, THROTTLE)])
+
+
+@law
+def climb_of_stick(throttle: float, middle: float, dead: float, speed_up: float, speed_down: float) -> float:
+    """Climb rate [m/s], up positive, of a throttle stick 0 .. 1; 0 within ``dead`` of its ``middle``."""
+    top = middle + dead
+    bottom = middle - dead
     if throttle < bottom:
         return speed_down * (throttle - bottom) / bottom
     if throttle > top:
@@ -140,14 +147,15 @@ def climb_rate(modes: Modes, rc: Radio, p: Parameters) -> float:
     if not has_receiver(rc, modes.failsafe):
         return 0.0
     dead = constrain(p.THR_DZ * 0.001, 0.0, 0.4)
-    return climb_of_stick(modes.pilot.throttle, dead, p.PILOT.SPEED_UP * 0.01, speed_down(p.PILOT))
+    return climb_of_stick(modes.pilot.throttle, throttle_middle(p), dead, p.PILOT.SPEED_UP * 0.01, speed_down(p.PILOT))
 
 
 @law
-def throttle_out(throttle: float, hover: float) -> float:
-    """Motor throttle 0 .. 1 of the stick in STABILIZE: a cubic through 0, 1 and ``hover`` near the middle.
+def throttle_out(throttle: float, middle: float, hover: float) -> float:
+    """Motor throttle 0 .. 1 of the stick in STABILIZE: a cubic through 0, 1 and ``hover`` near its ``middle``.
 
     Source: ArduPilot's manual throttle curve, out = x (1 - e) + e x^3 with e from MOT_THST_HOVER.
     """
     e = constrain(-(hover - 0.5) / 0.375, -0.5, 1.0)
-    return throttle * (1.0 - e) + e * throttle * throttle * throttle
+    x = 0.5 * throttle / middle if throttle < middle else 0.5 + 0.5 * (throttle - middle) / (1.0 - middle)
+    return x * (1.0 - e) + e * x * x * x

@@ -10,7 +10,7 @@ from ...core.kernels import law
 from ...core.scalars import constrain
 from ...core.vectors import Quat, Vec2, Vec3
 from .control.attitude_target import set_target
-from .control.motors import MOTORS, SPOOLING_UP, THROTTLE_UNLIMITED, hover_throttle
+from .control.motors import SPOOLING_UP, THROTTLE_UNLIMITED, hover_throttle
 from .control.state import GRAVITY, Control, MotorsState
 from .parameters import Parameters
 from .parameters.control import Motors
@@ -40,8 +40,8 @@ def thrust_of(control: float, motors: MotorsState, p: Motors) -> float:
 def total_thrust(motors: MotorsState, actuators: Actuators, p: Motors) -> float:
     """The same of all motors, summed."""
     total = 0.0
-    for k in range(MOTORS):
-        total += thrust_of(float(actuators.controls[k]), motors, p)
+    for k in range(motors.count):
+        total += thrust_of(float(actuators.controls[motors.output[k]]), motors, p)
     return total
 
 
@@ -78,7 +78,7 @@ def scale_throttle(control: Control, p: Parameters, ratio: float, lift: float) -
     motors.throttle *= ratio
     motors.throttle_out *= ratio
     motors.throttle_avg_max = min(motors.throttle_avg_max * ratio, 1.0)
-    for k in range(MOTORS):
+    for k in range(motors.count):
         motors.thrust[k] *= ratio
     control.rate.roll.integrator *= ratio
     control.rate.pitch.integrator *= ratio
@@ -89,10 +89,11 @@ def scale_throttle(control: Control, p: Parameters, ratio: float, lift: float) -
 def set_outputs(motors: MotorsState, actuators: Actuators, p: Motors) -> None:
     """Pulses and commands of the motors from ``actuators.controls``."""
     shortest, span = (p.PWM_MIN, p.PWM_MAX - p.PWM_MIN) if p.PWM_MAX > p.PWM_MIN else (1000.0, 1000.0)
-    for k in range(MOTORS):
-        pulse = 1000.0 + 1000.0 * float(actuators.controls[k])
+    for k in range(motors.count):
+        output = motors.output[k]
+        pulse = 1000.0 + 1000.0 * float(actuators.controls[output])
         motors.actuator[k] = (pulse - shortest) / span
-        actuators.pwm[k] = int(pulse)
+        actuators.pwm[output] = int(pulse)
 
 
 @law

@@ -155,7 +155,7 @@ def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
     north = innovate_position(ekf, 0, age, residual.x, variance)
     east = innovate_position(ekf, 1, age, residual.y, variance)
     squares = north.value * north.value + east.value * east.value
-    ekf.innovation_pos = Vec3(north.value, east.value, ekf.innovation_pos.z)
+    ekf.innovation_pos = Vec2(north.value, east.value)
     nominal = math.sqrt(2.0) * params.POSNE_M_NSE
     ratio = gate_ratio(squares, north.variance + east.variance, nominal, params.POS_I_GATE)
     if not ratio >= 1.0:
@@ -170,7 +170,9 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_
     """Fuse velocity and position of a fix taken at ``when_us``; whether one of them passed its gate."""
     age = 1e-6 * (ekf.now_us - when_us)
     past = past_at(ekf, when_us)
-    velocity = fuse_velocity(ekf, 0.01 * sensors.gps_vel - past.vel, params)
+    residual = 0.01 * sensors.gps_vel - past.vel
+    estimate.innovation_vel_d = -residual.z
+    velocity = fuse_velocity(ekf, residual, params)
     estimate.variance_vel = math.sqrt(velocity)
     position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
     estimate.variance_pos = math.sqrt(position)

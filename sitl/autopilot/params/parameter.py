@@ -35,7 +35,7 @@ _FLOAT_LIMIT = float(np.finfo(np.float32).max)
 class Parameter(NamedTuple):
     """A named number of the firmware, under ArduPilot's name, with ArduPilot's default.
 
-    ``low`` and ``high`` are the values that the firmware accepts (not the range that is advisable).
+    ``low`` and ``high`` are the values that the firmware can use (not the range that is advisable).
     """
 
     name: str
@@ -58,14 +58,26 @@ class Parameter(NamedTuple):
 
     def refusal(self, value: float) -> str | None:
         """Why ``value`` cannot be set, or None when it can."""
+        return self.no_number(value) or self.out_of_range(value)
+
+    def no_number(self, value: float) -> str | None:
+        """Why ``value`` is not a number that can be stored, or None when it is one."""
         if not isinstance(value, Real):
             return f"{self.name}: {value!r} is not a number"
         if not (math.isfinite(value) and abs(value) <= _FLOAT_LIMIT):
             return f"{self.name}: {value} is not a finite number"
-        if not self.low <= stored(self, value) <= self.high:
-            unit = f" {self.unit}" if self.unit else ""
-            return f"{self.name}: {value:g} is outside {self.low:g} .. {self.high:g}{unit}"
         return None
+
+    def out_of_range(self, value: float) -> str | None:
+        """What is wrong with a number that is out of range, or None when it is not."""
+        if self.low <= stored(self, value) <= self.high:
+            return None
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.name}: {value:g} is outside {self.low:g} .. {self.high:g}{unit}"
+
+    def used(self, value: float) -> float:
+        """The value nearest to ``value`` that is in range."""
+        return min(max(value, self.low), self.high)
 
 
 def stored(parameter: Parameter, value: float) -> float:
@@ -102,7 +114,7 @@ def param(
 
     Args:
         default: ArduPilot's.
-        low, high: what the firmware accepts.
+        low, high: what the firmware can use.
         unit: of the value as the user sees it, "" for none.
         doc: one line; "{n}" stands for the number of a numbered parameter or group.
         kind: how the wire carries it: FLOAT, INT8, INT16, INT32.

@@ -8,10 +8,11 @@ from typing import Any
 from ...core.border import RC_INPUTS
 from ...core.records import Records
 from .estimator import Ekf3
+from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
-from .system import Arming, Battery, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
+from .system import Arming, Battery, Compass, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
 
 
 class Parameters(ParameterGroup):
@@ -23,7 +24,9 @@ class Parameters(ParameterGroup):
 
     ARMING: Arming
     BATT: Battery
+    COMPASS: Compass
     EK3: Ekf3
+    FOLL: Follow
     FS: Failsafes
     GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
     INITIAL_MODE: float = param(0, 0, 127, "", "Mode after boot, until the mode channel says another", INT8)

@@ -3,7 +3,30 @@
 
 from __future__ import annotations
 
-from .parameter import INT8, ParameterGroup, param
+from typing import Any
+
+from .parameter import INT8, ParameterGroup, group, param
+
+
+class Axes(ParameterGroup):
+    """Three axes of the body."""
+
+    X: float = param(0, -10000, 10000, "", "forward")
+    Y: float = param(0, -10000, 10000, "", "right")
+    Z: float = param(0, -10000, 10000, "", "down")
+
+
+def hard_iron(label: str) -> Any:
+    """Three axes of an offset of a compass, with ArduPilot's default."""
+    axes = {"X": 5.0, "Y": 13.0, "Z": -18.0}
+    rows = {k: {"default": value, "unit": "mGauss", "doc": f"{label}, {k}"} for k, value in axes.items()}
+    return group(label, **rows)
+
+
+class SecondCompass(ParameterGroup):
+    """SIM_MAG2_, SIM_MAG3_: a compass besides the first."""
+
+    OFS: Axes = hard_iron("What this compass shows too little")
 
 
 class Simulated(ParameterGroup):
@@ -13,6 +36,12 @@ class Simulated(ParameterGroup):
     WIND_DIR: float = param(180, 0, 360, "deg", "Where the wind comes from")
     WIND_TURB: float = param(0, 0, 20, "m/s", "Turbulence, standard deviation of each axis")
     WIND_TC: float = param(5, 0.1, 300, "s", "Correlation time of the turbulence and lag of wind changes")
+    ACC1_BIAS: Axes = group("What the accelerometer shows too much [m/s/s]")
+    BARO_COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
+    BATT_VOLTAGE: float = param(12.6, 0, 1000, "V", "Voltage of the full battery; 12.6: that of the airframe")
+    GPS1_JAM: float = param(0, 0, 1, "", "1 jams the GPS receiver", INT8)
+    MAG2: SecondCompass
+    MAG3: SecondCompass
     GPS1_ENABLE: float = param(1, 0, 1, "", "0 switches the GPS receiver off", INT8)
     SPEEDUP: float = param(
         1, -1, 100000, "", "Simulated seconds a second; 0 or less: as fast as it goes (drop-in executables only)"

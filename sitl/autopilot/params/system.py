@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from .parameter import INT8, INT16, INT32, ParameterGroup, param
+from .simulation import Axes, hard_iron
 
 
 class Arming(ParameterGroup):
@@ -25,7 +26,10 @@ class Arming(ParameterGroup):
 class Battery(ParameterGroup):
     """BATT_: battery monitor and failsafe."""
 
-    MONITOR: float = param(0, 0, 4, "", "0 none, 3 voltage, 4 voltage and current", INT8)
+    MONITOR: float = param(
+        0, -128, 127, "", "0 none, 3 voltage, 4 voltage and current, others do not exist; counts from power-on", INT8
+    )
+    VOLT_PIN: float = param(13, -128, 127, "", "Pin of the voltage; below 0: none, the monitor fails", INT8)
     CAPACITY: float = param(3300, 0, 2000000, "mAh", "Charge of the full battery", INT32)
     LOW_TIMER: float = param(10, 0, 120, "s", "Voltage is low only when low for so long", INT8)
     LOW_VOLT: float = param(10.5, 0.0, 120.0, "V", "Low; 0 off")
@@ -34,6 +38,15 @@ class Battery(ParameterGroup):
     CRT_MAH: float = param(0.0, 0.0, 2000000.0, "mAh", "Critical when less is left; 0 off")
     ARM_VOLT: float = param(0.0, 0.0, 120.0, "V", "Least voltage for arming; 0 off")
     ARM_MAH: float = param(0, 0, 2000000, "mAh", "Least charge left for arming; 0 off", INT32)
+
+
+class Compass(ParameterGroup):
+    """COMPASS_: the second and third compass, which arming checks compare with the first."""
+
+    OFS2: Axes = hard_iron("Added to what the second compass shows")
+    OFS3: Axes = hard_iron("Added to what the third compass shows")
+    USE2: float = param(1, 0, 1, "", "1 the second compass counts", INT8)
+    USE3: float = param(1, 0, 1, "", "1 the third compass counts", INT8)
 
 
 class Failsafes(ParameterGroup):

@@ -103,14 +103,15 @@ class Values:
     def __init__(self, table: Table, record: Any) -> None:
         self.table, self._record = table, record
         self.kept: dict[str, float] = {}
-        """Those without effect, as far as they were set."""
+        """What is not in the record: those without effect, as far as they were set, and values that are out of range,
+        for which the record has the nearest one that is not."""
 
     def __getitem__(self, name: str) -> float:
-        parameter = self.table[name]
-        if parameter.has_effect:
-            return float(self._record[name])
         value = self.kept.get(name)
-        return stored(parameter, parameter.default) if value is None else value
+        if value is not None:
+            return value
+        parameter = self.table[name]
+        return float(self._record[name]) if parameter.has_effect else stored(parameter, parameter.default)
 
     def __setitem__(self, name: str, value: float) -> None:
         """Set one, as the firmware keeps it."""
@@ -120,10 +121,14 @@ class Values:
         """Set several."""
         for name, value in values.items():
             parameter = self.table[name]
+            value = stored(parameter, value)
+            used = parameter.used(value)
             if parameter.has_effect:
-                self._record[name] = stored(parameter, value)
+                self._record[name] = used
+            if parameter.has_effect and used == value:
+                self.kept.pop(name, None)
             else:
-                self.kept[name] = stored(parameter, value)
+                self.kept[name] = value
 
     def listed(self) -> tuple[Parameter, ...]:
         """Those in the list that clients get, in its order."""

@@ -68,7 +68,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     modes, p = ap.modes, ap.params
-    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p.ARMING)
+    sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)

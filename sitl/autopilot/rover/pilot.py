@@ -22,7 +22,7 @@ RECEIVER_TIMEOUT_S = 0.5
 """Silence of the receiver that counts as lost (ArduRover's)."""
 THROTTLE_AT_REST = 1500
 """[us]"""
-MIXING_RANGE = 500.0  # [us]
+MIXING_RANGE = 400.0  # [us]
 CRUISE_THROTTLE_MIN, CRUISE_THROTTLE_MAX = 5.0, 100.0
 """CRUISE_THROTTLE outside of this [%] says nothing about speeds."""
 
@@ -63,11 +63,17 @@ def read(pilot: PilotState, rc: Radio, sensors: Sensors, params: Parameters, tim
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
     receive(rc, sensors, params, time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
     pilot.steering = stick_position(rc, params, ROLL)
-    pilot.throttle = stick_position(rc, params, THROTTLE)
+    pilot.throttle = whole_percent(stick_position(rc, params, THROTTLE))
     channel = stick_channel(params.RCMAP, ROLL)
     pilot.steering_pulse = min(abs(rc.channels[channel] - params.RC[channel].TRIM), MIXING_RANGE)
     pilot.left = paddle(rc, params, ROLL)
     pilot.right = paddle(rc, params, THROTTLE)
+
+
+@law
+def whole_percent(stick: float) -> float:
+    """A stick -1 .. 1 cut to hundredths: the throttle stick counts in whole percent."""
+    return float(int(100.0 * stick)) * 0.01
 
 
 @law

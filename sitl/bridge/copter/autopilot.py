@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from ...autopilot import events
-from ...autopilot.copter import arming, failsafe, motor_test
+from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
+from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
@@ -14,10 +16,12 @@ from ...autopilot.mission.notes import Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
-from ..base_autopilot import CRITICAL, INFO, BaseAutopilot
+from ..base_autopilot import CRITICAL, INFO, WARNING, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
+_BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
+FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 
 
@@ -27,9 +31,22 @@ class CopterAutopilot(BaseAutopilot):
     _arming, _failsafe, _set_mode = arming, failsafe, set_mode
     _auto = auto.AUTO
 
+    def __init__(self, vehicle: Any) -> None:
+        super().__init__(vehicle)
+        self._check_frame()
+
+    def _check_frame(self) -> None:
+        """Warn of a frame that is not the airframe's: the vehicle would tip over."""
+        motors, rotors = int(self._v.autopilot.control.motors.count), int(self._v.physics.airframe.rotor_count)
+        if motors not in (0, rotors):
+            number = self._v.autopilot.params.FRAME.CLASS
+            self._say(WARNING, [f"FRAME_CLASS {number:.0f} has {motors} motors, this vehicle {rotors} rotors"])
+
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.MOTOR_TEST:
             return [Text(INFO, "starting motor test" if a else "finished motor test")]
+        if code == events.TAKEOFF_BLOCKED:
+            return [Text(CRITICAL, f"Takeoff blocked: {_BLOCKED[int(a)]}")]
         if code == events.SIMPLE_CHANGED:
             return [Text(INFO, _SIMPLE[int(a)])]
         return super().texts_of(code, a, b)
@@ -49,17 +66,18 @@ class CopterAutopilot(BaseAutopilot):
     def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
         """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front."""
         motor = position - 1
-        if in_order and 0 <= motor < motor_test.MOTORS:
-            motor = motor_test.motor_in_order(int(self._v.autopilot.params.FRAME.TYPE), motor)
+        order = frames.order(self._v.autopilot.params)
+        if in_order and 0 <= motor < len(order):
+            motor = order[motor]
         answer = int(motor_test.start(self._v, motor, throttle, seconds))
         if answer == motor_test.NOT_LANDED:
             self._say(CRITICAL, ["Motor Test: vehicle not landed"])
         return answer == motor_test.OK
 
     def set_servo(self, number: int, pulse: int) -> bool:
-        """Outputs behind the motors' are free; motors are the mixer's."""
-        actuators = self._v.actuators
-        if not motor_test.MOTORS < number <= len(actuators.pwm):
+        """Outputs without a motor are free."""
+        actuators, motors = self._v.actuators, self._v.autopilot.control.motors
+        if not 0 < number <= len(actuators.pwm) or number - 1 in motors.output[: motors.count]:
             return False
         actuators.pwm[number - 1] = pulse
         actuators.controls[number - 1] = (pulse - 1500) / 500.0
@@ -85,8 +103,12 @@ class CopterAutopilot(BaseAutopilot):
         return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def parameter_changed(self, name: str) -> None:
-        """Speeds of legs that are set while AUTO flies one hold from there on, whatever the mission said before."""
+        """A frame that is set while disarmed holds at once; speeds of legs that are set while AUTO flies one hold from
+        there on, whatever the mission said before."""
         super().parameter_changed(name)
+        if name.startswith(FRAME_PARAMETERS) and not self.armed():
+            frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params)
+            self._check_frame()
         nav = self._v.autopilot.modes.nav
         field = LEG_SPEEDS.get(name)
         if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:

@@ -10,7 +10,7 @@ from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ...vehicle.copter import QUADROTOR
 from ..profile import Profile
-from ..services.service import CRITICAL, INFO
+from ..services.service import CRITICAL, EMERGENCY, INFO
 from ..telemetry.shell import CAPABILITIES, TERMINATION
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
@@ -48,6 +48,7 @@ PROFILE = Profile(
         events.ARMED: (INFO, "Arming motors"),
         events.DISARMED: (INFO, "Disarming motors"),
         events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
+        events.THRUST_LOST: (EMERGENCY, "Potential Thrust Loss ({a:.0f})"),
         events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
     },
     core=UNITS,

@@ -27,6 +27,7 @@ from ...core.vectors import Vec3
 from ...vehicle.copter import Copter
 from ..places import local_place
 from ..services.command import GLOBAL_FRAMES
+from ..services.follow import take_position
 from ..services.setpoints import (
     ATTITUDE_IGNORED,
     BODY_YAW_RATE_IGNORED,
@@ -45,6 +46,10 @@ from ..services.setpoints import (
     local_target,
     rotation,
 )
+from ..telemetry.motion import GlobalPositionInt
+
+OVER_HOME = 1
+"""FOLL_ALT_TYPE"""
 
 
 @law
@@ -118,6 +123,12 @@ def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
         return
     if finite(rates.x + rates.y + rates.z + m.thrust):
         set_attitude(v, use_attitude, given.q if use_attitude else IDENTITY, rates, m.thrust)
+
+
+@law
+def other_position(m: GlobalPositionInt, v: Copter, sender: int) -> None:
+    """Where another vehicle is, for FOLLOW."""
+    take_position(m, v, sender, v.autopilot.params.FOLL.ALT_TYPE == OVER_HOME)
 
 
 class CopterSetpoints(SetpointService):

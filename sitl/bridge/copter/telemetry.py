@@ -10,7 +10,8 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.table import MODES, NEED_POSITION
 from ...autopilot.navigation.state import TAKEOFF
 from ...core.kernels import law
-from ...vehicle.copter import QUADROTOR, Copter
+from ...core.records import Ints
+from ...vehicle.copter import HEXAROTOR, OCTOROTOR, QUADROTOR, Copter
 from ..telemetry import channels, motion, status
 from ..telemetry.channels import RcChannels
 from ..telemetry.heartbeat import (
@@ -28,14 +29,23 @@ from ..telemetry.heartbeat import (
 from ..telemetry.motion import VfrHud
 from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
 from ..telemetry.tuning import PITCH, ROLL, VERTICAL, YAW_LOOP, PidTuning, fill_tuning, next_loop
+from ..telemetry.units import uint8, uint16
 from ..wire.message import Message
 from ..wire.port import Port
 from . import targets
 
 
 @law
+def mav_type(motors: int) -> int:
+    """MAV_TYPE of a multicopter by its number of motors."""
+    if motors == 6:
+        return HEXAROTOR
+    return OCTOROTOR if motors == 8 else QUADROTOR
+
+
+@law
 def heartbeat(m: Heartbeat, v: Copter) -> bool:
-    """HEARTBEAT: quadrotor, ArduPilot, mode number, armed bit."""
+    """HEARTBEAT: kind of multicopter, ArduPilot, mode number, armed bit."""
     arming, modes, failsafe = v.autopilot.arming, v.autopilot.modes, v.autopilot.modes.failsafe
     base = CUSTOM_MODE | STABILIZED | MANUAL_INPUT
     if modes.number in NEED_POSITION:  # holds or changes the position by itself
@@ -45,7 +55,7 @@ def heartbeat(m: Heartbeat, v: Copter) -> bool:
     state = STANDBY if arming.landed else ACTIVE
     if failsafe.gcs or failsafe.radio or failsafe.battery != 0 or failsafe.ekf != 0:
         state = CRITICAL
-    return fill_heartbeat(m, v, QUADROTOR, base, state)
+    return fill_heartbeat(m, v, mav_type(v.autopilot.control.motors.count), base, state)
 
 
 POSITION_MODES = tuple(mode.number for mode in MODES if mode.needs_position or mode.uses_position)
@@ -160,7 +170,72 @@ def pid_tuning(m: PidTuning, v: Copter, port: Port) -> bool:
     return loop >= 0
 
 
+class EscTelemetry1To4(Message, name="ESC_TELEMETRY_1_TO_4"):
+    temperature: Ints
+    voltage: Ints
+    current: Ints
+    totalcurrent: Ints
+    rpm: Ints
+    count: Ints
+
+
+class EscTelemetry5To8(EscTelemetry1To4, name="ESC_TELEMETRY_5_TO_8"):
+    temperature: Ints
+    voltage: Ints
+    current: Ints
+    totalcurrent: Ints
+    rpm: Ints
+    count: Ints
+
+
+@law
+def fill_esc_telemetry(m: EscTelemetry1To4, v: Copter, first: int) -> bool:
+    """Four speed controllers from ``first``: each has the battery's voltage, and an even part of its current."""
+    sensors, battery, motors = v.sensors, v.autopilot.battery, v.sensors.esc_motors
+    for k in range(min(4, motors - first)):
+        m.temperature[k] = uint8(sensors.temperature)
+        m.voltage[k] = uint16(sensors.battery_voltage * 1e2)
+        m.current[k] = uint16(sensors.battery_current * 1e2 / motors)
+        m.totalcurrent[k] = uint16(battery.consumed_mah / motors)
+        m.rpm[k] = uint16(sensors.esc_rpm[first + k])
+        m.count[k] = sensors.esc_count & 0xFFFF
+    return motors > first
+
+
+@law
+def esc_telemetry_1_to_4(m: EscTelemetry1To4, v: Copter) -> bool:
+    """ESC_TELEMETRY_1_TO_4: air temperature [degC], cV, cA, mAh, RPM, samples of motors 1 to 4; see SIM_ESC_TELEM."""
+    return fill_esc_telemetry(m, v, 0)
+
+
+@law
+def esc_telemetry_5_to_8(m: EscTelemetry5To8, v: Copter) -> bool:
+    """ESC_TELEMETRY_5_TO_8: the same of motors 5 to 8."""
+    return fill_esc_telemetry(m, v, 4)
+
+
+class Rpm(Message, name="RPM"):
+    rpm1: float
+    rpm2: float
+
+
+FROM_ESCS = 5
+"""RPM1_TYPE"""
+
+
+@law
+def rpm(m: Rpm, v: Copter) -> bool:
+    """RPM: mean speed of the motors as their controllers tell it; only with RPM1_TYPE 5."""
+    motors = v.sensors.esc_motors
+    total = 0.0
+    for k in range(motors):
+        total += v.sensors.esc_rpm[k]
+    m.rpm1 = total / max(motors, 1)
+    m.rpm2 = -1.0
+    return v.autopilot.params.RPM1_TYPE == FROM_ESCS and motors > 0
+
+
 MESSAGES = (
     heartbeat, sys_status, mission_current, rc_channels, vfr_hud, extended_sys_state, wind, pid_tuning,
-    *targets.MESSAGES,
+    esc_telemetry_1_to_4, esc_telemetry_5_to_8, rpm, *targets.MESSAGES,
 )  # fmt: skip

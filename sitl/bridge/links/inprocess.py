@@ -13,6 +13,8 @@ Drop = Callable[[bytes], bool]
 
 
 class _VehicleEnd(Peer):
+    is_signed = False
+
     def __init__(self, name: str, drop: Drop | None) -> None:
         super().__init__(name)
         self.drop = drop
@@ -85,6 +87,7 @@ class FrameWriter(Protocol):
 
 class _LogPeer(Peer):
     waits = spools = stamps = is_log = True
+    is_signed = False
 
     def __init__(self, name: str, writer: FrameWriter, clock: Clock) -> None:
         super().__init__(name)

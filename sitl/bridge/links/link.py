@@ -28,6 +28,10 @@ class Peer:
     """Whether each of them then stands behind its time."""
     is_log = False
     """Whether it is a log, which gets what other clients are answered, too."""
+    is_signed = True
+    """Whether frames to and from it are signed once the vehicle has a key (``sitl.bridge.signing``)."""
+    takes_unsigned = False
+    """Whether its frames are heard without signature then, too."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -86,6 +90,7 @@ class Link:
         self.name = name
         self.peers: list[Peer] = []
         self._received = 0
+        self._takes_unsigned = False
         self.refusals: list[str] = []
         """Why clients were turned away; the switchboard takes them."""
         self.rates_hz: Mapping[str, int] = {}
@@ -117,7 +122,14 @@ class Link:
         """The peer to go when there is no room for another; one that never said anything is first."""
         return min(self.peers, key=lambda peer: peer.last_received)
 
+    def take_unsigned(self) -> None:
+        """Hear its peers without signature, too, when the vehicle has a key: nobody else can reach this link."""
+        self._takes_unsigned = True
+        for peer in self.peers:
+            peer.takes_unsigned = True
+
     def add_peer(self, peer: Peer) -> None:
+        peer.takes_unsigned = self._takes_unsigned
         self.peers.append(peer)
         if self._on_peer is not None:
             self._on_peer(peer)

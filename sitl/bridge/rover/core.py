@@ -8,17 +8,21 @@ from collections.abc import Sequence
 from ...core.kernels import unit
 from ...vehicle.rover import Rover, advance
 from ..core_link import CoreUnits
+from ..services.follow import follow_target
 from ..services.rc import rc_channels_override
 from ..telemetry.builder import compiled
 from ..wire.choose import choose_builder, choose_taker, choose_targets
 from ..wire.fleet import run_slots
 from ..wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
-from .setpoints import attitude_target, position_target_global, position_target_local
+from .setpoints import attitude_target, other_position, position_target_global, position_target_local
 from .sticks import manual_control
 from .telemetry import MESSAGES
 
 BUILDERS = compiled(MESSAGES)
-TAKERS = (position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control)
+TAKERS = (
+    position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control,
+    other_position, follow_target,
+)  # fmt: skip
 build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
 
 

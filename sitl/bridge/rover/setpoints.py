@@ -29,6 +29,7 @@ from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
 from ..places import local_place
 from ..services.command import GLOBAL, GLOBAL_FRAMES
+from ..services.follow import take_position
 from ..services.setpoints import (
     BODY_YAW_RATE_IGNORED,
     LOCAL_FRAMES,
@@ -43,6 +44,7 @@ from ..services.setpoints import (
     local_target,
     rotation,
 )
+from ..telemetry.motion import GlobalPositionInt
 
 if TYPE_CHECKING:
     from .autopilot import RoverAutopilot
@@ -66,6 +68,12 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Rover, sender: int)
     place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, GLOBAL)
     if place.is_known or (m.type_mask & POSITION_IGNORED) != 0:
         follow(v, global_target(m, place.pos), m.vx < 0.0, GLOBAL_NUMBER)
+
+
+@law
+def other_position(m: GlobalPositionInt, v: Rover, sender: int) -> None:
+    """Where another vehicle is, for FOLLOW."""
+    take_position(m, v, sender, False)
 
 
 @law

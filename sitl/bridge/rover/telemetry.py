@@ -157,11 +157,14 @@ class WheelDistance(Message, name="WHEEL_DISTANCE"):
 
 @law
 def wheel_distance(m: WheelDistance, v: Rover) -> bool:
-    """WHEEL_DISTANCE: rolled by the left and right driven wheel [m]; nothing without encoders."""
+    """WHEEL_DISTANCE: rolled by the left and right driven wheel [m], see WENC_TYPE; nothing without encoders."""
     m.time_usec = v.time_us
     m.distance[0] = v.sensors.wheel_distance.x
-    m.distance[1] = v.sensors.wheel_distance.y
-    m.count = 2
+    m.count = 1
+    p = v.autopilot.params
+    if p.WENC.TYPE == 0.0 or p.WENC2.TYPE != 0.0:
+        m.distance[1] = v.sensors.wheel_distance.y
+        m.count = 2
     return v.sensors.wheel_count > 0
 
 

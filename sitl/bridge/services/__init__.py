@@ -2,6 +2,7 @@
 """MAVLink's microservices (https://mavlink.io/en/services/)."""
 
 from .commands import CommandService
+from .config_error import ConfigErrorService
 from .ftp import FtpService
 from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
@@ -10,6 +11,7 @@ from .mission import MissionService
 from .parameters import ParameterService
 from .service import Service
 from .setpoints import SetpointService
+from .signing import SigningService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
 
@@ -26,8 +28,10 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     PingService,
     EventService,
     PreArmService,
+    ConfigErrorService,
     FtpService,
     LogDownloadService,
+    SigningService,
 )
 """In the order in which they act when several are due at the same time."""
 _registered: list[type[Service]] = []

@@ -49,16 +49,14 @@ def get_home(bridge: Bridge, channel: Channel, command: Command) -> int:
     """410 (old): answers HOME_POSITION."""
     if not bridge.vehicle.v.autopilot.home.is_set:
         return FAILED
-    bridge.send_now(channel, HOME_POSITION)
-    return ACCEPTED
+    return bridge.send_after_answer(channel, HOME_POSITION)
 
 
 def request_version(bridge: Bridge, channel: Channel, command: Command) -> int:
     """520 (old): p1 must be 1; answers AUTOPILOT_VERSION."""
     if command.p1 != 1.0:
         return UNSUPPORTED
-    bridge.send_now(channel, AUTOPILOT_VERSION)
-    return ACCEPTED
+    return bridge.send_after_answer(channel, AUTOPILOT_VERSION)
 
 
 def prearm_checks(bridge: Bridge, channel: Channel, command: Command) -> int:

@@ -61,6 +61,7 @@ class CommandService(Service):
     def _run(self, channel: Channel, entry: Entry, command: Command | None, number: int, sender: Sender) -> None:
         result = DENIED if command is None else entry.run(self.bridge, channel, command)
         self._ack(channel, number, result, sender)
+        self.bridge.send_asked()
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
         as_command = Command(DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)

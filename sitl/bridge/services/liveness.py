@@ -56,4 +56,5 @@ class TimesyncService(Service):
                 if "target_system" in TIMESYNC_KIND.fields
                 else {}
             )
-            channel.send(TIMESYNC_KIND, TIMESYNC_KIND.payload(tc1=self.bridge.now_us * 1000, ts1=m.ts1, **extension))
+            now = max(self.bridge.now_us * 1000, 1)  # 0 would be a request
+            channel.send(TIMESYNC_KIND, TIMESYNC_KIND.payload(tc1=now, ts1=m.ts1, **extension))

@@ -116,13 +116,19 @@ class ParameterService(Service):
     def set(self, name: str, value: float) -> str | None:
         """Set a parameter, in its unit, and tell every client, or say why not.
 
+        A number out of range is taken, as ArduPilot takes it; the firmware then goes by the nearest one in range.
+
         Raises:
             KeyError: there is no such parameter.
         """
         parameter = self._table[name]
-        refusal = f"Param write denied ({name})" if parameter.read_only else parameter.refusal(value)
+        refusal = f"Param write denied ({name})" if parameter.read_only else parameter.no_number(value)
         if refusal is not None:
             return refusal
+        range_text = parameter.out_of_range(value)
+        if range_text is not None and value != self._values[name]:
+            used = parameter.used(stored(parameter, value))
+            self.bridge.get(StatusTextService).say(INFO, f"{range_text}: {used:g} is used")
         if not (parameter.has_effect or name in self._values.kept):
             self._tell(name)
         self._values[name] = value
@@ -130,6 +136,7 @@ class ParameterService(Service):
         for listener in self.bridge.listeners:
             listener.parameter_set(name)
         self.bridge.autopilot.parameter_changed(name)
+        self.bridge.tell(self.bridge.autopilot.take_notes())
         self.bridge.get(StreamService).parameter_changed(name)
         if name == "MAV_SYSID":
             self.bridge.refresh_identity()

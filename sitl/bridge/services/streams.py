@@ -8,7 +8,7 @@ Sources: https://mavlink.io/en/guide/message_rates.html, https://ardupilot.org/d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...autopilot.modes import Mode
@@ -57,6 +57,8 @@ class StreamService(Service):
         super().__init__(bridge)
         self._groups = bridge.profile.groups
         self._group_of = {message(n).id: group for group, (_, names) in self._groups.items() for n in names}
+        self._asked: Mapping[tuple[int, int], int] = {}
+        """Rates [Hz] of groups by (number of the channel, group); replaced, never changed."""
 
     def handlers(self) -> dict[str, Handler]:
         return {"REQUEST_DATA_STREAM": self._request_data_stream}
@@ -68,6 +70,15 @@ class StreamService(Service):
             rate = self._rate_parameter(group)
             if rate:
                 self.set_group(channel, group, rate)
+
+    def channel_removed(self, channel: Channel) -> None:
+        self._asked = {key: rate for key, rate in self._asked.items() if key[0] != channel.number}
+
+    def snapshot(self) -> Any:
+        return self._asked
+
+    def restore(self, state: Any) -> None:
+        self._asked = state
 
     def parameter_changed(self, name: str) -> None:
         """A MAV1_ rate parameter was set: it holds for every channel from now on."""
@@ -83,6 +94,7 @@ class StreamService(Service):
     def set_group(self, channel: Channel, group: int, rate_hz: int) -> None:
         """Send a group's messages at ``rate_hz`` (0: stop), whatever was asked for them singly before."""
         rate_hz = min(rate_hz, self._loop_rate())
+        self._asked = {**self._asked, (channel.number, group): rate_hz}
         for name in self._groups[group][1]:
             self._set(channel, message(name).id, 1_000_000 // rate_hz if rate_hz > 0 else 0)
 
@@ -114,7 +126,7 @@ class StreamService(Service):
             say(WARNING, f"No ap_message for mavlink id ({number})")
             return DENIED
         if interval == 0.0:
-            self._set(channel, number, self._default_interval(number))
+            self._set(channel, number, self._default_interval(channel, number))
             return ACCEPTED
         if interval < 0.0:
             self._set(channel, number, 0)
@@ -125,11 +137,12 @@ class StreamService(Service):
         self._set(channel, number, int(min(interval, LONGEST_US)))
         return ACCEPTED
 
-    def _default_interval(self, number: int) -> int:
+    def _default_interval(self, channel: Channel, number: int) -> int:
+        """That of its group on this channel, as it was asked for last [us]."""
         if number in (HEARTBEAT, TIMESYNC):
             return HEARTBEAT_US if number == HEARTBEAT else TIMESYNC_US
         group = self._group_of.get(number)
-        rate = self._rate_parameter(group) if group is not None else 0
+        rate = self._asked.get((channel.number, group), 0) if group is not None else 0
         return 1_000_000 // rate if rate else 0
 
     def get_interval(self, channel: Channel, command: Command) -> int:
@@ -145,4 +158,4 @@ class StreamService(Service):
         """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
         if int(command.p1) == AVAILABLE_MODES.id:
             return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
-        return ACCEPTED if self.bridge.send_now(channel, int(command.p1)) else FAILED
+        return self.bridge.send_after_answer(channel, int(command.p1))

@@ -172,12 +172,13 @@ class GpsRawInt(Message, name="GPS_RAW_INT"):
     alt_ellipsoid: int
     h_acc: int
     v_acc: int
+    vel_acc: int
 
 
 @law
 def gps_raw_int(m: GpsRawInt, v: Vehicle) -> bool:
     """GPS_RAW_INT: the receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] are 0.3 m x HDOP
-    and 0.5 m x VDOP, other accuracies are not known (0).
+    and 0.5 m x VDOP, vel_acc [mm/s] is 0.1 m/s x HDOP; the heading's accuracy is not known (0).
     """
     s = v.sensors
     vel = s.gps_vel
@@ -195,6 +196,7 @@ def gps_raw_int(m: GpsRawInt, v: Vehicle) -> bool:
         m.epv = uint16(s.gps_epv)
         m.h_acc = m.eph * 3
         m.v_acc = m.epv * 5
+        m.vel_acc = m.eph
     return True
 
 

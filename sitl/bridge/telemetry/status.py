@@ -66,7 +66,7 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
         health |= RECEIVER  # cannot fail
     if monitor >= VOLTAGE_MONITOR:
         common |= BATTERY
-        if ap.modes.failsafe.battery == 0:
+        if ap.modes.failsafe.battery == 0 and battery.healthy:
             health |= BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
         health |= PREARM
@@ -109,7 +109,17 @@ class BatteryStatus(Message, name="BATTERY_STATUS"):
     charge_state: int
 
 
-CHARGE_OK, NO_TEMPERATURE = 1, 32767
+CHARGE_OK, CHARGE_LOW, CHARGE_CRITICAL, CHARGE_UNHEALTHY = 1, 2, 3, 6
+"""MAV_BATTERY_CHARGE_STATE"""
+NO_TEMPERATURE = 32767
+
+
+@law
+def charge_state(level: int, healthy: bool) -> int:
+    """MAV_BATTERY_CHARGE_STATE of what the failsafe has found: 0 nothing, 1 low, 2 critical."""
+    if level == 0:
+        return CHARGE_OK if healthy else CHARGE_UNHEALTHY
+    return CHARGE_LOW if level == 1 else CHARGE_CRITICAL
 
 
 @law
@@ -127,7 +137,7 @@ def battery_status(m: BatteryStatus, v: Vehicle) -> bool:
         m.energy_consumed = int32(battery.consumed_wh * 36.0)
         m.current_battery = int16(battery.current * 100.0)
     m.battery_remaining = percent(battery.remaining_pct)
-    m.charge_state = CHARGE_OK
+    m.charge_state = charge_state(v.autopilot.modes.failsafe.battery, battery.healthy)
     return True
 
 

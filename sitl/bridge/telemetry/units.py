@@ -21,6 +21,12 @@ def int16(x: float) -> int:
 
 
 @law
+def uint8(x: float) -> int:
+    """Truncated and limited to 0 .. 255."""
+    return int(min(max(x, 0.0), 255.0))
+
+
+@law
 def uint16(x: float) -> int:
     """Truncated and limited to 0 .. 65535."""
     if 0.0 <= x < 65535.0:

@@ -18,7 +18,7 @@ from .formats import HEAD, TYPES
 
 EV_ARMED, EV_DISARMED, EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED, EV_LOST_GPS = 10, 11, 15, 17, 18, 19
 EV_SET_HOME, EV_NOT_LANDED, EV_ALT_RESET, EV_YAW_RESET = 25, 28, 60, 62
-_RADIO, _BATTERY, _GCS, _MODE, _CRASH, _EKF = 5, 6, 8, 10, 12, 17
+_RADIO, _BATTERY, _GCS, _MODE, _CRASH, _EKF, _THRUST = 5, 6, 8, 10, 12, 17, 25
 _FAILSAFES = {
     failsafes.RADIO: _RADIO,
     failsafes.GCS: _GCS,
@@ -91,6 +91,8 @@ class EventEncoder:
             return self.pack("ERR", time_us, _MODE, int(a) & 255)
         if code in (core.CRASH_DISARM, core.CRASH_HOLD):
             return self.pack("ERR", time_us, _CRASH, 1)
+        if code == core.THRUST_LOST:
+            return self.pack("ERR", time_us, _THRUST, 1)
         if code == core.EKF_STOPPED_GPS:
             return self.pack("EV", time_us, EV_LOST_GPS)
         return b""

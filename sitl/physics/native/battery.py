@@ -22,7 +22,7 @@ def open_circuit(charge: float) -> float:
 @law
 def discharge(battery: BatteryState, power: float, figures: Battery, charge_per_amp: float) -> None:
     """Draw the motors' power [W] for one tick; ``charge_per_amp``: loss of charge (of 1) per ampere and tick [1/A]."""
-    full = figures.battery_voltage_full
+    full = battery.full_voltage if battery.full_voltage > 0.0 else figures.battery_voltage_full
     current = figures.avionics_current + power / max(battery.voltage, 0.1 * full)
     battery.current = current
     if figures.battery_capacity > 0.0:

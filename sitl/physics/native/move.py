@@ -115,9 +115,12 @@ def move_physics(p: Physics, sensors: Sensors, d: Displacement, now: Clock) -> N
 
 @law
 def show_field(p: Physics, sensors: Sensors, before: Quat) -> None:
-    """The magnetometer's last sample, after the attitude ``before`` has changed."""
+    """The magnetometers' last sample, after the attitude ``before`` has changed."""
     field = p.place.field
-    sensors.mag += rotate_inverse(p.body.q, field) - rotate_inverse(before, field)
+    change = rotate_inverse(p.body.q, field) - rotate_inverse(before, field)
+    sensors.mag += change
+    sensors.mag2 += change
+    sensors.mag3 += change
 
 
 @law

@@ -72,6 +72,7 @@ class BatteryState(Record):
 
     charge: float  # 1 full .. 0 empty
     voltage: float  # at the terminals [V]
+    full_voltage: float  # open circuit, full, in place of the airframe's [V]; 0: the airframe's (SIM_BATT_VOLTAGE)
     current: float  # [A]
 
 
@@ -103,10 +104,21 @@ class Fix(Record):
 
     due: int  # tick of delivery
     type: int  # MAVLink's GPS_FIX_TYPE
+    jammed: bool
     lat: int  # [degE7]
     lon: int  # [degE7]
     alt: int  # above mean sea level [mm]
     vel: Annotated[Vec3, Stored("i8")]  # NED, whole [cm/s]
+
+
+class Jam(Record):
+    """What a jammed GPS receiver makes of its place."""
+
+    pos: Vec3  # NED, error [m]
+    vel: Vec3  # NED [m/s]
+    eph: int  # HDOP * 100
+    epv: int  # VDOP * 100
+    satellites: int
 
 
 class SensorState(Record):
@@ -114,16 +126,23 @@ class SensorState(Record):
 
     acc_bias: Vec3  # turn-on bias, body [m/s^2]
     acc_walk: Vec3  # in-run bias, body [m/s^2]
+    acc_fault: Vec3  # bias of a broken sensor, body [m/s^2] (SIM_ACC1_BIAS)
     acc_scale: Vec3  # 1 + error, body
     gyro_bias: Vec3  # turn-on bias, body [rad/s]
     gyro_walk: Vec3  # in-run bias, body [rad/s]
     gyro_scale: Vec3  # 1 + error, body
     gps_drift: Vec3  # NED, in standard deviations
     gps_off: bool  # the receiver is switched off
+    gps_jammed: bool  # (SIM_GPS1_JAM)
+    gps_jam_end: int  # tick at which the jammed receiver shows fixes again, however wrong; 0: not jammed so far
+    gps_jam: Jam  # the last wrong one
     gps_head: int  # fixes taken so far
     gps_tail: int  # fixes delivered so far
     gps_fixes: Records[Fix] = repeat(Fix, GPS_RING)  # fix n at n % GPS_RING
     baro_drift: float  # in standard deviations
+    baro_missing: bool  # none was found at power-on (SIM_BARO_COUNT)
+    mag2_offset: Vec3  # what the second compass shows too little, body [gauss] (SIM_MAG2_OFS)
+    mag3_offset: Vec3  # the third [gauss]
 
 
 class Place(Record):

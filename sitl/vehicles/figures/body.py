@@ -59,6 +59,8 @@ class Sensors(Record):
     gyro_noise_density: float = figure("rad/s/sqrt(Hz)", "white noise of the gyro")
     gyro_random_walk: float = figure("rad/s^2/sqrt(Hz)", "of its in-run bias")
     gyro_bias_time: float = figure("s", "correlation time of the in-run bias")
+    gyro_drift_speed: float = figure("rad/s^2", "steady change of the bias of all axes, which turns round", default=0.0)
+    gyro_drift_time: float = figure("s", "after which it turns round; 0: never", default=0.0)
     gyro_turn_on_bias: float = figure("rad/s", "standard deviation")
     gyro_scale_error: float = figure("", "standard deviation", default=0.0)
     gyro_range: float = figure("rad/s", "saturation")

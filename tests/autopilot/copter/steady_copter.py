@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from sitl.autopilot import home
+from sitl.autopilot.copter.control.frames import load_frame
 from sitl.autopilot.copter.control.update import init as init_control
 from sitl.autopilot.copter.modes.update import init as init_modes
 from sitl.autopilot.copter.parameters import TABLE
@@ -30,6 +31,7 @@ def make() -> Any:
     est.attitude_ok = est.position_ok = 1
     v.sensors.gps_fix, v.sensors.mag_count, v.sensors.baro_count = 3, 1, 1
     init_modes(v)
+    load_frame(ap.control.motors, ap.params)
     init_control(ap.control, ap.estimate, ap.params)
     ap.control.tick = v.tick
     ap.control.attitude.cos_lean = 1.0

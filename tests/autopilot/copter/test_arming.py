@@ -99,14 +99,18 @@ def set_fields(v, **fields):
 @pytest.mark.parametrize(
     ("fields", "text"),
     (
-        ({"params__FRAME_CLASS": 0.0}, "Motors: Check frame class and type"),
+        ({"control__motors__count": 0}, "Motors: Check frame class and type"),
         ({"control__attitude__cos_lean": 0.8}, "Leaning"),
         ({"rc__receiver_ok": 0}, "RC not found"),
         (
-            {"params__BATT_MONITOR": 4.0, "params__BATT_ARM_VOLT": 11.0},
+            {"params__BATT_MONITOR": 4.0, "battery__driver": 4, "params__BATT_ARM_VOLT": 11.0},
             "Battery 1 below minimum arming voltage",
         ),
-        ({"params__BATT_MONITOR": 4.0, "modes__failsafe__battery": 1}, "Battery 1 low voltage failsafe"),
+        (
+            {"params__BATT_MONITOR": 4.0, "battery__driver": 4, "battery__voltage": 10.0},
+            "Battery 1 low voltage failsafe",
+        ),
+        ({"params__BATT_MONITOR": 4.0}, "Battery 1 unhealthy"),
         ({"estimate__attitude_ok": 0}, "EKF attitude is bad"),
     ),
 )

@@ -97,12 +97,14 @@ def test_throttle_counts_as_zero_only_after_a_while(vehicle):
 
 @pytest.mark.parametrize(
     ("throttle", "climb"),
-    ((0.5, 0.0), (0.6, 0.0), (0.4, 0.0), (1.0, 2.5), (0.8, 1.25), (0.0, -2.5), (0.2, -1.25)),
+    ((1500, 0.0), (1560, 0.0), (1430, 0.0), (1900, 2.5), (1700, 0.9520), (1100, -2.5), (1300, -1.0495)),
 )
 def test_climb_rate(vehicle, throttle, climb):
+    """The middle of the stick is that of its channel: its dead zone RC3_DZ is at the low end only."""
     ap = vehicle.autopilot
-    ap.modes.pilot.throttle = throttle
-    assert pilot.climb_rate(ap.modes, ap.rc, ap.params) == pytest.approx(climb)
+    assert (ap.params.RC[2].MIN, ap.params.RC[2].MAX, ap.params.RC[2].DZ) == (1100.0, 1900.0, 30.0)
+    ap.modes.pilot.throttle = radio.ranged(throttle, ap.params.RC[2])
+    assert pilot.climb_rate(ap.modes, ap.rc, ap.params) == pytest.approx(climb, abs=2e-4)
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.1, 1.3), st.floats(0.1, 1.3))
@@ -114,11 +116,17 @@ def test_the_lean_never_exceeds_the_limit(roll, pitch, most, limit):
     assert r * roll >= 0.0 and p * pitch >= 0.0
 
 
-@given(st.floats(0, 1), st.floats(0.125, 0.6875))
-def test_throttle_curve_ends_at_both_ends_and_rises(x, hover):
-    assert pilot.throttle_out(0.0, hover) == 0.0
-    assert pilot.throttle_out(1.0, hover) == pytest.approx(1.0)
-    assert pilot.throttle_out(x, hover) <= pilot.throttle_out(min(x + 0.01, 1.0), hover) + 1e-9
+@given(st.floats(0, 1), st.floats(0.1, 0.9), st.floats(0.125, 0.6875))
+def test_throttle_curve_ends_at_both_ends_and_rises(x, middle, hover):
+    assert pilot.throttle_out(0.0, middle, hover) == 0.0
+    assert pilot.throttle_out(middle, middle, 0.5) == pytest.approx(0.5)
+    assert pilot.throttle_out(1.0, middle, hover) == pytest.approx(1.0)
+    assert pilot.throttle_out(x, middle, hover) <= pilot.throttle_out(min(x + 0.01, 1.0), middle, hover) + 1e-9
+
+
+def test_a_channel_without_a_range_has_its_middle_at_half():
+    assert radio.ranged_middle(channel(1100.0, 1500.0, 1120.0, dead=30.0)) == 0.5
+    assert radio.ranged_middle(channel(1000.0, 1500.0, 2000.0)) == 0.5
 
 
 def test_mode_switch_changes_the_mode_when_it_moves_and_only_then(vehicle):

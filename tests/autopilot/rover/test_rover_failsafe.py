@@ -119,7 +119,7 @@ def test_battery_low(action: int, mode: int) -> None:
 
 
 def test_battery_critical_may_disarm() -> None:
-    rover = driving(BATT_CRT_VOLT=10.5, BATT_LOW_TIMER=1.0, BATT_FS_CRT_ACT=5.0)
+    rover = driving(BATT_CRT_VOLT=10.4, BATT_LOW_TIMER=1.0, BATT_FS_CRT_ACT=5.0)
     rover.v.sensors.battery_voltage = 10.0
     rover.run(1.3)
     assert rover.ap.arming.armed == 0

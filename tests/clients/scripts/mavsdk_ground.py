@@ -25,14 +25,15 @@ here = telemetry.position()
 geofence, mission = Geofence(system), MissionRaw(system)
 circle = Circle(Point(here.latitude_deg, here.longitude_deg), 50.0, FenceType.INCLUSION)
 geofence.upload_geofence(GeofenceData([], [circle]))
-check("fence", len(geofence.download_geofence().circles) == 1)
+(found,) = geofence.download_geofence().circles
+check("fence", abs(found.point.latitude_deg - here.latitude_deg) < 1e-6 and found.radius == 50.0)
 geofence.clear_geofence()
 check("no fence", not geofence.download_geofence().circles)
 point = MissionItem(
     0, 3, 5100, 1, 1, 0, 0, 0, 0, round(here.latitude_deg * 1e7), round(here.longitude_deg * 1e7), 50.0, 2
 )
 mission.upload_rally_points([point])
-check("rally point", len(mission.download_rallypoints()) == 1)
+check("rally points", [(p.x, p.y, p.z) for p in mission.download_rallypoints()] == [(point.x, point.y, 50.0)])
 ftp = Ftp(system)
 check("folder", "@SYS" in [entry.name for entry in ftp.list_directory("/").entries])
 check("files", "uarts.txt" in [entry.name for entry in ftp.list_directory("@SYS").entries])

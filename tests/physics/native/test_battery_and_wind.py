@@ -54,6 +54,18 @@ def test_ideal_source_keeps_its_voltage(rig):
     assert r.p.battery.current == approx(28.1, abs=0.05)
 
 
+def test_the_full_battery_may_have_another_voltage(rig):
+    r = rig()
+    r.p.battery.full_voltage = 10.0
+    discharge(r, 354.2)
+    assert r.p.battery.voltage == 10.0
+    r = rig("erle_copter")
+    idle = r.p.battery.voltage
+    r.p.battery.full_voltage = 0.9 * r.p.airframe.battery_voltage_full
+    discharge(r, 0.0)
+    assert r.p.battery.voltage == approx(0.9 * idle, abs=0.02)
+
+
 def test_wind_follows_its_setting():
     w, rng = Wind(), Rng()
     random.seed(rng, 1)

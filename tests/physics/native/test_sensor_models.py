@@ -62,6 +62,20 @@ def test_noise_scale_zero_is_the_truth(rig):
     assert list(s.mag) == approx(r.p.place.field, abs=1e-7)
 
 
+def test_the_gyros_of_ardupilots_airframes_drift_and_come_back(rig):
+    """SIM_DRIFT_SPEED 0.05 deg/s a minute on all axes, for SIM_DRIFT_TIME 5 minutes, then back."""
+    r = rig()
+    a, s = r.p.airframe, r.p.sensors
+    for tick in range(0, 240_000, imu.WALK_TICKS):
+        imu.drift(s, a, tick)
+        if tick == 120_000 - imu.WALK_TICKS:
+            assert list(s.gyro_walk) == approx([math.radians(0.25)] * 3, rel=1e-3)
+    assert list(s.gyro_walk) == approx([0.0] * 3, abs=1e-9)
+    a.gyro_drift_speed = 0.0
+    imu.drift(s, a, 0)
+    assert list(s.gyro_walk) == approx([0.0] * 3, abs=1e-9)
+
+
 def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
     r = rig(gps_fix_time=0.01, gps_start=0.01)
     p, s = r.p, r.v.sensors
@@ -73,7 +87,7 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
         if s.gps_count != before:
             arrivals.append(tick)
             north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
-            then = tick - 40  # 100 ms ago
+            then = tick - 53  # 132.5 ms ago
             assert north == approx(0.0025 * then * 10.0, abs=0.006)  # steps of 1e-7 degree
             assert s.gps_time_us == tick * 2500
     assert np.diff(arrivals).tolist() == [80] * (len(arrivals) - 1)
@@ -153,3 +167,65 @@ def test_a_range_bounds_all_but_nan(bad):
     x, y, z = imu.saturate(Vec3(5.0, -5.0, bad), 3.0)
     assert (x, y) == (3.0, -3.0)
     assert math.isnan(z) if math.isnan(bad) else z == 3.0
+
+
+def test_a_broken_accelerometer_shows_its_bias(rig):
+    r = rig("erle_copter", noise_scale=0.0)
+    r.p.sensors.acc_fault = Vec3(1.0, -2.0, 3.0)
+    imu.sample(r.p, r.v.sensors, r.v.rng)
+    assert list(r.v.sensors.acc) == approx([1.0, -2.0, 3.0 - 9.80665], abs=1e-6)
+
+
+def test_a_vehicle_without_barometer_gets_no_samples(rig):
+    r = rig()
+    before = r.v.sensors.baro_count
+    r.p.sensors.baro_missing = True
+    r.step(40)
+    assert r.v.sensors.baro_count == before
+
+
+def test_more_compasses_differ_by_their_offsets_alone(rig):
+    r = rig()
+    r.p.sensors.mag2_offset, r.p.sensors.mag3_offset = Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.0, -0.2)
+    magnetometer.sample(r.p, r.v.sensors, r.v.rng)
+    first = np.array(r.v.sensors.mag)
+    assert np.array(r.v.sensors.mag2) - first == approx([-0.1, 0.0, 0.0], abs=1e-6)
+    assert np.array(r.v.sensors.mag3) - first == approx([0.0, 0.0, 0.2], abs=1e-6)
+
+
+def jammed(rig, ticks):
+    """Fixes of a receiver at rest that is jammed: type, distance from where it is [m], speed [m/s], HDOP."""
+    r = rig(gps_fix_time=0.01, gps_start=0.01)
+    r.step(400)
+    r.p.sensors.gps_jammed = True
+    s, seen, out = r.v.sensors, r.v.sensors.gps_count, []
+    for _ in range(ticks):
+        r.step(1)
+        if s.gps_count != seen:
+            seen = s.gps_count
+            north = 1e-7 * s.gps_lat - HOME_LAT
+            speed = math.hypot(s.gps_vel.x, s.gps_vel.y) * 0.01
+            out.append((s.gps_fix, abs(math.radians(north)) * 6371000.0, speed, 0.01 * s.gps_eph, s.gps_satellites))
+    return r, out
+
+
+HOME_LAT = -35.363262
+
+
+def test_a_jammed_receiver_falls_silent_and_then_shows_anything(rig):
+    _, fixes = jammed(rig, 16000)
+    begins = next(k for k, fix in enumerate(fixes) if fix[0] < 3)
+    silent = next(k for k, fix in enumerate(fixes) if k > begins and fix[4] > 0)
+    assert begins < 4 and silent - begins >= 5 and all(fix[0] < 3 for fix in fixes[begins:silent])
+    wrong = [fix for fix in fixes[silent:] if fix[0] == 3]
+    assert max(fix[1] for fix in wrong) > 100.0 and max(fix[2] for fix in wrong) > 100.0
+    assert max(fix[3] for fix in wrong) > 170.0 and min(fix[4] for fix in fixes[silent:]) < 6
+
+
+def test_after_jamming_the_receiver_shows_where_it_is(rig):
+    r, _ = jammed(rig, 8000)
+    r.p.sensors.gps_jammed = False
+    r.step(800)
+    s = r.v.sensors
+    assert s.gps_fix == 3 and abs(1e-7 * s.gps_lat - HOME_LAT) < 1e-4 and abs(s.gps_vel.x) < 100
+    assert s.gps_satellites == int(r.p.airframe.gps_satellites)

@@ -30,6 +30,7 @@ from .altitude_start import ACCZ_UNIT, init_d, is_active_d
 from .motors import hover_throttle
 from .state import DT, AltitudeState, Control
 from .throttle_mix import set_throttle_out
+from .vibration import throttle_without_acceleration
 
 _ACCZ_IMAX_UNIT = 0.001
 _THROTTLE_HZ = 2.0  # low-pass of the throttle [Hz]
@@ -144,20 +145,42 @@ def control_altitude(c: AltitudeState, pos: float, p: float) -> float:
 
 
 @inlined
+def aim_vertical(c: AltitudeState, now: Motion, blocked: Blocked, gains: AltitudeGains) -> None:
+    """Acceleration that the errors of height and speed ask for (``accel_target``)."""
+    c.vel_target = control_altitude(c, now.pos, gains.pos_p) + c.vel_desired
+    # More throttle is less acceleration downward.
+    accel = update_pid_directional(c.vel, c.vel_target, now.vel, DT, Blocked(blocked.up, blocked.down), gains.vel)
+    c.accel_target = c.accel_desired + accel
+
+
+@inlined
+def note_limits(c: AltitudeState, blocked: Blocked) -> None:
+    """How well the descent is held, and where there is no more thrust."""
+    if c.speed_down > 0.0:
+        ratio = c.vel.error / c.speed_down
+        c.control_ratio = constrain(c.control_ratio + 0.1 * DT * (0.5 + ratio), 0.0, 2.0)
+    c.limit = -1.0 if blocked.up else (1.0 if blocked.down else 0.0)
+
+
+@inlined
 def control_vertical(c: AltitudeState, now: Motion, blocked: Blocked, gains: AltitudeGains) -> float:
     """One tick of the cascade for the measured motion: throttle to be taken off that of hovering.
 
     ``blocked``: throttle is at its greatest (up), or at its least (down: nothing more to take off).
     """
-    c.vel_target = control_altitude(c, now.pos, gains.pos_p) + c.vel_desired
-    # More throttle is less acceleration downward.
-    accel = update_pid_directional(c.vel, c.vel_target, now.vel, DT, Blocked(blocked.up, blocked.down), gains.vel)
-    c.accel_target = c.accel_desired + accel
+    aim_vertical(c, now, blocked, gains)
     taken_off = update_pid(c.accel, c.accel_target, now.acc, DT, blocked.down or blocked.up, gains.acc)
-    if c.speed_down > 0.0:
-        ratio = c.vel.error / c.speed_down
-        c.control_ratio = constrain(c.control_ratio + 0.1 * DT * (0.5 + ratio), 0.0, 2.0)
-    c.limit = -1.0 if blocked.up else (1.0 if blocked.down else 0.0)
+    note_limits(c, blocked)
+    return taken_off
+
+
+@law
+def control_vibrating(c: AltitudeState, now: Motion, blocked: Blocked, gains: AltitudeGains, hover: float) -> float:
+    """The same where the measured acceleration is wrong; ``hover``: throttle."""
+    aim_vertical(c, now, blocked, gains)
+    error = c.vel_target - now.vel
+    taken_off = throttle_without_acceleration(c.accel, error, c.accel_target, gains.vel.p, hover, blocked)
+    note_limits(c, blocked)
     return taken_off
 
 
@@ -193,5 +216,10 @@ def update_d(control: Control, est: Estimate, p: Parameters) -> None:
     blocked = Blocked(motors.limit_throttle_lower, motors.limit_throttle_upper)
     hover = hover_throttle(p.MOT)
     gains = altitude_gains(p.PSC, hover)
-    taken_off = control_vertical(c, Motion(est.pos.z, est.vel.z, est.acc_ned.z), blocked, gains)
+    vibration = control.vibration
+    if vibration.found:
+        now = Motion(est.pos.z, vibration.vel, 0.0)
+        taken_off = control_vibrating(c, now, blocked, gains, hover)
+    else:
+        taken_off = control_vertical(c, Motion(est.pos.z, est.vel.z, est.acc_ned.z), blocked, gains)
     set_throttle_out(control, p, hover - taken_off, True, _THROTTLE_HZ)

@@ -228,18 +228,17 @@ def input_thrust_vector_heading(control: Control, est: Estimate, p: Parameters, 
 def input_thrust_vector_heading_rate(
     control: Control, est: Estimate, p: Parameters, thrust: Vec3, heading_rate: float
 ) -> None:
-    """Point thrust along an NED vector while turning about it at ``heading_rate`` [rad/s]."""
+    """Point thrust along an NED vector while turning about it at ``heading_rate`` [rad/s], ATC_SLEW_YAW or not."""
     shaping = advance_target(control, est, p)
     attitude = control.attitude
-    turn = limit_turn(heading_rate, slew_yaw_max(p.ATC))
     split = split_error(multiply(conjugate(attitude.target_q), thrust_quaternion(thrust, 0.0)))
     if not (finite_vector(thrust) and finite(heading_rate)):
         hold(attitude, shaping)
     elif shaping.enabled:
-        attitude.target_rate = shape_thrust_turn(split.error, attitude.target_rate, turn, shaping)
+        attitude.target_rate = shape_thrust_turn(split.error, attitude.target_rate, heading_rate, shaping)
     else:
         q = multiply(attitude.target_q, split.thrust_turn)
-        jump(attitude, multiply(q, Quat(1.0, 0.0, 0.0, 0.5 * turn * DT)), Vec3(0.0, 0.0, 0.0))
+        jump(attitude, multiply(q, Quat(1.0, 0.0, 0.0, 0.5 * heading_rate * DT)), Vec3(0.0, 0.0, 0.0))
     correct(attitude, est, p.ATC)
 
 

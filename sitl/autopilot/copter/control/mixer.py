@@ -1,34 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mixer of a quad: roll, pitch, yaw and throttle demands to four thrusts, giving way in a fixed order when
-they do not fit.
+"""Mixer: roll, pitch, yaw and throttle demands to thrusts, giving way in a fixed order when they do not fit.
 
 Roll and pitch come first, then yaw within its head-room (MOT_YAW_HEADROOM), then throttle, which may be
-raised up to ``throttle_avg_max`` to make room for attitude (ATC_THR_MIX_*). Motor numbers and directions are
-ArduPilot's: plus (FRAME_TYPE 0): 1 right, 2 left (both counter-clockwise), 3 front, 4 back (clockwise); X
-(FRAME_TYPE 1): 1 front right, 2 back left (counter-clockwise), 3 front left, 4 back right (clockwise).
+raised up to ``throttle_avg_max`` to make room for attitude (ATC_THR_MIX_*). ``frames`` has the motors' parts.
+
+When thrust is being lost (``boosting``), the strongest motor is taken for the one that fails: as ``boost_ratio`` rises,
+it limits the others no more, throttle may rise to its end and yaw keeps half of the range. Six motors at least are
+needed to fly on so; with fewer the ratio stays 0.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain
-from .state import MotorsState
+from .state import DT, MotorsState
 
-PLUS, X = 0, 1
-# (roll, pitch) factors of motors 1 to 4; yaw is +1/2 for 1 and 2, -1/2 for 3 and 4.
-_PLUS_ROLL = (-0.5, 0.5, 0.0, 0.0)
-_PLUS_PITCH = (0.0, 0.0, 0.5, -0.5)
-_X_ROLL = (-0.5, 0.5, 0.5, -0.5)
-_X_PITCH = (0.5, -0.5, 0.5, -0.5)
-_YAW = (0.5, 0.5, -0.5, -0.5)
+BOOST_MOTORS = 6
+"""Motors at least for which one may be left out."""
+_BOOST_HEADROOM = 0.5
+_UNBALANCED, _BALANCED = 1.5, 1.25  # strongest motor over the mean
+_SLOW_GAIN = DT / (DT + 0.5)
+_STRONG = 0.9  # thrust of the strongest motor at which boosting goes on
 
 
 class Demands(NamedTuple):
     """What the controllers ask of the mixer."""
 
-    roll: float  # -1 .. 1: a motor takes half of each
+    roll: float  # -1 .. 1: a motor takes half of each at most
     pitch: float
     yaw: float
     throttle: float  # 0 .. 1
@@ -36,58 +36,70 @@ class Demands(NamedTuple):
     throttle_max: float  # 0 .. 1
 
 
-class Factors(NamedTuple):
-    """Parts of the demands that a motor takes."""
-
-    roll: float
-    pitch: float
-    yaw: float
+@inlined
+def between(ratio: float, boosted: float, normal: float) -> float:
+    """From ``normal`` at a ratio of 0 to ``boosted`` at 1."""
+    return ratio * boosted + (1.0 - ratio) * normal
 
 
-@law
-def factors(frame_type: int, k: int) -> Factors:
-    """Factors of motor ``k`` (0 .. 3); any frame type but plus is flown as X."""
-    if frame_type == PLUS:
-        return Factors(_PLUS_ROLL[k], _PLUS_PITCH[k], _YAW[k])
-    return Factors(_X_ROLL[k], _X_PITCH[k], _YAW[k])
+@inlined
+def yaw_room(motors: MotorsState, k: int, yaw: float, middle: float) -> float:
+    """How much of a yaw demand motor ``k`` has room for, at a thrust of ``middle``."""
+    left = 1.0 - middle if yaw * motors.yaw_factor[k] > 0.0 else middle
+    return max(left, 0.0) * motors.yaw_range[k]
 
 
-@law
-def mix(motors: MotorsState, frame_type: int, demands: Demands, yaw_headroom: float) -> float:
-    """Fill ``motors.thrust`` and raise the limit flags; returns the throttle (mean thrust) that came out.
+class Boost(NamedTuple):
+    """How thrust is boosted."""
+
+    failing: int  # motor that is taken to fail; -1 none
+    ratio: float  # 0 .. 1: how far it is left out
+
+
+@inlined
+def mix(motors: MotorsState, count: int, demands: Demands, yaw_headroom: float, boosted: Boost) -> float:
+    """Fill ``motors.thrust`` of the first ``count`` and raise the limit flags; returns the throttle (mean thrust) that
+    came out.
 
     ``yaw_headroom`` 0 .. 1: thrust kept for yaw even where roll and pitch want it all.
     """
     roll, pitch, yaw, throttle = demands.roll, demands.pitch, demands.yaw, demands.throttle
+    failing, boost = boosted.failing, boosted.ratio
+    throttle_max = between(boost, 1.0, demands.throttle_max)
     if throttle <= 0.0:
         throttle = 0.0
         motors.limit_throttle_lower = True
-    if throttle >= demands.throttle_max:
-        throttle = demands.throttle_max
+    if throttle >= throttle_max:
+        throttle = throttle_max
         motors.limit_throttle_upper = True
-    throttle_avg_max = constrain(demands.throttle_avg_max, throttle, demands.throttle_max)
+    throttle_avg_max = constrain(demands.throttle_avg_max, throttle, throttle_max)
 
     # What yaw may use: the room of the tightest motor with the throttle where roll and pitch have most of it.
     centre = min(0.5, throttle_avg_max)
     room = 1.0
-    for k in range(4):
-        f = factors(frame_type, k)
-        thrust = roll * f.roll + pitch * f.pitch
+    for k in range(count):
+        thrust = roll * motors.roll_factor[k] + pitch * motors.pitch_factor[k]
         motors.thrust[k] = thrust
-        left = 1.0 - (centre + thrust) if yaw * f.yaw > 0.0 else centre + thrust
-        room = min(room, max(left, 0.0) / abs(f.yaw))
-    room = max(room, yaw_headroom)
+        if k != failing:
+            room = min(room, yaw_room(motors, k, yaw, centre + thrust))
+    room = max(room, between(boost, _BOOST_HEADROOM, yaw_headroom))
+    if failing >= 0:
+        tight = yaw_room(motors, failing, yaw, centre + motors.thrust[failing])
+        room = between(boost, room, min(room, tight))
     if abs(yaw) > room:
         yaw = constrain(yaw, -room, room)
         motors.limit_yaw = True
 
     low = 1.0
     high = -1.0
-    for k in range(4):
-        thrust = motors.thrust[k] + yaw * _YAW[k]
+    for k in range(count):
+        thrust = motors.thrust[k] + yaw * motors.yaw_factor[k]
         motors.thrust[k] = thrust
         low = min(low, thrust)
-        high = max(high, thrust)
+        if k != failing:
+            high = max(high, thrust)
+    if failing >= 0 and motors.thrust[failing] > high:
+        high = between(boost, high, motors.thrust[failing])
 
     # Shrink attitude as a whole if it does not fit between nothing and full thrust.
     scale = 1.0
@@ -111,6 +123,45 @@ def mix(motors: MotorsState, frame_type: int, demands: Demands, yaw_headroom: fl
     elif rise > 1.0 - (base + high):
         rise = 1.0 - (base + high)
         motors.limit_throttle_upper = True
-    for k in range(4):
+    for k in range(count):
         motors.thrust[k] = base + rise + scale * motors.thrust[k]
     return base + rise
+
+
+@law
+def mix_many(motors: MotorsState, demands: Demands, yaw_headroom: float) -> float:
+    """``mix`` of so many motors that one may be left out."""
+    boosted = Boost(motors.strongest if motors.boosting else -1, motors.boost_ratio)
+    out = mix(motors, motors.count, demands, yaw_headroom, boosted)
+    watch_balance(motors, out, demands.throttle_max)
+    return out
+
+
+@law
+def watch_balance(motors: MotorsState, out: float, throttle_max: float) -> None:
+    """Which motor works hardest, and whether boosting may end; ``out``: what ``mix`` gave, ``throttle_max``: 0 .. 1."""
+    largest, total = 0.0, 0.0
+    for k in range(motors.count):
+        thrust = motors.thrust_slow[k] + _SLOW_GAIN * (motors.thrust[k] - motors.thrust_slow[k])
+        motors.thrust_slow[k] = thrust
+        total += thrust
+        if thrust > largest:
+            largest = thrust
+            if not motors.boosting:
+                motors.strongest = k
+    balance = largest * motors.count / total if total > 0.1 else 1.0
+    if motors.count >= BOOST_MOTORS and balance >= _UNBALANCED:
+        motors.unbalanced = True
+    elif balance <= _BALANCED:
+        motors.unbalanced = False
+    if throttle_max > out and largest < _STRONG and not motors.unbalanced:
+        motors.boosting = False
+
+
+@law
+def follow_boost(motors: MotorsState, up: float, down: float) -> None:
+    """Move ``boost_ratio`` by at most ``up`` or ``down`` while the motors follow the mixer without limit."""
+    if motors.boosting and motors.unbalanced:
+        motors.boost_ratio = min(motors.boost_ratio + up, 1.0)
+    else:
+        motors.boost_ratio = max(motors.boost_ratio - down, 0.0)

@@ -8,14 +8,14 @@ with the throttle limited to ``thrust_max``, which ramps over MOT_SPOOL_TIME.
 
 from __future__ import annotations
 
-from ....core.kernels import law
+from ....core.kernels import inlined, law
 from ....core.scalars import constrain, finite
 from ...control.pid import lowpass_gain
 from ...state import Actuators, Arming
 from ..parameters import Parameters
 from ..parameters.control import Motors
-from .mixer import Demands, mix
-from .state import DT, MotorsState
+from .mixer import Boost, Demands, follow_boost, mix, mix_many, watch_balance
+from .state import DT, QUAD, MotorsState
 from .thrust_curve import command_from_thrust
 
 # desired_spool
@@ -23,7 +23,6 @@ DESIRED_SHUT_DOWN, DESIRED_GROUND_IDLE, DESIRED_THROTTLE_UNLIMITED = 0, 1, 2
 # spool_state
 SHUT_DOWN, GROUND_IDLE, SPOOLING_UP, THROTTLE_UNLIMITED, SPOOLING_DOWN = 0, 1, 2, 3, 4
 
-MOTORS = 4
 ARMING_DELAY_US = 2_000_000
 """Motors stand still for this long after arming [us]: time to step back (ArduPilot's)."""
 _HOVER_TIME = 10.0  # time constant of hover-throttle learning [s]
@@ -70,12 +69,14 @@ def spool(motors: MotorsState, enabled: bool, p: Motors) -> None:
     desired = motors.desired_spool
     if state == SHUT_DOWN:
         set_limits(motors, True)
+        motors.boosting, motors.boost_ratio = False, 0.0
         motors.spin_up_ratio = 0.0
         motors.thrust_max = 0.0
         if desired != DESIRED_SHUT_DOWN:
             motors.spool_state = GROUND_IDLE
     elif state == GROUND_IDLE:
         set_limits(motors, True)
+        motors.boosting, motors.boost_ratio = False, 0.0
         ratio = motors.spin_up_ratio
         if desired == DESIRED_SHUT_DOWN:
             ratio = max(ratio - down, 0.0)
@@ -86,12 +87,13 @@ def spool(motors: MotorsState, enabled: bool, p: Motors) -> None:
             ratio += constrain(idle - ratio, -down, up)
         else:
             ratio = min(ratio + up, 1.0)
-            if ratio >= 1.0:
+            if ratio >= 1.0 and not motors.blocked:
                 motors.spool_state = SPOOLING_UP
         motors.spin_up_ratio = ratio
         motors.thrust_max = 0.0
     elif state == SPOOLING_UP:
         set_limits(motors, False)
+        motors.boosting = False
         motors.spin_up_ratio = 1.0
         if desired != DESIRED_THROTTLE_UNLIMITED:
             motors.spool_state = SPOOLING_DOWN
@@ -104,10 +106,13 @@ def spool(motors: MotorsState, enabled: bool, p: Motors) -> None:
         set_limits(motors, False)
         motors.spin_up_ratio = 1.0
         motors.thrust_max = 1.0
+        if motors.boosting or motors.boost_ratio > 0.0:
+            follow_boost(motors, up, down)
         if desired != DESIRED_THROTTLE_UNLIMITED:
             motors.spool_state = SPOOLING_DOWN
     else:
         set_limits(motors, False)
+        motors.boosting, motors.boost_ratio = False, 0.0
         motors.spin_up_ratio = 1.0
         if desired == DESIRED_THROTTLE_UNLIMITED:
             motors.spool_state = SPOOLING_UP
@@ -137,12 +142,12 @@ def slew(old: float, new: float, time_up: float, time_down: float) -> float:
     return new
 
 
-@law
-def command_motors(motors: MotorsState, p: Motors) -> None:
-    """``motors.actuator`` from the spool state and the mixer's thrusts."""
+@inlined
+def command_motors(motors: MotorsState, count: int, p: Motors) -> None:
+    """``motors.actuator`` of the first ``count`` from the spool state and the mixer's thrusts."""
     state = motors.spool_state
     span = p.SPIN_MAX - p.SPIN_MIN
-    for k in range(MOTORS):
+    for k in range(count):
         if state == SHUT_DOWN:
             motors.actuator[k] = 0.0
             continue
@@ -171,7 +176,7 @@ def compensated_demands(motors: MotorsState) -> Demands:
 @law
 def drive_test_motor(motors: MotorsState) -> None:
     """The motor under test turns, the others stand."""
-    for k in range(MOTORS):
+    for k in range(motors.count):
         motors.actuator[k] = motors.test_actuator if k + 1 == motors.test_motor else 0.0
 
 
@@ -189,9 +194,18 @@ def drive_motors(motors: MotorsState, arming: Arming, p: Parameters, time_us: in
     if motors.spool_state == SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
-        out = mix(motors, int(p.FRAME.TYPE), compensated_demands(motors), p.MOT.YAW_HEADROOM * 0.001)
+        demands = compensated_demands(motors)
+        if motors.is_plain_quad:
+            out = mix(motors, QUAD, demands, p.MOT.YAW_HEADROOM * 0.001, Boost(-1, 0.0))
+            if motors.boosting:
+                watch_balance(motors, out, demands.throttle_max)
+        else:
+            out = mix_many(motors, demands, p.MOT.YAW_HEADROOM * 0.001)
         motors.throttle_out = out / motors.compensation_gain
-    command_motors(motors, p.MOT)
+    if motors.is_plain_quad:
+        command_motors(motors, QUAD, p.MOT)
+    else:
+        command_motors(motors, motors.count, p.MOT)
     if motors.test_motor != 0:
         drive_test_motor(motors)
 
@@ -201,7 +215,17 @@ def write_actuators(motors: MotorsState, actuators: Actuators, armed: bool, pwm_
     """Pulses between ``pwm_min`` and ``pwm_max`` [us] and 0 .. 1 controls; disarmed motors get ``pwm_min`` and 0."""
     shortest, span = (pwm_min, pwm_max - pwm_min) if pwm_max > pwm_min else (1000, 1000)
     actuators.armed = armed
-    for k in range(MOTORS):
-        pulse = shortest + int(span * motors.actuator[k])
-        actuators.pwm[k] = pulse
-        actuators.controls[k] = constrain((pulse - 1000) * 0.001, 0.0, 1.0) if armed else 0.0
+    if motors.is_plain_quad:
+        for k in range(QUAD):
+            write_output(actuators, k, shortest + int(span * motors.actuator[k]), armed)
+    else:
+        for k in range(motors.count):
+            if motors.output[k] >= 0:
+                write_output(actuators, motors.output[k], shortest + int(span * motors.actuator[k]), armed)
+
+
+@inlined
+def write_output(actuators: Actuators, output: int, pulse: int, armed: bool) -> None:
+    """One pulse [us], and the control that it stands for."""
+    actuators.pwm[output] = pulse
+    actuators.controls[output] = constrain((pulse - 1000) * 0.001, 0.0, 1.0) if armed else 0.0

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ....core.algebra import euler_of, quat_from_euler
 from ....core.kernels import law
-from ....core.records import Floats, Record, array
+from ....core.records import Floats, Ints, Record, array
 from ....core.vectors import Euler, Quat, Vec2, Vec3
 from ... import state as shared
 from ...control.pid import Pid
@@ -19,6 +19,7 @@ DT = 0.0025
 """Period of every law in this room [s]: one autopilot tick."""
 GRAVITY = 9.80665
 """[m/s^2]"""
+MOTORS_MAX, QUAD = 8, 4
 
 
 class AttitudeState(Record):
@@ -104,6 +105,18 @@ class AltitudeState(Record):
     control_ratio: float  # 0 .. 2, falls while the descent runs away
 
 
+class VibrationState(Record):
+    """Vibration that biases the vertical acceleration (vibration.py), and the height's own rate of change."""
+
+    found: bool  # height is controlled by that rate, and with other gains
+    since_us: int  # since when the estimate tells of it; 0 it does not
+    good_us: int  # since when it no longer does, while ``found``; 0 it does
+    # complementary filter, down positive
+    pos: float  # [m]
+    vel: float  # [m/s]
+    bias: float  # of the acceleration [m/s^2]
+
+
 class MotorsState(Record):
     """Spool, mixer and motor outputs."""
 
@@ -124,8 +137,21 @@ class MotorsState(Record):
     limit_yaw: bool
     limit_throttle_lower: bool
     limit_throttle_upper: bool
-    thrust: Floats = array(4)  # of each motor 0 .. 1, compensated
-    actuator: Floats = array(4)  # of each motor 0 .. 1 of the PWM range
+    count: int  # motors of the frame; 0: there is no such frame
+    is_plain_quad: bool  # four motors on outputs 1 to 4: most vehicles, so their loops are unrolled
+    roll_factor: Floats = array(MOTORS_MAX)  # parts of the demands that each motor takes, -0.5 .. 0.5
+    pitch_factor: Floats = array(MOTORS_MAX)
+    yaw_factor: Floats = array(MOTORS_MAX)
+    yaw_range: Floats = array(MOTORS_MAX)  # one over the size of the yaw factor
+    output: Ints = array(MOTORS_MAX, stored="i8")  # of each motor 0 ..; -1: it has none
+    thrust: Floats = array(MOTORS_MAX)  # of each motor 0 .. 1, compensated
+    thrust_slow: Floats = array(MOTORS_MAX)  # the same, low-passed
+    actuator: Floats = array(MOTORS_MAX)  # of each motor 0 .. 1 of the PWM range
+    strongest: int  # motor 0 .. with the greatest thrust_slow; kept while boosting: the one that fails
+    unbalanced: bool  # that motor works far harder than the mean
+    boosting: bool  # thrust is being lost: the strongest motor does not limit the others
+    boost_ratio: float  # 0 .. 1, follows while unbalanced
+    loss_ticks: int  # for which thrust seemed to be lost
     voltage_ratio: float  # resting voltage over MOT_BAT_VOLT_MAX, filtered; 1 when not compensated
     lift_max: float  # thrust at full throttle at that voltage, 1 at MOT_BAT_VOLT_MAX
     compensation_gain: float  # of thrust demands for voltage and air density
@@ -135,7 +161,9 @@ class MotorsState(Record):
     current_max: float  # highest seen [A]
     voltage_reference: float  # highest voltage seen [V]
     current_reference: float  # at that moment [A]
-    test_motor: int  # motor test: 1 .. 4, 0 none
+    blocked: bool  # by the take-off check: the motors idle
+    warned_us: int  # when the check last said why
+    test_motor: int  # motor test: 1 .., 0 none
     test_actuator: float  # of that motor
     test_until_us: int
 
@@ -147,4 +175,5 @@ class Control(shared.Control):
     rate: RateState
     pos_ne: PositionState
     pos_d: AltitudeState
+    vibration: VibrationState
     motors: MotorsState

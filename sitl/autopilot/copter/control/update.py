@@ -14,6 +14,7 @@ from .attitude import relax
 from .position_start import set_max_speed_accel_ne
 from .state import DT, Control
 from .thrust_curve import SLOW_DT, compensate
+from .vibration import follow_height
 
 _SLOW_TICKS = round(SLOW_DT / DT)
 
@@ -42,6 +43,7 @@ def init(control: Control, est: Estimate, p: Parameters) -> None:
 def drive(ap: Autopilot, actuators: Actuators, time_us: int) -> None:
     """Follow ``attitude.rate_target`` and write the actuators; ``time_us`` since boot."""
     control, p = ap.control, ap.params
+    follow_height(control.vibration, ap.estimate)
     throttle_mix.follow_mix(control.attitude, control.motors, motors.hover_throttle(p.MOT))
     rate.control_rates(control.rate, control.motors, control.attitude.rate_target, ap.estimate.rates, p.ATC)
     if control.tick % _SLOW_TICKS == 0:

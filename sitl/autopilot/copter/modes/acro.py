@@ -83,7 +83,7 @@ def trained_rates(rates: Vec3, sticks: PilotState, lean: Euler, p: Parameters) -
 def throttle(sticks: PilotState, p: Parameters) -> float:
     """Motor throttle 0 .. 1 that the stick asks for: ACRO_THR_MID in its middle, or that of hovering."""
     middle = p.ACRO.THR_MID if p.ACRO.THR_MID > 0.0 else hover_throttle(p.MOT)
-    return pilot.throttle_out(sticks.throttle_filtered, middle)
+    return pilot.throttle_out(sticks.throttle_filtered, pilot.throttle_middle(p), middle)
 
 
 @law

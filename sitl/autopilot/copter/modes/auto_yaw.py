@@ -87,11 +87,15 @@ def turn_from(start: float, turn: Turn) -> float:
 
 @law
 def turn_to(yaw: AutoYaw, turn: Turn, start: float, rate_max: float) -> None:
-    """Turn from heading ``start`` [rad], at most at ``rate_max`` [rad/s] (0: no limit), then hold."""
-    yaw.mode = FIXED
-    yaw.yaw = start
+    """Turn from heading ``start`` [rad], at most at ``rate_max`` [rad/s] (0: no limit), then hold.
+
+    Repeated, it goes on from the heading that it has come to, so that the turn is as fast at any rate of messages.
+    """
+    if yaw.mode != FIXED:
+        yaw.mode = FIXED
+        yaw.yaw = start
     yaw.rate = 0.0
-    yaw.offset = turn_from(start, turn)
+    yaw.offset = turn_from(yaw.yaw, turn)
     yaw.slew = turn.rate if turn.rate > 0.0 and (turn.rate < rate_max or rate_max <= 0.0) else rate_max
 
 
@@ -204,4 +208,5 @@ def point(yaw: AutoYaw, thrust: Vec3, control: Control, est: Estimate, p: Parame
     if heading.absolute:
         attitude.input_thrust_vector_heading(control, est, p, thrust, heading)
     else:
-        attitude.input_thrust_vector_heading_rate(control, est, p, thrust, heading.rate)
+        turn = attitude.limit_turn(heading.rate, attitude.slew_yaw_max(p.ATC))
+        attitude.input_thrust_vector_heading_rate(control, est, p, thrust, turn)

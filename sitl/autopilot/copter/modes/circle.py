@@ -10,13 +10,11 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import horizontal
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec3
-from ...control.shaping import Motion2
 from ...modes import ACCEPTED
-from ..control import altitude, altitude_start, position, position_start
+from ..control import altitude, altitude_start, position_start
 from ..control.state import DT
 from ..navigation import circle
 from ..navigation.state import CopterNav
@@ -92,11 +90,12 @@ def steer(state: CircleState, sticks: PilotState, top_rate: float, speed: float)
 
 
 @law
-def heading(nav: CopterNav, faces_travel: bool) -> float:
-    """Where the nose points [rad]: to the centre, or along the circle."""
+def heading(nav: CopterNav, pos: Vec3, faces_travel: bool) -> float:
+    """Where the nose points [rad] at ``pos`` (NED [m]): to the centre, or along the circle."""
+    inward = math.atan2(nav.circle_centre.y - pos.y, nav.circle_centre.x - pos.x)
     if not faces_travel:
-        return wrap_pi(nav.circle_angle + math.pi)
-    return wrap_pi(nav.circle_angle + (0.5 * math.pi if nav.circle_top_rate >= 0.0 else -0.5 * math.pi))
+        return inward
+    return wrap_pi(inward - (0.5 * math.pi if nav.circle_top_rate >= 0.0 else -0.5 * math.pi))
 
 
 @law
@@ -117,14 +116,13 @@ def run(v: Vehicle) -> None:
         steer(state, modes.pilot, nav.circle_top_rate, max(CM * p.WPNAV.SPEED, 0.1))
     apply(nav, state, p)
     circle.advance(nav)
-    target = Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc))
-    position.input_pos_vel_accel_ne(control.pos_ne, target)
+    circle.follow(nav, control)
     climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
     altitude.input_vel_accel_d(control.pos_d, -climb, 0.0)
     auto_yaw.follow_pilot(modes, control.attitude, est)
     if modes.auto_yaw.mode == auto_yaw.CIRCLE:
-        modes.auto_yaw.yaw = heading(nav, (options & _FACE_TRAVEL) != 0)
-        modes.auto_yaw.rate = nav.circle_rate
+        modes.auto_yaw.yaw = heading(nav, est.pos, (options & _FACE_TRAVEL) != 0)
+        modes.auto_yaw.rate = 0.0
     ground.fly(modes.auto_yaw, control, est, p)
 
 

@@ -28,8 +28,8 @@ NOT_ARMED = 4
 ALREADY_FLYING = 5
 TOO_LOW = 6
 
-LARGEST = 1e7
-"""Metres, metres a second, radians beyond this are refused."""
+LARGEST = 1e9
+"""Metres, metres a second, radians beyond this are refused; what is on the globe is less."""
 
 HORIZONTAL, CLIMB, DESCENT = 0, 1, 2
 """Kinds of speed that change_speed knows."""

@@ -119,7 +119,8 @@ def run(v: Vehicle) -> None:
         attitude.input_quaternion(control, est, p, flip.level, Vec3(0.0, 0.0, 0.0))
     else:
         attitude.input_rates(control, est, p, Vec3(flip.roll * _RATE, flip.pitch * _RATE, 0.0))
-    wanted = throttle(flip, pilot.throttle_out(sticks.throttle_filtered, hover_throttle(p.MOT)))
+    held = pilot.throttle_out(sticks.throttle_filtered, pilot.throttle_middle(p), hover_throttle(p.MOT))
+    wanted = throttle(flip, held)
     throttle_mix.set_throttle_out(control, p, wanted, False, p.PILOT.THR_FILT)
 
 

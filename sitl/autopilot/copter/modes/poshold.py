@@ -33,7 +33,10 @@ POSHOLD = 16
 FLOWN = 0
 BRAKING = 1
 STOPPED = 2
+TAKEN_OVER = 3
 
+_TAKE_OVER_S = 0.5
+"""As long the stick that takes an axis over is mixed with the lean there was [s]."""
 _RELEASE_TIME = 0.2
 """Time constant of the lean after the stick is let go [s]."""
 _RELEASED = math.radians(2.0)
@@ -61,11 +64,19 @@ def brake_lean(speed: float, p: PosHold) -> float:
 @law
 def advance_axis(axis: PosHoldAxis, stick: float, speed: float, time_us: int, p: PosHold) -> None:
     """One tick of an axis whose stick asks for a lean [rad]; ``speed`` [m/s]: that a positive lean takes away."""
-    if stick != 0.0:
+    if stick != 0.0 and axis.phase in (BRAKING, STOPPED):
+        axis.phase = TAKEN_OVER
+        axis.since_us = time_us
+        axis.held = axis.lean
+    since = 1e-6 * (time_us - axis.since_us)
+    if stick != 0.0 and axis.phase == TAKEN_OVER and since < _TAKE_OVER_S:
+        share = since / _TAKE_OVER_S  # as recorded: the stick counts in full at first, and again at the end
+        axis.lean = stick + share * (axis.held - stick)
+    elif stick != 0.0:
         axis.phase = FLOWN
         grows = stick * axis.lean <= 0.0 or abs(stick) >= abs(axis.lean)
         axis.lean = stick if grows else axis.lean + DT / _RELEASE_TIME * (stick - axis.lean)
-    elif axis.phase == FLOWN:
+    elif axis.phase in (FLOWN, TAKEN_OVER):
         axis.lean -= DT / _RELEASE_TIME * axis.lean
         if abs(axis.lean) < _RELEASED:
             axis.phase = BRAKING
@@ -74,7 +85,7 @@ def advance_axis(axis: PosHoldAxis, stick: float, speed: float, time_us: int, p:
         step = math.radians(p.BRAKE_RATE) * DT
         axis.lean += constrain(brake_lean(speed, p) - axis.lean, -step, step)
         longest = 1.0 + 2.0 * p.BRAKE_ANGLE * 0.01 / p.BRAKE_RATE  # [s]: to the greatest lean and back
-        if abs(speed) < _SLOW or time_us - axis.since_us > longest * 1e6:
+        if abs(speed) < _SLOW or since > longest:
             axis.phase = STOPPED
 
 
@@ -92,6 +103,7 @@ def for_axis(axis: PosHoldAxis, phase: int) -> None:
     """Put an axis into a phase, level."""
     axis.phase = phase
     axis.lean = 0.0
+    axis.held = 0.0
 
 
 @law

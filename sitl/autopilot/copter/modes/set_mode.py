@@ -18,7 +18,7 @@ from ...modes import (
 )
 from ...state import Arming, Estimate
 from ..control.motors import hover_throttle
-from ..parameters.control import Motors
+from ..parameters import Parameters
 from ..state import Vehicle
 from . import stabilize
 from .auto import AUTO
@@ -35,7 +35,7 @@ _CAUSES = {
 
 
 @law
-def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Motors) -> int:
+def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Parameters) -> int:
     """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
     if not is_known(number):
         return NO_SUCH_MODE
@@ -43,7 +43,7 @@ def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Mo
         return ACCEPTED
     manual_now = has_manual_throttle(modes.number)
     if arming.landed and has_manual_throttle(number) and not manual_now:
-        if stabilize.throttle(modes.pilot, p) > 0.5 * hover_throttle(p):
+        if stabilize.throttle(modes.pilot, p) > 0.5 * hover_throttle(p.MOT):
             return THROTTLE_TOO_HIGH
     if requires_position(number) and not estimate.position_ok:
         return REQUIRES_POSITION
@@ -65,7 +65,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         modes.reason = reason
         return ACCEPTED
     pending = modes.nav.request_pending
-    cause = refusal(number, modes, ap.arming, ap.estimate, ap.params.MOT)
+    cause = refusal(number, modes, ap.arming, ap.estimate, ap.params)
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = start(number, v)

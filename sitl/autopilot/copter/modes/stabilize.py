@@ -9,7 +9,7 @@ from ....core.kernels import law
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
-from ..parameters.control import Motors
+from ..parameters import Parameters
 from ..state import Vehicle
 from . import ground
 from .mode import CopterMode
@@ -19,9 +19,9 @@ STABILIZE = 0
 
 
 @law
-def throttle(sticks: PilotState, p: Motors) -> float:
+def throttle(sticks: PilotState, p: Parameters) -> float:
     """Motor throttle 0 .. 1 that the stick asks for."""
-    return pilot.throttle_out(sticks.throttle_filtered, hover_throttle(p))
+    return pilot.throttle_out(sticks.throttle_filtered, pilot.throttle_middle(p), hover_throttle(p.MOT))
 
 
 @law
@@ -36,7 +36,7 @@ def run(v: Vehicle) -> None:
         motors.desired_spool = ground.GROUND_IDLE
     else:
         motors.desired_spool = ground.UNLIMITED
-    wanted = throttle(sticks, p.MOT)
+    wanted = throttle(sticks, p)
     state = motors.spool_state
     if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
         attitude.reset_yaw_target(control.attitude, ap.estimate.yaw)

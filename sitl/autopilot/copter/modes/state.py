@@ -79,9 +79,10 @@ class CircleState(Record):
 class PosHoldAxis(Record):
     """POSHOLD: roll or pitch."""
 
-    phase: int  # poshold.py: FLOWN, BRAKING, STOPPED
+    phase: int  # poshold.py: FLOWN, BRAKING, STOPPED, TAKEN_OVER
     lean: float  # wanted, without that against the wind [rad]
-    since_us: int  # when it began to brake
+    held: float  # lean when the stick took over [rad]
+    since_us: int  # when it began to brake, or the stick took over
 
 
 class PosHoldState(Record):

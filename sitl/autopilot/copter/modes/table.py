@@ -9,7 +9,22 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import acro, alt_hold, auto, brake, circle, flip, guided, guided_nogps, land, loiter, poshold, rtl, stabilize
+from . import (
+    acro,
+    alt_hold,
+    auto,
+    brake,
+    circle,
+    flip,
+    follow,
+    guided,
+    guided_nogps,
+    land,
+    loiter,
+    poshold,
+    rtl,
+    stabilize,
+)
 from .mode import CopterMode
 
 MODES: tuple[CopterMode, ...] = with_registered(
@@ -28,6 +43,7 @@ MODES: tuple[CopterMode, ...] = with_registered(
         poshold.MODE,
         brake.MODE,
         guided_nogps.MODE,
+        follow.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""

@@ -9,7 +9,7 @@ from ... import battery, home
 from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, crash, failsafe, landing, motor_test, pilot
+from .. import arming, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -33,7 +33,7 @@ def init(v: Vehicle) -> None:
     ap.modes.reason = REASON_INITIALISED
     ap.arming.landed = True
     ap.arming.landed_maybe = True
-    ap.battery.remaining_pct = -1.0
+    battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.rc, ap.modes.pilot)
 
 
@@ -55,6 +55,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     motor_test.run(v)
     landing.detect(v)
     crash.check(v)
+    thrust_loss.check(v)
     landing.set_priority(ap.control, ap.arming, ap.modes, ap.estimate.vel.z, ap.params.ATC)
     if tick % _LEARN_TICKS == 0 and holds_height(ap.arming, ap.modes) and hovers(ap.control, ap.estimate.vel.z):
         learn_hover_throttle(ap.params.MOT, ap.control.motors.throttle, _LEARN_TICKS * DT)
@@ -83,11 +84,13 @@ def turn_sticks(v: Vehicle) -> None:
 @law
 def check_slowly(v: Vehicle) -> None:
     """Ten times a second."""
-    battery.monitor(v.autopilot.battery, v.sensors, v.autopilot.params.BATT)
+    battery.monitor(v.autopilot.battery, v.sensors, v.autopilot.params.BATT, v.time_us)
     failsafe.watch_gcs(v)
     failsafe.watch_battery(v)
     failsafe.watch_estimate(v)
+    failsafe.watch_vibration(v)
     arming.disarm_idle(v)
+    takeoff_check.check(v)
 
 
 @inlined

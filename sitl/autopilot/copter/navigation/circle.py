@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import math
 
+from ....core.algebra import ZERO, ZERO2, horizontal
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec3
+from ...control.shaping import Motion, Motion2
 from ...state import Estimate
+from ..control.altitude import set_pos_vel_accel_d
+from ..control.position import input_pos_vel_accel_ne
 from ..control.state import DT, Control
 from ..parameters import Parameters
 from .state import CopterNav
-from .waypoint import CM, follow_target, speed_ne
+from .waypoint import CM, speed_ne
 
 ANGULAR_ACCEL_MIN = math.radians(2.0)
 """[rad/s^2]"""
@@ -64,12 +68,17 @@ def advance(nav: CopterNav) -> float:
     radius = abs(nav.circle_radius)
     n = radius * math.cos(nav.circle_angle)
     e = radius * math.sin(nav.circle_angle)
-    rate = nav.circle_rate
     centre = nav.circle_centre
     nav.pos = Vec3(centre.x + n, centre.y + e, centre.z)
-    nav.vel = Vec3(-e * rate, n * rate, 0.0)
-    nav.acc = Vec3(-n * rate * rate - e * step / DT, -e * rate * rate + n * step / DT, 0.0)
+    nav.vel = ZERO
+    nav.acc = ZERO
     return abs(nav.circle_total) / (2.0 * math.pi)
+
+
+@law
+def follow(nav: CopterNav, control: Control) -> None:
+    """Go after the target as if it stood: as recorded, the vehicle flies behind it on a smaller circle."""
+    input_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(nav.pos), ZERO2, ZERO2))
 
 
 @law
@@ -79,5 +88,6 @@ def run(nav: CopterNav, control: Control, est: Estimate, p: Parameters) -> float
         start(nav, est.pos, est.yaw)
         set_limits(nav, math.radians(p.CIRCLE.RATE), speed_ne(nav, p.WPNAV), CM * p.WPNAV.ACCEL)
     turns = advance(nav)
-    follow_target(control, nav, 0.0, 0.0)
+    follow(nav, control)
+    set_pos_vel_accel_d(control.pos_d, Motion(nav.pos.z, 0.0, 0.0))
     return turns

@@ -9,21 +9,29 @@ from typing import TYPE_CHECKING
 from ....core.records import Floats, Records
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
-from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
+from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.system import Arming, Log, Mavlink, Mission, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
+from .flight import Acro, Circle, Follow, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
 from .safety import Battery, Failsafes, Simulated
 
 
 class Frame(ParameterGroup):
     """FRAME_: arrangement of the motors."""
 
-    TYPE: float = param(1, 0, 18, "", "0: plus, 1: X", INT8)
-    CLASS: float = param(0, 0, 18, "", "1: quad; 0: not chosen yet", INT8)
+    TYPE: float = param(1, 0, 20, "", "0: plus, 1: X, 2: V, 3: H, ... (the motors' order)", INT8)
+    CLASS: float = param(0, 0, 18, "", "1: quad, 2: hexa, 3: octa, 4: octa-quad, 5: Y6; 0: not chosen yet", INT8)
+
+
+class Output(ParameterGroup):
+    """SERVOn_: an output."""
+
+    FUNCTION: float = param(
+        0, -1, 300, "", "What output {n} does: 33 to 40 motor 1 to 8, 0 nothing (free for DO_SET_SERVO)", INT16
+    )
 
 
 class Parameters(shared.Parameters):
@@ -43,12 +51,15 @@ class Parameters(shared.Parameters):
     )
     BATT: Battery
     CIRCLE: Circle
+    COMPASS: Compass
     DISARM_DELAY: float = param(
         10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8
     )
     EK3: Ekf3
+    FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
+    FOLL: Follow
     FRAME: Frame
     FS: Failsafes
     GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 roll, 2 pitch, 4 yaw, 8 vertical", INT16)
@@ -69,10 +80,14 @@ class Parameters(shared.Parameters):
     RC_OVERRIDE_TIME: float
     RC_FS_TIMEOUT: float = param(1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost")
     RCMAP: RcMap
+    RPM1_TYPE: float = param(
+        0, 0, 5, "", "RPM message: 0 none, 5 mean speed of the motors as told by their controllers", INT8
+    )
     RTL: Rtl
     SCHED_LOOP_RATE: float = param(
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
+    SERVO: Records[Output] = numbered(Output, 16)
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
     STAT: Statistics

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...params import follow
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
@@ -108,11 +109,24 @@ class Rtl(ParameterGroup):
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
 
 
+class Follow(follow.Follow):
+    """FOLL_: with what only a vehicle in the air has."""
+
+    YAW_BEHAVE: float = param(
+        1, 0, 3, "", "Heading: 0 kept, 1 towards the lead, 2 the lead's, 3 along its course", INT8
+    )
+    ALT_TYPE: float = param(1, 0, 2, "", "The lead's height: 0 and 2 above the sea, 1 above home", INT8)
+
+
 class TakeOff(ParameterGroup):
     """TKOFF_: take-off."""
 
     SLEW_TIME: float = param(2.0, 0.25, 5.0, "s", "From zero to full throttle on the ground")
+    RPM_MIN: float = param(
+        0, 0, 10000, "RPM", "Motors that turn slower keep the vehicle on the ground; 0: no check", INT16
+    )
     THR_MAX: float = param(0.9, 0.0, 0.9, "", "Throttle at which it is taken to fly")
+    RPM_MAX: float = param(0, 0, 10000, "RPM", "Motors that turn faster do, too; 0: no limit", INT16)
 
 
 class Waypoints(ParameterGroup):

@@ -32,6 +32,7 @@ class Failsafes(system.Failsafes):
         0.8, 0.0, 2.0, "", "Test ratio of the estimator that counts as bad; 0 switches the check off"
     )
     EKF_FILT: float = param(5.0, 0.0, 10.0, "Hz", "Low-pass of the test ratios")
+    VIBE_ENABLE: float = param(1, 0, 1, "", "1: height is held without accelerations that vibration spoils", INT8)
     CRASH_CHECK: float = param(1, 0, 1, "", "Disarm after a crash", INT8)
     OPTIONS: float = param(
         16, 0, 127, "", "Goes on: 1 AUTO, 4 GUIDED without radio; 2 AUTO, 16 pilot modes without GCS; 8 LAND", INT32
@@ -39,7 +40,10 @@ class Failsafes(system.Failsafes):
 
 
 class Simulated(simulation.Simulated):
-    """SIM_: with failing motors."""
+    """SIM_: with failing motors, and their speed controllers."""
 
     ENGINE_FAIL: float = param(0, 0, 255, "", "Motors that fail: 1 motor 1, 2 motor 2, 4 motor 3, ...", INT32)
+    ESC_TELEM: float = param(1, 0, 1, "", "1: speed controllers tell how fast their motors turn", INT8)
+    ESC_ARM_RPM: float = param(0, 0, 100000, "RPM", "Speed that the controllers of armed motors tell at least")
+    VIB_MOT_MAX: float = param(0, 0, 10000, "Hz", "Turns a second at full command, of rotors whose model has no speed")
     ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust that failing motors keep")

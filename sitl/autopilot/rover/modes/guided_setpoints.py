@@ -23,7 +23,7 @@ NOT_FINITE = 1  # NaN, infinite or so large that arithmetic with it would be
 NOT_IN_GUIDED = 2
 OUT_OF_RANGE = 3
 
-LARGEST = 1e7
+LARGEST = 1e9
 """Metres, metres a second, radians beyond this are refused."""
 PLANNED = 64
 """GUID_OPTIONS: positions are driven to along planned legs; else the target is shaped, which suits moving ones."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import acro, auto, circle, guided, hold, initialising, loiter, manual, rtl, simple, smart_rtl, steering
+from . import acro, auto, circle, follow, guided, hold, initialising, loiter, manual, rtl, simple, smart_rtl, steering
 from .mode import RoverMode
 
 MODES: tuple[RoverMode, ...] = with_registered(
@@ -25,6 +25,7 @@ MODES: tuple[RoverMode, ...] = with_registered(
         auto.MODE,
         rtl.MODE,
         smart_rtl.MODE,
+        follow.MODE,
         guided.MODE,
         initialising.MODE,
     ),

@@ -10,7 +10,7 @@ from ....core.vectors import Vec3
 from ... import aux_switch, battery, home
 from ...arming_checks import BY_RUDDER
 from ...events import Events
-from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery
+from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
 from ...state import Estimate, HomeState
@@ -40,7 +40,7 @@ def init(v: Vehicle) -> None:
     ap = v.autopilot
     set_mode.enter_first(v)
     ap.arming.landed = True
-    ap.battery.remaining_pct = -1.0
+    battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.modes.pilot, ap.rc)
 
 
@@ -98,11 +98,12 @@ def check_slowly(v: Vehicle) -> None:
     """Ten times a second: battery, ground station, estimate, crash."""
     ap = v.autopilot
     fs, p = ap.modes.failsafe, ap.params
-    battery.monitor(ap.battery, v.sensors, p.BATT)
+    battery.monitor(ap.battery, v.sensors, p.BATT, v.time_us)
     fs.gcs = is_gcs_lost(fs, v.time_us, p.FS)
     failsafe.watch(v, failsafe.BIT_GCS, fs.gcs)
     level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
     report_battery(ap.events, v.time_us, level)
+    watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)
     failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
     crash.check(v)

@@ -10,13 +10,14 @@ from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
+from ...params.follow import Follow
 from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Log, Mavlink, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, Statistics, StreamRates
 from ...params.table import Table
-from .control import Attitude, Motors, Position, ServoOutput
+from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
 from .safety import Battery, Failsafes
 
@@ -29,10 +30,12 @@ class Parameters(shared.Parameters):
     ATC: Attitude
     BATT: Battery
     CIRC: Circle
+    COMPASS: Compass
     CRASH_ANGLE: float = param(0, 0, 60, "deg", "Lean that counts as a crash at once; 0: none does", INT8)
     CRUISE: Cruise
     SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
     EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7)
+    FOLL: Follow
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
     FS: Failsafes
     GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 steering, 2 speed", INT16)
@@ -66,6 +69,8 @@ class Parameters(shared.Parameters):
     STAT: Statistics
     STICK_MIXING: float = param(0, 0, 1, "", "1: the steering stick adds to the autopilot's steering", INT8)
     TURN_RADIUS: float = param(0.9, 0.0, 100.0, "m", "Turning radius at low speed and full steering")
+    WENC: WheelEncoder
+    WENC2: SecondEncoder
     WP: Legs
 
 

@@ -83,3 +83,17 @@ class ServoOutput(ParameterGroup):
     TRIM: float = param(1500, 800, 2200, "us", "Pulse of output {n} at rest", INT16)
     REVERSED: float = param(0, 0, 1, "", "Output {n} works the other way round", INT8)
     FUNCTION: float = param(26, -1, 300, "", "What output {n} does", INT16)
+
+
+class WheelEncoder(ParameterGroup):
+    """WENC_: encoders of vehicles whose airframe has none; from the next boot on."""
+
+    TYPE: float = param(0, 0, 10, "", "10: simulated encoders on the driven wheels; 0 none", INT8)
+    CPR: float = param(3200, 1, 32767, "", "Counts a turn of the wheel", INT16)
+    RADIUS: float = param(0.05, 0.001, 100.0, "m", "Of the wheel, with which counts become a distance")
+
+
+class SecondEncoder(ParameterGroup):
+    """WENC2_: that of the right wheel."""
+
+    TYPE: float = param(0, 0, 10, "", "10: WHEEL_DISTANCE tells of the right wheel, too; 0 not", INT8)

@@ -31,6 +31,9 @@ class Rotors(Record):
     speed: Floats = array(ROTORS_MAX)  # [rad/s]; THRUST_MOMENTUM: the lagged command 0 .. 1
     thrust: Floats = array(ROTORS_MAX)  # [N]
     efficiency: Floats = array(ROTORS_MAX)  # share of the thrust left, 1 healthy: a motor fault
+    telemetry: bool  # speed controllers tell speeds
+    rpm_armed: float  # they tell so much at least while armed
+    rpm_max: float  # of a rotor at full command, where the model has no speeds
     power: float  # taken from the battery by all [W]
 
 

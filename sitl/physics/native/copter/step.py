@@ -12,7 +12,7 @@ from ..body import GRAVITY, Inertia, Wrench, fly
 from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
 from ..sensors.sense import sense
 from ..tick import TICK_US, Clock
-from . import rotors
+from . import esc, rotors
 from .ground import absorb, lifts_off, rest, touch
 from .state import Physics
 from .wrench import act
@@ -68,6 +68,8 @@ def end(v: Vehicle[Physics]) -> None:
     p = v.physics
     battery.discharge(p.battery, p.rotors.power, p.airframe, p.derived.charge_per_amp)
     sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
+    if v.tick % esc.PERIOD_TICKS == 0:
+        esc.sample(p.rotors, v.sensors, p.airframe, v.actuators.armed, v.time_us)
 
 
 @inline_unit

@@ -33,6 +33,8 @@ class Wheels(Record):
     angle: float  # of the front wheels, to the right [rad]
     speed: Vec2  # rolling speed that the motors give [m/s]: x of the axle, or x of the left and y of the right side
     distance: Vec2  # rolled by the left (x) and right (y) driven wheel [m]
+    encoder_period: int  # [ticks] of encoders that the airframe lacks; 0: there are none
+    encoder_step: float  # travel of the rim a count [m]
     power: float  # taken from the battery by the motors [W]
     forward: float  # speed of the driven axle over the ground [m/s]; less than the wheels' when they slip
 

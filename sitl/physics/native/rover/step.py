@@ -74,7 +74,10 @@ def end(v: Vehicle[Physics]) -> None:
     p = v.physics
     battery.discharge(p.battery, p.wheels.power, p.airframe, p.derived.charge_per_amp)
     sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
-    encoders.sample(v.sensors, p.wheels.distance, p.airframe.encoder_step, p.derived.encoder_period, v.tick)
+    step, period = p.airframe.encoder_step, p.derived.encoder_period
+    if period == 0:  # the airframe has none
+        step, period = p.wheels.encoder_step, p.wheels.encoder_period
+    encoders.sample(v.sensors, p.wheels.distance, step, period, v.tick)
 
 
 @inline_unit

@@ -21,6 +21,8 @@ def pressure_error(s: SensorState, a: SensorFigures, d: Derived, rng: Rng) -> fl
 @law
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write abs_pressure [hPa] and temperature [degC]."""
+    if p.sensors.baro_missing:
+        return
     altitude = p.place.alt - p.body.pos.z
     error = pressure_error(p.sensors, p.airframe, p.derived, rng)
     sensors.abs_pressure = 0.01 * (pressure(altitude) + error)

@@ -14,7 +14,7 @@ from ....core.algebra import by_component
 from ....core.border import Sensors
 from ....core.geodesy import add_offset
 from ....core.kernels import law
-from ....core.rng import Rng, normal_vector
+from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Sensors as SensorFigures
 from ..records import GPS_RING, Body, Derived, Physics, Place, SensorState
@@ -24,6 +24,15 @@ UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""
 NO_FIX, FIX_3D = 1, 3
 """Of MAVLink's GPS_FIX_TYPE."""
+
+JAM_SILENT_TICKS, JAM_SILENT_MORE_TICKS = 400, 2000
+JAM_CHANGES = 0.3
+"""Chance that a figure of a jammed receiver changes from fix to fix."""
+JAM_PLACE, JAM_SPEED = 500.0, 150.0
+"""Standard deviations of each axis [m, m/s]."""
+JAM_SATELLITES, LEAST_SATELLITES = 17, 4
+JAM_DOP = 30000.0
+"""Greatest dilution * 100."""
 
 
 class Measured(NamedTuple):
@@ -62,10 +71,33 @@ def send(s: SensorState, place: Place, found: Measured, due: int, fix_type: int)
     lat, lon = add_offset(place.lat, place.lon, pos.x, pos.y)
     fix = s.gps_fixes[s.gps_head % GPS_RING]
     s.gps_head += 1
-    fix.due, fix.type = due, fix_type
+    fix.due, fix.type, fix.jammed = due, fix_type, s.gps_jammed
     fix.lat, fix.lon = _nearest(lat), _nearest(lon)
     fix.alt = _nearest((place.alt - pos.z) * 1000.0)
     fix.vel = Vec3(_nearest(vel.x * 100.0), _nearest(vel.y * 100.0), _nearest(vel.z * 100.0))
+
+
+@law
+def drift_jammed(s: SensorState, tick: int, rng: Rng) -> int:
+    """A jammed receiver's next fix, as ArduPilot's simulator has it: its type.
+
+    At first nothing is received for one to six seconds; then satellites come and go, and place, speed and dilutions
+    jump now and again.
+    """
+    if s.gps_jam_end == 0:
+        s.gps_jam_end = tick + JAM_SILENT_TICKS + int(uniform(rng) * JAM_SILENT_MORE_TICKS)
+    if tick < s.gps_jam_end:
+        return NO_FIX
+    jam = s.gps_jam
+    if uniform(rng) < JAM_CHANGES:
+        jam.pos = JAM_PLACE * normal_vector(rng)
+    if uniform(rng) < JAM_CHANGES:
+        jam.vel = JAM_SPEED * normal_vector(rng)
+    if uniform(rng) < JAM_CHANGES:
+        jam.satellites = int(uniform(rng) * JAM_SATELLITES)
+        jam.eph = int(uniform(rng) * JAM_DOP)
+        jam.epv = int(uniform(rng) * JAM_DOP)
+    return FIX_3D if jam.satellites >= LEAST_SATELLITES else NO_FIX
 
 
 @law
@@ -73,7 +105,13 @@ def take(p: Physics, tick: int, rng: Rng) -> None:
     """Take a fix of the true position and send it on its way."""
     s, d = p.sensors, p.derived
     found = measure(s, p.body, p.airframe, d, rng)
-    send(s, p.place, found, tick + d.gps_delay, FIX_3D if tick >= d.gps_fix else NO_FIX)
+    fix_type = FIX_3D if tick >= d.gps_fix else NO_FIX
+    if s.gps_jammed:
+        fix_type = drift_jammed(s, tick, rng)
+        found = Measured(found.pos + s.gps_jam.pos, s.gps_jam.vel)
+    else:
+        s.gps_jam_end = 0
+    send(s, p.place, found, tick + d.gps_delay, fix_type)
 
 
 @law
@@ -94,9 +132,13 @@ def deliver(s: SensorState, sensors: Sensors, now: Clock, figures: SensorFigures
         sensors.gps_eph = _nearest(100.0 * figures.gps_hdop)
         sensors.gps_epv = _nearest(100.0 * figures.gps_vdop)
         sensors.gps_satellites = int(figures.gps_satellites)
+        if fix.jammed:
+            sensors.gps_eph, sensors.gps_epv = s.gps_jam.eph, s.gps_jam.epv
     else:
         sensors.gps_eph = UNKNOWN_DOP
         sensors.gps_epv = UNKNOWN_DOP
+    if fix.jammed:
+        sensors.gps_satellites = s.gps_jam.satellites
 
 
 @law

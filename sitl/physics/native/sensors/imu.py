@@ -12,7 +12,9 @@ from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal, normal_vector
 from ....core.vectors import Vec3
+from ....vehicles.figures.body import Figures
 from ..records import Derived, Physics, SensorState
+from ..tick import TICK_S
 
 WALK_TICKS = 40
 """The in-run biases are stepped every 0.1 s."""
@@ -35,7 +37,7 @@ def measure(truth: Vec3, scale: Vec3, bias: Vec3, noise: float, rng: Rng) -> Vec
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
     a, s, d, body = p.airframe, p.sensors, p.derived, p.body
-    acc = measure(body.specific_force, s.acc_scale, s.acc_bias + s.acc_walk, d.acc_noise, rng)
+    acc = measure(body.specific_force, s.acc_scale, s.acc_bias + s.acc_walk + s.acc_fault, d.acc_noise, rng)
     sensors.acc = saturate(acc, a.acc_range)
     gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise, rng)
     sensors.gyro = saturate(gyro, a.gyro_range)
@@ -49,3 +51,14 @@ def walk(s: SensorState, d: Derived, rng: Rng) -> None:
     acc_z, gyro_z = normal(rng), normal(rng)
     s.acc_walk = d.acc_bias_decay * s.acc_walk + d.acc_bias_step * Vec3(acc_x, acc_y, acc_z)
     s.gyro_walk = d.gyro_bias_decay * s.gyro_walk + d.gyro_bias_step * Vec3(gyro_x, gyro_y, gyro_z)
+
+
+@law
+def drift(s: SensorState, a: Figures, tick: int) -> None:
+    """The steady part of the same step of the gyro's bias."""
+    if a.gyro_drift_speed == 0.0:
+        return
+    period = int(a.gyro_drift_time / TICK_S)
+    forth = period <= 0 or tick % (2 * period) < period
+    step = (a.noise_scale if forth else -a.noise_scale) * a.gyro_drift_speed * WALK_TICKS * TICK_S
+    s.gyro_walk += Vec3(step, step, step)

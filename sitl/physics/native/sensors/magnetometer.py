@@ -22,6 +22,9 @@ def measure_field(q: Quat, field: Vec3, figures: SensorFigures, rng: Rng) -> Vec
 
 @law
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
-    """Write mag [gauss], body frame."""
-    sensors.mag = measure_field(p.body.q, p.place.field, p.airframe, rng)
+    """Write mag, mag2 and mag3 [gauss], body frame. The compasses differ by their offsets alone."""
+    field = measure_field(p.body.q, p.place.field, p.airframe, rng)
+    sensors.mag = field
+    sensors.mag2 = field - p.sensors.mag2_offset
+    sensors.mag3 = field - p.sensors.mag3_offset
     sensors.mag_count += 1

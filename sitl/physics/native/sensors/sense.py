@@ -18,6 +18,7 @@ def sense(p: Physics, sensors: Sensors, rng: Rng, now: Clock) -> None:
     tick = now.tick
     if tick % imu.WALK_TICKS == 0:
         imu.walk(p.sensors, p.derived, rng)
+        imu.drift(p.sensors, p.airframe, tick)
         power.sample(p.battery, sensors)
     imu.sample(p, sensors, rng)
     if tick % p.derived.mag_period == 1:

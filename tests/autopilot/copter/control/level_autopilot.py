@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from sitl.autopilot.copter.control import motors, throttle_mix
+from sitl.autopilot.copter.control.frames import load_frame
 from sitl.autopilot.copter.control.update import drive, init
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
@@ -21,6 +22,7 @@ def make_autopilot() -> Any:
     ap = Autopilot()
     TABLE.set_defaults(ap.params)
     ap.params.FRAME_CLASS = 1.0
+    load_frame(ap.control.motors, ap.params)
     ap.estimate.q = ap.estimate.q.replace(w=1.0)
     init(*parts(ap))
     return ap

@@ -8,60 +8,72 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.control import motors, rate
-from sitl.autopilot.copter.control.mixer import PLUS, Demands, X, factors, mix
+from sitl.autopilot.copter.control.frames import FRAMES, HEXA, OCTA, PLUS, QUAD, X, frame_of, load_frame, order
+from sitl.autopilot.copter.control.mixer import Demands, follow_boost, mix_many
 from sitl.autopilot.copter.control.state import MotorsState, RateState
+from sitl.autopilot.copter.parameters import TABLE, Parameters
 from sitl.autopilot.copter.parameters.control import Attitude
 from sitl.core.vectors import Vec3
 
 demand = st.floats(-1.0, 1.0)
 unit = st.floats(0.0, 1.0)
-frame = st.sampled_from([PLUS, X])
+frame = st.sampled_from([(QUAD, PLUS), (QUAD, X)])
+any_frame = st.sampled_from(sorted(FRAMES))
 FLAGS = ("limit_roll", "limit_pitch", "limit_yaw", "limit_throttle_lower", "limit_throttle_upper")
 
 
-def run(frame_type, roll, pitch, yaw, throttle, avg_max=None, throttle_max=1.0, headroom=0.2):
-    motors = MotorsState()
+def made(frame) -> tuple[MotorsState, Parameters]:
+    """Motors of a frame (FRAME_CLASS, FRAME_TYPE), and its parameters."""
+    motors, params = MotorsState(), Parameters()
+    TABLE.set_defaults(params)
+    params.FRAME.CLASS, params.FRAME.TYPE = frame
+    load_frame(motors, params)
+    return motors, params
+
+
+def run(frame, roll, pitch, yaw, throttle, avg_max=None, throttle_max=1.0, headroom=0.2):
+    motors, _ = made(frame)
     avg = throttle if avg_max is None else avg_max
-    out = mix(motors, frame_type, Demands(roll, pitch, yaw, throttle, avg, throttle_max), headroom)
+    out = mix_many(motors, Demands(roll, pitch, yaw, throttle, avg, throttle_max), headroom)
     return motors, out
 
 
-def demands_met(frame_type, motors):
-    """(roll, pitch, yaw) that the four thrusts make."""
-    sums = [0.0, 0.0, 0.0]
-    weight = [0.0, 0.0, 0.0]
-    for k in range(4):
-        for j, f in enumerate(factors(frame_type, k)):
-            sums[j] += f * motors.thrust[k]
-            weight[j] += f * f
-    return [s / w for s, w in zip(sums, weight, strict=True)]
+def demands_met(motors):
+    """(roll, pitch, yaw) that the thrusts of a frame without a tilt make."""
+    met = []
+    for factors in (motors.roll_factor, motors.pitch_factor, motors.yaw_factor):
+        parts = factors[: motors.count]
+        met.append(float(parts @ motors.thrust[: motors.count] / (parts @ parts)))
+    return met
 
 
-@given(frame, demand, demand, demand, unit, unit, unit, unit)
-def test_thrusts_stay_within_range(frame_type, roll, pitch, yaw, throttle, avg_max, throttle_max, headroom):
-    motors, out = run(frame_type, roll, pitch, yaw, throttle, avg_max, throttle_max, headroom)
-    assert all(-1e-9 <= t <= 1.0 + 1e-9 for t in motors.thrust)
-    assert sum(motors.thrust) == pytest.approx(4 * out, abs=1e-9)
+@given(any_frame, demand, demand, demand, unit, unit, unit, unit)
+def test_thrusts_stay_within_range(frame, roll, pitch, yaw, throttle, avg_max, throttle_max, headroom):
+    motors, out = run(frame, roll, pitch, yaw, throttle, avg_max, throttle_max, headroom)
+    used = motors.thrust[: motors.count]
+    assert all(-1e-9 <= t <= 1.0 + 1e-9 for t in used)
+    if motors.count == 4:
+        assert sum(used) == pytest.approx(4 * out, abs=1e-9)
 
 
 @given(frame, demand, demand, demand, unit)
-def test_unsaturated_demands_come_out_unchanged(frame_type, roll, pitch, yaw, throttle):
-    motors, out = run(frame_type, roll, pitch, yaw, throttle)
+def test_unsaturated_demands_come_out_unchanged(frame, roll, pitch, yaw, throttle):
+    motors, out = run(frame, roll, pitch, yaw, throttle)
     if any(getattr(motors, flag) for flag in FLAGS) or out != pytest.approx(throttle):
         return
-    assert demands_met(frame_type, motors) == pytest.approx([roll, pitch, yaw], abs=1e-9)
+    assert demands_met(motors) == pytest.approx([roll, pitch, yaw], abs=1e-9)
 
 
 def test_small_demands_are_unsaturated():
-    motors, out = run(X, 0.1, -0.1, 0.1, 0.4)
+    motors, out = run((QUAD, X), 0.1, -0.1, 0.1, 0.4)
     assert not any(getattr(motors, flag) for flag in FLAGS)
     assert out == pytest.approx(0.4)
 
 
 @given(frame, demand, demand, demand, st.floats(0.3, 0.7))
-def test_roll_and_pitch_are_served_before_yaw(frame_type, roll, pitch, yaw, throttle):
-    motors, _ = run(frame_type, 0.28 * roll, 0.28 * pitch, yaw, throttle, headroom=0.0)
-    got = demands_met(frame_type, motors)
+def test_roll_and_pitch_are_served_before_yaw(frame, roll, pitch, yaw, throttle):
+    motors, _ = run(frame, 0.28 * roll, 0.28 * pitch, yaw, throttle, headroom=0.0)
+    got = demands_met(motors)
     assert got[0] == pytest.approx(0.28 * roll, abs=1e-9) and got[1] == pytest.approx(0.28 * pitch, abs=1e-9)
     assert abs(got[2]) <= abs(yaw) + 1e-9
     if not motors.limit_yaw:
@@ -69,31 +81,31 @@ def test_roll_and_pitch_are_served_before_yaw(frame_type, roll, pitch, yaw, thro
 
 
 def test_yaw_keeps_its_headroom_against_full_roll():
-    with_room, _ = run(X, 1.0, 0.0, 1.0, 0.5, headroom=0.2)
-    without, _ = run(X, 1.0, 0.0, 1.0, 0.5, headroom=0.0)
-    assert demands_met(X, with_room)[2] > 0.1
-    assert demands_met(X, without)[2] == pytest.approx(0.0, abs=1e-9)
+    with_room, _ = run((QUAD, X), 1.0, 0.0, 1.0, 0.5, headroom=0.2)
+    without, _ = run((QUAD, X), 1.0, 0.0, 1.0, 0.5, headroom=0.0)
+    assert demands_met(with_room)[2] > 0.1
+    assert demands_met(without)[2] == pytest.approx(0.0, abs=1e-9)
     assert with_room.limit_yaw == 1 and without.limit_yaw == 1
 
 
 @given(demand, demand, demand, unit)
 def test_left_and_right_of_an_x_are_mirror_images(roll, pitch, yaw, throttle):
-    a, out_a = run(X, roll, pitch, yaw, throttle)
-    b, out_b = run(X, -roll, pitch, -yaw, throttle)
-    assert [b.thrust[k] for k in (2, 3, 0, 1)] == pytest.approx(list(a.thrust), abs=1e-9)
+    a, out_a = run((QUAD, X), roll, pitch, yaw, throttle)
+    b, out_b = run((QUAD, X), -roll, pitch, -yaw, throttle)
+    assert [b.thrust[k] for k in (2, 3, 0, 1)] == pytest.approx(list(a.thrust[:4]), abs=1e-9)
     assert out_a == pytest.approx(out_b, abs=1e-9)
 
 
 def test_throttle_may_rise_for_attitude_only_as_far_as_allowed():
-    low, out_low = run(X, 0.4, 0.4, 0.0, 0.05, avg_max=0.05)
-    high, out_high = run(X, 0.4, 0.4, 0.0, 0.05, avg_max=0.4)
+    low, out_low = run((QUAD, X), 0.4, 0.4, 0.0, 0.05, avg_max=0.05)
+    high, out_high = run((QUAD, X), 0.4, 0.4, 0.0, 0.05, avg_max=0.4)
     assert out_low == pytest.approx(0.05) and low.limit_roll == 1
     assert out_high == pytest.approx(0.4) and high.limit_roll == 0
 
 
 def test_zero_and_full_throttle_raise_their_flags():
-    assert run(PLUS, 0.0, 0.0, 0.0, 0.0)[0].limit_throttle_lower == 1
-    assert run(PLUS, 0.0, 0.0, 0.0, 1.0)[0].limit_throttle_upper == 1
+    assert run((QUAD, PLUS), 0.0, 0.0, 0.0, 0.0)[0].limit_throttle_lower == 1
+    assert run((QUAD, PLUS), 0.0, 0.0, 0.0, 1.0)[0].limit_throttle_upper == 1
 
 
 @pytest.mark.parametrize(
@@ -108,8 +120,79 @@ def test_zero_and_full_throttle_raise_their_flags():
     ],
 )
 def test_motors_are_numbered_as_ardupilots(frame_type, roll, pitch, yaw, strong):
-    motors, out = run(frame_type, roll, pitch, yaw, 0.5)
+    motors, out = run((QUAD, frame_type), roll, pitch, yaw, 0.5)
     assert {k for k in range(4) if motors.thrust[k] > out + 1e-9} == strong
+
+
+@pytest.mark.parametrize("frame", sorted(FRAMES))
+def test_every_frame_is_in_balance(frame):
+    motors, _ = made(frame)
+    for factors in (motors.roll_factor, motors.pitch_factor, motors.yaw_factor):
+        used = factors[: motors.count]
+        assert max(abs(used)) == 0.5
+        assert sum(used) == pytest.approx(0.0, abs=0.11)  # the V of an octa is not quite even
+    assert list(motors.output[: motors.count]) == list(range(motors.count))
+
+
+@pytest.mark.parametrize(
+    ("frame", "expected"),
+    [
+        ((QUAD, PLUS), (3, 1, 4, 2)),
+        ((QUAD, X), (1, 4, 2, 3)),
+        ((HEXA, PLUS), (1, 4, 6, 2, 3, 5)),
+        ((HEXA, X), (5, 1, 4, 6, 2, 3)),
+        ((OCTA, PLUS), (1, 3, 8, 4, 2, 6, 7, 5)),
+        ((OCTA, X), (1, 3, 8, 4, 2, 6, 7, 5)),
+        ((4, X), (1, 6, 4, 7, 3, 8, 2, 5)),
+        ((5, PLUS), (5, 1, 6, 4, 2, 3)),
+        ((5, 10), (1, 2, 3, 4, 5, 6)),
+    ],
+)
+def test_motors_are_tested_clockwise_from_the_front(frame, expected):
+    _, params = made(frame)
+    assert tuple(k + 1 for k in order(params)) == expected
+
+
+def test_a_frame_that_there_is_not_has_no_motors():
+    assert frame_of(QUAD, 5) is None and frame_of(6, PLUS) is None
+    assert frame_of(5, 7) == frame_of(5, PLUS)  # a Y6 takes any type
+    motors, _ = made((6, PLUS))
+    assert motors.count == 0
+
+
+def test_outputs_follow_their_functions():
+    motors, params = made((HEXA, X))
+    assert [int(output.FUNCTION) for output in params.SERVO][:8] == [33, 34, 35, 36, 37, 38, 0, 0]
+    params.SERVO[0].FUNCTION, params.SERVO[8].FUNCTION, params.SERVO[1].FUNCTION = 1, 33, 0
+    load_frame(motors, params)
+    assert list(motors.output) == [8, 1, 2, 3, 4, 5, -1, -1]
+
+
+def fail_motor(motors: MotorsState, demands: Demands, ticks: int) -> float:
+    """Let the mixer work for a while as it does in flight; returns what it gave."""
+    out = 0.0
+    for _ in range(ticks):
+        out = mix_many(motors, demands, 0.2)
+        follow_boost(motors, 0.005, 0.005)
+    return out
+
+
+def test_boosting_lifts_the_limit_that_the_failing_motor_sets():
+    motors, _ = made((OCTA, PLUS))
+    demands = Demands(0.0, 0.6, 0.0, 0.8, 0.8, 1.0)  # nose up: motor 1, in front, is at its limit
+    before = fail_motor(motors, demands, 800)
+    assert motors.strongest == 0 and motors.limit_throttle_upper and before == pytest.approx(0.7)
+    motors.boosting = True
+    assert mix_many(motors, demands, 0.2) == pytest.approx(0.7)
+    motors.boost_ratio = 1.0
+    assert mix_many(motors, demands, 0.2) == pytest.approx(1.0 - 0.3 * 0.5**0.5) and motors.thrust[0] > 1.0
+
+
+def test_boosting_ends_when_the_motors_share_the_work_again():
+    motors, _ = made((OCTA, PLUS))
+    motors.boosting, motors.boost_ratio = True, 1.0
+    fail_motor(motors, Demands(0.0, 0.0, 0.0, 0.4, 0.4, 1.0), 400)
+    assert not motors.boosting and motors.boost_ratio == 0.0
 
 
 class Loops:

@@ -181,6 +181,6 @@ def test_the_spool_ends_where_it_is_told_to_and_stops_at_once_when_disabled(desi
 
 def test_the_motor_under_test_turns_alone():
     m = MotorsState()
-    m.test_motor, m.test_actuator = 3, 0.4
+    m.count, m.test_motor, m.test_actuator = 6, 3, 0.4
     motors.drive_test_motor(m)
-    assert list(m.actuator) == [0.0, 0.0, 0.4, 0.0]
+    assert list(m.actuator) == [0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0, 0.0]

@@ -91,9 +91,9 @@ def test_the_lean_of_sticks_stays_within_the_limit(roll: float, pitch: float, an
 
 @given(st.floats(0.0, 1.0))
 def test_the_climb_of_the_stick_is_continuous_and_within_its_speeds(throttle: float) -> None:
-    climb = pilot.climb_of_stick(throttle, 0.1, 2.5, 1.5)
+    climb = pilot.climb_of_stick(throttle, 0.48, 0.1, 2.5, 1.5)
     assert -1.5 - 1e-12 <= climb <= 2.5 + 1e-12
-    assert pilot.climb_of_stick(throttle + 1e-6, 0.1, 2.5, 1.5) == pytest.approx(climb, abs=1e-4)
+    assert pilot.climb_of_stick(throttle + 1e-6, 0.48, 0.1, 2.5, 1.5) == pytest.approx(climb, abs=1e-4)
 
 
 @pytest.mark.parametrize(("thrust", "climb"), ((0.0, -1.5), (0.5, 0.0), (1.0, 2.5)))
@@ -335,7 +335,14 @@ def test_a_stick_that_is_let_go_of_brakes_at_its_rate_until_the_axis_is_slow() -
         if axis.phase == poshold.BRAKING and before > -math.radians(2.0):
             assert abs(axis.lean - before) <= math.radians(8.0) * 0.0025 + 1e-9
     assert abs(speed) < 0.1 and 2.0 < time_us * 1e-6 < 5.0
-    poshold.advance_axis(axis, 0.2, 0.0, time_us, p)
+    held = axis.lean
+    for since, share in ((0.0, 1.0), (0.25, 0.5), (0.4, 0.2)):
+        poshold.advance_axis(axis, 0.2, 0.0, time_us + round(since * 1e6), p)
+        assert axis.phase == poshold.TAKEN_OVER
+        assert axis.lean == pytest.approx(0.2 * share + held * (1.0 - share)), (
+            "as recorded: the stick fades, then jumps"
+        )
+    poshold.advance_axis(axis, 0.2, 0.0, time_us + 500_000, p)
     assert (axis.phase, axis.lean) == (poshold.FLOWN, 0.2)
 
 

@@ -13,6 +13,7 @@ from sitl.autopilot.copter.modes.auto import AUTO
 from sitl.autopilot.copter.modes.brake import BRAKE
 from sitl.autopilot.copter.modes.circle import CIRCLE
 from sitl.autopilot.copter.modes.flip import FLIP
+from sitl.autopilot.copter.modes.follow import FOLLOW
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
@@ -20,7 +21,7 @@ from sitl.autopilot.copter.modes.poshold import POSHOLD
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
 from sitl.autopilot.copter.modes.table import NAMES
-from sitl.autopilot.events import MODE_CHANGED, MODE_REFUSED
+from sitl.autopilot.events import FOLLOW_OFF, MODE_CHANGED, MODE_REFUSED
 from sitl.autopilot.modes import (
     ACCEPTED,
     INIT_FAILED,
@@ -39,6 +40,7 @@ ALL = tuple(number for number in NAMES if number != FLIP)
 @pytest.mark.parametrize("number", ALL)
 def test_disarmed_any_mode_may_be_selected_even_without_position_or_mission(vehicle, number):
     vehicle.autopilot.estimate.position_ok = vehicle.autopilot.home.is_set = 0
+    vehicle.autopilot.params.FOLL_ENABLE = 1.0
     assert set_mode.request(vehicle, number, REASON_GCS) == ACCEPTED
     assert vehicle.autopilot.modes.number == number
 
@@ -55,13 +57,15 @@ def test_in_flight_without_position_only_modes_that_do_without(flying, number):
     fly(flying, STABILIZE)
     ap = flying.autopilot
     ap.modes.mission_count, ap.estimate.position_ok = 5, 0
-    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE)
+    ap.params.FOLL_ENABLE = 1.0
+    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE, FOLLOW)
     assert set_mode.request(flying, number, REASON_GCS) == (REQUIRES_POSITION if needs else ACCEPTED)
 
 
 @pytest.mark.parametrize("number", ALL)
 def test_in_flight_with_position_and_mission_everything_goes(flying, number):
     flying.autopilot.modes.mission_count = 5
+    flying.autopilot.params.FOLL_ENABLE = 1.0
     assert set_mode.request(flying, number, REASON_GCS) == ACCEPTED
     assert flying.autopilot.modes.number == number
 
@@ -97,6 +101,11 @@ def test_auto_armed_on_the_ground_needs_a_take_off_first(flying):
     assert set_mode.request(flying, AUTO, REASON_GCS) == MISSING_TAKEOFF
     ap.modes.mission_takes_off = 1
     assert set_mode.request(flying, AUTO, REASON_GCS) == ACCEPTED
+
+
+def test_follow_has_to_be_enabled(vehicle):
+    assert set_mode.request(vehicle, FOLLOW, REASON_GCS) == INIT_FAILED
+    assert codes(vehicle) == [FOLLOW_OFF, MODE_REFUSED]
 
 
 def test_rtl_needs_a_home_in_flight(flying):

@@ -57,10 +57,10 @@ def test_steering_expo_softens_the_middle() -> None:
 @pytest.mark.parametrize(
     ("kind", "sticks", "wanted"),
     [
-        (0, (1750, 1750), (0.4681, 0.4681)),
-        (0, (1750, 1250), (-0.4681, -0.4681)),
-        (2, (1750, 1250), (-0.4681, -0.4681)),
-        (3, (1750, 1250), (0.4681, -0.4681)),
+        (0, (1750, 1750), (0.4681, 0.46)),
+        (0, (1750, 1250), (-0.4681, -0.46)),
+        (2, (1750, 1250), (-0.4681, -0.46)),
+        (3, (1750, 1250), (0.4681, -0.46)),  # throttle in whole percent
         (1, (1750, 1750), (0.0, 0.5)),
         (1, (1750, 1250), (0.5, 0.0)),
     ],
@@ -85,7 +85,7 @@ def test_acro_stick_is_a_turn_rate() -> None:
     rover.sticks(throttle=1600)
     rover.run(8.0)
     rover.sticks(steering=1765)
-    rover.run(3.0)
+    rover.run(5.0)
     assert float(rover.ap.estimate.rates[2]) == pytest.approx(math.radians(30.0), rel=0.05)
 
 
@@ -162,7 +162,7 @@ def test_stick_mixing_adds_to_the_autopilots_steering() -> None:
     rover = Rover(STICK_MIXING=1.0)
     rover.sticks(steering=1750)
     rover.run(0.04)
-    assert pilot.mixed(rover.ap.modes.pilot, 0.4, 1.0) == pytest.approx(0.5 * 0.4 + 220 / 470)
+    assert pilot.mixed(rover.ap.modes.pilot, 0.4, 1.0) == pytest.approx(150 / 400 * 0.4 + 220 / 470)
     assert pilot.mixed(rover.ap.modes.pilot, 0.4, 0.0) == 0.4
 
 

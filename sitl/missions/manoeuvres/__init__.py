@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The same manoeuvres flown by this simulator and by a real ArduPilot's executables, and their figures side by side."""

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``python -m sitl.missions.manoeuvres [--ardupilot PATH] [copter|rover [FLIGHT ...]]``: ours and the real one."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from sitl import vehicles
+from sitl.errors import OptionError
+from sitl.simulation import Simulation, load_core
+from sitl.vehicle.kinds import KINDS
+
+from . import copter, executable, rover, table
+from .flyer import Figures, Flyer
+
+HOME = (-35.363262, 149.165237, 584.0, 0.0)
+FRAMES = {"copter": "ardupilot_quad", "rover": "ardupilot_rover"}
+FLIGHTS: dict[str, Mapping[str, Callable[[Flyer], None]]] = {"copter": copter.FLIGHTS, "rover": rover.FLIGHTS}
+RATES_HZ = {"copter": 50.0, "rover": 25.0}
+BOOT_SPEEDUP = 60
+HEADING = "## Manoeuvres"
+
+
+def chosen(kind: str, names: Sequence[str]) -> dict[str, Callable[[Flyer], None]]:
+    """Flights of a kind of vehicle; all when none is named.
+
+    Raises:
+        OptionError: there is no such flight.
+    """
+    flights = FLIGHTS[kind]
+    for name in names:
+        if name not in flights:
+            raise OptionError(f"a {kind} has no flight {name!r}; it has {', '.join(flights)}")
+    return {name: flights[name] for name in names or flights}
+
+
+def fly_ours(kind: str, names: Sequence[str] = (), seed: int = 0) -> dict[str, Figures]:
+    """The figures of a simulation in this process."""
+    core, found = load_core(KINDS[kind]), {}
+    for name, flight in chosen(kind, names).items():
+        flyer = Flyer(Simulation(FRAMES[kind], home=HOME, seed=seed, core=core), RATES_HZ[kind])
+        flight(flyer)
+        found[name] = flyer.figures
+    return found
+
+
+def fly_executable(
+    path: Path, kind: str, names: Sequence[str], speedup: int, instance: int = 0
+) -> tuple[dict[str, Figures], str]:
+    """The figures of an executable, and its version."""
+    found, version = {}, ""
+    params = vehicles.load(FRAMES[kind]).parameters
+    for name, flight in chosen(kind, names).items():
+        with executable.started(executable.find(path, kind), kind, HOME, BOOT_SPEEDUP, params, instance) as connection:
+            flyer = Flyer(connection, RATES_HZ[kind])
+            version = _version(flyer)
+            flyer.wait_ready()
+            flyer.params["SIM_SPEEDUP"] = speedup
+            flight(flyer)
+        found[name] = flyer.figures
+        print(f"{kind} {name}: {len(flyer.figures)} figures of {path.name}", flush=True)
+    return found, version
+
+
+def _version(flyer: Flyer) -> str:
+    m = flyer.message("AUTOPILOT_VERSION")
+    number = ".".join(str(m.flight_sw_version >> shift & 0xFF) for shift in (24, 16, 8))
+    kind = {0: "-dev", 255: ""}.get(m.flight_sw_version & 0xFF, "")
+    return f"{number}{kind} ({bytes(m.flight_custom_version).decode('ascii', 'replace')})"
+
+
+def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) -> str:
+    """The part of the page."""
+    every = [row for part in found.values() for row in part]
+    parts = [
+        f"{HEADING} by commands and sticks\n",
+        "Made by `python -m sitl.missions.manoeuvres --ardupilot PATH --keep`, PATH the folder of a real ArduPilot's",
+        "`arducopter` and `ardurover`. Scripts of this project fly both by MAVLink, with the same parameters",
+        "(the firmware's defaults and those of our airframe), in simulated time; the real one's figures are kept in",
+        "`sitl/missions/reference/`, so that `python -m sitl.missions.manoeuvres` compares without it.",
+        f"\n{table.RULE}\n",
+        f"**{table.summary(every)}.**",
+    ]
+    for kind, part in found.items():
+        parts.append(f"\n### {kind.title()}: {table.summary(part)}, beside {described[kind]}\n")
+        for flight in dict.fromkeys(row.flight for row in part):
+            own = [row for row in part if row.flight == flight]
+            parts.append(f"{FLIGHTS[kind][flight].__doc__}\n\n{table.markdown(own)}\n")
+    return "\n".join(parts)
+
+
+def kept_beside_ours() -> str:
+    """The same with the kept figures of both kinds of vehicles."""
+    found, described = {}, {}
+    for kind in sorted(FLIGHTS):
+        kept = table.kept(kind)
+        found[kind] = table.rows(fly_ours(kind), kept["figures"])
+        described[kind] = f"ArduPilot {kept['version']} of {kept['date']}"
+    return section(found, described)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    top = argparse.ArgumentParser(prog="python -m sitl.missions.manoeuvres", description=__doc__)
+    top.add_argument("kind", nargs="?", choices=sorted(FLIGHTS), help="of vehicle (default: all)")
+    top.add_argument("flights", nargs="*", metavar="FLIGHT", help="names of flights (default: all)")
+    top.add_argument(
+        "--ardupilot", type=Path, metavar="PATH", help="executable, or folder with both; else kept figures"
+    )
+    top.add_argument(
+        "--ours", type=Path, metavar="PATH", help="executable of ours instead of a vehicle in this process"
+    )
+    top.add_argument("--speedup", type=int, default=8, metavar="K", help="of executables (default 8)")
+    top.add_argument("--keep", action="store_true", help="keep the figures of --ardupilot, in the package")
+    top.add_argument("--page", type=Path, metavar="FILE", help="replace the page's section of these tables")
+    return top
+
+
+def main() -> None:
+    """Fly, and print the tables."""
+    options = parser().parse_args()
+    if options.ardupilot or options.ours:
+        executable.enter_namespace()
+    found, described = {}, {}
+    for kind in [options.kind] if options.kind else sorted(FLIGHTS):
+        if options.ardupilot:
+            date = datetime.date.today().isoformat()
+            theirs, version = fly_executable(options.ardupilot, kind, options.flights, options.speedup)
+            if options.keep:
+                path = Path(__file__).parents[1] / "reference" / table.file_name(kind)
+                others = table.kept(kind)["figures"] if options.flights and path.exists() else {}
+                path.write_text(table.as_json(version, date, {**others, **theirs}), encoding="utf-8")
+        else:
+            kept = table.kept(kind)
+            theirs, version, date = kept["figures"], kept["version"], kept["date"]
+        if options.ours:
+            ours, _ = fly_executable(options.ours, kind, options.flights, options.speedup)
+        else:
+            ours = fly_ours(kind, options.flights)
+        found[kind], described[kind] = table.rows(ours, theirs), f"ArduPilot {version} of {date}"
+    text = section(found, described)
+    print(text)
+    if options.page:
+        before = options.page.read_text(encoding="utf-8").split(f"\n{HEADING}")[0].rstrip()
+        options.page.write_text(f"{before}\n\n{text}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

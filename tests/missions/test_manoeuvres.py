@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Manoeuvres of ours beside the kept figures of a real ArduPilot: what agrees must go on agreeing."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from sitl.errors import OptionError
+from sitl.missions.manoeuvres import __main__ as manoeuvres
+from sitl.missions.manoeuvres import executable, table
+from sitl.missions.manoeuvres.table import Row
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "comparison.md"
+AGREE = {"copter": 0.95, "rover": 0.9}
+
+
+@pytest.fixture(scope="module", params=sorted(manoeuvres.FLIGHTS))
+def flown(request: pytest.FixtureRequest) -> tuple[str, list[Row]]:
+    kind: str = request.param
+    return kind, table.rows(manoeuvres.fly_ours(kind), table.kept(kind)["figures"])
+
+
+def test_nine_of_ten_figures_agree(flown: tuple[str, list[Row]]) -> None:
+    kind, rows = flown
+    assert len(rows) > 90
+    wrong = [row for row in rows if not row.agrees]
+    assert 1.0 - len(wrong) / len(rows) >= AGREE[kind], wrong
+
+
+def test_every_flight_has_all_its_kept_figures(flown: tuple[str, list[Row]]) -> None:
+    kind, rows = flown
+    kept = {(flight, name) for flight, figures in table.kept(kind)["figures"].items() for name in figures}
+    assert {(row.flight, row.name) for row in rows} == kept, "fly them: python -m sitl.missions.manoeuvres --ardupilot"
+
+
+def test_the_page_shows_what_is_flown(flown: tuple[str, list[Row]]) -> None:
+    """Close, not equal: another processor's mathematics may round another way."""
+    kind, rows = flown
+    section = next(s for s in PAGE.read_text(encoding="utf-8").split("\n### ") if s.startswith(f"{kind.title()}: "))
+    cells = re.findall(r"^\|[^|]*\| (.+?) \| \S+ \| (-?[\d.]+|-) \|", section, re.MULTILINE)
+    shown = {name: math.nan if ours == "-" else float(ours) for name, ours in cells}
+    flown_now = {row.name: row.ours for row in rows}
+    assert shown == pytest.approx(flown_now, rel=0.01, abs=0.03, nan_ok=True), "run: python docs/make_pages.py"
+
+
+@pytest.mark.parametrize(
+    ("unit", "ours", "theirs", "agrees"),
+    (
+        ("m/s", 1.04, 1.0, True), ("m/s", 1.06, 1.0, False), ("m/s", -1.0, 1.0, False),
+        ("m", 0.4, 0.0, True), ("m", 0.6, 0.01, False), ("deg", 0.9, -0.05, True),
+        ("s", 1.09, 1.0, True), ("s", 1.11, 1.0, False), ("s", 2.2, 2.05, False),
+        ("s", math.nan, math.nan, True), ("s", math.nan, 1.0, False), ("s", 1.0, math.nan, False),
+    ),
+)  # fmt: skip
+def test_the_rule(unit: str, ours: float, theirs: float, agrees: bool) -> None:
+    assert Row("flight", "figure", unit, ours, theirs).agrees == agrees
+
+
+def test_kept_figures_are_json_and_the_table_is_markdown() -> None:
+    figures = {"a": {"time": (1.23456, "s"), "never": (math.nan, "m")}}
+    kept = json.loads(table.as_json("4.7", "2026-01-02", figures))
+    assert kept == {
+        "version": "4.7",
+        "date": "2026-01-02",
+        "figures": {"a": {"time": [1.2346, "s"], "never": [None, "m"]}},
+    }
+    lines = table.markdown([Row("a", "time", "s", 1.0, 2.0), Row("a", "never", "m", math.nan, math.nan)]).splitlines()
+    assert lines[2:] == ["| **differs** | time | s | 1.00 | 2.00 | -50.0 % |", "|  | never | m | - | - |  |"]
+    assert table.summary([Row("a", "time", "s", 1.0, 2.0)]) == "0 of 1 figures agree (0.0 %)"
+
+
+def test_what_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match="arducopter is no executable"):
+        executable.find(tmp_path, "copter")
+    with pytest.raises(OptionError, match="a rover has no flight 'loiter'; it has velocities, positions"):
+        manoeuvres.chosen("rover", ["loiter"])
+    with pytest.raises(table.KeptFiguresError, match="no figures of a plane are kept"):
+        table.kept("plane")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the executable is a shell script")
+def test_an_executable_is_flown_as_a_vehicle_in_this_process(tmp_path: Path) -> None:
+    program = tmp_path / "ardurover"
+    program.write_text(f"#!/bin/sh\nPYTHONPATH='{ROOT}' exec '{sys.executable}' -m sitl ardurover \"$@\"\n")
+    program.chmod(0o755)
+    found, version = manoeuvres.fly_executable(tmp_path, "rover", ["rtl"], 20, instance=41)
+    rows = table.rows(found, manoeuvres.fly_ours("rover", ["rtl"]))
+    assert len(rows) == 5 and all(abs(row.percent) < 10.0 or row.agrees for row in rows), rows
+    assert re.match(r"\d+\.\d+\.\d+", version)
