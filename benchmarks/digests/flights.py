@@ -310,7 +310,7 @@ def by_dice(frame: str, kind: str, seed: int, seconds: float = 100.0) -> Pilot:
 
 
 def mission(name: str, **options: Any) -> Pilot:
-    """A mission of the library; splines, which vehicles do not take, are flown as waypoints."""
+    """A mission of the library; splines are flown as waypoints, which all versions of the firmware take."""
     row = tree.library()[name]
     items = [Item(**item) for item in tree.mission_items(row["path"])]
     items = [item._replace(command=16) if item.command == 82 else item for item in items]

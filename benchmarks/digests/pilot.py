@@ -31,7 +31,8 @@ ARM, SET_MODE, TAKEOFF, START, REBOOT = 400, 176, 22, 300, 246
 MODES = {
     "copter": {
         "STABILIZE": 0, "ACRO": 1, "ALT_HOLD": 2, "AUTO": 3, "GUIDED": 4, "LOITER": 5, "RTL": 6, "CIRCLE": 7, "LAND": 9,
-        "FLIP": 14, "POSHOLD": 16, "BRAKE": 17, "GUIDED_NOGPS": 20,
+        "DRIFT": 11, "FLIP": 14, "POSHOLD": 16, "BRAKE": 17, "THROW": 18, "GUIDED_NOGPS": 20, "SMART_RTL": 21,
+        "ZIGZAG": 24,
     },
     "rover": {
         "MANUAL": 0, "ACRO": 1, "STEERING": 3, "HOLD": 4, "LOITER": 5, "SIMPLE": 7, "CIRCLE": 9, "AUTO": 10,

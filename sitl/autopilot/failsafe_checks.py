@@ -62,7 +62,7 @@ def is_radio_bad(rc: Radio, rcmap: RcMap, throttle_min: float) -> bool:
 def is_gcs_lost(failsafe: Failsafe, time_us: int, params: Failsafes) -> bool:
     """Whether the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge) was there and is missing."""
     last_us = failsafe.gcs_us
-    return params.GCS_ENABLE > 0.0 and last_us > 0 and time_us - last_us > params.GCS_TIMEOUT * 1e6
+    return params.GCS_ENABLE != 0.0 and last_us > 0 and time_us - last_us > params.GCS_TIMEOUT * 1e6
 
 
 @law

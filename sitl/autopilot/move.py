@@ -11,7 +11,8 @@ from ..core.kernels import law
 from .control.pid import Pid
 from .estimation.move import move_ekf, move_estimate
 from .navigation.state import Leg, Nav
-from .state import Autopilot, Estimate, HomeState
+from .smart_rtl_path import point, set_point
+from .state import Autopilot, Estimate, HomeState, PathState
 
 
 @law
@@ -44,6 +45,13 @@ def move_nav(nav: Nav, d: Displacement) -> None:
     move_leg(nav.next, d)
     nav.pos, nav.vel, nav.acc = moved(d, nav.pos), faster(d, nav.vel), turned(d, nav.acc)
     nav.request, nav.request_next = moved(d, nav.request), moved(d, nav.request_next)
+
+
+@law
+def move_path(path: PathState, d: Displacement) -> None:
+    """The way back of SMART_RTL; its heights stay, as home's does."""
+    for k in range(path.points):
+        set_point(path, k, moved(on_the_ground(d), point(path, k)))
 
 
 @law

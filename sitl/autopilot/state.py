@@ -11,7 +11,7 @@ from typing import Protocol
 from ..core.algebra import euler_of, quat_from_euler, yaw_of
 from ..core.border import RC_INPUTS, Actuators, Sensors
 from ..core.kernels import law
-from ..core.records import Ints, Record, array
+from ..core.records import Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .estimation.state import Ekf
 from .events import Events
@@ -178,6 +178,26 @@ class Modes(Record):
     mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
     follow: FollowState
     nav: Nav
+
+
+PATH_POINTS = 500
+"""Room of SMART_RTL's path; SRTL_POINTS are used."""
+
+
+class PathState(Record):
+    """The path that SMART_RTL goes back along (``smart_rtl_path``)."""
+
+    active: bool  # points are recorded
+    home_saved: bool
+    points: int  # on the path; point 0 is home
+    simplified: int  # so many from the start need no second look
+    good_us: int  # last good position
+    saved_us: int  # last point that found room
+    told_us: int  # when it was last said that there is little room
+    n: Floats = array(PATH_POINTS)  # NED [m]
+    e: Floats = array(PATH_POINTS)
+    d: Floats = array(PATH_POINTS)
+    keep: Ints = array(PATH_POINTS, stored="i8")  # for the simplification
 
 
 class Control(Record):

@@ -58,7 +58,7 @@ class BaseAutopilot:
         if code == events.FOLLOW_OFFSET:
             return [Text(INFO, f"{'Relative' if a else 'N-E-D'} follow offset loaded")]
         if code == events.FAILSAFE:
-            text = self._failsafe.text(int(a), bool(b))
+            text = self._failsafe.text(int(a), int(b))
             return [Text(WARNING, text)] if text else []
         return []
 

@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from ..autopilot.mission.item import MissionItem
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -24,6 +25,7 @@ from .services import all_services
 from .services.commands import Grants
 from .services.log_download import LogStore
 from .services.mission import MissionService
+from .services.outputs import OutputService
 from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
@@ -498,6 +500,10 @@ class Bridge:
         if notes:
             self.get(EventService).notes(notes)
             self.flush()
+
+    def carry_out(self, item: MissionItem) -> None:
+        """Do what a mission asks of servo outputs and relays."""
+        self.get(OutputService).carry_out(item)
 
     def say_pending(self) -> None:
         """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""

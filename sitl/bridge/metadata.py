@@ -49,8 +49,8 @@ def _described(p: Parameter) -> dict[str, Any]:
         "name": p.name,
         "type": _TYPES[p.kind],
         "group": p.name.split("_", 1)[0],
-        "category": "Standard" if p.has_effect else "Without effect",
-        "shortDesc": p.doc if p.has_effect else NO_EFFECT,
+        "category": "Standard" if p.has_effect or p.doc else "Without effect",
+        "shortDesc": p.doc or NO_EFFECT,
         "default": _number(p, p.default),
     }
     if p.unit:

@@ -51,14 +51,14 @@ class Sensors(Record):
     # BATTERY_STATUS
     battery_voltage: Float32  # [V]
     battery_current: Float32  # [A]
+    # two more compasses; zero where there are none
+    mag2: NarrowVec3  # field, body [gauss]
+    mag3: NarrowVec3
     # ESC_TELEMETRY, of a vehicle whose speed controllers tell how fast motors turn
     esc_count: int  # samples so far
     esc_time_us: int  # of the last one
     esc_motors: int
     esc_rpm: Floats = array(ESCS, stored="f4")
-    # two more compasses; zero where there are none
-    mag2: NarrowVec3  # field, body [gauss]
-    mag3: NarrowVec3
     # WHEEL_DISTANCE, of a vehicle with encoders
     wheel_count: int  # samples so far
     wheel_distance: Vec2  # rolled by the left and right driven wheel since power-on, forward positive [m]

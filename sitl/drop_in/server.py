@@ -46,7 +46,8 @@ MODELS = {
 }
 """ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
 JSON = "JSON"
-MAVLINK_PROTOCOLS = (1.0, 2.0)
+HIGH_LATENCY = 43.0
+MAVLINK_PROTOCOLS = (1.0, 2.0, HIGH_LATENCY)
 """Values of SERIALn_PROTOCOL."""
 LOGS = Path("logs")
 LOOK_S = 0.2
@@ -91,6 +92,8 @@ class Session:
         simulation.bridge.listeners.append(self)
         self._statistics = Statistics(simulation, self.storage.keep)
         self._awaited: Link | None = None
+        self._serial: dict[str, Link] = {}
+        """Links of serial ports, by the parameters of their protocols."""
         self._open_ports()
         attach(simulation, LOGS, NumberedLogs)
         self.storage.write()
@@ -125,6 +128,8 @@ class Session:
             if link is not None:
                 if number == 0:
                     link.take_unsigned()
+                self._serial[f"SERIAL{number}_PROTOCOL"] = link
+                link.is_high_latency = self._values[f"SERIAL{number}_PROTOCOL"] == HIGH_LATENCY
                 bridge.add_link(link)
                 self._say(f"MAVLink on SERIAL{number}: {link.name}")
                 if serial_ports.waits(line.devices[number]) and self._awaited is None:
@@ -148,6 +153,8 @@ class Session:
     def parameter_set(self, name: str) -> None:
         """Keep what a client has set."""
         self.storage.keep(name, self._values[name])
+        if name in self._serial:
+            self._serial[name].is_high_latency = self._values[name] == HIGH_LATENCY
         if name == "SIM_SPEEDUP":
             self._follow_speedup()
 

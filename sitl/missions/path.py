@@ -5,7 +5,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import cast
 
+from sitl.autopilot.copter.navigation import spline
+from sitl.autopilot.copter.navigation.state import CopterNav
 from sitl.autopilot.mission import item as commands
 from sitl.autopilot.mission.place import down, point
 from sitl.core.algebra import dot
@@ -14,6 +18,8 @@ from sitl.simulation import Simulation
 
 LEGS = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME, commands.NAV_LOITER_UNLIM)
 """Commands flown on a straight line from the end of the command before."""
+PIECES = 32
+"""Straight pieces as which a curve is looked at."""
 _NOWHERE = Vec3(math.nan, math.nan, math.nan)
 
 
@@ -82,6 +88,11 @@ class PathWatch:
         if item.command in LEGS:
             self._end = self._in_plane(point(ap, item, start))
             self._legs = [*before, (start, self._end)]
+        elif item.command == commands.NAV_SPLINE_WAYPOINT:
+            curve = cast("CopterNav", ap.modes.nav).spline
+            marks = [spline.place(curve, k / PIECES) for k in range(PIECES + 1)]
+            self._end = marks[-1]
+            self._legs = [*before, *pairwise(marks)]
         elif item.command == commands.NAV_TAKEOFF:
             self._end = here.replace(z=down(ap, item))
         elif item.command == commands.NAV_DELAY:

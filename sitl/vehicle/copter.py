@@ -17,6 +17,7 @@ from ..core.algebra import rotate
 from ..core.displacement import Displacement
 from ..core.kernels import inlined, law, unit
 from ..core.memory import record_at
+from ..core.vectors import Vec3
 from ..physics.native.copter import pieces
 from ..physics.native.copter.init import init
 from ..physics.native.copter.prepare import prepare
@@ -119,7 +120,7 @@ def move(fleet: Sequence[Copter], index: int, count: int, orders: int, ranging: 
 
 
 def apply_sim_parameters(v: Copter) -> None:
-    """SIM_ parameters of all kinds, and those of a copter's motors."""
+    """SIM_ parameters of all kinds, those of a copter's motors, and its shove."""
     sim_parameters.apply(v)
     params, rotors = v.autopilot.params, v.physics.rotors
     rotors.telemetry = params.SIM.ESC_TELEM != 0
@@ -127,6 +128,11 @@ def apply_sim_parameters(v: Copter) -> None:
     for k in range(len(rotors.efficiency)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
         rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0
+    sim, shove = params.SIM, v.physics.shove
+    if sim.SHOVE_TIME > 0.0:
+        shove.accel = Vec3(sim.SHOVE_X, sim.SHOVE_Y, sim.SHOVE_Z)
+        shove.until_us = v.time_us + round(sim.SHOVE_TIME * 1000.0)
+        sim.SHOVE_TIME = 0.0
 
 
 def motor_output(v: Copter) -> float:

@@ -45,7 +45,7 @@ def apply(v: Vehicle) -> None:
     sim, physics, wind = v.autopilot.params.SIM, v.physics, v.physics.wind
     wind.speed, wind.direction = sim.WIND_SPD, sim.WIND_DIR
     wind.turbulence, wind.time_constant = sim.WIND_TURB, sim.WIND_TC
-    physics.sensors.gps_off = sim.GPS1_ENABLE == 0
+    physics.sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0
     physics.sensors.gps_jammed = sim.GPS1_JAM != 0
     physics.sensors.acc_fault = axes(sim.ACC1_BIAS)
     physics.sensors.mag2_offset, physics.sensors.mag3_offset = 1e-3 * axes(sim.MAG2.OFS), 1e-3 * axes(sim.MAG3.OFS)

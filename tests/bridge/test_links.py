@@ -48,7 +48,7 @@ def test_tcp_clients_are_separate_and_may_leave(bench: Bench) -> None:
             break
     one.sendall(REQUEST)
     receive(bench)
-    assert names(one.recv(4096)) == ["ATTITUDE", "COMMAND_ACK"]
+    assert names(one.recv(4096)) == ["COMMAND_ACK", "ATTITUDE"]
     two.setblocking(False)
     with pytest.raises(BlockingIOError):
         two.recv(1)
@@ -179,7 +179,7 @@ def test_udp_in_knows_many_peers(bench: Bench) -> None:
         if len(bench.bridge.channels) == 4:
             break
     for c in clients:
-        assert names(c.recv(4096)) == ["ATTITUDE", "COMMAND_ACK"]
+        assert names(c.recv(4096)) == ["COMMAND_ACK", "ATTITUDE"]
         c.close()
     bench.bridge.close()
 

@@ -12,8 +12,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from sitl.autopilot.copter.modes.table import NAMES
 from sitl.autopilot.rover.modes.table import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
+from sitl.bridge.links.inprocess import InProcessLink
 from sitl.core.vectors import Vec3
-from tests.bridge.fakes import HOME, Bench
+from tests.bridge.fakes import HOME, Bench, Client
 
 SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512
 ALL_GROUPS = {
@@ -220,12 +221,52 @@ def test_high_latency_by_request(bench: Bench) -> None:
     estimate, v = bench.vehicle.v.autopilot.estimate, bench.vehicle.v
     estimate.pos, estimate.vel = Vec3(100.0, 0.0, -20.0), Vec3(0.0, 3.0, -1.5)
     v.autopilot.battery.remaining_pct = -1.0
+    v.sensors.temperature = 17.6
     (m,) = bench.telemetry("HIGH_LATENCY2")
     assert (m.latitude, m.longitude, m.altitude) == (pytest.approx(HOME[0] + 8983, abs=2), HOME[1], 604)
-    assert (m.groundspeed, m.climb_rate, m.heading, m.battery, m.temperature_air) == (15, 15, 0, -1, -128)
+    assert (m.groundspeed, m.climb_rate, m.heading, m.battery, m.temperature_air) == (15, 15, 0, -1, 18)
     assert m.failure_flags & 1 == 0
     v.sensors.gps_fix = 1
     assert bench.telemetry("HIGH_LATENCY2")[0].failure_flags & 1 == 1
+
+
+def high_latency_client(bench: Bench) -> Client:
+    """A client on a link that is paid by the byte."""
+    link = InProcessLink()
+    link.is_high_latency = True
+    bench.bridge.add_link(link)
+    return Client(link, system=250)
+
+
+def count(bench: Bench, client: Client, seconds: float) -> int:
+    """How many HIGH_LATENCY2 come in so long; there is no other telemetry."""
+    client.receive()
+    bench.run(seconds)
+    names = [m.get_type() for m in client.receive()]
+    assert not set(names) & {"HEARTBEAT", "TIMESYNC", "SYS_STATUS"}
+    return names.count("HIGH_LATENCY2")
+
+
+def test_a_link_of_high_latency_has_one_message_and_only_when_it_is_on(bench: Bench) -> None:
+    bench.vehicle.locate()
+    client = high_latency_client(bench)
+    switch, interval = 2600, 511
+    assert count(bench, client, 30.0) == 0
+    assert bench.command(switch, 1) == 0
+    assert count(bench, client, 30.0) == 6
+    client.send(mavlink.MAVLink_command_long_message(1, 1, interval, 0, 235, 1e6, 0, 0, 0, 0, 0))
+    client.send(mavlink.MAVLink_request_data_stream_message(1, 1, 0, 10, 1))
+    assert count(bench, client, 30.0) == 30
+    assert bench.command(switch, 0) == 0
+    assert count(bench, client, 30.0) == 0
+    assert "HIGH_LATENCY2" not in {m.get_type() for m in bench.client.receive()}
+    assert bench.command(switch, 1) == 0
+    assert count(bench, client, 10.0) == 10
+
+
+def test_what_is_asked_for_follows_the_answer(bench: Bench) -> None:
+    ask = mavlink.MAVLink_command_long_message(1, 1, 512, 0, 30, 0, 0, 0, 0, 0, 0)
+    assert [m.get_type() for m in bench.ask(ask)] == ["COMMAND_ACK", "ATTITUDE"]
 
 
 def test_modes(rover_bench: Bench) -> None:

@@ -265,3 +265,27 @@ def test_very_short_legs(core: Core, frame: str) -> None:
     d.start_mission(*way(*places))
     d.finish_mission(300.0)
     assert len(d.reached) == len(places)
+
+
+def test_servo_outputs_and_relays(core: Core) -> None:
+    """As ArduPilot 4.7: set at once; to and fro with half of the period each, beginning at once."""
+    d = driver(core, "ardupilot_rover", RELAY1_PIN=1.0)
+    actuators, values = d.simulation.v.actuators, d.simulation.parameters
+    d.start_mission(
+        Item(c.DO_SET_SERVO, None, 0.0, (9.0, 1600.0)), Item(c.DO_SET_RELAY, None, 0.0, (0.0, 1.0)), *way((5.0, 0.0)),
+        Item(c.DO_REPEAT_SERVO, None, 0.0, (10.0, 1900.0, 3.0, 1.0)), Item(c.NAV_DELAY, None, 0.0, (3.0,)),
+        Item(c.DO_REPEAT_RELAY, None, 0.0, (0.0, 2.0, 1.0)), Item(c.NAV_DELAY, None, 0.0, (3.0,)),
+    )  # fmt: skip
+    d.fly(1.0)
+    assert (actuators.pwm[8], values["SIM_PIN_MASK"]) == (1600, 2.0)
+    seen: list[tuple[float, int, float]] = []
+    while d.now < 200.0 and 7 not in d.reached:
+        now = (int(actuators.pwm[9]), float(values["SIM_PIN_MASK"]))
+        if not seen or seen[-1][1:] != now:
+            seen.append((d.now, *now))
+        d.fly(0.05)
+    begun = seen[1][0]
+    steps = [(1900, 2.0), (1500, 2.0)] * 3 + [(1500, 0.0), (1500, 2.0)] * 2
+    assert [row[1:] for row in seen[1:]] == steps
+    assert [row[0] - begun for row in seen[1:]] == pytest.approx([0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5], abs=0.06)
+    assert {3, 5, 7} <= set(d.reached)

@@ -10,8 +10,8 @@ from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.pilots.witness import MIDDLE, Item, Witness
 
-STABILIZE, ACRO, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, CIRCLE, LAND = 0, 1, 2, 3, 4, 5, 6, 7, 9
-SPORT, FLIP, POSHOLD, BRAKE, GUIDED_NOGPS, AUTO_RTL = 13, 14, 16, 17, 20, 27
+STABILIZE, ACRO, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, CIRCLE, LAND, DRIFT = 0, 1, 2, 3, 4, 5, 6, 7, 9, 11
+SPORT, FLIP, POSHOLD, BRAKE, THROW, GUIDED_NOGPS, SMART_RTL, ZIGZAG, AUTO_RTL = 13, 14, 16, 17, 18, 20, 21, 24, 27
 AIRFRAMES = ("erle_copter", "ardupilot_quad")
 
 

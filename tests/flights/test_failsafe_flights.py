@@ -9,7 +9,20 @@ import pytest
 from sitl.autopilot.mission import item as c
 from sitl.missions.pilot import ARM
 from sitl.simulation import Core
-from tests.flights.aviator import AIRFRAMES, ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
+from tests.flights.aviator import (
+    AIRFRAMES,
+    ALT_HOLD,
+    AUTO,
+    BRAKE,
+    GUIDED,
+    LAND,
+    LOITER,
+    RTL,
+    SMART_RTL,
+    STABILIZE,
+    Aviator,
+    Item,
+)
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
 
@@ -19,7 +32,9 @@ def beat(p: Aviator) -> None:
     p.send("HEARTBEAT", type=6, autopilot=8, system_status=4, mavlink_version=3)
 
 
-@pytest.mark.parametrize(("choice", "mode"), [(0, GUIDED), (1, RTL), (2, RTL), (3, RTL), (5, LAND), (7, BRAKE)])
+@pytest.mark.parametrize(
+    ("choice", "mode"), [(0, GUIDED), (1, RTL), (2, RTL), (3, SMART_RTL), (5, LAND), (7, BRAKE), (99, RTL)]
+)
 def test_ground_station_lost(core: Core, choice: int, mode: int) -> None:
     p = Aviator(core, FS_GCS_ENABLE=choice).hover()
     beat(p)

@@ -257,3 +257,54 @@ def test_a_take_off_never_descends(core: Core) -> None:
     p.start_mission(UP, Item(c.NAV_TAKEOFF, None, 3.0), Item(c.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
     p.fly(60.0, lambda: 3 in p.reached)
     assert -p.pos[2] == pytest.approx(10.0, abs=0.5)
+
+
+def test_spline_waypoints(core: Core) -> None:
+    """Against ArduPilot 4.7 with the same items: times from the take-off's end, speeds at the waypoints."""
+    p, _ = fly(
+        core, "ardupilot_quad", UP, Item(c.NAV_WAYPOINT, (40.0, 0.0), 15.0),
+        Item(c.NAV_SPLINE_WAYPOINT, (80.0, 20.0), 20.0),
+        Item(c.NAV_SPLINE_WAYPOINT, (80.0, 60.0), 25.0), Item(c.NAV_WAYPOINT, (40.0, 60.0), 15.0),
+        Item(c.NAV_WAYPOINT, (0.0, 60.0), 15.0), Item(c.NAV_SPLINE_WAYPOINT, (0.0, 20.0), 15.0, (2.0,)),
+        Item(c.NAV_SPLINE_WAYPOINT, (0.0, 0.0), 10.0), DOWN,
+    )  # fmt: skip
+    assert p.reached == [1, 2, 3, 4, 5, 6, 7, 8]
+    up = p.reached_at(1)
+    times = [p.reached_at(seq) - up for seq in range(2, 9)]
+    assert times == pytest.approx([8.95, 15.3, 23.55, 30.75, 37.4, 50.7, 59.95], rel=0.05)
+    rows = p.since(0.0)
+    speeds = [float(np.linalg.norm(rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(seq))), 4:6])) for seq in (2, 3, 4)]
+    assert speeds == pytest.approx([6.98, 9.11, 3.88], rel=0.05)
+    lowest = [
+        float(
+            np.linalg.norm(rows[(rows[:, 0] > p.reached_at(a)) & (rows[:, 0] < p.reached_at(a + 1)), 4:6], axis=1).min()
+        )
+        for a in (2, 3)
+    ]
+    assert lowest == pytest.approx([6.24, 3.14], rel=0.05)
+
+
+def test_a_mission_ends_at_a_spline_waypoint(core: Core) -> None:
+    """It stays there (as ArduPilot does), slow enough for its climb: 25.8 s from 10 m to 60 m, 72 m away."""
+    p, _ = fly(core, "ardupilot_quad", UP, Item(c.NAV_SPLINE_WAYPOINT, (60.0, 40.0), 60.0), seconds=60.0)
+    assert p.reached_at(2) - p.reached_at(1) == pytest.approx(25.76, rel=0.05)
+    p.fly(5.0)
+    assert p.mode == AUTO and p.armed
+    assert p.pos == pytest.approx([60.0, 40.0, -60.0], abs=1.0)
+
+
+def test_loiter_to_altitude(core: Core) -> None:
+    """Up on the way, then straight down, and up and down where it is: times as ArduPilot 4.7 takes them."""
+    p, _ = fly(
+        core, "ardupilot_quad", UP, Item(c.NAV_LOITER_TO_ALT, (30.0, 0.0), 40.0),
+        Item(c.NAV_LOITER_TO_ALT, None, 20.0), Item(c.NAV_LOITER_TO_ALT, (30.0, 30.0), 20.0),
+        Item(c.NAV_LOITER_TO_ALT, None, 5.0), Item(c.NAV_RETURN_TO_LAUNCH),
+    )  # fmt: skip
+    assert p.reached == [1, 2, 3, 4, 5, 6]
+    taken = [p.reached_at(seq) - p.reached_at(seq - 1) for seq in range(2, 6)]
+    assert taken == pytest.approx([17.0, 16.35, 8.25, 12.95], rel=0.05, abs=0.5)
+    rows = p.since(0.0)
+    places = [rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(seq))), 1:4] for seq in range(2, 6)]
+    for place, wanted in zip(places, [(30, 0, -40), (30, 0, -20), (30, 30, -20), (30, 30, -5)], strict=True):
+        assert np.hypot(*(place[:2] - wanted[:2])) < 2.2
+        assert place[2] == pytest.approx(wanted[2], abs=0.5)

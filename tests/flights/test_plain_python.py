@@ -17,12 +17,16 @@ from tests.flights.aviator import (
     AUTO,
     BRAKE,
     CIRCLE,
+    DRIFT,
     GUIDED,
     LAND,
     LOITER,
     POSHOLD,
     RTL,
+    SMART_RTL,
     STABILIZE,
+    THROW,
+    ZIGZAG,
     Aviator,
     Item,
 )
@@ -65,6 +69,27 @@ def attitude(p: Aviator) -> None:
     p.fly(0.3)
 
 
+def zigzag(p: Aviator) -> None:
+    p.sticks(0.5)
+    p.set_mode(ZIGZAG)
+    p.ask(218, 61, 0)
+    p.sticks(3.0, roll=1800)
+    p.ask(218, 61, 2)
+    p.ask(218, 61, 0)
+    p.fly(1.0)
+    assert p.ap.modes.zigzag.stage == 2
+
+
+def thrown(p: Aviator) -> None:
+    p.set_mode(LAND)
+    p.wait_disarmed(60.0)
+    p.set_mode(THROW)
+    p.arm(3.0)
+    p.set_parameter("SIM_SHOVE_Z", -30.0)
+    p.send("PARAM_SET", param_id=b"SIM_SHOVE_TIME", param_value=500.0, param_type=9)
+    assert p.fly(4.0, lambda: p.ap.modes.throw.stage == 4)
+
+
 def in_wind(p: Aviator) -> None:
     p.set_parameter("SIM_WIND_SPD", 6.0)
     p.set_parameter("SIM_WIND_TURB", 1.5)
@@ -78,10 +103,14 @@ PHASES: dict[str, Callable[[Aviator], None]] = {
     "loiter": by_sticks(LOITER),
     "acro": by_sticks(ACRO),
     "poshold": by_sticks(POSHOLD),
+    "drift": by_sticks(DRIFT),
     "circle": then(CIRCLE, 2.0),
     "poshold, braking": then(POSHOLD, 1.0),
+    "zigzag": zigzag,
+    "thrown": thrown,
     "brake": then(BRAKE, 0.5),
     "rtl, on the way": then(RTL, 3.0),
+    "smart_rtl, on the way": then(SMART_RTL, 2.0),
     "land, descending": then(LAND, 2.0),
     "land, touching down": then(LAND, 22.6),
     "guided, velocity": then(GUIDED, 0.2),

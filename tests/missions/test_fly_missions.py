@@ -11,11 +11,12 @@ from sitl import vehicles, worlds
 from sitl.autopilot.mission import item as c
 from sitl.errors import OptionError
 from sitl.missions import library
-from sitl.missions.files import load, straightened
+from sitl.missions.files import for_vehicle, load
 from sitl.missions.fly import MissionRefused, Outcome, fly
 from sitl.missions.library import make
 from sitl.missions.library.draft import Draft
 from sitl.simulation import Simulation
+from sitl.vehicle.kinds import KINDS
 
 
 def flown(draft: Draft, frame: str = "erle_copter", limit_s: float = 300.0, **options: object) -> Outcome:
@@ -111,8 +112,8 @@ def test_a_failsafe_on_the_way_is_told() -> None:
 def test_what_a_vehicle_does_not_fly_is_refused_before_the_flight() -> None:
     with pytest.raises(MissionRefused, match="item 1: a rover does not fly command 22 Takeoff; it flies 16 WP, "):
         flown(copter().land(), "erle_rover")
-    with pytest.raises(MissionRefused, match="item 2: a copter does not fly command 82 SplineWP"):
-        flown(copter().curve((5, 0), z=5.0))
+    with pytest.raises(MissionRefused, match="item 1: a rover does not fly command 82 SplineWP"):
+        flown(rover().curve((5, 0), z=5.0), "erle_rover")
     with pytest.raises(MissionRefused, match=r"item 2: 1\d+ km from home \(47.0, 8.0\); it is within 20 km"):
         flown(copter().to((5, 0), z=5.0), home=(47.0, 8.0, 400.0, 0.0))
     with pytest.raises(MissionRefused, match="no items"):
@@ -129,7 +130,7 @@ def test_a_new_speed_holds_on_a_leg_that_was_planned_ahead() -> None:
 @pytest.mark.parametrize("name", library.entries())
 def test_every_mission_of_the_library_is_completed(name: str) -> None:
     entry = library.find(name)
-    file = straightened(load(entry.path))
+    file = for_vehicle(load(entry.path), KINDS[entry.kind].firmware.commands.taken)
     assert file.home is not None
     assert file.kind in (entry.kind, None)
     simulation = Simulation(entry.frame, home=(*file.home, 0.0), world=entry.world, params=entry.params)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.kernels import inlined, law
-from .. import home
+from .. import home, smart_rtl_path
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, emit
 from ..state import Arming
@@ -12,7 +12,7 @@ from .arming_checks import MANDATORY, arm_checks, check
 from .control.motors import ARMING_DELAY_US
 from .modes import ground, simple
 from .modes.state import Modes
-from .modes.table import has_manual_throttle
+from .modes.table import has_manual_throttle, idles_armed
 from .state import Vehicle
 
 __all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
@@ -41,6 +41,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap.modes.arming_delay = True
     ap.modes.auto_yaw.armed = ap.estimate.yaw
     simple.begin(ap.modes.simple, ap.estimate.yaw)
+    smart_rtl_path.begin(ap.modes.path, ap.estimate.pos, ap.estimate.position_ok, v.time_us, ap.params.SRTL)
     ap.modes.takeoff.user_active = False
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0
@@ -85,7 +86,8 @@ def follow_throttle(arming: Arming, modes: Modes, time_us: int) -> None:
 def disarm_idle(v: Vehicle) -> None:
     """Disarm what was armed on the ground and left alone for DISARM_DELAY; called ten times a second."""
     ap = v.autopilot
-    idle = ap.arming.landed and ap.modes.pilot.throttle_zero and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE
+    stands = ap.arming.landed and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE
+    idle = stands and ap.modes.pilot.throttle_zero and not idles_armed(ap.modes.number)
     if was_idle(ap.arming, idle, v.time_us, ap.params.DISARM_DELAY):
         ground.disarm(v, BY_DELAY)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from .. import aux_functions as shared
 from ..aux_functions import AuxFunction, Holder
-from ..aux_switch import HIGH, LOW, MOTOR_INTERLOCK
+from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
 from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
 from ..mission.notes import INFO, Note, Text
 from . import arming
-from .modes import simple
+from .modes import simple, zigzag
 from .modes.auto import AUTO
 from .modes.set_mode import request
 from .modes.table import NAMES
@@ -52,6 +52,26 @@ def _super_simple(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def _zigzag(holder: Holder, position: int) -> list[Note]:
+    v = holder.v
+    if v.autopilot.modes.number == zigzag.ZIGZAG:
+        if position == MIDDLE:
+            zigzag.give_back(v)
+        else:
+            zigzag.choose(v, zigzag.A if position == LOW else zigzag.B)
+    return []
+
+
+def _sweep(holder: Holder, position: int) -> list[Note]:
+    v = holder.v
+    if v.autopilot.modes.number == zigzag.ZIGZAG:
+        if position == HIGH:
+            zigzag.sweep(v)
+        else:
+            zigzag.suspend(v)
+    return []
+
+
 def _reset_heading(holder: Holder, position: int) -> list[Note]:
     if position != HIGH:
         return []
@@ -68,6 +88,10 @@ FUNCTIONS = shared.by_number(
         AuxFunction(7, _save_waypoint, "high, armed, not in AUTO: adds the place to the mission", "SaveWaypoint"),
         AuxFunction(13, _super_simple, "high: SUPER_SIMPLE; middle: SIMPLE; low: off"),
         AuxFunction(MOTOR_INTERLOCK, _interlock, "low: motors stand; else they may turn", "MotorInterlock"),
+        AuxFunction(61, _zigzag, "in ZIGZAG: low stores or flies to A, high B, middle gives back to the sticks"),
+        AuxFunction(
+            83, _sweep, "in ZIGZAG, with ZIGZ_AUTO_ENABLE: high begins a sweep or goes on with it; else pauses it"
+        ),
         AuxFunction(152, _reset_heading, "high: the heading now is forwards in SIMPLE"),
         shared.arm_or_disarm(153, arming),
         shared.arm_or_disarm(154, arming),

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Failsafes: radio, ground station, battery, estimator. FAILSAFE (which, 1 on or 0 off) tells the shell."""
+"""Failsafes: radio, ground station, battery, estimator. FAILSAFE (which; 0 off, else what follows) tells the shell."""
 
 from __future__ import annotations
 
 from ...core.kernels import law
+from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
+from ..events import FAILSAFE, emit
 from ..failsafe_checks import (
     EKF,
     GCS,
@@ -16,7 +18,6 @@ from ..failsafe_checks import (
     is_radio_bad,
     report,
     report_battery,
-    text,
     watch_monitor,
 )
 from ..modes import (
@@ -26,17 +27,21 @@ from ..modes import (
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
 )
-from ..state import Failsafe
+from ..state import Arming, Failsafe
 from .control import vibration
 from .failsafe_actions import (
+    CONTINUE_LANDING,
     DO_BRAKE,
     DO_LAND,
     DO_RTL,
+    DO_SMART_RTL,
+    DO_SMART_RTL_OR_LAND,
     DO_STOP,
     NOTHING,
     act,
     battery_action,
     gcs_action,
+    is_idle,
     land_with_pause,
     radio_action,
 )
@@ -45,13 +50,36 @@ from .modes.alt_hold import ALT_HOLD
 from .modes.auto import AUTO
 from .modes.guided import GUIDED
 from .modes.land import LAND
-from .modes.table import is_autonomous, requires_position
+from .modes.state import Modes
+from .modes.table import is_autonomous, is_landing, requires_position
+from .parameters.safety import Battery
 from .state import Vehicle
 
-__all__ = ["DO_BRAKE", "DO_LAND", "DO_RTL", "DO_STOP", "NOTHING", "act", "terminate", "text"]
+__all__ = [
+    "DO_BRAKE",
+    "DO_LAND",
+    "DO_RTL",
+    "DO_SMART_RTL",
+    "DO_SMART_RTL_OR_LAND",
+    "DO_STOP",
+    "NOTHING",
+    "act",
+    "terminate",
+    "text",
+]
 
 # FS_OPTIONS bits
 _RADIO_AUTO, _GCS_AUTO, _RADIO_GUIDED, _GCS_PILOT = 1, 2, 4, 16
+
+ACTS, DISARMS, LANDING_GOES_ON, AUTO_GOES_ON, GUIDED_GOES_ON, PILOT_GOES_ON, BATTERY_LANDS = 1, 2, 3, 4, 5, 6, 7
+"""What follows the loss of a link: second number of its FAILSAFE."""
+_ENDINGS = {
+    DISARMS: "Disarming",
+    LANDING_GOES_ON: "Continuing Landing",
+    AUTO_GOES_ON: "Continuing Auto Mode",
+    GUIDED_GOES_ON: "Continuing Guided Mode",
+    PILOT_GOES_ON: "Continuing Pilot Control",
+}
 
 RADIO_FRAMES = 3
 """Bad frames in a row that set the radio failsafe; as many good ones, not needing to be in a row, clear it."""
@@ -59,17 +87,27 @@ EKF_COUNT = 10
 """Tenths of a second of bad estimate that count."""
 
 
+def text(which: int, how: int) -> str | None:
+    """Status text of a FAILSAFE event, None when there is none."""
+    if how == BATTERY_LANDS:
+        return "Radio + Battery Failsafe - Continuing Landing"
+    said = failsafe_checks.text(which, how != 0)
+    return f"{said} - {_ENDINGS[how]}" if said and how in _ENDINGS else said
+
+
 @law
 def watch_radio(v: Vehicle) -> None:
     """After each frame of the receiver."""
     ap = v.autopilot
-    fs, p = ap.modes.failsafe, ap.params
-    enabled = int(p.FS.THR_ENABLE)
-    if not count_radio(fs, enabled > 0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)):
+    modes, p = ap.modes, ap.params
+    fs, enabled, options = modes.failsafe, int(p.FS.THR_ENABLE), int(p.FS.OPTIONS)
+    if not count_radio(fs, enabled != 0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)):
         return
-    report(ap.events, v.time_us, RADIO, fs.radio)
-    if fs.radio and (ap.arming.landed or not goes_on_without_radio(ap.modes.number, int(p.FS.OPTIONS))):
-        act(v, radio_action(enabled), REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
+    if fs.radio:
+        how = follows(modes, ap.arming, without_radio(modes.number, options), options, battery_lands(fs, p.BATT))
+        lose(v, RADIO, how, radio_action(enabled), REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
+    else:
+        report(ap.events, v.time_us, RADIO, False)
 
 
 @law
@@ -88,29 +126,71 @@ def count_radio(fs: Failsafe, bad: bool) -> bool:
 
 
 @law
-def goes_on_without_radio(mode: int, options: int) -> bool:
-    """Whether FS_OPTIONS lets the mode fly on without a radio."""
-    return (mode == AUTO and (options & _RADIO_AUTO) != 0) or (mode == GUIDED and (options & _RADIO_GUIDED) != 0)
+def without_radio(mode: int, options: int) -> int:
+    """What FS_OPTIONS lets fly on without a radio in this mode, else ACTS."""
+    if mode == AUTO and (options & _RADIO_AUTO) != 0:
+        return AUTO_GOES_ON
+    return GUIDED_GOES_ON if mode == GUIDED and (options & _RADIO_GUIDED) != 0 else ACTS
 
 
 @law
-def goes_on_without_gcs(mode: int, options: int) -> bool:
-    """Whether FS_OPTIONS lets the mode fly on without a ground station."""
-    return (mode == AUTO and (options & _GCS_AUTO) != 0) or (not is_autonomous(mode) and (options & _GCS_PILOT) != 0)
+def without_gcs(mode: int, options: int) -> int:
+    """What FS_OPTIONS lets fly on without a ground station in this mode, else ACTS."""
+    if mode == AUTO and (options & _GCS_AUTO) != 0:
+        return AUTO_GOES_ON
+    return PILOT_GOES_ON if not is_autonomous(mode) and (options & _GCS_PILOT) != 0 else ACTS
+
+
+@law
+def battery_lands(fs: Failsafe, params: Battery) -> bool:
+    """Whether the battery is why the vehicle comes down: that must go on."""
+    choice = int(params.FS_CRT_ACT) if fs.battery == 2 else int(params.FS_LOW_ACT)
+    return fs.battery != 0 and battery_action(choice) in (DO_LAND, DO_STOP)
+
+
+@law
+def follows(modes: Modes, arming: Arming, otherwise: int, options: int, for_battery: bool) -> int:
+    """What follows the loss of a link in this state.
+
+    ``otherwise``: when nothing else does; ``for_battery``: a landing is the battery's.
+    """
+    if not arming.armed:
+        return ACTS
+    if is_idle(modes, arming.landed):
+        return DISARMS
+    if is_landing(modes.number, modes):
+        if for_battery:
+            return BATTERY_LANDS
+        if (options & CONTINUE_LANDING) != 0:
+            return LANDING_GOES_ON
+    return otherwise
+
+
+@law
+def lose(v: Vehicle, which: int, how: int, action: int, reason: int, method: int) -> None:
+    """Tell of a link that is lost, and do what follows."""
+    emit(v.autopilot.events, v.time_us, FAILSAFE, float(which), float(how))
+    if how in (ACTS, DISARMS):
+        act(v, action, reason, method)
+    elif how in (LANDING_GOES_ON, BATTERY_LANDS):
+        act(v, DO_LAND, reason, method)
 
 
 @law
 def watch_gcs(v: Vehicle) -> None:
     """Ten times a second: the ground station's heartbeat (``failsafe.gcs_us``, written by the bridge)."""
     ap = v.autopilot
-    fs, p = ap.modes.failsafe, ap.params.FS
+    modes, p = ap.modes, ap.params.FS
+    fs, options = modes.failsafe, int(p.OPTIONS)
     lost = is_gcs_lost(fs, v.time_us, p)
     if lost == fs.gcs:
         return
     fs.gcs = lost
-    report(ap.events, v.time_us, GCS, lost)
-    if lost and (ap.arming.landed or not goes_on_without_gcs(ap.modes.number, int(p.OPTIONS))):
-        act(v, gcs_action(int(p.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
+    if lost:
+        how = follows(modes, ap.arming, without_gcs(modes.number, options), options, False)
+        lose(v, GCS, how, gcs_action(int(p.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
+    else:
+        report(ap.events, v.time_us, GCS, False)
 
 
 @law

@@ -4,21 +4,29 @@
 from __future__ import annotations
 
 from ...core.kernels import law
+from ..events import NO_WAY_BACK, emit
 from ..modes import ACCEPTED
 from .modes import ground, set_mode
 from .modes.brake import BRAKE
 from .modes.land import LAND
 from .modes.rtl import RTL
+from .modes.smart_rtl import SMART_RTL
 from .modes.state import Modes
 from .modes.table import has_manual_throttle
 from .state import Vehicle
 
-# What a failsafe does
+# What a failsafe does; the numbers are those of BATT_FS_LOW_ACT and BATT_FS_CRT_ACT
 NOTHING = 0
 DO_LAND = 1
 DO_RTL = 2
+DO_SMART_RTL = 3  # else RTL, else LAND
+DO_SMART_RTL_OR_LAND = 4
 DO_STOP = 5
 DO_BRAKE = 7
+
+_BATTERY = (NOTHING, DO_LAND, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_STOP, DO_RTL, DO_BRAKE)
+_RADIO = (NOTHING, DO_RTL, DO_RTL, DO_LAND, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_RTL, DO_BRAKE)
+_GCS = (NOTHING, DO_RTL, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_LAND, DO_RTL, DO_BRAKE)
 
 CONTINUE_LANDING = 8
 """FS_OPTIONS: a landing under way goes on."""
@@ -26,40 +34,20 @@ CONTINUE_LANDING = 8
 
 @law
 def radio_action(choice: int) -> int:
-    """What FS_THR_ENABLE and FS_GCS_ENABLE mean; return paths that this firmware lacks become RTL or LAND."""
-    if choice <= 0:
-        return NOTHING
-    if choice == 3 or choice == 5:
-        return DO_LAND
-    if choice == 7:
-        return DO_BRAKE
-    return DO_RTL
+    """What FS_THR_ENABLE means; unknown numbers LAND."""
+    return _RADIO[choice] if 0 <= choice < len(_RADIO) else DO_LAND
 
 
 @law
 def gcs_action(choice: int) -> int:
-    """What FS_GCS_ENABLE means."""
-    if choice <= 0:
-        return NOTHING
-    if choice == 4 or choice == 5:
-        return DO_LAND
-    if choice == 7:
-        return DO_BRAKE
-    return DO_RTL
+    """What FS_GCS_ENABLE means; unknown numbers RTL."""
+    return _GCS[choice] if 0 <= choice < len(_GCS) else DO_RTL
 
 
 @law
 def battery_action(choice: int) -> int:
     """What BATT_FS_LOW_ACT and BATT_FS_CRT_ACT mean."""
-    if choice == 1 or choice == 4:
-        return DO_LAND
-    if choice == 2 or choice == 3 or choice == 6:
-        return DO_RTL
-    if choice == 5:
-        return DO_STOP
-    if choice == 7:
-        return DO_BRAKE
-    return NOTHING
+    return _BATTERY[choice] if 0 <= choice < len(_BATTERY) else NOTHING
 
 
 @law
@@ -87,6 +75,11 @@ def act(v: Vehicle, action: int, reason: int, method: int) -> None:
     mode = ap.modes.number
     if mode == LAND and (int(ap.params.FS.OPTIONS) & CONTINUE_LANDING) != 0:
         return
+    if action in (DO_SMART_RTL, DO_SMART_RTL_OR_LAND):
+        if set_mode.request(v, SMART_RTL, reason) == ACCEPTED:
+            return
+        action = DO_RTL if action == DO_SMART_RTL else DO_LAND
+        emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 0.0)
     if action == DO_RTL:
         if mode != RTL and set_mode.request(v, RTL, reason) != ACCEPTED:
             land_with_pause(v, reason)

@@ -18,7 +18,7 @@ from ..navigation.planner import end
 from .modes import auto, auto_yaw
 from .modes.auto import AUTO
 from .navigation import waypoint
-from .navigation.planner import PLANNER
+from .navigation.planner import PLANNER, Following
 from .navigation.state import CopterNav
 from .state import Autopilot, Vehicle
 
@@ -34,12 +34,14 @@ CLIMB_SPEED, DESCENT_SPEED = 2, 3
 KINDS = {
     commands.NAV_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_WAYPOINT: kinds.WAYPOINT,
+    commands.NAV_SPLINE_WAYPOINT: kinds.WAYPOINT,
     commands.NAV_LOITER_UNLIM: kinds.LOITER_UNLIMITED,
     commands.NAV_LOITER_TURNS: kinds.LOITER_TURNS,
     commands.NAV_LOITER_TIME: kinds.LOITER_TIME,
     commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
     commands.NAV_LAND: kinds.LAND,
     commands.NAV_DELAY: kinds.DELAY,
+    commands.NAV_LOITER_TO_ALT: kinds.LOITER_TO_ALT,
     commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_VTOL_LAND: kinds.LAND,
 }
@@ -57,9 +59,10 @@ OTHERS = (
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.DEVICE_COMMANDS,
+    *commands.OUTPUT_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
-SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME)
+SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NAV_LOITER_TIME)
 
 
 class CopterCommands(Commands[Vehicle]):
@@ -87,7 +90,9 @@ class CopterCommands(Commands[Vehicle]):
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
             auto.choose_heading(ap.modes.auto_yaw, kind, ap.params.WP, ap.control.attitude, ap.estimate)
         here, _ = PLANNER.origin_of_next(ap, time_us)
-        if kind in LEGS:
+        if item.command == commands.NAV_SPLINE_WAYPOINT:
+            PLANNER.begin_spline(ap, time_us, point(ap, item, here))
+        elif kind in (*LEGS, kinds.LOITER_TO_ALT):
             PLANNER.begin(ap, time_us, point(ap, item, here))
         elif kind == kinds.DELAY:
             PLANNER.begin(ap, time_us, here)
@@ -109,7 +114,7 @@ class CopterCommands(Commands[Vehicle]):
             nav.turns = max(item.p1, 0.0)
         return []
 
-    def look_ahead(self, v: Vehicle, item: MissionItem | None) -> None:
+    def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
         """Plan the leg to the following command when the vehicle flies through without a stop.
 
         The current one must be a waypoint without delay, the next one a leg to a place.
@@ -118,9 +123,13 @@ class CopterCommands(Commands[Vehicle]):
         nav = ap.modes.nav
         if nav.command_kind != kinds.WAYPOINT or nav.delay > 0.0:
             return
-        through = item is not None and KINDS[item.command] in LEGS
-        corner = end(nav.current)
-        PLANNER.look_ahead(ap, point(ap, item, corner) if item is not None and through else None)
+        following = _following(ap, item, after)
+        if nav.spline.active:
+            PLANNER.aim_spline(ap, following)
+        elif following.is_spline:
+            PLANNER.look_ahead_spline(ap, following)
+        else:
+            PLANNER.look_ahead(ap, following.place)
 
     def completed(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Some say so."""
@@ -168,6 +177,17 @@ class CopterCommands(Commands[Vehicle]):
             nav.speed_ne = speed
         PLANNER.change_speed(v.autopilot)
         return True
+
+
+def _following(ap: Autopilot, item: MissionItem | None, after: MissionItem | None) -> Following:
+    """What the command under way goes over into without a stop."""
+    if item is None or KINDS[item.command] not in LEGS:
+        return Following()
+    place = point(ap, item, end(ap.modes.nav.current))
+    is_spline = item.command == commands.NAV_SPLINE_WAYPOINT
+    if after is None or KINDS[after.command] not in LEGS or whole_seconds(item) > 0.0:
+        return Following(place, is_spline)
+    return Following(place, is_spline, point(ap, after, place), after.command == commands.NAV_SPLINE_WAYPOINT)
 
 
 def _take_off_to(ap: Autopilot, item: MissionItem) -> float:
@@ -221,5 +241,6 @@ COMMANDS = CopterCommands()
 def _end_path(nav: CopterNav) -> None:
     """Forget the legs: the next one starts where the vehicle would come to rest."""
     clear_legs(nav)
+    nav.spline.active = False
     nav.reached = nav.fresh = False
     nav.active_us = 0

@@ -15,7 +15,7 @@ from ...core.displacement import (
     turned_ne,
 )
 from ...core.kernels import law
-from ..move import add_to_target, move_autopilot
+from ..move import add_to_target, move_autopilot, move_path
 from .control.state import AltitudeState, AttitudeState, PositionState
 from .modes.state import GuidedState, LoiterState, Modes
 from .navigation.state import CopterNav
@@ -83,6 +83,9 @@ def move_modes(m: Modes, d: Displacement) -> None:
     simple.heading = turned_heading(d, simple.heading)
     simple.heading_from_home = turned_heading(d, simple.heading_from_home)
     m.rtl.home = moved_ne(d, m.rtl.home)
+    move_path(m.path, d)
+    m.throw.target_d += d.shift.z
+    m.zigzag.a, m.zigzag.b = moved_ne(d, m.zigzag.a), moved_ne(d, m.zigzag.b)
     m.landing.acc = turned(d, m.landing.acc)
     move_circle(m.nav, d)
 

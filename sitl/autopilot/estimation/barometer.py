@@ -71,6 +71,7 @@ def fuse(ekf: Ekf, estimate: Estimate, params: Ekf3) -> bool:
     _empty(ekf)
     innovation = innovate_position(ekf, 2, age, down - (ekf.pos.z - age * ekf.vel.z), variance)
     estimate.innovation_pos_d = -innovation.value
+    ekf.innovation_pos = with_down(horizontal(ekf.innovation_pos), innovation.value)
     squared = innovation.value * innovation.value
     ratio = gate_ratio(squared, innovation.variance, params.ALT_M_NSE, params.HGT_I_GATE)
     estimate.variance_hgt = math.sqrt(ratio)

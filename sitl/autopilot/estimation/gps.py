@@ -155,7 +155,7 @@ def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
     north = innovate_position(ekf, 0, age, residual.x, variance)
     east = innovate_position(ekf, 1, age, residual.y, variance)
     squares = north.value * north.value + east.value * east.value
-    ekf.innovation_pos = Vec2(north.value, east.value)
+    ekf.innovation_pos = Vec3(north.value, east.value, ekf.innovation_pos.z)
     nominal = math.sqrt(2.0) * params.POSNE_M_NSE
     ratio = gate_ratio(squares, north.variance + east.variance, nominal, params.POS_I_GATE)
     if not ratio >= 1.0:

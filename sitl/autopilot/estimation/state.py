@@ -104,7 +104,7 @@ class Ekf(Record):
     hold_pos: Vec2  # NE position held [m]
     # last innovations (measured minus expected), fused or not, for logs
     innovation_vel: Vec3  # GPS [m/s]
-    innovation_pos: Vec2  # GPS north and east [m]; the barometer's is in ``Estimate``
+    innovation_pos: Vec3  # GPS north and east, barometer down [m]
     innovation_yaw: float  # magnetometer [rad]
     # consistency: normalised innovation squared, sums and counts since the filter started
     nis_sum: Floats = array(4)  # GPS position, GPS velocity, barometer, magnetometer

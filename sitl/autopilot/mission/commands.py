@@ -12,7 +12,7 @@ from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
 from ..state import Vehicle
 from . import item as commands
 from .item import MissionItem
-from .notes import Note
+from .notes import Note, OutputItem
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
@@ -43,8 +43,8 @@ class Commands(ABC, Generic[V]):
         """Make a navigation command the one under way (``navigation.state``: ``command_*``), with the legs it needs."""
 
     @abstractmethod
-    def look_ahead(self, v: V, item: MissionItem | None) -> None:
-        """The navigation command after the one under way, None at the end: plan a leg that is joined without a stop."""
+    def look_ahead(self, v: V, item: MissionItem | None, after: MissionItem | None) -> None:
+        """The two navigation commands after the one under way, None at the end: plan what is joined without a stop."""
 
     def arrived(self, v: V, seq: int, item: MissionItem) -> list[Note]:
         """The command under way has come to its place and waits there (COMMAND_ARRIVED)."""
@@ -69,6 +69,8 @@ class Commands(ABC, Generic[V]):
             nav.condition_distance = item.p1
         elif item.command == commands.DO_SET_HOME:
             set_home(v.autopilot, item)
+        elif item.command in commands.OUTPUT_COMMANDS:
+            return [OutputItem(item)]
         return []
 
     @abstractmethod

@@ -16,6 +16,7 @@ NAV_LOITER_TIME = 19
 NAV_RETURN_TO_LAUNCH = 20
 NAV_LAND = 21
 NAV_TAKEOFF = 22
+NAV_LOITER_TO_ALT = 31
 NAV_SPLINE_WAYPOINT = 82
 NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
@@ -31,6 +32,7 @@ DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
 NAV_SET_YAW_SPEED = 213
 DO_GUIDED_LIMITS = 222
+DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO = 181, 182, 183, 184
 DO_RETURN_PATH_START = 188
 DO_LAND_START = 189
 NAV_VTOL_TAKEOFF = 84
@@ -76,6 +78,7 @@ COMMANDS = {
     NAV_RETURN_TO_LAUNCH: Command("RTL", True, False),
     NAV_LAND: Command("Land", True, True),
     NAV_TAKEOFF: Command("Takeoff", True, True),
+    NAV_LOITER_TO_ALT: Command("LoitAltitude", True, True),
     NAV_SPLINE_WAYPOINT: Command("SplineWP", True, True),
     NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
@@ -95,6 +98,10 @@ COMMANDS = {
     DO_LAND_START: Command("LandStart", False, True),
     NAV_VTOL_TAKEOFF: Command("VTOLTakeoff", True, True),
     NAV_VTOL_LAND: Command("VTOLLand", True, True),
+    DO_SET_RELAY: Command("SetRelay", False, False),
+    DO_REPEAT_RELAY: Command("RepeatRelay", False, False),
+    DO_SET_SERVO: Command("SetServo", False, False),
+    DO_REPEAT_SERVO: Command("RepeatServo", False, False),
     DO_GRIPPER: Command("Gripper", False, False),
     DO_SPRAYER: Command("Sprayer", False, False),
     JUMP_TAG: Command("JumpTag", False, False),
@@ -129,6 +136,7 @@ CAMERA_COMMANDS = (
 
 DEVICE_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
 """Likewise: no vehicle here has a gripper, a sprayer or a winch."""
+OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""
 

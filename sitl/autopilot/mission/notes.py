@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .item import MissionItem
+
 INFO = 6
 """MAV_SEVERITY"""
 CRITICAL = 2
@@ -34,4 +36,11 @@ class CurrentChanged:
     seq: int
 
 
-Note = Text | ItemReached | CurrentChanged
+@dataclass(frozen=True, slots=True)
+class OutputItem:
+    """A do-command about servo outputs or relays, to be carried out now."""
+
+    item: MissionItem
+
+
+Note = Text | ItemReached | CurrentChanged | OutputItem

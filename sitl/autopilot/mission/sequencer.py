@@ -283,8 +283,10 @@ class Sequencer:
     def _look_ahead(self, v: Vehicle) -> None:
         """Plan the leg after the current one."""
         nav = v.autopilot.modes.nav
-        seq = jumps.next_nav(self.mission, nav.command_seq + 1, jumps.runs(nav), JUMPS)
-        self.commands.look_ahead(v, self.mission.get(seq))
+        counts = jumps.runs(nav)
+        seq = jumps.next_nav(self.mission, nav.command_seq + 1, counts, JUMPS)
+        after = jumps.next_nav(self.mission, seq + 1, counts, JUMPS) if seq != 0 else 0
+        self.commands.look_ahead(v, self.mission.get(seq), self.mission.get(after))
 
     def _run_do(self, v: Vehicle, notes: list[Note]) -> None:
         """Run do-commands up to the next navigation command or a condition."""

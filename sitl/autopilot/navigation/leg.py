@@ -114,6 +114,27 @@ def pulse_duration(length: float, limits: Limits) -> float:
     )
 
 
+def speed_within(length: float, limits: Limits) -> float:
+    """Greatest speed [m/s], at most the limit, that can be reached from rest (or given up) within ``length`` [m]."""
+    pulse = pulse_duration(max(length, SHORTEST), limits)
+    jerk = pulse_acceleration(pulse, limits) / pulse
+    acceleration = limits.acceleration
+
+    def way(speed: float) -> float:
+        full = acceleration * acceleration / jerk
+        return (
+            0.5 * speed * (speed / acceleration + acceleration / jerk)
+            if speed > full
+            else speed * math.sqrt(speed / jerk)
+        )
+
+    low, high = 0.0, limits.speed
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if way(middle) < length else (low, middle)
+    return low
+
+
 def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: float = 0.0) -> Profile:
     """Profile over ``length`` [m] from speed ``v0`` and acceleration ``a0`` to speed ``v1``.
 

@@ -127,19 +127,25 @@ class Planner(ABC, Generic[A]):
 
     def _replan(self, ap: A, leg: Leg) -> None:
         target, fast, started = end(leg), leg.fast, leg.started
-        now = evaluate(leg, leg.elapsed)
+        now, last = evaluate(leg, leg.elapsed), leg.v[leg.segments - 1]
         left = leg.length - now.pos
-        if not started:
+        if not started and now.vel == 0.0 and last == 0.0:
             self.plan_leg(ap, leg, leg.origin, target)
         elif left > SHORTEST and leg.elapsed < leg.turn_out:
-            wanted = bounded(self.limits(ap, leg.unit))
-            try:
-                profile = plan(left, wanted, now.vel, now.acc)
-            except LegError:
-                return  # limits that this motion cannot be brought within: it goes on as planned
-            write(leg, profile, leg.origin + leg.unit * now.pos, leg.unit, left)
-            leg.top_speed = wanted.speed
+            self.go_on_to(ap, leg, last)
         leg.fast, leg.started = fast, started
+
+    def go_on_to(self, ap: A, leg: Leg, last: float) -> None:
+        """Plan the rest of a leg under way anew, to end with a speed [m/s]."""
+        now, started = evaluate(leg, leg.elapsed), leg.started
+        left = leg.length - now.pos
+        wanted = bounded(self.limits(ap, leg.unit))
+        try:
+            profile = plan(left, wanted, now.vel, now.acc, min(last, wanted.speed))
+        except LegError:
+            return  # limits that this motion cannot be brought within: it goes on as planned
+        write(leg, profile, leg.origin + leg.unit * now.pos, leg.unit, left)
+        leg.started, leg.top_speed = started, wanted.speed
 
     def serve(self, ap: A, time_us: int) -> None:
         """Give the legs that the core asked for (``path.request_leg``, ``request_legs``), if any, and start them."""

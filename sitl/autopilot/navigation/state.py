@@ -24,6 +24,7 @@ DELAY = 8  # stay where it is for delay
 GUIDED = 9  # rover: set-points drive, until target (when has_place) or a limit is reached
 YAW_SPEED = 10  # rover: turn to a heading at a speed
 PASSED_OVER = 11  # complete at once
+LOITER_TO_ALT = 12  # copter: fly the leg to target, then climb or sink to its height
 
 # Conditions that hold back the do-commands that follow them (``condition_kind``)
 CONDITION_NONE = 0

@@ -25,7 +25,11 @@ def page(firmware: str, table: Table) -> str:
             lines += ["", f"## {prefix}", "", "| name | default | range | unit | meaning |", "|---|---|---|---|---|"]
         default = format_value(p, stored(p, p.default))
         lines.append(f"| {p.name} | {default} | {p.low:g} .. {p.high:g} | {p.unit} | {p.doc} |")
-    others = [p for p in table if not p.has_effect]
+    read = [p for p in table if p.doc and not p.has_effect]
+    if read:
+        lines += ["", "## Outputs", "", "| name | default | type | meaning |", "|---|---|---|---|"]
+        lines += [f"| {p.name} | {format_value(p, stored(p, p.default))} | {p.kind} | {p.doc} |" for p in read]
+    others = [p for p in table if not p.has_effect and not p.doc]
     if others:
         lines += [
             "", "## Without effect", "",

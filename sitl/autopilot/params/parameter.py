@@ -52,7 +52,7 @@ class Parameter(NamedTuple):
     path: str = ""
     """Where it lies in the record of parameters: "ATC.RAT_RLL.P", "RC[0].MIN"."""
     has_effect: bool = True
-    """Whether anything reads it; the others are not in the record."""
+    """Whether it is in the record; of the others those with a ``doc`` are read by Python."""
     shown_by: str = ""
     """The parameter that must not be 0 for this one to be in the list, or "NAME=VALUE"; "": it always is."""
 

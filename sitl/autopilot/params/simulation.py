@@ -39,6 +39,7 @@ class Simulated(ParameterGroup):
     ACC1_BIAS: Axes = group("What the accelerometer shows too much [m/s/s]")
     BARO_COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
     BATT_VOLTAGE: float = param(12.6, 0, 1000, "V", "Voltage of the full battery; 12.6: that of the airframe")
+    GPS1_TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver", INT8)
     GPS1_JAM: float = param(0, 0, 1, "", "1 jams the GPS receiver", INT8)
     MAG2: SecondCompass
     MAG3: SecondCompass

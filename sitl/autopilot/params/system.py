@@ -98,6 +98,13 @@ class Mission(ParameterGroup):
     RESTART: float = param(0, 0, 1, "", "On entering AUTO: 0 resume the mission, 1 start again", INT8)
 
 
+class SmartRtl(ParameterGroup):
+    """SRTL_: SMART_RTL's path."""
+
+    ACCURACY: float = param(2.0, 0.0, 10.0, "m", "Least distance of two points on the path")
+    POINTS: float = param(300, 0, 500, "", "Most points on the path; 0: no path is kept", INT16)
+
+
 class Statistics(ParameterGroup):
     """STAT_: kept by the drop-in executables; the core does not read these."""
 

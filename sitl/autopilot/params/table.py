@@ -24,12 +24,15 @@ class Table:
     Args:
         record: those that have an effect.
         names: file of all parameters of a real ArduPilot, in the order of its list; None: there are no others.
+        read_by_shell: those of them that Python reads, and what they do.
 
     Raises:
         ValueError: a name is there twice.
     """
 
-    def __init__(self, record: type[Parameters], names: Path | None = None) -> None:
+    def __init__(
+        self, record: type[Parameters], names: Path | None = None, read_by_shell: Mapping[str, str] | None = None
+    ) -> None:
         self.record = record
         self.with_effect = tuple(rows(record))
         """In the order of the record."""
@@ -37,7 +40,7 @@ class Table:
         if len(ours) != len(self.with_effect):
             found = [p.name for p in self.with_effect]
             raise ValueError(f"parameters defined twice: {sorted({n for n in found if found.count(n) > 1})}")
-        theirs = {} if names is None else {p.name: p for p in _read(names)}
+        theirs = {} if names is None else {p.name: p for p in _read(names, read_by_shell or {})}
         self._by_name = {
             name: ours[name]._replace(shown_by=p.shown_by) if name in ours else p for name, p in theirs.items()
         }
@@ -135,10 +138,11 @@ class Values:
         return self.table.listed(self)
 
 
-def _read(names: Path) -> Iterator[Parameter]:
-    """Parameters without effect, of a file of ``benchmarks.ardupilot_parameters``."""
+def _read(names: Path, read_by_shell: Mapping[str, str]) -> Iterator[Parameter]:
+    """Parameters that are not in the record, of a file of ``benchmarks.ardupilot_parameters``."""
     with names.open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
+            name, doc = row["name"], read_by_shell.get(row["name"], "")
             yield Parameter(
-                row["name"], float(row["default"]), kind=row["type"], has_effect=False, shown_by=row["shown_by"]
+                name, float(row["default"]), doc=doc, kind=row["type"], has_effect=False, shown_by=row["shown_by"]
             )

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
+from .. import smart_rtl_path
 from ..arming_checks import BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, DISARMED, Events, emit, emit_and_return
 from ..mode_switch import rudder_command
 from ..state import Arming
-from . import smart_rtl_path
 from .arming_checks import check, method_checks
 from .control.motors import is_moving
 from .modes.simple import note_heading
@@ -36,7 +37,8 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap.arming.auto_armed = True
     ap.arming.landed = False
     ap.arming.crash_ticks = 0
-    smart_rtl_path.begin(ap.modes.path, ap.estimate, v.time_us, ap.params.SRTL)
+    place = with_down(horizontal(ap.estimate.pos), 0.0)
+    smart_rtl_path.begin(ap.modes.path, place, ap.estimate.position_ok, v.time_us, ap.params.SRTL)
     note_heading(ap.modes.simple, ap.estimate.yaw)
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0

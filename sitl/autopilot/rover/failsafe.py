@@ -53,9 +53,9 @@ _TEXTS = {
 }
 
 
-def text(which: int, on: bool) -> str | None:
+def text(which: int, on: int) -> str | None:
     """Status text of a FAILSAFE event, None when there is none."""
-    return _TEXTS.get((which, on)) or failsafe_checks.text(which, on)
+    return _TEXTS.get((which, on != 0)) or failsafe_checks.text(which, on != 0)
 
 
 @law

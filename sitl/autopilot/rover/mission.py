@@ -48,6 +48,7 @@ OTHERS = (
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.DEVICE_COMMANDS,
+    *commands.OUTPUT_COMMANDS,
 )
 
 
@@ -94,7 +95,7 @@ class RoverCommands(Commands[Vehicle]):
             return [Text(INFO, f"Delaying {int(nav.delay)} sec")]
         return []
 
-    def look_ahead(self, v: Vehicle, item: MissionItem | None) -> None:
+    def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
         """Plan the leg to the following place when the current command is a waypoint without delay."""
         ap = v.autopilot
         nav = ap.modes.nav

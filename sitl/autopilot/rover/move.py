@@ -12,10 +12,9 @@ from ...core.displacement import (
     turned_ne,
 )
 from ...core.kernels import law
-from ...core.vectors import Vec2
-from ..move import add_to_target, move_autopilot
+from ..move import add_to_target, move_autopilot, move_path
 from .control.state import PositionState, SpeedState
-from .modes.state import CircleState, GuidedState, LoiterState, Modes, PathState
+from .modes.state import CircleState, GuidedState, LoiterState, Modes
 from .navigation.state import RoverNav
 from .state import Autopilot
 
@@ -57,14 +56,6 @@ def move_loiter(state: LoiterState, d: Displacement) -> None:
 def move_circle(c: CircleState, d: Displacement) -> None:
     """CIRCLE's."""
     c.centre, c.target, c.angle = moved_ne(d, c.centre), moved_ne(d, c.target), turned_heading(d, c.angle)
-
-
-@law
-def move_path(path: PathState, d: Displacement) -> None:
-    """The way back of SMART_RTL."""
-    for k in range(path.points):
-        to = moved_ne(d, Vec2(float(path.n[k]), float(path.e[k])))
-        path.n[k], path.e[k] = to.x, to.y
 
 
 @law

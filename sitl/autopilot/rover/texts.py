@@ -3,19 +3,18 @@
 
 from __future__ import annotations
 
-from .. import events
+from .. import events, smart_rtl_path
 from ..arming_checks import BY_MAVLINK
 from ..arming_checks import texts as arming_texts
 from ..failsafe_checks import EKF
 from ..modes import NO_MISSION
-from . import failsafe, smart_rtl_path
+from . import failsafe
 from .modes import circle
 from .modes.set_mode import refusal_texts
 
 EMERGENCY, CRITICAL, WARNING, NOTICE, INFO = 0, 2, 4, 5, 6
 """MAV_SEVERITY"""
 
-_PATH_LOST = {smart_rtl_path.BAD_POSITION: "bad position", smart_rtl_path.FULL: "buffer full"}
 _CIRCLE = {
     circle.SPEED_LIMITED: "Circle: max speed is {:4.1f}",
     circle.RADIUS_ENLARGED: "Circle: radius increased to TURN_RADIUS ({:4.1f})",
@@ -26,6 +25,7 @@ _PLAIN = {
     events.DISARMED: (INFO, "Throttle disarmed"),
     events.GUIDED_TIMEOUT: (WARNING, "target not received last 3secs, stopping"),
     events.DESTINATION_REACHED: (INFO, "Reached destination"),
+    events.PATH_LOW: (INFO, smart_rtl_path.LOW_TEXT),
     events.CRASH_HOLD: (EMERGENCY, "Crash: Going to HOLD"),
 }
 
@@ -44,7 +44,7 @@ def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
     if code == events.FAILSAFE:
         return _failsafe(int(a), bool(b))
     if code == events.PATH_LOST:
-        return [(WARNING, f"SmartRTL deactivated: {_PATH_LOST[int(a)]}")]
+        return [(WARNING, smart_rtl_path.lost_text(int(a)))]
     if code == events.CIRCLE_ADAPTED:
         return [(WARNING, _CIRCLE[int(a)].format(b))]
     return []

@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot import events
+from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
-from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table
+from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table, throw, zigzag
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission.notes import Text
@@ -23,6 +23,7 @@ LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SP
 _BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
+_INSTEAD = {failsafe.DO_RTL: "Trying RTL Mode", failsafe.DO_LAND: "Using Land Mode"}
 
 
 class CopterAutopilot(BaseAutopilot):
@@ -49,6 +50,14 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(CRITICAL, f"Takeoff blocked: {_BLOCKED[int(a)]}")]
         if code == events.SIMPLE_CHANGED:
             return [Text(INFO, _SIMPLE[int(a)])]
+        if code == events.PATH_LOST:
+            return [Text(WARNING, smart_rtl_path.lost_text(int(a)))]
+        if code == events.NO_WAY_BACK:
+            return [Text(WARNING, f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
+        if code == events.THROW_STAGE:
+            return [Text(INFO, throw.TEXTS[int(a)])]
+        if code == events.ZIGZAG_DID:
+            return [Text(INFO, zigzag.text(int(a), int(b), int(self._v.autopilot.params.ZIGZ.LINE_NUM)))]
         return super().texts_of(code, a, b)
 
     def start_mission(self) -> bool:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...autopilot import events
+from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
@@ -48,6 +48,7 @@ PROFILE = Profile(
         events.ARMED: (INFO, "Arming motors"),
         events.DISARMED: (INFO, "Disarming motors"),
         events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
+        events.PATH_LOW: (INFO, smart_rtl_path.LOW_TEXT),
         events.THRUST_LOST: (EMERGENCY, "Potential Thrust Loss ({a:.0f})"),
         events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
     },

@@ -8,6 +8,7 @@ import math
 from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
+from ...autopilot.copter.modes.smart_rtl import SMART_RTL
 from ...core.geodesy import add_offset
 from ...core.kernels import law
 from ...core.records import Floats
@@ -25,18 +26,21 @@ class NavControllerOutput(Message, name="NAV_CONTROLLER_OUTPUT"):
     wp_dist: int
 
 
+_FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
+
+
 @law
 def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m]."""
     modes, control, pos = v.autopilot.modes, v.autopilot.control, v.autopilot.estimate.pos
     euler = control.attitude.target_euler
-    if modes.number == AUTO:
+    if modes.number == AUTO or modes.number == SMART_RTL:
         to = modes.nav.target
     elif modes.number == GUIDED:
         to = modes.guided.pos
     else:
         to = v.autopilot.home.pos
-    if modes.number == AUTO or modes.number == GUIDED or modes.number == RTL:
+    if modes.number in _FLY_TO_A_PLACE:
         m.target_bearing = int16(math.atan2(to.y - pos.y, to.x - pos.x) * DEG)
         m.wp_dist = uint16(math.hypot(to.x - pos.x, to.y - pos.y))
     m.nav_roll = euler.roll * DEG

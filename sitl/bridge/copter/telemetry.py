@@ -131,45 +131,6 @@ def extended_sys_state(m: ExtendedSysState, v: Copter) -> bool:
     return True
 
 
-class Wind(Message, name="WIND"):
-    direction: float
-    speed: float
-    speed_z: float
-
-
-@law
-def wind(m: Wind, v: Copter) -> bool:
-    """WIND: from -180 deg with 0 m/s: the estimator knows no wind, as ArduCopter's without a model of the drag."""
-    m.direction = -180.0
-    m.speed = 0.0
-    m.speed_z = 0.0
-    return True
-
-
-THROTTLE_UNIT = 1000.0
-"""The vertical loop's output is throttle; it is sent in thousandths."""
-
-
-@law
-def pid_tuning(m: PidTuning, v: Copter, port: Port) -> bool:
-    """PID_TUNING: one each for the loops of roll, pitch, yaw rate [rad/s] and vertical acceleration (down, [m/s^2], its
-    parts in thousandths of throttle) with bits 1, 2, 4, 8 of GCS_PID_MASK
-    """
-    params, control = v.autopilot.params, v.autopilot.control
-    loop = next_loop(port, 4, params.GCS_PID_MASK)
-    rates, rate, atc = v.autopilot.estimate.rates, control.rate, params.ATC
-    if loop == 0:
-        fill_tuning(m, ROLL, rate.roll, rates.x, pid_gains(atc.RAT_RLL), 1.0)
-    elif loop == 1:
-        fill_tuning(m, PITCH, rate.pitch, rates.y, pid_gains(atc.RAT_PIT), 1.0)
-    elif loop == 2:
-        fill_tuning(m, YAW_LOOP, rate.yaw, rates.z, pid_gains(atc.RAT_YAW), 1.0)
-    elif loop == 3:
-        gains = altitude_gains(params.PSC, 0.0).acc
-        fill_tuning(m, VERTICAL, control.pos_d.accel, v.autopilot.estimate.acc_ned.z, gains, THROTTLE_UNIT)
-    return loop >= 0
-
-
 class EscTelemetry1To4(Message, name="ESC_TELEMETRY_1_TO_4"):
     temperature: Ints
     voltage: Ints
@@ -235,7 +196,46 @@ def rpm(m: Rpm, v: Copter) -> bool:
     return v.autopilot.params.RPM1_TYPE == FROM_ESCS and motors > 0
 
 
+class Wind(Message, name="WIND"):
+    direction: float
+    speed: float
+    speed_z: float
+
+
+@law
+def wind(m: Wind, v: Copter) -> bool:
+    """WIND: from -180 deg with 0 m/s: the estimator knows no wind, as ArduCopter's without a model of the drag."""
+    m.direction = -180.0
+    m.speed = 0.0
+    m.speed_z = 0.0
+    return True
+
+
+THROTTLE_UNIT = 1000.0
+"""The vertical loop's output is throttle; it is sent in thousandths."""
+
+
+@law
+def pid_tuning(m: PidTuning, v: Copter, port: Port) -> bool:
+    """PID_TUNING: one each for the loops of roll, pitch, yaw rate [rad/s] and vertical acceleration (down, [m/s^2], its
+    parts in thousandths of throttle) with bits 1, 2, 4, 8 of GCS_PID_MASK
+    """
+    params, control = v.autopilot.params, v.autopilot.control
+    loop = next_loop(port, 4, params.GCS_PID_MASK)
+    rates, rate, atc = v.autopilot.estimate.rates, control.rate, params.ATC
+    if loop == 0:
+        fill_tuning(m, ROLL, rate.roll, rates.x, pid_gains(atc.RAT_RLL), 1.0)
+    elif loop == 1:
+        fill_tuning(m, PITCH, rate.pitch, rates.y, pid_gains(atc.RAT_PIT), 1.0)
+    elif loop == 2:
+        fill_tuning(m, YAW_LOOP, rate.yaw, rates.z, pid_gains(atc.RAT_YAW), 1.0)
+    elif loop == 3:
+        gains = altitude_gains(params.PSC, 0.0).acc
+        fill_tuning(m, VERTICAL, control.pos_d.accel, v.autopilot.estimate.acc_ned.z, gains, THROTTLE_UNIT)
+    return loop >= 0
+
+
 MESSAGES = (
-    heartbeat, sys_status, mission_current, rc_channels, vfr_hud, extended_sys_state, wind, pid_tuning,
-    esc_telemetry_1_to_4, esc_telemetry_5_to_8, rpm, *targets.MESSAGES,
+    heartbeat, sys_status, mission_current, rc_channels, vfr_hud, extended_sys_state, esc_telemetry_1_to_4,
+    esc_telemetry_5_to_8, rpm, wind, pid_tuning, *targets.MESSAGES,
 )  # fmt: skip

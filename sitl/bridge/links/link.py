@@ -26,12 +26,12 @@ class Peer:
     """Whether frames of several times may be queued as one piece of bytes (``sitl.bridge.wire.spool``)."""
     stamps = False
     """Whether each of them then stands behind its time."""
-    is_log = False
-    """Whether it is a log, which gets what other clients are answered, too."""
     is_signed = True
     """Whether frames to and from it are signed once the vehicle has a key (``sitl.bridge.signing``)."""
     takes_unsigned = False
     """Whether its frames are heard without signature then, too."""
+    is_log = False
+    """Whether it is a log, which gets what other clients are answered, too."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -89,6 +89,8 @@ class Link:
     def __init__(self, name: str) -> None:
         self.name = name
         self.peers: list[Peer] = []
+        self.is_high_latency = False
+        """Of clients that come from now on: HIGH_LATENCY2 is all their telemetry (services/high_latency.py)."""
         self._received = 0
         self._takes_unsigned = False
         self.refusals: list[str] = []

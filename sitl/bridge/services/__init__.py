@@ -4,10 +4,12 @@
 from .commands import CommandService
 from .config_error import ConfigErrorService
 from .ftp import FtpService
+from .high_latency import HighLatencyService
 from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
+from .outputs import OutputService
 from .parameters import ParameterService
 from .service import Service
 from .setpoints import SetpointService
@@ -19,6 +21,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,
     HeartbeatService,
     StreamService,
+    HighLatencyService,
     CommandService,
     ParameterService,
     MissionService,
@@ -31,6 +34,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     ConfigErrorService,
     FtpService,
     LogDownloadService,
+    OutputService,
     SigningService,
 )
 """In the order in which they act when several are due at the same time."""

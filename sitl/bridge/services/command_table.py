@@ -15,7 +15,9 @@ from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
+from .high_latency import HighLatencyService
 from .home import HomeService
+from .outputs import OutputService
 from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
 from .statustext import StatusTextService
 from .streams import StreamService
@@ -43,6 +45,12 @@ def get_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
 def request_message(bridge: Bridge, channel: Channel, command: Command) -> int:
     """512: sends message p1 once; FAILED when there is none."""
     return int(bridge.get(StreamService).request_message(channel, command))
+
+
+def control_high_latency(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """2600: p1 1 sends HIGH_LATENCY2 on links of high latency, 0 does not."""
+    bridge.get(HighLatencyService).switch(command.p1 != 0.0)
+    return ACCEPTED
 
 
 def get_home(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -189,12 +197,32 @@ def set_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
     """183: p1 output (those of motors are refused), p2 pulse [us]."""
     if command.p1 != int(command.p1) or not 0.0 <= command.p2 <= 3000.0:
         return DENIED
-    return ACCEPTED if bridge.autopilot.set_servo(int(command.p1), int(command.p2)) else FAILED
+    return ACCEPTED if bridge.get(OutputService).set_servo(int(command.p1), int(command.p2)) else FAILED
+
+
+def repeat_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """184: p1 output, p2 pulse [us], by turns with SERVOn_TRIM, p3 times (below 0 for ever), each p4 [s]."""
+    if not 0.0 <= command.p2 <= 3000.0 or not abs(command.p3) <= MANY:
+        return DENIED
+    outputs, number = bridge.get(OutputService), int(command.p1)
+    return ACCEPTED if outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4) else FAILED
 
 
 def set_relay(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """181: no relay is fitted."""
-    return FAILED
+    """181: p1 relay, from 0, p2 0 off, 1 on, others the other way; FAILED without RELAYn_FUNCTION 1."""
+    return ACCEPTED if bridge.get(OutputService).set_relay(int(command.p1), command.p2) else FAILED
+
+
+def repeat_relay(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """182: p1 relay, from 0, the other way and back p2 times (below 0 for ever), each p3 [s]."""
+    if not abs(command.p2) <= MANY:
+        return DENIED
+    done = bridge.get(OutputService).repeat_relay(int(command.p1), int(command.p2), command.p3)
+    return ACCEPTED if done else FAILED
+
+
+MANY = 32767.0
+"""Times that something can be repeated."""
 
 
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -278,12 +306,15 @@ COMMANDS: dict[int, Entry] = {
     510: Entry(get_interval, required=(1,)),
     511: Entry(set_interval, required=(1, 2)),
     512: Entry(request_message, required=(1,)),
+    2600: Entry(control_high_latency, required=(1,)),
     520: Entry(request_version, required=(1,)),
     20: Entry(return_to_launch),
     176: Entry(do_set_mode, required=(1, 2)),
     179: Entry(set_home, required=(5, 6, 7), place=True, long_frame=0),
     181: Entry(set_relay, required=(1, 2)),
+    182: Entry(repeat_relay, required=(1, 2, 3)),
     183: Entry(set_servo, required=(1, 2)),
+    184: Entry(repeat_servo, required=(1, 2, 3, 4)),
     192: Entry(reposition, required=(5, 6, 7), place=True, int_only=True),
     218: Entry(aux_function, required=(1, 2)),
     224: Entry(set_mission_current, required=(1,)),

@@ -129,7 +129,7 @@ class ParameterService(Service):
         if range_text is not None and value != self._values[name]:
             used = parameter.used(stored(parameter, value))
             self.bridge.get(StatusTextService).say(INFO, f"{range_text}: {used:g} is used")
-        if not (parameter.has_effect or name in self._values.kept):
+        if not (parameter.has_effect or parameter.doc or name in self._values.kept):
             self._tell(name)
         self._values[name] = value
         self.bridge.broadcast(VALUE, self._one(name))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Text
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -149,6 +149,8 @@ class EventService(Service):
                 self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
                 for listener in self.bridge.listeners:
                     listener.reached(note.seq)
+            elif isinstance(note, OutputItem):
+                self.bridge.carry_out(note.item)
             elif isinstance(note, CurrentChanged):
                 self.bridge.send_to_all(MISSION_CURRENT)
 

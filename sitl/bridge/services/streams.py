@@ -16,6 +16,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..wire.streams import interval_of, set_interval
 from .command import Command
+from .high_latency import HIGH_LATENCY2, HighLatencyService
 from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
 
@@ -64,6 +65,8 @@ class StreamService(Service):
         return {"REQUEST_DATA_STREAM": self._request_data_stream}
 
     def channel_added(self, channel: Channel) -> None:
+        if self.bridge.get(HighLatencyService).has(channel):
+            return
         self._set(channel, HEARTBEAT, HEARTBEAT_US)
         self._set(channel, TIMESYNC, TIMESYNC_US)
         for group in self._groups:
@@ -99,8 +102,11 @@ class StreamService(Service):
             self._set(channel, message(name).id, 1_000_000 // rate_hz if rate_hz > 0 else 0)
 
     def _set(self, channel: Channel, number: int, interval_us: int) -> None:
-        bridge = self.bridge
-        if number in bridge.telemetry:
+        bridge, high_latency = self.bridge, self.bridge.get(HighLatencyService)
+        if high_latency.has(channel):
+            if number == HIGH_LATENCY2:
+                high_latency.set_interval(channel, interval_us)
+        elif number in bridge.telemetry:
             set_interval(channel.port, number, interval_us, bridge.now_us, number in bridge.by_shell)
 
     def _loop_rate(self) -> int:

@@ -9,6 +9,7 @@ from hashlib import sha1
 from typing import TYPE_CHECKING
 
 from ... import __version__
+from ...autopilot import relays
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
@@ -57,7 +58,7 @@ def banner(profile: Profile) -> str:
 
 
 def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
-    """HIGH_LATENCY2: the state in 42 bytes; the target is home; there is no air temperature (-128)."""
+    """HIGH_LATENCY2: the state in 42 bytes; the target is home; the air's temperature is the barometer's [degC]."""
     v = vehicle.v
     ap = v.autopilot
     velocity, here = ap.estimate.vel, global_position(v)
@@ -76,7 +77,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
         heading=heading_cdeg(ap.estimate.yaw) // 200,
         groundspeed=min(uint16(5.0 * math.hypot(velocity.x, velocity.y)), 255),
         climb_rate=min(max(int16(-10.0 * velocity.z), -128), 127),
-        temperature_air=-128,
+        temperature_air=min(max(round(v.sensors.temperature), -127), 127),
         battery=percent(ap.battery.remaining_pct),
         wp_num=uint16(float(ap.modes.nav.mission_current)),
         failure_flags=failures,
@@ -105,10 +106,22 @@ def component_metadata(vehicle: Vehicle, profile: Profile) -> bytes:
     )
 
 
+def relay_status(vehicle: Vehicle, profile: Profile) -> bytes:
+    """RELAY_STATUS: which relays there are and which of them are on, a bit each."""
+    values = vehicle.parameters
+    fitted = relays.fitted(values) if relays.MASK in values.table else []
+    return message("RELAY_STATUS").payload(
+        time_boot_ms=boot_ms(int(vehicle.v.time_us)),
+        on=sum(1 << relay for relay in fitted if relays.is_on(values, relay)),
+        present=sum(1 << relay for relay in fitted),
+    )
+
+
 SHELL_BUILDERS: dict[str, ShellBuilder] = {
     "AUTOPILOT_VERSION": autopilot_version,
     "COMPONENT_METADATA": component_metadata,
     "HIGH_LATENCY2": high_latency,
+    "RELAY_STATUS": relay_status,
 }
 """What the shell builds for every vehicle, by the message's name."""
 

@@ -13,8 +13,8 @@ from .units import boot_ms, int16, int32, percent, uint16
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
 RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
-PRESENT = GYRO | ACCEL | MAG | BARO | GPS | AHRS | PREARM
-"""In every firmware, besides its controllers."""
+PRESENT = GYRO | ACCEL | MAG | BARO | AHRS | PREARM
+"""In every firmware, besides its controllers; a GPS receiver once it has said something, until it is silent."""
 SAMPLE_US = 500_000
 """A sensor is healthy while the filter's last sane sample of it is no older."""
 GPS_US = 4_000_000
@@ -61,6 +61,8 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
     ap, battery, monitor = v.autopilot, v.autopilot.battery, v.autopilot.params.BATT.MONITOR
     common = PRESENT
     health = healthy | sensor_health(v)
+    if v.sensors.gps_fix > 0:
+        common |= GPS
     if ap.rc.receiver_ok:
         common |= RECEIVER
         health |= RECEIVER  # cannot fail

@@ -278,8 +278,7 @@ FILTER = (
         (
             Field("C", "B", "#"),
             *(Field(f"IV{axis}", "c", "n", "B", f"{K}innovation_vel[{k}]", -1.0) for k, axis in enumerate("NED")),
-            *(Field(f"IP{axis}", "c", "m", "B", f"{K}innovation_pos[{k}]", -1.0) for k, axis in enumerate("NE")),
-            Field("IPD", "c", "m", "B", E + "innovation_pos_d"),
+            *(Field(f"IP{axis}", "c", "m", "B", f"{K}innovation_pos[{k}]", -1.0) for k, axis in enumerate("NED")),
             *(Field(f"IM{axis}", "h", "G", "C") for axis in "XYZ"),
             Field("IYAW", "c", "d", "B", K + "innovation_yaw", -DEG),
             Field("IVT", "c", "?", "?"),

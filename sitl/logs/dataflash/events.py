@@ -86,7 +86,7 @@ class EventEncoder:
             disarmed = self.pack("ARM", time_us, 0, checks & 0xFFFFFFFF, 0, int(a) & 255)
             return disarmed + self.pack("EV", time_us, EV_DISARMED)
         if code == core.FAILSAFE and int(a) in _FAILSAFES:
-            return self.pack("ERR", time_us, _FAILSAFES[int(a)], int(b) & 255)
+            return self.pack("ERR", time_us, _FAILSAFES[int(a)], int(b != 0.0))
         if code == core.MODE_REFUSED:
             return self.pack("ERR", time_us, _MODE, int(a) & 255)
         if code in (core.CRASH_DISARM, core.CRASH_HOLD):

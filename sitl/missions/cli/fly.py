@@ -19,7 +19,7 @@ from sitl.vehicle.kinds import DEFAULT, KINDS
 from sitl.vehicles import load as load_airframe
 
 from .. import library
-from ..files import MissionFile, load, straightened
+from ..files import MissionFile, for_vehicle, load
 from ..files.document import kind_of_type
 from ..fly import LIMIT_S, Outcome, checked, fly
 
@@ -51,8 +51,8 @@ def run(options: argparse.Namespace) -> int:
     if entry is None and not Path(name).exists() and not Path(name).suffix:
         library.find(name)  # says what there is
     file = load(entry.path if entry else name)
-    curved, file = len(file.mission), straightened(file)
     params = prepare(options, file, entry)
+    curved, file = len(file.mission), for_vehicle(file, KINDS[options.vehicle].firmware.commands.taken)
     folder = open_folder(options.log_dir)
     links = [open_link(text) for text in options.out]
     simulation = build_simulation(options, params)

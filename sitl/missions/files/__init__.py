@@ -6,7 +6,7 @@ https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
 """
 
 from .document import Complex, FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint
-from .splines import straightened
+from .splines import for_vehicle, straightened
 from .store import load, save
 
 __all__ = [
@@ -18,5 +18,6 @@ __all__ = [
     "RallyPoint",
     "load",
     "save",
+    "for_vehicle",
     "straightened",
 ]

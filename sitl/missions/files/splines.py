@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Spline waypoints as waypoints: the firmware flies straight lines and joins them, it has no NAV_SPLINE_WAYPOINT.
+"""Spline waypoints as waypoints, for vehicles that have no NAV_SPLINE_WAYPOINT (rovers).
 
 The curve from one place to the next is a cubic Hermite spline. At a spline waypoint it goes in the direction from the
 place before to the place after; where it meets a straight leg it goes along that leg; at its very ends straight on.
@@ -8,6 +8,7 @@ place before to the place after; where it meets a straight leg it goes along tha
 from __future__ import annotations
 
 import math
+from collections.abc import Container
 from dataclasses import replace
 
 from sitl.autopilot.mission.item import (
@@ -28,6 +29,11 @@ PIECES_MAX = 24
 _PLACES = (NAV_WAYPOINT, NAV_SPLINE_WAYPOINT, NAV_LOITER_TIME, NAV_LOITER_UNLIM)
 
 Point = tuple[float, float, float]
+
+
+def for_vehicle(file: MissionFile, taken: Container[int]) -> MissionFile:
+    """The mission as it is, or with waypoints along its curves when curves are not among the commands ``taken``."""
+    return file if NAV_SPLINE_WAYPOINT in taken else straightened(file)
 
 
 def straightened(file: MissionFile) -> MissionFile:

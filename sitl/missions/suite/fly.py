@@ -26,7 +26,7 @@ from ..comparison import report
 from ..comparison.alignment import AlignmentError
 from ..comparison.compare import Comparison, compare
 from ..comparison.flight import Flight, of_recording
-from ..files import load, straightened
+from ..files import for_vehicle, load
 from ..fly import Outcome, fly
 from .cases import Case, SuiteError
 
@@ -89,7 +89,7 @@ def _core(kind: str) -> Core:
 
 def record(case: Case, path: Path) -> tuple[Outcome, float]:
     """Fly a case into a recording; also gives the simulated time [s]."""
-    file = straightened(load(case.mission))
+    file = for_vehicle(load(case.mission), KINDS[case.kind].firmware.commands.taken)
     home = case.home or ((*file.home, 0.0) if file.home is not None else None)
     simulation = Simulation(
         _frame(case.frame),

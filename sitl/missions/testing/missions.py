@@ -13,7 +13,7 @@ from sitl.client import Client, ClientError
 from sitl.errors import OptionError
 
 from .. import library
-from ..files import load, straightened
+from ..files import for_vehicle, load
 from ..fly import STANDING_S, STANDS, checked
 
 __tracebackhide__ = True
@@ -45,10 +45,12 @@ class MissionFlier(Client):
     def upload(self, given: Given) -> Mission:
         """Upload a .plan or .waypoints file, a mission of the library by its name, or items (home first).
 
-        A file is looked for beside the test, then where pytest runs. Spline waypoints become waypoints on the curve.
+        A file is looked for beside the test, then where pytest runs. A rover gets waypoints on the curve of spline
+        waypoints.
         """
         if isinstance(given, str | Path):
-            mission = straightened(load(find(given, self.folders))).mission
+            taken = self.simulation.firmware.commands.taken
+            mission = for_vehicle(load(find(given, self.folders)), taken).mission
         else:
             mission = given if isinstance(given, Mission) else Mission(tuple(given))
         return super().upload(checked(mission, self.simulation))

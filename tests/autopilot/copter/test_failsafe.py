@@ -7,14 +7,14 @@ import math
 
 import pytest
 
-from sitl.autopilot import failsafe_checks
+from sitl.autopilot import failsafe_checks, smart_rtl_path
 from sitl.autopilot.arming_checks import BY_RADIO_FAILSAFE
 from sitl.autopilot.copter import failsafe, pilot
-from sitl.autopilot.events import FAILSAFE
+from sitl.autopilot.events import FAILSAFE, MODE_REFUSED, NO_WAY_BACK
 from sitl.autopilot.state import Failsafe
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 
-STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE, SMART_RTL = 0, 2, 3, 4, 5, 6, 9, 17, 21
 
 
 def test_three_bad_frames_lose_the_radio_and_three_good_ones_find_it() -> None:
@@ -36,18 +36,28 @@ def test_a_second_of_a_bad_estimate_counts() -> None:
     assert (state.ekf, state.ekf_count) == (0, 0)
 
 
+def lay_path(v):
+    """SMART_RTL has a way back."""
+    ap = v.autopilot
+    smart_rtl_path.begin(ap.modes.path, ap.estimate.pos, True, v.time_us, ap.params.SRTL)
+
+
 def lose_gcs(v):
     v.autopilot.modes.failsafe.gcs_us = v.time_us
     wait(v, 5.1)
     failsafe.watch_gcs(v)
 
 
-@pytest.mark.parametrize(("choice", "mode"), ((0, GUIDED), (1, RTL), (3, RTL), (4, LAND), (5, LAND), (7, BRAKE)))
+@pytest.mark.parametrize(
+    ("choice", "mode"),
+    ((0, GUIDED), (1, RTL), (3, SMART_RTL), (4, SMART_RTL), (5, LAND), (6, RTL), (7, BRAKE), (99, RTL), (-1, RTL)),
+)
 def test_ground_station_lost(flying, choice, mode):
+    lay_path(flying)
     flying.autopilot.params.FS_GCS_ENABLE = float(choice)
     lose_gcs(flying)
     assert flying.autopilot.modes.number == mode
-    assert flying.autopilot.modes.failsafe.gcs == int(choice > 0)
+    assert flying.autopilot.modes.failsafe.gcs == int(choice != 0)
 
 
 def test_a_ground_station_that_never_was_is_not_lost(flying):
@@ -79,6 +89,52 @@ def test_options_let_a_mode_go_on_without_ground_station(flying, mode, options, 
     assert (flying.autopilot.modes.number == mode) == stays
 
 
+@pytest.mark.parametrize(
+    ("mode", "options", "says", "after"),
+    (
+        (LOITER, 0, "GCS Failsafe", RTL),
+        (LOITER, 16, "GCS Failsafe - Continuing Pilot Control", LOITER),
+        (AUTO, 2, "GCS Failsafe - Continuing Auto Mode", AUTO),
+        (LAND, 8, "GCS Failsafe - Continuing Landing", LAND),
+        (LAND, 0, "GCS Failsafe", RTL),
+        (GUIDED, 26, "GCS Failsafe", RTL),
+    ),
+)
+def test_what_follows_a_lost_ground_station_is_said(flying, mode, options, says, after):
+    fly(flying, mode)
+    flying.autopilot.params.FS_GCS_ENABLE = 1.0
+    flying.autopilot.params.FS_OPTIONS = float(options)
+    lose_gcs(flying)
+    ring = flying.autopilot.events
+    found = [k for k in range(ring.count) if ring.code[k] == FAILSAFE]
+    assert [failsafe.text(int(ring.a[k]), int(ring.b[k])) for k in found] == [says]
+    assert flying.autopilot.modes.number == after
+
+
+def test_what_follows_a_lost_radio_is_said(flying):
+    ap = flying.autopilot
+    ap.params.FS_OPTIONS = 4.0
+    ap.rc.channels[2] = 950
+    for _ in range(3):
+        failsafe.watch_radio(flying)
+    k = ap.events.count - 1
+    said = failsafe.text(int(ap.events.a[k]), int(ap.events.b[k]))
+    assert (ap.modes.number, said) == (GUIDED, "Radio Failsafe - Continuing Guided Mode")
+
+
+@pytest.mark.parametrize(("action", "after"), ((1, LAND), (2, RTL), (0, RTL)))
+def test_a_lost_radio_does_not_end_a_landing_for_the_battery(flying, action, after):
+    fly(flying, LAND)
+    ap = flying.autopilot
+    ap.params.BATT_FS_CRT_ACT, ap.modes.failsafe.battery = float(action), 2
+    ap.rc.channels[2] = 950
+    for _ in range(3):
+        failsafe.watch_radio(flying)
+    said = {failsafe.text(int(a), int(b)) for a, b in zip(ap.events.a, ap.events.b, strict=True)}
+    assert ap.modes.number == after
+    assert ("Radio + Battery Failsafe - Continuing Landing" in said) == (after == LAND)
+
+
 def test_on_the_ground_a_failsafe_disarms(flying):
     flying.autopilot.arming.landed = 1
     flying.autopilot.params.FS_GCS_ENABLE = 1.0
@@ -86,8 +142,12 @@ def test_on_the_ground_a_failsafe_disarms(flying):
     assert flying.autopilot.arming.armed == 0
 
 
-@pytest.mark.parametrize(("choice", "mode"), ((0, LOITER), (1, RTL), (3, LAND), (4, RTL), (5, LAND), (7, BRAKE)))
+@pytest.mark.parametrize(
+    ("choice", "mode"),
+    ((0, LOITER), (1, RTL), (3, LAND), (4, SMART_RTL), (5, SMART_RTL), (6, RTL), (7, BRAKE), (99, LAND)),
+)
 def test_radio_lost_after_three_frames(flying, choice, mode):
+    lay_path(flying)
     fly(flying, LOITER)
     ap = flying.autopilot
     ap.params.FS_THR_ENABLE = float(choice)
@@ -116,6 +176,15 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
     assert ap.modes.failsafe.radio == 0
 
 
+@pytest.mark.parametrize(
+    ("action", "mode"), ((failsafe.DO_SMART_RTL, RTL), (failsafe.DO_SMART_RTL_OR_LAND, LAND)), ids=("rtl", "land")
+)
+def test_without_a_path_smart_rtl_becomes_another_mode_and_that_is_told(flying, action, mode):
+    failsafe.act(flying, action, 3, BY_RADIO_FAILSAFE)
+    assert flying.autopilot.modes.number == mode
+    assert codes(flying)[:2] == [MODE_REFUSED, NO_WAY_BACK]
+
+
 def test_rtl_without_position_becomes_a_landing_that_waits(flying):
     fly(flying, ALT_HOLD)
     flying.autopilot.estimate.position_ok = 0
@@ -125,9 +194,20 @@ def test_rtl_without_position_becomes_a_landing_that_waits(flying):
 
 
 @pytest.mark.parametrize(
-    ("action", "mode", "armed"), ((0, GUIDED, 1), (1, LAND, 1), (2, RTL, 1), (5, GUIDED, 0), (7, BRAKE, 1))
+    ("action", "mode", "armed"),
+    (
+        (0, GUIDED, 1),
+        (1, LAND, 1),
+        (2, RTL, 1),
+        (3, SMART_RTL, 1),
+        (4, SMART_RTL, 1),
+        (5, GUIDED, 0),
+        (6, RTL, 1),
+        (7, BRAKE, 1),
+    ),
 )
 def test_battery_low_for_its_timer(flying, action, mode, armed):
+    lay_path(flying)
     ap = flying.autopilot
     ap.params.BATT_MONITOR, ap.params.BATT_FS_LOW_ACT = 4.0, float(action)
     ap.battery.voltage = 10.4

@@ -91,20 +91,10 @@ def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
     control, sticks, p = ap.control, ap.modes.pilot, ap.params
-    motors = control.motors
-    if not ap.arming.armed:
-        motors.desired_spool = ground.SHUT_DOWN
-    elif sticks.throttle_zero:
-        motors.desired_spool = ground.GROUND_IDLE
-    else:
-        motors.desired_spool = ground.UNLIMITED
     wanted = throttle(sticks, p)
-    state = motors.spool_state
-    if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
+    if ground.spool_by_stick(ap.arming, sticks.throttle_zero, control.motors):
         attitude.relax(control, ap.estimate)
         wanted = 0.0
-    elif state == ground.IS_UNLIMITED and not motors.limit_throttle_lower and ap.arming.landed:
-        ground.set_landed(ap.arming, False)
     rates = stick_rates(sticks, p.ACRO)
     rates = trained_rates(rates, sticks, control.attitude.target_euler, p)
     attitude.input_rates(control, ap.estimate, p, rates)

@@ -11,7 +11,7 @@ from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from ...navigation.command import check_condition, complete
-from ...navigation.state import COMPLETE, LAND, NONE, RTL, TAKEOFF
+from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, RTL, TAKEOFF
 from ...state import Arming, Estimate
 from ..control.state import AttitudeState, Control
 from ..navigation import command, waypoint
@@ -19,7 +19,7 @@ from ..navigation.state import CopterNav
 from ..parameters import Parameters
 from ..parameters.flight import Waypoints
 from ..state import Vehicle
-from . import auto_yaw, ground, land, rtl, takeoff
+from . import auto_yaw, ground, land, loiter_to_alt, rtl, takeoff
 from .mode import CopterMode
 from .state import AutoState, AutoYaw, Modes
 
@@ -154,6 +154,8 @@ def run_command(v: Vehicle, kind: int) -> bool:
         return ap.modes.takeoff.complete
     if kind == LAND:
         return run_land(v)
+    if kind == LOITER_TO_ALT:
+        return loiter_to_alt.run(v)
     if kind == RTL:
         rtl.run(v)
         return ap.arming.landed and rtl.is_landing(ap.modes)

@@ -7,7 +7,7 @@ from ....core.kernels import law
 from ...events import DISARMED, emit_and_return
 from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start
-from ..control.state import Control
+from ..control.state import Control, MotorsState
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import auto_yaw
@@ -53,6 +53,20 @@ def disarm(v: Vehicle, method: int) -> None:
     ap.modes.auto.started = False
     ap.control.motors.desired_spool = SHUT_DOWN
     emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
+
+
+@law
+def spool_by_stick(arming: Arming, throttle_zero: bool, motors: MotorsState) -> bool:
+    """The motors' wanted state where the throttle stick drives them; whether they are off or idle, and push nothing."""
+    if not arming.armed:
+        motors.desired_spool = SHUT_DOWN
+    else:
+        motors.desired_spool = GROUND_IDLE if throttle_zero else UNLIMITED
+    if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
+        return True
+    if motors.spool_state == IS_UNLIMITED and not motors.limit_throttle_lower and arming.landed:
+        set_landed(arming, False)
+    return False
 
 
 @law

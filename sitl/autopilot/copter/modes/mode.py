@@ -49,6 +49,8 @@ class CopterMode(Mode[Vehicle]):
     """Controls the position when there is one, but does without."""
     arms_at_any_throttle: bool = False
     """A ground station may arm it whatever the throttle stick says."""
+    idles_armed: bool = False
+    """Left alone on the ground it stays armed (no DISARM_DELAY)."""
     ignores_simple: bool = False
     """SIMPLE and SUPER_SIMPLE do not turn the sticks."""
     may_arm: Callable[[Parameters, int], bool] = always_arms

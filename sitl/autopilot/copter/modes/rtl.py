@@ -93,20 +93,29 @@ def return_height(height: float, distance: float, p: Rtl) -> float:
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
+    auto_yaw.follow_pilot(ap.modes, ap.control.attitude, ap.estimate)
+    if not run_end(v):
+        run_way(ap.modes, ap.events, v.time_us, ap.control, ap.estimate, ap.params)
+
+
+@law
+def run_end(v: Vehicle) -> bool:
+    """One tick on the ground, or of what comes after the way home; False: it is on its way."""
+    ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
-    auto_yaw.follow_pilot(modes, control.attitude, est)
     if is_landing(modes):
         land.finish(v)
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
-        return
+        return True
     control.motors.desired_spool = ground.UNLIMITED
     if is_landing(modes):
         land.descend(modes, ap.home.pos.z - est.pos.z, ap.arming.landed_maybe, control, est, p)
-    elif modes.rtl.state == FINAL_DESCENT:
+        return True
+    if modes.rtl.state == FINAL_DESCENT:
         run_descent(modes, control, est, p)
-    else:
-        run_way(modes, ap.events, v.time_us, control, est, p)
+        return True
+    return False
 
 
 @law

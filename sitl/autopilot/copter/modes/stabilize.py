@@ -29,20 +29,10 @@ def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
     control, sticks, p = ap.control, ap.modes.pilot, ap.params
-    motors = control.motors
-    if not ap.arming.armed:
-        motors.desired_spool = ground.SHUT_DOWN
-    elif sticks.throttle_zero:
-        motors.desired_spool = ground.GROUND_IDLE
-    else:
-        motors.desired_spool = ground.UNLIMITED
     wanted = throttle(sticks, p)
-    state = motors.spool_state
-    if state == ground.IS_SHUT_DOWN or state == ground.IS_GROUND_IDLE:
+    if ground.spool_by_stick(ap.arming, sticks.throttle_zero, control.motors):
         attitude.reset_yaw_target(control.attitude, ap.estimate.yaw)
         wanted = 0.0
-    elif state == ground.IS_UNLIMITED and not motors.limit_throttle_lower and ap.arming.landed:
-        ground.set_landed(ap.arming, False)
     lean_max = math.radians(p.ANGLE_MAX * 0.01)
     lean = pilot.lean_angles(sticks, lean_max, lean_max)
     attitude.input_euler_roll_pitch_yaw_rate(control, ap.estimate, p, lean, sticks.yaw_rate)

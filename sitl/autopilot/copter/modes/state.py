@@ -104,10 +104,43 @@ class FlipState(Record):
     level: Quat  # attitude at the start, body to NED
 
 
-class RtlState(Record):
-    """RTL."""
+class DriftState(Record):
+    """DRIFT."""
 
-    state: int  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING
+    side_speed: float  # that the yaw stick asks for, low-passed, right positive [m/s]
+    brake: float  # 0 .. 1: how far the brake is applied
+
+
+class ThrowState(Record):
+    """THROW."""
+
+    stage: int  # throw.py: DISARMED, WAITING, ...
+    released_us: int  # when it last began to look like a throw; 0 not yet
+    released_speed: float  # down then [m/s]
+    target_d: float  # height to stop at, NED [m]
+    passed_on: bool  # the next mode was asked for
+
+
+class ZigZagState(Record):
+    """ZIGZAG."""
+
+    stage: int  # zigzag.py: STORING, BY_STICKS, BY_ITSELF
+    a: Vec2  # NE [m]
+    b: Vec2
+    has_a: bool
+    has_b: bool
+    point: int  # last flown to
+    reached_us: int  # when the end of the way was reached; 0 not yet
+    sweeping: bool  # goes on from line to line
+    suspended: bool  # a sweep was given back to the sticks, and may go on
+    sideways: bool  # on the way to where the next line begins
+    line: int  # of the sweep
+
+
+class RtlState(Record):
+    """RTL and SMART_RTL."""
+
+    state: int  # rtl.py: CLIMB, RETURN, LOITER, FINAL_DESCENT, LANDING; smart_rtl.py: CLEAN_UP, FOLLOW, PRE_LAND
     return_d: float  # height of the way home, NED [m]
     descent_d: float  # where RTL_ALT_FINAL ends, NED [m]
     home: Vec2  # NE [m]
@@ -174,7 +207,11 @@ class Modes(shared.Modes):
     circle: CircleState
     poshold: PosHoldState
     flip: FlipState
+    drift: DriftState
+    throw: ThrowState
+    zigzag: ZigZagState
     rtl: RtlState
+    path: shared.PathState
     land: LandState
     auto: AutoState
     pilot: PilotState

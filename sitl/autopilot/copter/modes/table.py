@@ -15,6 +15,7 @@ from . import (
     auto,
     brake,
     circle,
+    drift,
     flip,
     follow,
     guided,
@@ -23,7 +24,10 @@ from . import (
     loiter,
     poshold,
     rtl,
+    smart_rtl,
     stabilize,
+    throw,
+    zigzag,
 )
 from .mode import CopterMode
 
@@ -39,11 +43,15 @@ MODES: tuple[CopterMode, ...] = with_registered(
         rtl.MODE,
         circle.MODE,
         land.MODE,
+        drift.MODE,
         flip.MODE,
         poshold.MODE,
         brake.MODE,
+        throw.MODE,
         guided_nogps.MODE,
+        smart_rtl.MODE,
         follow.MODE,
+        zigzag.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""
@@ -62,6 +70,7 @@ MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
 CLIMB_STICK = numbers(MODES, "climb_stick")
 NEED_POSITION = numbers(MODES, "needs_position")
 AUTONOMOUS = numbers(MODES, "autonomous")
+IDLE_ARMED = numbers(MODES, "idles_armed")
 IGNORE_SIMPLE = numbers(MODES, "ignores_simple")
 ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
 
@@ -100,6 +109,12 @@ def is_autonomous(number: int) -> bool:
 def arms_at_any_throttle(number: int) -> bool:
     """Whether a ground station may arm the mode whatever the throttle stick says."""
     return number in ARM_AT_ANY_THROTTLE
+
+
+@law
+def idles_armed(number: int) -> bool:
+    """Whether the vehicle stays armed on the ground."""
+    return number in IDLE_ARMED
 
 
 @law

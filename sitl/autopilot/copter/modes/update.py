@@ -13,12 +13,14 @@ from .. import arming, crash, failsafe, landing, motor_test, pilot, takeoff_chec
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
-from . import ground, set_mode, simple, switch, table
+from . import ground, set_mode, simple, smart_rtl, switch, table
+from .drift import DRIFT
 from .stabilize import STABILIZE
 from .state import Modes
 
 _TENTH = 40  # ticks
 _QUARTER = 100
+_THIRD = 133
 _LEARN_TICKS = 4
 _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
@@ -50,6 +52,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     if tick % _QUARTER == 12:
         home.set_first(ap.home, ap.estimate)
         ap.arming.prearm_ok = arming.check(v) == 0
+    if tick % _THIRD == 36:
+        smart_rtl.record(v)
     arming.follow_throttle(ap.arming, ap.modes, v.time_us)
     run_mode(v)
     motor_test.run(v)
@@ -108,7 +112,8 @@ def run_mode(v: Vehicle) -> None:
 @inlined
 def holds_height(arming: Arming, modes: Modes) -> bool:
     """Whether the vehicle flies in a mode that holds height, and is not taking off."""
-    flies = arming.armed and not arming.landed and not table.has_manual_throttle(modes.number)
+    by_stick = table.has_manual_throttle(modes.number) or modes.number == DRIFT
+    flies = arming.armed and not arming.landed and not by_stick
     return flies and not landing.is_taking_off(modes)
 
 

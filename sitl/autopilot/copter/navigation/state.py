@@ -3,8 +3,26 @@
 
 from __future__ import annotations
 
+from ....core.records import Floats, Record, array
 from ....core.vectors import Vec3
 from ...navigation.state import Nav
+
+SPLINE_PARTS = 64
+
+
+class Spline(Record):
+    """The curve to a spline waypoint: origin + slope u + square u^2 + cube u^3, ``u`` from 0 to 1."""
+
+    active: bool  # flown instead of the current leg, which is a point at its end
+    u: float  # where the target is
+    speed: float  # of the target along the curve [m/s]
+    end_speed: float  # with which it goes on to the next command [m/s]
+    origin: Vec3  # NED [m]
+    end: Vec3  # NED [m]
+    slope: Vec3  # [m]
+    square: Vec3  # [m]
+    cube: Vec3  # [m]
+    allowed: Floats = array(SPLINE_PARTS + 1)  # speed at equal steps of ``u`` [m/s]
 
 
 class CopterNav(Nav):
@@ -24,3 +42,5 @@ class CopterNav(Nav):
     circle_top_rate: float  # signed, wanted [rad/s]
     circle_acc: float  # [rad/s^2]
     circle_running: bool  # false: still on the way to the edge
+    height_error: float  # LOITER_TO_ALT: in the last tick, down positive [m]
+    spline: Spline

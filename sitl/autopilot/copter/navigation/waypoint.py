@@ -29,6 +29,7 @@ from ..control.position_start import init_ne_stopping_point, set_max_speed_accel
 from ..control.state import DT, Control
 from ..parameters import Parameters
 from ..parameters.flight import Legs
+from . import spline
 from .state import CopterNav
 
 CM = 0.01
@@ -84,6 +85,7 @@ def start(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_u
 def stop(nav: CopterNav) -> None:
     """Forget all legs."""
     path.stop(nav)
+    nav.spline.active = False
     nav.paused = False
 
 
@@ -103,7 +105,12 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     feasible = path.feasible_time_scale(nav, est.pos, est.vel, p.PSC.POSXY_P)
     path.scale_time(nav, feasible, CM * legs.ACCEL / max(legs.JERK, 0.1), DT)
     advance_pause(nav, legs, p.PSC.JERK_XY)
-    done = path.move(nav, nav.time_scale * nav.pause_scale * DT, CM * legs.RADIUS, corner_accel(legs))
+    step = nav.time_scale * nav.pause_scale * DT
+    if nav.spline.active:
+        part = spline.ACCEL_PART * CM
+        done = spline.move(nav, step, max(part * legs.ACCEL, 0.05), max(part * legs.ACCEL_Z, 0.05))
+    else:
+        done = path.move(nav, step, CM * legs.RADIUS, corner_accel(legs))
     nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate
     nav.vel = nav.vel * nav.pause_scale
     follow_target(control, nav, nav.vel.z, nav.acc.z)

@@ -14,8 +14,25 @@ from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
+from ...relays import MEANINGS
 from .control import Attitude, Motors, Position
-from .flight import Acro, Circle, Follow, Guided, Land, Legs, Loiter, Pilot, PosHold, Rtl, TakeOff, Waypoints
+from .flight import (
+    Acro,
+    Circle,
+    Follow,
+    Guided,
+    Land,
+    Legs,
+    Loiter,
+    Pilot,
+    PosHold,
+    Rtl,
+    SmartRtl,
+    TakeOff,
+    Throw,
+    Waypoints,
+    ZigZag,
+)
 from .safety import Battery, Failsafes, Simulated
 
 
@@ -90,6 +107,7 @@ class Parameters(shared.Parameters):
     SERVO: Records[Output] = numbered(Output, 16)
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
+    SRTL: SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     THR_DZ: float = param(
@@ -100,11 +118,13 @@ class Parameters(shared.Parameters):
         "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
         INT16,
     )
+    THROW: Throw
     TKOFF: TakeOff
     WP: Waypoints
     WPNAV: Legs
+    ZIGZ: ZigZag
 
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)

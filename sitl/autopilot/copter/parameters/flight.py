@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...params import follow
+from ...params import follow, system
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
 
 
@@ -109,6 +109,12 @@ class Rtl(ParameterGroup):
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
 
 
+class SmartRtl(system.SmartRtl):
+    """SRTL_: SMART_RTL, and its path."""
+
+    OPTIONS: float = param(0, 0, 4, "", "4: the yaw stick does nothing on the way back", INT32)
+
+
 class Follow(follow.Follow):
     """FOLL_: with what only a vehicle in the air has."""
 
@@ -129,6 +135,20 @@ class TakeOff(ParameterGroup):
     RPM_MAX: float = param(0, 0, 10000, "RPM", "Motors that turn faster do, too; 0: no limit", INT16)
 
 
+class Throw(ParameterGroup):
+    """THROW_: THROW."""
+
+    MOT_START: float = param(0, 0, 1, "", "Motors before the throw: 0 off, 1 idle", INT8)
+    ALT_MIN: float = param(0, 0, 32767, "m", "Least height above home of a throw; 0 any", INT16)
+    ALT_MAX: float = param(0, 0, 32767, "m", "Greatest height above home of a throw; 0 any", INT16)
+    ALT_DCSND: float = param(1.0, 0.0, 50.0, "m", "Dropped, it stops so far below where it was upright")
+    ALT_ACSND: float = param(3.0, 0.0, 50.0, "m", "Thrown, it stops so far above where it was upright")
+    NEXTMODE: float = param(
+        18, 0, 127, "", "Then: 3 AUTO, 4 GUIDED, 5 LOITER, 6 RTL, 9 LAND, 17 BRAKE, else THROW", INT8
+    )
+    TYPE: float = param(0, 0, 1, "", "0 thrown upwards, 1 dropped", INT8)
+
+
 class Waypoints(ParameterGroup):
     """WP_: heading at waypoints, height without navigation."""
 
@@ -136,6 +156,16 @@ class Waypoints(ParameterGroup):
         2, 0, 3, "", "Heading: 0 kept, 1 to the next waypoint, 2 the same but kept in RTL, 3 along the course", INT8
     )
     NAVALT_MIN: float = param(0.0, 0.0, 5.0, "m", "No leaning below this height in take-off and landing")
+
+
+class ZigZag(ParameterGroup):
+    """ZIGZ_: ZIGZAG."""
+
+    AUTO_ENABLE: float = param(0, 0, 1, "", "1: function 83 of a switch sweeps from line to line", INT8)
+    WP_DELAY: float = param(0, 0, 127, "s", "Wait at the end of each way", INT8)
+    SIDE_DIST: float = param(4.0, 0.1, 100.0, "m", "Distance of the lines of a sweep")
+    DIRECTION: float = param(0, 0, 3, "", "Side of a sweep: 0 forward, 1 right, 2 backward, 3 left of the nose", INT8)
+    LINE_NUM: float = param(0, -1, 32767, "", "Lines of a sweep; 0: one way sideways only, -1: no end", INT16)
 
 
 class Legs(ParameterGroup):

@@ -11,20 +11,35 @@ class Battery(system.Battery):
     """BATT_: with what an empty battery does."""
 
     FS_LOW_ACT: float = param(
-        0, 0, 7, "", "When low: 0 nothing, 1 LAND, 2 RTL, 3 4 return or land, 5 stops the motors, 7 BRAKE or LAND", INT8
+        0,
+        -128,
+        127,
+        "",
+        "When low: 0 nothing, 1 LAND, 2 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 stops motors, 7 BRAKE or LAND",
+        INT8,
     )
-    FS_CRT_ACT: float = param(0, 0, 7, "", "When critical: as BATT_FS_LOW_ACT", INT8)
+    FS_CRT_ACT: float = param(0, -128, 127, "", "When critical: as BATT_FS_LOW_ACT", INT8)
 
 
 class Failsafes(system.Failsafes):
     """FS_: failsafes."""
 
     GCS_ENABLE: float = param(
-        0, 0, 7, "", "Ground station lost: 0 nothing, 1 RTL, 3 4 return or land, 5 LAND, 7 BRAKE or LAND", INT8
+        0,
+        -128,
+        127,
+        "",
+        "Ground station lost: 0 nothing, 1 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 LAND, 7 BRAKE or LAND",
+        INT8,
     )
     GCS_TIMEOUT: float = param(5.0, 2.0, 120.0, "s", "Silence of the ground station that counts as lost")
     THR_ENABLE: float = param(
-        1, 0, 7, "", "Radio lost: 0 nothing, 1 RTL, 3 LAND, 4 5 return or land, 7 BRAKE or LAND", INT8
+        1,
+        -128,
+        127,
+        "",
+        "Radio lost: 0 nothing, 1 RTL, 3 LAND, 4 SMART_RTL or RTL, 5 SMART_RTL or LAND, 7 BRAKE or LAND",
+        INT8,
     )
     THR_VALUE: float = param(975, 900, 1100, "us", "Throttle pulse below which the radio is lost", INT16)
     EKF_ACTION: float = param(1, 0, 3, "", "Bad estimate: 0 report, 1 LAND, 2 ALT_HOLD, 3 LAND from any mode", INT8)
@@ -40,10 +55,14 @@ class Failsafes(system.Failsafes):
 
 
 class Simulated(simulation.Simulated):
-    """SIM_: with failing motors, and their speed controllers."""
+    """SIM_: with failing motors, their speed controllers, and a shove."""
 
     ENGINE_FAIL: float = param(0, 0, 255, "", "Motors that fail: 1 motor 1, 2 motor 2, 4 motor 3, ...", INT32)
     ESC_TELEM: float = param(1, 0, 1, "", "1: speed controllers tell how fast their motors turn", INT8)
     ESC_ARM_RPM: float = param(0, 0, 100000, "RPM", "Speed that the controllers of armed motors tell at least")
     VIB_MOT_MAX: float = param(0, 0, 10000, "Hz", "Turns a second at full command, of rotors whose model has no speed")
     ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust that failing motors keep")
+    SHOVE_X: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, forward")
+    SHOVE_Y: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, right")
+    SHOVE_Z: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, down")
+    SHOVE_TIME: float = param(0, 0, 60000, "ms", "Set: shoves for so long, and is 0 again", INT32)

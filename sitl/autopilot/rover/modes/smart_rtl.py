@@ -6,22 +6,21 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 from ....core.algebra import with_down
 from ....core.kernels import law
-from ....core.vectors import Vec2
+from ....core.vectors import Vec3
+from ... import smart_rtl_path
 from ...events import DESTINATION_REACHED, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation.path import request_leg, request_legs
-from .. import smart_rtl_path
+from ...state import PathState
 from ..control import speed
 from ..navigation import waypoint
 from ..navigation.state import RoverNav
 from ..state import Vehicle
 from . import drive, rtl
-from .state import PathState
 
 SMART_RTL = 12
 
@@ -43,11 +42,10 @@ def start(v: Vehicle) -> int:
 
 
 @law
-def skip_near(path: PathState, pos: Vec2, radius: float) -> None:
+def skip_near(path: PathState, pos: Vec3, radius: float) -> None:
     """Leave out last points within ``radius`` [m] of ``pos``: a car would have to circle to meet them."""
     while path.points > 1:
-        away = smart_rtl_path.point(path, path.points - 1) - pos
-        if not math.hypot(away.x, away.y) <= radius:
+        if not smart_rtl_path.length(smart_rtl_path.point(path, path.points - 1) - pos) <= radius:
             return
         smart_rtl_path.drop_last(path)
 
@@ -57,11 +55,10 @@ def drive_on(path: PathState, nav: RoverNav, events: Events, time_us: int) -> bo
     """Drive on to the last point of the path, through it when there is one behind it; False when none is left."""
     if path.points == 0:
         return False
-    place = with_down(smart_rtl_path.point(path, path.points - 1), 0.0)
+    place = smart_rtl_path.point(path, path.points - 1)
     smart_rtl_path.drop_last(path)
     if path.points > 0:
-        following = with_down(smart_rtl_path.point(path, path.points - 1), 0.0)
-        request_legs(nav, events, time_us, place, following)
+        request_legs(nav, events, time_us, place, smart_rtl_path.point(path, path.points - 1))
     else:
         request_leg(nav, events, time_us, place)
     return True
@@ -75,7 +72,8 @@ def run(v: Vehicle) -> None:
     at_point = state.state == CLEAN_UP or (state.state == FOLLOW and waypoint.reached(nav))
     if state.state == CLEAN_UP:
         smart_rtl_path.clean_up(path, ap.params.SRTL.ACCURACY)
-        skip_near(path, waypoint.stopping_point(ap.estimate, ap.params.ATC), ap.params.WP.RADIUS)
+        stop = with_down(waypoint.stopping_point(ap.estimate, ap.params.ATC), 0.0)
+        skip_near(path, stop, ap.params.WP.RADIUS)
         state.state = FOLLOW
     if at_point and not drive_on(path, nav, ap.events, v.time_us):
         state.state = ARRIVED

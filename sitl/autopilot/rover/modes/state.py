@@ -7,13 +7,10 @@ Positions are NE metres from the EKF origin (as ``estimate.pos``), velocities m/
 
 from __future__ import annotations
 
-from ....core.records import Floats, Ints, Record, array
+from ....core.records import Record
 from ....core.vectors import Vec2
 from ... import state as shared
 from ..navigation.state import RoverNav
-
-PATH_POINTS = 500
-"""Room of SMART_RTL's path; SRTL_POINTS are used."""
 
 
 class GuidedState(Record):
@@ -72,20 +69,6 @@ class RtlState(Record):
     told: bool  # arrival was said
 
 
-class PathState(Record):
-    """The path that SMART_RTL drives back along."""
-
-    active: bool  # points are recorded
-    home_saved: bool
-    points: int  # on the path; point 0 is home
-    simplified: int  # so many from the start need no second look
-    good_us: int  # last good position
-    saved_us: int  # last point that found room
-    n: Floats = array(PATH_POINTS)  # [m]
-    e: Floats = array(PATH_POINTS)  # [m]
-    keep: Ints = array(PATH_POINTS, stored="i8")  # for the simplification
-
-
 class SmartRtlState(Record):
     """SMART_RTL."""
 
@@ -134,7 +117,7 @@ class Modes(shared.Modes):
     circle: CircleState
     simple: SimpleState
     rtl: RtlState
-    path: PathState
+    path: shared.PathState
     smart_rtl: SmartRtlState
     auto: AutoState
     pilot: PilotState

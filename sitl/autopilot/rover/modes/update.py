@@ -3,23 +3,23 @@
 
 from __future__ import annotations
 
-from ....core.algebra import dot2, horizontal
+from ....core.algebra import dot2, horizontal, with_down
 from ....core.kernels import law, unit
 from ....core.records import Records
 from ....core.vectors import Vec3
-from ... import aux_switch, battery, home
+from ... import aux_switch, battery, home, smart_rtl_path
 from ...arming_checks import BY_RUDDER
 from ...events import Events
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
+from ...params.system import SmartRtl
 from ...state import Estimate, HomeState
-from .. import crash, failsafe, motor_test, pilot, smart_rtl_path
+from .. import crash, failsafe, motor_test, pilot
 from ..arming import set_disarmed, stick_command, try_arm
 from ..arming_checks import check
 from ..control.forward_speed import sense
 from ..control.motors import is_moving
-from ..parameters.driving import SmartRtl
 from ..state import Vehicle
 from . import set_mode, table
 from .smart_rtl import SMART_RTL
@@ -112,10 +112,11 @@ def check_slowly(v: Vehicle) -> None:
 @law
 def keep_path(modes: Modes, estimate: Estimate, events: Events, time_us: int, params: SmartRtl) -> None:
     """Three times a second: the path of SMART_RTL begins with the first position, and grows unless on the way back."""
-    if not modes.path.home_saved and estimate.position_ok:
-        smart_rtl_path.begin(modes.path, estimate, time_us, params)
+    place, position_ok = with_down(horizontal(estimate.pos), 0.0), estimate.position_ok
+    if not modes.path.home_saved and position_ok:
+        smart_rtl_path.begin(modes.path, place, True, time_us, params)
     if modes.number != SMART_RTL:
-        smart_rtl_path.record(modes.path, estimate, events, time_us, params)
+        smart_rtl_path.record(modes.path, place, position_ok, events, time_us, params)
 
 
 @law

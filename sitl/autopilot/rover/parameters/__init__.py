@@ -15,10 +15,11 @@ from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Compass, Log, Mavlink, Statistics, StreamRates
+from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
+from ...relays import MEANINGS
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
-from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission, SmartRtl
+from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
 from .safety import Battery, Failsafes
 
 
@@ -76,4 +77,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"))
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)

@@ -45,13 +45,6 @@ class Mission(system.Mission):
     DONE_BEHAVE: float = param(0, 0, 3, "", "Mission complete: 0 stops, 1 loiters, 2 ACRO, 3 MANUAL", INT8)
 
 
-class SmartRtl(ParameterGroup):
-    """SRTL_: SMART_RTL's path."""
-
-    ACCURACY: float = param(2.0, 0.0, 10.0, "m", "Least distance of two points on the path")
-    POINTS: float = param(300, 0, 500, "", "Most points on the path; 0: no path is kept", INT16)
-
-
 class Legs(ParameterGroup):
     """WP_: driving along paths."""
 

@@ -47,6 +47,13 @@ class Ground(Record):
     impulse: float  # vertical impact that the legs still have to take up [m/s]
 
 
+class Shove(Record):
+    """Something pushes the vehicle (SIM_SHOVE_*)."""
+
+    accel: Vec3  # FRD [m/s^2]
+    until_us: int  # 0: nothing does
+
+
 class Physics(shared.Physics):
     """The physics of a copter."""
 
@@ -54,3 +61,4 @@ class Physics(shared.Physics):
     derived: Derived
     ground: Ground
     rotors: Rotors
+    shove: Shove

@@ -26,6 +26,8 @@ def begin(v: Vehicle[Physics]) -> None:
     p = v.physics
     if v.tick % wind.PERIOD_TICKS == 0:
         wind.blow(p.wind, v.rng)
+    if v.time_us > p.shove.until_us:
+        p.shove.until_us = 0
     rotors.command(p.rotors, v.actuators.controls, p.airframe, p.derived)
 
 

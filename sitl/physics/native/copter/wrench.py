@@ -44,4 +44,7 @@ def act(p: Physics) -> Wrench:
         wrench = momentum_wrench(rotors, figures, flow, p.air, outflow)
     else:
         wrench = speed_squared_wrench(rotors, figures, flow)
-    return add_air(wrench, spin_up, flow, figures, p.air.density)
+    wrench = add_air(wrench, spin_up, flow, figures, p.air.density)
+    if p.shove.until_us == 0:
+        return wrench
+    return Wrench(wrench.force + p.shove.accel / p.derived.inverse_mass, wrench.torque)

@@ -17,6 +17,7 @@ from sitl.autopilot.copter.modes import (
     alt_hold,
     auto,
     auto_yaw,
+    drift,
     flip,
     ground,
     guided,
@@ -26,12 +27,15 @@ from sitl.autopilot.copter.modes import (
     poshold,
     rtl,
     takeoff,
+    throw,
     update,
+    zigzag,
 )
 from sitl.autopilot.copter.modes import circle as circle_mode
 from sitl.autopilot.copter.modes.state import (
     AutoYaw,
     CircleState,
+    DriftState,
     FlipState,
     GuidedState,
     LandState,
@@ -41,15 +45,17 @@ from sitl.autopilot.copter.modes.state import (
     PosHoldAxis,
     RtlState,
     TakeoffState,
+    ThrowState,
+    ZigZagState,
 )
 from sitl.autopilot.copter.modes.table import MODES, NAMES
 from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl
+from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl, Throw
 from sitl.autopilot.events import Events
 from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
-from sitl.autopilot.state import Arming
-from sitl.core.algebra import quat_from_euler
+from sitl.autopilot.state import Arming, Estimate
+from sitl.core.algebra import dot2, quat_from_euler
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Euler, Vec2, Vec3
 from tests.autopilot.copter.steady_copter import make
@@ -382,3 +388,76 @@ def test_the_throttle_of_a_flip(phase: int, wanted: float) -> None:
     state = FlipState()
     state.phase = phase
     assert flip.throttle(state, 0.4) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("point", (zigzag.A, zigzag.B))
+def test_zigzag_flies_parallel_to_its_points_onto_the_line(point: int) -> None:
+    state = ZigZagState()
+    state.a, state.b = Vec2(0.0, 0.0), Vec2(3.0, 4.0)
+    here = Vec2(-2.0, 7.0)
+    place = zigzag.place_on_line(state, point, here)
+    along, across = Vec2(0.6, 0.8), Vec2(-0.8, 0.6)
+    assert dot2(place - here, across) == pytest.approx(0.0)
+    assert dot2(place - (state.a if point == zigzag.A else state.b), along) == pytest.approx(0.0)
+
+
+@given(ANGLES)
+def test_zigzag_steps_aside_at_right_angles_towards_the_heading(heading: float) -> None:
+    state = ZigZagState()
+    state.a, state.b = Vec2(1.0, 2.0), Vec2(4.0, 6.0)
+    step = zigzag.place_beside(state, Vec2(5.0, 5.0), heading, 3.0) - Vec2(5.0, 5.0)
+    assert math.hypot(*step) == pytest.approx(3.0) and dot2(step, state.b - state.a) == pytest.approx(0.0)
+    assert step.x * math.cos(heading) + step.y * math.sin(heading) >= -1e-12
+
+
+def falling(vel: float, felt: float) -> Estimate:
+    """An estimate with a velocity down [m/s] and a specific force down [m/s^2]."""
+    est = Estimate()
+    est.vel, est.acc_ned = Vec3(0.0, 0.0, vel), Vec3(0.0, 0.0, 9.80665 + felt)
+    return est
+
+
+@pytest.mark.parametrize(
+    ("vel", "felt", "kind", "height", "thrown"),
+    (
+        (-3.0, 0.0, 0.0, 5.0, True),
+        (-3.0, -9.9, 0.0, 5.0, False),  # still held
+        (-3.0, -9.0, 0.0, 5.0, False),  # does not fall freely
+        (-6.0, -9.0, 0.0, 5.0, True),  # but is fast
+        (-0.4, 0.0, 0.0, 5.0, False),
+        (3.0, 0.0, 0.0, 5.0, False),
+        (3.0, 0.0, 1.0, 5.0, True),
+        (-3.0, 0.0, 1.0, 5.0, False),
+        (-3.0, 0.0, 0.0, 1.0, False),
+        (-3.0, 0.0, 0.0, 40.0, False),
+    ),
+)
+def test_what_looks_like_a_throw(vel: float, felt: float, kind: float, height: float, thrown: bool) -> None:
+    p = Throw()
+    p.TYPE, p.ALT_MIN, p.ALT_MAX = kind, 2.0, 30.0
+    assert throw.may_be_thrown(falling(vel, felt), height, p) == thrown
+
+
+def test_a_throw_is_confirmed_by_the_speed_that_it_loses_in_half_a_second() -> None:
+    p = Throw()
+    for after_us, lost, thrown in ((300_000, 2.6, True), (300_000, 2.4, False), (600_000, 2.6, False)):
+        state = ThrowState()
+        assert not throw.is_thrown(state, falling(-6.0, 0.0), 1_000_000, 5.0, p)
+        assert throw.is_thrown(state, falling(-6.0 + lost, 0.0), 1_000_000 + after_us, 5.0, p) == thrown
+
+
+def test_drift_turns_slower_when_it_is_fast_and_brakes_more_and_more() -> None:
+    assert drift.turn_rate(math.radians(45.0), 0.0, 3.5) == pytest.approx(3.5)
+    assert drift.turn_rate(math.radians(45.0), 90.0, 3.5) == pytest.approx(2.1)
+    state = DriftState()
+    leans = [drift.braking_lean(state, 0.0, 3.0) for _ in range(300)]
+    assert leans == sorted(leans) and leans[-1] == pytest.approx(math.radians(24.0)) == leans[-30]
+    assert drift.braking_lean(state, -0.2, 3.0) == -0.2 and state.brake == 0.0
+
+
+@given(st.floats(0.0, 1.0), st.floats(-10.0, 10.0))
+def test_drift_assists_the_throttle_around_its_middle_only(throttle: float, climb: float) -> None:
+    change = drift.assisted(throttle, climb) - throttle
+    assert -0.3 - 1e-12 <= change <= 0.3 + 1e-12 and change * climb <= 0.0
+    if abs(throttle - 0.5) > 0.29:
+        assert change == 0.0

@@ -7,11 +7,13 @@ import math
 
 import pytest
 
+from sitl.autopilot import smart_rtl_path
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.auto import AUTO
 from sitl.autopilot.copter.modes.brake import BRAKE
 from sitl.autopilot.copter.modes.circle import CIRCLE
+from sitl.autopilot.copter.modes.drift import DRIFT
 from sitl.autopilot.copter.modes.flip import FLIP
 from sitl.autopilot.copter.modes.follow import FOLLOW
 from sitl.autopilot.copter.modes.guided import GUIDED
@@ -19,8 +21,11 @@ from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.poshold import POSHOLD
 from sitl.autopilot.copter.modes.rtl import RTL
+from sitl.autopilot.copter.modes.smart_rtl import SMART_RTL
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
 from sitl.autopilot.copter.modes.table import NAMES
+from sitl.autopilot.copter.modes.throw import THROW
+from sitl.autopilot.copter.modes.zigzag import ZIGZAG
 from sitl.autopilot.events import FOLLOW_OFF, MODE_CHANGED, MODE_REFUSED
 from sitl.autopilot.modes import (
     ACCEPTED,
@@ -34,7 +39,7 @@ from sitl.autopilot.modes import (
 )
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
-ALL = tuple(number for number in NAMES if number != FLIP)
+ALL = tuple(number for number in NAMES if number not in (FLIP, SMART_RTL, THROW))
 
 
 @pytest.mark.parametrize("number", ALL)
@@ -58,7 +63,7 @@ def test_in_flight_without_position_only_modes_that_do_without(flying, number):
     ap = flying.autopilot
     ap.modes.mission_count, ap.estimate.position_ok = 5, 0
     ap.params.FOLL_ENABLE = 1.0
-    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, POSHOLD, BRAKE, FOLLOW)
+    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, DRIFT, POSHOLD, BRAKE, FOLLOW, ZIGZAG)
     assert set_mode.request(flying, number, REASON_GCS) == (REQUIRES_POSITION if needs else ACCEPTED)
 
 
@@ -111,6 +116,21 @@ def test_follow_has_to_be_enabled(vehicle):
 def test_rtl_needs_a_home_in_flight(flying):
     flying.autopilot.home.is_set = 0
     assert set_mode.request(flying, RTL, REASON_GCS) == INIT_FAILED
+
+
+def test_smart_rtl_needs_a_path(flying):
+    assert set_mode.request(flying, SMART_RTL, REASON_GCS) == INIT_FAILED
+    ap = flying.autopilot
+    smart_rtl_path.begin(ap.modes.path, ap.estimate.pos, True, flying.time_us, ap.params.SRTL)
+    ap.estimate.position_ok = 0
+    assert set_mode.request(flying, SMART_RTL, REASON_GCS) == REQUIRES_POSITION
+    ap.estimate.position_ok = 1
+    assert set_mode.request(flying, SMART_RTL, REASON_GCS) == ACCEPTED
+
+
+def test_a_throw_begins_disarmed(vehicle, flying):
+    assert set_mode.request(vehicle, THROW, REASON_GCS) == ACCEPTED
+    assert set_mode.request(flying, THROW, REASON_GCS) == INIT_FAILED
 
 
 def test_stabilize_on_the_ground_with_raised_throttle_is_refused(flying):

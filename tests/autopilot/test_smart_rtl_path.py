@@ -8,12 +8,12 @@ import math
 
 import pytest
 
+from sitl.autopilot import smart_rtl_path as srtl
 from sitl.autopilot.events import PATH_LOST
-from sitl.autopilot.rover import smart_rtl_path as srtl
-from sitl.autopilot.rover.modes.state import PathState
+from sitl.autopilot.params.system import SmartRtl
 from sitl.autopilot.rover.modes.update import keep_path
-from sitl.autopilot.rover.parameters.driving import SmartRtl
-from sitl.core.vectors import Vec2
+from sitl.autopilot.state import PathState
+from sitl.core.vectors import Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 ACCURACY = 2.0
@@ -22,7 +22,7 @@ Way = list[tuple[float, float]]
 
 
 def points(path: PathState) -> Way:
-    return [tuple(srtl.point(path, k)) for k in range(path.points)]  # type: ignore[misc]
+    return [(float(path.n[k]), float(path.e[k])) for k in range(path.points)]
 
 
 def driven(way: Way, accuracy: float = ACCURACY) -> PathState:
@@ -30,7 +30,7 @@ def driven(way: Way, accuracy: float = ACCURACY) -> PathState:
     path, params = PathState(), SmartRtl()
     params.ACCURACY, params.POINTS = accuracy, 300.0
     for place in way:
-        assert srtl.add(path, Vec2(*place), params)
+        assert srtl.add(path, Vec3(*place, 0.0), params)
         srtl.keep_room(path, params)
     return path
 
@@ -39,7 +39,7 @@ def armed_at(way: Way, **params: float) -> Rover:
     """A rover that was armed at the first point and has been at the others."""
     rover = Rover(**params)
     rover.ap.estimate.pos = (*way[0], 0.0)
-    srtl.begin(rover.ap.modes.path, rover.ap.estimate, rover.v.time_us, rover.ap.params.SRTL)
+    srtl.begin(rover.ap.modes.path, Vec3(*way[0], 0.0), True, rover.v.time_us, rover.ap.params.SRTL)
     for n, e in way[1:]:
         rover.ap.estimate.pos = (n, e, 0.0)
         rover.v.time_us += 340_000
@@ -72,10 +72,10 @@ def test_simplified_path_stays_within_half_the_accuracy() -> None:
     way = [(2.0 * k, 15.0 * math.sin(0.1 * k)) for k in range(49)]
     path = driven(way)
     srtl.simplify(path, ACCURACY)
-    kept = [Vec2(*place) for place in points(path)]
+    kept = [Vec3(*place, 0.0) for place in points(path)]
     assert 2 < len(kept) < 30
     for place in way:
-        nearest = min(srtl.stretch_distance(Vec2(*place), a, b) for a, b in itertools.pairwise(kept))
+        nearest = min(srtl.stretch_distance(Vec3(*place, 0.0), a, b) for a, b in itertools.pairwise(kept))
         assert nearest <= 1.0 + 1e-9
 
 
@@ -126,3 +126,14 @@ def test_the_last_point_goes_first() -> None:
     path = driven([(2.0 * k, 0.0) for k in range(4)])
     srtl.drop_last(path)
     assert points(path) == [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]
+
+
+def test_heights_count() -> None:
+    path, params = PathState(), SmartRtl()
+    params.ACCURACY, params.POINTS = ACCURACY, 300.0
+    corners = [(0.0, 0.0, 0.0), (0.0, 0.0, -20.0), (10.0, 0.0, -20.0), (10.0, 0.0, -4.0)]
+    way = [Vec3(0.0, 0.0, -2.0 * k) for k in range(11)] + [Vec3(2.0 * k, 0.0, -20.0) for k in range(1, 6)]
+    for place in way + [Vec3(10.0, 0.0, 2.0 * k - 20.0) for k in range(1, 9)]:
+        assert srtl.add(path, place, params)
+    srtl.clean_up(path, ACCURACY)
+    assert [tuple(srtl.point(path, k)) for k in range(path.points)] == corners

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The path that SMART_RTL drives back (SRTL_ACCURACY, SRTL_POINTS): where the vehicle has been since it was armed.
+"""The path that SMART_RTL goes back (SRTL_ACCURACY, SRTL_POINTS): where the vehicle has been since it was armed.
 
 A point is kept when it is SRTL_ACCURACY from the last one. Fifty new points, or little room, and the path is simplified
 (Ramer, Douglas and Peucker: points near the line between their neighbours go); when that is not enough, and before the
-way home begins, loops are cut out where two stretches of the path come close. The first point is home. Points are NE
-metres from the EKF origin.
+way home begins, loops are cut out where two stretches of the path come close. The first point is home. Points are NED
+metres from the EKF origin; a rover's are all at 0 down.
 """
 
 from __future__ import annotations
@@ -12,17 +12,18 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...core.algebra import dot2, horizontal
-from ...core.kernels import law
-from ...core.scalars import constrain, finite
-from ...core.vectors import Vec2
-from ..events import PATH_LOST, Events, emit
-from ..state import Estimate
-from .modes.state import PATH_POINTS, PathState
-from .parameters.driving import SmartRtl
+from ..core.algebra import dot, finite_vector
+from ..core.kernels import law
+from ..core.scalars import constrain
+from ..core.vectors import Vec3
+from .events import PATH_LOST, PATH_LOW, Events, emit
+from .params.system import SmartRtl
+from .state import PATH_POINTS, PathState
 
 TIMEOUT_US = 15_000_000
 """Without a position or without room for so long, the path is given up."""
+TOLD_US = 10_000_000
+"""How often it is said that there is little room."""
 NEW_POINTS, NEW_POINTS_MIN, MARGIN = 50, 10, 10
 """New points that start a simplification; fewer do when less than MARGIN room is left."""
 EPSILON_RATIO = 0.5
@@ -32,6 +33,13 @@ LOOP_RATIO = 0.99
 
 # Why the path was given up (PATH_LOST)
 BAD_POSITION, FULL = 0, 1
+LOW_TEXT = "SmartRTL Low on space!"
+_LOST = {BAD_POSITION: "bad position", FULL: "buffer full"}
+
+
+def lost_text(reason: int) -> str:
+    """Status text (MAV_SEVERITY_WARNING) of PATH_LOST."""
+    return f"SmartRTL deactivated: {_LOST[reason]}"
 
 
 class Farthest(NamedTuple):
@@ -45,7 +53,7 @@ class Meeting(NamedTuple):
     """Where two stretches of the path come closest."""
 
     distance: float  # [m]
-    place: Vec2  # in the middle between them [m]
+    place: Vec3  # in the middle between them [m]
 
 
 @law
@@ -55,31 +63,39 @@ def capacity(params: SmartRtl) -> int:
 
 
 @law
-def point(path: PathState, k: int) -> Vec2:
-    """Point ``k`` of the path [m]."""
-    return Vec2(path.n[k], path.e[k])
+def length(v: Vec3) -> float:
+    """Of a vector [m]."""
+    return math.hypot(math.hypot(v.x, v.y), v.z)
 
 
 @law
-def set_point(path: PathState, k: int, place: Vec2) -> None:
+def point(path: PathState, k: int) -> Vec3:
+    """Point ``k`` of the path [m]."""
+    return Vec3(path.n[k], path.e[k], path.d[k])
+
+
+@law
+def set_point(path: PathState, k: int, place: Vec3) -> None:
     """Write point ``k`` of the path [m]."""
     path.n[k] = place.x
     path.e[k] = place.y
+    path.d[k] = place.z
 
 
 @law
-def begin(path: PathState, estimate: Estimate, time_us: int, params: SmartRtl) -> None:
-    """On arming: forget the path; it begins here, if there is a position."""
+def begin(path: PathState, place: Vec3, position_ok: bool, time_us: int, params: SmartRtl) -> None:
+    """On arming: forget the path; it begins at ``place``, NED [m], if that is known (``position_ok``)."""
     path.points = 0
     path.simplified = 0
     path.active = False
     path.home_saved = False
-    if not estimate.position_ok or capacity(params) == 0 or params.ACCURACY <= 0.0:
+    path.told_us = 0
+    if not position_ok or capacity(params) == 0 or params.ACCURACY <= 0.0:
         return
     path.good_us = time_us
     path.saved_us = time_us
     path.active = True
-    path.home_saved = add(path, horizontal(estimate.pos), params)
+    path.home_saved = add(path, place, params)
 
 
 @law
@@ -90,30 +106,32 @@ def give_up(path: PathState, events: Events, time_us: int, reason: int) -> None:
 
 
 @law
-def record(path: PathState, estimate: Estimate, events: Events, time_us: int, params: SmartRtl) -> None:
-    """Three times a second, unless on the way home: note the position and keep room."""
+def record(path: PathState, place: Vec3, position_ok: bool, events: Events, time_us: int, params: SmartRtl) -> None:
+    """Three times a second, unless on the way home: note the place, NED [m], if it is known, and keep room."""
     if not path.active:
         return
-    if not estimate.position_ok:
+    if not position_ok:
         if time_us - path.good_us > TIMEOUT_US:
             give_up(path, events, time_us, BAD_POSITION)
         return
     path.good_us = time_us
-    if add(path, horizontal(estimate.pos), params):
+    if add(path, place, params):
         path.saved_us = time_us
     elif time_us - path.saved_us > TIMEOUT_US:
         give_up(path, events, time_us, FULL)
     keep_room(path, params)
+    if is_tight(path, params) and (path.told_us == 0 or time_us - path.told_us >= TOLD_US):
+        path.told_us = time_us
+        emit(events, time_us, PATH_LOW, 0.0, 0.0)
 
 
 @law
-def add(path: PathState, place: Vec2, params: SmartRtl) -> bool:
+def add(path: PathState, place: Vec3, params: SmartRtl) -> bool:
     """Append a point [m]; False when there is no room. A point near the last one needs none."""
-    if not finite(place.x + place.y):
+    if not finite_vector(place):
         return True
     if path.points > 0:
-        away = place - point(path, path.points - 1)
-        if math.hypot(away.x, away.y) < params.ACCURACY:
+        if length(place - point(path, path.points - 1)) < params.ACCURACY:
             return True
     if path.points >= capacity(params):
         return False
@@ -130,10 +148,16 @@ def drop_last(path: PathState) -> None:
 
 
 @law
+def is_tight(path: PathState, params: SmartRtl) -> bool:
+    """Whether little room is left."""
+    return capacity(params) - path.points <= MARGIN
+
+
+@law
 def keep_room(path: PathState, params: SmartRtl) -> None:
     """Simplify now and then; cut loops only when that leaves little room."""
     fresh = path.points - path.simplified
-    tight = capacity(params) - path.points <= MARGIN
+    tight = is_tight(path, params)
     if fresh >= NEW_POINTS or (tight and fresh >= NEW_POINTS_MIN):
         simplify(path, params.ACCURACY)
     elif tight:
@@ -142,26 +166,25 @@ def keep_room(path: PathState, params: SmartRtl) -> None:
 
 @law
 def clean_up(path: PathState, accuracy: float) -> None:
-    """Before the way home: the shortest path that has been driven, to ``accuracy`` [m]."""
+    """Before the way home: the shortest path that it has been along, to ``accuracy`` [m]."""
     simplify(path, accuracy)
     cut_loops(path, accuracy)
 
 
 @law
-def ratio_along(p: Vec2, a: Vec2, b: Vec2) -> float:
+def ratio_along(p: Vec3, a: Vec3, b: Vec3) -> float:
     """Where on the stretch a .. b the point nearest to p is: 0 .. 1."""
     line = b - a
-    square = dot2(line, line)
+    square = dot(line, line)
     if square > 0.0:
-        return constrain(dot2(p - a, line) / square, 0.0, 1.0)
+        return constrain(dot(p - a, line) / square, 0.0, 1.0)
     return 0.0
 
 
 @law
-def stretch_distance(p: Vec2, a: Vec2, b: Vec2) -> float:
+def stretch_distance(p: Vec3, a: Vec3, b: Vec3) -> float:
     """Distance [m] of the point p from the stretch a .. b."""
-    away = p - a - ratio_along(p, a, b) * (b - a)
-    return math.hypot(away.x, away.y)
+    return length(p - a - ratio_along(p, a, b) * (b - a))
 
 
 @law
@@ -205,10 +228,9 @@ def simplify(path: PathState, accuracy: float) -> None:
 
 
 @law
-def meeting(p: Vec2, q: Vec2) -> Meeting:
+def meeting(p: Vec3, q: Vec3) -> Meeting:
     """Of two points [m]."""
-    away = p - q
-    return Meeting(math.hypot(away.x, away.y), 0.5 * (p + q))
+    return Meeting(length(p - q), 0.5 * (p + q))
 
 
 @law
@@ -220,11 +242,11 @@ def nearest(path: PathState, j: int, i: int) -> Meeting:
     a, c = point(path, j - 1), point(path, i - 1)
     b, d = point(path, j), point(path, i)
     u, w, r = b - a, d - c, a - c
-    uu, uw, ww = dot2(u, u), dot2(u, w), dot2(w, w)
+    uu, uw, ww = dot(u, u), dot(u, w), dot(w, w)
     det = uu * ww - uw * uw
     if i == j + 1 or det <= 1e-9 * uu * ww:
         return meeting(d, a + ratio_along(d, a, b) * u)
-    ur, wr = dot2(u, r), dot2(w, r)
+    ur, wr = dot(u, r), dot(w, r)
     s = constrain((uw * wr - ww * ur) / det, 0.0, 1.0)
     t = constrain((uu * wr - uw * ur) / det, 0.0, 1.0)
     return meeting(a + s * u, c + t * w)
@@ -247,7 +269,7 @@ def cut_loops(path: PathState, accuracy: float) -> None:
 
 
 @law
-def replace(path: PathState, first: int, last: int, place: Vec2) -> None:
+def replace(path: PathState, first: int, last: int, place: Vec3) -> None:
     """Put ``place`` [m] where the points ``first`` .. ``last`` were."""
     set_point(path, first, place)
     for k in range(last + 1, path.points):
