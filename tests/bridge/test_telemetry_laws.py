@@ -192,7 +192,7 @@ def test_the_shell_asks_physics_that_is_elsewhere() -> None:
     truth = Carried((1.0, 0.0, 0.0, 0.0), (0.25, 0.0, 0.0), 7, 8, 9, (0, 0, 0), (0, 0, -1000))
     here: Any = SimpleNamespace(has_truth_in_record=True)
     there: Any = SimpleNamespace(has_truth_in_record=False, truth=lambda: truth)
-    assert set(shell_builders(here)) == {"AUTOPILOT_VERSION", "COMPONENT_METADATA", "HIGH_LATENCY2"}
+    assert set(shell_builders(here)) == {"AUTOPILOT_VERSION", "COMPONENT_METADATA", "HIGH_LATENCY2", "RELAY_STATUS"}
     m = message("SIMSTATE").decode(shell_builders(there)["SIMSTATE"](there, load("copter")))
     assert (m.xgyro, m.lat, m.lng) == (0.25, 7, 8)
 

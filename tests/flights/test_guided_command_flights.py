@@ -159,3 +159,14 @@ def test_take_off_edge_cases(core: Core) -> None:
     assert p.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "in the air"
     p.set_mode(LAND)
     p.wait_disarmed(20.0)
+
+
+def test_avoid_adsb_stops_and_holds_and_takes_no_set_points(core: Core) -> None:
+    p = Aviator(core).hover(10.0)
+    stream(p, 4.0, VELOCITY, vx=4.0)
+    assert p.vel[0] > 3.0
+    assert p.set_mode(19)
+    p.fly(6.0)
+    place = p.pos.copy()
+    stream(p, 4.0, VELOCITY, vx=4.0)
+    assert np.linalg.norm(p.pos - place) < 0.5 and p.mode == 19

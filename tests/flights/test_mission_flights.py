@@ -274,7 +274,7 @@ def test_spline_waypoints(core: Core) -> None:
     assert times == pytest.approx([8.95, 15.3, 23.55, 30.75, 37.4, 50.7, 59.95], rel=0.05)
     rows = p.since(0.0)
     speeds = [float(np.linalg.norm(rows[np.argmin(np.abs(rows[:, 0] - p.reached_at(seq))), 4:6])) for seq in (2, 3, 4)]
-    assert speeds == pytest.approx([6.98, 9.11, 3.88], rel=0.05)
+    assert speeds == pytest.approx([6.98, 9.11, 3.88], abs=0.25)  # it speeds up there by 1 m/s each second
     lowest = [
         float(
             np.linalg.norm(rows[(rows[:, 0] > p.reached_at(a)) & (rows[:, 0] < p.reached_at(a + 1)), 4:6], axis=1).min()

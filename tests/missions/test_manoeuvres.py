@@ -63,6 +63,11 @@ def test_the_rule(unit: str, ours: float, theirs: float, agrees: bool) -> None:
     assert Row("flight", "figure", unit, ours, theirs).agrees == agrees
 
 
+def test_the_rule_without_short_times_and_small_angles() -> None:
+    cases = (("s", 1.06, 1.0), ("m", 0.4, 0.0), ("deg", 0.9, 0.1), ("s", 1.04, 1.0), ("s", math.nan, math.nan))
+    assert [table.within(Row("flight", "figure", *case)) for case in cases] == [False, True, False, True, True]
+
+
 def test_kept_figures_are_json_and_the_table_is_markdown() -> None:
     figures = {"a": {"time": (1.23456, "s"), "never": (math.nan, "m")}}
     kept = json.loads(table.as_json("4.7", "2026-01-02", figures))

@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from ..bridge import Bridge
 
 
-MAG_CAL_REPORT = message("MAG_CAL_REPORT")
-CALIBRATED = 4
-"""MAG_CAL_SUCCESS"""
 HOME_POSITION, AUTOPILOT_VERSION = message("HOME_POSITION").id, message("AUTOPILOT_VERSION").id
 
 
@@ -119,17 +116,18 @@ def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def calibrate_compass(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42424: the simulated compass needs none: success is reported at once, with offsets of zero."""
-    if bridge.autopilot.armed():
-        bridge.get(StatusTextService).say(NOTICE, "Disarm to allow calibration")
-        return FAILED
-    fields = {"cal_mask": 1, "cal_status": CALIBRATED, "autosaved": 1, "fitness": 0.0}
-    channel.send(MAG_CAL_REPORT, MAG_CAL_REPORT.payload(**fields))
-    return ACCEPTED
+    """42424: FAILED: calibrations by turning the vehicle are not simulated, and the first compass has no offsets."""
+    bridge.get(StatusTextService).say(NOTICE, "Compass calibration is not simulated")
+    return FAILED
 
 
-def end_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42425, 42426: accepted or cancelled: the calibration has ended already."""
+def accept_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42425: FAILED, as in ArduPilot while no calibration is complete."""
+    return FAILED
+
+
+def cancel_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42426: ACCEPTED, as in ArduPilot: none is under way."""
     return ACCEPTED
 
 
@@ -298,8 +296,8 @@ COMMANDS: dict[int, Entry] = {
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
     42424: Entry(calibrate_compass),
-    42425: Entry(end_compass_calibration),
-    42426: Entry(end_compass_calibration),
+    42425: Entry(accept_compass_calibration),
+    42426: Entry(cancel_compass_calibration),
     42428: Entry(send_banner),
     42651: Entry(reset_battery, required=(1, 2)),
     410: Entry(get_home),

@@ -82,7 +82,8 @@ def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) 
         "(the firmware's defaults and those of our airframe), in simulated time; the real one's figures are kept in",
         "`sitl/missions/reference/`, so that `python -m sitl.missions.manoeuvres` compares without it.",
         f"\n{table.RULE}\n",
-        f"**{table.summary(every)}.**",
+        f"**{table.summary(every)}**; by {table.PERCENT:g} % or {table.CLOSE['m']:g} m alone "
+        f"{sum(map(table.within, every))} do, most others being times below {table.SHORT_S:g} s.",
     ]
     for kind, part in found.items():
         parts.append(f"\n### {kind.title()}: {table.summary(part)}, beside {described[kind]}\n")

@@ -54,6 +54,12 @@ class Row:
         return abs(self.percent) <= PERCENT or abs(self.ours - self.theirs) <= close
 
 
+def within(row: Row) -> bool:
+    """By the percentage and the distance alone."""
+    never = math.isnan(row.ours) and math.isnan(row.theirs)
+    return never or abs(row.percent) <= PERCENT or (row.unit == "m" and abs(row.ours - row.theirs) <= CLOSE["m"])
+
+
 def rows(ours: Mapping[str, Figures], theirs: Mapping[str, Figures]) -> list[Row]:
     """All figures that both have, flight by flight."""
     return [

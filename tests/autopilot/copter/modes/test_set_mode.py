@@ -11,6 +11,7 @@ from sitl.autopilot import smart_rtl_path
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.auto import AUTO
+from sitl.autopilot.copter.modes.avoid_adsb import AVOID_ADSB
 from sitl.autopilot.copter.modes.brake import BRAKE
 from sitl.autopilot.copter.modes.circle import CIRCLE
 from sitl.autopilot.copter.modes.drift import DRIFT
@@ -63,7 +64,7 @@ def test_in_flight_without_position_only_modes_that_do_without(flying, number):
     ap = flying.autopilot
     ap.modes.mission_count, ap.estimate.position_ok = 5, 0
     ap.params.FOLL_ENABLE = 1.0
-    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, DRIFT, POSHOLD, BRAKE, FOLLOW, ZIGZAG)
+    needs = number in (AUTO, GUIDED, LOITER, RTL, CIRCLE, DRIFT, POSHOLD, BRAKE, AVOID_ADSB, FOLLOW, ZIGZAG)
     assert set_mode.request(flying, number, REASON_GCS) == (REQUIRES_POSITION if needs else ACCEPTED)
 
 
