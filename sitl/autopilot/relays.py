@@ -11,8 +11,8 @@ from .params.table import Values
 RELAYS = 6
 PINS = 15
 """So many bits SIM_PIN_MASK has."""
-SWITCH = 1
-"""RELAYn_FUNCTION of a relay for commands and missions."""
+SWITCH, CAMERA = 1, 4
+"""RELAYn_FUNCTION of a relay for commands and missions, and of one that triggers the camera."""
 OFF_AT_BOOT, ON_AT_BOOT = 0, 1
 """RELAYn_DEFAULT; any other leaves it."""
 MASK = "SIM_PIN_MASK"
@@ -23,7 +23,7 @@ MEANINGS = {
         f"RELAY{n}_{name}": doc.format(n=n)
         for n in range(1, RELAYS + 1)
         for name, doc in (
-            ("FUNCTION", "1: relay {n} is there for commands and missions; 0: it is not"),
+            ("FUNCTION", "1: relay {n} is there for commands and missions; 4: it triggers the camera; 0: neither"),
             ("PIN", "Pin of relay {n}, 0 to 14; -1 none"),
             ("DEFAULT", "Relay {n} at boot: 0 off, 1 on, 2 as it was"),
             ("INVERTED", "1: the pin of relay {n} is low when the relay is on"),
@@ -60,6 +60,11 @@ def switch(values: Values, relay: int, on: bool) -> None:
 def fitted(values: Values) -> list[int]:
     """Those that are there."""
     return [relay for relay in range(RELAYS) if is_fitted(values, relay)]
+
+
+def of_camera(values: Values) -> list[int]:
+    """Those that trigger the camera."""
+    return [relay for relay in range(RELAYS) if values[f"RELAY{relay + 1}_FUNCTION"] == CAMERA]
 
 
 def power_on(values: Values) -> None:

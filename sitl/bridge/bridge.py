@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from ..autopilot.mission.item import MissionItem
+from ..autopilot.mission.item import CAMERA_COMMANDS, MissionItem
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -22,6 +22,7 @@ from .links.link import Link
 from .places import Places
 from .profile import load
 from .services import all_services
+from .services.camera import CameraService
 from .services.commands import Grants
 from .services.log_download import LogStore
 from .services.mission import MissionService
@@ -109,6 +110,9 @@ class Bridge:
             self.services[kind] = service
             for name, handler in service.handlers().items():
                 self._add_handler(name, handler)
+            for name, build in service.messages().items():
+                self.by_shell[message(name).id] = build
+                self.telemetry[message(name).id] = message(name)
         self._signing: SigningService = self.get(SigningService)
         self.board.signer = self._signing
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
@@ -502,8 +506,8 @@ class Bridge:
             self.flush()
 
     def carry_out(self, item: MissionItem) -> None:
-        """Do what a mission asks of servo outputs and relays."""
-        self.get(OutputService).carry_out(item)
+        """Do what a mission asks of servo outputs, relays and the camera."""
+        self.get(CameraService if item.command in CAMERA_COMMANDS else OutputService).carry_out(item)
 
     def say_pending(self) -> None:
         """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""

@@ -18,6 +18,7 @@ from .bridge import Bridge
 from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
+from .services.camera import CameraService
 from .services.streams import RATE_PREFIX
 from .telemetry.shell import SHELL_BUILDERS
 from .wire.choose import message_of
@@ -114,10 +115,14 @@ def received() -> str:
     return _table(("service", "messages"), rows)
 
 
+BY_SERVICES: dict[str, Callable[..., Any]] = {"CAMERA_FEEDBACK": CameraService.feedback}
+"""What services build, by the message's name; some vehicles have none of it."""
+
+
 def telemetry(profile: Profile) -> dict[str, str]:
     """Content of every message of telemetry, by name."""
     laws: dict[str, Callable[..., Any]] = {message_of(law).kind.name: law for law in profile.core.builders}
-    return {name: _content(builder, name) for name, builder in (SHELL_BUILDERS | laws).items()}
+    return {name: _content(builder, name) for name, builder in (BY_SERVICES | SHELL_BUILDERS | laws).items()}
 
 
 def sent() -> str:

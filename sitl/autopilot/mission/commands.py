@@ -69,7 +69,7 @@ class Commands(ABC, Generic[V]):
             nav.condition_distance = item.p1
         elif item.command == commands.DO_SET_HOME:
             set_home(v.autopilot, item)
-        elif item.command in commands.OUTPUT_COMMANDS:
+        elif item.command in commands.OUTPUT_COMMANDS or item.command in commands.CAMERA_COMMANDS:
             return [OutputItem(item)]
         return []
 

@@ -124,18 +124,20 @@ COMMANDS = {
 CAMERA_COMMANDS = (
     DO_DIGICAM_CONFIGURE,
     DO_DIGICAM_CONTROL,
-    DO_MOUNT_CONTROL,
     DO_SET_CAM_TRIGG_DIST,
-    DO_GIMBAL_MANAGER_PITCHYAW,
     IMAGE_START_CAPTURE,
     IMAGE_STOP_CAPTURE,
+)
+DEVICE_COMMANDS = (
+    DO_MOUNT_CONTROL,
+    DO_GIMBAL_MANAGER_PITCHYAW,
     VIDEO_START_CAPTURE,
     VIDEO_STOP_CAPTURE,
+    DO_GRIPPER,
+    DO_SPRAYER,
+    DO_WINCH,
 )
-"""Taken, as surveys hold them, and without effect: no vehicle here has a camera."""
-
-DEVICE_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
-"""Likewise: no vehicle here has a gripper, a sprayer or a winch."""
+"""Taken, and without effect: no vehicle here has a gimbal, a video camera, a gripper, a sprayer or a winch."""
 OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""

@@ -38,7 +38,7 @@ class CurrentChanged:
 
 @dataclass(frozen=True, slots=True)
 class OutputItem:
-    """A do-command about servo outputs or relays, to be carried out now."""
+    """A do-command about servo outputs, relays or the camera, to be carried out now."""
 
     item: MissionItem
 

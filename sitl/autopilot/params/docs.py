@@ -27,7 +27,7 @@ def page(firmware: str, table: Table) -> str:
         lines.append(f"| {p.name} | {default} | {p.low:g} .. {p.high:g} | {p.unit} | {p.doc} |")
     read = [p for p in table if p.doc and not p.has_effect]
     if read:
-        lines += ["", "## Outputs", "", "| name | default | type | meaning |", "|---|---|---|---|"]
+        lines += ["", "## Outputs and camera", "", "| name | default | type | meaning |", "|---|---|---|---|"]
         lines += [f"| {p.name} | {format_value(p, stored(p, p.default))} | {p.kind} | {p.doc} |" for p in read]
     others = [p for p in table if not p.has_effect and not p.doc]
     if others:

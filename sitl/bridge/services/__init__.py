@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """MAVLink's microservices (https://mavlink.io/en/services/)."""
 
+from .camera import CameraService
 from .commands import CommandService
 from .config_error import ConfigErrorService
 from .ftp import FtpService
@@ -35,6 +36,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     FtpService,
     LogDownloadService,
     OutputService,
+    CameraService,
     SigningService,
 )
 """In the order in which they act when several are due at the same time."""

@@ -14,6 +14,7 @@ from ...autopilot.aux_switch import LOW
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
+from .camera import CameraService
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
 from .high_latency import HighLatencyService
 from .home import HomeService
@@ -223,6 +224,36 @@ MANY = 32767.0
 """Times that something can be repeated."""
 
 
+def configure_camera(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """202: with CAM1_TYPE 5 passed on to other components of the vehicle; else no effect."""
+    c = command
+    bridge.get(CameraService).configure((c.p1, c.p2, c.p3, c.p4, c.p5, c.p6, c.z))
+    return ACCEPTED
+
+
+def control_camera(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """203: p5 1 takes a picture; with CAM1_TYPE 5 passed on to other components; no effect without a camera."""
+    c = command
+    bridge.get(CameraService).control((c.p1, c.p2, c.p3, c.p4, c.p5, c.p6))
+    return ACCEPTED
+
+
+def set_camera_distance(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """206: a picture each p1 [m] (0: none), p3 1 one at once; no effect without a camera."""
+    bridge.get(CameraService).set_distance(command.p1, command.p3 == 1.0)
+    return ACCEPTED
+
+
+def start_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """2000: p1 camera (0 all, 1), p2 interval [s], p3 pictures (0 for ever; if p2 is 0, one); FAILED without camera."""
+    return int(bridge.get(CameraService).start(command.p1, command.p2, command.p3))
+
+
+def stop_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """2001: p1 camera (0 all, 1): ends what 2000 began."""
+    return int(bridge.get(CameraService).stop(command.p1))
+
+
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
     """192: go to a place in GUIDED; p1 speed, p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
@@ -304,6 +335,8 @@ COMMANDS: dict[int, Entry] = {
     510: Entry(get_interval, required=(1,)),
     511: Entry(set_interval, required=(1, 2)),
     512: Entry(request_message, required=(1,)),
+    2000: Entry(start_pictures),
+    2001: Entry(stop_pictures),
     2600: Entry(control_high_latency, required=(1,)),
     520: Entry(request_version, required=(1,)),
     20: Entry(return_to_launch),
@@ -314,6 +347,9 @@ COMMANDS: dict[int, Entry] = {
     183: Entry(set_servo, required=(1, 2)),
     184: Entry(repeat_servo, required=(1, 2, 3, 4)),
     192: Entry(reposition, required=(5, 6, 7), place=True, int_only=True),
+    202: Entry(configure_camera),
+    203: Entry(control_camera),
+    206: Entry(set_camera_distance, required=(1,)),
     218: Entry(aux_function, required=(1, 2)),
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),

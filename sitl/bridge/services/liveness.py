@@ -11,17 +11,39 @@ from __future__ import annotations
 from typing import Any
 
 from ..channel import Channel
-from ..dialect import message
+from ..dialect import MessageType, message
 from .service import Handler, Sender, Service
 
 
 class HeartbeatService(Service):
     """Heartbeats of ground stations (https://mavlink.io/en/services/heartbeat.html); our own is a stream."""
 
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._channels: frozenset[int] = frozenset()
+        """Numbers of channels on which other components of our own system were heard."""
+
+    def snapshot(self) -> frozenset[int]:
+        return self._channels
+
+    def restore(self, state: frozenset[int]) -> None:
+        self._channels = state
+
+    def channel_removed(self, channel: Channel) -> None:
+        self._channels -= {channel.number}
+
+    def to_components(self, kind: MessageType, payload: bytes) -> None:
+        """Send to every other component of our own system that has been heard, once a channel."""
+        for channel in self.bridge.channels:
+            if channel.number in self._channels:
+                channel.send(kind, payload)
+
     def handlers(self) -> dict[str, Handler]:
         return {"HEARTBEAT": self._heartbeat}
 
     def _heartbeat(self, channel: Channel, message: Any, sender: Sender) -> None:
+        if sender[0] == self.bridge.system:
+            self._channels |= {channel.number}
         if sender[0] == self.bridge.ground_station:
             self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
 

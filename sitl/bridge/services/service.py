@@ -32,6 +32,10 @@ class Service:
         """Messages that this service acts on, by name. Messages for other systems do not arrive here."""
         return {}
 
+    def messages(self) -> dict[str, Callable[[], bytes]]:
+        """Telemetry that it builds, by name: functions that give the payload now."""
+        return {}
+
     def channel_added(self, channel: Channel) -> None:
         """A client appeared."""
 

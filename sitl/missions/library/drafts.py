@@ -101,7 +101,7 @@ def copter_drafts() -> dict[str, Draft]:
             polygons=(FencePolygon(tuple(degrees(*p) for p in ((-50, -50), (60, -50), (60, 60), (-50, 60)))),),
             rally=(RallyPoint(degrees(-10, 0), 15.0),),
         ),
-        "photo_points": copter("Four places with a picture at each: camera commands, which do nothing here")
+        "photo_points": copter("Four places with a picture at each: camera commands, for a camera (CAM1_TYPE)")
         .take_off(UP).to((12, 0), z=UP, wait=1.0).add(c.IMAGE_START_CAPTURE, 0, 0, 1)
         .to((12, 12), z=UP, wait=1.0).add(c.IMAGE_START_CAPTURE, 0, 0, 1)
         .to((0, 12), z=UP, wait=1.0).add(c.DO_DIGICAM_CONTROL).to((0, 0), z=UP, wait=1.0).land(),

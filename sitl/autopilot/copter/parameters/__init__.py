@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.records import Floats, Records
+from ... import camera, relays
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
@@ -14,7 +15,6 @@ from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
-from ...relays import MEANINGS
 from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
@@ -127,4 +127,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
+from ... import camera, relays
 from ...params import parameters as shared
 from ...params.estimator import Ekf3
 from ...params.follow import Follow
@@ -17,7 +18,6 @@ from ...params.registered import with_registered
 from ...params.simulation import Simulated
 from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
-from ...relays import MEANINGS
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
 from .safety import Battery, Failsafes
@@ -77,4 +77,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), MEANINGS)
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
