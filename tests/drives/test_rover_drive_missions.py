@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from sitl.autopilot.mission import item as c
+from sitl.core.geodesy import METRES_PER_DEGE7
 from sitl.simulation import Core
 from tests.drives import rover_driver as rover
 from tests.drives.rover_driver import Driver, outside, path_error, square
@@ -289,3 +290,27 @@ def test_servo_outputs_and_relays(core: Core) -> None:
     assert [row[1:] for row in seen[1:]] == steps
     assert [row[0] - begun for row in seen[1:]] == pytest.approx([0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5], abs=0.06)
     assert {3, 5, 7} <= set(d.reached)
+
+
+@pytest.mark.parametrize("frame", ["ardupilot_rover", "skid_rover"])
+def test_pictures_on_the_way(core: Core, frame: str) -> None:
+    """One each 2 m, then one each 5 m, then one by command; none where no distance is asked for."""
+    d = driver(core, frame, CAM1_TYPE=1.0, SERVO9_FUNCTION=10.0, CAM1_DURATION=0.3)
+    pwm, pulses = d.simulation.v.actuators.pwm, set()
+    with d.messages("CAMERA_FEEDBACK") as pictures:
+        d.start_mission(
+            *way((4.0, 0.0)), Item(c.DO_SET_CAM_TRIGG_DIST, None, 0.0, (2.0,)), *way((24.0, 0.0)),
+            Item(c.DO_SET_CAM_TRIGG_DIST, None, 0.0, (5.0,)), *way((49.0, 0.0)),
+            Item(c.DO_SET_CAM_TRIGG_DIST, None, 0.0, (0.0,)), Item(c.IMAGE_START_CAPTURE, None, 0.0, (0.0, 0.0, 1.0)),
+            *way((54.0, 0.0)),
+        )  # fmt: skip
+        while d.now < 300.0 and not d.said("Mission Complete"):
+            d.fly(0.1)
+            pulses.add(int(pwm[8]))
+    assert d.said("Mission Complete")
+    assert [m.img_idx for m in pictures] == list(range(1, len(pictures) + 1))
+    assert pulses == {1300, 1100}
+    north = METRES_PER_DEGE7 * (np.array([m.lat for m in pictures]) - pictures[0].lat)
+    gaps = np.diff(north)
+    near, far = gaps[:8], gaps[10:-1]
+    assert near == pytest.approx(2.0, abs=0.3) and len(far) >= 2 and far == pytest.approx(5.0, abs=0.3)
