@@ -31,17 +31,17 @@ ARM, SET_MODE, TAKEOFF, START, REBOOT = 400, 176, 22, 300, 246
 MODES = {
     "copter": {
         "STABILIZE": 0, "ACRO": 1, "ALT_HOLD": 2, "AUTO": 3, "GUIDED": 4, "LOITER": 5, "RTL": 6, "CIRCLE": 7, "LAND": 9,
-        "DRIFT": 11, "FLIP": 14, "POSHOLD": 16, "BRAKE": 17, "THROW": 18, "GUIDED_NOGPS": 20, "SMART_RTL": 21,
-        "ZIGZAG": 24,
+        "DRIFT": 11, "FLIP": 14, "POSHOLD": 16, "BRAKE": 17, "THROW": 18, "AVOID_ADSB": 19,
+        "GUIDED_NOGPS": 20, "SMART_RTL": 21, "FOLLOW": 23, "ZIGZAG": 24,
     },
     "rover": {
-        "MANUAL": 0, "ACRO": 1, "STEERING": 3, "HOLD": 4, "LOITER": 5, "SIMPLE": 7, "CIRCLE": 9, "AUTO": 10,
-        "RTL": 11, "SMART_RTL": 12, "GUIDED": 15,
+        "MANUAL": 0, "ACRO": 1, "STEERING": 3, "HOLD": 4, "LOITER": 5, "FOLLOW": 6, "SIMPLE": 7, "CIRCLE": 9,
+        "AUTO": 10, "RTL": 11, "SMART_RTL": 12, "GUIDED": 15,
     },
 }  # fmt: skip
 DRAWN = {
     "copter": ("STABILIZE", "ALT_HOLD", "AUTO", "GUIDED", "LOITER", "RTL", "LAND", "BRAKE"),
-    "rover": tuple(MODES["rover"]),
+    "rover": ("MANUAL", "ACRO", "STEERING", "HOLD", "LOITER", "SIMPLE", "CIRCLE", "AUTO", "RTL", "SMART_RTL", "GUIDED"),
 }
 """Modes of random flights; a new mode is not added, so that the flights stay those of older versions."""
 KINDS = {message.msgname: message for message in mavlink.mavlink_map.values()}

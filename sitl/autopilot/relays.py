@@ -54,7 +54,9 @@ def switch(values: Values, relay: int, on: bool) -> None:
     """Switch it."""
     bit, mask = _pin_bit(values, relay), int(values[MASK])
     high = on != (values[f"RELAY{relay + 1}_INVERTED"] == 1.0)
-    values[MASK] = float(mask | bit if high else mask & ~bit)
+    switched = mask | bit if high else mask & ~bit
+    if switched != mask:
+        values[MASK] = float(switched)
 
 
 def fitted(values: Values) -> list[int]:

@@ -128,7 +128,7 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
     scenario = scenario_of(options, values)
     with CompileProgress() as progress:
         simulation = Simulation(scenario, progress=progress)
-    unknown, idle = simulation.unknown_parameters, list(simulation.parameters.kept)
+    unknown, idle = simulation.unknown_parameters, simulation.parameters.idle()
     for names, what in ((unknown, "are not in this firmware"), (idle, "have no effect here")):
         if names:
             shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")

@@ -13,7 +13,7 @@ from ..autopilot.params import files
 from ..autopilot.params.table import Table
 from ..bridge.links import Link
 from ..bridge.services.signing import SigningService
-from ..bridge.signing import WINDOW
+from ..bridge.signing import WINDOW, Signing
 from ..core.compile import Progress
 from ..errors import OptionError
 from ..logs.dataflash.log import attach
@@ -88,7 +88,8 @@ class Session:
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
         if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again
-            simulation.bridge.get(SigningService).restore(kept._replace(timestamp=kept.timestamp + WINDOW))
+            kept = kept._replace(timestamp=kept.timestamp + WINDOW)
+            simulation.bridge.get(SigningService).signing = Signing(kept)
         simulation.bridge.listeners.append(self)
         self._statistics = Statistics(simulation, self.storage.keep)
         self._awaited: Link | None = None
@@ -193,7 +194,7 @@ class Session:
             self._say(dropped.popleft())
 
     def _keep_key(self, with_time: bool = False) -> None:
-        state = self.simulation.bridge.get(SigningService).snapshot()
+        state = self.simulation.bridge.get(SigningService).signing.state()
         if state.key != self.storage.signing.key or (with_time and state.key):
             self.storage.keep_signing(state)
 

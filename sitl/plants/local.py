@@ -84,6 +84,7 @@ class LocalPlant(Plant):
         vehicle, v = self.vehicle, self.vehicle.v
         vehicle.kind.apply_sim_parameters(v)  # first the wind that blows at power-on
         vehicle.kind.init_physics(v, vehicle.airframe, self.home, self.seed)
+        vehicle.kind.apply_sim_parameters(v)  # then faults of the new sensors
         around = self.surroundings
         if around is not None:
             around.attach(v, lists_solids=self.engine is None)

@@ -133,6 +133,10 @@ class Values:
             else:
                 self.kept[name] = value
 
+    def idle(self) -> list[str]:
+        """Those that were set and do nothing here."""
+        return [name for name in self.kept if not (self.table[name].has_effect or self.table[name].doc)]
+
     def listed(self) -> tuple[Parameter, ...]:
         """Those in the list that clients get, in its order."""
         return self.table.listed(self)

@@ -53,7 +53,8 @@ class HighLatencyService(Service):
         set_interval(channel.port, HIGH_LATENCY2, every_us, self.bridge.now_us, True)
 
     def snapshot(self) -> Any:
-        return self._is_on, self._every_us
+        return self._is_on, tuple(self._every_us.items())
 
     def restore(self, state: Any) -> None:
-        self._is_on, self._every_us = state
+        self._is_on, every = state
+        self._every_us = dict(every)

@@ -49,10 +49,11 @@ class OutputService(Service):
         relays.power_on(self._values)
 
     def snapshot(self) -> Any:
-        return (self._repeat, self.due_us)
+        return (None if self._repeat is None else tuple(self._repeat), self.due_us)
 
     def restore(self, state: Any) -> None:
-        self._repeat, self.due_us = state
+        repeat, self.due_us = state
+        self._repeat = None if repeat is None else Repeat(*repeat)
 
     def carry_out(self, item: MissionItem) -> None:
         """A mission's DO_SET_SERVO, DO_REPEAT_SERVO, DO_SET_RELAY or DO_REPEAT_RELAY."""

@@ -8,7 +8,7 @@ from typing import Any
 from ..channel import Channel
 from ..dialect import message
 from ..frame import Splitter
-from ..signing import Signing, SigningState, is_signed, unsigned
+from ..signing import Signing, SigningState, Stream, is_signed, unsigned
 from .service import ERROR, Handler, Sender, Service
 from .statustext import StatusTextService
 
@@ -33,11 +33,13 @@ class SigningService(Service):
     def channel_removed(self, channel: Channel) -> None:
         self._splitters.pop(channel.number, None)
 
-    def snapshot(self) -> SigningState:
-        return self.signing.state()
+    def snapshot(self) -> Any:
+        key, timestamp, streams = self.signing.state()
+        return (key, timestamp, tuple((tuple(stream), last) for stream, last in streams))
 
-    def restore(self, state: SigningState) -> None:
-        self.signing = Signing(state)
+    def restore(self, state: Any) -> None:
+        key, timestamp, streams = state
+        self.signing = Signing(SigningState(key, timestamp, tuple((Stream(*of), last) for of, last in streams)))
 
     def follow(self, old: SigningService) -> None:
         """Keep the key over a reboot."""

@@ -78,10 +78,10 @@ class StreamService(Service):
         self._asked = {key: rate for key, rate in self._asked.items() if key[0] != channel.number}
 
     def snapshot(self) -> Any:
-        return self._asked
+        return tuple(self._asked.items())
 
     def restore(self, state: Any) -> None:
-        self._asked = state
+        self._asked = dict(state)
 
     def parameter_changed(self, name: str) -> None:
         """A MAV1_ rate parameter was set: it holds for every channel from now on."""

@@ -49,8 +49,8 @@ def check_parameters(simulation: Simulation) -> None:
     """
     if simulation.unknown_parameters:
         raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
-    if simulation.parameters.kept:
-        warnings.warn(f"no effect in this simulator: {', '.join(simulation.parameters.kept)}", stacklevel=2)
+    if idle := simulation.parameters.idle():
+        warnings.warn(f"no effect in this simulator: {', '.join(idle)}", stacklevel=2)
 
 
 class InProcessVehicles(Vehicles):
