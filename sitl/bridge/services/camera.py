@@ -140,10 +140,10 @@ class CameraService(Service):
 
     def stop(self, number: float) -> int:
         """No more pictures of ``start``. Its MAV_RESULT."""
-        if number < 0.0:
+        if number != 0.0 and not self._is(number):
             return UNSUPPORTED
         self._state = self._state._replace(left=0)
-        return ACCEPTED if number == 0.0 or self._is(number) else FAILED
+        return ACCEPTED
 
     def _is(self, number: float) -> bool:
         """Whether there is a camera of this number; 0: all."""
@@ -188,7 +188,6 @@ class CameraService(Service):
             pitch=math.degrees(euler.pitch),
             yaw=math.degrees(euler.yaw) % 360.0,
             img_idx=count & 0xFFFF,
-            completed_captures=count & 0xFFFF,
         )
 
     def _drive(self, now_us: int) -> None:
