@@ -65,10 +65,11 @@ class CameraService(Service):
         self.due_us = NEVER if self.kind == camera.NO_CAMERA else 0
 
     def snapshot(self) -> Any:
-        return (self._state, self.due_us)
+        return (tuple(self._state), self.due_us)
 
     def restore(self, state: Any) -> None:
-        self._state, self.due_us = state
+        found, self.due_us = state
+        self._state = State(*found)
 
     def handlers(self) -> dict[str, Handler]:
         return {"DIGICAM_CONTROL": self._digicam_control, "DIGICAM_CONFIGURE": self._digicam_configure}

@@ -23,11 +23,11 @@ class HeartbeatService(Service):
         self._channels: frozenset[int] = frozenset()
         """Numbers of channels on which other components of our own system were heard."""
 
-    def snapshot(self) -> frozenset[int]:
-        return self._channels
+    def snapshot(self) -> tuple[int, ...]:
+        return tuple(sorted(self._channels))
 
-    def restore(self, state: frozenset[int]) -> None:
-        self._channels = state
+    def restore(self, state: tuple[int, ...]) -> None:
+        self._channels = frozenset(state)
 
     def channel_removed(self, channel: Channel) -> None:
         self._channels -= {channel.number}

@@ -46,7 +46,8 @@ class Service:
         """Called at or after ``due_us``."""
 
     def snapshot(self) -> Any:
-        """What it needs to go on from here: immutable, channels by their number. Both or none are overridden."""
+        """What it needs to go on from here: plain tuples, numbers, texts and bytes, channels
+        by their number. Both or none are overridden."""
 
     def restore(self, state: Any) -> None:
         """Go on from a snapshot. The record has been put back already."""
