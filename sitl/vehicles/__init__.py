@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles as data: one file an airframe. To add one, write its file and name it in ``_MODULES``; another package names
-it in the entry point group ``sitl.airframes``."""
+"""Vehicles as data: one file an airframe, or a row of ``ardupilot_frames``.
+
+To add one, write its file and name it in ``_MODULES``; another package names it in the entry point group
+``sitl.airframes``.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +34,12 @@ __all__ = [
     "to_data",
 ]
 
+_FRAMES = (
+    "ardupilot_x", "ardupilot_hexa", "ardupilot_hexa_x", "ardupilot_octa", "ardupilot_octa_quad", "ardupilot_y6",
+)  # fmt: skip
+"""Rows of ``ardupilot_frames``."""
 _MODULES = (
-    "erle_copter", "ardupilot_quad", "ardupilot_x", "ardupilot_hexa", "ardupilot_hexa_x", "ardupilot_octa",
-    "ardupilot_octa_quad", "ardupilot_y6", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover",
+    "erle_copter", "ardupilot_quad", *_FRAMES, "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover",
 )  # fmt: skip
 GROUP = "sitl.airframes"
 """Entry points of airframes of other packages: name -> Airframe."""
@@ -61,7 +67,9 @@ def load(name: str | Airframe) -> Airframe:
     module = name.strip().lower().replace("-", "_")
     if module not in names():
         raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(names())}, or a .py file")
-    if module in _MODULES:
+    if module in _FRAMES:
+        found = importlib.import_module(f"{__name__}.ardupilot_frames").FRAMES[module]
+    elif module in _MODULES:
         found = importlib.import_module(f"{__name__}.{module}").AIRFRAME
     else:
         found = _installed()[module].load()
