@@ -52,3 +52,7 @@ def table_at(address: int, rows: int, columns: int) -> FloatRows:
 def ints_at(address: int, count: int) -> Ints:
     """The int64 numbers at an address, shape (count,)."""
     return np.ndarray((count,), np.int64, _memory(address, 8 * count))
+
+
+def fetch_ahead(record: Record, offset: int) -> None:
+    """Ask the processor to bring the line of memory with a byte of a record nearer: it is needed soon."""
