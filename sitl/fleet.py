@@ -35,12 +35,13 @@ from .move import Move
 from .plants.local import LocalPlant
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
-from .vehicle.core_entry import Core, bind_fleet_unit
+from .vehicle.core_entry import Core, bind_fleet_unit, unit_address
 from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
 Array = np.ndarray[Any, Any]
 set_goals, any_waits = Kernel(wire.set_goals), Kernel(wire.any_waits)
+run_fleet = Kernel(wire.run_fleet, lets_others_run=True)
 _HELD = 8
 """Snapshots whose state is held ready, so that vehicles get it again by a copy."""
 
@@ -132,6 +133,11 @@ class Fleet:
         """Each advances the vehicles of one thread."""
         self._set_goals: Callable[[int], None] = set_goals.bind(self._times, self._until)
         self._any_waits: Callable[[], bool] = any_waits.bind(self._needs_shell)
+        self._run_alone: Callable[[int], bool] | None = None
+        """Advances all vehicles in this thread; says whether any needs the shell."""
+        if threads == 1 and not jit_disabled():
+            numbers = self.records.ctypes.data, self.records.itemsize, count, slots, self._rooms[0][0]
+            self._run_alone = run_fleet.bind(unit_address(unit, shell.kind), *numbers)
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
         self._orders: Array = MoveOrder.fleet(0)
@@ -334,21 +340,29 @@ class Fleet:
         """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
         self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
-        if which is None and isinstance(step_us, int):
-            self._set_goals(step_us)
-        else:
+        alike = which is None and isinstance(step_us, int)
+        if not alike:
             rows = slice(None) if which is None else which
             until[:] = STAYS
             until[rows] = times[rows] + step_us
+        if self._run_alone is not None:
+            waits = self._run_alone(step_us if alike else STAYS)  # type: ignore[arg-type]
+        else:
+            if alike:
+                self._set_goals(step_us)  # type: ignore[arg-type]
+            self._run_parts()
+            waits = self._any_waits()
+        if waits:
+            for index in np.flatnonzero(needs_shell).tolist():
+                self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
+
+    def _run_parts(self) -> None:
         if self._pool is None:
             for run in self._parts:
                 run()
         else:
             for done in [self._pool.submit(run) for run in self._parts]:
                 done.result()
-        if self._any_waits():
-            for index in np.flatnonzero(needs_shell).tolist():
-                self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
 
     # ------------------------------------------------------------------ what needs Python
 

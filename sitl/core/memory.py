@@ -7,7 +7,7 @@ In plain Python the same functions give views of the same memory.
 
 from __future__ import annotations
 
-from ctypes import c_uint8
+from ctypes import CFUNCTYPE, c_int64, c_uint8
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -52,6 +52,18 @@ def table_at(address: int, rows: int, columns: int) -> FloatRows:
 def ints_at(address: int, count: int) -> Ints:
     """The int64 numbers at an address, shape (count,)."""
     return np.ndarray((count,), np.int64, _memory(address, 8 * count))
+
+
+def call_unit(address: int, fleet: int, count: int, index: int, n0: int, n1: int, n2: int) -> None:
+    """Call a compiled unit that takes three numbers.
+
+    Args:
+        address: of its machine code.
+        fleet: address of the vehicles' records.
+        count: how many there are.
+        index, n0, n1, n2: what the unit takes.
+    """
+    CFUNCTYPE(None, *[c_int64] * 6)(address)(fleet, count, index, n0, n1, n2)
 
 
 def fetch_ahead(record: Record, offset: int) -> None:

@@ -27,7 +27,7 @@ from numba.extending import intrinsic, overload, typeof_impl
 from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
-from .memory import bytes_at, fetch_ahead, floats_at, ints_at, record_at, table_at
+from .memory import bytes_at, call_unit, fetch_ahead, floats_at, ints_at, record_at, table_at
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record
 from .vectors import Value
@@ -248,6 +248,21 @@ def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
 @overload(ints_at, jit_options=_MAKES_ARRAYS)
 def _ints_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_ints(address), (count,))
+
+
+@intrinsic
+def _call(typing_context, address, fleet, count, index, n0, n1, n2):  # type: ignore[no-untyped-def]
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        function = ir.FunctionType(ir.VoidType(), [number.type for number in args[1:]]).as_pointer()
+        builder.call(builder.inttoptr(args[0], function), args[1:])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * 7), generate
+
+
+@overload(call_unit)
+def _call_unit(address, fleet, count, index, n0, n1, n2):  # type: ignore[no-untyped-def]
+    return lambda address, fleet, count, index, n0, n1, n2: _call(address, fleet, count, index, n0, n1, n2)
 
 
 _READ, _SECOND_LEVEL, _DATA = 0, 2, 1
