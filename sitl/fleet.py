@@ -115,6 +115,7 @@ class Fleet:
         self._in_size, self._out_size, self._out_count = (self.ports[n] for n in ("in_size", "out_size", "out_count"))
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
+        self._shell_u1: Array = shell.fleet.view("u1")
         unit = shell.bridge.profile.core.run_all
         run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
         rangers = shell.plant.rangers if isinstance(shell.plant, LocalPlant) else None
@@ -369,23 +370,28 @@ class Fleet:
     def _serve(self, index: int, left_us: int, needs_shell: int, data: bytes = b"") -> None:
         """Let the shell act on ``data`` and on what the core left to it, and advance the vehicle by ``left_us``."""
         shell = self.shell
-        shell.restore(self.snapshot(index))
-        shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
+        shell.take_up(self._states[index], self._records_u1[index].data)
+        shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].data
         self._link.send(data)
         shell.attend(needs_shell)
         shell.advance_to(shell.time_us + max(left_us, 0))
         said = self._link.receive()
         if said:
             self._extra[index] = self._extra.get(index, b"") + said
-        self._give([index], self._take())
+        self._records_u1[index] = self._shell_u1
+        self._ports_u1[index] = np.frombuffer(shell.bridge.channels[0].port._bytes, np.uint8)
+        self._states[index] = state = shell.state()
+        self._before_boot_us[index] = state.before_boot_us
+        self._events_seen[index], self._shell_us[index] = self._seen_by_shell()
 
     def _take(self) -> _Held:
         """The shell's state."""
-        shell = self.shell
-        state, port = shell.snapshot(), bytes(shell.bridge.channels[0].port._bytes)
-        slot = shell.v.autopilot.events.count, shell.bridge.shell_due_us()
-        record = np.frombuffer(state.record, np.uint8)
-        return _Held(None, record, np.frombuffer(port, np.uint8), replace(state, record=b""), *slot)
+        port = np.frombuffer(bytes(self.shell.bridge.channels[0].port._bytes), np.uint8)
+        return _Held(None, self._shell_u1.copy(), port, self.shell.state(), *self._seen_by_shell())
+
+    def _seen_by_shell(self) -> tuple[int, int]:
+        """Events that the shell has acted on, and when it has something to do [us since boot]."""
+        return self.shell.v.autopilot.events.count, self.shell.bridge.shell_due_us()
 
     def _state_of(self, row: int) -> _Held:
         """A vehicle's state."""
