@@ -8,7 +8,7 @@ In plain Python the same functions give views of the same memory.
 from __future__ import annotations
 
 from ctypes import CFUNCTYPE, c_int64, c_uint8
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, overload
 
 import numpy as np
 
@@ -20,7 +20,10 @@ R = TypeVar("R", bound=Record)
 class Bytes(Protocol):
     """Bytes, by index."""
 
+    @overload
     def __getitem__(self, index: int, /) -> int: ...
+    @overload
+    def __getitem__(self, index: slice[int, int, None], /) -> Bytes: ...
     def __setitem__(self, index: int, value: int, /) -> None: ...
     def __len__(self) -> int: ...
 
