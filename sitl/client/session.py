@@ -100,7 +100,7 @@ class Session:
         Raises:
             OptionError: the vehicle is not in this process.
         """
-        self.simulation.set_link_faults(faults, self.connection.endpoint.link)
+        self.simulation.set_link_faults(faults, self.connection.link)
 
     # ------------------------------------------------------------------ what is known
 
