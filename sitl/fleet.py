@@ -22,6 +22,7 @@ from typing import Any, NamedTuple, Unpack
 import numpy as np
 
 from .bridge.channel import ChannelState
+from .bridge.links import LinkFaults
 from .bridge.links.inprocess import InProcessLink
 from .bridge.wire import fleet as wire
 from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
@@ -106,6 +107,8 @@ class Fleet:
         """Identity of a snapshot -> its state."""
         self._views: dict[int, Any] = {}
         self._before_boot_us: Array = np.zeros(count, np.int64)
+        self._faulty = set[int]()
+        """Vehicles whose links have faults: the shell advances them."""
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
         # Views of one field each: making one costs more than reading it.
@@ -262,7 +265,7 @@ class Fleet:
         """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""
         self._check(index)
         held = self._states[index]
-        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes())
+        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes(), held.bridge.channels[0].ways)
         bridge = held.bridge._replace(channels=(port,))
         return replace(held, record=self._records_u1[index].tobytes(), bridge=bridge)
 
@@ -296,7 +299,7 @@ class Fleet:
         self._check_open()
         size = int(self._in_size[index])
         end = size + len(data)
-        if end > IN_BYTES:
+        if end > IN_BYTES or index in self._faulty:
             self._serve(index, 0, TO_HEAR, data)
             return
         self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
@@ -308,6 +311,28 @@ class Fleet:
         said = self._ports_u1[index, OUT : OUT + int(self._out_size[index])].tobytes()
         self._out_size[index] = self._out_count[index] = 0
         return self._extra.pop(index) + said if index in self._extra else said
+
+    def set_link_faults(self, which: int | Iterable[int], faults: LinkFaults | None) -> None:
+        """Let vehicles' links to their clients lose, delay or change frames from now on (docs/faults.md).
+
+        The shell advances such a vehicle, which takes much longer. It flies as a ``Simulation`` whose link has these
+        faults, the seed of vehicle number i being ``faults.seed + i``.
+
+        Args:
+            which: a vehicle, or several.
+            faults: what happens to frames; None: nothing any more.
+        """
+        shell = self.shell
+        for index in [which] if isinstance(which, int | np.integer) else list(which):
+            self._check(index)
+            self._check_open()
+            shell.restore(self.snapshot(index))
+            channel = shell.bridge.channels[0]
+            channel.port._bytes[:] = self._ports_u1[index].tobytes()
+            own = replace(faults, seed=faults.seed + int(index)) if faults is not None else None
+            shell.bridge.board.faults.give(channel, own)
+            shell.bridge.board.faults.look([channel])
+            self._give([int(index)], self._take())
 
     def drop_telemetry(self) -> None:
         """Throw away what clients have not received."""
@@ -341,29 +366,32 @@ class Fleet:
         """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
         self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
-        alike = which is None and isinstance(step_us, int)
-        if not alike:
+        faulty: list[tuple[int, int]] = []
+        alike_us = step_us if which is None and isinstance(step_us, int) and not self._faulty else STAYS
+        if alike_us == STAYS:
             rows = slice(None) if which is None else which
             until[:] = STAYS
             until[rows] = times[rows] + step_us
-        if self._run_alone is not None:
-            waits = self._run_alone(step_us if alike else STAYS)  # type: ignore[arg-type]
-        else:
-            if alike:
-                self._set_goals(step_us)  # type: ignore[arg-type]
-            self._run_parts()
-            waits = self._any_waits()
-        if waits:
+            faulty = [(index, int(until[index])) for index in sorted(self._faulty)]
+            until[list(self._faulty)] = STAYS
+        if self._run_alone(alike_us) if self._run_alone is not None else self._run_parts(alike_us):
             for index in np.flatnonzero(needs_shell).tolist():
                 self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
+        for index, goal_us in faulty:
+            if goal_us != STAYS:
+                self._serve(index, goal_us - int(times[index]), TO_HEAR)
 
-    def _run_parts(self) -> None:
+    def _run_parts(self, step_us: int) -> bool:
+        """Advance all vehicles by a time, or as their slots say (STAYS); whether any needs the shell."""
+        if step_us != STAYS:
+            self._set_goals(step_us)
         if self._pool is None:
             for run in self._parts:
                 run()
         else:
             for done in [self._pool.submit(run) for run in self._parts]:
                 done.result()
+        return self._any_waits()
 
     # ------------------------------------------------------------------ what needs Python
 
@@ -380,7 +408,8 @@ class Fleet:
             self._extra[index] = self._extra.get(index, b"") + said
         self._records_u1[index] = self._shell_u1
         self._ports_u1[index] = np.frombuffer(shell.bridge.channels[0].port._bytes, np.uint8)
-        self._states[index] = state = shell.state()
+        state = shell.state()
+        self._keep(index, state)
         self._before_boot_us[index] = state.before_boot_us
         self._events_seen[index], self._shell_us[index] = self._seen_by_shell()
 
@@ -402,9 +431,17 @@ class Fleet:
         """Put a state into the vehicles."""
         for row in rows:
             self._records_u1[row], self._ports_u1[row] = held.record, held.port
-            self._states[row] = held.state
+            self._keep(row, held.state)
         self._before_boot_us[rows] = held.state.before_boot_us
         self._events_seen[rows], self._shell_us[rows] = held.events_seen, held.shell_us
+
+    def _keep(self, row: int, state: Snapshot) -> None:
+        """Note what the shell holds of a vehicle."""
+        self._states[row] = state
+        if state.bridge.channels[0].ways is not None:
+            self._faulty.add(row)
+        else:
+            self._faulty.discard(row)
 
     def close(self) -> None:
         """Close the shell and stop the threads: the fleet can only be looked at from now on."""
