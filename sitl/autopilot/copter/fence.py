@@ -6,8 +6,7 @@ from __future__ import annotations
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..arming_checks import BY_FENCE
-from ..events import FENCE_BREACHED, emit
-from ..fence.checks import GIVE_UP, check, farthest, tell_clear
+from ..fence.checks import GIVE_UP, check, farthest, report
 from ..fence.state import MAX_ALT
 from ..modes import ACCEPTED, REASON_FENCE_BREACHED
 from .failsafe_actions import is_idle
@@ -35,16 +34,10 @@ def watch(v: Vehicle) -> None:
     standing = not (ap.arming.armed and flies) or is_landing(ap.modes.number, ap.modes)
     limits = Vec3(p.ALT_MAX, p.ALT_MIN, p.AUTOENABLE)
     new = check(fence, ap.estimate, ap.home, p, limits, standing, ap.events, v.time_us)
-    if not ap.arming.armed:
-        return
-    if new == 0:
-        if flies:
-            tell_clear(fence, before, ap.events, v.time_us)
-        return
-    if flies:
-        emit(ap.events, v.time_us, FENCE_BREACHED, float(new), 0.0)
-    if p.ACTION != _NOTHING:
-        act(v, new)
+    if ap.arming.armed:
+        report(fence, before, new, flies, ap.events, v.time_us)
+        if new != 0 and p.ACTION != _NOTHING:
+            act(v, new)
 
 
 @law
