@@ -13,7 +13,7 @@ from ...core.vectors import Vec2, Vec3
 from ..events import FENCE_BREACHED, FENCE_CLEAR, FENCE_NEAR, FENCE_RECOVERY, FENCE_SWITCHED, Events, emit
 from ..modes import REASON_FENCE_BREACHED
 from ..params.fence import Fence
-from ..state import Estimate, HomeState
+from ..state import Estimate, HomeState, Vehicle
 from .shapes import is_inclusion, place, room
 from .state import (
     AREAS,
@@ -190,34 +190,25 @@ def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, t
 
 
 @law
-def check(
-    fence: FenceState,
-    estimate: Estimate,
-    home: HomeState,
-    params: Fence,
-    limits: Vec3,
-    standing: bool,
-    events: Events,
-    time_us: int,
-) -> int:
+def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
     """Bits of the fences that the vehicle has breached now, or anew.
 
     Args:
-        fence, estimate, home, params, events: the vehicle's.
+        v: the vehicle.
         limits: greatest height, least height [m above home], FENCE_AUTOENABLE.
-        standing: the vehicle stands on the ground, or lands.
-        time_us: now.
+        standing: it stands on the ground, or lands.
     """
-    autoenable = int(limits.z)
+    ap, time_us = v.autopilot, v.time_us
+    fence, params, events, autoenable = ap.fence, ap.params.FENCE, ap.events, int(limits.z)
     follow_parameters(fence, params, autoenable, events, time_us)
     fence.breached &= int(params.TYPE)
     if fence.on == 0 and (autoenable == 0 or fence.floor != FLOOR_AUTO):
         fence.breached = fence.near = 0
         return 0
-    place(fence, estimate)
+    place(fence, ap.estimate)
     if standing:
         switch(fence, AUTO_OFF, rests(fence, autoenable) & int(params.TYPE), events, time_us)
-    measure(fence, estimate, home, params, limits.x, limits.y)
+    measure(fence, ap.estimate, ap.home, params, limits.x, limits.y)
     if not standing:
         switch_floor(fence, params, autoenable, events, time_us)
     watched, new, near = active(fence, params), 0, fence.near

@@ -24,7 +24,7 @@ def watch(v: Vehicle) -> None:
     """Ten times a second: whether a fence is breached."""
     ap = v.autopilot
     fence, p, before = ap.fence, ap.params.FENCE, ap.fence.breached
-    new = check(fence, ap.estimate, ap.home, p, HEIGHTS, False, ap.events, v.time_us)
+    new = check(v, HEIGHTS, False)
     if not ap.arming.armed:
         return
     report(fence, before, new, False, ap.events, v.time_us)
