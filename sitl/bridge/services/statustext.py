@@ -74,6 +74,7 @@ TEXTS = {
 
 HEARTBEAT = message("HEARTBEAT").id
 MISSION_CURRENT = message("MISSION_CURRENT").id
+FENCE_STATUS = message("FENCE_STATUS").id
 REACHED = message("MISSION_ITEM_REACHED")
 E = "autopilot.events."
 
@@ -128,6 +129,8 @@ class EventService(Service):
         if code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
+        if code == core.FENCE_BREACHED:
+            self.bridge.send_to_all(FENCE_STATUS)
         if code in (core.ARMED, core.DISARMED):
             self.bridge.get(PreArmService).find_due()
         if code == core.EKF_INITIALISED:

@@ -29,7 +29,7 @@ COMPASS_CALIBRATION, FENCE, RALLY = 0x1000, 0x4000, 0x8000
 SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = 0x40, 0x80, 0x100, 0x800, 0x2000
 CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
 CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2 | COMPASS_CALIBRATION | FENCE | RALLY
-"""What every firmware can: ArduPilot's. Compass calibrations are refused; fences and rally points are kept."""
+"""What every firmware can: ArduPilot's. Compass calibrations are refused."""
 
 FLIGHT_VERSION = (4, 7, 0, 0)
 """Major, minor, patch, type (0: development).
