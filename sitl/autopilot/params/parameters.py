@@ -7,6 +7,7 @@ from typing import Any
 
 from ...core.border import RC_INPUTS
 from ...core.records import Records
+from .avoidance import Avoid, Proximity, ProximitySensor
 from .estimator import Ekf3
 from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
@@ -23,6 +24,7 @@ class Parameters(ParameterGroup):
     """
 
     ARMING: Arming
+    AVOID: Avoid
     BATT: Battery
     COMPASS: Compass
     EK3: Ekf3
@@ -34,6 +36,8 @@ class Parameters(ParameterGroup):
     MAV: Mavlink
     MAV1: StreamRates
     MIS: Mission
+    PRX: Proximity
+    PRX1: ProximitySensor
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(20, 20, 30, 20) + 12 * (0,))
     RC_OVERRIDE_TIME: float = param(
         3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"

@@ -10,6 +10,7 @@ from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ... import camera, relays
 from ...params import parameters as shared
+from ...params.avoidance import Avoid, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.follow import Follow
 from ...params.parameter import INT8, INT16, INT32, group, numbered, param
@@ -29,6 +30,7 @@ class Parameters(shared.Parameters):
     ACRO_TURN_RATE: float = param(180.0, 0.0, 360.0, "deg/s", "Turn rate of a full steering stick")
     ARMING: Arming
     ATC: Attitude
+    AVOID: Avoid = group(BEHAVE=1)
     BATT: Battery
     CIRC: Circle
     COMPASS: Compass
@@ -57,6 +59,8 @@ class Parameters(shared.Parameters):
     PILOT_STEER_TYPE: float = param(
         0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
     )
+    PRX: Proximity
+    PRX1: ProximitySensor
     PSC: Position
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(30, 0, 30, 30) + 12 * (0,))
     RC_OVERRIDE_TIME: float
