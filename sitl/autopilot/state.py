@@ -15,6 +15,7 @@ from ..core.records import Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .estimation.state import Ekf
 from .events import Events
+from .fence.state import FenceState
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
@@ -221,6 +222,7 @@ class Autopilot(Record):
     events: Events
     inertial: InertialRing
     vibration: Vibration
+    fence: FenceState
 
 
 class Vehicle(Protocol):
