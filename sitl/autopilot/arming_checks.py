@@ -11,6 +11,7 @@ from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
 from . import radio
+from .avoidance.proximity import Proximity, has_data
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
 from .params.parameters import Parameters
@@ -71,6 +72,8 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
+NOTHING_SEEN = 1 << 42
+OBSTACLE_NEAR = 1 << 43
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -110,10 +113,12 @@ TEXTS = {
     NO_MISSION: "Mode requires mission",
     EMERGENCY_STOP: "Motors Emergency Stopped",
     INTERLOCK: "Motor Interlock Enabled",
+    NOTHING_SEEN: "PRX1: No Data",
 }
 
 # ARMING_CHECK
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
+CHECK_PARAMETERS = 32
 
 COMPASS_COS, COMPASS_FLAT_COS = 0.0, 0.5
 """Of the greatest angles between two compasses' fields: 90 degrees in space, 60 in the x-y plane."""
@@ -218,6 +223,12 @@ def radio_checks(rc: Radio, rcmap: RcMap, throttle_min: float) -> int:
     if not rc.receiver_ok:
         return RC_MISSING
     return THROTTLE_FAILSAFE if radio.stick_pulse(rc, rcmap, radio.THROTTLE) < throttle_min else 0
+
+
+@law
+def proximity_checks(seen: Proximity, time_us: int) -> int:
+    """Failed checks of a proximity sensor."""
+    return NOTHING_SEEN if seen.kind != 0 and not has_data(seen, time_us) else 0
 
 
 def texts(failed: int, prefix: str = "") -> list[str]:

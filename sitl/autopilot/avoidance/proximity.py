@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 
+from ...core.algebra import dot2
 from ...core.border import LIDAR_SAMPLES, Sensors
 from ...core.kernels import law
 from ...core.records import Floats, Ints, Record, array
 from ...core.scalars import TWO_PI, finite, wrap_2pi, wrap_pi
+from ...core.vectors import Vec2
 from ..params.avoidance import ProximitySensor
 
 SECTORS = 8
@@ -25,8 +27,10 @@ SILENT_US = 500_000
 """A sensor that says nothing for so long has no data."""
 OLD_US = 1_000_000
 """So long a sector's reading is good; after as long a gap its filter starts afresh."""
-FENCES_SEEN = 200.0
-"""Range of the simulated sensor that sees fences [m]."""
+
+
+GROUND = 1.0
+"""What is less than that over the ground counts as ground [m]."""
 
 
 class Proximity(Record):
@@ -37,6 +41,9 @@ class Proximity(Record):
     scan: int  # of the lidar, that was looked at last
     range_min: float  # [m]
     range_max: float  # [m]
+    has_height: bool  # what is near the ground is left out (copter, PRX_IGN_GND, range-finder):
+    height: float  # over the ground [m]; 0: nothing is seen there
+    tilt: Vec2  # how far down a metre forward, and a metre right on the body, leads [m]
     distance: Floats = array(SECTORS)  # of each sector [m], low-passed
     angle: Floats = array(SECTORS)  # of its reading, clockwise from the nose [rad]
     seen_us: Ints = array(SECTORS, stored="i8")  # when; 0: nothing is there
@@ -89,6 +96,15 @@ def sector_of(angle: float) -> int:
 
 
 @law
+def is_ground(proximity: Proximity, angle: float, distance: float) -> bool:
+    """Whether a reading [m] at an angle [rad] is left out as one of the ground."""
+    if not proximity.has_height:
+        return False
+    down = dot2(proximity.tilt, Vec2(math.cos(angle), math.sin(angle))) * distance
+    return proximity.height - down < GROUND
+
+
+@law
 def begin_scan(proximity: Proximity, range_min: float, range_max: float, p: ProximitySensor) -> None:
     """Readings of all directions follow, of a sensor with this range [m]."""
     proximity.range_min = max(range_min, p.MIN)
@@ -104,7 +120,7 @@ def note_reading(proximity: Proximity, angle: float, distance: float, p: Proximi
         return
     at = mounted(angle, p)
     sector = sector_of(at)
-    if distance < proximity.nearest[sector] and not is_ignored(at, p):
+    if distance < proximity.nearest[sector] and not (is_ignored(at, p) or is_ground(proximity, at, distance)):
         proximity.nearest[sector] = distance
         proximity.nearest_angle[sector] = at
 

@@ -7,6 +7,7 @@ controller does that stops at the margin: with a gain, or without one evenly.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from ...core.algebra import ZERO2, cross2, dot2, limit_length, norm2
@@ -111,7 +112,7 @@ def before_wall(vel: Vec2, wall: Wall, margin: float, b: Braking) -> Vec2:
 @law
 def within_circle(vel: Vec2, centre: Vec2, radius: float, b: Braking) -> Vec2:
     """``vel`` of a vehicle that stays within ``radius`` [m] of ``centre``, or does not go further out."""
-    place = -1.0 * centre
+    place = -centre
     out, speed = norm2(place), norm2(vel)
     if speed <= 0.0:
         return vel
@@ -128,7 +129,7 @@ def within_circle(vel: Vec2, centre: Vec2, radius: float, b: Braking) -> Vec2:
         return ZERO2 if norm2(place + way) >= out else vel
     # place + share * way is on the circle
     size, along = dot2(way, way), dot2(place, way)
-    share = (-along + (along * along + size * (radius * radius - out * out)) ** 0.5) / size
+    share = (-along + math.sqrt(along * along + size * (radius * radius - out * out))) / size
     return vel if share > 1.0 else shortened(vel, share * norm2(way), b)
 
 
@@ -145,7 +146,7 @@ def outside_circle(vel: Vec2, centre: Vec2, radius: float, b: Braking) -> Vec2:
     square = along * along - size * (out * out - radius * radius)
     if along <= 0.0 or square <= 0.0:
         return vel
-    share = max((along - square**0.5) / size, 0.0)
+    share = max((along - math.sqrt(square)) / size, 0.0)
     return vel if share > 1.0 else shortened(vel, share * norm2(way), b)
 
 
@@ -187,7 +188,7 @@ def with_backing(avoid: Avoidance, vel: Vec2, speed_max: float) -> Vec2:
 @law
 def changed_slowly(avoid: Avoidance, asked: Vec2, vel: Vec2, time_us: int, accel_max: float, dt: float) -> Vec2:
     """The velocity in place of ``asked``: ``vel``, as far as a change of ``accel_max`` [m/s^2] allows (0: any)."""
-    if vel == asked:
+    if vel.x == asked.x and vel.y == asked.y:
         return vel
     if accel_max > 0.0:
         before = avoid.vel if time_us - avoid.limited_us <= FORGETS_US else asked
@@ -199,7 +200,7 @@ def changed_slowly(avoid: Avoidance, asked: Vec2, vel: Vec2, time_us: int, accel
 
 @law
 def climb_below(climb: float, room: float, back_max: float, b: Braking) -> float:
-    """A climb rate [m/s] that stops within ``room`` [m]; above the limit (room below 0) it sinks, at most ``back_max``."""
+    """A climb rate [m/s] that stops within ``room`` [m]; above the limit (below 0) it sinks, at most ``back_max``."""
     if room > 0.0:
         return min(climb, speed_before(room, b))
     return min(climb, -min(speed_before(-room, b), back_max))

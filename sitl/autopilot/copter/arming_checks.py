@@ -24,6 +24,7 @@ from ..arming_checks import (
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
     battery_checks,
+    proximity_checks,
     radio_checks,
     sensor_checks,
     wants,
@@ -73,6 +74,7 @@ def check(v: Vehicle) -> int:
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    failed |= proximity_checks(ap.proximity, v.time_us)
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
         failed |= NO_MISSION
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):

@@ -6,10 +6,11 @@ from __future__ import annotations
 from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home
+from ...avoidance import proximity
 from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
+from .. import arming, avoidance, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -37,6 +38,7 @@ def init(v: Vehicle) -> None:
     ap.arming.landed_maybe = True
     battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.rc, ap.modes.pilot)
+    proximity.power_on(ap.proximity, ap.params.PRX1)
 
 
 @unit
@@ -95,6 +97,7 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.watch_vibration(v)
     arming.disarm_idle(v)
     takeoff_check.check(v)
+    avoidance.watch(v)
 
 
 @inlined

@@ -9,6 +9,7 @@ from ....core.records import Records
 from ....core.vectors import Vec3
 from ... import aux_switch, battery, home, smart_rtl_path
 from ...arming_checks import BY_RUDDER
+from ...avoidance import limit, proximity
 from ...events import Events
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
@@ -42,6 +43,7 @@ def init(v: Vehicle) -> None:
     ap.arming.landed = True
     battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.modes.pilot, ap.rc)
+    proximity.power_on(ap.proximity, ap.params.PRX1)
 
 
 @unit
@@ -107,6 +109,7 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
     crash.check(v)
+    limit.watch(v, False)
 
 
 @law
