@@ -7,11 +7,13 @@ ARMING_CHECK selects which optional checks count.
 
 from __future__ import annotations
 
+import math
+
 from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
 from . import radio
-from .avoidance.proximity import Proximity, has_data
+from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
 from .params.parameters import Parameters
@@ -72,8 +74,9 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
-NOTHING_SEEN = 1 << 42
-OBSTACLE_NEAR = 1 << 43
+NOTHING_SEEN = 1 << 43
+OBSTACLE_SHIFT = 44
+"""Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -120,6 +123,8 @@ TEXTS = {
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
 CHECK_PARAMETERS = 32
 
+OBSTACLE_ROOM = 0.6
+"""Room that a copter with a proximity sensor needs around it [m]."""
 COMPASS_COS, COMPASS_FLAT_COS = 0.0, 0.5
 """Of the greatest angles between two compasses' fields: 90 degrees in space, 60 in the x-y plane."""
 COMPASS_FLAT_DIFFERENCE = 0.2
@@ -231,9 +236,26 @@ def proximity_checks(seen: Proximity, time_us: int) -> int:
     return NOTHING_SEEN if seen.kind != 0 and not has_data(seen, time_us) else 0
 
 
+@law
+def obstacle_check(seen: Proximity, time_us: int) -> int:
+    """Failed check of what is nearest around the vehicle."""
+    sector, nearest = 0, math.inf
+    for k in range(SECTORS):
+        if sees(seen, k, time_us) and seen.distance[k] < nearest:
+            sector, nearest = k, float(seen.distance[k])
+    return (max(int(nearest * 100.0), 1) << 3 | sector) << OBSTACLE_SHIFT if nearest <= OBSTACLE_ROOM else 0
+
+
+def obstacle_text(found: int) -> str:
+    """Status text of an obstacle that is too near."""
+    return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
+
+
 def texts(failed: int, prefix: str = "") -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
-    return [prefix + text for bit, text in TEXTS.items() if shown & bit]
+    found = failed >> OBSTACLE_SHIFT & 511
+    said = [text for bit, text in TEXTS.items() if shown & bit] + ([obstacle_text(found)] if found else [])
+    return [prefix + text for text in said]
