@@ -20,6 +20,8 @@ from ..params.avoidance import ProximitySensor
 SECTORS = 8
 SECTOR = TWO_PI / SECTORS
 """[rad]"""
+EDGE = 1e-9
+"""What rounding may take from an angle on an edge, as part of a sector."""
 MAVLINK, SIMULATED = 2, 10
 LIDARS = (5, 8, SIMULATED, 16)
 """PRX1_TYPE"""
@@ -91,8 +93,8 @@ def mounted(angle: float, p: ProximitySensor) -> float:
 
 @law
 def sector_of(angle: float) -> int:
-    """The sector that an angle [rad] is in."""
-    return math.floor(wrap_2pi(angle) / SECTOR + 0.5) % SECTORS
+    """The sector that an angle [rad] is in; its left edge belongs to it."""
+    return math.floor(wrap_2pi(angle) / SECTOR + 0.5 + EDGE) % SECTORS
 
 
 @law

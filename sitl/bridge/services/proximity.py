@@ -80,6 +80,7 @@ def obstacle_3d(m: ObstacleDistance3d, v: Vehicle, sender: int) -> None:
     """OBSTACLE_DISTANCE_3D: an obstacle's place on the body; what is far above or below is left out."""
     seen = v.autopilot.proximity
     away = math.hypot(m.x, m.y)
-    if seen.kind == MAVLINK and m.frame == BODY_FRD and abs(m.z) < away * LEVEL:
+    is_known = finite(away) and finite(m.min_distance) and finite(m.max_distance)
+    if is_known and seen.kind == MAVLINK and m.frame == BODY_FRD and abs(m.z) < away * LEVEL:
         begin_scan(seen, m.min_distance, m.max_distance, v.autopilot.params.PRX1)
         note_one(v, seen, math.atan2(m.y, m.x), away)

@@ -28,7 +28,9 @@ def test_no_velocity_leads_into_a_margin(north: float, east: float, away: float,
     for _ in range(4000):
         here = Wall(wall.a - at, wall.b - at)
         at += velocity.before_wall(vel, here, 2.0, how) * 0.01
-    slant = east / norm2(vel) if how.stops and east > 0.0 else 1.0  # who stops keeps the margin along the way
+    slant = (
+        east / norm2(vel) if how.stops and norm2(vel) > 0.0 < east else 1.0
+    )  # who stops keeps the margin along the way
     assert at.y <= away - 2.0 * slant + 0.03
 
 
