@@ -13,6 +13,7 @@ from ..core.vectors import Vec3
 from . import radio
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
+from .fence import arming as fence_arming
 from .params.parameters import Parameters
 from .params.radio import RcMap
 from .params.simulation import Axes
@@ -29,6 +30,7 @@ BY_BATTERY_FAILSAFE = 7
 BY_CRASH = 12
 BY_LANDING = 13
 BY_MISSION_EXIT = 14
+BY_FENCE = 15
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
@@ -71,12 +73,16 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
+FENCE_POSITION = 1 << 37
+FENCE_SHIFT = 38
+"""Five bits from here on are a number: why the fence refuses (``fence.arming``)."""
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
     BAROMETER: "Barometer not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
+    FENCE_POSITION: "Fence enabled, need position estimate",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -225,4 +231,6 @@ def texts(failed: int, prefix: str = "") -> list[str]:
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
-    return [prefix + text for bit, text in TEXTS.items() if shown & bit]
+    said = [text for bit, text in TEXTS.items() if shown & bit]
+    fence = failed >> FENCE_SHIFT & 31
+    return [prefix + text for text in ([*said, fence_arming.text(fence)] if fence else said)]

@@ -15,7 +15,7 @@ from ..core.records import Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .estimation.state import Ekf
 from .events import Events
-from .fence.state import FenceState
+from .fence.state import FenceState, RallyState
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
@@ -223,6 +223,7 @@ class Autopilot(Record):
     inertial: InertialRing
     vibration: Vibration
     fence: FenceState
+    rally: RallyState
 
 
 class Vehicle(Protocol):
