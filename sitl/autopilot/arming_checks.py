@@ -16,6 +16,7 @@ from . import radio
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
+from .fence import arming as fence_arming
 from .params.parameters import Parameters
 from .params.radio import RcMap
 from .params.simulation import Axes
@@ -32,6 +33,7 @@ BY_BATTERY_FAILSAFE = 7
 BY_CRASH = 12
 BY_LANDING = 13
 BY_MISSION_EXIT = 14
+BY_FENCE = 15
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
@@ -74,6 +76,9 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
+FENCE_POSITION = 1 << 37
+FENCE_SHIFT = 38
+"""Five bits from here on are a number: why the fence refuses (``fence.arming``)."""
 NOTHING_SEEN = 1 << 43
 OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
@@ -83,6 +88,7 @@ TEXTS = {
     BAROMETER: "Barometer not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
+    FENCE_POSITION: "Fence enabled, need position estimate",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -256,6 +262,7 @@ def texts(failed: int, prefix: str = "") -> list[str]:
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
-    found = failed >> OBSTACLE_SHIFT & 511
-    said = [text for bit, text in TEXTS.items() if shown & bit] + ([obstacle_text(found)] if found else [])
+    said = [text for bit, text in TEXTS.items() if shown & bit]
+    fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
+    said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])
     return [prefix + text for text in said]

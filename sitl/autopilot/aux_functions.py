@@ -15,6 +15,7 @@ from ..core.geodesy import add_offset
 from . import events
 from .arming_checks import BY_SWITCH
 from .aux_switch import HIGH, LOW, MIDDLE
+from .fence.checks import ALL, switch_by_user
 from .mission.item import NAV_WAYPOINT, RELATIVE, MissionItem, home_item
 from .mission.mission import Mission
 from .mission.notes import INFO, Note, Text
@@ -181,6 +182,12 @@ def append_items(holder: Holder, items: list[MissionItem]) -> None:
     holder.sequencer.extend_mission(holder.v, Mission((*before, *items)))
 
 
+def _fence(holder: Holder, position: int) -> list[Note]:
+    ap = holder.v.autopilot
+    switch_by_user(ap.fence, position == HIGH, ALL, ap.params.FENCE)
+    return []
+
+
 def _avoid_obstacles(holder: Holder, position: int) -> list[Note]:
     holder.v.autopilot.avoid.switched_off = position != HIGH
     return []
@@ -191,7 +198,7 @@ def _nothing(holder: Holder, position: int) -> list[Note]:
 
 
 COMMON = (
-    AuxFunction(11, _nothing, "fence: only told, as there is no fence", "Fence"),
+    AuxFunction(11, _fence, "high: all fences are on; else off", "Fence"),
     AuxFunction(24, _reset_mission, "high: the mission goes back to its start", "MissionReset"),
     AuxFunction(31, _stop_motors, "high: motors stand, and cannot be armed", "MotorEStop"),
     AuxFunction(40, _avoid_obstacles, "high: obstacles are avoided (AVOID_*); else they are not", "AvoidProximity"),

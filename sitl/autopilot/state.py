@@ -17,7 +17,7 @@ from .avoidance.proximity import Proximity
 from .avoidance.state import Avoidance
 from .estimation.state import Ekf
 from .events import Events
-from .fence.state import FenceState
+from .fence.state import FenceState, RallyState
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
@@ -225,6 +225,7 @@ class Autopilot(Record):
     inertial: InertialRing
     vibration: Vibration
     fence: FenceState
+    rally: RallyState
     proximity: Proximity
     avoid: Avoidance
 

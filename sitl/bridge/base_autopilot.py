@@ -8,6 +8,7 @@ from typing import Any
 
 from ..autopilot import battery, events, home
 from ..autopilot.estimation import aiding
+from ..autopilot.fence import texts as fence_texts
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
@@ -53,6 +54,9 @@ class BaseAutopilot:
             return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
         if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
             return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
+        fence = fence_texts.note(code, a, b)
+        if fence is not None:
+            return [fence]
         if code == events.FOLLOW_OFF:
             return [Text(WARNING, "Set FOLL_ENABLE = 1")]
         if code == events.FOLLOW_OFFSET:

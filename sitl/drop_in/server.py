@@ -12,6 +12,7 @@ from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
 from ..bridge.links import Link
+from ..bridge.services.mission import MissionService
 from ..bridge.services.signing import SigningService
 from ..bridge.signing import WINDOW, Signing
 from ..core.compile import Progress
@@ -87,6 +88,8 @@ class Session:
         simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
+        self._places = (self.storage.fence, self.storage.rally)
+        simulation.bridge.get(MissionService).keep(*self._places, counted=True)
         if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again
             kept = kept._replace(timestamp=kept.timestamp + WINDOW)
             simulation.bridge.get(SigningService).signing = Signing(kept)
@@ -187,6 +190,10 @@ class Session:
         if mission is not self._mission:
             self._mission = mission
             self.storage.keep_mission(mission.items)
+        places = self.simulation.bridge.get(MissionService).lists
+        if places != self._places:
+            self._places = places
+            self.storage.keep_places(*places)
         self._keep_key()
         self.storage.write()
         dropped = self.simulation.bridge.dropped

@@ -12,6 +12,8 @@ import math
 from ...core.algebra import dot2, horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2
+from ..fence.checks import active
+from ..fence.state import AREAS, CIRCLE
 from ..state import Autopilot, Vehicle
 from . import fences, obstacles, proximity, velocity
 from .state import Avoidance
@@ -26,7 +28,7 @@ RECENT_US = 500_000
 @law
 def is_active(avoid: Avoidance) -> bool:
     """Whether there is anything to avoid."""
-    return avoid.obstacles or avoid.fences
+    return avoid.obstacles or avoid.fences != 0
 
 
 @law
@@ -49,7 +51,19 @@ def watch(v: Vehicle, too_low: bool) -> None:
     enabled = int(p.AVOID.ENABLE)
     watched = seen.kind != 0 and (enabled & OBSTACLES) != 0 and not ap.avoid.switched_off
     ap.avoid.obstacles = watched and not too_low and proximity.has_data(seen, v.time_us)
-    ap.avoid.fences = False
+    ap.avoid.fences = active(ap.fence, p.FENCE) if (enabled & FENCES) != 0 else 0
+
+
+@law
+def limit_by_fences(ap: Autopilot, vel: Vec2, b: Braking) -> Vec2:
+    """``vel`` (NE [m/s]) that keeps FENCE_MARGIN from the circle around home and from the edges of areas."""
+    avoid, p, pos = ap.avoid, ap.params.FENCE, horizontal(ap.estimate.pos)
+    margin = fences.Margin(p.MARGIN, b)
+    if (avoid.fences & CIRCLE) != 0 and ap.home.is_set:
+        vel = fences.stay_within_circle(avoid, vel, horizontal(ap.home.pos) - pos, p.RADIUS, margin)
+    if (avoid.fences & AREAS) != 0:
+        vel = fences.avoid_areas(avoid, ap.fence, vel, pos, margin)
+    return vel
 
 
 @law
@@ -60,14 +74,10 @@ def limit_velocity(ap: Autopilot, time_us: int, vel: Vec2, b: Braking) -> Vec2:
     safe = vel
     if avoid.obstacles:
         safe = obstacles.avoid_obstacles(avoid, ap.proximity, safe, ap.estimate.yaw, time_us, p, b)
+    if avoid.fences != 0 and ap.estimate.position_ok:
+        safe = limit_by_fences(ap, safe, b)
     safe = velocity.with_backing(avoid, safe, p.BACKUP_SPD)
     return velocity.changed_slowly(avoid, vel, safe, time_us, p.ACCEL_MAX, b.dt)
-
-
-@law
-def limit_climb(ap: Autopilot, climb: float, b: Braking) -> float:
-    """A climb rate [m/s] that stays below the ceiling of the fence."""
-    return climb
 
 
 @law

@@ -11,7 +11,7 @@ class Avoidance(Record):
     """What is avoided, and how velocities were limited last."""
 
     obstacles: bool  # what the proximity sensor sees is avoided (AVOID_ENABLE, the switch, AVOID_ALT_MIN)
-    fences: bool  # so are fences
+    fences: int  # bits of the fences that are (``fence.state``)
     switched_off: bool  # a switch says that obstacles are not to be avoided
     limited_us: int  # when a velocity was last changed
     vel: Vec2  # to what, NE [m/s]

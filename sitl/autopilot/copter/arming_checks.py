@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from ..arming_checks import (
     BY_MAVLINK,
     BY_RUDDER,
@@ -13,6 +14,8 @@ from ..arming_checks import (
     CHECK_PARAMETERS,
     CHECK_RC,
     EMERGENCY_STOP,
+    FENCE_POSITION,
+    FENCE_SHIFT,
     FRAME,
     GPS_FIX,
     INTERLOCK,
@@ -31,6 +34,7 @@ from ..arming_checks import (
     sensor_checks,
     wants,
 )
+from ..fence import arming as fence_arming
 from ..params.system import Arming
 from ..state import Estimate, Radio
 from . import pilot
@@ -85,6 +89,15 @@ def check(v: Vehicle) -> int:
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
+    fence = p.FENCE
+    if (
+        fence_arming.needs_position(ap.fence, fence)
+        and not ap.estimate.position_ok
+        and not requires_position(ap.modes.number)
+    ):
+        failed |= FENCE_POSITION
+    limits = Vec3(fence.ALT_MAX, fence.ALT_MIN, fence.AUTOENABLE)
+    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, fence, limits) << FENCE_SHIFT
     return failed if ap.control.motors.count > 0 else failed | FRAME
 
 

@@ -9,7 +9,8 @@ from ...core.kernels import law
 from ...core.vectors import Vec2
 from ..avoidance import limit, obstacles
 from ..avoidance.proximity import Proximity
-from ..avoidance.velocity import braking
+from ..avoidance.velocity import braking, climb_below
+from ..fence.state import MAX_ALT, MIN_ALT
 from ..state import Estimate
 from .control.attitude import Lean
 from .control.state import DT
@@ -44,11 +45,17 @@ def watch(v: Vehicle) -> None:
 
 @law
 def limit_climb(v: Vehicle, climb: float) -> float:
-    """A climb rate [m/s] that stays below the ceiling of the fence."""
+    """A climb rate [m/s] that stays FENCE_MARGIN below the greatest height of the fence, and above the least."""
     ap, p = v.autopilot, v.autopilot.params
-    if not ap.avoid.fences:
+    if (ap.avoid.fences & (MAX_ALT | MIN_ALT)) == 0:
         return climb
-    return limit.limit_climb(ap, climb, braking(p.PSC.POSZ_P, ap.control.pos_d.accel_max, DT, p.AVOID.BEHAVE))
+    b = braking(p.PSC.POSZ_P, ap.control.pos_d.accel_max, DT, p.AVOID.BEHAVE)
+    height = ap.home.pos.z - ap.estimate.pos.z
+    if (ap.avoid.fences & MIN_ALT) != 0:
+        climb = -climb_below(-climb, height - p.FENCE.ALT_MIN - p.FENCE.MARGIN, p.AVOID.BACKZ_SPD, b)
+    if (ap.avoid.fences & MAX_ALT) != 0:
+        climb = climb_below(climb, p.FENCE.ALT_MAX - p.FENCE.MARGIN - height, p.AVOID.BACKZ_SPD, b)
+    return climb
 
 
 @law

@@ -28,6 +28,14 @@ KINDS = {
 }
 POLYGONS = (FENCE_INCLUSION, FENCE_EXCLUSION)
 FEWEST_CORNERS = 3
+_TYPES = {
+    FENCE_INCLUSION: 98,
+    FENCE_EXCLUSION: 97,
+    FENCE_RETURN_POINT: 95,
+    FENCE_CIRCLE_OUT: 93,
+    FENCE_CIRCLE: 92,
+}
+"""How ArduPilot's texts name kinds of items."""
 
 
 class Shape(NamedTuple):
@@ -62,8 +70,14 @@ def shapes(items: Sequence[MissionItem]) -> Iterator[Shape]:
             own = items[k : k + count]
             if count < FEWEST_CORNERS:
                 raise FenceError(f"Invalid vertex count ({count})")
-            if len(own) < count or any((other.command, int(other.p1)) != (item.command, count) for other in own):
-                raise FenceError("Received incorrect vertices")
+            for other in own:
+                if other.command != item.command:
+                    wanted, got = _TYPES[item.command], _TYPES[other.command]
+                    raise FenceError(f"Received incorrect vertex type (want={wanted} got={got})")
+                if int(other.p1) != count:
+                    raise FenceError(f"Unexpected vertex count want={count} got={int(other.p1)}")
+            if len(own) < count:
+                raise FenceError("Incorrect item count")
             yield Shape(KINDS[item.command], 0.0, tuple((other.x, other.y) for other in own))
         else:
             if not item.p1 > 0.0:
@@ -92,3 +106,9 @@ def load(fence: FenceState, areas: Sequence[Shape]) -> None:
             fence.north[fence.corners], fence.east[fence.corners] = place.x, place.y
             fence.corners += 1
     fence.shapes = len(areas)
+
+
+def stored_bytes(items: Sequence[MissionItem], areas: Sequence[Shape]) -> int:
+    """Room that a list takes in ArduPilot's storage: its size depends on the board, not on this record."""
+    total = 5 + sum(9 for item in items if item.command == FENCE_RETURN_POINT)
+    return total + sum(13 if area.radius > 0.0 else 2 + 8 * len(area.places) for area in areas)

@@ -9,6 +9,7 @@ from ...core.border import RC_INPUTS
 from ...core.records import Records
 from .avoidance import Avoid, Proximity, ProximitySensor
 from .estimator import Ekf3
+from .fence import Fence, Rally
 from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
@@ -28,6 +29,7 @@ class Parameters(ParameterGroup):
     BATT: Battery
     COMPASS: Compass
     EK3: Ekf3
+    FENCE: Fence
     FOLL: Follow
     FS: Failsafes
     GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
@@ -38,6 +40,7 @@ class Parameters(ParameterGroup):
     MIS: Mission
     PRX: Proximity
     PRX1: ProximitySensor
+    RALLY: Rally
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(20, 20, 30, 20) + 12 * (0,))
     RC_OVERRIDE_TIME: float = param(
         3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"

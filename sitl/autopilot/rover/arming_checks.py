@@ -12,6 +12,7 @@ from ..arming_checks import (
     CHECK_RC,
     EKF_FAILSAFE,
     EMERGENCY_STOP,
+    FENCE_SHIFT,
     GPS_FIX,
     MODE,
     MODE_BY_RUDDER,
@@ -28,10 +29,12 @@ from ..arming_checks import (
     sensor_checks,
     wants,
 )
+from ..fence import arming as fence_arming
 from ..params.system import Arming
 from ..state import Estimate
 from .control import servos
 from .control.motors import is_skid
+from .heights import HEIGHTS
 from .modes.auto import AUTO
 from .modes.state import Modes, PilotState
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
@@ -79,6 +82,7 @@ def check(v: Vehicle) -> int:
         failed |= EMERGENCY_STOP
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, p.FENCE, HEIGHTS) << FENCE_SHIFT
     return failed if allows_arming(modes.number) else failed | MODE
 
 

@@ -10,6 +10,7 @@ from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
+from .old_points import OldPointService
 from .outputs import OutputService
 from .parameters import ParameterService
 from .service import Service
@@ -26,6 +27,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     CommandService,
     ParameterService,
     MissionService,
+    OldPointService,
     SetpointService,
     HomeService,
     TimesyncService,

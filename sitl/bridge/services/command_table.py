@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...autopilot.aux_switch import LOW
+from ...autopilot.fence.checks import ALL, switch_by_user
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
@@ -303,6 +304,16 @@ def _home_result(bridge: Bridge, ok: bool) -> int:
     return ACCEPTED if ok else FAILED
 
 
+def enable_fence(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """207: p1 1 switches fences on, 0 off; p2 which (bits as of FENCE_TYPE), 0 all."""
+    which = int(command.p2) if 0.0 < command.p2 <= ALL else ALL
+    if not 0.0 <= command.p1 <= 2.0 or not 0.0 <= command.p2 <= ALL:
+        return FAILED
+    ap = bridge.vehicle.v.autopilot
+    switch_by_user(ap.fence, int(command.p1) == 1, which, ap.params.FENCE)
+    return ACCEPTED
+
+
 def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
     """300: AUTO from the beginning; p1, p2 (first and last item) must be zero."""
     if command.p1 != 0.0 or command.p2 != 0.0:
@@ -350,6 +361,7 @@ COMMANDS: dict[int, Entry] = {
     202: Entry(configure_camera),
     203: Entry(control_camera),
     206: Entry(set_camera_distance, required=(1,)),
+    207: Entry(enable_fence, required=(1,)),
     218: Entry(aux_function, required=(1, 2)),
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from ...autopilot.fence.checks import kinds
 from ...core.kernels import law
 from ...core.records import Ints
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
 from ..wire.port import Port
+from .fence import is_at_work
 from .units import boot_ms, int16, int32, percent, uint16
 
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
@@ -33,7 +35,7 @@ def sensor_health(v: Vehicle) -> int:
     """
     t, s, ekf = v.time_us, v.sensors, v.autopilot.ekf
     watched = ekf.yaw_aligned and not ekf.use_external
-    health = GEOFENCE  # no fence is not a breached one
+    health = GEOFENCE if v.autopilot.fence.breached == 0 else 0
     if s.time_us > 0 and (ekf.use_external or ekf.bad_imu == 0):
         health |= GYRO | ACCEL
     if s.mag_count > 0 and not (watched and t - ekf.mag_us > SAMPLE_US):
@@ -73,8 +75,9 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
             health |= BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
         health |= PREARM
-    m.onboard_control_sensors_present = common | controllers
-    m.onboard_control_sensors_enabled = common | at_work
+    fence = GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
+    m.onboard_control_sensors_present = common | controllers | fence
+    m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0)
     m.onboard_control_sensors_health = health
     m.voltage_battery = uint16(battery.voltage * 1e3) if monitor >= VOLTAGE_MONITOR else UNKNOWN
     m.current_battery = int16(battery.current * 100.0) if monitor >= CURRENT_MONITOR else -1

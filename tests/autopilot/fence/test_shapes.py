@@ -114,8 +114,11 @@ def test_another_origin_moves_no_corner_on_the_globe() -> None:
     [
         (polygon(FENCE_INCLUSION, *SQUARE[:2]), "Invalid vertex count (2)"),
         ([at(FENCE_INCLUSION, 0, 0.0, 0.0)], "Invalid vertex count (0)"),
-        (polygon(FENCE_INCLUSION, *SQUARE)[:3], "Received incorrect vertices"),
-        (polygon(FENCE_INCLUSION, *SQUARE)[:2] + polygon(FENCE_EXCLUSION, *SQUARE)[:2], "Received incorrect vertices"),
+        (polygon(FENCE_INCLUSION, *SQUARE)[:3], "Incorrect item count"),
+        (
+            polygon(FENCE_INCLUSION, *SQUARE)[:2] + polygon(FENCE_EXCLUSION, *SQUARE)[:2],
+            "Received incorrect vertex type (want=98 got=97)",
+        ),
         ([at(FENCE_CIRCLE, 0.0, 0.0, 0.0)], "Non-positive circle radius"),
         ([at(FENCE_CIRCLE, math.nan, 0.0, 0.0)], "Non-positive circle radius"),
         (2 * [at(FENCE_RETURN_POINT, 0.0, 0.0, 0.0)], "Multiple return points"),

@@ -27,6 +27,7 @@ OUT_OF_RANGE = 3
 NOT_ARMED = 4
 ALREADY_FLYING = 5
 TOO_LOW = 6
+BEYOND_FENCE = 7
 
 LARGEST = 1e9
 """Metres, metres a second, radians beyond this are refused; what is on the globe is less."""

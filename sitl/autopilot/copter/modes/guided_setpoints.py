@@ -13,10 +13,11 @@ from ....core.algebra import ZERO, quat_norm_squared
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Quat, Vec3
+from ...fence.checks import allows
 from ..control.state import AltitudeState
 from ..state import Autopilot, Vehicle
 from . import auto_yaw, guided
-from .commands import NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
+from .commands import BEYOND_FENCE, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
 from .guided import ACCEL, ANGLE, GUIDED, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
 from .state import GuidedState
 
@@ -43,6 +44,13 @@ def refusal(mode: int, usable: bool, yaw: YawSetpoint) -> int:
     if not (usable and is_usable(yaw.angle) and is_usable(yaw.rate)):
         return NOT_FINITE
     return OK if mode == GUIDED else WRONG_MODE
+
+
+@law
+def is_beyond_fence(ap: Autopilot, pos: Vec3) -> bool:
+    """Whether a place, NED [m] from the origin, is beyond a fence that is on."""
+    fence = ap.params.FENCE
+    return ap.fence.on != 0 and not allows(ap.fence, ap.home, pos, fence, fence.ALT_MAX, fence.ALT_MIN)
 
 
 @law
@@ -76,6 +84,8 @@ def begin(v: Vehicle, submode: int) -> GuidedState:
 def set_position(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
     """Fly to a point, NED [m] from the origin, and stay."""
     code = refusal(v.autopilot.modes.number, is_usable_vector(pos), yaw)
+    if code == OK and is_beyond_fence(v.autopilot, pos):
+        code = BEYOND_FENCE
     if code == OK:
         begin(v, POSITION).pos = pos
         set_yaw(v.autopilot, yaw)
@@ -108,6 +118,8 @@ def set_pos_vel_accel(v: Vehicle, pos: Vec3, vel: Vec3, acc: Vec3, yaw: YawSetpo
     """Follow a point (NED [m]) that moves with a velocity [m/s] and an acceleration [m/s^2]."""
     usable = is_usable_vector(pos) and is_usable_vector(vel) and is_usable_vector(acc)
     code = refusal(v.autopilot.modes.number, usable, yaw)
+    if code == OK and is_beyond_fence(v.autopilot, pos):
+        code = BEYOND_FENCE
     if code == OK:
         target = begin(v, POS_VEL_ACCEL)
         target.pos, target.vel, target.acc = pos, vel, acc

@@ -6,8 +6,10 @@ from __future__ import annotations
 from ....core.kernels import law
 from ... import modes as all_modes
 from ...events import MODE_REFUSED, emit
+from ...fence.checks import begin_recovery, keeps_mode
 from ...modes import (
     ACCEPTED,
+    IN_FENCE_RECOVERY,
     INIT_FAILED,
     MISSING_TAKEOFF,
     NEEDS_ALTITUDE,
@@ -31,6 +33,7 @@ _CAUSES = {
     THROTTLE_TOO_HIGH: "throttle too high",
     NEEDS_ALTITUDE: "need alt estimate",
     MISSING_TAKEOFF: "init failed",
+    IN_FENCE_RECOVERY: "in fence recovery",
 }
 
 
@@ -66,6 +69,8 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         return ACCEPTED
     pending = modes.nav.request_pending
     cause = refusal(number, modes, ap.arming, ap.estimate, ap.params)
+    if ap.arming.armed and not ap.arming.landed and keeps_mode(ap.fence, modes.reason, ap.params.FENCE):
+        cause = IN_FENCE_RECOVERY
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = start(number, v)
@@ -74,6 +79,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     modes.takeoff.user_active = False
+    begin_recovery(ap.fence, ap.params.FENCE, ap.events, v.time_us)
     enter(modes, ap.events, v.time_us, number, reason, AUTO)
     return cause
 

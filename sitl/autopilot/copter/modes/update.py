@@ -10,7 +10,7 @@ from ...avoidance import proximity
 from ...modes import REASON_INITIALISED, take_asked
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, avoidance, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
+from .. import arming, avoidance, crash, failsafe, fence, landing, motor_test, pilot, takeoff_check, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -51,6 +51,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
         read_transmitter(v)
     if tick % _TENTH == 4:
         check_slowly(v)
+    if tick % fence.TICKS == 8:
+        fence.watch(v)
     if tick % _QUARTER == 12:
         home.set_first(ap.home, ap.estimate)
         ap.arming.prearm_ok = arming.check(v) == 0

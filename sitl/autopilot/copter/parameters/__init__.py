@@ -11,6 +11,7 @@ from ... import camera, relays
 from ...params import parameters as shared
 from ...params.avoidance import ProximitySensor
 from ...params.estimator import Ekf3
+from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
@@ -35,7 +36,7 @@ from .flight import (
     Waypoints,
     ZigZag,
 )
-from .safety import Battery, Failsafes, Simulated
+from .safety import Battery, Failsafes, Fence, Simulated
 
 
 class Frame(ParameterGroup):
@@ -76,6 +77,7 @@ class Parameters(shared.Parameters):
         10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8
     )
     EK3: Ekf3
+    FENCE: Fence
     FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
@@ -98,6 +100,7 @@ class Parameters(shared.Parameters):
     PRX: Proximity
     PRX1: ProximitySensor
     PSC: Position
+    RALLY: Rally
     RC: Records[RcChannel]
     RC_OVERRIDE_TIME: float
     RC_FS_TIMEOUT: float = param(1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost")

@@ -16,7 +16,7 @@ from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
 from ...params.system import SmartRtl
 from ...state import Estimate, HomeState
-from .. import crash, failsafe, motor_test, pilot
+from .. import crash, failsafe, fence, motor_test, pilot
 from ..arming import set_disarmed, stick_command, try_arm
 from ..arming_checks import check
 from ..control.forward_speed import sense
@@ -108,6 +108,7 @@ def check_slowly(v: Vehicle) -> None:
     watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)
     failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
+    fence.watch(v)
     crash.check(v)
     limit.watch(v, False)
 

@@ -12,6 +12,7 @@ from ... import camera, relays
 from ...params import parameters as shared
 from ...params.avoidance import Avoid, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
+from ...params.fence import Rally
 from ...params.follow import Follow
 from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
@@ -21,7 +22,7 @@ from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
-from .safety import Battery, Failsafes
+from .safety import Battery, Failsafes, Fence
 
 
 class Parameters(shared.Parameters):
@@ -38,6 +39,7 @@ class Parameters(shared.Parameters):
     CRUISE: Cruise
     SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
     EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7)
+    FENCE: Fence
     FOLL: Follow
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
     FS: Failsafes
@@ -62,6 +64,7 @@ class Parameters(shared.Parameters):
     PRX: Proximity
     PRX1: ProximitySensor
     PSC: Position
+    RALLY: Rally = group(LIMIT_KM=0.5)
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(30, 0, 30, 30) + 12 * (0,))
     RC_OVERRIDE_TIME: float
     RCMAP: RcMap
