@@ -13,6 +13,7 @@ from ...core.algebra import dot2, horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from ..fence.checks import active
+from ..fence.shapes import place
 from ..fence.state import AREAS, CIRCLE
 from ..state import Autopilot, Vehicle
 from . import fences, obstacles, proximity, velocity
@@ -45,7 +46,8 @@ def watch(v: Vehicle, too_low: bool) -> None:
     if seen.kind in proximity.LIDARS:
         if v.sensors.lidar_count > 0:
             proximity.look(seen, v.sensors, v.time_us, p.PRX.FILT, p.PRX1)
-        elif seen.kind == proximity.SIMULATED and ap.fence.is_placed and ap.fence.shapes > 0:
+        elif seen.kind == proximity.SIMULATED and ap.fence.shapes > 0 and ap.estimate.origin_set:
+            place(ap.fence, ap.estimate)
             fences.look(seen, ap.fence, horizontal(ap.estimate.pos), ap.estimate.yaw, p.PRX1)
             proximity.end_scan(seen, v.time_us, p.PRX.FILT)
     enabled = int(p.AVOID.ENABLE)

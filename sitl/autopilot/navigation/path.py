@@ -19,7 +19,10 @@ from ...core.vectors import Vec3
 from ..control.shaping import Motion
 from ..events import LEG_ENDING, Events, emit_and_return
 from .profile import clear, evaluate, finished, remaining, step
-from .state import LEG_REQUEST, Leg, Nav
+from .state import DETOUR_REQUEST, GO_ON, LEG_REQUEST, Detour, Leg, Nav
+
+AGAIN_US = 1_000_000
+"""Where there is no way, one is looked for again so often."""
 
 
 @law
@@ -28,6 +31,7 @@ def clear_legs(nav: Nav) -> None:
     clear(nav.previous)
     clear(nav.current)
     clear(nav.next)
+    nav.detour.left = nav.detour.blocked_us = 0
 
 
 @law
@@ -56,6 +60,30 @@ def request_legs(nav: Nav, events: Events, time_us: int, target: Vec3, following
     request_leg(nav, events, time_us, target)
     nav.request_next = following
     nav.request_pending = 2
+
+
+@law
+def set_place(detour: Detour, k: int, place: Vec3) -> None:
+    """Place ``k`` of a detour, NED [m]."""
+    detour.places[3 * k], detour.places[3 * k + 1], detour.places[3 * k + 2] = place.x, place.y, place.z
+
+
+@law
+def arrive(nav: Nav) -> None:
+    """The leg under way is at its end: the destination, or a place of a detour, after which the shell
+    plans the next leg."""
+    if nav.detour.left == 0:
+        nav.reached = True
+    elif nav.detour.blocked_us == 0:
+        nav.request_pending = GO_ON
+
+
+@law
+def watch_detour(nav: Nav, events: Events, time_us: int) -> None:
+    """Ten times a second: where there was no way, look for one again each second."""
+    blocked = nav.detour.blocked_us
+    if blocked > 0 and time_us - blocked >= AGAIN_US and time_us - nav.active_us < AGAIN_US:
+        emit_and_return(events, time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)
 
 
 @law

@@ -32,6 +32,13 @@ class ProximitySensor(ParameterGroup):
     MAX: float = param(0.0, 0.0, 500.0, "m", "Readings above it are none; 0: as the sensor says")
 
 
+class PathPlanning(ParameterGroup):
+    """OA_: ways around fences, in modes that follow legs."""
+
+    TYPE: float = param(0, 0, 7, "", "2, 3: the shortest way around areas of the fence (Dijkstra); else straight", INT8)
+    MARGIN_MAX: float = param(5.0, 0.1, 100.0, "m", "Distance that such ways keep from areas")
+
+
 class Avoid(ParameterGroup):
     """AVOID_: stops before obstacles and fences, or slides along them."""
 

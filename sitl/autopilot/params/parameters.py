@@ -7,7 +7,7 @@ from typing import Any
 
 from ...core.border import RC_INPUTS
 from ...core.records import Records
-from .avoidance import Avoid, Proximity, ProximitySensor
+from .avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from .estimator import Ekf3
 from .fence import Fence, Rally
 from .follow import Follow
@@ -38,6 +38,7 @@ class Parameters(ParameterGroup):
     MAV: Mavlink
     MAV1: StreamRates
     MIS: Mission
+    OA: PathPlanning
     PRX: Proximity
     PRX1: ProximitySensor
     RALLY: Rally

@@ -7,7 +7,10 @@ from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home
 from ...avoidance import proximity
+from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
+from ...navigation.path import watch_detour
+from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...radio import RC_TICKS
 from ...state import Arming
 from .. import arming, avoidance, crash, failsafe, fence, landing, motor_test, pilot, takeoff_check, thrust_loss
@@ -100,6 +103,7 @@ def check_slowly(v: Vehicle) -> None:
     arming.disarm_idle(v)
     takeoff_check.check(v)
     avoidance.watch(v)
+    watch_detour(v.autopilot.modes.nav, v.autopilot.events, v.time_us)
 
 
 @inlined
@@ -107,6 +111,8 @@ def run_mode(v: Vehicle) -> None:
     """The mode's own tick, then the change that it may have asked for."""
     ap = v.autopilot
     table.run(ap.modes.number, v)
+    if ap.modes.nav.request_pending == GO_ON:
+        emit_and_return(ap.events, v.time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)
     wanted = take_asked(ap.modes)
     if wanted >= 0:
         set_mode.request(v, wanted, ap.modes.wanted_reason)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ....core.records import Floats, Records
 from ... import camera, relays
 from ...params import parameters as shared
-from ...params.avoidance import ProximitySensor
+from ...params.avoidance import PathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
@@ -95,6 +95,7 @@ class Parameters(shared.Parameters):
     MAV1: StreamRates
     MIS: Mission
     MOT: Motors
+    OA: PathPlanning
     PHLD: PosHold
     PILOT: Pilot
     PRX: Proximity

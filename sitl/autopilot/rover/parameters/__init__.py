@@ -10,7 +10,7 @@ from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ... import camera, relays
 from ...params import parameters as shared
-from ...params.avoidance import Avoid, Proximity, ProximitySensor
+from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.follow import Follow
@@ -58,6 +58,7 @@ class Parameters(shared.Parameters):
     MODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     MODE_CH: float = param(8, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     MOT: Motors
+    OA: PathPlanning
     PILOT_STEER_TYPE: float = param(
         0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
     )
