@@ -205,10 +205,15 @@ def test_too_many(bench: Bench) -> None:
     assert ack.type == NO_SPACE and text.text == "Only 724 items are supported"
 
 
-@pytest.mark.parametrize(("kind", "command", "total"), [(1, 5003, "FENCE_TOTAL"), (2, 5100, "RALLY_TOTAL")])
-def test_fence_and_rally_points_are_kept(bench: Bench, kind: int, command: int, total: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "command", "p1", "total", "counted"),
+    [(1, 5003, 50.0, "FENCE_TOTAL", 0), (1, 5001, 3.0, "FENCE_TOTAL", 5), (2, 5100, 0.0, "RALLY_TOTAL", 3)],
+)
+def test_fence_and_rally_points_are_kept(
+    bench: Bench, kind: int, command: int, p1: float, total: str, counted: int
+) -> None:
     bench.autopilot.items = old = tuple(SQUARE)
-    points = [MissionItem(command, 3, p1=50.0, x=HOME[0] + k, y=HOME[1], z=20.0) for k in range(3)]
+    points = [MissionItem(command, 3, p1=p1, x=HOME[0] + k, y=HOME[1], z=20.0) for k in range(3)]
 
     def listed() -> int:
         (n,) = bench.ask(mavlink.MAVLink_mission_request_list_message(1, 1, kind))
@@ -221,13 +226,13 @@ def test_fence_and_rally_points_are_kept(bench: Bench, kind: int, command: int, 
             assert [(m.get_type(), m.seq, m.mission_type) for m in requests] == [("MISSION_REQUEST", k, kind)]
             requests = bench.ask(item_int(k, point, kind=kind), "MISSION_REQUEST", "MISSION_ACK")
         assert [(m.get_type(), m.type, m.mission_type) for m in requests] == [("MISSION_ACK", ACCEPTED, kind)]
-        assert listed() == bench.vehicle.parameters[total] == 3
+        assert (listed(), bench.vehicle.parameters[total]) == (3, counted)
 
     assert listed() == 0
     for clear in (count(0, kind), *(mavlink.MAVLink_mission_clear_all_message(1, 1, k) for k in (kind, 255))):
         put()
         (got,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 2, kind))
-        assert (got.command, got.x, got.param1, got.mission_type, got.current) == (command, HOME[0] + 2, 50.0, kind, 0)
+        assert (got.command, got.x, got.param1, got.mission_type, got.current) == (command, HOME[0] + 2, p1, kind, 0)
         assert bench.autopilot.items is old
         (ack,) = bench.ask(clear, "MISSION_ACK")
         assert ack.type == ACCEPTED and listed() == bench.vehicle.parameters[total] == 0

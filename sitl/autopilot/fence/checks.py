@@ -85,7 +85,9 @@ def measure(
     """How far beyond each fence the vehicle is (``over``); without a position, as far as it was from the flat ones."""
     height = home.pos.z - estimate.pos.z
     fence.over[0], fence.over[3] = height - alt_max, alt_min - height
-    if estimate.position_ok and home.is_set:
+    if not home.is_set:
+        fence.over[1] = NONE
+    elif estimate.position_ok:
         fence.over[1] = norm2(horizontal(estimate.pos) - horizontal(home.pos)) - params.RADIUS
     if not fence.is_placed or fence.shapes == 0:
         fence.over[2] = NONE

@@ -96,8 +96,8 @@ class OldPointService(Service):
             self._keep(back, corners)
 
     def _keep(self, back: Place | None, corners: list[Place]) -> None:
-        items = [MissionItem(FENCE_RETURN_POINT, GLOBAL, x=back[0], y=back[1], autocontinue=0)] if back else []
-        items += [MissionItem(FENCE_INCLUSION, GLOBAL, len(corners), x=x, y=y, autocontinue=0) for x, y in corners]
+        items = [MissionItem(FENCE_RETURN_POINT, GLOBAL, x=back[0], y=back[1])] if back else []
+        items += [MissionItem(FENCE_INCLUSION, GLOBAL, len(corners), x=x, y=y) for x, y in corners]
         self.bridge.get(MissionService).replace_fence(tuple(items))
 
     def _fetch_fence_point(self, channel: Channel, fields: Any, sender: Sender) -> None:
@@ -131,9 +131,7 @@ class OldPointService(Service):
             missions = self.bridge.get(MissionService)
             fence, points = missions.lists
             changed = list(counted(points, total))
-            changed[k] = MissionItem(
-                RALLY_POINT, RELATIVE, x=fields.lat, y=fields.lng, z=float(fields.alt), autocontinue=0
-            )
+            changed[k] = MissionItem(RALLY_POINT, RELATIVE, x=fields.lat, y=fields.lng, z=float(fields.alt))
             missions.keep(fence, tuple(changed))
 
     def _fetch_rally_point(self, channel: Channel, fields: Any, sender: Sender) -> None:

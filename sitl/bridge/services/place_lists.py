@@ -10,8 +10,6 @@ from ...autopilot.fence import items as fence
 from ...autopilot.fence.state import CORNERS, POINTS
 from ...autopilot.mission.item import FENCE_RETURN_POINT, GLOBAL, RALLY_POINT, RELATIVE_FRAMES, MissionItem
 
-FENCE_BYTES, RALLY_BYTES = (560, 690), (672, 750)
-"""ArduPilot's storage of fences and of rally points, of vehicles that fly and of others."""
 CORNER_BYTES, POINT_BYTES = 8, 15
 NO_POINT = MissionItem(RALLY_POINT, GLOBAL, autocontinue=0)
 """What RALLY_TOTAL counts beyond the points that were given."""
@@ -21,12 +19,12 @@ def most_fence_items(vehicle: Any) -> int:
     """How many items a list of fences may have: BRD_SD_FENCE gives as much room as the record has."""
     if _on_card(vehicle):
         return CORNERS
-    return _fence_bytes(vehicle) // CORNER_BYTES
+    return vehicle.firmware.fence_bytes // CORNER_BYTES
 
 
 def most_rally_points(vehicle: Any) -> int:
     """How many rally points fit."""
-    return min((RALLY_BYTES[0] if vehicle.kind.flies else RALLY_BYTES[1]) // POINT_BYTES, POINTS)
+    return min(vehicle.firmware.rally_bytes // POINT_BYTES, POINTS)
 
 
 def _on_card(vehicle: Any) -> bool:
@@ -34,18 +32,16 @@ def _on_card(vehicle: Any) -> bool:
     return "BRD_SD_FENCE" in values.table and values["BRD_SD_FENCE"] > 0.0
 
 
-def _fence_bytes(vehicle: Any) -> int:
-    return FENCE_BYTES[0] if vehicle.kind.flies else FENCE_BYTES[1]
-
-
 def as_fence(item: MissionItem) -> MissionItem:
     """A fence's item as it is kept and sent back: its place, and its number of corners or radius."""
-    return MissionItem(item.command, GLOBAL, p1=item.p1, x=item.x, y=item.y, autocontinue=0)
+    return MissionItem(item.command, GLOBAL, p1=item.p1, x=item.x, y=item.y, autocontinue=item.autocontinue)
 
 
 def as_rally_point(item: MissionItem) -> MissionItem:
     """A rally point as it is kept and sent back: its place, at whole metres."""
-    return MissionItem(RALLY_POINT, item.frame, x=item.x, y=item.y, z=float(int(item.z)), autocontinue=0)
+    return MissionItem(
+        RALLY_POINT, item.frame, x=item.x, y=item.y, z=float(int(item.z)), autocontinue=item.autocontinue
+    )
 
 
 def load_fence(vehicle: Any, items: tuple[MissionItem, ...], *, checked: bool = True) -> None:
@@ -55,7 +51,7 @@ def load_fence(vehicle: Any, items: tuple[MissionItem, ...], *, checked: bool = 
         FenceError: it makes no fence, or does not fit; what was loaded before stays.
     """
     shapes = list(fence.shapes(items))
-    if checked and not _on_card(vehicle) and fence.stored_bytes(items, shapes) > _fence_bytes(vehicle):
+    if checked and not _on_card(vehicle) and fence.stored_bytes(items, shapes) > vehicle.firmware.fence_bytes:
         raise fence.FenceError("Fence exceeds storage size")
     fence.load(vehicle.v.autopilot.fence, shapes)
 
