@@ -11,17 +11,13 @@ from ...core.algebra import ZERO, horizontal, vector_at, with_down
 from ...core.vectors import Vec3
 from ..avoidance.shortest_path import find_path
 from ..events import NO_WAY, emit
-from ..fence.checks import active
-from ..fence.state import AREAS
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
-from .path import set_place
+from .path import areas_of, set_place
 from .profile import clear, evaluate
-from .state import DETOUR, Leg
+from .state import DETOUR, GO_ON, Leg
 
 A = TypeVar("A", bound=Autopilot)
-DIJKSTRA = (2, 3)
-"""OA_TYPE"""
 TOLD_US = 5_000_000
 """That there is no way is said no more often."""
 
@@ -92,7 +88,8 @@ class Planner(ABC, Generic[A]):
         nav = ap.modes.nav
         detour = nav.detour
         detour.left = detour.blocked_us = 0
-        if ap.params.OA.TYPE not in DIJKSTRA or active(ap.fence, ap.params.FENCE) & AREAS == 0:
+        detour.areas = areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+        if detour.areas == 0:
             self.begin_leg(ap, time_us, target)
             return
         origin, _ = self.origin_of_next(ap, time_us)
@@ -112,16 +109,21 @@ class Planner(ABC, Generic[A]):
         self._go_to_next(ap, time_us)
 
     def go_on(self, ap: A, time_us: int) -> None:
-        """A place of a detour is reached: on to the next one; where there was no way, look again."""
+        """A place of a detour is reached: on to the next one. Where there was no way, or the areas are others than
+        before, a way to the destination is laid anew."""
         nav = ap.modes.nav
-        if nav.detour.left == 0:
-            return
-        nav.request_pending = 0
-        if nav.detour.blocked_us != 0:
-            self.begin(ap, time_us, vector_at(nav.detour.places, 0))
-        else:
+        detour = nav.detour
+        is_old = detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+        if is_old and not nav.reached and nav.current.segments > 0:
+            target = vector_at(detour.places, 0) if detour.left > 0 else end(nav.current)
+            self.begin(ap, time_us, target)
+        elif nav.request_pending == GO_ON and detour.left > 0:
             nav.reached = True
             self._go_to_next(ap, time_us)
+        else:
+            detour.areas = areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+            return
+        nav.request_pending = 0
         self.start(ap, time_us)
 
     def _go_to_next(self, ap: A, time_us: int) -> None:

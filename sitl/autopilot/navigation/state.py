@@ -82,6 +82,7 @@ class Detour(Record):
 
     left: int  # places that are still to come, the destination the last of them; 0: none
     places: Floats = array(3 * DETOUR)  # the next one last, NED [m]
+    areas: int  # the areas of the fence that it was laid around (``path.areas_of``)
     blocked_us: int  # there is no way: when that was found; 0 not
     told_us: int  # when it was last said
 

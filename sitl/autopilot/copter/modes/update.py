@@ -9,7 +9,7 @@ from ... import battery, home
 from ...avoidance import proximity
 from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
-from ...navigation.path import watch_detour
+from ...navigation.path import areas_of, watch_detour
 from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...radio import RC_TICKS
 from ...state import Arming
@@ -103,7 +103,8 @@ def check_slowly(v: Vehicle) -> None:
     arming.disarm_idle(v)
     takeoff_check.check(v)
     avoidance.watch(v)
-    watch_detour(v.autopilot.modes.nav, v.autopilot.events, v.time_us)
+    ap = v.autopilot
+    watch_detour(ap.modes.nav, areas_of(ap.fence, ap.params.OA, ap.params.FENCE), ap.events, v.time_us)
 
 
 @inlined

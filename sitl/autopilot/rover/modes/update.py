@@ -14,7 +14,7 @@ from ...events import LEG_ENDING, Events, emit_and_return
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
-from ...navigation.path import watch_detour
+from ...navigation.path import areas_of, watch_detour
 from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...params.system import SmartRtl
 from ...state import Estimate, HomeState
@@ -115,7 +115,7 @@ def check_slowly(v: Vehicle) -> None:
     fence.watch(v)
     crash.check(v)
     limit.watch(v, False)
-    watch_detour(ap.modes.nav, ap.events, v.time_us)
+    watch_detour(ap.modes.nav, areas_of(ap.fence, p.OA, p.FENCE), ap.events, v.time_us)
 
 
 @law
