@@ -184,7 +184,7 @@ def append_items(holder: Holder, items: list[MissionItem]) -> None:
 
 def _fence(holder: Holder, position: int) -> list[Note]:
     ap = holder.v.autopilot
-    switch_by_user(ap.fence, position == HIGH, ALL, ap.params.FENCE)
+    switch_by_user(ap.fence, position == HIGH, ALL, ap.params.FENCE, ap.events, holder.v.time_us)
     return []
 
 

@@ -48,9 +48,9 @@ THRUST_LOST = 40  # copter; a: motor 1 .. that seems to fail
 TAKEOFF_BLOCKED = 41  # copter; a: why (takeoff_check.py)
 FOLLOW_OFFSET = 42  # FOLLOW keeps the distance that it has; a: 1 in the lead's frame, 0 north, east, down
 FOLLOW_OFF = 43  # FOLLOW was asked for while FOLL_ENABLE is 0
-FENCE_BREACHED = 44  # a: bits of fences
-FENCE_CLEAR = 45  # no fence is breached any more; a: bits of those that were
-FENCE_SWITCHED = 46  # a: bits of fences, b: 1 on, 0 off by themselves, 2 the least height once above it
+FENCE_BREACHED = 44  # a: bits of fences, b: 1 the pilot is told
+FENCE_CLEAR = 45  # no fence is breached any more; b: 1 the pilot is told
+FENCE_SWITCHED = 46  # a: bits of fences, b: how (fence/checks.py)
 FENCE_NEAR = 47  # a: bits of fences, b: how far they are [m]; below zero: they are further than the margin again
 FENCE_RECOVERY = 48  # the pilot brings the vehicle back behind the fence
 

@@ -12,7 +12,7 @@ import pytest
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.simulation import Core
-from tests.drives.rover_driver import GUIDED, HOLD, POSITION, RTL, SMART_RTL, Driver
+from tests.drives.rover_driver import GUIDED, HOLD, POSITION, RTL, SMART_RTL, Driver, Item
 
 CIRCLE, AREAS = 2, 4
 
@@ -20,7 +20,7 @@ CIRCLE, AREAS = 2, 4
 def drive_north(p: Driver) -> float:
     """Drive north in GUIDED until the mode changes or it is disarmed; how far it was then [m]."""
     p.target(POSITION, x=80.0)
-    p.fly(40.0, lambda: p.mode != GUIDED or not p.armed)
+    p.fly(40.0, lambda: p.mode != GUIDED or not p.ap.arming.armed)
     return float(p.place[0])
 
 
@@ -38,7 +38,7 @@ def drive_north(p: Driver) -> float:
 def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int, armed: bool) -> None:
     p = Driver(core, "ardupilot_rover", FENCE_ENABLE=1, FENCE_RADIUS=20.0, FENCE_ACTION=action).armed_in(GUIDED)
     there = drive_north(p)
-    assert (p.mode, p.armed) == (mode, armed)
+    assert (p.mode, p.ap.arming.armed) == (mode, armed)
     assert (there > 50.0) if action == 0 else (there == pytest.approx(20.3, abs=0.7))
     assert p.said("Manual recovery started") == (action in (1, 2, 3, 4))
     assert not p.said("Circle fence breached")  # rovers are silent about it
@@ -60,6 +60,15 @@ def test_a_hundred_metres_beyond_it_holds(core: Core) -> None:
     assert p.fly(90.0, lambda: p.place[0] > 125.0)
     p.set_parameter("FENCE_ENABLE", 1)
     assert p.fly(1.0, lambda: p.mode == HOLD)
+
+
+def test_a_mission_switches_fences(core: Core) -> None:
+    p = Driver(core, "ardupilot_rover").armed_in(GUIDED)
+    first, last = (Item(c.NAV_WAYPOINT, (north, 0.0)) for north in (10.0, 20.0))
+    p.start_mission(Item(c.DO_FENCE_ENABLE, p=(1.0,)), first, Item(c.DO_FENCE_ENABLE), last)
+    assert p.said("Circle and Polygon fences enabled") and p.ap.fence.on == CIRCLE | AREAS
+    p.finish_mission(30.0)
+    assert p.said("Circle and Polygon fences disabled") and p.ap.fence.on == 0
 
 
 def test_rtl_goes_to_the_rally_point(core: Core) -> None:

@@ -6,8 +6,7 @@ from __future__ import annotations
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..arming_checks import BY_FENCE
-from ..events import FENCE_BREACHED, emit
-from ..fence.checks import GIVE_UP, check, farthest, tell_clear
+from ..fence.checks import GIVE_UP, check, farthest, report
 from ..fence.state import MAX_ALT
 from ..modes import ACCEPTED, REASON_FENCE_BREACHED
 from .failsafe_actions import is_idle
@@ -34,17 +33,11 @@ def watch(v: Vehicle) -> None:
     before = fence.breached
     standing = not (ap.arming.armed and flies) or is_landing(ap.modes.number, ap.modes)
     limits = Vec3(p.ALT_MAX, p.ALT_MIN, p.AUTOENABLE)
-    new = check(fence, ap.estimate, ap.home, p, limits, standing, ap.events, v.time_us)
-    if not ap.arming.armed:
-        return
-    if new == 0:
-        if flies:
-            tell_clear(fence, before, ap.events, v.time_us)
-        return
-    if flies:
-        emit(ap.events, v.time_us, FENCE_BREACHED, float(new), 0.0)
-    if p.ACTION != _NOTHING:
-        act(v, new)
+    new = check(v, limits, standing)
+    if ap.arming.armed:
+        report(fence, before, new, flies, ap.events, v.time_us)
+        if new != 0 and p.ACTION != _NOTHING:
+            act(v, new)
 
 
 @law
@@ -52,8 +45,8 @@ def act(v: Vehicle, new: int) -> None:
     """Do what FENCE_ACTION says about the fences breached: LAND at once far beyond them, and disarm on the ground."""
     ap = v.autopilot
     action = int(ap.params.FENCE.ACTION)
-    by_pilot = ap.modes.failsafe.radio or ap.fence.breached & MAX_ALT != 0  # who is too high may close the throttle
-    if ap.arming.landed or (is_idle(ap.modes, False) and not by_pilot):
+    is_excused = ap.modes.failsafe.radio or ap.fence.breached & MAX_ALT != 0  # who is too high closes the throttle
+    if ap.arming.landed or (is_idle(ap.modes, False) and not is_excused):
         ground.disarm(v, BY_FENCE)
         return
     if farthest(ap.fence, new) > GIVE_UP:

@@ -51,6 +51,7 @@ OTHERS = (
     commands.CONDITION_YAW,
     commands.DO_JUMP,
     commands.DO_CHANGE_SPEED,
+    commands.DO_FENCE_ENABLE,
     commands.DO_SET_HOME,
     commands.DO_SET_ROI_LOCATION,
     commands.DO_SET_ROI_NONE,

@@ -10,10 +10,10 @@ from __future__ import annotations
 from ...core.algebra import horizontal, norm2
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
-from ..events import FENCE_CLEAR, FENCE_NEAR, FENCE_RECOVERY, FENCE_SWITCHED, Events, emit
+from ..events import FENCE_BREACHED, FENCE_CLEAR, FENCE_NEAR, FENCE_RECOVERY, FENCE_SWITCHED, Events, emit
 from ..modes import REASON_FENCE_BREACHED
 from ..params.fence import Fence
-from ..state import Estimate, HomeState
+from ..state import Estimate, HomeState, Vehicle
 from .shapes import is_inclusion, place, room
 from .state import (
     AREAS,
@@ -43,8 +43,9 @@ RECOVERY_US = 10_000_000
 GIVE_UP = 100.0
 """Further beyond a fence than this [m] the vehicle does not come back."""
 
-BY_FLOOR = 2.0
-"""FENCE_SWITCHED: the least height is on, as the vehicle is above it."""
+AUTO_OFF, AUTO_ON, BY_FLOOR, OFF, ON = range(5)
+"""How fences were switched, as FENCE_SWITCHED says: by themselves; the least height, as the vehicle is above it; by the
+user."""
 
 
 @law
@@ -120,32 +121,36 @@ def judge(fence: FenceState, k: int, margin: float, time_us: int) -> bool:
 
 
 @law
-def switch(fence: FenceState, on: bool, chosen: int) -> int:
-    """Switch fences on or off; bits of those that were not so before."""
-    before = fence.on
+def switch(fence: FenceState, how: int, chosen: int, events: Events, time_us: int) -> None:
+    """Switch fences on or off, and tell of those that were not so before."""
+    before, on = fence.on, how in (AUTO_ON, BY_FLOOR, ON)
     fence.on = before | chosen if on else before & ~chosen
     if not on:
         fence.breached &= ~chosen
         fence.near &= ~chosen
-    return before ^ fence.on
+    if fence.on != before:
+        emit(events, time_us, FENCE_SWITCHED, float(before ^ fence.on), float(how))
 
 
 @law
-def switch_by_user(fence: FenceState, on: bool, chosen: int, params: Fence) -> None:
+def switch_by_user(fence: FenceState, on: bool, chosen: int, params: Fence, events: Events, time_us: int) -> None:
     """A command or a switch puts the fences ``chosen`` on or off, as far as FENCE_TYPE has them."""
     if chosen & int(params.TYPE) & MIN_ALT != 0:
         fence.floor = FLOOR_ON if on else FLOOR_OFF
-    switch(fence, on, chosen & int(params.TYPE))
+    switch(fence, ON if on else OFF, chosen & int(params.TYPE), events, time_us)
 
 
 @law
-def follow_parameters(fence: FenceState, params: Fence, autoenable: int) -> None:
+def follow_parameters(fence: FenceState, params: Fence, autoenable: int, events: Events, time_us: int) -> None:
     """FENCE_ENABLE or FENCE_AUTOENABLE has been set: all fences but the least height are on, or all off, with it."""
     enable = int(params.ENABLE)
     if enable != fence.seen_enable or autoenable != fence.seen_autoenable:
         fence.seen_enable, fence.seen_autoenable = enable, autoenable
         fence.floor = FLOOR_AUTO
-        switch(fence, enable != 0, int(params.TYPE) & ~MIN_ALT if enable != 0 else ALL)
+        if enable != 0:
+            switch(fence, ON, int(params.TYPE) & ~MIN_ALT, events, time_us)
+        else:
+            switch(fence, OFF, ALL, events, time_us)
 
 
 @law
@@ -156,13 +161,6 @@ def rests(fence: FenceState, autoenable: int) -> int:
 
 
 @law
-def tell(events: Events, time_us: int, changed: int, how: float) -> None:
-    """Tell of fences that have switched themselves."""
-    if changed != 0:
-        emit(events, time_us, FENCE_SWITCHED, float(changed), how)
-
-
-@law
 def switch_floor(fence: FenceState, params: Fence, autoenable: int, events: Events, time_us: int) -> None:
     """The least height is on once the vehicle is above it, unless a take-off switches it or the user has."""
     if int(params.TYPE) & MIN_ALT == 0 or fence.on & MIN_ALT != 0 or fence.floor == FLOOR_OFF:
@@ -170,8 +168,7 @@ def switch_floor(fence: FenceState, params: Fence, autoenable: int, events: Even
     if params.ENABLE == 0.0 and autoenable in (0, ON_TAKEOFF):
         return
     if fence.over[3] <= -params.MARGIN:
-        switch(fence, True, MIN_ALT)
-        tell(events, time_us, MIN_ALT, BY_FLOOR)
+        switch(fence, BY_FLOOR, MIN_ALT, events, time_us)
 
 
 @law
@@ -193,34 +190,25 @@ def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, t
 
 
 @law
-def check(
-    fence: FenceState,
-    estimate: Estimate,
-    home: HomeState,
-    params: Fence,
-    limits: Vec3,
-    standing: bool,
-    events: Events,
-    time_us: int,
-) -> int:
+def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
     """Bits of the fences that the vehicle has breached now, or anew.
 
     Args:
-        fence, estimate, home, params, events: the vehicle's.
+        v: the vehicle.
         limits: greatest height, least height [m above home], FENCE_AUTOENABLE.
-        standing: the vehicle stands on the ground, or lands.
-        time_us: now.
+        standing: it stands on the ground, or lands.
     """
-    autoenable = int(limits.z)
-    follow_parameters(fence, params, autoenable)
+    ap, time_us = v.autopilot, v.time_us
+    fence, params, events, autoenable = ap.fence, ap.params.FENCE, ap.events, int(limits.z)
+    follow_parameters(fence, params, autoenable, events, time_us)
     fence.breached &= int(params.TYPE)
     if fence.on == 0 and (autoenable == 0 or fence.floor != FLOOR_AUTO):
         fence.breached = fence.near = 0
         return 0
-    place(fence, estimate)
+    place(fence, ap.estimate)
     if standing:
-        tell(events, time_us, switch(fence, False, rests(fence, autoenable) & int(params.TYPE)), 0.0)
-    measure(fence, estimate, home, params, limits.x, limits.y)
+        switch(fence, AUTO_OFF, rests(fence, autoenable) & int(params.TYPE), events, time_us)
+    measure(fence, ap.estimate, ap.home, params, limits.x, limits.y)
     if not standing:
         switch_floor(fence, params, autoenable, events, time_us)
     watched, new, near = active(fence, params), 0, fence.near
@@ -246,10 +234,12 @@ def farthest(fence: FenceState, chosen: int) -> float:
 
 
 @law
-def tell_clear(fence: FenceState, before: int, events: Events, time_us: int) -> None:
-    """Tell that no fence is breached any more, when some were ``before``."""
-    if before != 0 and fence.breached == 0:
-        emit(events, time_us, FENCE_CLEAR, float(before), 0.0)
+def report(fence: FenceState, before: int, new: int, told: bool, events: Events, time_us: int) -> None:
+    """Emit that fences are breached (``new``), or that none is any more, when some were ``before``."""
+    if new != 0:
+        emit(events, time_us, FENCE_BREACHED, float(new), 1.0 if told else 0.0)
+    elif before != 0 and fence.breached == 0:
+        emit(events, time_us, FENCE_CLEAR, 0.0, 1.0 if told else 0.0)
 
 
 @law
@@ -272,21 +262,21 @@ def switch_on_arming(fence: FenceState, params: Fence, autoenable: int, events: 
     """FENCE_AUTOENABLE 3: all fences but the least height."""
     if autoenable == WHEN_ARMED:
         fence.floor = FLOOR_AUTO
-        tell(events, time_us, switch(fence, True, int(params.TYPE) & ~MIN_ALT), 1.0)
+        switch(fence, AUTO_ON, int(params.TYPE) & ~MIN_ALT, events, time_us)
 
 
 @law
 def switch_on_disarming(fence: FenceState, autoenable: int, events: Events, time_us: int) -> None:
     """FENCE_AUTOENABLE 3: all off."""
     if autoenable == WHEN_ARMED:
-        tell(events, time_us, switch(fence, False, ALL), 0.0)
+        switch(fence, AUTO_OFF, ALL, events, time_us)
 
 
 @law
 def switch_after_takeoff(fence: FenceState, params: Fence, autoenable: int, events: Events, time_us: int) -> None:
     """FENCE_AUTOENABLE 1, 2: all fences, once an automatic take-off is done."""
     if autoenable in (ON_TAKEOFF, FLOOR_ON_TAKEOFF):
-        tell(events, time_us, switch(fence, True, int(params.TYPE)), 1.0)
+        switch(fence, AUTO_ON, int(params.TYPE), events, time_us)
 
 
 @law

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from ..events import FENCE_BREACHED, FENCE_CLEAR, FENCE_NEAR, FENCE_RECOVERY, FENCE_SWITCHED
 from ..mission.notes import INFO, NOTICE, Text
-from .checks import BY_FLOOR
+from .checks import AUTO_OFF, AUTO_ON, BY_FLOOR
 from .state import AREAS, CIRCLE, MAX_ALT, MIN_ALT
 
 NAMES = {MAX_ALT: "Max Alt", CIRCLE: "Circle", AREAS: "Polygon", MIN_ALT: "Min Alt"}
+_SWITCHED = {AUTO_OFF: "auto-disabled", AUTO_ON: "auto-enabled", BY_FLOOR: "enabled (auto enable)"}
 
 
 def names(fences: int) -> str:
@@ -20,14 +21,12 @@ def names(fences: int) -> str:
 
 def note(code: int, a: float, b: float) -> Text | None:
     """What an event of the fence says; None: it is no such event."""
-    if code == FENCE_BREACHED:
+    if code == FENCE_BREACHED and b != 0.0:
         return Text(NOTICE, f"{names(int(a))} breached")
-    if code == FENCE_CLEAR:
+    if code == FENCE_CLEAR and b != 0.0:
         return Text(NOTICE, "Fence breach cleared")
-    if code == FENCE_SWITCHED:
-        if b == BY_FLOOR:
-            return Text(NOTICE, f"{names(int(a))} enabled (auto enable)")
-        return Text(NOTICE, f"{names(int(a))} auto-{'enabled' if b else 'disabled'}")
+    if code == FENCE_SWITCHED and b in _SWITCHED:
+        return Text(NOTICE, f"{names(int(a))} {_SWITCHED[int(b)]}")
     if code == FENCE_NEAR:
         how = "cleared margin breach" if b < 0.0 else f"in {b:.1f}m"
         return Text(NOTICE, f"{names(int(a))} {how}")

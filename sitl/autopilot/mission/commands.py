@@ -7,12 +7,14 @@ import math
 from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
+from ..fence.checks import ALL, switch_by_user
+from ..fence.texts import names
 from ..navigation.planner import Planner
 from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
 from ..state import Vehicle
 from . import item as commands
 from .item import MissionItem
-from .notes import Note, OutputItem
+from .notes import NOTICE, Note, OutputItem, Text
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
@@ -69,6 +71,8 @@ class Commands(ABC, Generic[V]):
             nav.condition_distance = item.p1
         elif item.command == commands.DO_SET_HOME:
             set_home(v.autopilot, item)
+        elif item.command == commands.DO_FENCE_ENABLE:
+            return _enable_fence(v, item.p1 == 1.0)
         elif item.command in commands.OUTPUT_COMMANDS or item.command in commands.CAMERA_COMMANDS:
             return [OutputItem(item)]
         return []
@@ -76,6 +80,15 @@ class Commands(ABC, Generic[V]):
     @abstractmethod
     def change_speed(self, v: V, kind: int, speed: float) -> bool:
         """DO_CHANGE_SPEED (SPEED_TYPE, m/s); whether it was taken."""
+
+
+def _enable_fence(v: Vehicle, on: bool) -> list[Note]:
+    """DO_FENCE_ENABLE: all fences of FENCE_TYPE, or none."""
+    ap = v.autopilot
+    before = ap.fence.on
+    switch_by_user(ap.fence, on, ALL, ap.params.FENCE, ap.events, v.time_us)
+    changed = before ^ ap.fence.on
+    return [Text(NOTICE, f"{names(changed)} {'enabled' if on else 'disabled'}")] if changed else []
 
 
 def whole_seconds(item: MissionItem) -> float:

@@ -30,6 +30,7 @@ DO_SET_REVERSE = 194
 DO_SET_ROI_LOCATION = 195
 DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
+DO_FENCE_ENABLE = 207
 NAV_SET_YAW_SPEED = 213
 DO_GUIDED_LIMITS = 222
 DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO = 181, 182, 183, 184
@@ -93,6 +94,7 @@ COMMANDS = {
     DO_SET_ROI_LOCATION: Command("SetROI", False, True),
     DO_SET_ROI_NONE: Command("SetROI", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
+    DO_FENCE_ENABLE: Command("FenceEnable", False, False),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
     DO_RETURN_PATH_START: Command("ReturnPathStart", False, True),
     DO_LAND_START: Command("LandStart", False, True),

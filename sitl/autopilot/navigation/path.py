@@ -94,7 +94,7 @@ def areas_of(fence: FenceState, oa: PathPlanning, params: Fence) -> int:
 
 @law
 def watch_detour(nav: Nav, areas: int, events: Events, time_us: int) -> None:
-    """Ten times a second: where there was no way, look for one again each second; where the ``areas`` (``areas_of``) are
+    """Ten times a second: where there was no way, look again each second; where the ``areas`` (``areas_of``) are
     others than before, lay the way anew."""
     if nav.active_us == 0 or time_us - nav.active_us >= AGAIN_US:
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..arming_checks import BY_FENCE
-from ..fence.checks import GIVE_UP, check, farthest
+from ..fence.checks import GIVE_UP, check, farthest, report
 from ..modes import ACCEPTED, REASON_FENCE_BREACHED
 from .arming import set_disarmed
 from .heights import HEIGHTS
@@ -23,10 +23,11 @@ _NOTHING, _RTL, _HOLD, _SMART_RTL, _SMART_RTL_OR_HOLD, _TERMINATE = range(6)
 def watch(v: Vehicle) -> None:
     """Ten times a second: whether a fence is breached."""
     ap = v.autopilot
-    fence, p = ap.fence, ap.params.FENCE
-    new = check(fence, ap.estimate, ap.home, p, HEIGHTS, False, ap.events, v.time_us)
+    fence, p, before = ap.fence, ap.params.FENCE, ap.fence.breached
+    new = check(v, HEIGHTS, False)
     if not ap.arming.armed:
         return
+    report(fence, before, new, False, ap.events, v.time_us)
     if new != 0 and p.ACTION != _NOTHING:
         act(v, int(p.ACTION) if farthest(fence, new) <= GIVE_UP else _HOLD)
 

@@ -38,6 +38,7 @@ OTHERS = (
     commands.CONDITION_DISTANCE,
     commands.DO_JUMP,
     commands.DO_CHANGE_SPEED,
+    commands.DO_FENCE_ENABLE,
     commands.DO_SET_HOME,
     commands.DO_SET_REVERSE,
     commands.DO_SET_ROI_LOCATION,  # taken and without effect: there is nothing to point

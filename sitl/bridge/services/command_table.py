@@ -309,8 +309,9 @@ def enable_fence(bridge: Bridge, channel: Channel, command: Command) -> int:
     which = int(command.p2) if 0.0 < command.p2 <= ALL else ALL
     if not 0.0 <= command.p1 <= 2.0 or not 0.0 <= command.p2 <= ALL:
         return FAILED
-    ap = bridge.vehicle.v.autopilot
-    switch_by_user(ap.fence, int(command.p1) == 1, which, ap.params.FENCE)
+    v = bridge.vehicle.v
+    ap = v.autopilot
+    switch_by_user(ap.fence, int(command.p1) == 1, which, ap.params.FENCE, ap.events, v.time_us)
     return ACCEPTED
 
 
