@@ -19,6 +19,10 @@ MISSION, FENCE, RALLY = 0, 1, 2
 """MAV_MISSION_TYPE"""
 SILENCE_S = 1.0
 """When nothing was asked for so long, what was sent last is sent again."""
+AT_ONCE = 10
+"""As many items are asked for together."""
+LIMIT_S = 10.0
+"""The next item is asked for, and the last one acknowledged, within."""
 
 
 class Missions(Controls):
@@ -82,6 +86,37 @@ class Missions(Controls):
         """
         self.transfer(items, RALLY)
 
+    def download(self) -> tuple[MissionItem, ...]:
+        """The mission that the vehicle has, home first.
+
+        Raises:
+            WaitTimeoutError: the vehicle does not answer to the end.
+        """
+        counts: list[int] = []
+        found: dict[int, MissionItem] = {}
+
+        def ask_count(_: list[int] | None) -> int:
+            self.send("MISSION_REQUEST_LIST")
+            return 1
+
+        def ask(which: list[int] | None) -> int:
+            for seq in (which or ())[:AT_ONCE]:
+                self.send("MISSION_REQUEST_INT", seq=seq)
+            return min(len(which or ()), AT_ONCE)
+
+        def take(m: Any) -> None:
+            found[m.seq] = MissionItem(
+                m.command, m.frame, m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.autocontinue
+            )
+
+        what = "the mission"
+        self.collect(
+            "MISSION_COUNT", lambda: None if not counts else [], ask_count, lambda m: counts.append(m.count), what
+        )
+        self.collect("MISSION_ITEM_INT", lambda: [k for k in range(counts[0]) if k not in found], ask, take, what)
+        self.send("MISSION_ACK")
+        return tuple(found[k] for k in range(counts[0]))
+
     def start_mission(self) -> None:
         """Arm if need be, AUTO, and begin with its first item."""
         if not self.armed:
@@ -100,12 +135,20 @@ class Missions(Controls):
         begin, limit_s = self.now, 10.0 + 0.2 * len(items)
         self._upload, self._list, self._last_item, self._result = items, kind, -1, None
         self.send("MISSION_COUNT", count=len(items), mission_type=kind)
+
+        begin = progress = self.now
+        self._upload, self._last_item, self._result = items, -1, None
+        self.send("MISSION_COUNT", count=len(items))
         while self._result is None:
-            before = self._asked
-            if self.passes(partial(self._goes_on, before), SILENCE_S):
+            before, item = self._asked, self._last_item
+            goes_on = self.passes(partial(self._goes_on, before), SILENCE_S)
+            if self._last_item > item:
+                progress = self.now
+            if goes_on:
                 continue
-            if self.now - begin >= limit_s:
-                self.raise_error(WaitTimeoutError("MISSION_ACK", limit_s, "", begin))
+            if self.now - progress >= LIMIT_S:
+                last = f"item {self._last_item} was asked for" if self._last_item >= 0 else "no item was asked for"
+                self.raise_error(WaitTimeoutError("MISSION_ACK", self.now - begin, last, begin))
             if self._last_item < 0:
                 self.send("MISSION_COUNT", count=len(items), mission_type=kind)
             else:

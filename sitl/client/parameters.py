@@ -17,7 +17,11 @@ __tracebackhide__ = True
 REAL_32 = 9
 """MAV_PARAM_TYPE_REAL32"""
 LIST_S = 30.0
-"""All parameters are there within."""
+"""One more parameter of the list is there within."""
+AT_ONCE = 50
+"""As many of those that are missing are asked for together."""
+EVERY = 1 << 16
+"""No list is longer."""
 
 
 class Parameters:
@@ -47,11 +51,15 @@ class Parameters:
             UnknownNameError, WaitTimeoutError: as for reading.
         """
         self.check(name)
-        kept = self._exchange(
-            name, f"{name} to be set to {value:g}", "PARAM_SET", param_value=value, param_type=REAL_32
-        )
-        if not math.isclose(kept, value, rel_tol=1e-6, abs_tol=1e-9):
-            self._session.raise_error(ParameterRefusedError(name, value, kept))
+        what = f"{name} to be set to {value:g}"
+        for _ in range(2):  # the first answer may be to what was asked before, come late
+            kept = self._exchange(name, what, "PARAM_SET", param_value=value, param_type=REAL_32)
+            is_taken: Callable[[], bool] = lambda: math.isclose(  # noqa: E731
+                self._session.telemetry.parameters[name], value, rel_tol=1e-6, abs_tol=1e-9
+            )
+            if self._session.passes(is_taken, REPEAT_US / 1e6):
+                return
+        self._session.raise_error(ParameterRefusedError(name, value, kept))
 
     def update(self, values: Mapping[str, float] | None = None, **more: float) -> None:
         """Set several, each in its unit; all names are checked first."""
@@ -80,15 +88,31 @@ class Parameters:
         self.update(before)
 
     def read_all(self) -> dict[str, float]:
-        """All parameters by name."""
+        """All parameters by name; those that get lost on the way are asked for again.
+
+        Raises:
+            WaitTimeoutError: for ``LIST_S`` none came that was missing.
+        """
         session = self._session
-        with session.messages("PARAM_VALUE") as values:
-            session.send("PARAM_REQUEST_LIST")
-            session.wait(
-                lambda _: values and len({v.param_id for v in values}) >= values[-1].param_count,
-                LIST_S, "all parameters", lambda: f"{len(values)} of them",
-            )  # fmt: skip
-        return {v.param_id.decode("ascii", "replace"): float(v.param_value) for v in values}
+        found: dict[int, Any] = {}
+
+        def missing() -> list[int] | None:
+            return [k for k in range(next(iter(found.values())).param_count) if k not in found] if found else None
+
+        def ask(which: list[int] | None) -> int:
+            if which is None:
+                session.send("PARAM_REQUEST_LIST")
+                return EVERY
+            for index in which[:AT_ONCE]:
+                session.send("PARAM_REQUEST_READ", param_index=index)
+            return min(len(which), AT_ONCE)
+
+        def take(m: Any) -> None:
+            if m.param_index < m.param_count:
+                found[m.param_index] = m
+
+        session.collect("PARAM_VALUE", missing, ask, take, "all parameters", LIST_S)
+        return {v.param_id.decode("ascii", "replace"): float(v.param_value) for _, v in sorted(found.items())}
 
     def check(self, name: str) -> None:
         """Raise UnknownNameError when the vehicle, in this process, has no such parameter."""

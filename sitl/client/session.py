@@ -8,13 +8,14 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ..bridge.dialect import message
-from ..errors import did_you_mean
+from ..errors import OptionError, did_you_mean
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .connection import Connection, InProcess, connect
 from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError
 from .telemetry import Attitude, Position, Telemetry, Text
 
 if TYPE_CHECKING:
+    from ..bridge.links import LinkFaults
     from ..simulation import Simulation
 
 __tracebackhide__ = True  # pytest shows the line of the test, not ours
@@ -31,6 +32,10 @@ ANSWER_S = 3.0
 """A command is answered within."""
 ASK_AGAIN_US = 1_000_000
 """Messages whose rates were not acknowledged are asked for again after this."""
+SILENCE_S = 1.0
+"""When nothing has come for so long, what is missing is asked for again."""
+LIMIT_S = 15.0
+"""A piece of something that was missing comes within."""
 TEXTS_SHOWN = 8
 """As many status texts stand in an error."""
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
@@ -51,9 +56,10 @@ class Session:
         rates: what telemetry is asked for: rates [Hz] by message; None: ``RATES_HZ``.
         heartbeat: whether the vehicle gets a ground station's HEARTBEAT every second.
         patience: wall time [s] without a message after which a vehicle elsewhere is lost.
+        link_faults: of the way to a vehicle in this process (``set_link_faults``).
 
     Raises:
-        OptionError: no such form of connection.
+        OptionError: no such form of connection; link faults, and the vehicle is not in this process.
         LinkLostError: no vehicle there.
     """
 
@@ -65,7 +71,10 @@ class Session:
         rates: Mapping[str, float] | None = None,
         heartbeat: bool = True,
         patience: float = 10.0,
+        link_faults: LinkFaults | None = None,
     ) -> None:
+        if link_faults is not None and isinstance(vehicle, str):
+            raise OptionError(f"connection {vehicle}: its faults are options of the vehicle (sitl run --link-loss ...)")
         if isinstance(vehicle, str):
             vehicle = connect(vehicle, patience=patience)
         self.connection = vehicle if isinstance(vehicle, Connection) else InProcess(vehicle)
@@ -80,12 +89,22 @@ class Session:
         self._invariants: list[tuple[Callable[[], Any], str]] = []
         self._collected: list[tuple[str, list[Any]]] = []
         self._boots = self.connection.boots
+        if link_faults is not None:
+            self.set_link_faults(link_faults)
         self.connection.inbox.on_message = self._take
         if self.connection.simulation is not None:
             self.telemetry.mode_names = self.connection.simulation.firmware.mode_names
         self.ask_for_telemetry()
         if not self.connection.is_exact:
             self.step()  # its clock is known from now on
+
+    def set_link_faults(self, faults: LinkFaults | None) -> None:
+        """Let this client's link lose, delay or change frames from now on (docs/faults.md); None: no more.
+
+        Raises:
+            OptionError: the vehicle is not in this process.
+        """
+        self.simulation.set_link_faults(faults, self.connection.link)
 
     # ------------------------------------------------------------------ what is known
 
@@ -302,10 +321,14 @@ class Session:
 
     def message(self, name: str, timeout: float = 2.0) -> Any:
         """Ask for one message and wait for it, at most ``timeout`` [simulated s]; gives its fields as a named tuple."""
+        begin = self.now
         with self.messages(name) as seen:
-            self.command("REQUEST_MESSAGE", message(name).id, subject=f"the request for {name}")
-            self.wait(lambda _: seen, timeout, name)
-        return seen[-1]
+            while True:
+                self.command("REQUEST_MESSAGE", message(name).id, subject=f"the request for {name}")
+                if self.passes(lambda: seen, min(timeout, ASK_AGAIN_US / 1e6)):
+                    return seen[-1]
+                if self.now - begin >= timeout:
+                    self.raise_error(WaitTimeoutError(name, timeout, "", begin))
 
     @contextmanager
     def messages(self, name: str, rate_hz: float | None = None) -> Iterator[list[Any]]:
@@ -320,6 +343,47 @@ class Session:
             self._collected = [other for other in self._collected if other is not collected]
         if rate_hz is not None:
             self.set_rate(name, float(self._rates.get(name, 0)))
+
+    def collect(
+        self,
+        name: str,
+        missing: Callable[[], list[int] | None],
+        ask: Callable[[list[int] | None], int],
+        take: Callable[[Any], None],
+        what: str,
+        limit: float = LIMIT_S,
+    ) -> None:
+        """Ask for pieces until none is missing; again for those that have not come when none has for ``SILENCE_S``.
+
+        Args:
+            name: of the messages that bring them.
+            missing: gives the numbers of those that are missing; None: it is not known yet how many there are.
+            ask: asks for these, or for some of them; gives how many messages will come.
+            take: takes a message in.
+            what: they are, for the error.
+            limit: a missing one comes within [simulated s].
+
+        Raises:
+            WaitTimeoutError: none came for ``limit``.
+        """
+        begin = progress = self.now
+        with self.messages(name) as seen:
+            left = missing()
+            while left is None or left:
+                expected, before = ask(left), left
+                while expected > 0 and self.passes(lambda: seen, SILENCE_S):
+                    expected -= len(seen)
+                    for m in seen:
+                        take(m)
+                    seen.clear()
+                    left = missing()
+                    if left is not None and not left:
+                        return
+                if left != before:
+                    progress = self.now
+                elif self.now - progress >= limit:
+                    last = "" if left is None else f"{len(left)} pieces are missing"
+                    self.raise_error(WaitTimeoutError(what, limit, last, begin))
 
     def heartbeats(self, on: bool) -> None:
         """Whether the vehicle gets this ground station's heartbeats."""
