@@ -132,13 +132,9 @@ class Missions(Controls):
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
-        begin, limit_s = self.now, 10.0 + 0.2 * len(items)
+        begin = progress = self.now
         self._upload, self._list, self._last_item, self._result = items, kind, -1, None
         self.send("MISSION_COUNT", count=len(items), mission_type=kind)
-
-        begin = progress = self.now
-        self._upload, self._last_item, self._result = items, -1, None
-        self.send("MISSION_COUNT", count=len(items))
         while self._result is None:
             before, item = self._asked, self._last_item
             goes_on = self.passes(partial(self._goes_on, before), SILENCE_S)
