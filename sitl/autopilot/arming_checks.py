@@ -7,10 +7,13 @@ ARMING_CHECK selects which optional checks count.
 
 from __future__ import annotations
 
+import math
+
 from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
 from . import radio
+from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
@@ -76,6 +79,9 @@ COMPASSES = 1 << 36
 FENCE_POSITION = 1 << 37
 FENCE_SHIFT = 38
 """Five bits from here on are a number: why the fence refuses (``fence.arming``)."""
+NOTHING_SEEN = 1 << 43
+OBSTACLE_SHIFT = 44
+"""Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -116,11 +122,15 @@ TEXTS = {
     NO_MISSION: "Mode requires mission",
     EMERGENCY_STOP: "Motors Emergency Stopped",
     INTERLOCK: "Motor Interlock Enabled",
+    NOTHING_SEEN: "PRX1: No Data",
 }
 
 # ARMING_CHECK
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
+CHECK_PARAMETERS = 32
 
+OBSTACLE_ROOM = 0.6
+"""Room that a copter with a proximity sensor needs around it [m]."""
 COMPASS_COS, COMPASS_FLAT_COS = 0.0, 0.5
 """Of the greatest angles between two compasses' fields: 90 degrees in space, 60 in the x-y plane."""
 COMPASS_FLAT_DIFFERENCE = 0.2
@@ -226,11 +236,33 @@ def radio_checks(rc: Radio, rcmap: RcMap, throttle_min: float) -> int:
     return THROTTLE_FAILSAFE if radio.stick_pulse(rc, rcmap, radio.THROTTLE) < throttle_min else 0
 
 
+@law
+def proximity_checks(seen: Proximity, time_us: int) -> int:
+    """Failed checks of a proximity sensor."""
+    return NOTHING_SEEN if seen.kind != 0 and not has_data(seen, time_us) else 0
+
+
+@law
+def obstacle_check(seen: Proximity, time_us: int) -> int:
+    """Failed check of what is nearest around the vehicle."""
+    sector, nearest = 0, math.inf
+    for k in range(SECTORS):
+        if sees(seen, k, time_us) and seen.distance[k] < nearest:
+            sector, nearest = k, float(seen.distance[k])
+    return (max(int(nearest * 100.0), 1) << 3 | sector) << OBSTACLE_SHIFT if nearest <= OBSTACLE_ROOM else 0
+
+
+def obstacle_text(found: int) -> str:
+    """Status text of an obstacle that is too near."""
+    return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
+
+
 def texts(failed: int, prefix: str = "") -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
     said = [text for bit, text in TEXTS.items() if shown & bit]
-    fence = failed >> FENCE_SHIFT & 31
-    return [prefix + text for text in ([*said, fence_arming.text(fence)] if fence else said)]
+    fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
+    said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])
+    return [prefix + text for text in said]

@@ -188,6 +188,11 @@ def _fence(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def _avoid_obstacles(holder: Holder, position: int) -> list[Note]:
+    holder.v.autopilot.avoid.switched_off = position != HIGH
+    return []
+
+
 def _nothing(holder: Holder, position: int) -> list[Note]:
     return []
 
@@ -196,7 +201,7 @@ COMMON = (
     AuxFunction(11, _fence, "high: all fences are on; else off", "Fence"),
     AuxFunction(24, _reset_mission, "high: the mission goes back to its start", "MissionReset"),
     AuxFunction(31, _stop_motors, "high: motors stand, and cannot be armed", "MotorEStop"),
-    AuxFunction(40, _nothing, "avoidance: only told, as there is none", "AvoidProximity"),
+    AuxFunction(40, _avoid_obstacles, "high: obstacles are avoided (AVOID_*); else they are not", "AvoidProximity"),
     AuxFunction(46, _allow_overrides, "high: RC_CHANNELS_OVERRIDE and MANUAL_CONTROL are heard; low: they are not"),
     AuxFunction(58, _clear_mission, "high: clears the mission, unless it is being run", "ClearWaypoint"),
 )

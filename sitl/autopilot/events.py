@@ -55,6 +55,7 @@ FENCE_NEAR = 47  # a: bits of fences, b: how far they are [m]; below zero: they 
 FENCE_RECOVERY = 48  # the pilot brings the vehicle back behind the fence
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
+NO_WAY = 60  # there is no way around the areas of the fence
 
 
 class Events(Record):

@@ -13,6 +13,8 @@ from ..core.border import RC_INPUTS, Actuators, Sensors
 from ..core.kernels import law
 from ..core.records import Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
+from .avoidance.proximity import Proximity
+from .avoidance.state import Avoidance
 from .estimation.state import Ekf
 from .events import Events
 from .fence.state import FenceState, RallyState
@@ -224,6 +226,8 @@ class Autopilot(Record):
     vibration: Vibration
     fence: FenceState
     rally: RallyState
+    proximity: Proximity
+    avoid: Avoidance
 
 
 class Vehicle(Protocol):

@@ -11,6 +11,7 @@ from ..arming_checks import (
     BY_MAVLINK,
     BY_RUDDER,
     CHECK_GPS,
+    CHECK_PARAMETERS,
     CHECK_RC,
     EMERGENCY_STOP,
     FENCE_POSITION,
@@ -27,6 +28,8 @@ from ..arming_checks import (
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
     battery_checks,
+    obstacle_check,
+    proximity_checks,
     radio_checks,
     sensor_checks,
     wants,
@@ -77,6 +80,9 @@ def check(v: Vehicle) -> int:
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    failed |= proximity_checks(ap.proximity, v.time_us)
+    if ap.avoid.obstacles and wants(p.ARMING, CHECK_PARAMETERS):
+        failed |= obstacle_check(ap.proximity, v.time_us)
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
         failed |= NO_MISSION
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):

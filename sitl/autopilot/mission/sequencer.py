@@ -21,6 +21,7 @@ from ..navigation.command import give_none
 from ..navigation.state import (
     COMPLETE,
     CONDITION_NONE,
+    DETOUR_REQUEST,
     DO_COMMAND,
     JUMPS,
     LEG_REQUEST,
@@ -195,6 +196,8 @@ class Sequencer:
             return self._arrived(v) if int(b) == nav.command_count else []
         if code == events.LEG_ENDING and a == LEG_REQUEST:
             self.commands.planner.serve(v.autopilot, v.time_us)
+        elif code == events.LEG_ENDING and a == DETOUR_REQUEST:
+            self.commands.planner.go_on(v.autopilot, v.time_us)
         elif code == events.LEG_ENDING and a == SPEED_REQUEST:
             self.commands.planner.change_speed(v.autopilot)
         elif code == events.MODE_CHANGED:

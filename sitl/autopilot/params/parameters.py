@@ -7,6 +7,7 @@ from typing import Any
 
 from ...core.border import RC_INPUTS
 from ...core.records import Records
+from .avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from .estimator import Ekf3
 from .fence import Fence, Rally
 from .follow import Follow
@@ -24,6 +25,7 @@ class Parameters(ParameterGroup):
     """
 
     ARMING: Arming
+    AVOID: Avoid
     BATT: Battery
     COMPASS: Compass
     EK3: Ekf3
@@ -36,6 +38,9 @@ class Parameters(ParameterGroup):
     MAV: Mavlink
     MAV1: StreamRates
     MIS: Mission
+    OA: PathPlanning
+    PRX: Proximity
+    PRX1: ProximitySensor
     RALLY: Rally
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(20, 20, 30, 20) + 12 * (0,))
     RC_OVERRIDE_TIME: float = param(

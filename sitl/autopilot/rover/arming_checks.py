@@ -8,6 +8,7 @@ from ..arming_checks import (
     AHRS_TYPE,
     BY_RUDDER,
     CHECK_GPS,
+    CHECK_PARAMETERS,
     CHECK_RC,
     EKF_FAILSAFE,
     EMERGENCY_STOP,
@@ -23,6 +24,7 @@ from ..arming_checks import (
     THROTTLE_OFF_CENTRE,
     WAYPOINT_SPEED,
     battery_checks,
+    proximity_checks,
     radio_checks,
     sensor_checks,
     wants,
@@ -38,9 +40,6 @@ from .modes.state import Modes, PilotState
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .parameters import Parameters
 from .state import Vehicle
-
-CHECK_PARAMETERS = 32
-"""ARMING_CHECK"""
 
 
 @law
@@ -75,6 +74,7 @@ def check(v: Vehicle) -> int:
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
+    sensors |= proximity_checks(ap.proximity, v.time_us)
     failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
     if modes.number == AUTO and modes.mission_count < 2:
         failed |= NO_MISSION

@@ -12,7 +12,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
 from .home import HomeService
-from .service import INFO, WARNING, Service
+from .service import CRITICAL, INFO, WARNING, Service
 
 TEXT_BYTES = 50
 KIND = message("STATUSTEXT")
@@ -68,6 +68,7 @@ TEXTS = {
     core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
     core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),
     core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
 }
 """Event code -> (severity, text with the event's numbers a and b), of every firmware."""

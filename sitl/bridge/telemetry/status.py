@@ -15,6 +15,7 @@ from .units import boot_ms, int16, int32, percent, uint16
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
 RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
+PROXIMITY = 0x4000000
 PRESENT = GYRO | ACCEL | MAG | BARO | AHRS | PREARM
 """In every firmware, besides its controllers; a GPS receiver once it has said something, until it is silent."""
 SAMPLE_US = 500_000

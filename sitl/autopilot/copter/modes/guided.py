@@ -16,6 +16,7 @@ from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, Events, emit
 from ...modes import ACCEPTED
 from ...state import Arming, Estimate
+from .. import avoidance
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from ..control.state import DT, Control
 from ..parameters import Parameters
@@ -107,12 +108,12 @@ def run(v: Vehicle) -> None:
                 note_timeout(guided, stale, ap.events, v.time_us)
             if stale:
                 auto_yaw.stop_turning(modes.auto_yaw, control.attitude, est)
-            follow_setpoint(guided, stale, control)
+            follow_setpoint(v, guided, stale, control)
         ground.fly(modes.auto_yaw, control, est, p)
 
 
 @law
-def follow_setpoint(guided: GuidedState, stale: bool, control: Control) -> None:
+def follow_setpoint(v: Vehicle, guided: GuidedState, stale: bool, control: Control) -> None:
     """Ask the position controllers for the set-point, which moves on between messages; a stale motion stops.
 
     POSITION: fly to a point and stay; the speed limits keep a climbing path straight.
@@ -136,8 +137,8 @@ def follow_setpoint(guided: GuidedState, stale: bool, control: Control) -> None:
         position.input_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
         altitude.input_pos_vel_accel_d(control.pos_d, Motion(pos.z, vel.z, acc.z))
     else:
-        position.input_vel_accel_ne(control.pos_ne, horizontal(vel), horizontal(acc))
-        altitude.input_vel_accel_d(control.pos_d, vel.z, acc.z)
+        position.input_vel_accel_ne(control.pos_ne, avoidance.limit_velocity(v, horizontal(vel)), horizontal(acc))
+        altitude.input_vel_accel_d(control.pos_d, -avoidance.limit_climb(v, -vel.z), acc.z)
 
 
 @law

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ....core.records import Floats, Records
 from ... import camera, relays
 from ...params import parameters as shared
+from ...params.avoidance import PathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
@@ -16,6 +17,7 @@ from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
+from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
@@ -67,6 +69,7 @@ class Parameters(shared.Parameters):
         "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
         INT32,
     )
+    AVOID: Avoid
     BATT: Battery
     CIRCLE: Circle
     COMPASS: Compass
@@ -92,8 +95,11 @@ class Parameters(shared.Parameters):
     MAV1: StreamRates
     MIS: Mission
     MOT: Motors
+    OA: PathPlanning
     PHLD: PosHold
     PILOT: Pilot
+    PRX: Proximity
+    PRX1: ProximitySensor
     PSC: Position
     RALLY: Rally
     RC: Records[RcChannel]

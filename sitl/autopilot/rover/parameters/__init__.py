@@ -10,6 +10,7 @@ from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ... import camera, relays
 from ...params import parameters as shared
+from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.follow import Follow
@@ -30,6 +31,7 @@ class Parameters(shared.Parameters):
     ACRO_TURN_RATE: float = param(180.0, 0.0, 360.0, "deg/s", "Turn rate of a full steering stick")
     ARMING: Arming
     ATC: Attitude
+    AVOID: Avoid = group(BEHAVE=1)
     BATT: Battery
     CIRC: Circle
     COMPASS: Compass
@@ -56,9 +58,12 @@ class Parameters(shared.Parameters):
     MODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     MODE_CH: float = param(8, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     MOT: Motors
+    OA: PathPlanning
     PILOT_STEER_TYPE: float = param(
         0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
     )
+    PRX: Proximity
+    PRX1: ProximitySensor
     PSC: Position
     RALLY: Rally = group(LIMIT_KM=0.5)
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(30, 0, 30, 30) + 12 * (0,))
