@@ -106,7 +106,10 @@ def test_relaxing_integrator_decays():
     assert pid.integrator == pytest.approx(0.2, abs=0.01)
 
 
-def directional(pid, error, blocked=Blocked(False, False), ki=0.5):
+FREE = Blocked(False, False)
+
+
+def directional(pid, error, blocked=FREE, ki=0.5):
     return update_pid_directional(pid, error, 0.0, DT, blocked, Gains(2.0, ki, 0.1, 0.3, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0))
 
 
