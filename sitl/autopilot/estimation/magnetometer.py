@@ -40,8 +40,8 @@ TIMEOUT_US = 10_000_000
 """After this long without an accepted yaw the filter takes the magnetometer's."""
 IN_FLIGHT_HEIGHT = 2.5
 """Height above the take-off point at which yaw is checked away from what lies on the ground [m]."""
-MIN_HORIZONTAL = 0.03
-"""Weakest horizontal field that gives a yaw [gauss]."""
+MIN_HORIZONTAL = 0.005
+"""Weakest horizontal field that gives a yaw [gauss]; at the geographic poles there are some 0.02."""
 
 
 @law
