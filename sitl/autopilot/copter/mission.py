@@ -17,6 +17,7 @@ from ..navigation.path import clear_legs
 from ..navigation.planner import end
 from .modes import auto, auto_yaw
 from .modes.auto import AUTO
+from .modes.state import GuidedState
 from .navigation import waypoint
 from .navigation.planner import PLANNER, Following
 from .navigation.state import CopterNav
@@ -44,6 +45,7 @@ KINDS = {
     commands.NAV_LOITER_TO_ALT: kinds.LOITER_TO_ALT,
     commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_VTOL_LAND: kinds.LAND,
+    commands.NAV_GUIDED_ENABLE: kinds.GUIDED,
 }
 OTHERS = (
     commands.CONDITION_DELAY,
@@ -56,6 +58,7 @@ OTHERS = (
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
     commands.DO_JUMP_TAG,
+    commands.DO_GUIDED_LIMITS,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.DEVICE_COMMANDS,
@@ -87,6 +90,8 @@ class CopterCommands(Commands[Vehicle]):
         ap, time_us = v.autopilot, v.time_us
         nav = ap.modes.nav
         kind = KINDS[item.command]
+        if kind == kinds.GUIDED and not int(item.p1) > 0:
+            kind = kinds.PASSED_OVER  # it would end guided flight, which has ended
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
             auto.choose_heading(ap.modes.auto_yaw, kind, ap.params.WP, ap.control.attitude, ap.estimate)
         here, _ = PLANNER.origin_of_next(ap, time_us)
@@ -162,6 +167,8 @@ class CopterCommands(Commands[Vehicle]):
             set_roi(v, item)
         elif item.command == commands.DO_SET_ROI_NONE:
             _look_ahead(ap)
+        elif item.command == commands.DO_GUIDED_LIMITS:
+            _limit_guided(ap.modes.guided, item)
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
@@ -203,6 +210,12 @@ def set_roi(v: Vehicle, item: MissionItem) -> None:
         return
     ap = v.autopilot
     auto_yaw.look_at(ap.modes.auto_yaw, point(ap, item, ap.estimate.pos), ap.control.attitude, ap.estimate)
+
+
+def _limit_guided(guided: GuidedState, item: MissionItem) -> None:
+    """Whole seconds, heights over the origin and distance from where guided flight begins [m]; 0: no limit."""
+    guided.limit_us = int(whole_seconds(item) * 1e6)
+    guided.limit_low, guided.limit_high, guided.limit_distance = item.p2, item.p3, item.p4
 
 
 def _look_ahead(ap: Autopilot) -> None:
