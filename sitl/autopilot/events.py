@@ -48,6 +48,7 @@ THRUST_LOST = 40  # copter; a: motor 1 .. that seems to fail
 TAKEOFF_BLOCKED = 41  # copter; a: why (takeoff_check.py)
 FOLLOW_OFFSET = 42  # FOLLOW keeps the distance that it has; a: 1 in the lead's frame, 0 north, east, down
 FOLLOW_OFF = 43  # FOLLOW was asked for while FOLL_ENABLE is 0
+CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
 
 
 class Events(Record):

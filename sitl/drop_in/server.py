@@ -11,6 +11,7 @@ from pathlib import Path
 from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
+from ..autopilot.shell_parameters import clears_mission
 from ..bridge.links import Link
 from ..bridge.services.signing import SigningService
 from ..bridge.signing import WINDOW, Signing
@@ -84,7 +85,8 @@ class Session:
         self._values.update(params)  # values out of range are kept as they are, and told so
         self.pacing = Pacing(None)
         self._follow_speedup()
-        simulation.bridge.autopilot.replace_mission(self.storage.mission)
+        if not clears_mission(self._values):
+            simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
         if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again

@@ -7,7 +7,7 @@ import math
 
 from ...core.vectors import Vec3
 from ..mission import item as commands
-from ..mission.commands import Commands, is_speed, whole_seconds
+from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import MissionItem
 from ..mission.notes import INFO, Note, Text
 from ..mission.place import down, point
@@ -61,8 +61,10 @@ OTHERS = (
     commands.DO_GUIDED_LIMITS,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
-    *commands.DEVICE_COMMANDS,
+    *commands.VIDEO_COMMANDS,
     *commands.OUTPUT_COMMANDS,
+    *commands.MOUNT_COMMANDS,
+    *commands.PAYLOAD_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NAV_LOITER_TIME)
@@ -116,7 +118,7 @@ class CopterCommands(Commands[Vehicle]):
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)
         elif kind == kinds.LOITER_TURNS:
-            nav.turns = max(item.p1, 0.0)
+            nav.turns = turns(item)
         return []
 
     def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:

@@ -10,13 +10,14 @@ from __future__ import annotations
 from ....core.algebra import horizontal
 from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
+from ...events import CIRCLE_BEGINS, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, PASSED_OVER, RTL, TAKEOFF
 from ...state import Arming, Estimate
 from ..control.state import AttitudeState, Control
-from ..navigation import command, waypoint
+from ..navigation import circle, command, waypoint
 from ..navigation.state import CopterNav
 from ..parameters import Parameters
 from ..parameters.flight import Waypoints
@@ -189,8 +190,19 @@ def run_path(v: Vehicle, kind: int) -> bool:
         return False
     control.motors.desired_spool = ground.UNLIMITED
     done = command.run(modes.nav, control, est, p, v.time_us)
+    if kind == kinds.LOITER_TURNS and modes.nav.circle_running:
+        tell_circle(modes.nav, ap.events, v.time_us)
     ground.fly(modes.auto_yaw, control, est, p)
     return done
+
+
+@law
+def tell_circle(nav: CopterNav, events: Events, time_us: int) -> None:
+    """Say when the next circle begins, and when the last one is done."""
+    number = 1 + int(circle.turned(nav))
+    if number > nav.circle_told:
+        nav.circle_told = number
+        emit(events, time_us, CIRCLE_BEGINS, float(number), float(int(nav.turns)))
 
 
 @law
@@ -218,6 +230,11 @@ def run_land(v: Vehicle) -> bool:
 def is_guided(modes: Modes) -> bool:
     """Whether set-points are flown: in GUIDED, and where a mission allows them."""
     return modes.number == guided.GUIDED or (modes.number == AUTO and modes.auto.submode == kinds.GUIDED)
+
+
+def is_on_a_way(nav: CopterNav) -> bool:
+    """Whether the command under way follows a path to a place that it has not reached."""
+    return nav.command_kind in (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME) and not nav.reached
 
 
 @law
