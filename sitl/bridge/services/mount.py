@@ -245,8 +245,7 @@ class MountService(PayloadService):
             return 0.0
         least, most = self._limit(axis, "MIN"), self._limit(axis, "MAX")
         angle = min(max(angle, least), most)
-        tenths = int(math.degrees(angle) * 10.0)  # what ArduPilot gives its outputs
-        first, last = (int(math.degrees(limit) * 10.0) for limit in (least, most))
+        tenths, first, last = (_tenths(x) for x in (angle, least, most))
         self._send_share(FUNCTIONS[axis], (tenths - first) / (last - first) if last > first else 0.5)
         return angle
 
@@ -309,7 +308,13 @@ class MountService(PayloadService):
         base = multiply(
             quat_from_euler(Euler(vehicle.roll, vehicle.pitch, 0.0)), quat_from_euler(Euler(0.0, 0.0, turned))
         )
-        wanted = quat_from_euler(Euler(state.roll, state.pitch, turned))
+        pitch = min(max(state.pitch, self._limit("PITCH", "MIN")), self._limit("PITCH", "MAX"))
+        wanted = quat_from_euler(Euler(state.roll, pitch, turned))
         rest = euler_of(multiply(conjugate(base), wanted))
         roll = state.roll if abs(rest.pitch) > STEEP else rest.roll
         return Euler(roll, rest.pitch, yaw)
+
+
+def _tenths(angle: float) -> int:
+    """An angle [rad] in whole tenths of a degree, which is what ArduPilot gives its outputs."""
+    return int(round(math.degrees(angle) * 10.0, 6))
