@@ -144,8 +144,8 @@ class BaseAutopilot:
         self._notes.extend(self._sequencer().set_mission(self._v, Mission()))
         return True
 
-    def set_current_item(self, seq: int, reset: bool) -> bool:
-        ok, notes = self._sequencer().set_current(self._v, seq, reset)
+    def set_current_item(self, seq: int) -> bool:
+        ok, notes = self._sequencer().set_current(self._v, seq)
         self._notes.extend(notes)
         return bool(ok)
 

@@ -160,18 +160,16 @@ class Sequencer:
             self._set_current(nav, 0, notes)
         return notes
 
-    def set_current(self, v: Vehicle, seq: int, reset: bool = False) -> tuple[bool, list[Note]]:
+    def set_current(self, v: Vehicle, seq: int) -> tuple[bool, list[Note]]:
         """MISSION_SET_CURRENT: (whether there is such an item, notes).
 
-        0 is the mission's start; in AUTO it goes there at once. At the start, at the mission's end and with ``reset``
-        jumps are counted anew.
+        0 is the mission's start; in AUTO it goes there at once. Jumps are counted anew.
         """
         nav = v.autopilot.modes.nav
         notes: list[Note] = []
         if not self.mission.present or not 0 <= seq < len(self.mission):
             return (False, notes)
-        if reset or seq == 0 or nav.mission_state == COMPLETE:
-            jumps.keep(nav, {})
+        jumps.keep(nav, {})
         in_auto = v.autopilot.modes.number == self.commands.auto
         if nav.mission_state == RUNNING or (nav.mission_state == COMPLETE and in_auto):
             self._run_from(v, max(seq, 1), notes)
