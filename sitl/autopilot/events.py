@@ -53,9 +53,10 @@ FENCE_CLEAR = 45  # no fence is breached any more; b: 1 the pilot is told
 FENCE_SWITCHED = 46  # a: bits of fences, b: how (fence/checks.py)
 FENCE_NEAR = 47  # a: bits of fences, b: how far they are [m]; below zero: they are further than the margin again
 FENCE_RECOVERY = 48  # the pilot brings the vehicle back behind the fence
+CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
+NO_WAY = 60  # there is no way around the areas of the fence
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
-NO_WAY = 60  # there is no way around the areas of the fence
 
 
 class Events(Record):

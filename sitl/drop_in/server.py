@@ -11,6 +11,7 @@ from pathlib import Path
 from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
+from ..autopilot.shell_parameters import clears_mission
 from ..bridge.links import Link
 from ..bridge.services.mission import MissionService
 from ..bridge.services.signing import SigningService
@@ -85,7 +86,8 @@ class Session:
         self._values.update(params)  # values out of range are kept as they are, and told so
         self.pacing = Pacing(None)
         self._follow_speedup()
-        simulation.bridge.autopilot.replace_mission(self.storage.mission)
+        if not clears_mission(self._values):
+            simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
         self._places = (self.storage.fence, self.storage.rally)

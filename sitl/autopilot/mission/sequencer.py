@@ -164,7 +164,7 @@ class Sequencer:
     def set_current(self, v: Vehicle, seq: int) -> tuple[bool, list[Note]]:
         """MISSION_SET_CURRENT: (whether there is such an item, notes).
 
-        0 is the mission's start; in AUTO it goes there at once.
+        0 is the mission's start; in AUTO it goes there at once. Jumps are counted anew.
         """
         nav = v.autopilot.modes.nav
         notes: list[Note] = []
@@ -176,9 +176,15 @@ class Sequencer:
             self._run_from(v, max(seq, 1), notes)
         else:
             nav.mission_state = STOPPED
-            nav.mission_resume, nav.mission_do_next = True, 0
-            self._set_current(nav, max(seq, 1), notes)
+            nav.mission_resume = True
+            self._resume_at(nav, max(seq, 1), notes)
         return (True, notes)
+
+    def _resume_at(self, nav: Nav, seq: int, notes: list[Note]) -> None:
+        """The mission goes on at item ``seq``; current is the navigation command there, or the next one."""
+        to = jumps.next_nav(self.mission, seq, jumps.runs(nav), JUMPS) or seq
+        nav.mission_do, nav.mission_do_next = (seq, seq + 1) if to != seq else (0, 0)
+        self._set_current(nav, to, notes)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
         """DO_CHANGE_SPEED [m/s] from outside while the mission runs: legs under way go on with the new limit."""

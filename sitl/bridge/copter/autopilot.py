@@ -54,6 +54,8 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(WARNING, smart_rtl_path.lost_text(int(a)))]
         if code == events.NO_WAY_BACK:
             return [Text(WARNING, f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
+        if code == events.CIRCLE_BEGINS:
+            return [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")]
         if code == events.THROW_STAGE:
             return [Text(INFO, throw.TEXTS[int(a)])]
         if code == events.ZIGZAG_DID:
@@ -129,7 +131,10 @@ class CopterAutopilot(BaseAutopilot):
         return commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:
-        return commands.set_paused(self._v.autopilot.modes, on) == 0
+        done = commands.set_paused(self._v.autopilot.modes, on) == 0
+        if on and not done:
+            self._say(INFO, ["Failed to pause"])
+        return done
 
     def set_roi(self, place: Vector | None) -> None:
         if place is None:

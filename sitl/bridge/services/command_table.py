@@ -17,10 +17,13 @@ from ..dialect import message
 from ..telemetry.shell import banner
 from .camera import CameraService
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
+from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService
+from .mount import MountService
 from .outputs import OutputService
 from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
+from .sprayer import SprayerService
 from .statustext import StatusTextService
 from .streams import StreamService
 
@@ -255,6 +258,62 @@ def stop_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
     return int(bridge.get(CameraService).stop(command.p1))
 
 
+def grip(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """211: p2 0 opens the gripper, 1 closes it; FAILED without GRIP_ENABLE and GRIP_TYPE 1."""
+    return int(bridge.get(GripperService).act(command.p2))
+
+
+def spray(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """216: p1 1 runs the sprayer, 0 ends it; no effect without SPRAY_ENABLE."""
+    bridge.get(SprayerService).act(command.p1)
+    return ACCEPTED
+
+
+def configure_mount(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """204 (old): p1 mode of the gimbal, as for 205; FAILED without MNT1_TYPE 1."""
+    return int(bridge.get(MountService).configure(command.p1))
+
+
+def control_mount(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """205: p1 pitch, p2 roll, p3 yaw [deg]; p7 0 folds, 1 neutral, 2 these angles, 3 sticks, 4 last place, 6 home."""
+    return int(bridge.get(MountService).control(command.p1, command.p2, command.p3, command.z))
+
+
+def pitch_and_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """1000: p1 pitch, p2 yaw [deg], or NaN and p3, p4 their rates [deg/s]; p5 flags, p7 gimbal (0, 1)."""
+    c = command
+    return int(bridge.get(MountService).pitch_yaw(c.p1, c.p2, c.p3, c.p4, c.p5, c.z))
+
+
+def control_gimbal(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """1001: p1 system and p2 component that have primary control of the gimbal; -2: the sender."""
+    return int(bridge.get(MountService).give_control(command.p1, command.p2, command.sender))
+
+
+def follow_system(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """198: taken; the gimbal does not follow other vehicles here."""
+    return ACCEPTED
+
+
+def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """195, 201: the gimbal points at a place; all zero ends it."""
+    if command.frame not in GLOBAL_FRAMES:
+        return DENIED
+    mount = bridge.get(MountService)
+    if command.lat == 0 and command.lon == 0 and command.z == 0.0:
+        mount.look_ahead()
+    else:
+        alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
+        mount.look_at(command.lat, command.lon, alt)
+    return ACCEPTED
+
+
+def look_ahead(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """197: the gimbal does what MNT1_DEFLT_MODE says."""
+    bridge.get(MountService).look_ahead()
+    return ACCEPTED
+
+
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
     """192: go to a place in GUIDED; p1 speed, p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
@@ -325,10 +384,10 @@ def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """224: p1 number of the item (-1: keep), p2 1 resets the mission first."""
-    if command.p1 != int(command.p1) or command.p2 not in (0.0, 1.0):
+    """224: p1 number of the item (0: the first); jumps are counted anew whatever p2 is; DENIED without such an item."""
+    if not 0.0 <= command.p1 <= 65535.0:
         return DENIED
-    ok = bridge.autopilot.set_current_item(int(command.p1), command.p2 == 1.0)
+    ok = bridge.autopilot.set_current_item(int(command.p1))
     bridge.say_pending()
     return ACCEPTED if ok else DENIED
 
@@ -347,6 +406,8 @@ COMMANDS: dict[int, Entry] = {
     510: Entry(get_interval, required=(1,)),
     511: Entry(set_interval, required=(1, 2)),
     512: Entry(request_message, required=(1,)),
+    1000: Entry(pitch_and_yaw, takes_nan=True),
+    1001: Entry(control_gimbal),
     2000: Entry(start_pictures),
     2001: Entry(stop_pictures),
     2600: Entry(control_high_latency, required=(1,)),
@@ -362,7 +423,15 @@ COMMANDS: dict[int, Entry] = {
     202: Entry(configure_camera),
     203: Entry(control_camera),
     206: Entry(set_camera_distance, required=(1,)),
+    195: Entry(look_at, place=True),
+    197: Entry(look_ahead),
+    198: Entry(follow_system),
+    201: Entry(look_at, place=True),
+    204: Entry(configure_mount),
+    205: Entry(control_mount),
     207: Entry(enable_fence, required=(1,)),
+    211: Entry(grip),
+    216: Entry(spray),
     218: Entry(aux_function, required=(1, 2)),
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),

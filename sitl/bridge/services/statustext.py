@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Text
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Switched, Text
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -155,6 +155,8 @@ class EventService(Service):
                     listener.reached(note.seq)
             elif isinstance(note, OutputItem):
                 self.bridge.carry_out(note.item)
+            elif isinstance(note, Switched):
+                self.bridge.switched(note.function, note.position)
             elif isinstance(note, CurrentChanged):
                 self.bridge.send_to_all(MISSION_CURRENT)
 

@@ -54,6 +54,13 @@ class GuidedState(Record):
     climb_rate: float  # ANGLE: [m/s] up
     thrust: float  # ANGLE: 0 .. 1
     use_thrust: bool  # ANGLE: thrust instead of climb rate
+    # within a mission (DO_GUIDED_LIMITS); 0: no limit
+    limit_us: int  # how long
+    limit_low: float  # heights over the origin [m]
+    limit_high: float
+    limit_distance: float  # from where it began [m]
+    limit_since_us: int  # when it began
+    limit_from: Vec2  # and where, NE [m]
 
 
 class LoiterState(Record):

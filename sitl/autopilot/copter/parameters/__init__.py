@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.records import Floats, Records
-from ... import camera, relays
+from ... import shell_parameters
 from ...params import parameters as shared
 from ...params.avoidance import PathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
@@ -136,4 +136,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
-from ... import camera, relays
+from ... import shell_parameters
 from ...params import parameters as shared
 from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
@@ -85,4 +85,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS)
