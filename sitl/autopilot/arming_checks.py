@@ -15,8 +15,9 @@ from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
 from .params.parameters import Parameters
 from .params.radio import RcMap
-from .params.simulation import Axes
+from .params.simulation import axes
 from .params.system import Arming, Compass
+from .sensor_calibration import ACCELS_DONE, COMPASS_DONE, COMPASS_RUNNING, corrected_field, first_field
 from .state import BatteryState, Radio, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
@@ -71,12 +72,16 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
+COMPASS_BUSY, COMPASS_REBOOT, ACCELS_REBOOT = 1 << 53, 1 << 54, 1 << 55
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
     BAROMETER: "Barometer not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
+    COMPASS_BUSY: "Compass calibration running",
+    COMPASS_REBOOT: "Compass calibrated requires reboot",
+    ACCELS_REBOOT: "Accels calibrated requires reboot",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -146,20 +151,30 @@ def differs(field: Vec3, other: Vec3) -> bool:
 
 
 @law
-def calibrated(field: Vec3, offset: Axes) -> Vec3:
-    """What a compass shows [gauss], with its COMPASS_OFS [mGauss] added."""
-    return field + 1e-3 * Vec3(offset.X, offset.Y, offset.Z)
+def compass_checks(sensors: Sensors, params: Compass) -> int:
+    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
+    first, second, third = first_field(sensors, params), sensors.mag2, sensors.mag3
+    if params.USE2 > 0.0 and dot(second, second) > 0.0:
+        if differs(first, corrected_field(second, axes(params.OFS2), params.DIA2, params.ODI2)):
+            return COMPASSES
+    if params.USE3 > 0.0 and dot(third, third) > 0.0:
+        if differs(first, corrected_field(third, axes(params.OFS3), params.DIA3, params.ODI3)):
+            return COMPASSES
+    return 0
 
 
 @law
-def compass_checks(sensors: Sensors, params: Compass) -> int:
-    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
-    second, third = sensors.mag2, sensors.mag3
-    if params.USE2 > 0.0 and dot(second, second) > 0.0 and differs(sensors.mag, calibrated(second, params.OFS2)):
-        return COMPASSES
-    if params.USE3 > 0.0 and dot(third, third) > 0.0 and differs(sensors.mag, calibrated(third, params.OFS3)):
-        return COMPASSES
-    return 0
+def calibration_checks(state: int, params: Arming) -> int:
+    """Failed checks of the sensors' calibration (``Calibrated.state``)."""
+    failed = 0
+    if wants(params, CHECK_COMPASS):
+        if state & COMPASS_RUNNING:
+            failed |= COMPASS_BUSY
+        elif state & COMPASS_DONE:
+            failed |= COMPASS_REBOOT
+    if wants(params, CHECK_INS) and state & ACCELS_DONE:
+        failed |= ACCELS_REBOOT
+    return failed
 
 
 @law

@@ -18,6 +18,7 @@ from .events import Events
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
+from .sensor_calibration import Calibrated
 from .vibration import Vibration
 
 
@@ -217,6 +218,7 @@ class Autopilot(Record):
     battery: BatteryState
     arming: Arming
     modes: Modes
+    calibrated: Calibrated
     control: Control
     events: Events
     inertial: InertialRing

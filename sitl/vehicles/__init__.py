@@ -36,6 +36,7 @@ __all__ = [
 
 _FRAMES = (
     "ardupilot_x", "ardupilot_hexa", "ardupilot_hexa_x", "ardupilot_octa", "ardupilot_octa_quad", "ardupilot_y6",
+    "calibration_copter", "calibration_rover",
 )  # fmt: skip
 """Rows of ``ardupilot_frames``."""
 _MODULES = (
