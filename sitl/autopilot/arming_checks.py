@@ -10,14 +10,14 @@ from __future__ import annotations
 from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
-from . import radio
+from . import radio, sensor_calibration
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
 from .params.parameters import Parameters
 from .params.radio import RcMap
 from .params.simulation import axes
 from .params.system import Arming, Compass
-from .sensor_calibration import ACCELS_DONE, COMPASS_DONE, COMPASS_RUNNING, corrected_field, first_field
+from .sensor_calibration import corrected_field, first_field
 from .state import BatteryState, Radio, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
@@ -72,16 +72,16 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
-COMPASS_BUSY, COMPASS_REBOOT, ACCELS_REBOOT = 1 << 53, 1 << 54, 1 << 55
+CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
     BAROMETER: "Barometer not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
-    COMPASS_BUSY: "Compass calibration running",
-    COMPASS_REBOOT: "Compass calibrated requires reboot",
-    ACCELS_REBOOT: "Accels calibrated requires reboot",
+    CALIBRATING_COMPASS: "Compass calibration running",
+    REBOOT_FOR_COMPASS: "Compass calibrated requires reboot",
+    REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -168,12 +168,12 @@ def calibration_checks(state: int, params: Arming) -> int:
     """Failed checks of the sensors' calibration (``Calibrated.state``)."""
     failed = 0
     if wants(params, CHECK_COMPASS):
-        if state & COMPASS_RUNNING:
-            failed |= COMPASS_BUSY
-        elif state & COMPASS_DONE:
-            failed |= COMPASS_REBOOT
-    if wants(params, CHECK_INS) and state & ACCELS_DONE:
-        failed |= ACCELS_REBOOT
+        if state & sensor_calibration.COMPASS_RUNNING:
+            failed |= CALIBRATING_COMPASS
+        elif state & sensor_calibration.COMPASS_DONE:
+            failed |= REBOOT_FOR_COMPASS
+    if wants(params, CHECK_INS) and state & sensor_calibration.ACCELS_DONE:
+        failed |= REBOOT_FOR_ACCELS
     return failed
 
 

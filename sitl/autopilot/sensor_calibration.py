@@ -10,7 +10,7 @@ from ..core.records import Record
 from ..core.vectors import Euler, Vec3
 from .params.parameters import Parameters
 from .params.simulation import DELIVERED, Axes, axes
-from .params.system import Compass
+from .params.system import Ahrs, Compass
 
 COMPASS_RUNNING, COMPASS_DONE, ACCELS_DONE = 1, 2, 4
 """``Calibrated.state``: compasses are being calibrated, or have been, or accelerometers have, since power-on."""
@@ -44,17 +44,25 @@ def first_field(sensors: Sensors, compass: Compass) -> Vec3:
 
 
 @law
+def corrected_acc(shown: Vec3, params: Parameters) -> Vec3:
+    """Specific force [m/s^2] in the autopilot's axes."""
+    return by_component(shown - axes(params.INS.ACCOFFS), axes(params.INS.ACCSCAL))
+
+
+@law
+def mounted(vector: Vec3, params: Ahrs) -> Vec3:
+    """A vector in the vehicle's axes, from the autopilot's."""
+    trim = params.TRIM
+    if trim.X == 0.0 and trim.Y == 0.0:
+        return vector
+    return rotate(quat_from_euler(Euler(trim.X, trim.Y, 0.0)), vector)
+
+
+@law
 def read_sensors(c: Calibrated, sensors: Sensors, params: Parameters) -> None:
     """First thing of a tick: correct the new samples."""
-    ins, trim = params.INS, params.AHRS.TRIM
-    c.acc = by_component(sensors.acc - axes(ins.ACCOFFS), axes(ins.ACCSCAL))
-    c.gyro = sensors.gyro - axes(ins.GYROFFS)
-    is_new = sensors.mag_count != c.mag_seen
-    if is_new:
+    c.acc = mounted(corrected_acc(sensors.acc, params), params.AHRS)
+    c.gyro = mounted(sensors.gyro - axes(params.INS.GYROFFS), params.AHRS)
+    if sensors.mag_count != c.mag_seen:
         c.mag_seen = sensors.mag_count
-        c.mag = first_field(sensors, params.COMPASS)
-    if trim.X != 0.0 or trim.Y != 0.0:
-        mount = quat_from_euler(Euler(trim.X, trim.Y, 0.0))
-        c.acc, c.gyro = rotate(mount, c.acc), rotate(mount, c.gyro)
-        if is_new:
-            c.mag = rotate(mount, c.mag)
+        c.mag = mounted(first_field(sensors, params.COMPASS), params.AHRS)

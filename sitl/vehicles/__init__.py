@@ -40,7 +40,7 @@ _FRAMES = (
 )  # fmt: skip
 """Rows of ``ardupilot_frames``."""
 _MODULES = (
-    "erle_copter", "ardupilot_quad", *_FRAMES, "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover",
+    "erle_copter", "ardupilot_quad", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover", *_FRAMES,
 )  # fmt: skip
 GROUP = "sitl.airframes"
 """Entry points of airframes of other packages: name -> Airframe."""

@@ -15,8 +15,11 @@ from typing import Any
 import numpy as np
 
 from ...autopilot.calibration_fit import fit_accelerometer
-from ...autopilot.sensor_calibration import ACCELS_DONE
+from ...autopilot.estimation.alignment import CALIBRATE, initialise
+from ...autopilot.estimation.strapdown import tilt_from_acc
+from ...autopilot.sensor_calibration import ACCELS_DONE, corrected_acc, mounted
 from ...core.constants import GRAVITY
+from ...core.vectors import Vec3
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -135,9 +138,11 @@ class CalibrationService(Service):
         elif task == SIMPLE:
             self._set_accelerometer(acc - (0.0, 0.0, -GRAVITY), np.ones(3))
             self._set("AHRS_TRIM", (0.0, 0.0))
+            self._align(acc)
         elif task == LEVEL:
             roll, pitch = self._trim(acc)
             self._set("AHRS_TRIM", (roll, pitch))
+            self._align(acc)
             text = f"Trim OK: roll={math.degrees(roll):.2f} pitch={math.degrees(pitch):.2f} yaw=0.00"
             self.bridge.get(StatusTextService).say(INFO, text)
         else:
@@ -159,16 +164,22 @@ class CalibrationService(Service):
         if good:
             self._set_accelerometer(np.array(fit.offset), np.array(fit.scale))
             self._set("AHRS_TRIM", self._trim(np.array(self._means[0])))
+            self._align(np.array(self._means[-1]))
             self.bridge.vehicle.v.autopilot.calibrated.state |= ACCELS_DONE
         say(CRITICAL, "Calibration successful" if good else "Calibration FAILED")
         self._ask(SUCCESS if good else FAILURE)
 
     def _trim(self, shown: np.ndarray[Any, Any]) -> tuple[float, float]:
         """Roll and pitch [rad] of the autopilot in a level vehicle."""
-        ins = self.bridge.vehicle.v.autopilot.params.INS
-        offset, scale = ins.ACCOFFS, ins.ACCSCAL
-        x, y, z = (shown - (offset.X, offset.Y, offset.Z)) * (scale.X, scale.Y, scale.Z)
-        return math.atan2(-y, -z), math.atan2(x, math.hypot(y, z))
+        tilt = tilt_from_acc(corrected_acc(Vec3(*shown.tolist()), self.bridge.vehicle.v.autopilot.params))
+        return tilt.roll, tilt.pitch
+
+    def _align(self, shown: np.ndarray[Any, Any]) -> None:
+        """The estimator begins anew: what it has learnt of the accelerometer holds no more."""
+        ap = self.bridge.vehicle.v.autopilot
+        if ap.ekf.phase != CALIBRATE:
+            ap.ekf.good_acc = mounted(corrected_acc(Vec3(*shown.tolist()), ap.params), ap.params.AHRS)
+            initialise(ap.ekf)
 
     def _set_gyros(self, rates: np.ndarray[Any, Any]) -> None:
         ap = self.bridge.vehicle.v.autopilot
