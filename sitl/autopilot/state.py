@@ -21,6 +21,7 @@ from .fence.state import FenceState, RallyState
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
+from .sensor_calibration import Calibrated
 from .vibration import Vibration
 
 
@@ -220,6 +221,7 @@ class Autopilot(Record):
     battery: BatteryState
     arming: Arming
     modes: Modes
+    calibrated: Calibrated
     control: Control
     events: Events
     inertial: InertialRing

@@ -43,8 +43,9 @@ MODELS = {
         "octa": "ardupilot_octa",
         "octa-quad": "ardupilot_octa_quad",
         "y6": "ardupilot_y6",
+        "calibration": "calibration_copter",
     },
-    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover"},
+    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
 }
 """ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
 JSON = "JSON"

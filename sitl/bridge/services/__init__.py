@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """MAVLink's microservices (https://mavlink.io/en/services/)."""
 
+from .calibration import CalibrationService
 from .camera import CameraService
 from .commands import CommandService
+from .compass_calibration import CompassCalibrationService
 from .config_error import ConfigErrorService
 from .ftp import FtpService
 from .gripper import GripperService
@@ -47,6 +49,8 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     WinchService,
     SprayerService,
     MountService,
+    CalibrationService,
+    CompassCalibrationService,
     SigningService,
 )
 """In the order in which they act when several are due at the same time."""

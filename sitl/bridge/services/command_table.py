@@ -15,8 +15,11 @@ from ...autopilot.fence.checks import ALL, switch_by_user
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
+from . import calibration
+from .calibration import CalibrationService
 from .camera import CameraService
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
+from .compass_calibration import CompassCalibrationService
 from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService
@@ -91,25 +94,32 @@ def reboot(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-LEVEL, SIMPLE_ACCELEROMETER = 2.0, 4.0
+POSITIONS_OF_ACCELEROMETER, LEVEL_TRIM, SIMPLE_ACCELEROMETER, SAVE = 1.0, 2.0, 4.0, 76.0
+"""p5 of 241; SAVE: p2 or p5, what parameters hold counts as calibrated."""
 
 
 def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """241: p1 1 gyros, p3 1 barometer, p5 2 level, 4 accelerometers: none is needed, success is said at once."""
-    say = bridge.get(StatusTextService).say
+    """241: p1 1 gyros, p3 1 barometer, p5 1 accelerometers in six positions, 2 level, 4 accelerometers level."""
+    say, service = bridge.get(StatusTextService).say, bridge.get(CalibrationService)
     if bridge.autopilot.armed():
         say(NOTICE, "Disarm to allow calibration")
         return FAILED
-    if command.p1 == 1.0 or command.p5 in (LEVEL, SIMPLE_ACCELEROMETER):
+    if command.p1 == 1.0 or command.p5 in (LEVEL_TRIM, SIMPLE_ACCELEROMETER):
         say(INFO, "Initialising ArduPilot")
-        if command.p5 == LEVEL:
-            say(INFO, "Trim OK: roll=0.00 pitch=0.00 yaw=0.00")
-        return ACCEPTED
+        tasks = {LEVEL_TRIM: calibration.LEVEL, SIMPLE_ACCELEROMETER: calibration.SIMPLE}
+        return int(service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5]))
     if command.p3 == 1.0:
         say(INFO, "Updating barometer calibration")
         say(INFO, "Barometer calibration complete")
         return ACCEPTED
-    return UNSUPPORTED
+    if command.p5 == POSITIONS_OF_ACCELEROMETER:
+        return int(service.start_positions())
+    return ACCEPTED if SAVE in (command.p2, command.p5) else UNSUPPORTED
+
+
+def accelerometer_position(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42429: the vehicle is in position p1."""
+    return int(bridge.get(CalibrationService).is_in_position(command.p1))
 
 
 def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -121,19 +131,24 @@ def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def calibrate_compass(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42424: FAILED: calibrations by turning the vehicle are not simulated, and the first compass has no offsets."""
-    bridge.get(StatusTextService).say(NOTICE, "Compass calibration is not simulated")
-    return FAILED
+    """42424: p1 bits of compasses (0 all), p2 again after a failure, p3 saves, p4 delay [s], p5 reboots then."""
+    p = command
+    return int(bridge.get(CompassCalibrationService).start(p.p1, p.p2 != 0.0, p.p3 != 0.0, p.p4, p.p5 != 0.0))
 
 
 def accept_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42425: FAILED, as in ArduPilot while no calibration is complete."""
-    return FAILED
+    """42425: saves what was found of compasses p1."""
+    return int(bridge.get(CompassCalibrationService).accept(command.p1))
 
 
 def cancel_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42426: ACCEPTED, as in ArduPilot: none is under way."""
-    return ACCEPTED
+    """42426: stops the calibration of compasses p1."""
+    return int(bridge.get(CompassCalibrationService).cancel(command.p1))
+
+
+def calibrate_compass_by_heading(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42006: p1 heading [deg], p2 bits of compasses (0 all), p3 and p4 place [deg] (0, 0: where the vehicle is)."""
+    return int(bridge.get(CompassCalibrationService).use_heading(command.p1, command.p2, command.p3, command.p4))
 
 
 def send_banner(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -397,10 +412,12 @@ COMMANDS: dict[int, Entry] = {
     245: Entry(storage),
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
+    42006: Entry(calibrate_compass_by_heading, required=(1,)),
     42424: Entry(calibrate_compass),
     42425: Entry(accept_compass_calibration),
     42426: Entry(cancel_compass_calibration),
     42428: Entry(send_banner),
+    42429: Entry(accelerometer_position, required=(1,)),
     42651: Entry(reset_battery, required=(1, 2)),
     410: Entry(get_home),
     510: Entry(get_interval, required=(1,)),

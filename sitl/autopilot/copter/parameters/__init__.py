@@ -15,7 +15,7 @@ from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
+from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
@@ -59,6 +59,7 @@ class Parameters(shared.Parameters):
 
     ACRO: Acro
     ANGLE_MAX: float = param(3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16)
+    AHRS: Ahrs
     ARMING: Arming
     ATC: Attitude
     AUTO_OPTIONS: float = param(
@@ -88,6 +89,7 @@ class Parameters(shared.Parameters):
     GPS1_DELAY_MS: float
     GUID: Guided
     INITIAL_MODE: float
+    INS: Inertial
     LAND: Land
     LOG: Log
     LOIT: Loiter
