@@ -43,11 +43,13 @@ SIMPLE_CHANGED = 31  # copter; a: 0 off, 1 SIMPLE, 2 SUPER_SIMPLE
 THROW_STAGE = 33  # copter; a: stage (throw.py)
 ZIGZAG_DID = 34  # copter; a: what (zigzag.py), b: line of the sweep, 0 none
 PATH_LOW = 35  # SMART_RTL: there is little room for its path
-NO_WAY_BACK = 36  # copter: a failsafe cannot enter SMART_RTL; a: what it does instead (failsafe_actions.py)
+NO_WAY_BACK = 36  # copter: a failsafe cannot enter SMART_RTL, or (b: 1) AUTO_RTL; a: what it does (failsafe_actions.py)
 THRUST_LOST = 40  # copter; a: motor 1 .. that seems to fail
 TAKEOFF_BLOCKED = 41  # copter; a: why (takeoff_check.py)
 FOLLOW_OFFSET = 42  # FOLLOW keeps the distance that it has; a: 1 in the lead's frame, 0 north, east, down
 FOLLOW_OFF = 43  # FOLLOW was asked for while FOLL_ENABLE is 0
+RETURN_WANTED = 50  # copter, AUTO_RTL; a: way (navigation/state.py), b: 1 AUTO flies already
+RETURN_ACTIVE = 51  # copter: it flies a part that brings it back already; a: which (navigation/state.py)
 
 
 class Events(Record):

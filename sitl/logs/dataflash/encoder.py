@@ -11,6 +11,7 @@ import numpy as np
 from ...autopilot.events import EVENT_RING
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
+from ...autopilot.modes import shown
 from ...autopilot.params.table import Values
 from ..kind import logs_of
 from . import bits, formats
@@ -186,7 +187,7 @@ class LogEncoder:
             pack.pack("VER", time_us, 3, *version[1:]),
             pack.text(time_us, described),
             pack.text(time_us, f"Airframe: {v.airframe.name}"),
-            pack.pack("MODE", time_us, int(modes.number), int(modes.number), int(modes.reason)),
+            pack.pack("MODE", time_us, shown(modes), shown(modes), int(modes.reason)),
             pack.mission(time_us, v.mission.items),
         ]
         self._samples.turn(0)

@@ -10,7 +10,7 @@ import pytest
 from sitl.autopilot import smart_rtl_path
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
-from sitl.autopilot.copter.modes.auto import AUTO
+from sitl.autopilot.copter.modes.auto import AUTO, AUTO_RTL
 from sitl.autopilot.copter.modes.avoid_adsb import AVOID_ADSB
 from sitl.autopilot.copter.modes.brake import BRAKE
 from sitl.autopilot.copter.modes.circle import CIRCLE
@@ -40,7 +40,7 @@ from sitl.autopilot.modes import (
 )
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
-ALL = tuple(number for number in NAMES if number not in (FLIP, SMART_RTL, THROW))
+ALL = tuple(number for number in NAMES if number not in (FLIP, SMART_RTL, THROW, AUTO_RTL))
 
 
 @pytest.mark.parametrize("number", ALL)
