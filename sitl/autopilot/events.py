@@ -50,6 +50,8 @@ FOLLOW_OFFSET = 42  # FOLLOW keeps the distance that it has; a: 1 in the lead's 
 FOLLOW_OFF = 43  # FOLLOW was asked for while FOLL_ENABLE is 0
 RETURN_WANTED = 50  # copter, AUTO_RTL; a: way (navigation/state.py), b: 1 AUTO flies already
 RETURN_ACTIVE = 51  # copter: it flies a part that brings it back already; a: which (navigation/state.py)
+SYSTEM_ID_DID = 52  # copter; a: what (systemid.py), b: a number of it
+SYSTEM_ID_SAMPLE = 53  # copter: a sample of SYSTEMID, for the log
 
 
 class Events(Record):

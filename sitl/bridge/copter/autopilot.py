@@ -9,7 +9,7 @@ from typing import Any
 from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
-from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table, throw, zigzag
+from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, systemid, table, throw, zigzag
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
@@ -59,6 +59,9 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(INFO, returning.ACTIVE_TEXTS[int(a)])]
         if code == events.THROW_STAGE:
             return [Text(INFO, throw.TEXTS[int(a)])]
+        if code == events.SYSTEM_ID_DID:
+            severity = WARNING if int(a) in systemid.REFUSALS else INFO
+            return [Text(severity, systemid.text(int(a), b, self._v.autopilot.params.ANGLE_MAX * 0.01))]
         if code == events.ZIGZAG_DID:
             return [Text(INFO, zigzag.text(int(a), int(b), int(self._v.autopilot.params.ZIGZ.LINE_NUM)))]
         return super().texts_of(code, a, b)

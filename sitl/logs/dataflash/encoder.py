@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -126,6 +127,8 @@ class LogEncoder:
             at = k % EVENT_RING
             event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
             self.note(int(ring.time_us[at]), self.events.event, *event)
+            for name, numbers in self._kind.event_rows(self._vehicle.v, *event[:2]) if self._kind.event_rows else ():
+                self.note(int(ring.time_us[at]), partial(self.events.pack, name), *numbers)
         self._seen = count
 
     def skip_events_before(self, time_us: int) -> None:

@@ -7,14 +7,23 @@ AUTO flies it: AUTO_RTL is what clients are told meanwhile (``modes.shown``), un
 
 from __future__ import annotations
 
+from ....core.kernels import law
+from ..state import Vehicle
 from . import auto
 from .mode import CopterMode
+
+
+@law
+def run(v: Vehicle) -> None:
+    """One tick, of AUTO."""
+    auto.run(v)
+
 
 MODE = CopterMode(
     number=auto.AUTO_RTL,
     name="AUTO_RTL",
     title="AUTO RTL",
-    run=auto.run,
+    run=run,
     start=auto.start,
     needs_position=True,
     autonomous=True,

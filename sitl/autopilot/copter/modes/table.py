@@ -19,6 +19,7 @@ from . import (
     circle,
     drift,
     flip,
+    flowhold,
     follow,
     guided,
     guided_nogps,
@@ -28,7 +29,9 @@ from . import (
     rtl,
     smart_rtl,
     stabilize,
+    systemid,
     throw,
+    turtle,
     zigzag,
 )
 from .mode import CopterMode
@@ -55,6 +58,9 @@ MODES: tuple[CopterMode, ...] = with_registered(
         smart_rtl.MODE,
         follow.MODE,
         zigzag.MODE,
+        systemid.MODE,
+        flowhold.MODE,
+        turtle.MODE,
         auto_rtl.MODE,
     ),
 )
