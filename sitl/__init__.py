@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .bridge.links import LinkFaults
     from .errors import SitlError
     from .fleet import Fleet
     from .move import Move
@@ -19,10 +20,11 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-__all__ = ["Fleet", "Move", "Simulation", "SitlError", "__version__", "vehicle_names", "world_names"]
+__all__ = ["Fleet", "LinkFaults", "Move", "Simulation", "SitlError", "__version__", "vehicle_names", "world_names"]
 
 _LAZY = {
     "Fleet": ("fleet", "Fleet"),
+    "LinkFaults": ("bridge.links", "LinkFaults"),
     "Move": ("move", "Move"),
     "Simulation": ("simulation", "Simulation"),
     "SitlError": ("errors", "SitlError"),

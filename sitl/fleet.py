@@ -22,6 +22,7 @@ from typing import Any, NamedTuple, Unpack
 import numpy as np
 
 from .bridge.channel import ChannelState
+from .bridge.links import LinkFaults
 from .bridge.links.inprocess import InProcessLink
 from .bridge.wire import fleet as wire
 from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
@@ -105,6 +106,8 @@ class Fleet:
         """Identity of a snapshot -> its state."""
         self._views: dict[int, Any] = {}
         self._before_boot_us: Array = np.zeros(count, np.int64)
+        self._faulty = set[int]()
+        """Vehicles whose links have faults: the shell advances them."""
         self._extra: dict[int, bytes] = {}
         """Bytes to clients that the shell sent: they come before those in the ports."""
         # Views of one field each: making one costs more than reading it.
@@ -255,7 +258,7 @@ class Fleet:
         """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""
         self._check(index)
         held = self._states[index]
-        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes())
+        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes(), held.bridge.channels[0].ways)
         bridge = held.bridge._replace(channels=(port,))
         return replace(held, record=self._records_u1[index].tobytes(), bridge=bridge)
 
@@ -289,7 +292,7 @@ class Fleet:
         self._check_open()
         size = int(self._in_size[index])
         end = size + len(data)
-        if end > IN_BYTES:
+        if end > IN_BYTES or index in self._faulty:
             self._serve(index, 0, TO_HEAR, data)
             return
         self._ports_u1[index, INCOMING + size : INCOMING + end] = np.frombuffer(data, np.uint8)
@@ -301,6 +304,28 @@ class Fleet:
         said = self._ports_u1[index, OUT : OUT + int(self._out_size[index])].tobytes()
         self._out_size[index] = self._out_count[index] = 0
         return self._extra.pop(index) + said if index in self._extra else said
+
+    def set_link_faults(self, which: int | Iterable[int], faults: LinkFaults | None) -> None:
+        """Let vehicles' links to their clients lose, delay or change frames from now on (docs/faults.md).
+
+        The shell advances such a vehicle, which takes much longer. It flies as a ``Simulation`` whose link has these
+        faults, the seed of vehicle number i being ``faults.seed + i``.
+
+        Args:
+            which: a vehicle, or several.
+            faults: what happens to frames; None: nothing any more.
+        """
+        shell = self.shell
+        for index in [which] if isinstance(which, int | np.integer) else list(which):
+            self._check(index)
+            self._check_open()
+            shell.restore(self.snapshot(index))
+            channel = shell.bridge.channels[0]
+            channel.port._bytes[:] = self._ports_u1[index].tobytes()
+            own = replace(faults, seed=faults.seed + int(index)) if faults is not None else None
+            shell.bridge.board.faults.give(channel, own)
+            shell.bridge.board.faults.look([channel])
+            self._give([int(index)], self._take())
 
     def drop_telemetry(self) -> None:
         """Throw away what clients have not received."""
@@ -340,6 +365,10 @@ class Fleet:
             rows = slice(None) if which is None else which
             until[:] = STAYS
             until[rows] = times[rows] + step_us
+        faulty: list[tuple[int, int]] = []
+        if self._faulty:
+            faulty = [(index, int(until[index])) for index in sorted(self._faulty)]
+            until[list(self._faulty)] = STAYS
         if self._pool is None:
             for run in self._parts:
                 run()
@@ -349,6 +378,9 @@ class Fleet:
         if self._any_waits():
             for index in np.flatnonzero(needs_shell).tolist():
                 self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
+        for index, goal_us in faulty:
+            if goal_us != STAYS:
+                self._serve(index, goal_us - int(times[index]), TO_HEAR)
 
     # ------------------------------------------------------------------ what needs Python
 
@@ -383,6 +415,10 @@ class Fleet:
         for row in rows:
             self._records_u1[row], self._ports_u1[row] = held.record, held.port
             self._states[row] = held.state
+            if held.state.bridge.channels[0].ways is not None:
+                self._faulty.add(row)
+            else:
+                self._faulty.discard(row)
         self._before_boot_us[rows] = held.state.before_boot_us
         self._events_seen[rows], self._shell_us[rows] = held.events_seen, held.shell_us
 

@@ -18,6 +18,7 @@ from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
 from .autopilot.params.table import Values
 from .bridge.bridge import Bridge, BridgeState
+from .bridge.links import Link, LinkFaults
 from .bridge.services.statustext import EventService, StatusTextService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
@@ -226,6 +227,9 @@ class Simulation:
             if self.logger is not None:
                 sampler, due_us = self.logger.before_run(plant.runs_in_core)
                 until = min(until, due_us - self.before_boot_us)
+            faults = bridge.board.faults
+            if faults.are_on:
+                until = min(until, max(faults.due_us(bridge.channels) - self.before_boot_us, now + 1))
             for observer in self.observers:
                 until = min(until, observer.due_us - self.before_boot_us)
             lost = None
@@ -241,6 +245,10 @@ class Simulation:
                 self.serve()
             else:  # the core has sent all that is due
                 bridge.flush()
+            if faults.are_on and faults.due_us(bridge.channels) <= self.time_us:
+                if self._event_count() != self._events_seen:
+                    self._follow_events()  # as if the caller had stopped here and the client spoken now
+                bridge.arrive()
             if self.logger is not None:
                 self.logger.after_run()
             for observer in self.observers:
@@ -279,6 +287,15 @@ class Simulation:
         if self._event_count() != self._events_seen:
             self._follow_events()
         self.bridge.service()
+
+    def set_link_faults(self, faults: LinkFaults | None, link: Link | None = None) -> None:
+        """Let the links of clients lose, delay or change frames from now on, see docs/faults.md.
+
+        Args:
+            faults: what happens to frames; None: nothing any more, but what is under way arrives when it would have.
+            link: one that was added to ``bridge``; None: all, later ones too.
+        """
+        self.bridge.set_link_faults(faults, link)
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""

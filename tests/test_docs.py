@@ -23,6 +23,7 @@ from sitl.agents.rehearsal.change import GROUPS, Change
 from sitl.agents.runs.training import train_one
 from sitl.agents.tabular.settings import Settings
 from sitl.autopilot.params import docs
+from sitl.bridge.links.faults import OPTIONS
 from sitl.cli import parser
 from sitl.core import compile as compiler
 from sitl.envs.observations import OBSERVATIONS
@@ -50,6 +51,18 @@ def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture
     assert printed.startswith(("30.", "29."))
     vehicle = scope["vehicle"]
     assert vehicle.position == pytest.approx((30.0, 10.0, 10.0), abs=1.1)  # type: ignore[attr-defined]
+
+
+def test_the_example_of_bad_links_runs_and_every_option_is_explained(core: Core) -> None:
+    page = ROOT / "docs/faults.md"
+    scope: dict[str, Any] = {}
+    exec(compile(blocks(page, "python")[0], str(page), "exec"), scope)
+    assert not scope["vehicle"].armed
+    for name in OPTIONS:
+        assert f"`--link-{name} " in page.read_text()
+    for line in blocks(page, "")[0].splitlines():
+        words = shlex.split(line)
+        parser().parse_args(words[1:] if words[0] == "sitl" else words)
 
 
 def test_the_example_of_fleets_runs(core: Core) -> None:

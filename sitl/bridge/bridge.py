@@ -18,6 +18,7 @@ from .channel import Channel, ChannelState
 from .core_link import CoreLink
 from .dialect import MessageType, message, message_by_id
 from .frame import Frame
+from .links.faults import LinkFaults
 from .links.link import Link
 from .places import Places
 from .profile import load
@@ -186,6 +187,13 @@ class Bridge:
         """Close a link and forget its clients."""
         self.board.remove_link(link)
 
+    def set_link_faults(self, faults: LinkFaults | None, link: Link | None = None) -> None:
+        """Faults of one link from now on, or of all, later ones too but for logs; None: none."""
+        self.board.faults.set(faults, link)
+        for channel in self.channels:
+            self.board.faults.follow(channel, self.grants is not None)
+        self.board.faults.look(self.channels)
+
     @property
     def dropped(self) -> deque[str]:
         """Why channels were lost or refused and messages left out, for people."""
@@ -197,6 +205,9 @@ class Bridge:
     def _channel_added(self, channel: Channel) -> None:
         self._channels_changed()
         channel.port.epoch_us = self.epoch_us + self._before_boot_us
+        if channel.peer.ways is None:  # else it has outlived a reboot
+            self.board.faults.follow(channel, self.grants is not None)
+        self.board.faults.look(self.channels)
         for service in self.services.values():
             service.channel_added(channel)
         for link in self.board.links:
@@ -207,6 +218,7 @@ class Bridge:
         self._channels_changed()
         for service in self.services.values():
             service.channel_removed(channel)
+        self.board.faults.look(self.channels)
 
     def stream_to(self, link: Link, rates_hz: Mapping[str, int]) -> None:
         """Send stream groups to each client of ``link``, later ones too and after a reboot, until it asks otherwise.
@@ -253,16 +265,41 @@ class Bridge:
         for channel in self.channels:
             data = channel.peer.take()
             if data:
-                self.board.heard += 1
-                if journal is not None:
-                    journal.received(channel, data)
-                if self._signing.concerns(channel):
-                    data = self._signing.received(channel, data)
+                board.heard += 1
+                if channel.peer.ways is not None:
+                    data = b"".join(channel.peer.ways.to_vehicle.carry_bytes(data, self.elapsed_us))
             if data or resume:
-                self._hear(channel, data)
+                self._receive(channel, data)
         if journal is not None:
             journal.acted()
         board.flush()
+
+    def _receive(self, channel: Channel, data: bytes) -> None:
+        """Act on bytes that have come from a client."""
+        journal = self.board.journal
+        if data and journal is not None:
+            journal.received(channel, data)
+        if data and self._signing.concerns(channel):
+            data = self._signing.received(channel, data)
+        self._hear(channel, data)
+
+    def arrive(self) -> None:
+        """Hear, and hand to clients, the frames that arrive now over links with faults."""
+        board, now = self.board, self.elapsed_us
+        for channel in self.channels:
+            ways, peer = channel.peer.ways, channel.peer
+            if ways is None or ways.due_us > now:
+                continue
+            peer.outbox += ways.to_client.arrived(now)  # nothing else is queued: all that was due has been flushed
+            peer.flush()
+            data = b"".join(ways.to_vehicle.arrived(now))
+            if data:
+                self._receive(channel, data)
+        if board.journal is not None:
+            board.journal.acted()
+            board.journal.attended()
+        board.flush()
+        board.faults.look(self.channels)
 
     def _hear(self, channel: Channel, data: bytes) -> None:
         """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
@@ -335,7 +372,7 @@ class Bridge:
                 goes = False
             if channel.spool is not None:
                 channel.port.spool = 0 if watched else channel.spool_address
-                channel.port.congested = channel.peer.congested
+                channel.port.congested = channel.congested
         return goes
 
     def run(self, ranging: int, sampler: int, until_us: int, shell_us: int) -> None:
@@ -389,7 +426,7 @@ class Bridge:
 
     def _send_due(self, channel: Channel, now: int) -> None:
         port = channel.port
-        port.congested = channel.peer.congested
+        port.congested = channel.congested
         while True:
             self.core.tell(channel.address, 1, REGULAR)
             if port.next_us > now:
@@ -478,6 +515,9 @@ class Bridge:
     def push_clock(self) -> Grants:
         """Let clients push the clock from now on."""
         self.grants = Grants()
+        for channel in self.channels:
+            if channel.peer.ways is not None:
+                channel.peer.ways.hold(True)
         if self.board.journal is not None:
             self.board.journal.lockstep(True)
         return self.grants
@@ -538,6 +578,7 @@ class Bridge:
             else:
                 streams.time_was_set(channel.port, now)
             channel.port.system = system
+        self.board.faults.look(self.channels)
         for service, of_service in zip(self._stateful, state.services, strict=True):
             service.restore(of_service)
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from .dialect import MessageType, message_by_id
 from .frame import Frame, encode_v1, encode_v2
+from .links.faulty_way import FaultyWay, Ways, WayState
 from .links.link import Peer
 from .wire.frames import COMPONENT
 from .wire.port import IN_BYTES, INCOMING, NEVER, OUT, STATE, Port
@@ -49,6 +50,8 @@ class ChannelState(NamedTuple):
 
     number: int
     port: bytes
+    ways: tuple[WayState, WayState] | None = None
+    """Of a link with faults."""
 
 
 class Channel:
@@ -91,13 +94,21 @@ class Channel:
         """Version of MAVLink that the client is sent."""
         return self.port.version
 
+    @property
+    def congested(self) -> bool:
+        """Whether telemetry should wait: the client reads too slowly, or its link carries no more."""
+        peer = self.peer
+        return peer.congested or (peer.ways is not None and peer.ways.to_client.is_full)
+
     def snapshot(self) -> ChannelState:
-        """Everything that later frames depend on; what is in transit is the client's."""
-        return ChannelState(self.number, bytes(self.port._bytes[:STATE]))
+        """Everything that later frames depend on; what is in transit is the client's, unless the link has faults."""
+        ways = self.peer.ways
+        return ChannelState(self.number, bytes(self.port._bytes[:STATE]), ways.snapshot() if ways is not None else None)
 
     def restore(self, state: ChannelState) -> None:
         """Go on from a snapshot of this channel."""
         self.port._bytes[:STATE] = state.port
+        self.peer.ways = Ways(*map(FaultyWay.restored, state.ways)) if state.ways is not None else None
 
     # ------------------------------------------------------------------ out
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from .channel import Channel, Ports
+from .faulty_links import FaultyLinks
 from .links.link import Link, Peer
 
 MAX_NOTES = 1000
@@ -119,6 +120,7 @@ class Switchboard:
         """See only what clients sent."""
         self.journal: Journal | None = None
         self.signer: Signer | None = None
+        self.faults = FaultyLinks()
         self._system, self._clock, self._added, self._removed = system, clock, added, removed
         self._selector = selectors.DefaultSelector()
         self._sockets = 0
@@ -132,15 +134,16 @@ class Switchboard:
         self._selector.close()
         self.links, self.dropped = old.links, old.dropped
         self.taps, self.client_taps = old.taps, old.client_taps
-        self.journal, self.heard = old.journal, old.heard
+        self.journal, self.heard, self.faults = old.journal, old.heard, old.faults
         self._selector, self._sockets = old._selector, old._sockets
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
             link.reattach(self._add_channel)
 
     def is_watched(self) -> bool:
-        """Whether every frame that goes out has to be seen by someone, or signed."""
-        return bool(self.taps) or self.journal is not None or (self.signer is not None and self.signer.is_on)
+        """Whether every frame that goes out has to be seen by someone, signed, or sent over a link with faults."""
+        signs = self.signer is not None and self.signer.is_on
+        return signs or self.faults.are_on or bool(self.taps) or self.journal is not None
 
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
@@ -156,6 +159,7 @@ class Switchboard:
             self.journal.link_removed(link)
         link.close()
         self.links.remove(link)
+        self.faults.forget(link)
         self._forget_closed()
         self._sockets = len(self._selector.get_map())
 
@@ -224,13 +228,13 @@ class Switchboard:
                         tap.frame(now, raw)
             if peer.outbox and self.signer is not None and self.signer.concerns(channel):
                 peer.outbox[:] = self.signer.sent(channel, peer.outbox)
+            if self.journal is not None and peer.outbox:
+                self.journal.sent(channel, peer.outbox)
+            if peer.ways is not None:
+                peer.outbox[:] = peer.ways.to_client.carry(peer.outbox, self._clock())
+            peer.flush()
             if self.journal is not None:
-                if peer.outbox:
-                    self.journal.sent(channel, peer.outbox)
-                peer.flush()
                 self.journal.flushed(channel)
-            else:
-                peer.flush()
             closed = closed or peer.closed
         if closed:
             self._forget_closed()

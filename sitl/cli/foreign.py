@@ -23,6 +23,7 @@ from ..physics.engines import BACKENDS
 from ..plants.local import LocalPlant, stand_alone
 from ..run import runner
 from ..run.pacing import parse_speedup
+from .link_options import link_faults
 from .options import open_folder, scenario_of
 from .progress import CompileProgress
 from .status import PlantStatus
@@ -86,6 +87,8 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
     """OptionError for an option that a foreign autopilot cannot have."""
     if getattr(options, "lockstep", False):
         raise OptionError(f"--lockstep: {choice.kind} knows no grants; environments hold its time (autopilot=)")
+    if link_faults(options) is not None:
+        raise OptionError(f"--link-...: the links of {choice.kind} are its own; only our autopilot's have faults")
     if options.estimator != "ekf":
         raise OptionError(f"--estimator {options.estimator}: {choice.kind} has estimators of its own")
     if options.physics not in BACKENDS:

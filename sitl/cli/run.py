@@ -16,6 +16,7 @@ from ..run.standstill import serve_lockstep
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
 from . import foreign, recordings
+from .link_options import add_link_options, link_faults
 from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
 from .status import StatusLine
 
@@ -62,6 +63,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no status line")
     recordings.add_recording_option(parser)
     add_vehicle_options(parser)
+    add_link_options(parser)
 
 
 def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
@@ -71,6 +73,7 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
         outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS]
     else:
         outputs = [text for text in options.out if text != "none"]
+    faults = link_faults(options)
     folder = open_folder(options.log_dir)
     links: list[Link] = [open_link(text) for text in outputs]
     servers = open_servers(options)
@@ -80,6 +83,7 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
     else:
         simulation = build_simulation(options, {"MAV_SYSID": 1.0 + options.instance} if options.instance else {})
         recordings.record(simulation, options)
+    simulation.set_link_faults(faults)
     for link in links:
         simulation.bridge.add_link(link)
         if isinstance(link, (UdpInLink, UdpOutLink)) and options.streamrate >= 0:

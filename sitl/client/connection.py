@@ -52,6 +52,8 @@ class Connection:
     """Whether it has proved to be one; a vehicle in this process need not."""
     simulation: Simulation | None = None
     """The vehicle itself, when it is in this process."""
+    link: InProcessLink | None = None
+    """Its end of the way to it, then."""
 
     def __init__(self, endpoint: Endpoint, inbox: Inbox | None = None) -> None:
         self.endpoint = endpoint
@@ -170,6 +172,7 @@ class InProcess(Connection):
         super().__init__(Endpoint(link, system, component), inbox)
         self.simulation: Simulation = simulation
         self._advance_to = advance or simulation.advance_to
+        self.link = self.endpoint.link
         simulation.bridge.add_link(self.endpoint.link)
         self.inbox.system = simulation.bridge.system
 

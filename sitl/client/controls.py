@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 
 from ..bridge.services.setpoints import (
     ACCELERATION_IGNORED,
@@ -36,11 +37,19 @@ IGNORED = 65535
 """RC_CHANNELS_OVERRIDE: this channel stays as it is; from channel 9 on, 0 says that."""
 STICKS = {"roll": "RCMAP_ROLL", "pitch": "RCMAP_PITCH", "throttle": "RCMAP_THROTTLE", "yaw": "RCMAP_YAW"}
 STICKS |= {"steering": "RCMAP_ROLL"}
+AT_REST = 0.3
+"""Slower than this a vehicle stands, or hovers [m/s]."""
+REST_US = 3_000_000
 _VELOCITY, _STICKS = "velocity", "sticks"
 
 
 class Controls(Waits):
     """A vehicle with a pilot."""
+
+    _order: Callable[[], None] | None = None
+    """Sends the vehicle to where it is waited for."""
+    _moved_us = 0
+    """When it moved last, or was sent."""
 
     @property
     def params(self) -> Parameters:
@@ -143,9 +152,28 @@ class Controls(Waits):
         accuracy: float = 1.0,
         timeout: float = 120.0,
     ) -> None:
-        """``set_position``, and wait until it is there, within ``accuracy`` [m]."""
-        self.set_position(north, east, altitude, yaw)
-        self.wait_location(north, east, altitude if self.flies else None, accuracy, timeout)
+        """``set_position``, and wait until it is there, within ``accuracy`` [m].
+
+        The order is not answered: a vehicle that has stood elsewhere for ``REST_US`` is told again.
+        """
+        self._order = partial(self.set_position, north, east, altitude, yaw)
+        self._order()
+        self._moved_us = self.connection.time_us
+        try:
+            self.wait_location(north, east, altitude if self.flies else None, accuracy, timeout)
+        finally:
+            self._order = None
+
+    def step(self, stop_us: int | None = None) -> None:
+        super().step(stop_us)
+        if self._order is None:
+            return
+        now, t = self.connection.time_us, self.telemetry
+        if max(t.groundspeed, abs(t.climb_rate)) > AT_REST:
+            self._moved_us = now
+        elif now - self._moved_us >= REST_US:
+            self._order()
+            self._moved_us = now
 
     def set_velocity(
         self,

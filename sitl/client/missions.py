@@ -17,6 +17,8 @@ __tracebackhide__ = True
 
 SILENCE_S = 1.0
 """When nothing was asked for so long, what was sent last is sent again."""
+LIMIT_S = 10.0
+"""The next item is asked for, and the last one acknowledged, within."""
 
 
 class Missions(Controls):
@@ -77,15 +79,19 @@ class Missions(Controls):
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
-        begin, limit_s = self.now, 10.0 + 0.2 * len(items)
+        begin = progress = self.now
         self._upload, self._last_item, self._result = items, -1, None
         self.send("MISSION_COUNT", count=len(items))
         while self._result is None:
-            before = self._asked
-            if self.passes(partial(self._goes_on, before), SILENCE_S):
+            before, item = self._asked, self._last_item
+            goes_on = self.passes(partial(self._goes_on, before), SILENCE_S)
+            if self._last_item > item:
+                progress = self.now
+            if goes_on:
                 continue
-            if self.now - begin >= limit_s:
-                self.raise_error(WaitTimeoutError("MISSION_ACK", limit_s, "", begin))
+            if self.now - progress >= LIMIT_S:
+                last = f"item {self._last_item} was asked for" if self._last_item >= 0 else "no item was asked for"
+                self.raise_error(WaitTimeoutError("MISSION_ACK", self.now - begin, last, begin))
             if self._last_item < 0:
                 self.send("MISSION_COUNT", count=len(items))
             else:

@@ -17,7 +17,11 @@ __tracebackhide__ = True
 REAL_32 = 9
 """MAV_PARAM_TYPE_REAL32"""
 LIST_S = 30.0
-"""All parameters are there within."""
+"""One more parameter of the list is there within."""
+SILENCE_S = 1.0
+"""The list has come to its end, or what is missing of it is lost, when none has come for so long."""
+MISSING_AT_ONCE = 50
+"""As many of those that are missing are asked for together."""
 
 
 class Parameters:
@@ -80,15 +84,36 @@ class Parameters:
         self.update(before)
 
     def read_all(self) -> dict[str, float]:
-        """All parameters by name."""
-        session = self._session
+        """All parameters by name; those that get lost on the way are asked for again.
+
+        Raises:
+            WaitTimeoutError: for ``LIST_S`` none came that was missing.
+        """
+        session, begin = self._session, self._session.now
+        found: dict[int, Any] = {}
         with session.messages("PARAM_VALUE") as values:
-            session.send("PARAM_REQUEST_LIST")
-            session.wait(
-                lambda _: values and len({v.param_id for v in values}) >= values[-1].param_count,
-                LIST_S, "all parameters", lambda: f"{len(values)} of them",
-            )  # fmt: skip
-        return {v.param_id.decode("ascii", "replace"): float(v.param_value) for v in values}
+
+            def news() -> bool:
+                """Take in what has come, if anything has."""
+                is_new = bool(values)
+                found.update({v.param_index: v for v in values if v.param_index < v.param_count})
+                values.clear()
+                return is_new
+
+            count, progress = 1, begin
+            while len(found) < count:
+                missing = [k for k in range(count) if k not in found] if found else []
+                for index in missing[:MISSING_AT_ONCE]:
+                    session.send("PARAM_REQUEST_READ", param_index=index)
+                if not found:
+                    session.send("PARAM_REQUEST_LIST")
+                before = len(found)
+                while len(found) < count and session.passes(news, SILENCE_S):
+                    count = next(iter(found.values())).param_count if found else count
+                progress = session.now if len(found) > before else progress
+                if session.now - progress >= LIST_S:
+                    session.raise_error(WaitTimeoutError("all parameters", LIST_S, f"{len(found)} of them", begin))
+        return {v.param_id.decode("ascii", "replace"): float(v.param_value) for _, v in sorted(found.items())}
 
     def check(self, name: str) -> None:
         """Raise UnknownNameError when the vehicle, in this process, has no such parameter."""

@@ -8,13 +8,14 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ..bridge.dialect import message
-from ..errors import did_you_mean
+from ..errors import OptionError, did_you_mean
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .connection import Connection, InProcess, connect
 from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError
 from .telemetry import Attitude, Position, Telemetry, Text
 
 if TYPE_CHECKING:
+    from ..bridge.links import LinkFaults
     from ..simulation import Simulation
 
 __tracebackhide__ = True  # pytest shows the line of the test, not ours
@@ -51,9 +52,10 @@ class Session:
         rates: what telemetry is asked for: rates [Hz] by message; None: ``RATES_HZ``.
         heartbeat: whether the vehicle gets a ground station's HEARTBEAT every second.
         patience: wall time [s] without a message after which a vehicle elsewhere is lost.
+        link_faults: of the way to a vehicle in this process (``set_link_faults``).
 
     Raises:
-        OptionError: no such form of connection.
+        OptionError: no such form of connection; link faults, and the vehicle is not in this process.
         LinkLostError: no vehicle there.
     """
 
@@ -65,7 +67,10 @@ class Session:
         rates: Mapping[str, float] | None = None,
         heartbeat: bool = True,
         patience: float = 10.0,
+        link_faults: LinkFaults | None = None,
     ) -> None:
+        if link_faults is not None and isinstance(vehicle, str):
+            raise OptionError(f"connection {vehicle}: its faults are options of the vehicle (sitl run --link-loss ...)")
         if isinstance(vehicle, str):
             vehicle = connect(vehicle, patience=patience)
         self.connection = vehicle if isinstance(vehicle, Connection) else InProcess(vehicle)
@@ -80,12 +85,22 @@ class Session:
         self._invariants: list[tuple[Callable[[], Any], str]] = []
         self._collected: list[tuple[str, list[Any]]] = []
         self._boots = self.connection.boots
+        if link_faults is not None:
+            self.set_link_faults(link_faults)
         self.connection.inbox.on_message = self._take
         if self.connection.simulation is not None:
             self.telemetry.mode_names = self.connection.simulation.firmware.mode_names
         self.ask_for_telemetry()
         if not self.connection.is_exact:
             self.step()  # its clock is known from now on
+
+    def set_link_faults(self, faults: LinkFaults | None) -> None:
+        """Let this client's link lose, delay or change frames from now on (docs/faults.md); None: no more.
+
+        Raises:
+            OptionError: the vehicle is not in this process.
+        """
+        self.simulation.set_link_faults(faults, self.connection.link)
 
     # ------------------------------------------------------------------ what is known
 
@@ -302,10 +317,14 @@ class Session:
 
     def message(self, name: str, timeout: float = 2.0) -> Any:
         """Ask for one message and wait for it, at most ``timeout`` [simulated s]; gives its fields as a named tuple."""
+        begin = self.now
         with self.messages(name) as seen:
-            self.command("REQUEST_MESSAGE", message(name).id, subject=f"the request for {name}")
-            self.wait(lambda _: seen, timeout, name)
-        return seen[-1]
+            while True:
+                self.command("REQUEST_MESSAGE", message(name).id, subject=f"the request for {name}")
+                if self.passes(lambda: seen, min(timeout, ASK_AGAIN_US / 1e6)):
+                    return seen[-1]
+                if self.now - begin >= timeout:
+                    self.raise_error(WaitTimeoutError(name, timeout, "", begin))
 
     @contextmanager
     def messages(self, name: str, rate_hz: float | None = None) -> Iterator[list[Any]]:

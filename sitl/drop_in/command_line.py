@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..bridge.links import LinkFaults
+from ..bridge.links.faults import OPTIONS as LINK_OPTIONS
 from ..errors import OptionError
 from ..physics.native.power_on import Home
 from ..scenario import checked_home
@@ -32,7 +34,7 @@ _UARTS = {"A": 0, "B": 3, "C": 1, "D": 2, "E": 4, "F": 5, "G": 6, "H": 7}
 _FLAGS = ("wipe", "help", *_SILENT, *_NO_EFFECT)
 _WITH_VALUE = (
     "speedup", "instance", "home", "model", "defaults", "base-port", "rc-in-port", "sim-address", "sim-port-out",
-    "sysid", "listen", *_NO_EFFECT_WITH_VALUE,
+    "sysid", "listen", *(f"link-{name}" for name in LINK_OPTIONS), *_NO_EFFECT_WITH_VALUE,
     *(f"serial{k}" for k in range(SERIAL_PORTS)), *(f"uart{letter}" for letter in _UARTS),
 )  # fmt: skip
 
@@ -58,6 +60,7 @@ HELP = """options (those of ArduPilot's simulator):
 and of this program:
   --listen ADDRESS       where ports are opened (127.0.0.1; 0.0.0.0: on all addresses)
 """
+HELP += "".join(f"  --link-{name} {metavar}\n{'':25}{text}\n" for name, (metavar, text) in LINK_OPTIONS.items())
 
 
 @dataclass(frozen=True)
@@ -81,6 +84,8 @@ class CommandLine:
     sysid: int | None
     address: str
     """Where ports are opened."""
+    link_faults: LinkFaults | None
+    """Of the links to all clients."""
     without_effect: tuple[str, ...]
     """Options that were given, and have no effect."""
 
@@ -101,11 +106,14 @@ def parse(words: Sequence[str]) -> CommandLine:
     given: dict[str, str] = {}
     devices = dict(DEVICES)
     defaults: list[Path] = []
+    link: dict[str, list[str]] = {}
     for option, value in pairs:
         name = option[2:] if option.startswith("--") else _SHORT[option[1]]
         given[name] = value
         if name == "defaults":
             defaults += [Path(path) for path in value.split(",") if path]
+        elif name.startswith("link-"):
+            link.setdefault(name.removeprefix("link-"), []).append(value)
         elif name.startswith("serial"):
             devices[int(name[6:])] = value
         elif name.startswith("uart"):
@@ -125,6 +133,7 @@ def parse(words: Sequence[str]) -> CommandLine:
         physics=(given.get("sim-address", "127.0.0.1"), whole(given, "sim-port-out", PHYSICS_PORT + step)),
         sysid=whole(given, "sysid", 1, 255) if "sysid" in given else None,
         address=given.get("listen", "127.0.0.1"),
+        link_faults=LinkFaults.of_texts(link),
         without_effect=tuple(without),
     )
 

@@ -95,6 +95,7 @@ class Session:
         self._awaited: Link | None = None
         self._serial: dict[str, Link] = {}
         """Links of serial ports, by the parameters of their protocols."""
+        simulation.set_link_faults(line.link_faults)
         self._open_ports()
         attach(simulation, LOGS, NumberedLogs)
         self.storage.write()

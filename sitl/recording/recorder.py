@@ -171,7 +171,7 @@ class Recorder:
                 self._append(entry)
 
     def flushed(self, channel: Channel) -> None:
-        if channel.peer.congested != (channel.peer in self._congested):
+        if channel.congested != (channel.peer in self._congested):
             self._congested ^= {channel.peer}
             state = int(channel.peer in self._congested)
             self._note(

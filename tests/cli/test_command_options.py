@@ -26,6 +26,10 @@ from tests.cli.command import sitl
         (("run", "copter", "--physics", "hil:tcp:127.0.0.1:4560", "--estimator", "truth"), "other end"),
         (("run", "copter", "--physics", "hil:4560"), "hil:tcp:HOST:PORT"),
         (("run", "copter", "--physics", "gazebo"), "'gazebo' is not known"),
+        (("run", "copter", "--link-loss", "2"), "link fault loss 2.0 is not a share from 0 to 1"),
+        (("run", "copter", "--link-delay", "0.2-0.4"), "--link-delay '0.2-0.4' is not SECONDS|LOW..HIGH"),
+        (("run", "copter", "--link-cut", "5"), "--link-cut '5' is not BEGIN..END"),
+        (("run", "copter", "--autopilot", "ardupilot:tcp:127.0.0.1:1", "--link-loss", "0.2"), "only our autopilot's"),
     ],
 )
 def test_mistakes_are_one_line(words: tuple[str, ...], said: str, tmp_path: Path, capsys, monkeypatch) -> None:
@@ -81,3 +85,9 @@ def test_a_start_that_is_no_pose(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["run", "copter", "--world", "maze", "--start", "1,2,x", *RUN])
     assert "neither the name of a start pose nor X,Y,Z,YAW" in capsys.readouterr().err
+
+
+def test_a_run_over_a_bad_link(core: Core, tmp_path: Path) -> None:
+    faults = ("--link-loss", "0.2", "--link-delay", "0.2..0.4", "--link-cut", "1..2", "--link-cut=2.5..2.6")
+    result = sitl("run", "rover", *faults, *RUN, folder=tmp_path)
+    assert result.returncode == 0, result.stderr

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from sitl.bridge.links import LinkFaults
 from sitl.cli import parser
 from sitl.drop_in.command_line import parse
 from sitl.errors import OptionError
@@ -77,3 +78,11 @@ def test_subcommands_leave_every_option_to_the_executable() -> None:
     words = ["-w", "--model", "rover", "-I0", "--home", "-35,149,584,0", "--help"]
     options = parser().parse_args(["ardurover", *words])
     assert (options.command, options.words) == ("ardurover", words)
+
+
+def test_faults_of_links() -> None:
+    line = parse(["--model", "+", "--link-loss", "0.2", "--link-delay=0.2..0.4", "--link-cut", "1..2"])
+    assert line.link_faults == LinkFaults(loss=0.2, delay=(0.2, 0.4), cuts=((1.0, 2.0),))
+    assert parse([]).link_faults is None
+    with pytest.raises(OptionError, match=r"loss 3\.0 is not a share"):
+        parse(["--link-loss", "3"])

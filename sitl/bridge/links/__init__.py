@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
+from .faults import LinkFaults
 from .inprocess import InProcessLink, LogLink
 from .link import Link, LinkAddressError, Peer
 from .tcp import TcpClientLink, TcpServerLink
 from .udp import UdpInLink, UdpOutLink
 
 __all__ = [
-    "InProcessLink", "Link", "LinkAddressError", "LogLink", "Peer", "TcpClientLink", "TcpServerLink", "UdpInLink",
-    "UdpOutLink", "open_link",
+    "InProcessLink", "Link", "LinkAddressError", "LinkFaults", "LogLink", "Peer", "TcpClientLink", "TcpServerLink",
+    "UdpInLink", "UdpOutLink", "open_link",
 ]  # fmt: skip
 
 ALLOWED = (

@@ -5,8 +5,12 @@ from __future__ import annotations
 
 import selectors
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 from ...errors import SitlError
+
+if TYPE_CHECKING:
+    from .faulty_way import Ways
 
 Selector = selectors.BaseSelector
 
@@ -39,6 +43,8 @@ class Peer:
         self.why_closed = ""
         self.last_received = 0
         """Number of the last piece of bytes that came from it on its link; 0 before the first."""
+        self.ways: Ways | None = None
+        """Between it and the vehicle, where the link has faults."""
         self._inbox: list[bytes] = []
         self.outbox: list[bytes] = []
 

@@ -95,6 +95,8 @@ class Grants:
             if fields.x < 0:
                 _ack(channel, GRANT, DENIED, sender, 0)
             else:
+                if fields.x and channel.peer.ways is not None:  # its questions come in time from now on
+                    channel.peer.ways.hold(False)
                 self.until_us = max(self.until_us, 1000 * fields.x)
                 self._asked.append((channel.peer, sender, 1000 * fields.x))
         elif fields.command == RESEED:

@@ -230,7 +230,7 @@ class FtpService(Service):
 
     def service(self, now_us: int) -> None:
         for channel, session in self._sessions.items():
-            for _ in range(0 if channel.peer.congested else BURST_AT_ONCE):
+            for _ in range(0 if channel.congested else BURST_AT_ONCE):
                 if session.burst is not None:
                     session.burst = self._send_next(session, session.burst)
         running = any(session.burst is not None for session in self._sessions.values())

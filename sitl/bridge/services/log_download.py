@@ -135,7 +135,7 @@ class LogDownloadService(Service):
 
     def service(self, now_us: int) -> None:
         for channel, (number, offset, left) in list(self._transfers.items()):
-            if channel.peer.congested:
+            if channel.congested:
                 continue
             logs = self.bridge.logs
             data = logs.read(number, offset, min(left, PIECES * PIECE)) if logs is not None else b""

@@ -81,7 +81,7 @@ class ParameterService(Service):
     def service(self, now_us: int) -> None:
         listed = self._values.listed() if self._lists else ()
         for channel, at in list(self._lists.items()):
-            if channel.peer.congested:
+            if channel.congested:
                 continue
             stop = min(at + LIST_AT_ONCE, len(listed))
             for k in range(at, stop):

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, overload
 
+from sitl.bridge.links import LinkFaults
 from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import KINDS
 
@@ -88,6 +89,7 @@ class VehicleFactory:
         ready: bool = True,
         after: Prepare | None = None,
         name: str | None = None,
+        link_faults: LinkFaults | None = None,
         **options: Any,
     ) -> Vehicle:
         """A vehicle of this test's own.
@@ -98,6 +100,7 @@ class VehicleFactory:
             after: a function of the vehicle, flown before the test begins: once a process; all tests that name the same
                 function begin from its end. It uses nothing but the vehicle.
             name: for messages and logs.
+            link_faults: of its link to the test, from when it is ready on.
             options: frame, home, seed, estimator, params, world, start, physics, wind, mission.
         """
         wanted = setup(self.defaults, kind, **options)
@@ -109,6 +112,8 @@ class VehicleFactory:
         self.vehicles.append(vehicle)
         if ready or after is not None:
             begin(vehicle, wanted, after)
+        if link_faults is not None:
+            vehicle.set_link_faults(link_faults)
         return vehicle
 
     def keep_logs(self, error: BaseException | None) -> list[tuple[str, list[str]]]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, NoReturn
 
 from sitl import client
+from sitl.bridge.links import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.client.connection import InProcess
 from sitl.client.errors import ClientError
@@ -16,10 +17,11 @@ from sitl.simulation import Simulation
 
 
 class Said(NamedTuple):
-    """Bytes of the client."""
+    """Bytes of the client; without bytes, faults that its link has from then on."""
 
     time_us: int
     data: bytes
+    faults: LinkFaults | None = None
 
 
 class Script:
@@ -54,11 +56,14 @@ def repeat(
     link = InProcessLink()
     simulation.bridge.add_link(link)
     prepare(simulation)
-    for time_us, data in said:
+    for time_us, data, faults in said:
         if time_us > simulation.time_us:
             simulation.advance_to(time_us)
             link.receive()  # nobody reads it
-        link.send(data)
+        if data:
+            link.send(data)
+        else:
+            simulation.set_link_faults(faults, link)
     simulation.advance_to(end_us)
 
 
@@ -98,6 +103,11 @@ class Forking(client.Client):
         connection = InProcess(build())
         self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
         super().__init__(connection, name=name)
+
+    def set_link_faults(self, faults: LinkFaults | None) -> None:
+        """As ``Client.set_link_faults``."""
+        super().set_link_faults(faults)
+        self.script.said.append(Said(self.simulation.time_us, b"", faults))
 
     def raise_error(self, error: ClientError) -> NoReturn:
         try:

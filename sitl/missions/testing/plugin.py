@@ -40,7 +40,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Declare the marker."""
     config.addinivalue_line(
         "markers",
-        "sitl(frame, home, seed, params, world, start, physics, wind, mission): how copter and rover are made",
+        "sitl(frame, home, seed, params, world, start, physics, wind, mission, link_faults): how vehicles are made",
     )
 
 

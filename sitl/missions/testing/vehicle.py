@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager
 from types import TracebackType
 from typing import Any
 
+from sitl.bridge.links import LinkFaults
 from sitl.client import Client, Text, UnknownNameError
 from sitl.client import Position as Place
 
@@ -16,24 +17,30 @@ from .missions import MissionFlier
 
 __tracebackhide__ = True
 
-FAULTS = ("gps", "rc", "motor", "station", "wind")
+FAULTS = ("gps", "rc", "motor", "station", "wind", "link")
 
 
 class Fault:
     """A fault that lasts until ``repair``, or until the end of a ``with`` block."""
 
-    def __init__(self, vehicle: Faulty, values: dict[str, float], silent: bool = False) -> None:
-        self._vehicle, self._silent = vehicle, silent
+    def __init__(
+        self, vehicle: Faulty, values: dict[str, float], silent: bool = False, link: LinkFaults | None = None
+    ) -> None:
+        self._vehicle, self._silent, self._link = vehicle, silent, link
         self._before = {name: vehicle.params[name] for name in values}
         vehicle.params.update(values)
         if silent:
             vehicle.heartbeats(False)
+        if link is not None:
+            vehicle.set_link_faults(link)
 
     def repair(self) -> None:
         """All is as before."""
         self._vehicle.params.update(self._before)
         if self._silent:
             self._vehicle.heartbeats(True)
+        if self._link is not None:
+            self._vehicle.set_link_faults(None)
 
     def __enter__(self) -> Fault:
         return self
@@ -49,13 +56,14 @@ class Faulty(Client):
     """A vehicle that can fail."""
 
     def fail(self, what: str, *, motor: int = 1, thrust: float = 0.0, speed: float = 10.0, direction: float = 0.0,
-             turbulence: float = 0.0) -> Fault:  # fmt: skip
+             turbulence: float = 0.0, faults: LinkFaults | None = None) -> Fault:  # fmt: skip
         """Let something fail, until ``.repair()`` of what this gives, or for a ``with`` block.
 
         Args:
             what: "gps": no fix any more; "rc": the transmitter is off; "motor": number ``motor`` (copters) keeps
                 a share ``thrust`` of its thrust; "station": no heartbeat of this ground station any more;
-                "wind": ``speed`` [m/s] from ``direction`` [deg] with ``turbulence`` [m/s].
+                "wind": ``speed`` [m/s] from ``direction`` [deg] with ``turbulence`` [m/s]; "link": the link to this
+                ground station has ``faults`` (None: it is cut, so that nothing arrives).
         """
         if what == "gps":
             return Fault(self, {"SIM_GPS1_ENABLE": 0})
@@ -65,6 +73,8 @@ class Faulty(Client):
             return Fault(self, {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence})
         if what == "station":
             return Fault(self, {}, silent=True)
+        if what == "link":
+            return Fault(self, {}, link=faults if faults is not None else LinkFaults(loss=1.0))
         has_motors = any(p.name == "SIM_ENGINE_FAIL" for p in self.simulation.kind.firmware.table.with_effect)
         if what == "motor" and has_motors:
             return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from sitl.bridge.links import LinkFaults
 from sitl.client.waits import turn
 from sitl.errors import OptionError
 from sitl.missions.library import entries
@@ -104,6 +105,19 @@ def test_a_silent_station_is_missed(make: VehicleFactory) -> None:
     assert copter.mode == "GUIDED"
     copter.fail("station")
     copter.wait_mode("RTL", timeout=10)
+
+
+def test_a_cut_link_is_missed_and_comes_back(make: VehicleFactory, tmp_path: Path) -> None:
+    copter = make("copter", params={"FS_GCS_ENABLE": 1}, link_faults=LinkFaults(delay=0.1))
+    copter.takeoff(10)
+    with copter.fail("link"):
+        copter.delay(10)
+        assert copter.mode == "GUIDED"  # as far as the station can know
+    copter.wait_mode("RTL", timeout=1)
+    copter.fail("link", faults=LinkFaults(loss=0.3, delay=(0.1, 0.4)))
+    copter.change_mode("GUIDED", timeout=10)
+    again = fly_again(copter, tmp_path, "again", log=False)
+    assert again.same
 
 
 def test_a_mission_is_flown(make: VehicleFactory) -> None:

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a link with faults does to frames, and what it may be told to do."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from sitl.bridge.links import InProcessLink, LinkFaults
+from sitl.bridge.links.faulty_way import NEVER, FaultyWay, cut, is_of_clock
+from sitl.client.endpoint import Endpoint
+from sitl.errors import OptionError
+
+FRAMES = [bytes([0xFD, 3, 0, 0, k & 0xFF, 1, 1, 0, k >> 8, 9, 1, 2, 3, 4, 5]) for k in range(2000)]
+EVERY_US = 10_000
+
+
+def carried(faults: LinkFaults, frames: list[bytes] = FRAMES, stream: int = 0) -> list[tuple[int, bytes]]:
+    """Frames sent every 10 ms: (time of arrival [us], frame)."""
+    way, out = FaultyWay(faults, stream), []
+    for k, frame in enumerate(frames):
+        now = k * EVERY_US
+        while way.due_us <= now:
+            out += [(due, f) for due in [way.due_us] for f in way.arrived(due)]
+        out += [(now, f) for f in way.carry([frame], now)]
+    while way.due_us != NEVER:
+        out += [(due, f) for due in [way.due_us] for f in way.arrived(due)]
+    return out
+
+
+def number(frame: bytes) -> int:
+    return frame[4] | frame[8] << 8
+
+
+def test_without_faults_frames_pass_at_once() -> None:
+    assert carried(LinkFaults()) == [(k * EVERY_US, frame) for k, frame in enumerate(FRAMES)]
+
+
+def test_loss() -> None:
+    out = carried(LinkFaults(loss=0.2))
+    assert len(out) == pytest.approx(0.8 * len(FRAMES), abs=80)
+    assert out == carried(LinkFaults(loss=0.2)) != carried(LinkFaults(loss=0.2, seed=1))
+    assert out != carried(LinkFaults(loss=0.2), stream=1)
+    assert carried(LinkFaults(loss=1.0)) == []
+
+
+def test_delay_keeps_the_order() -> None:
+    assert [due for due, _ in carried(LinkFaults(delay=0.25))] == [k * EVERY_US + 250_000 for k in range(len(FRAMES))]
+    out = carried(LinkFaults(delay=(0.1, 0.3)))
+    assert [number(frame) for _, frame in out] == list(range(len(FRAMES)))
+    late = [due - number(frame) * EVERY_US for due, frame in out]
+    assert 100_000 <= min(late) < 150_000 and 290_000 < max(late) <= 300_000
+
+
+def test_jitter_is_about_the_delay_and_never_before_sending() -> None:
+    sparse = FRAMES[:1] * 1
+    late = [carried(LinkFaults(delay=0.1, jitter=0.3, seed=seed), sparse)[0][0] for seed in range(300)]
+    assert min(late) == 0 and 350_000 < max(late) <= 400_000
+
+
+def test_duplicates() -> None:
+    out = carried(LinkFaults(duplicates=0.3, delay=(0.0, 0.05)))
+    assert len(out) == pytest.approx(1.3 * len(FRAMES), abs=100)
+    assert {frame for _, frame in out} == set(FRAMES)
+
+
+def test_reordering_lets_others_pass() -> None:
+    order = [number(frame) for _, frame in carried(LinkFaults(reordering=0.1))]
+    assert sorted(order) == list(range(len(FRAMES)))
+    overtaken = [k for k, n in enumerate(order) if n < max(order[: k + 1])]
+    assert 0.05 * len(FRAMES) < len(overtaken) < 0.13 * len(FRAMES)
+
+
+def test_corruption_turns_bits_over() -> None:
+    out = carried(LinkFaults(corruption=0.001))
+    bits = sum((a ^ b).bit_count() for (_, frame), sent in zip(out, FRAMES) for a, b in zip(frame, sent))
+    assert bits == pytest.approx(0.001 * 8 * sum(map(len, FRAMES)), rel=0.25)
+    assert carried(LinkFaults(corruption=1.0), FRAMES[:1]) == [(0, bytes(b ^ 0xFF for b in FRAMES[0]))]
+
+
+def test_bandwidth_makes_frames_wait_and_loses_what_waits_too_long() -> None:
+    size = len(FRAMES[0])
+    out = carried(LinkFaults(bandwidth=size * 10.0), FRAMES[:1000])  # ten frames a second; a hundred come
+    times = [due for due, _ in out]
+    assert {b - a for a, b in pairwise(times)} == {100_000}
+    assert len(out) == pytest.approx(140, abs=3)  # those of 10 s, and 4 s of them in wait
+    way = FaultyWay(LinkFaults(bandwidth=size * 10.0))
+    assert way.carry(FRAMES[:2], 0) == [] and not way.is_full
+    way.carry(FRAMES[:2], 0)
+    assert way.is_full
+    way.arrived(200_000)
+    assert not way.is_full
+
+
+def test_cuts() -> None:
+    out = carried(LinkFaults(cuts=((1.0, 2.0), (5.0, 1e9))))
+    assert [number(frame) for _, frame in out] == [*range(100), *range(200, 500)]
+
+
+def test_a_way_goes_on_from_its_state() -> None:
+    faults = LinkFaults(loss=0.2, delay=(0.1, 0.3), duplicates=0.1, reordering=0.1, corruption=1e-3, bandwidth=5000.0)
+    way = FaultyWay(faults)
+    for k, frame in enumerate(FRAMES[:500]):
+        way.carry([frame], k * EVERY_US)
+    copies = [FaultyWay.restored(way.snapshot()) for _ in range(2)]
+    heard = [[copy.carry([frame], k * EVERY_US) for k, frame in enumerate(FRAMES[500:], 500)] for copy in copies]
+    assert heard[0] == heard[1] == [way.carry([frame], k * EVERY_US) for k, frame in enumerate(FRAMES[500:], 500)]
+
+
+def test_bytes_are_cut_at_the_ends_of_frames() -> None:
+    v1 = bytes([0xFE, 2, 7, 1, 1, 0, 8, 9, 1, 2])
+    signed = bytes([0xFD, 1, 1, 0, 0, 1, 1, 0, 0, 0, 5, 1, 2]) + bytes(13)
+    pieces = [b"\x00garbage", FRAMES[0], v1, signed, FRAMES[1]]
+    stream = b"".join(pieces)
+    assert cut(stream) == (pieces, b"")
+    for k in range(len(stream)):
+        first, rest = cut(stream[:k])
+        again, end = cut(rest + stream[k:])
+        assert b"".join(first + again) == stream and end == b""
+        assert [p for p in first + again if p[0] in (0xFD, 0xFE)] == pieces[1:]
+
+
+def test_the_push_of_a_clock_passes_unharmed() -> None:
+    class Kept(InProcessLink):
+        def send(self, data: bytes) -> None:
+            sent.append(data)
+
+    sent: list[bytes] = []
+    endpoint = Endpoint(Kept())
+    endpoint.send("COMMAND_INT", command=31010, x=5)
+    endpoint.send("COMMAND_ACK", command=31010)
+    endpoint.send("COMMAND_INT", command=400, x=31010)
+    endpoint.send("COMMAND_ACK", command=400)
+    assert [is_of_clock(frame) for frame in sent] == [True, True, False, False]
+    assert FaultyWay(LinkFaults(loss=1.0)).carry(sent, 0) == sent[:2]
+    assert not any(is_of_clock(bytes([mark])[:1]) for mark in range(256))
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"loss": 1.2}, "loss 1.2 is not a share from 0 to 1"),
+        ({"loss": float("nan")}, "loss nan"),
+        ({"duplicates": -0.1}, "duplicates -0.1"),
+        ({"reordering": True}, "reordering True"),
+        ({"corruption": "1"}, "corruption '1'"),
+        ({"delay": -0.2}, "delay -0.2 is not a time from 0 to 3600 s"),
+        ({"delay": (0.4, 0.2)}, "(0.4, 0.2): the first time is longer"),
+        ({"delay": (0.4,)}, "delay (0.4,)"),
+        ({"jitter": float("inf")}, "jitter inf"),
+        ({"bandwidth": 0.0}, "bandwidth 0.0 is not 10 bytes/s or more"),
+        ({"cuts": ((5.0, 2.0),)}, "cut (5.0, 2.0) is not a pair"),
+        ({"cuts": (5.0,)}, "cut 5.0 is not a pair"),
+        ({"direction": "up"}, "direction 'up' is none of both, to-vehicle, to-client"),
+        ({"seed": 1.5}, "seed 1.5 is not a whole number"),
+    ],
+)
+def test_values_that_cannot_be(values: dict[str, Any], says: str) -> None:
+    with pytest.raises(OptionError) as error:
+        LinkFaults(**values)
+    assert says in str(error.value)
+
+
+def test_words_of_a_command_line() -> None:
+    assert LinkFaults.of_texts({"loss": [], "cut": []}) is None
+    words = {"loss": ["0.1", "0.2"], "delay": ["0.2..0.4"], "cut": ["1..2", "5..9"], "direction": ["to-client"]}
+    expected = LinkFaults(loss=0.2, delay=(0.2, 0.4), cuts=((1.0, 2.0), (5.0, 9.0)), direction="to-client", seed=7)
+    assert LinkFaults.of_texts({**words, "seed": ["7"]}) == expected
+    assert LinkFaults.of_texts({"delay": ["0.3"], "bandwidth": ["1200"]}) == LinkFaults(delay=0.3, bandwidth=1200.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "word"), [("loss", "much"), ("delay", "0.1..x"), ("cut", "5"), ("seed", "1.5"), ("bandwidth", "")]
+)
+def test_words_that_cannot_be_understood(name: str, word: str) -> None:
+    with pytest.raises(OptionError, match=f"--link-{name} '{word}' is not"):
+        LinkFaults.of_texts({name: [word]})
