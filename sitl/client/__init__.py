@@ -11,16 +11,18 @@ from .endpoint import Endpoint
 from .errors import (
     ClientError,
     CommandRefusedError,
+    FileRefusedError,
     InvariantError,
     MissionRefusedError,
     ParameterRefusedError,
     UnknownNameError,
     WaitTimeoutError,
 )
+from .files import Log
 from .telemetry import Attitude, Position, Telemetry, Text
 
 __all__ = [
-    "Attitude", "Client", "ClientError", "CommandRefusedError", "Connection", "Endpoint", "InProcess", "InvariantError",
-    "LinkLostError", "MissionRefusedError", "Moment", "ParameterRefusedError", "Position", "Telemetry", "Text",
-    "UnknownNameError", "WaitTimeoutError", "connect",
+    "Attitude", "Client", "ClientError", "CommandRefusedError", "Connection", "Endpoint", "FileRefusedError",
+    "InProcess", "InvariantError", "LinkLostError", "Log", "MissionRefusedError", "Moment", "ParameterRefusedError",
+    "Position", "Telemetry", "Text", "UnknownNameError", "WaitTimeoutError", "connect",
 ]  # fmt: skip

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .missions import Missions
+from .files import Files
 from .session import Repeated
 from .telemetry import Telemetry
 
@@ -31,7 +31,7 @@ class Moment:
     is_silent: bool
 
 
-class Client(Missions):
+class Client(Files):
     """One vehicle, flown by MAVLink bytes: ``Client(Simulation("erle_copter"))`` or ``Client("udp:127.0.0.1:14550")``.
 
     See ``Session`` for the arguments, and docs/client.md for all calls. Times are simulated seconds, places metres from

@@ -47,6 +47,15 @@ class MissionRefusedError(ClientError):
         self.result, self.result_name = result, result_name
 
 
+class FileRefusedError(ClientError):
+    """A file or log was not given; ``number`` is MAVLink FTP's error."""
+
+    def __init__(self, subject: str, number: int, since: float = 0.0) -> None:
+        names = {1: "failed", 4: "no such session", 9: "protected", 10: "there is none of this name"}
+        super().__init__(subject, f"was refused: {names.get(number, f'error {number}')}", since)
+        self.number = number
+
+
 class ParameterRefusedError(ClientError):
     """A parameter kept another value than the one that it was set to."""
 

@@ -17,6 +17,8 @@ __tracebackhide__ = True
 
 SILENCE_S = 1.0
 """When nothing was asked for so long, what was sent last is sent again."""
+AT_ONCE = 10
+"""As many items are asked for together."""
 LIMIT_S = 10.0
 """The next item is asked for, and the last one acknowledged, within."""
 
@@ -63,6 +65,37 @@ class Missions(Controls):
         self.telemetry.items.clear()
         self.transfer(items)
         return mission
+
+    def download(self) -> tuple[MissionItem, ...]:
+        """The mission that the vehicle has, home first.
+
+        Raises:
+            WaitTimeoutError: the vehicle does not answer to the end.
+        """
+        counts: list[int] = []
+        found: dict[int, MissionItem] = {}
+
+        def ask_count(_: list[int] | None) -> int:
+            self.send("MISSION_REQUEST_LIST")
+            return 1
+
+        def ask(which: list[int] | None) -> int:
+            for seq in (which or ())[:AT_ONCE]:
+                self.send("MISSION_REQUEST_INT", seq=seq)
+            return min(len(which or ()), AT_ONCE)
+
+        def take(m: Any) -> None:
+            found[m.seq] = MissionItem(
+                m.command, m.frame, m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.autocontinue
+            )
+
+        what = "the mission"
+        self.collect(
+            "MISSION_COUNT", lambda: None if not counts else [], ask_count, lambda m: counts.append(m.count), what
+        )
+        self.collect("MISSION_ITEM_INT", lambda: [k for k in range(counts[0]) if k not in found], ask, take, what)
+        self.send("MISSION_ACK")
+        return tuple(found[k] for k in range(counts[0]))
 
     def start_mission(self) -> None:
         """Arm if need be, AUTO, and begin with its first item."""

@@ -32,6 +32,10 @@ ANSWER_S = 3.0
 """A command is answered within."""
 ASK_AGAIN_US = 1_000_000
 """Messages whose rates were not acknowledged are asked for again after this."""
+SILENCE_S = 1.0
+"""When nothing has come for so long, what is missing is asked for again."""
+LIMIT_S = 15.0
+"""A piece of something that was missing comes within."""
 TEXTS_SHOWN = 8
 """As many status texts stand in an error."""
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
@@ -339,6 +343,47 @@ class Session:
             self._collected = [other for other in self._collected if other is not collected]
         if rate_hz is not None:
             self.set_rate(name, float(self._rates.get(name, 0)))
+
+    def collect(
+        self,
+        name: str,
+        missing: Callable[[], list[int] | None],
+        ask: Callable[[list[int] | None], int],
+        take: Callable[[Any], None],
+        what: str,
+        limit: float = LIMIT_S,
+    ) -> None:
+        """Ask for pieces until none is missing; again for those that have not come when none has for ``SILENCE_S``.
+
+        Args:
+            name: of the messages that bring them.
+            missing: gives the numbers of those that are missing; None: it is not known yet how many there are.
+            ask: asks for these, or for some of them; gives how many messages will come.
+            take: takes a message in.
+            what: they are, for the error.
+            limit: a missing one comes within [simulated s].
+
+        Raises:
+            WaitTimeoutError: none came for ``limit``.
+        """
+        begin = progress = self.now
+        with self.messages(name) as seen:
+            left = missing()
+            while left is None or left:
+                expected, before = ask(left), left
+                while expected > 0 and self.passes(lambda: seen, SILENCE_S):
+                    expected -= len(seen)
+                    for m in seen:
+                        take(m)
+                    seen.clear()
+                    left = missing()
+                    if left is not None and not left:
+                        return
+                if left != before:
+                    progress = self.now
+                elif self.now - progress >= limit:
+                    last = "" if left is None else f"{len(left)} pieces are missing"
+                    self.raise_error(WaitTimeoutError(what, limit, last, begin))
 
     def heartbeats(self, on: bool) -> None:
         """Whether the vehicle gets this ground station's heartbeats."""

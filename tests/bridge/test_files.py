@@ -127,3 +127,25 @@ def test_missions_are_taken_as_files(bench: Bench) -> None:
 def test_the_links_are_told(bench: Bench) -> None:
     first, *lines = fetch(bench, b"@SYS/uarts.txt").decode().splitlines()
     assert first == "UARTV1" and len(lines) == len(bench.bridge.channels) and lines[0].startswith("SERIAL0 TX=")
+
+
+def test_the_answer_to_a_repeated_request_is_sent_again(bench: Bench) -> None:
+    """A request with the number of the last one was not answered, as far as its client knows."""
+    path = b"@MISSION/mission.dat"
+    bench.autopilot.items = (MissionItem(WAYPOINT),) * 2
+    mission = fetch(bench, path)
+    bench.run(2.0)
+    bench.client.receive()
+    create, end = request(CREATE, path, sequence=101), request(TERMINATE, sequence=104)
+    (answer,) = bench.ask(create)
+    assert bench.ask(create)[0].payload == answer.payload
+    bench.ask(request(WRITE, mission, sequence=102))
+    assert not bench.ask(create)  # a late copy: nothing is created anew
+    bench.ask(request(WRITE, b"", offset=len(mission), sequence=103))
+    ended = bench.ask(end, "FILE_TRANSFER_PROTOCOL")[0]
+    assert unpack(ended)[0][2] == ACK and len(bench.autopilot.items) == 2
+    bench.autopilot.items = ()
+    assert bench.ask(end)[0].payload == ended.payload and bench.autopilot.items == ()  # taken once
+    bench.run(2.0)
+    bench.client.receive()
+    assert bench.ask(request(CREATE, path, sequence=100))  # a client that counts from another number

@@ -12,6 +12,9 @@ from tests.clients.conftest import FASTEST, SCRIPTS, Fly
 pytestmark = pytest.mark.slow
 
 MAVSDK, UDP = "udpin://127.0.0.1:PORT", "udpin:127.0.0.1:PORT"
+BAD_LINK = (
+    "--link-loss", "0.2", "--link-delay", "0.1..0.3", "--link-duplicates", "0.05", "--link-reordering", "0.1",
+)  # fmt: skip
 COPTER_AND_ROVER = pytest.mark.parametrize("vehicle", ["copter", "rover"])
 
 
@@ -27,6 +30,15 @@ def installed(package: str) -> bool:
 def test_mavsdk(fly: Fly, name: str) -> None:
     pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
     fly(SCRIPTS / f"mavsdk_{name}.py", MAVSDK)
+
+
+def test_mavsdk_over_a_bad_link(fly: Fly) -> None:
+    pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
+    fly(SCRIPTS / "mavsdk_bad_link.py", MAVSDK, *BAD_LINK)
+
+
+def test_pymavlink_over_a_bad_link(fly: Fly) -> None:
+    fly(SCRIPTS / "pymavlink_bad_link.py", UDP, *BAD_LINK)
 
 
 @pytest.mark.parametrize("name", ["ground", "drive", "missions"])

@@ -35,6 +35,9 @@ FAIL, INVALID_DATA_SIZE, INVALID_SESSION, END_OF_FILE, UNKNOWN_COMMAND, FILE_PRO
 )
 MOST_WRITTEN = 1 << 20
 """Bytes of a file that is written."""
+COPY_US, COPIES = 1_000_000, 16
+"""A copy of a request comes at most so late, and behind at most so many others."""
+_OF_SESSIONS = (TERMINATE, RESET, OPEN_READ, CREATE)
 BURST_EVERY_US = 10_000
 BURST_AT_ONCE = 10
 """Packets every 10 ms of simulated time."""
@@ -51,6 +54,14 @@ class _Request(NamedTuple):
     offset: int = 0
     size: int = 0
     data: bytes = b""
+
+
+class _Answered(NamedTuple):
+    """The last request of a client that was carried out, and when."""
+
+    request: _Request
+    reply: bytes
+    time_us: int
 
 
 class _Session:
@@ -70,6 +81,7 @@ class FtpService(Service):
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
+        self._answered: dict[Channel, _Answered] = {}
         self._operations: dict[int, Callable[[_Request], None]] = {
             LIST: self._list,
             CRC: self._crc,
@@ -87,6 +99,7 @@ class FtpService(Service):
 
     def channel_removed(self, channel: Channel) -> None:
         self._sessions.pop(channel, None)
+        self._answered.pop(channel, None)
 
     def _take(self, channel: Channel, m: Any, sender: Sender) -> None:
         payload = bytes(m.payload)
@@ -95,6 +108,8 @@ class FtpService(Service):
         request = _Request(channel, sender, sequence, session, opcode, offset, size, data)
         if opcode in (ACK, NAK):
             return
+        if self._is_copy(request):
+            return
         if size > DATA_BYTES:
             self._refuse(request, INVALID_DATA_SIZE)
         elif opcode in self._operations:
@@ -102,12 +117,30 @@ class FtpService(Service):
         else:
             self._refuse(request, UNKNOWN_COMMAND)
 
+    def _is_copy(self, request: _Request) -> bool:
+        """Whether a request has been carried out already, and must not be again.
+
+        The answer to the last one is sent again, since it may have been lost. One that opens or closes a file and comes
+        after later ones is a copy that a bad link brings late.
+        """
+        last = self._answered.get(request.channel)
+        if last is None or request.sender != last.request.sender or self.bridge.now_us - last.time_us > COPY_US:
+            return False
+        if request == last.request and request.opcode != BURST_READ:
+            request.channel.send(KIND, last.reply)
+            return True
+        behind = (last.request.sequence - request.sequence) & 0xFFFF
+        return request.opcode in _OF_SESSIONS and 0 < behind <= COPIES
+
     def _reply(self, to: _Request, data: bytes, offset: int = 0, result: int = ACK, complete: bool = False) -> None:
         sequence = (to.sequence + 1) & 0xFFFF
         head = HEADER.pack(sequence, to.session, result, len(data), to.opcode, complete, 0, offset)
         body = (head + data).ljust(251, b"\0")
         fields = {"target_system": to.sender[0], "target_component": to.sender[1], "payload": tuple(body)}
-        to.channel.send(KIND, KIND.payload(**fields))
+        payload = KIND.payload(**fields)
+        to.channel.send(KIND, payload)
+        if to.opcode != BURST_READ or result == NAK:
+            self._answered[to.channel] = _Answered(to, payload, self.bridge.now_us)
 
     def _refuse(self, request: _Request, error: int) -> None:
         self._reply(request, bytes((error,)), result=NAK)
@@ -217,10 +250,17 @@ class FtpService(Service):
             (channel.number, (s.data, s.sender, s.number, s.written), s.burst and s.burst[1:])
             for channel, s in self._sessions.items()
         )
-        return (sessions, self.due_us)
+        answered = tuple((c.number, a.request[1:], a.reply, a.time_us) for c, a in self._answered.items())
+        return (sessions, answered, self.due_us)
 
     def restore(self, state: Any) -> None:
-        sessions, self.due_us = state
+        sessions, answered, self.due_us = state
+        channels = {channel.number: channel for channel in self.bridge.channels} if answered else {}
+        self._answered = {
+            channels[number]: _Answered(_Request(channels[number], *request), reply, time_us)
+            for number, request, reply, time_us in answered
+            if number in channels
+        }
         self._sessions = {}
         for number, session, burst in sessions:
             for channel in self.bridge.channels:

@@ -3,7 +3,8 @@
 
 Source: https://mavlink.io/en/messages/common.html#LOG_REQUEST_LIST and what ArduPilot does: without logs the list is
 one entry with num_logs 0, a piece shorter than 90 bytes ends a transfer, a new request for the same channel replaces
-the one under way. Unlike ArduPilot's, logs can be had while armed.
+the one under way. Unlike ArduPilot's, logs can be had while armed, and several small requests, by which a client fills
+the gaps that a bad link has left, are answered one after the other.
 """
 
 from __future__ import annotations
@@ -22,6 +23,10 @@ PIECE = 90
 EVERY_US = 2_500
 PIECES = 20
 """So many pieces go out every 2.5 ms of simulated time: 720 kB/s (ArduPilot's SITL does about as much)."""
+SMALL = PIECES * PIECE
+"""A request for no more than so many bytes replaces none."""
+MOST_REQUESTS = 128
+"""As many of them wait; what is more is not answered."""
 
 
 class LogEntry(Protocol):
@@ -74,7 +79,8 @@ class LogDownloadService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._transfers: dict[Channel, _Transfer] = {}
+        self._transfers: dict[Channel, tuple[_Transfer, ...]] = {}
+        """What is to be sent, in order."""
         self._sizes: dict[Channel, dict[int, int]] = {}
         """Sizes as they were listed: a log that grows is sent up to there."""
 
@@ -121,7 +127,12 @@ class LogDownloadService(Service):
             self._transfers.pop(channel, None)
             channel.send(DATA, DATA.payload(id=m.id, ofs=m.ofs, count=0))
             return
-        self._transfers[channel] = _Transfer(m.id, m.ofs, left)
+        wanted, waiting = _Transfer(m.id, m.ofs, left), self._transfers.get(channel, ())
+        if m.count > SMALL:
+            self._transfers[channel] = (wanted,)
+        elif wanted not in waiting and len(waiting) < MOST_REQUESTS:
+            small = sum(transfer.left <= SMALL for transfer in waiting)
+            self._transfers[channel] = (*waiting[:small], wanted, *waiting[small:])
         self.due_us = min(self.due_us, self.bridge.now_us)
 
     def _end(self, channel: Channel, m: Any, sender: Sender) -> None:
@@ -134,16 +145,25 @@ class LogDownloadService(Service):
             self.bridge.logs.erase()
 
     def service(self, now_us: int) -> None:
-        for channel, (number, offset, left) in list(self._transfers.items()):
-            if channel.congested:
-                continue
-            logs = self.bridge.logs
-            data = logs.read(number, offset, min(left, PIECES * PIECE)) if logs is not None else b""
-            for at in range(0, max(len(data), 1), PIECE):
-                piece = data[at : at + PIECE]
-                channel.send(DATA, DATA.payload(id=number, ofs=offset + at, count=len(piece), data=piece))
-            if len(data) == left or len(data) % PIECE or not data:
+        for channel, waiting in list(self._transfers.items()):
+            room = 0 if channel.congested else PIECES
+            while room > 0 and waiting:
+                sent, rest = self._send(channel, waiting[0], room)
+                room, waiting = room - sent, (*rest, *waiting[1:])
+            self._transfers[channel] = waiting
+            if not waiting:
                 del self._transfers[channel]
-            else:
-                self._transfers[channel] = _Transfer(number, offset + len(data), left - len(data))
         self.due_us = now_us + EVERY_US if self._transfers else NEVER
+
+    def _send(self, channel: Channel, transfer: _Transfer, room: int) -> tuple[int, tuple[_Transfer, ...]]:
+        """Send up to so many pieces of a transfer; gives how many, and what is left of it."""
+        number, offset, left = transfer
+        logs = self.bridge.logs
+        data = logs.read(number, offset, min(left, room * PIECE)) if logs is not None else b""
+        pieces = range(0, max(len(data), 1), PIECE)
+        for at in pieces:
+            piece = data[at : at + PIECE]
+            channel.send(DATA, DATA.payload(id=number, ofs=offset + at, count=len(piece), data=piece))
+        if len(data) == left or len(data) % PIECE or not data:
+            return len(pieces), ()
+        return len(pieces), (_Transfer(number, offset + len(data), left - len(data)),)

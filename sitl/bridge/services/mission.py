@@ -45,6 +45,10 @@ RECEIVED = {
 }
 ACK, COUNT, REQUEST = message("MISSION_ACK"), message("MISSION_COUNT"), message("MISSION_REQUEST")
 MISSION_CURRENT = message("MISSION_CURRENT").id
+COPY_US = 2_000_000
+"""A link may bring a second copy of a frame so late."""
+REPEAT_US = 200_000
+"""An item that is there already is answered, when the next one was asked for so long ago."""
 GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
 """Values of ``current`` that make a mission item a target for GUIDED (DroneKit's simple_goto)."""
 
@@ -57,8 +61,8 @@ class MissionService(Service):
         self._taken = {MISSION: bridge.vehicle.firmware.commands.taken, FENCE: FENCE_COMMANDS, RALLY: (RALLY_POINT,)}
         self._lists: dict[int, tuple[MissionItem, ...]] = {FENCE: (), RALLY: ()}
         self.upload: Upload | None = None
-        self._last: tuple[Channel, Sender, int, int] | None = None
-        """Who uploaded last, what, and the number of the last item: its acknowledgement may have been lost."""
+        self._last: tuple[Channel, Sender, int, range, int] | None = None
+        """Who uploaded last, what, the numbers of its items, and when: its acknowledgement may have been lost."""
         self._home = bridge.reader.fields("autopilot.home.lat", "autopilot.home.lon", "autopilot.home.alt")
 
     def handlers(self) -> dict[str, Handler]:
@@ -141,6 +145,8 @@ class MissionService(Service):
         kind = fields.mission_type
         if kind not in self._taken:
             self._ack(channel, sender, UNSUPPORTED, kind)
+        elif self._is_copy(channel, sender, kind, range(fields.count)):
+            pass
         elif self._may_start(channel, sender, kind):
             self.upload = None
             if fields.count > MAX_ITEMS:
@@ -157,12 +163,25 @@ class MissionService(Service):
         first, last = fields.start_index, fields.end_index
         if kind not in self._taken:
             self._ack(channel, sender, UNSUPPORTED, kind)
+        elif self._is_copy(channel, sender, kind, range(first, last + 1)):
+            pass
         elif self.upload is not None:
             self._ack(channel, sender, DENIED, kind)
         elif not 0 <= first <= last < len(self.items(kind)):
             self._ack(channel, sender, INVALID_SEQUENCE, kind)
         else:
             self._begin(channel, sender, kind, first, last + 1, self.items(kind))
+
+    def _is_copy(self, channel: Channel, sender: Sender, kind: int, seqs: range) -> bool:
+        """Whether a message that begins an upload is a copy of the one that began it, come late over a bad link."""
+        upload = self.upload
+        return (
+            upload is not None
+            and (upload.channel, upload.sender, upload.kind) == (channel, sender, kind)
+            and (upload.first, upload.stop) == (seqs.start, seqs.stop)
+            and upload.next > upload.first
+            and self.bridge.now_us - upload.began_us < COPY_US
+        )
 
     def _begin(
         self, channel: Channel, sender: Sender, kind: int, first: int, stop: int, base: tuple[MissionItem, ...]
@@ -200,12 +219,14 @@ class MissionService(Service):
             return
         upload = self.upload
         if upload is None or upload.kind != kind:
-            repeated = self._last == (channel, sender, kind, fields.seq)
-            self._ack(channel, sender, ACCEPTED if repeated else ERROR, kind)
+            self._ack(
+                channel, sender, ACCEPTED if self._is_repeated(channel, sender, kind, fields.seq) else ERROR, kind
+            )
         elif not self._is_mine(channel, sender):
             self._ack(channel, sender, DENIED, kind)
-        elif fields.seq == upload.next - 1 and fields.seq >= upload.first:
-            self._request_next(upload)  # our request for the next was lost, or this is a repeat
+        elif upload.first <= fields.seq < upload.next:
+            if self.bridge.now_us - upload.asked_us >= REPEAT_US:
+                self._request_next(upload)  # our request for it was lost; else this is a copy, come late
         elif fields.seq != upload.next:
             self._cancel(INVALID_SEQUENCE)
         elif result != ACCEPTED:
@@ -217,12 +238,20 @@ class MissionService(Service):
             else:
                 self._request_next(upload)
 
+    def _is_repeated(self, channel: Channel, sender: Sender, kind: int, seq: int) -> bool:
+        """Whether an item is of the upload that was taken: the last one repeated, or a late copy of another."""
+        last = self._last
+        if last is None or last[:3] != (channel, sender, kind):
+            return False
+        return seq == last[3].stop - 1 or (seq in last[3] and self.bridge.now_us - last[4] < COPY_US)
+
     def _finish(self, upload: Upload) -> None:
         self.upload = None
         result = self._replace(upload.kind, upload.merged())
         self._ack(upload.channel, upload.sender, result, upload.kind)
         if result == ACCEPTED:
-            self._last = (upload.channel, upload.sender, upload.kind, upload.stop - 1)
+            seqs = range(upload.first, upload.stop)
+            self._last = (upload.channel, upload.sender, upload.kind, seqs, self.bridge.now_us)
             self.bridge.get(StatusTextService).say(INFO, RECEIVED[upload.kind])
         self.bridge.say_pending()
 

@@ -100,13 +100,14 @@ class Upload:
         self.stop = stop
         self.next = first
         self.deadline_us = now_us + TIMEOUT_US
+        self.began_us = self.asked_us = now_us
         self._ask_us = now_us + ASK_AGAIN_US
         self._base = base
         self._items: list[MissionItem] = []
 
     def snapshot(self) -> tuple[Any, ...]:
         """Immutable; begins with the channel's number."""
-        times = (self.deadline_us, self._ask_us)
+        times = (self.deadline_us, self._ask_us, self.began_us, self.asked_us)
         return (
             self.channel.number,
             self.sender,
@@ -121,10 +122,11 @@ class Upload:
     @classmethod
     def restored(cls, state: tuple[Any, ...], channel: Channel) -> Upload:
         """The upload as it was."""
-        _, sender, kind, first, stop, base, items, deadline_us, ask_us = state
+        _, sender, kind, first, stop, base, items, deadline_us, ask_us, began_us, asked_us = state
         upload = cls(channel, sender, kind, first, stop, base, 0)
         upload._items, upload.next = list(items), first + len(items)
         upload.deadline_us, upload._ask_us = deadline_us, ask_us
+        upload.began_us, upload.asked_us = began_us, asked_us
         return upload
 
     @property
@@ -139,6 +141,7 @@ class Upload:
 
     def asked(self, now_us: int) -> None:
         """The next item was asked for."""
+        self.asked_us = now_us
         self._ask_us = now_us + ASK_AGAIN_US
 
     def add(self, item: MissionItem, now_us: int) -> None:

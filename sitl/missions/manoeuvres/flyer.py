@@ -44,7 +44,7 @@ class Flyer(Client):
         if name == "ATTITUDE":
             self._attitude = (f.roll, f.pitch, f.yaw, f.rollspeed, f.pitchspeed, f.yawspeed)
         elif name == "LOCAL_POSITION_NED":
-            self._rows.append((self.now, f.x, f.y, f.z, f.vx, f.vy, f.vz, *self._attitude))
+            self._rows.append((f.time_boot_ms * 1e-3, f.x, f.y, f.z, f.vx, f.vy, f.vz, *self._attitude))
 
     def note(self, name: str, unit: str, value: float) -> None:
         """Keep a figure."""

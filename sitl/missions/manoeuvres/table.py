@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+import statistics
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -69,6 +70,18 @@ def rows(ours: Mapping[str, Figures], theirs: Mapping[str, Figures]) -> list[Row
         for name, (value, unit) in figures.items()
         if name in theirs[flight]
     ]
+
+
+def medians(flown: Sequence[Mapping[str, Figures]]) -> dict[str, Figures]:
+    """Each figure's median over flights of the same scripts; one that is not reached counts as greater than any."""
+    found: dict[str, Figures] = {}
+    for flight, figures in flown[0].items():
+        found[flight] = {}
+        for name, (_, unit) in figures.items():
+            values = [others[flight][name][0] for others in flown]
+            value = statistics.median_low(math.inf if math.isnan(x) else x for x in values)
+            found[flight][name] = (math.nan if math.isinf(value) else value, unit)
+    return found
 
 
 def _shown(value: float) -> str:

@@ -193,6 +193,13 @@ class PilotState(Record):
     rudder_done: bool  # the stick must return before it counts again
     throttle_zero: bool  # low, for at least 0.4 s
     throttle_zero_us: int  # when last above zero
+    # the lean last asked for, and what it follows from: sticks stay as they are for eight ticks and more
+    lean_roll: float  # [rad]
+    lean_pitch: float
+    lean_of_roll: float  # sticks
+    lean_of_pitch: float
+    lean_of_angle: float  # at full stick [rad]
+    lean_of_limit: float  # [rad]
 
 
 class SimpleState(Record):
