@@ -20,7 +20,7 @@ from .mission.item import NAV_WAYPOINT, RELATIVE, MissionItem, home_item
 from .mission.mission import Mission
 from .mission.notes import INFO, Note, Switched, Text
 from .mission.sequencer import Sequencer
-from .modes import REASON_RC
+from .modes import REASON_RC, shown
 
 POSITIONS = {LOW: "LOW", MIDDLE: "MIDDLE", HIGH: "HIGH"}
 
@@ -121,7 +121,7 @@ def change_mode(number: int, name: str, mode: int, request: Callable[[Any, int, 
         modes = holder.v.autopilot.modes
         if position == HIGH:
             request(holder.v, mode, REASON_RC)
-        elif modes.number == mode:
+        elif shown(modes) == mode:
             modes.pilot.switch_position = modes.pilot.switch_candidate = -1  # the mode switch is read anew
         return []
 

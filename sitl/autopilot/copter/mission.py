@@ -16,7 +16,7 @@ from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
 from .modes import auto, auto_yaw
-from .modes.auto import AUTO
+from .modes.auto import AUTO, AUTO_RTL
 from .modes.state import GuidedState
 from .navigation import waypoint
 from .navigation.planner import PLANNER, Following
@@ -74,7 +74,7 @@ SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NA
 class CopterCommands(Commands[Vehicle]):
     """Take-off, legs, circles, return and landing; heading and region of interest."""
 
-    auto = AUTO
+    auto, auto_return = AUTO, AUTO_RTL
     taken = frozenset((*KINDS, *OTHERS))
     planner = PLANNER
 

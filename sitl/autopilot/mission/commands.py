@@ -25,6 +25,8 @@ class Commands(ABC, Generic[V]):
 
     auto: int
     """Number of the mode that runs missions."""
+    auto_return = -1
+    """Number that AUTO is shown under while it flies the mission's way back."""
     taken: frozenset[int]
     """MAV_CMDs that missions may hold."""
     planner: Planner[Any]

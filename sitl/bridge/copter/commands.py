@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, cast
 
+from ...autopilot.navigation.state import BY_LANDING, BY_PATH
 from ..channel import Channel
 from ..services import command_table
 from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry
@@ -126,6 +127,22 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
+def return_path(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """188: AUTO_RTL by the mission's return path that is nearest."""
+    return _go_back(bridge, BY_PATH)
+
+
+def landing_sequence(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """189: AUTO_RTL by the mission's landing sequence that is nearest."""
+    return _go_back(bridge, BY_LANDING)
+
+
+def _go_back(bridge: Bridge, way: int) -> int:
+    ok = _copter(bridge).go_back(way)
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
+
+
 COMMANDS: dict[int, Entry] = {
     **command_table.COMMANDS,
     17: Entry(loiter),
@@ -136,6 +153,8 @@ COMMANDS: dict[int, Entry] = {
     115: Entry(condition_yaw, required=(1,)),
     178: Entry(change_speed, required=(1, 2)),
     185: Entry(terminate, required=(1,)),
+    188: Entry(return_path),
+    189: Entry(landing_sequence),
     193: Entry(pause_continue, required=(1,)),
     195: Entry(set_roi, required=(5, 6, 7), place=True),
     197: Entry(no_roi),

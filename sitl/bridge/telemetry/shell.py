@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ... import __version__
 from ...autopilot import relays
+from ...autopilot.modes import shown
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
@@ -69,7 +70,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
         timestamp=boot_ms(int(v.time_us)),
         type=profile.mav_type,
         autopilot=ARDUPILOTMEGA,
-        custom_mode=int(ap.modes.number) & 0xFFFF,
+        custom_mode=int(shown(ap.modes)) & 0xFFFF,
         latitude=int(here.lat),
         longitude=int(here.lon),
         altitude=int16(here.alt),

@@ -10,11 +10,11 @@ from __future__ import annotations
 from ....core.algebra import horizontal
 from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
-from ...events import CIRCLE_BEGINS, Events, emit
-from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from ...events import CIRCLE_BEGINS, MODE_CHANGED, Events, emit
+from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, REASON_AUTO_RTL_EXIT
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
-from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, PASSED_OVER, RTL, TAKEOFF
+from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, RTL, TAKEOFF
 from ...state import Arming, Estimate
 from ..control.state import AttitudeState, Control
 from ..navigation import circle, command, waypoint
@@ -27,6 +27,8 @@ from .mode import CopterMode
 from .state import AutoState, AutoYaw, Modes
 
 AUTO = 3
+AUTO_RTL = 27
+"""Shown instead while the mission's way back is flown (auto_rtl.py)."""
 
 # AUTO_OPTIONS
 _ARM = 1
@@ -146,8 +148,20 @@ def run(v: Vehicle) -> None:
         auto_yaw.follow_pilot(modes, ap.control.attitude, est)
     if run_command(v, modes.auto.submode):
         complete(modes.nav, ap.events, v.time_us)
+    end_return(v)
     turned = auto_yaw.has_turned(modes.auto_yaw, est.yaw)
     check_condition(modes.nav, ap.events, v.time_us, est.pos, turned)
+
+
+@law
+def end_return(v: Vehicle) -> None:
+    """AUTO_RTL is over when the mission goes on elsewhere."""
+    modes = v.autopilot.modes
+    nav = modes.nav
+    if modes.shown == AUTO_RTL and nav.mission_part == OUTWARD and nav.mission_state != COMPLETE:
+        modes.shown = 0
+        modes.reason = REASON_AUTO_RTL_EXIT
+        emit(v.autopilot.events, v.time_us, MODE_CHANGED, float(AUTO), float(REASON_AUTO_RTL_EXIT))
 
 
 @law

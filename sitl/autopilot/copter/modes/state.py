@@ -144,6 +144,19 @@ class ZigZagState(Record):
     line: int  # of the sweep
 
 
+class SystemIdState(Record):
+    """SYSTEMID."""
+
+    testing: bool  # the chirp runs
+    holds_place: bool  # an axis of the position
+    time: float  # since the mode began [s]
+    value: float  # of the chirp
+    frequency: float  # [rad/s]
+    place: Vec2  # to hold, NE [m]
+    vel: Vec2  # [m/s]
+    acc: Vec2  # [m/s^2]
+
+
 class RtlState(Record):
     """RTL and SMART_RTL."""
 
@@ -224,6 +237,7 @@ class Modes(shared.Modes):
     drift: DriftState
     throw: ThrowState
     zigzag: ZigZagState
+    systemid: SystemIdState
     rtl: RtlState
     path: shared.PathState
     land: LandState

@@ -31,6 +31,7 @@ from .flight import (
     PosHold,
     Rtl,
     SmartRtl,
+    SystemId,
     TakeOff,
     Throw,
     Waypoints,
@@ -116,6 +117,7 @@ class Parameters(shared.Parameters):
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SERVO: Records[Output] = numbered(Output, 16)
+    SID: SystemId
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
     SRTL: SmartRtl
