@@ -38,8 +38,8 @@ def observe(v: Vehicle) -> None:
     e.status_flags = _ALL_WELL
 
 
-_LINE, _PART, _PARTS = 64, 1152, 40
-"""Bytes that come nearer at once, that do in a tick, and ticks until all have: more than any record is long."""
+_LINE, _PART, _PARTS = 64, 22 * 64, 40
+"""Bytes that come nearer at once, that do in a tick, and ticks until all have: 56 kB, about what a record has."""
 V = TypeVar("V", bound=Vehicle)
 Tick = Callable[[Sequence[V], int], None]
 """A unit or law that does its part of one tick of vehicle ``fleet[index]``."""
@@ -76,9 +76,9 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     control(fleet, index)
-    ap, sensors = vehicle.autopilot, vehicle.sensors
-    update_vibration(ap.vibration, sensors.acc)
-    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.q)
+    ap = vehicle.autopilot
+    update_vibration(ap.vibration, ap.calibrated.acc)
+    remember(ap.inertial, vehicle.time_us, ap.calibrated.acc, ap.calibrated.gyro, ap.estimate.q)
 
 
 @inlined
