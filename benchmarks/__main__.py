@@ -128,7 +128,8 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
 
 
 def streaming_compiled(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable[[], float]:
-    """The same in a fleet of one, with the environments' end of MAVLink, which is compiled: packs and reads records."""
+    """The same in a fleet of one, with the environments' end of MAVLink, which is compiled: packs and reads records.
+    The client looks at the numbers in arrays, as environments do."""
     simulation, client = pilot.simulation, pilot.connection.endpoint
     client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)
     for name in messages:
@@ -141,6 +142,7 @@ def streaming_compiled(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) ->
     end.system, ports = 1, fleet.ports.ctypes.data
     send, read = send_all.bind(ends, np.zeros((1, 3)), ports), read_all.bind(ends, no_scan, no_scan, ports)
     period_us, steps = 1_000_000 // rate_hz, 20 * rate_hz
+    northward, yaw = ends["velocity"][:, 0], ends["euler"][:, 2]
 
     def run() -> float:
         north = 0.0
@@ -149,7 +151,7 @@ def streaming_compiled(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) ->
             send(row, VELOCITY, commands)
             fleet.advance_us(period_us)
             read(row)
-            north += end.velocity.x * math.cos(end.euler.yaw)  # it is there to be used
+            north += northward[0] * math.cos(yaw[0])  # they are there to be used
         assert end.position_ms == end.attitude_ms >= fleet.clocks[0][0] // 1000 - 1, "telemetry is missing"
         return steps / rate_hz
 

@@ -36,12 +36,13 @@ from .move import Move
 from .plants.local import LocalPlant
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
-from .vehicle.core_entry import Core, bind_fleet_unit
+from .vehicle.core_entry import Core, bind_fleet_unit, unit_address
 from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
 Array = np.ndarray[Any, Any]
 set_goals, any_waits = Kernel(wire.set_goals), Kernel(wire.any_waits)
+run_fleet = Kernel(wire.run_fleet, lets_others_run=True)
 _HELD = 8
 """Snapshots whose state is held ready, so that vehicles get it again by a copy."""
 
@@ -117,6 +118,7 @@ class Fleet:
         self._in_size, self._out_size, self._out_count = (self.ports[n] for n in ("in_size", "out_size", "out_count"))
         self._records_u1 = self.records.view("u1").reshape(count, -1)
         self._ports_u1 = self.ports.view("u1").reshape(count, -1)
+        self._shell_u1: Array = shell.fleet.view("u1")
         unit = shell.bridge.profile.core.run_all
         run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
         rangers = shell.plant.rangers if isinstance(shell.plant, LocalPlant) else None
@@ -135,6 +137,11 @@ class Fleet:
         """Each advances the vehicles of one thread."""
         self._set_goals: Callable[[int], None] = set_goals.bind(self._times, self._until)
         self._any_waits: Callable[[], bool] = any_waits.bind(self._needs_shell)
+        self._run_alone: Callable[[int], bool] | None = None
+        """Advances all vehicles in this thread; says whether any needs the shell."""
+        if threads == 1 and not jit_disabled():
+            numbers = self.records.ctypes.data, self.records.itemsize, count, slots, self._rooms[0][0]
+            self._run_alone = run_fleet.bind(unit_address(unit, shell.kind), *numbers)
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
         self._orders: Array = MoveOrder.fleet(0)
@@ -359,51 +366,61 @@ class Fleet:
         """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
         self._check_open()
         times, until, needs_shell = self._times, self._until, self._needs_shell
-        if which is None and isinstance(step_us, int):
-            self._set_goals(step_us)
-        else:
+        faulty: list[tuple[int, int]] = []
+        alike_us = step_us if which is None and isinstance(step_us, int) and not self._faulty else STAYS
+        if alike_us == STAYS:
             rows = slice(None) if which is None else which
             until[:] = STAYS
             until[rows] = times[rows] + step_us
-        faulty: list[tuple[int, int]] = []
-        if self._faulty:
             faulty = [(index, int(until[index])) for index in sorted(self._faulty)]
             until[list(self._faulty)] = STAYS
-        if self._pool is None:
-            for run in self._parts:
-                run()
-        else:
-            for done in [self._pool.submit(run) for run in self._parts]:
-                done.result()
-        if self._any_waits():
+        if self._run_alone(alike_us) if self._run_alone is not None else self._run_parts(alike_us):
             for index in np.flatnonzero(needs_shell).tolist():
                 self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
         for index, goal_us in faulty:
             if goal_us != STAYS:
                 self._serve(index, goal_us - int(times[index]), TO_HEAR)
 
+    def _run_parts(self, step_us: int) -> bool:
+        """Advance all vehicles by a time, or as their slots say (STAYS); whether any needs the shell."""
+        if step_us != STAYS:
+            self._set_goals(step_us)
+        if self._pool is None:
+            for run in self._parts:
+                run()
+        else:
+            for done in [self._pool.submit(run) for run in self._parts]:
+                done.result()
+        return self._any_waits()
+
     # ------------------------------------------------------------------ what needs Python
 
     def _serve(self, index: int, left_us: int, needs_shell: int, data: bytes = b"") -> None:
         """Let the shell act on ``data`` and on what the core left to it, and advance the vehicle by ``left_us``."""
         shell = self.shell
-        shell.restore(self.snapshot(index))
-        shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
+        shell.take_up(self._states[index], self._records_u1[index].data)
+        shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].data
         self._link.send(data)
         shell.attend(needs_shell)
         shell.advance_to(shell.time_us + max(left_us, 0))
         said = self._link.receive()
         if said:
             self._extra[index] = self._extra.get(index, b"") + said
-        self._give([index], self._take())
+        self._records_u1[index] = self._shell_u1
+        self._ports_u1[index] = np.frombuffer(shell.bridge.channels[0].port._bytes, np.uint8)
+        state = shell.state()
+        self._keep(index, state)
+        self._before_boot_us[index] = state.before_boot_us
+        self._events_seen[index], self._shell_us[index] = self._seen_by_shell()
 
     def _take(self) -> _Held:
         """The shell's state."""
-        shell = self.shell
-        state, port = shell.snapshot(), bytes(shell.bridge.channels[0].port._bytes)
-        slot = shell.v.autopilot.events.count, shell.bridge.shell_due_us()
-        record = np.frombuffer(state.record, np.uint8)
-        return _Held(None, record, np.frombuffer(port, np.uint8), replace(state, record=b""), *slot)
+        port = np.frombuffer(bytes(self.shell.bridge.channels[0].port._bytes), np.uint8)
+        return _Held(None, self._shell_u1.copy(), port, self.shell.state(), *self._seen_by_shell())
+
+    def _seen_by_shell(self) -> tuple[int, int]:
+        """Events that the shell has acted on, and when it has something to do [us since boot]."""
+        return self.shell.v.autopilot.events.count, self.shell.bridge.shell_due_us()
 
     def _state_of(self, row: int) -> _Held:
         """A vehicle's state."""
@@ -414,13 +431,17 @@ class Fleet:
         """Put a state into the vehicles."""
         for row in rows:
             self._records_u1[row], self._ports_u1[row] = held.record, held.port
-            self._states[row] = held.state
-            if held.state.bridge.channels[0].ways is not None:
-                self._faulty.add(row)
-            else:
-                self._faulty.discard(row)
+            self._keep(row, held.state)
         self._before_boot_us[rows] = held.state.before_boot_us
         self._events_seen[rows], self._shell_us[rows] = held.events_seen, held.shell_us
+
+    def _keep(self, row: int, state: Snapshot) -> None:
+        """Note what the shell holds of a vehicle."""
+        self._states[row] = state
+        if state.bridge.channels[0].ways is not None:
+            self._faulty.add(row)
+        else:
+            self._faulty.discard(row)
 
     def close(self) -> None:
         """Close the shell and stop the threads: the fleet can only be looked at from now on."""

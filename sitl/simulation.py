@@ -11,7 +11,7 @@ from typing import Any, Protocol, Unpack
 
 import numpy as np
 
-from .autopilot import boot
+from .autopilot import boot, shell_parameters
 from .autopilot.aux_functions import AuxFunctions
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
@@ -299,9 +299,13 @@ class Simulation:
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""
+        return self.state(self._record.tobytes())
+
+    def state(self, record: bytes = b"") -> Snapshot:
+        """The same with another record, or without one: what the shell holds of the vehicle."""
         return Snapshot(
             self.airframe.name,
-            self._record.tobytes(),
+            record,
             self.mission,
             self.bridge.snapshot(),
             self.before_boot_us,
@@ -335,10 +339,20 @@ class Simulation:
         except Exception:
             self._record[:] = kept  # all of it or nothing
             raise
-        self.mission, self.before_boot_us = snapshot.mission, snapshot.before_boot_us
-        self._events_seen, self._reboot = snapshot.events_seen, snapshot.reboot
-        self.parameters.kept = dict(snapshot.parameters)
-        self.bridge.restore(snapshot.bridge)
+        self._resume(snapshot)
+
+    def take_up(self, state: Snapshot, record: memoryview) -> None:
+        """``restore`` of a ``state`` and a record, both of a simulation of this scenario on native physics: they are
+        not looked at."""
+        self._record[:] = record
+        self.plant.restore(state.plant)
+        self._resume(state)
+
+    def _resume(self, state: Snapshot) -> None:
+        self.mission, self.before_boot_us = state.mission, state.before_boot_us
+        self._events_seen, self._reboot = state.events_seen, state.reboot
+        self.parameters.kept = dict(state.parameters)
+        self.bridge.restore(state.bridge)
 
     def _physics_restarted(self) -> None:
         """A physics elsewhere has begun anew: the autopilot begins anew with it."""
@@ -375,6 +389,8 @@ class Simulation:
     def _power_on(self) -> None:
         boot.clear(self.v)
         self.plant.power_on()
+        if shell_parameters.clears_mission(self.parameters):
+            self.mission = Mission()
         self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
         self.aux = AuxFunctions(self, self.firmware.aux_functions)
         self.firmware.power_on(self.v)

@@ -12,15 +12,16 @@ import math
 from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
-from . import radio
+from . import radio, sensor_calibration
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
 from .params.parameters import Parameters
 from .params.radio import RcMap
-from .params.simulation import Axes
+from .params.simulation import axes
 from .params.system import Arming, Compass
+from .sensor_calibration import corrected_field, first_field
 from .state import BatteryState, Radio, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
@@ -82,6 +83,7 @@ FENCE_SHIFT = 38
 NOTHING_SEEN = 1 << 43
 OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
+CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -89,6 +91,9 @@ TEXTS = {
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
     FENCE_POSITION: "Fence enabled, need position estimate",
+    CALIBRATING_COMPASS: "Compass calibration running",
+    REBOOT_FOR_COMPASS: "Compass calibrated requires reboot",
+    REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -162,20 +167,30 @@ def differs(field: Vec3, other: Vec3) -> bool:
 
 
 @law
-def calibrated(field: Vec3, offset: Axes) -> Vec3:
-    """What a compass shows [gauss], with its COMPASS_OFS [mGauss] added."""
-    return field + 1e-3 * Vec3(offset.X, offset.Y, offset.Z)
+def compass_checks(sensors: Sensors, params: Compass) -> int:
+    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
+    first, second, third = first_field(sensors, params), sensors.mag2, sensors.mag3
+    if params.USE2 > 0.0 and dot(second, second) > 0.0:
+        if differs(first, corrected_field(second, axes(params.OFS2), params.DIA2, params.ODI2)):
+            return COMPASSES
+    if params.USE3 > 0.0 and dot(third, third) > 0.0:
+        if differs(first, corrected_field(third, axes(params.OFS3), params.DIA3, params.ODI3)):
+            return COMPASSES
+    return 0
 
 
 @law
-def compass_checks(sensors: Sensors, params: Compass) -> int:
-    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
-    second, third = sensors.mag2, sensors.mag3
-    if params.USE2 > 0.0 and dot(second, second) > 0.0 and differs(sensors.mag, calibrated(second, params.OFS2)):
-        return COMPASSES
-    if params.USE3 > 0.0 and dot(third, third) > 0.0 and differs(sensors.mag, calibrated(third, params.OFS3)):
-        return COMPASSES
-    return 0
+def calibration_checks(state: int, params: Arming) -> int:
+    """Failed checks of the sensors' calibration (``Calibrated.state``)."""
+    failed = 0
+    if wants(params, CHECK_COMPASS):
+        if state & sensor_calibration.COMPASS_RUNNING:
+            failed |= CALIBRATING_COMPASS
+        elif state & sensor_calibration.COMPASS_DONE:
+            failed |= REBOOT_FOR_COMPASS
+    if wants(params, CHECK_INS) and state & sensor_calibration.ACCELS_DONE:
+        failed |= REBOOT_FOR_ACCELS
+    return failed
 
 
 @law

@@ -14,7 +14,7 @@ from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
-from .autopilot_api import Note, Vehicle
+from .autopilot_api import Note, Vector, Vehicle
 
 CRITICAL, WARNING, INFO = 2, 4, 6
 """MAV_SEVERITY"""
@@ -96,6 +96,9 @@ class BaseAutopilot:
         self._notes.extend(notes)
         return bool(ok)
 
+    def set_roi(self, place: Vector | None) -> None:
+        """Keep the nose on a point, NED [m], or (None) no longer: not in vehicles that steer with it."""
+
     # ------------------------------------------------------------------ home, origin, parameters
 
     def set_home_here(self) -> bool:
@@ -145,11 +148,7 @@ class BaseAutopilot:
         self._notes.extend(self._sequencer().set_mission(self._v, Mission()))
         return True
 
-    def set_current_item(self, seq: int, reset: bool) -> bool:
-        if reset:
-            self._notes.extend(self._sequencer().reset(self._v))
-        if seq == -1:
-            return reset
+    def set_current_item(self, seq: int) -> bool:
         ok, notes = self._sequencer().set_current(self._v, seq)
         self._notes.extend(notes)
         return bool(ok)

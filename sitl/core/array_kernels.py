@@ -54,10 +54,15 @@ Flags = Annotated[Ints, Layout("b1", 1)]
 
 
 class Kernel(Generic[P, R]):
-    """A law on arrays that the shell calls; compiled, or loaded from the cache, when it is called first."""
+    """A law on arrays that the shell calls; compiled, or loaded from the cache, when it is called first.
 
-    def __init__(self, law: Callable[P, R]) -> None:
-        self.law = law
+    Args:
+        law: on arrays and numbers.
+        lets_others_run: it takes long: other threads of Python run meanwhile.
+    """
+
+    def __init__(self, law: Callable[P, R], lets_others_run: bool = False) -> None:
+        self.law, self.lets_others_run = law, lets_others_run
         self.name = law.__module__.removeprefix("sitl.") + "." + law.__name__
         self._loaded: Callable[P, R] | None = None
         self._entry: Callable[P, R] | None = None
@@ -153,11 +158,11 @@ def _load(wanted: Kernel[..., Any]) -> Callable[..., Any]:
     unit = Unit(wanted.name, wanted.law, 0)
     signature = _signature(wanted.law)
     layouts = " ".join(_layouts(signature.args))
-    key = fingerprint(unit, layouts, f"{toolchain()} {signature}")
+    key = fingerprint(unit, layouts, f"{toolchain()} {signature} {wanted.lets_others_run}")
     folder = cache_folder() / f"{wanted.name}-{key}"
     make_jitable()
     names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))
     source = f"# The entry of kernel {wanted.name}.\ndef {ENTRY}({names}):\n    return law({names})\n"
     module_name = "sitl_kernel_" + wanted.name.replace(".", "_")
-    compile_entry = numba.njit([signature], cache=True, **COMMON)
+    compile_entry = numba.njit([signature], cache=True, nogil=wanted.lets_others_run, **COMMON)
     return load_entry(folder, module_name, source, {"law": wanted.law}, compile_entry)  # type: ignore[no-any-return]

@@ -11,9 +11,11 @@ import math
 from typing import NamedTuple
 
 from .kernels import law
+from .scalars import sign
 from .vectors import Vec2
 
 METRES_PER_DEGE7 = 0.011131884502145034
+_POLE = 900000000.0
 _RAD_PER_DEGE7 = math.pi / 180.0 * 1e-7
 
 
@@ -50,7 +52,9 @@ def offset_ne(lat0_e7: float, lon0_e7: float, lat_e7: float, lon_e7: float) -> V
 
 @law
 def add_offset(lat0_e7: float, lon0_e7: float, north: float, east: float) -> Place:
-    """The point (north, east) [m] away from point 0."""
+    """The point (north, east) [m] away from point 0; beyond a pole it is as far on this side, as ArduPilot has it."""
     lat = lat0_e7 + north / METRES_PER_DEGE7
     lon = lon0_e7 + east / (METRES_PER_DEGE7 * longitude_scale(0.5 * (lat0_e7 + lat)))
+    if abs(lat) > _POLE:
+        lat = (2.0 * _POLE - abs(lat)) * sign(lat)
     return Place(lat, wrap_longitude(lon))

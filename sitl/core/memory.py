@@ -7,8 +7,8 @@ In plain Python the same functions give views of the same memory.
 
 from __future__ import annotations
 
-from ctypes import c_uint8
-from typing import Protocol, TypeVar
+from ctypes import CFUNCTYPE, c_int64, c_uint8
+from typing import Protocol, TypeVar, overload
 
 import numpy as np
 
@@ -20,7 +20,10 @@ R = TypeVar("R", bound=Record)
 class Bytes(Protocol):
     """Bytes, by index."""
 
+    @overload
     def __getitem__(self, index: int, /) -> int: ...
+    @overload
+    def __getitem__(self, index: slice[int, int, None], /) -> Bytes: ...
     def __setitem__(self, index: int, value: int, /) -> None: ...
     def __len__(self) -> int: ...
 
@@ -52,3 +55,19 @@ def table_at(address: int, rows: int, columns: int) -> FloatRows:
 def ints_at(address: int, count: int) -> Ints:
     """The int64 numbers at an address, shape (count,)."""
     return np.ndarray((count,), np.int64, _memory(address, 8 * count))
+
+
+def call_unit(address: int, fleet: int, count: int, index: int, n0: int, n1: int, n2: int) -> None:
+    """Call a compiled unit that takes three numbers.
+
+    Args:
+        address: of its machine code.
+        fleet: address of the vehicles' records.
+        count: how many there are.
+        index, n0, n1, n2: what the unit takes.
+    """
+    CFUNCTYPE(None, *[c_int64] * 6)(address)(fleet, count, index, n0, n1, n2)
+
+
+def fetch_ahead(record: Record, offset: int) -> None:
+    """Ask the processor to bring the line of memory with a byte of a record nearer: it is needed soon."""

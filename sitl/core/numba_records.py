@@ -14,6 +14,7 @@ from functools import cache
 from typing import Any, get_type_hints
 
 import numpy as np
+from llvmlite import ir
 from numba import carray
 from numba.core import cgutils, types
 from numba.core.compiler import Flags
@@ -26,7 +27,7 @@ from numba.extending import intrinsic, overload, typeof_impl
 from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
-from .memory import bytes_at, floats_at, ints_at, record_at, table_at
+from .memory import bytes_at, call_unit, fetch_ahead, floats_at, ints_at, record_at, table_at
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record
 from .vectors import Value
@@ -247,3 +248,43 @@ def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
 @overload(ints_at, jit_options=_MAKES_ARRAYS)
 def _ints_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_ints(address), (count,))
+
+
+@intrinsic
+def _call(typing_context, address, fleet, count, index, n0, n1, n2):  # type: ignore[no-untyped-def]
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        function = ir.FunctionType(ir.VoidType(), [number.type for number in args[1:]]).as_pointer()
+        builder.call(builder.inttoptr(args[0], function), args[1:])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * 7), generate
+
+
+@overload(call_unit)
+def _call_unit(address, fleet, count, index, n0, n1, n2):  # type: ignore[no-untyped-def]
+    return lambda address, fleet, count, index, n0, n1, n2: _call(address, fleet, count, index, n0, n1, n2)
+
+
+_READ, _SECOND_LEVEL, _DATA = 0, 2, 1
+"""Of LLVM's prefetch: it is read, it goes to the second level of the caches, it is no code."""
+
+
+@intrinsic
+def _prefetch(typing_context, record, offset):  # type: ignore[no-untyped-def]
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        if not isinstance(context, CPUContext):  # a GPU has other vehicles to go on with while it waits
+            return context.get_dummy_value()
+        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        function = builder.module.declare_intrinsic(
+            "llvm.prefetch", [byte], ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+        )
+        address = builder.gep(builder.bitcast(args[0], byte), [args[1]])
+        builder.call(function, [address, *(number(hint) for hint in (_READ, _SECOND_LEVEL, _DATA))])
+        return context.get_dummy_value()
+
+    return types.void(record, types.int64), generate
+
+
+@overload(fetch_ahead)
+def _fetch_ahead(record, offset):  # type: ignore[no-untyped-def]
+    return lambda record, offset: _prefetch(record, offset)

@@ -30,6 +30,12 @@ def finite(value: float) -> bool:
 
 
 @inlined
+def is_same(a: float, b: float) -> bool:
+    """Whether two floats are equal in sign, too: 0.0 and -0.0 are not; NaN equals nothing."""
+    return a == b and (a != 0.0 or math.copysign(1.0, a) == math.copysign(1.0, b))
+
+
+@inlined
 def high_half(value: float) -> float:
     """The upper 26 bits of a number's 53 (Veltkamp): products of halves are exact."""
     scaled = 134217729.0 * value  # 2^27 + 1

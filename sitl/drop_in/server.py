@@ -11,6 +11,7 @@ from pathlib import Path
 from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
+from ..autopilot.shell_parameters import clears_mission
 from ..bridge.links import Link
 from ..bridge.services.mission import MissionService
 from ..bridge.services.signing import SigningService
@@ -42,8 +43,9 @@ MODELS = {
         "octa": "ardupilot_octa",
         "octa-quad": "ardupilot_octa_quad",
         "y6": "ardupilot_y6",
+        "calibration": "calibration_copter",
     },
-    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover"},
+    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
 }
 """ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
 JSON = "JSON"
@@ -85,7 +87,8 @@ class Session:
         self._values.update(params)  # values out of range are kept as they are, and told so
         self.pacing = Pacing(None)
         self._follow_speedup()
-        simulation.bridge.autopilot.replace_mission(self.storage.mission)
+        if not clears_mission(self._values):
+            simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
         self._places = (self.storage.fence, self.storage.rally)

@@ -18,6 +18,7 @@ from ..autopilot.events import HIT_OBSTACLE, emit
 from ..autopilot.inertial_ring import remember
 from ..autopilot.vibration import update_vibration
 from ..core.kernels import inlined, law
+from ..core.memory import fetch_ahead
 from .record import Vehicle
 
 # EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
@@ -37,6 +38,8 @@ def observe(v: Vehicle) -> None:
     e.status_flags = _ALL_WELL
 
 
+_LINE, _PART, _PARTS = 64, 1152, 40
+"""Bytes that come nearer at once, that do in a tick, and ticks until all have: more than any record is long."""
 V = TypeVar("V", bound=Vehicle)
 Tick = Callable[[Sequence[V], int], None]
 """A unit or law that does its part of one tick of vehicle ``fleet[index]``."""
@@ -45,13 +48,23 @@ Tick = Callable[[Sequence[V], int], None]
 @law
 def advance_ticks(fleet: Sequence[V], index: int, ticks: int, step: Tick[V], fly: Tick[V]) -> None:
     """Up to ``ticks`` ticks of physics (``step``) and of what follows (``fly``); back early when Python is needed."""
-    events = fleet[index].autopilot.events
+    v, events, following = fleet[index], fleet[index].autopilot.events, min(index + 1, len(fleet) - 1)
     before = events.count
     for _ in range(ticks):
+        if following != index:
+            fetch_part(fleet[following], v.tick)
         step(fleet, index)
         fly(fleet, index)
         if events.attention != 0 or events.count != before:
             break
+
+
+@inlined
+def fetch_part(v: Vehicle, tick: int) -> None:
+    """Bring a part of a vehicle's record nearer, another one each tick: in a large fleet it lies in memory far away."""
+    first = tick % _PARTS * _PART
+    for k in range(first, first + _PART, _LINE):
+        fetch_ahead(v, k)
 
 
 @inlined
@@ -63,9 +76,9 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     control(fleet, index)
-    ap, sensors = vehicle.autopilot, vehicle.sensors
-    update_vibration(ap.vibration, sensors.acc)
-    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.q)
+    ap = vehicle.autopilot
+    update_vibration(ap.vibration, ap.calibrated.acc)
+    remember(ap.inertial, vehicle.time_us, ap.calibrated.acc, ap.calibrated.gyro, ap.estimate.q)
 
 
 @inlined

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from ctypes import c_int64, c_void_p
+from ctypes import c_int64, c_void_p, cast
 from functools import partial
 from typing import Any
 
@@ -55,6 +55,12 @@ def bind_fleet_unit(
     if compiled is None:
         return partial(unit, [kind.record.of(fleet, k) for k in range(len(fleet))])  # type: ignore[arg-type]
     return partial(compiled, c_void_p(fleet.ctypes.data), c_int64(len(fleet)))
+
+
+def unit_address(unit: Callable[..., None], kind: Kind) -> int:
+    """Where the machine code of a unit of a kind of vehicle is; 0: there is none (``NUMBA_DISABLE_JIT=1``)."""
+    compiled = compiler.load(unit, kind.record_path)
+    return 0 if compiled is None else cast(compiled, c_void_p).value or 0
 
 
 def _bound(kind: Kind, plain: Callable[..., None], compiled: Any, fleet: Array, index: int) -> Callable[..., None]:

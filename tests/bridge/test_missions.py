@@ -11,6 +11,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services.mission import MissionService
 from tests.bridge.fakes import HOME, Bench, Client
 
 ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE = range(5)
@@ -265,6 +266,39 @@ def test_fence_and_rally_points_are_kept(
         assert bench.autopilot.items is old
         (ack,) = bench.ask(clear, "MISSION_ACK")
         assert ack.type == ACCEPTED and listed() == bench.vehicle.parameters[total] == 0
+
+
+def test_room_for_fences_and_rally_points(bench: Bench) -> None:
+    """ArduPilot's storage; BRD_SD_FENCE gives more."""
+    for kind, most in ((1, 70), (2, 46)):
+        text, ack = bench.ask(count(most + 1, kind), "STATUSTEXT", "MISSION_ACK")
+        assert ack.type == NO_SPACE and text.text == f"Only {most} items are supported"
+
+    def circles(number: int) -> list[Any]:
+        bench.ask(count(number, 1))
+        for k in range(number):
+            got = bench.ask(item_int(k, MissionItem(5004, 0, p1=5.0, x=k), kind=1), "STATUSTEXT", "MISSION_ACK")
+        return [m.text if m.get_type() == "STATUSTEXT" else m.type for m in got]
+
+    full = "Fence exceeds storage size"
+    assert ACCEPTED in circles(42)
+    assert {full, 1} <= set(circles(43))
+    assert len(bench.bridge.get(MissionService).items(1)) == 42, "what was there stays"
+    bench.vehicle.parameters["BRD_SD_FENCE"] = 128.0
+    assert ACCEPTED in circles(56)
+    assert {full, 1} <= set(circles(57))
+
+
+def test_items_that_make_no_fence_are_refused(bench: Bench) -> None:
+    bench.ask(count(2, 1))
+    bench.ask(item_int(0, MissionItem(5001, 0, p1=2.0), kind=1))
+    got = bench.ask(item_int(1, MissionItem(5001, 0, p1=2.0), kind=1), "STATUSTEXT", "MISSION_ACK")
+    assert [m.text for m in got if m.get_type() == "STATUSTEXT"] == [
+        "Invalid vertex count (2)",
+        "Fence validation failed",
+    ]
+    assert [m.type for m in got if m.get_type() == "MISSION_ACK"] == [1]
+    assert bench.bridge.get(MissionService).items(1) == ()
 
 
 def test_lists_take_only_their_items(bench: Bench) -> None:

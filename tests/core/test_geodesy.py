@@ -37,6 +37,13 @@ def test_a_place_across_the_date_line_has_a_longitude_of_its_own_side() -> None:
     assert geodesy.add_offset(0.0, -1799999000.0, 0.0, -2000 * geodesy.METRES_PER_DEGE7)[1] == pytest.approx(1799999000)
 
 
+@pytest.mark.parametrize("lat", [900000000.0, -900000000.0])
+def test_a_place_beyond_a_pole_is_on_this_side(lat: float) -> None:
+    inside = geodesy.add_offset(lat, 100.0, -lat / 900000000.0 * 50.0, 0.0)
+    beyond = geodesy.add_offset(lat, 100.0, lat / 900000000.0 * 50.0, 0.0)
+    assert inside == pytest.approx(beyond) and abs(beyond.lat) < 900000000.0
+
+
 def _potential(r: float, theta: float, lon: float) -> float:
     """The scalar potential [nT km] with scipy's Legendre functions, made Schmidt semi-normalised."""
     total = 0.0

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
 from importlib import import_module
 
 import numba
@@ -12,7 +13,7 @@ import pytest
 
 from sitl.core.compile import make_jitable
 from sitl.core.kernels import law
-from sitl.core.memory import floats_at, ints_at, table_at
+from sitl.core.memory import call_unit, floats_at, ints_at, table_at
 
 
 @law
@@ -49,3 +50,28 @@ def test_nothing_is_at_an_address_too() -> None:
     numbers = np.zeros(1)
     assert len(floats_at(numbers.ctypes.data, 0)) == 0
     assert table_at(numbers.ctypes.data, 0, 9).shape == (0, 9)
+
+
+@law
+def call(address: int) -> None:
+    """Call a function of six numbers."""
+    call_unit(address, 1, 2, 3, 4, 5, 6)
+
+
+def compiled_call() -> Callable[[int], None]:
+    import_module("sitl.core.numba_records")
+    make_jitable()
+
+    @numba.njit
+    def run(address: int) -> None:
+        call(address)
+
+    return run  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("make", [lambda: call, compiled_call])
+def test_a_unit_is_called_at_its_address(make: Callable[[], Callable[[int], None]]) -> None:
+    got: list[tuple[int, ...]] = []
+    unit = CFUNCTYPE(None, *[c_int64] * 6)(lambda *numbers: got.append(numbers))
+    make()(cast(unit, c_void_p).value or 0)
+    assert got == [(1, 2, 3, 4, 5, 6)]

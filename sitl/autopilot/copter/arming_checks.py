@@ -28,6 +28,7 @@ from ..arming_checks import (
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
     battery_checks,
+    calibration_checks,
     obstacle_check,
     proximity_checks,
     radio_checks,
@@ -77,6 +78,7 @@ def check(v: Vehicle) -> int:
     ap = v.autopilot
     p = ap.params
     failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
+    failed |= calibration_checks(ap.calibrated.state, p.ARMING)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import norm2
-from ...core.kernels import law
-from ...core.scalars import constrain
+from ...core.kernels import inlined, law
+from ...core.scalars import constrain, is_same
 from ...core.vectors import Vec2
 from ..radio import (
     FRAME_S,
@@ -106,15 +106,33 @@ def limit_stick(stick: Vec2, length_max: float) -> Vec2:
 
 
 @law
-def lean_angles(pilot: PilotState, angle_max: float, limit: float) -> Lean:
-    """Lean asked by the sticks; ``angle_max`` at full stick, tilt at most ``limit`` [rad].
+def lean_of_sticks(roll: float, pitch: float, angle_max: float, limit: float) -> Lean:
+    """Lean of sticks -1 .. 1; ``angle_max`` at full stick, tilt at most ``limit`` [rad].
 
     Sticks are horizontal thrusts (tangents), so that the tilt of a diagonal stick is limited as a vector.
     """
-    thrust = Vec2(-math.tan(angle_max * pilot.pitch), math.tan(angle_max * pilot.roll))  # forward, right
+    thrust = Vec2(-math.tan(angle_max * pitch), math.tan(angle_max * roll))  # forward, right
     thrust = limit_stick(thrust, math.tan(min(limit, angle_max)))
     pitch = -math.atan(thrust.x)
     return Lean(math.atan(math.cos(pitch) * thrust.y), pitch)
+
+
+@inlined
+def is_lean_known(pilot: PilotState, angle_max: float, limit: float) -> bool:
+    """Whether the last lean was asked for by the same sticks and limits."""
+    sticks = is_same(pilot.roll, pilot.lean_of_roll) and is_same(pilot.pitch, pilot.lean_of_pitch)
+    return sticks and is_same(angle_max, pilot.lean_of_angle) and is_same(limit, pilot.lean_of_limit)
+
+
+@law
+def lean_angles(pilot: PilotState, angle_max: float, limit: float) -> Lean:
+    """Lean asked by the sticks (``lean_of_sticks``), worked out when they or the limits [rad] change."""
+    if not is_lean_known(pilot, angle_max, limit):
+        lean = lean_of_sticks(pilot.roll, pilot.pitch, angle_max, limit)
+        pilot.lean_roll, pilot.lean_pitch = lean.roll, lean.pitch
+        pilot.lean_of_roll, pilot.lean_of_pitch = pilot.roll, pilot.pitch
+        pilot.lean_of_angle, pilot.lean_of_limit = angle_max, limit
+    return Lean(pilot.lean_roll, pilot.lean_pitch)
 
 
 @law

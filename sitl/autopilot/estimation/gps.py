@@ -42,8 +42,9 @@ LEARNED_VARIANCE = 3.6e-7
 """Variance of the yaw gyro's bias below which it is known: (0.034 deg/s)^2 [(rad/s)^2]."""
 LEARNED_HOLD_US = 23_300_000
 """It must have been known this long before GPS is used; with default noise that is 41.6 s after boot."""
-LEARNED_US = 90_000_000
-"""After this long the bias is taken as known: near the magnetic poles the variance stays higher."""
+LEARNED_US = 37_000_000
+"""After this long the bias is taken as known: where the horizontal field is weak the variance stays higher, and
+ArduPilot uses GPS 41.5 s after boot at every latitude."""
 POSITION_TIMEOUT_US = 7_000_000
 """After this long without a fused position it is no longer trusted."""
 STOP_TIMEOUT_US = 15_000_000

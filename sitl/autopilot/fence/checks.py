@@ -83,16 +83,17 @@ def beyond_areas(fence: FenceState, point: Vec2, one_is_enough: bool) -> float:
 def measure(
     fence: FenceState, estimate: Estimate, home: HomeState, params: Fence, alt_max: float, alt_min: float
 ) -> None:
-    """How far beyond each fence the vehicle is (``over``); without a position, as far as it was from the flat ones."""
+    """How far beyond each fence the vehicle is (``over``); without a position what is breached stays so."""
     height = home.pos.z - estimate.pos.z
     fence.over[0], fence.over[3] = height - alt_max, alt_min - height
-    if not home.is_set:
-        fence.over[1] = NONE
-    elif estimate.position_ok:
-        fence.over[1] = norm2(horizontal(estimate.pos) - horizontal(home.pos)) - params.RADIUS
-    if not fence.is_placed or fence.shapes == 0:
-        fence.over[2] = NONE
-    elif estimate.position_ok and active(fence, params) & AREAS != 0:
+    if not (estimate.position_ok and home.is_set):
+        for k in (1, 2):
+            if fence.breached >> k & 1 == 0:
+                fence.over[k] = NONE
+        return
+    fence.over[1] = norm2(horizontal(estimate.pos) - horizontal(home.pos)) - params.RADIUS
+    fence.over[2] = NONE
+    if fence.is_placed and active(fence, params) & AREAS != 0:
         enough = int(params.OPTIONS) & ONE_IS_ENOUGH != 0
         fence.over[2] = beyond_areas(fence, horizontal(estimate.pos), enough)
 
@@ -111,10 +112,9 @@ def judge(fence: FenceState, k: int, margin: float, time_us: int) -> bool:
     was_breached = fence.breached & bit != 0
     if was_breached and (k == 2 or over < fence.limit[k]):
         return False
-    if not was_breached:
-        fence.breaches += 1
+    if fence.breached == 0:
         fence.breach_us = time_us
-        fence.last_breach = bit
+    fence.breaches += 1
     fence.breached |= bit
     fence.limit[k] = over + AGAIN
     return True
@@ -179,14 +179,15 @@ def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, t
     left = before & ~fence.near
     if left != 0:
         emit(events, time_us, FENCE_NEAR, float(left), -1.0)
-    if fence.near == 0 or params.NTF_FREQ <= 0.0 or time_us - fence.told_us < 1e6 / params.NTF_FREQ:
+    close = fence.near & ~fence.breached
+    if close == 0 or params.NTF_FREQ <= 0.0 or time_us - fence.told_us < 1e6 / params.NTF_FREQ:
         return
     nearest = 1e9
     for k in range(FENCES):
-        if fence.near >> k & 1 != 0:
-            nearest = min(nearest, abs(fence.over[k]))
+        if close >> k & 1 != 0:
+            nearest = min(nearest, -fence.over[k])
     fence.told_us = time_us
-    emit(events, time_us, FENCE_NEAR, float(fence.near), nearest)
+    emit(events, time_us, FENCE_NEAR, float(close), nearest)
 
 
 @law

@@ -47,8 +47,7 @@ class FenceState(Record):
     over: Floats = array(FENCES)  # how far beyond each fence the vehicle is [m]; negative: how far from it
     limit: Floats = array(FENCES)  # further beyond it than this is another breach [m]
     breaches: int  # so far
-    breach_us: int  # the last one
-    last_breach: int  # its bit
+    breach_us: int  # since when, of the last time that one was
     recovery_us: int  # since when the pilot brings the vehicle back; 0 not
     told_us: int  # when it was last told how far a fence is
 

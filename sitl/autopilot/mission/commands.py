@@ -25,6 +25,8 @@ class Commands(ABC, Generic[V]):
 
     auto: int
     """Number of the mode that runs missions."""
+    auto_return = -1
+    """Number that AUTO is shown under while it flies the mission's way back."""
     taken: frozenset[int]
     """MAV_CMDs that missions may hold."""
     planner: Planner[Any]
@@ -73,7 +75,7 @@ class Commands(ABC, Generic[V]):
             set_home(v.autopilot, item)
         elif item.command == commands.DO_FENCE_ENABLE:
             return _enable_fence(v, item.p1 == 1.0)
-        elif item.command in commands.OUTPUT_COMMANDS or item.command in commands.CAMERA_COMMANDS:
+        elif item.command in commands.CARRIED_OUT:
             return [OutputItem(item)]
         return []
 
@@ -94,6 +96,11 @@ def _enable_fence(v: Vehicle, on: bool) -> list[Note]:
 def whole_seconds(item: MissionItem) -> float:
     """The delay in parameter 1 as ArduPilot stores it [s]."""
     return float(int(min(max(item.p1, 0.0), 65535.0)))
+
+
+def turns(item: MissionItem) -> float:
+    """Circles of LOITER_TURNS as ArduPilot stores them: whole ones, or a part of one."""
+    return float(int(item.p1)) if item.p1 >= 1.0 else max(item.p1, 0.0)
 
 
 def is_speed(speed: float) -> bool:

@@ -130,17 +130,14 @@ CAMERA_COMMANDS = (
     IMAGE_START_CAPTURE,
     IMAGE_STOP_CAPTURE,
 )
-DEVICE_COMMANDS = (
-    DO_MOUNT_CONTROL,
-    DO_GIMBAL_MANAGER_PITCHYAW,
-    VIDEO_START_CAPTURE,
-    VIDEO_STOP_CAPTURE,
-    DO_GRIPPER,
-    DO_SPRAYER,
-    DO_WINCH,
-)
-"""Taken, and without effect: no vehicle here has a gimbal, a video camera, a gripper, a sprayer or a winch."""
+VIDEO_COMMANDS = (VIDEO_START_CAPTURE, VIDEO_STOP_CAPTURE)
+"""Taken, and without effect: no vehicle here has a video camera."""
 OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
+MOUNT_COMMANDS = (DO_MOUNT_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
+PAYLOAD_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
+ROI_COMMANDS = (DO_SET_ROI_LOCATION, DO_SET_ROI_NONE, DO_SET_ROI)
+CARRIED_OUT = frozenset((*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS))
+"""By what is fitted to the vehicle, besides what the autopilot does with them."""
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""
 

@@ -21,7 +21,7 @@ LOITER_TIME = 5  # fly the leg to target, stay for delay
 RTL = 6
 LAND = 7  # at target when has_place, else where it is
 DELAY = 8  # stay where it is for delay
-GUIDED = 9  # rover: set-points drive, until target (when has_place) or a limit is reached
+GUIDED = 9  # set-points drive, until a limit is reached (a rover: or target, when has_place)
 YAW_SPEED = 10  # rover: turn to a heading at a speed
 PASSED_OVER = 11  # complete at once
 LOITER_TO_ALT = 12  # copter: fly the leg to target, then climb or sink to its height
@@ -43,6 +43,16 @@ SPEED_REQUEST = 3.0  # LEG_ENDING: the speed limit changed: plan the legs anew
 STOPPED = 0
 RUNNING = 1
 COMPLETE = 2
+
+# Parts of a mission (``mission_part``)
+OUTWARD = 0
+RETURN_PATH = 1  # behind DO_RETURN_PATH_START
+LANDING = 2  # behind DO_LAND_START, or a landing
+
+# Ways back (AUTO_RTL)
+BEST = 0  # by a return path, else by a landing sequence
+BY_LANDING = 1
+BY_PATH = 2
 
 SEGMENTS = 16
 DETOUR = 24
@@ -129,6 +139,7 @@ class Nav(Record):
     mission_do: int  # do-command waiting or last run
     mission_do_next: int  # where to look for the following do-command; 0 all done
     mission_resume: bool  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
+    mission_part: int  # OUTWARD, RETURN_PATH or LANDING: what the command under way belongs to
     mission_events: int  # events that the sequencer has seen
     jump_item: Ints = array(JUMPS, stored="i8")  # DO_JUMP items run so far ...
     jump_runs: Ints = array(JUMPS, stored="i8")  # ... and how often

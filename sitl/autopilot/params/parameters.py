@@ -14,7 +14,7 @@ from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
-from .system import Arming, Battery, Compass, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
+from .system import Ahrs, Arming, Battery, Compass, Failsafes, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 
 
 class Parameters(ParameterGroup):
@@ -24,6 +24,7 @@ class Parameters(ParameterGroup):
     ``params["ATC_RAT_RLL_P"]``, ``params.ATC_RAT_RLL_P``. Laws use the path: ``params.ATC.RAT_RLL.P``.
     """
 
+    AHRS: Ahrs
     ARMING: Arming
     AVOID: Avoid
     BATT: Battery
@@ -34,6 +35,7 @@ class Parameters(ParameterGroup):
     FS: Failsafes
     GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
     INITIAL_MODE: float = param(0, 0, 127, "", "Mode after boot, until the mode channel says another", INT8)
+    INS: Inertial
     LOG: Log
     MAV: Mavlink
     MAV1: StreamRates

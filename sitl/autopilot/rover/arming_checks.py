@@ -24,6 +24,7 @@ from ..arming_checks import (
     THROTTLE_OFF_CENTRE,
     WAYPOINT_SPEED,
     battery_checks,
+    calibration_checks,
     proximity_checks,
     radio_checks,
     sensor_checks,
@@ -71,6 +72,7 @@ def check(v: Vehicle) -> int:
     ap = v.autopilot
     modes, p = ap.modes, ap.params
     sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
+    sensors |= calibration_checks(ap.calibrated.state, p.ARMING)
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)

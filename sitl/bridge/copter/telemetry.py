@@ -90,7 +90,7 @@ def sys_status(m: SysStatus, v: Copter) -> bool:
 @law
 def mission_current(m: MissionCurrent, v: Copter) -> bool:
     """MISSION_CURRENT: number of the item, number of items without home, state."""
-    return status.mission_current(m, v, AUTO)
+    return status.mission_current(m, v, AUTO, v.autopilot.modes.nav.paused)
 
 
 @law

@@ -38,7 +38,7 @@ PROFILE = Profile(
         12: (
             "EXTRA3",
             ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION",
-             "WHEEL_DISTANCE"),
+             "WHEEL_DISTANCE", "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },
     commands=COMMANDS,

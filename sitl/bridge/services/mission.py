@@ -380,6 +380,6 @@ class MissionService(Service):
             self._ack(channel, sender, ACCEPTED if cleared else ERROR, kind)
 
     def _set_current(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        if self.bridge.autopilot.set_current_item(fields.seq, False):
+        if self.bridge.autopilot.set_current_item(fields.seq):
             self.bridge.send_now(channel, MISSION_CURRENT)
         self.bridge.say_pending()

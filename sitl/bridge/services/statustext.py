@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Text
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Switched, Text
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -75,6 +75,7 @@ TEXTS = {
 
 HEARTBEAT = message("HEARTBEAT").id
 MISSION_CURRENT = message("MISSION_CURRENT").id
+FENCE_STATUS = message("FENCE_STATUS").id
 REACHED = message("MISSION_ITEM_REACHED")
 E = "autopilot.events."
 
@@ -129,6 +130,8 @@ class EventService(Service):
         if code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
+        if code == core.FENCE_BREACHED:
+            self.bridge.send_to_all(FENCE_STATUS)
         if code in (core.ARMED, core.DISARMED):
             self.bridge.get(PreArmService).find_due()
         if code == core.EKF_INITIALISED:
@@ -152,6 +155,8 @@ class EventService(Service):
                     listener.reached(note.seq)
             elif isinstance(note, OutputItem):
                 self.bridge.carry_out(note.item)
+            elif isinstance(note, Switched):
+                self.bridge.switched(note.function, note.position)
             elif isinstance(note, CurrentChanged):
                 self.bridge.send_to_all(MISSION_CURRENT)
 

@@ -217,8 +217,8 @@ NO_MISSION, NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 1, 2, 3, 4, 5
 
 
 @law
-def mission_current(m: MissionCurrent, v: Vehicle, auto: int) -> bool:
-    """MISSION_CURRENT of a firmware in which the mode ``auto`` runs missions."""
+def mission_current(m: MissionCurrent, v: Vehicle, auto: int, paused: bool) -> bool:
+    """MISSION_CURRENT of a firmware in which the mode ``auto`` runs missions; ``paused``: by DO_PAUSE_CONTINUE."""
     modes, total = v.autopilot.modes, v.autopilot.params.MIS.TOTAL
     m.seq = uint16(modes.nav.mission_current)
     m.total = uint16(total - 1.0)
@@ -226,10 +226,10 @@ def mission_current(m: MissionCurrent, v: Vehicle, auto: int) -> bool:
         m.mission_state = NO_MISSION
     elif modes.nav.mission_state == 2:
         m.mission_state = COMPLETE
-    elif modes.nav.mission_state == 1:
-        m.mission_state = ACTIVE
+    elif paused:
+        m.mission_state = PAUSED
     else:
-        m.mission_state = PAUSED if modes.nav.mission_current > 0 else NOT_STARTED
+        m.mission_state = ACTIVE if modes.nav.mission_state == 1 else NOT_STARTED
     m.mission_mode = 1 if modes.number == auto else 0
     return True
 

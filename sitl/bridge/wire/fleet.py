@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from ...core.array_kernels import IntColumn
 from ...core.kernels import law
-from ...core.memory import record_at
+from ...core.memory import call_unit, ints_at, record_at
 from ...core.records import Record
 from ...vehicle.record import Vehicle
 from .link import wants_shell
@@ -113,6 +113,29 @@ def any_waits(needs_shell: IntColumn) -> bool:
     """Whether any vehicle needs the shell; ``needs_shell`` is the slots', shape (count,)."""
     for k in range(needs_shell.shape[0]):  # noqa: SIM110 - laws know no generators
         if needs_shell[k] != GOES_ON:
+            return True
+    return False
+
+
+@law
+def run_fleet(unit: int, vehicles: int, size: int, count: int, slots: int, ranging: int, step_us: int) -> bool:
+    """Let all vehicles of a fleet go on, in one thread; whether any of them needs the shell.
+
+    Args:
+        unit: address of ``run_all`` of their kind.
+        vehicles: address of their records, whose first number is the time since boot.
+        size: of a record [bytes].
+        count: of the vehicles.
+        slots: address of one ``Slot`` for each vehicle.
+        ranging: address of the ``Ranging`` of their world; 0: there is none.
+        step_us: for how long; STAYS: as the slots say.
+    """
+    if step_us != STAYS:
+        for k in range(count):
+            record_at(Slot, slots + k * SLOT_SIZE).until_us = ints_at(vehicles + k * size, 1)[0] + step_us
+    call_unit(unit, vehicles, count, 0, count, slots, ranging)
+    for k in range(count):  # noqa: SIM110 - laws know no generators
+        if record_at(Slot, slots + k * SLOT_SIZE).needs_shell != GOES_ON:
             return True
     return False
 

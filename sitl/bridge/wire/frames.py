@@ -47,8 +47,12 @@ class Found(NamedTuple):
     """Wrong checksums on the way."""
 
 
+_AT_ONCE = 8
+"""Bytes that go into a checksum at once."""
+
+
 def _crc_tables() -> list[list[int]]:
-    """What a byte does to the checksum: as the last byte, and as that before the last, two and three before it."""
+    """What a byte does to the checksum: row k for a byte that k others follow."""
     table = []
     for byte in range(256):
         crc = byte
@@ -56,25 +60,28 @@ def _crc_tables() -> list[list[int]]:
             crc = crc >> 1 ^ (0x8408 if crc & 1 else 0)
         table.append(crc)
     tables = [table]
-    for _ in range(3):
+    for _ in range(1, _AT_ONCE):
         tables.append([crc >> 8 ^ table[crc & 0xFF] for crc in tables[-1]])
     return tables
 
 
-_CRC, _CRC_1, _CRC_2, _CRC_3 = map(np.array, _crc_tables())
+_CRC = np.array(_crc_tables(), np.int32)
 
 
 @law
 def crc_of(data: Bytes, start: int, end: int, extra: int) -> int:
     """CRC-16/MCRF4XX of bytes ``start`` .. ``end`` - 1 and the message's own seed."""
-    crc = 0xFFFF
-    fours = start + (end - start) // 4 * 4
-    for k in range(start, fours, 4):  # four look-ups that do not wait for each other
-        one, two = (crc ^ int(data[k])) & 0xFF, (crc >> 8 ^ int(data[k + 1])) & 0xFF
-        crc = int(_CRC_3[one] ^ _CRC_2[two] ^ _CRC_1[data[k + 2]] ^ _CRC[data[k + 3]])
-    for k in range(fours, end):
-        crc = crc >> 8 ^ int(_CRC[(crc ^ int(data[k])) & 0xFF])
-    return crc >> 8 ^ int(_CRC[(crc ^ extra) & 0xFF])
+    crc, covered = 0xFFFF, data[start:end]  # from 0 on: an index that may be negative costs a test
+    size = end - start
+    whole = size // _AT_ONCE * _AT_ONCE
+    for k in range(0, whole, _AT_ONCE):  # look-ups that do not wait for each other; six need not wait for ``crc``
+        later = _CRC[5, covered[k + 2]] ^ _CRC[4, covered[k + 3]] ^ _CRC[3, covered[k + 4]]
+        later ^= _CRC[2, covered[k + 5]] ^ _CRC[1, covered[k + 6]] ^ _CRC[0, covered[k + 7]]
+        one, two = (crc ^ int(covered[k])) & 0xFF, (crc >> 8 ^ int(covered[k + 1])) & 0xFF
+        crc = int(_CRC[7, one] ^ _CRC[6, two] ^ later)
+    for k in range(whole, size):
+        crc = crc >> 8 ^ int(_CRC[0, (crc ^ int(covered[k])) & 0xFF])
+    return crc >> 8 ^ int(_CRC[0, (crc ^ extra) & 0xFF])
 
 
 @law
@@ -225,7 +232,8 @@ def next_frame(port: Port, address: int) -> bool:
 @law
 def copy_payload(data: Bytes, start: int, size: int, payload: Bytes) -> None:
     """A payload at full length, with the zeros that the sender left out."""
+    sent = data[start : start + size]
     for k in range(size):
-        payload[k] = data[start + k]
+        payload[k] = sent[k]
     for k in range(size, PAYLOAD_BYTES):
         payload[k] = 0

@@ -290,15 +290,16 @@ def read_part(end: ClientEnd, m: DebugFloatArray, i: int, scans: NarrowTable, co
     if m.time_usec != end.scan_us:
         end.scan_us = m.time_usec
         end.fresh = 0
-    first = PART * m.array_id
+    under_way, scan = coming[i], scans[i]
+    part = under_way[PART * m.array_id :]
     for k in range(PART):
-        coming[i, first + k] = m.data[k]
+        part[k] = m.data[k]
     end.fresh |= 1 << m.array_id
     if end.fresh == (1 << end.parts) - 1:
         end.fresh = 0
         end.scans += 1
-        for k in range(scans.shape[1]):
-            scans[i, k] = coming[i, k]
+        for k in range(scan.shape[0]):
+            scan[k] = under_way[k]
 
 
 @law

@@ -104,3 +104,67 @@ def test_relaxing_integrator_decays():
     for _ in range(400):
         relax_integrator(pid, 0.2, DT, 0.16)
     assert pid.integrator == pytest.approx(0.2, abs=0.01)
+
+
+FREE = Blocked(False, False)
+
+
+def directional(pid, error, blocked=FREE, ki=0.5):
+    return update_pid_directional(pid, error, 0.0, DT, blocked, Gains(2.0, ki, 0.1, 0.3, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("error", [1.0, -1.0])
+def test_the_output_holds_all_terms_with_their_signs(error):
+    """A steady error: P and feed-forward stand, and the integral grows with it."""
+    gains = Gains(2.0, 0.5, 0.1, 0.3, 0.2, 9.0, 0.0, 0.0, 0.0, 0.0)
+    for update in (
+        lambda pid: update_pid(pid, error, 0.0, DT, False, gains),
+        lambda pid: update_pid_directional(pid, error, 0.0, DT, Blocked(False, False), gains),
+    ):
+        pid = fresh()
+        outs = [update(pid) for _ in range(400)]
+        assert outs[0] == pytest.approx(error * (2.3 + 0.5 * DT))
+        assert outs[-1] == pytest.approx(error * (2.3 + 0.5 * 1.0))
+        assert pid.integrator == pytest.approx(error * 0.5)
+
+
+def test_derivative_and_feed_forward_of_a_moving_target():
+    """With a filter of the target: the target that counts is the filtered one, and its derivative is its own."""
+    pid, gains = fresh(), Gains(0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 4.0, 0.0, 0.0)
+    update_pid(pid, 0.0, 0.0, DT, False, gains)
+    out = update_pid(pid, 1.0, 0.0, DT, False, gains)
+    gain = lowpass_gain(4.0, DT)
+    assert out == pytest.approx(gain + 0.5 * gain / DT)
+    pid, gains = fresh(), Gains(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0)
+    update_pid(pid, 0.0, 0.0, DT, False, gains)
+    assert update_pid(pid, 0.0, 1.0, DT, False, gains) == pytest.approx(-gain / DT)
+    assert update_pid(pid, 0.0, 1.0, DT, False, gains) == pytest.approx(-gain / DT * (1.0 - gain))
+    assert lowpass_gain(4.0, DT) == pytest.approx(math.tau * 4.0 * DT / (1.0 + math.tau * 4.0 * DT))
+
+
+@pytest.mark.parametrize("start", [0.3, -0.3])
+def test_a_saturated_loop_unwinds(start):
+    pid = fresh(start)
+    saturating(pid, -math.copysign(1.0, start), 0.0, saturated=True, ki=1.0)
+    assert pid.integrator == pytest.approx(start - math.copysign(DT, start))
+    saturating(pid, math.copysign(1.0, start), 0.0, saturated=True, ki=1.0)
+    assert pid.integrator == pytest.approx(start - math.copysign(DT, start))
+
+
+@pytest.mark.parametrize("error", [1.0, -1.0])
+def test_each_direction_is_blocked_on_its_own(error):
+    for blocked, grows in ((Blocked(error < 0.0, error > 0.0), False), (Blocked(error > 0.0, error < 0.0), True)):
+        pid = fresh()
+        directional(pid, error, blocked)
+        assert (pid.integrator != 0.0) is grows
+
+
+def test_no_integral_gain_forgets_the_integrator():
+    pid = fresh(0.4)
+    assert directional(pid, 1.0, ki=0.0) == pytest.approx(2.3) and pid.integrator == 0.0
+
+
+def test_relaxing_integrator_has_the_time_constant():
+    pid = fresh(1.0)
+    relax_integrator(pid, 0.2, DT, 0.16)
+    assert pid.integrator == pytest.approx(1.0 - 0.8 * DT / (DT + 0.16))

@@ -116,6 +116,21 @@ def test_the_lean_never_exceeds_the_limit(roll, pitch, most, limit):
     assert r * roll >= 0.0 and p * pitch >= 0.0
 
 
+STICKS = st.sampled_from((-1.0, -0.3, -0.0, 0.0, 0.3, 1.0))
+
+
+@given(st.lists(st.tuples(STICKS, STICKS, st.sampled_from((0.0, 0.4, 0.5)), st.sampled_from((0.0, 0.2, 0.5)))))
+def test_the_lean_is_that_of_the_sticks_of_now(asked):
+    """Kept from tick to tick, it has the bits of one worked out anew, signs of zeros too."""
+    sticks = make().autopilot.modes.pilot
+    for sticks.roll, sticks.pitch, most, limit in asked:
+        for _ in range(2):
+            kept, anew = (
+                pilot.lean_angles(sticks, most, limit), pilot.lean_of_sticks(sticks.roll, sticks.pitch, most, limit)
+            )  # fmt: skip
+            assert [x.hex() for x in kept] == [x.hex() for x in anew]
+
+
 @given(st.floats(0, 1), st.floats(0.1, 0.9), st.floats(0.125, 0.6875))
 def test_throttle_curve_ends_at_both_ends_and_rises(x, middle, hover):
     assert pilot.throttle_out(0.0, middle, hover) == 0.0

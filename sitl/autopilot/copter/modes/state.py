@@ -54,6 +54,13 @@ class GuidedState(Record):
     climb_rate: float  # ANGLE: [m/s] up
     thrust: float  # ANGLE: 0 .. 1
     use_thrust: bool  # ANGLE: thrust instead of climb rate
+    # within a mission (DO_GUIDED_LIMITS); 0: no limit
+    limit_us: int  # how long
+    limit_low: float  # heights over the origin [m]
+    limit_high: float
+    limit_distance: float  # from where it began [m]
+    limit_since_us: int  # when it began
+    limit_from: Vec2  # and where, NE [m]
 
 
 class LoiterState(Record):
@@ -137,6 +144,19 @@ class ZigZagState(Record):
     line: int  # of the sweep
 
 
+class SystemIdState(Record):
+    """SYSTEMID."""
+
+    testing: bool  # the chirp runs
+    holds_place: bool  # an axis of the position
+    time: float  # since the mode began [s]
+    value: float  # of the chirp
+    frequency: float  # [rad/s]
+    place: Vec2  # to hold, NE [m]
+    vel: Vec2  # [m/s]
+    acc: Vec2  # [m/s^2]
+
+
 class RtlState(Record):
     """RTL and SMART_RTL."""
 
@@ -180,6 +200,13 @@ class PilotState(Record):
     rudder_done: bool  # the stick must return before it counts again
     throttle_zero: bool  # low, for at least 0.4 s
     throttle_zero_us: int  # when last above zero
+    # the lean last asked for, and what it follows from: sticks stay as they are for eight ticks and more
+    lean_roll: float  # [rad]
+    lean_pitch: float
+    lean_of_roll: float  # sticks
+    lean_of_pitch: float
+    lean_of_angle: float  # at full stick [rad]
+    lean_of_limit: float  # [rad]
 
 
 class SimpleState(Record):
@@ -210,6 +237,7 @@ class Modes(shared.Modes):
     drift: DriftState
     throw: ThrowState
     zigzag: ZigZagState
+    systemid: SystemIdState
     rtl: RtlState
     path: shared.PathState
     land: LandState

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.records import Floats, Records
-from ... import camera, relays
+from ... import shell_parameters
 from ...params import parameters as shared
 from ...params.avoidance import PathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
@@ -15,7 +15,7 @@ from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
+from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
@@ -31,6 +31,7 @@ from .flight import (
     PosHold,
     Rtl,
     SmartRtl,
+    SystemId,
     TakeOff,
     Throw,
     Waypoints,
@@ -59,6 +60,7 @@ class Parameters(shared.Parameters):
 
     ACRO: Acro
     ANGLE_MAX: float = param(3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16)
+    AHRS: Ahrs
     ARMING: Arming
     ATC: Attitude
     AUTO_OPTIONS: float = param(
@@ -88,6 +90,7 @@ class Parameters(shared.Parameters):
     GPS1_DELAY_MS: float
     GUID: Guided
     INITIAL_MODE: float
+    INS: Inertial
     LAND: Land
     LOG: Log
     LOIT: Loiter
@@ -114,6 +117,7 @@ class Parameters(shared.Parameters):
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SERVO: Records[Output] = numbered(Output, 16)
+    SID: SystemId
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
     SRTL: SmartRtl
@@ -136,4 +140,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS)

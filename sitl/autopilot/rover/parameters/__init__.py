@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
-from ... import camera, relays
+from ... import shell_parameters
 from ...params import parameters as shared
 from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
@@ -18,7 +18,7 @@ from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics, StreamRates
+from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
@@ -29,6 +29,7 @@ class Parameters(shared.Parameters):
     """The rover's parameters, in the order of the wire."""
 
     ACRO_TURN_RATE: float = param(180.0, 0.0, 360.0, "deg/s", "Turn rate of a full steering stick")
+    AHRS: Ahrs
     ARMING: Arming
     ATC: Attitude
     AVOID: Avoid = group(BEHAVE=1)
@@ -49,6 +50,7 @@ class Parameters(shared.Parameters):
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
     )
     INITIAL_MODE: float
+    INS: Inertial
     LOG: Log = group(BITMASK=65535)
     LOIT: Loiter
     MANUAL: Manual
@@ -85,4 +87,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS)

@@ -278,3 +278,76 @@ def test_a_vehicle_stops_ahead_of_where_it_is(north, east):
     stop = position_start.stopping_point(Vec2(1.0, 2.0), Vec2(north, east), 1.0, 5.0, 2.5) - Vec2(1.0, 2.0)
     assert north * stop.y == pytest.approx(east * stop.x, abs=1e-9) and dot2(stop, Vec2(north, east)) >= 0.0
     assert norm2(stop) <= 0.5 * 2.5 + 25.0 / 5.0 + 1e-9
+
+
+VELOCITY = Gains(2.0, 0.5, 0.25, 0.1, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+"""P, I, D, feed-forward; the integrator is at most 1 m/s^2."""
+
+
+@pytest.mark.parametrize(("north", "east"), [(1.0, 0.0), (0.0, -1.0), (-0.6, 0.8)])
+def test_the_acceleration_holds_all_terms_of_the_velocity_loop(north, east):
+    c, wanted = PositionState(), Vec2(north, east)
+    c.vel_target = wanted
+    outs = [position.control_velocity(c, REST, VELOCITY) for _ in range(400)]
+    assert outs[0] == pytest.approx((2.1 + 0.5 * DT) * wanted)
+    assert outs[-1] == pytest.approx((2.1 + 0.5 * 400 * DT) * wanted)
+    assert c.vel_integrator == pytest.approx(0.5 * 400 * DT * wanted)
+    for _ in range(1000):
+        position.control_velocity(c, REST, VELOCITY)
+    assert c.vel_integrator == pytest.approx(wanted)  # at its limit
+    out = position.control_velocity(c, 0.1 * wanted, VELOCITY)
+    assert out == pytest.approx((2.0 * 0.9 + 0.1 + 1.0 - 0.25 * 0.1 / DT) * wanted)
+
+
+def test_the_integrator_of_the_velocity_loop_does_not_grow_into_the_limit():
+    c = PositionState()
+    c.vel_target, c.vel_integrator, c.limit = Vec2(1.0, 0.0), Vec2(0.5, 0.0), Vec2(1.0, 0.0)
+    position.control_velocity(c, REST, VELOCITY)
+    assert c.vel_integrator == pytest.approx((0.5, 0.0))
+    c.vel_target = Vec2(-1.0, 0.0)
+    position.control_velocity(c, REST, VELOCITY)
+    assert c.vel_integrator.x < 0.5
+    position.control_velocity(c, REST, VELOCITY._replace(i=0.0))
+    assert c.vel_integrator == (0.0, 0.0)
+
+
+def test_gains_of_the_parameters(ap):
+    psc = ap.params.PSC
+    psc.VELXY.I, psc.VELXY.IMAX, psc.VELZ.I, psc.VELZ.IMAX = 0.7, 800.0, 0.3, 600.0
+    psc.ACCZ.P, psc.ACCZ.I, psc.ACCZ.IMAX = 0.4, 0.9, 700.0
+    horizontal = position.position_gains(psc)
+    assert (horizontal.vel.i, horizontal.vel.i_max) == pytest.approx((0.7, 8.0))
+    vertical = altitude.altitude_gains(psc, 0.3)
+    assert (vertical.vel.i, vertical.vel.i_max) == pytest.approx((0.3, 6.0))
+    assert (vertical.acc.p, vertical.acc.i, vertical.acc.i_max) == pytest.approx((0.04, 0.09, 0.7))
+    assert altitude.altitude_gains(psc, 0.9).acc.i_max == 0.9  # all of the throttle that hovers
+
+
+WITH_I = altitude.AltitudeGains(
+    1.0,
+    Gains(0.0, 2.0, 0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 0.0, 0.0),
+    Gains(0.0, 0.5, 0.0, 0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 0.0),
+)
+
+
+@pytest.mark.parametrize("too_low", [1.0, -1.0])
+def test_integrators_of_the_altitude_loops_push_back(too_low):
+    """Below the path (z is down) the velocity loop asks for acceleration upward, and less throttle is taken off."""
+    c, free = AltitudeState(), Blocked(False, False)
+    for _ in range(400):
+        off = altitude.control_vertical(c, Motion(0.1 * too_low, 0.0, 0.0), free, WITH_I)
+    assert c.accel_target == pytest.approx(-2.0 * 0.1 * too_low * 400 * DT)
+    assert c.vel.integrator == pytest.approx(c.accel_target)
+    assert off == pytest.approx(-0.5 * 0.2 * too_low * sum((k + 1) * DT * DT for k in range(400)))
+    assert c.accel.integrator == pytest.approx(off)
+
+
+@pytest.mark.parametrize(("blocked", "error", "grows"), [
+    (Blocked(True, False), 0.1, True), (Blocked(True, False), -0.1, False),
+    (Blocked(False, True), 0.1, False), (Blocked(False, True), -0.1, True),
+])  # fmt: skip
+def test_the_velocity_integrator_of_altitude_does_not_wind_up(blocked, error, grows):
+    """At the least throttle (down) it must not ask for more descent, at the greatest (up) not for more climb."""
+    c = AltitudeState()
+    altitude.control_vertical(c, Motion(error, 0.0, 0.0), blocked, WITH_I)
+    assert (c.vel.integrator != 0.0) is grows
