@@ -25,7 +25,7 @@ from sitl.foreign.process import HOST, AutopilotProcess, free_tcp_run
 
 TYPES = {2: "int8", 4: "int16", 6: "int32", 9: "float"}
 """MAV_PARAM_TYPE"""
-SWITCH = re.compile(r".*(ENABLED?|_EN|_TYPE|_MONITOR|_FUNCTION|_DRIVER)")
+SWITCH = re.compile(r".*(ENABLED?|_EN|_TYPE|_MONITOR|_FUNCTION|_DRIVER)|SID_AXIS")
 NO_SWITCH = re.compile(r"(FRAME|SERVO|BRD|FS|EK3|ARMING|RTL|GPS1_MB|BTN|SIM_(?!.*_ENABLE)).*")
 AFTER_BOOT = (
     "FRAME_CLASS=7", "CC_TYPE=2", "GEN_TYPE=3", "CAN_P1_DRIVER=1", "CAN_P1_DRIVER=1,CAN_D1_UC_SER_EN=1",

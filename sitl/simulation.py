@@ -11,7 +11,7 @@ from typing import Any, Protocol, Unpack
 
 import numpy as np
 
-from .autopilot import boot
+from .autopilot import boot, shell_parameters
 from .autopilot.aux_functions import AuxFunctions
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
@@ -389,6 +389,8 @@ class Simulation:
     def _power_on(self) -> None:
         boot.clear(self.v)
         self.plant.power_on()
+        if shell_parameters.clears_mission(self.parameters):
+            self.mission = Mission()
         self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
         self.aux = AuxFunctions(self, self.firmware.aux_functions)
         self.firmware.power_on(self.v)

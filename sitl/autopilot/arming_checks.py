@@ -7,16 +7,21 @@ ARMING_CHECK selects which optional checks count.
 
 from __future__ import annotations
 
+import math
+
 from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
-from . import radio
+from . import radio, sensor_calibration
+from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
 from .failsafe_checks import is_low, is_used_up
+from .fence import arming as fence_arming
 from .params.parameters import Parameters
 from .params.radio import RcMap
-from .params.simulation import Axes
+from .params.simulation import axes
 from .params.system import Arming, Compass
+from .sensor_calibration import corrected_field, first_field
 from .state import BatteryState, Radio, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
@@ -29,6 +34,7 @@ BY_BATTERY_FAILSAFE = 7
 BY_CRASH = 12
 BY_LANDING = 13
 BY_MISSION_EXIT = 14
+BY_FENCE = 15
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
@@ -71,12 +77,23 @@ BATTERY_CRITICAL_CAPACITY = 1 << 33
 BATTERY_CAPACITY_ORDER = 1 << 34
 BATTERY_VOLTAGE_ORDER = 1 << 35
 COMPASSES = 1 << 36
+FENCE_POSITION = 1 << 37
+FENCE_SHIFT = 38
+"""Five bits from here on are a number: why the fence refuses (``fence.arming``)."""
+NOTHING_SEEN = 1 << 43
+OBSTACLE_SHIFT = 44
+"""Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
+CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
     BAROMETER: "Barometer not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
+    FENCE_POSITION: "Fence enabled, need position estimate",
+    CALIBRATING_COMPASS: "Compass calibration running",
+    REBOOT_FOR_COMPASS: "Compass calibrated requires reboot",
+    REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -110,11 +127,15 @@ TEXTS = {
     NO_MISSION: "Mode requires mission",
     EMERGENCY_STOP: "Motors Emergency Stopped",
     INTERLOCK: "Motor Interlock Enabled",
+    NOTHING_SEEN: "PRX1: No Data",
 }
 
 # ARMING_CHECK
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
+CHECK_PARAMETERS = 32
 
+OBSTACLE_ROOM = 0.6
+"""Room that a copter with a proximity sensor needs around it [m]."""
 COMPASS_COS, COMPASS_FLAT_COS = 0.0, 0.5
 """Of the greatest angles between two compasses' fields: 90 degrees in space, 60 in the x-y plane."""
 COMPASS_FLAT_DIFFERENCE = 0.2
@@ -146,20 +167,30 @@ def differs(field: Vec3, other: Vec3) -> bool:
 
 
 @law
-def calibrated(field: Vec3, offset: Axes) -> Vec3:
-    """What a compass shows [gauss], with its COMPASS_OFS [mGauss] added."""
-    return field + 1e-3 * Vec3(offset.X, offset.Y, offset.Z)
+def compass_checks(sensors: Sensors, params: Compass) -> int:
+    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
+    first, second, third = first_field(sensors, params), sensors.mag2, sensors.mag3
+    if params.USE2 > 0.0 and dot(second, second) > 0.0:
+        if differs(first, corrected_field(second, axes(params.OFS2), params.DIA2, params.ODI2)):
+            return COMPASSES
+    if params.USE3 > 0.0 and dot(third, third) > 0.0:
+        if differs(first, corrected_field(third, axes(params.OFS3), params.DIA3, params.ODI3)):
+            return COMPASSES
+    return 0
 
 
 @law
-def compass_checks(sensors: Sensors, params: Compass) -> int:
-    """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
-    second, third = sensors.mag2, sensors.mag3
-    if params.USE2 > 0.0 and dot(second, second) > 0.0 and differs(sensors.mag, calibrated(second, params.OFS2)):
-        return COMPASSES
-    if params.USE3 > 0.0 and dot(third, third) > 0.0 and differs(sensors.mag, calibrated(third, params.OFS3)):
-        return COMPASSES
-    return 0
+def calibration_checks(state: int, params: Arming) -> int:
+    """Failed checks of the sensors' calibration (``Calibrated.state``)."""
+    failed = 0
+    if wants(params, CHECK_COMPASS):
+        if state & sensor_calibration.COMPASS_RUNNING:
+            failed |= CALIBRATING_COMPASS
+        elif state & sensor_calibration.COMPASS_DONE:
+            failed |= REBOOT_FOR_COMPASS
+    if wants(params, CHECK_INS) and state & sensor_calibration.ACCELS_DONE:
+        failed |= REBOOT_FOR_ACCELS
+    return failed
 
 
 @law
@@ -220,9 +251,33 @@ def radio_checks(rc: Radio, rcmap: RcMap, throttle_min: float) -> int:
     return THROTTLE_FAILSAFE if radio.stick_pulse(rc, rcmap, radio.THROTTLE) < throttle_min else 0
 
 
+@law
+def proximity_checks(seen: Proximity, time_us: int) -> int:
+    """Failed checks of a proximity sensor."""
+    return NOTHING_SEEN if seen.kind != 0 and not has_data(seen, time_us) else 0
+
+
+@law
+def obstacle_check(seen: Proximity, time_us: int) -> int:
+    """Failed check of what is nearest around the vehicle."""
+    sector, nearest = 0, math.inf
+    for k in range(SECTORS):
+        if sees(seen, k, time_us) and seen.distance[k] < nearest:
+            sector, nearest = k, float(seen.distance[k])
+    return (max(int(nearest * 100.0), 1) << 3 | sector) << OBSTACLE_SHIFT if nearest <= OBSTACLE_ROOM else 0
+
+
+def obstacle_text(found: int) -> str:
+    """Status text of an obstacle that is too near."""
+    return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
+
+
 def texts(failed: int, prefix: str = "") -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
-    return [prefix + text for bit, text in TEXTS.items() if shown & bit]
+    said = [text for bit, text in TEXTS.items() if shown & bit]
+    fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
+    said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])
+    return [prefix + text for text in said]

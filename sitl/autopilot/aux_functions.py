@@ -12,14 +12,15 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..core.geodesy import add_offset
-from . import events
+from . import events, payload
 from .arming_checks import BY_SWITCH
 from .aux_switch import HIGH, LOW, MIDDLE
+from .fence.checks import ALL, switch_by_user
 from .mission.item import NAV_WAYPOINT, RELATIVE, MissionItem, home_item
 from .mission.mission import Mission
-from .mission.notes import INFO, Note, Text
+from .mission.notes import INFO, Note, Switched, Text
 from .mission.sequencer import Sequencer
-from .modes import REASON_RC
+from .modes import REASON_RC, shown
 
 POSITIONS = {LOW: "LOW", MIDDLE: "MIDDLE", HIGH: "HIGH"}
 
@@ -120,7 +121,7 @@ def change_mode(number: int, name: str, mode: int, request: Callable[[Any, int, 
         modes = holder.v.autopilot.modes
         if position == HIGH:
             request(holder.v, mode, REASON_RC)
-        elif modes.number == mode:
+        elif shown(modes) == mode:
             modes.pilot.switch_position = modes.pilot.switch_candidate = -1  # the mode switch is read anew
         return []
 
@@ -181,16 +182,42 @@ def append_items(holder: Holder, items: list[MissionItem]) -> None:
     holder.sequencer.extend_mission(holder.v, Mission((*before, *items)))
 
 
+def _fence(holder: Holder, position: int) -> list[Note]:
+    ap = holder.v.autopilot
+    switch_by_user(ap.fence, position == HIGH, ALL, ap.params.FENCE, ap.events, holder.v.time_us)
+    return []
+
+
+def _avoid_obstacles(holder: Holder, position: int) -> list[Note]:
+    holder.v.autopilot.avoid.switched_off = position != HIGH
+    return []
+
+
 def _nothing(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def fitted(number: int, doc: str, name: str = "") -> AuxFunction:
+    """A function of something that is fitted to the vehicle, which is not the autopilot's."""
+    return AuxFunction(number, lambda _, position: [Switched(number, position)], doc, name)
+
+
+STICKS = {212: "roll", 213: "pitch", 214: "yaw"}
+
 COMMON = (
-    AuxFunction(11, _nothing, "fence: only told, as there is no fence", "Fence"),
+    fitted(payload.SWITCH_CAMERA, "high: the camera takes a picture", "CameraTrigger"),
+    AuxFunction(11, _fence, "high: all fences are on; else off", "Fence"),
+    fitted(payload.SWITCH_SPRAYER, "high: the sprayer runs, disarmed as a test; else it does not", "Sprayer"),
+    fitted(payload.SWITCH_GRIPPER, "high: the gripper closes; low: it opens"),
     AuxFunction(24, _reset_mission, "high: the mission goes back to its start", "MissionReset"),
+    fitted(payload.SWITCH_FOLD, "high: the gimbal is folded; else MNT1_DEFLT_MODE", "RetractMount1"),
     AuxFunction(31, _stop_motors, "high: motors stand, and cannot be armed", "MotorEStop"),
-    AuxFunction(40, _nothing, "avoidance: only told, as there is none", "AvoidProximity"),
+    AuxFunction(40, _avoid_obstacles, "high: obstacles are avoided (AVOID_*); else they are not", "AvoidProximity"),
     AuxFunction(46, _allow_overrides, "high: RC_CHANNELS_OVERRIDE and MANUAL_CONTROL are heard; low: they are not"),
     AuxFunction(58, _clear_mission, "high: clears the mission, unless it is being run", "ClearWaypoint"),
+    fitted(
+        payload.SWITCH_LOCK, "high: the sticks' yaw of the gimbal counts from north; else from the nose", "MountLock"
+    ),
+    *(AuxFunction(n, _nothing, f"{axis} of the gimbal, by the channel's stick") for n, axis in STICKS.items()),
 )
 """Those that do the same in every firmware."""

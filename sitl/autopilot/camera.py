@@ -17,9 +17,5 @@ MEANINGS = {
     "CAM1_TRIGG_DIST": "A picture each time that the vehicle is so far from the last one [m]; 0: none",
     "CAM1_RELAY_ON": "1: the relay is on while a picture is taken; 0: it is off",
     "CAM1_INTRVAL_MIN": "Shortest time between two pictures [s]",
-    **{
-        f"SERVO{n}_FUNCTION": f"What output {n} does: 10 triggers the camera, 0 nothing (free for DO_SET_SERVO)"
-        for n in range(5, OUTPUTS + 1)
-    },
 }
-"""Parameters that are read outside the core, and what they do; those of outputs where the core has none of its own."""
+"""Parameters that are read outside the core, and what they do."""

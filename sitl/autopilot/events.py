@@ -43,11 +43,24 @@ SIMPLE_CHANGED = 31  # copter; a: 0 off, 1 SIMPLE, 2 SUPER_SIMPLE
 THROW_STAGE = 33  # copter; a: stage (throw.py)
 ZIGZAG_DID = 34  # copter; a: what (zigzag.py), b: line of the sweep, 0 none
 PATH_LOW = 35  # SMART_RTL: there is little room for its path
-NO_WAY_BACK = 36  # copter: a failsafe cannot enter SMART_RTL; a: what it does instead (failsafe_actions.py)
+NO_WAY_BACK = 36  # copter: a failsafe cannot enter SMART_RTL, or (b: 1) AUTO_RTL; a: what it does (failsafe_actions.py)
 THRUST_LOST = 40  # copter; a: motor 1 .. that seems to fail
 TAKEOFF_BLOCKED = 41  # copter; a: why (takeoff_check.py)
 FOLLOW_OFFSET = 42  # FOLLOW keeps the distance that it has; a: 1 in the lead's frame, 0 north, east, down
 FOLLOW_OFF = 43  # FOLLOW was asked for while FOLL_ENABLE is 0
+FENCE_BREACHED = 44  # a: bits of fences, b: 1 the pilot is told
+FENCE_CLEAR = 45  # no fence is breached any more; b: 1 the pilot is told
+FENCE_SWITCHED = 46  # a: bits of fences, b: how (fence/checks.py)
+FENCE_NEAR = 47  # a: bits of fences, b: how far they are [m]; below zero: they are further than the margin again
+FENCE_RECOVERY = 48  # the pilot brings the vehicle back behind the fence
+RETURN_WANTED = 50  # copter, AUTO_RTL; a: way (navigation/state.py), b: 1 AUTO flies already
+RETURN_ACTIVE = 51  # copter: it flies a part that brings it back already; a: which (navigation/state.py)
+SYSTEM_ID_DID = 52  # copter; a: what (systemid.py), b: a number of it
+SYSTEM_ID_SAMPLE = 53  # copter: a sample of SYSTEMID, for the log
+CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
+NO_WAY = 60  # there is no way around the areas of the fence
+
+FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 
 
 class Events(Record):

@@ -28,3 +28,7 @@ class Firmware:
     """What its missions may hold and how that is run."""
     aux_functions: Mapping[int, AuxFunction] = field(default_factory=dict)
     """What its switches can do, by number."""
+    fence_bytes: int = 672
+    """Room for fences in ArduPilot's storage,"""
+    rally_bytes: int = 750
+    """and for rally points."""

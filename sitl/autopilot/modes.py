@@ -26,11 +26,13 @@ REASON_GCS_FAILSAFE = 5
 REASON_EKF_FAILSAFE = 6
 REASON_MISSION_END = 8
 REASON_THROTTLE_LAND_ESCAPE = 9
+REASON_FENCE_BREACHED = 10
 REASON_FLIP_COMPLETE = 13
 REASON_THROW_COMPLETE = 16
 REASON_CRASH_FAILSAFE = 19
 REASON_FAILSAFE = 25
 REASON_INITIALISED = 26
+REASON_AUTO_RTL_EXIT = 44
 
 # Why it did not
 ACCEPTED = 0
@@ -41,8 +43,18 @@ THROTTLE_TOO_HIGH = 4
 NEEDS_ALTITUDE = 5
 MISSING_TAKEOFF = 6
 NO_MISSION = 7
+NO_RETURN = 8
+NO_PATH = 9
+NO_LANDING = 10
+IN_FENCE_RECOVERY = 11
 
-_HINTS = {MISSING_TAKEOFF: "Auto: Missing Takeoff Cmd", NO_MISSION: "No Mission. Can't set AUTO."}
+_NO_SEQUENCE = "Unable to start landing sequence"
+_HINTS = {
+    MISSING_TAKEOFF: "Auto: Missing Takeoff Cmd",
+    NO_MISSION: "No Mission. Can't set AUTO.",
+    NO_RETURN: _NO_SEQUENCE,
+    NO_LANDING: _NO_SEQUENCE,
+}
 
 NUMBER_MAX = 2**24 - 1
 """A command of MAVLink carries the number as a float."""
@@ -66,11 +78,18 @@ def enter(modes: Modes, events: Events, time_us: int, number: int, reason: int, 
     """
     modes.previous = modes.number
     modes.number = number
+    modes.shown = 0
     modes.reason = reason
     modes.wanted = 0
     emit(events, time_us, MODE_CHANGED, float(number), float(reason))
     if number == auto or modes.previous == auto:
         events.attention = True
+
+
+@law
+def shown(modes: Modes) -> int:
+    """Number of the mode as clients are told it."""
+    return modes.shown if modes.shown != 0 else modes.number
 
 
 @law
@@ -107,6 +126,8 @@ class Mode(Generic[V]):
     number: int
     """ArduPilot's custom mode."""
     name: str
+    title: str = ""
+    """As ground stations are told it, where that is not the name."""
     run: Callable[[V], None]
     """Law of one period."""
     start: Callable[[V], int] = accept

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import math
 
+from ..core.algebra import vector_at
 from ..core.displacement import Displacement, faster, moved, on_the_ground, turned
 from ..core.geodesy import add_offset
 from ..core.kernels import law
 from .control.pid import Pid
 from .estimation.move import move_ekf, move_estimate
+from .navigation.path import set_place
 from .navigation.state import Leg, Nav
 from .smart_rtl_path import point, set_point
 from .state import Autopilot, Estimate, HomeState, PathState
@@ -44,6 +46,8 @@ def move_nav(nav: Nav, d: Displacement) -> None:
     move_leg(nav.current, d)
     move_leg(nav.next, d)
     nav.pos, nav.vel, nav.acc = moved(d, nav.pos), faster(d, nav.vel), turned(d, nav.acc)
+    for k in range(nav.detour.left):
+        set_place(nav.detour, k, moved(d, vector_at(nav.detour.places, 3 * k)))
     nav.request, nav.request_next = moved(d, nav.request), moved(d, nav.request_next)
 
 
@@ -68,4 +72,5 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     move_estimate(ap.estimate, d)
     move_home(ap.home, ap.estimate, d)
     move_nav(ap.modes.nav, d)
+    ap.avoid.limited_us = 0
     ap.modes.follow.is_known, ap.modes.follow.update_us = False, 0  # reports count from where the origin was

@@ -13,11 +13,15 @@ from ..core.border import RC_INPUTS, Actuators, Sensors
 from ..core.kernels import law
 from ..core.records import Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
+from .avoidance.proximity import Proximity
+from .avoidance.state import Avoidance
 from .estimation.state import Ekf
 from .events import Events
+from .fence.state import FenceState, RallyState
 from .inertial_ring import InertialRing
 from .navigation.state import Nav
 from .params.parameters import Parameters
+from .sensor_calibration import Calibrated
 from .vibration import Vibration
 
 
@@ -169,6 +173,7 @@ class Modes(Record):
     """The modes: what those of all firmwares share."""
 
     number: int  # ArduPilot's custom mode
+    shown: int  # number that clients are told instead, 0 none (copter: AUTO_RTL, a part of AUTO)
     previous: int
     reason: int  # ArduPilot's ModeReason of the last change
     failsafe: Failsafe
@@ -176,6 +181,8 @@ class Modes(Record):
     wanted_reason: int
     mission_count: int  # items of the mission, home included (written by the shell)
     mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
+    mission_lands: bool  # it has a landing sequence (DO_LAND_START; written by the shell)
+    mission_returns: bool  # it has a return path (DO_RETURN_PATH_START; written by the shell)
     follow: FollowState
     nav: Nav
 
@@ -217,10 +224,15 @@ class Autopilot(Record):
     battery: BatteryState
     arming: Arming
     modes: Modes
+    calibrated: Calibrated
     control: Control
     events: Events
     inertial: InertialRing
     vibration: Vibration
+    fence: FenceState
+    rally: RallyState
+    proximity: Proximity
+    avoid: Avoidance
 
 
 class Vehicle(Protocol):

@@ -8,12 +8,13 @@ from typing import Any
 
 from ..autopilot import battery, events, home
 from ..autopilot.estimation import aiding
+from ..autopilot.fence import texts as fence_texts
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
-from .autopilot_api import Note, Vehicle
+from .autopilot_api import Note, Vector, Vehicle
 
 CRITICAL, WARNING, INFO = 2, 4, 6
 """MAV_SEVERITY"""
@@ -53,6 +54,9 @@ class BaseAutopilot:
             return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
         if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
             return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
+        fence = fence_texts.note(code, a, b)
+        if fence is not None:
+            return [fence]
         if code == events.FOLLOW_OFF:
             return [Text(WARNING, "Set FOLL_ENABLE = 1")]
         if code == events.FOLLOW_OFFSET:
@@ -91,6 +95,9 @@ class BaseAutopilot:
         ok, notes = self._aux().run(number, position)
         self._notes.extend(notes)
         return bool(ok)
+
+    def set_roi(self, place: Vector | None) -> None:
+        """Keep the nose on a point, NED [m], or (None) no longer: not in vehicles that steer with it."""
 
     # ------------------------------------------------------------------ home, origin, parameters
 
@@ -141,11 +148,7 @@ class BaseAutopilot:
         self._notes.extend(self._sequencer().set_mission(self._v, Mission()))
         return True
 
-    def set_current_item(self, seq: int, reset: bool) -> bool:
-        if reset:
-            self._notes.extend(self._sequencer().reset(self._v))
-        if seq == -1:
-            return reset
+    def set_current_item(self, seq: int) -> bool:
         ok, notes = self._sequencer().set_current(self._v, seq)
         self._notes.extend(notes)
         return bool(ok)

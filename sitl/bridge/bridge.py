@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from ..autopilot.mission.item import CAMERA_COMMANDS, MissionItem
+from ..autopilot.mission.item import MissionItem
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -23,8 +23,8 @@ from .links.link import Link
 from .places import Places
 from .profile import load
 from .services import all_services
-from .services.camera import CameraService
 from .services.commands import Grants
+from .services.fitted import CARRIED_OUT_BY, switched
 from .services.log_download import LogStore
 from .services.mission import MissionService
 from .services.outputs import OutputService
@@ -546,8 +546,12 @@ class Bridge:
             self.flush()
 
     def carry_out(self, item: MissionItem) -> None:
-        """Do what a mission asks of servo outputs, relays and the camera."""
-        self.get(CameraService if item.command in CAMERA_COMMANDS else OutputService).carry_out(item)
+        """Do what a mission asks of servo outputs, relays, camera, gimbal and payload."""
+        self.get(CARRIED_OUT_BY.get(item.command, OutputService)).carry_out(item)
+
+    def switched(self, function: int, position: int) -> None:
+        """A switch of gimbal or payload was moved."""
+        switched(self, function, position)
 
     def say_pending(self) -> None:
         """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""

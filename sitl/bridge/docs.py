@@ -19,7 +19,9 @@ from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.camera import CameraService
+from .services.mount import MountService
 from .services.streams import RATE_PREFIX
+from .services.winch import WinchService
 from .telemetry.shell import SHELL_BUILDERS
 from .wire.choose import message_of
 
@@ -115,7 +117,13 @@ def received() -> str:
     return _table(("service", "messages"), rows)
 
 
-BY_SERVICES: dict[str, Callable[..., Any]] = {"CAMERA_FEEDBACK": CameraService.feedback}
+BY_SERVICES: dict[str, Callable[..., Any]] = {
+    "CAMERA_FEEDBACK": CameraService.feedback,
+    "WINCH_STATUS": WinchService.status,
+    "GIMBAL_MANAGER_INFORMATION": MountService.information,
+    "GIMBAL_MANAGER_STATUS": MountService.status,
+    "GIMBAL_DEVICE_ATTITUDE_STATUS": MountService.attitude,
+}
 """What services build, by the message's name; some vehicles have none of it."""
 
 

@@ -9,6 +9,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from ..autopilot.modes import shown
 from ..plants.local import LocalPlant
 from ..simulation import Simulation
 
@@ -72,7 +73,7 @@ def describe(simulation: Simulation, factor: float) -> str:
     height = -float(estimate.pos[2]) + float(ap.home.pos[2])
     speed = math.hypot(float(estimate.vel[0]), float(estimate.vel[1]))
     armed = "ARMED" if int(ap.arming.armed) else "disarmed"
-    mode = simulation.firmware.mode_names[int(ap.modes.number)]
+    mode = simulation.firmware.mode_names[int(shown(ap.modes))]
     ready = "" if int(ap.arming.prearm_ok) or int(ap.arming.armed) else " (not ready to arm)"
     return (
         f"{simulation.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {mode} {armed}{ready}"

@@ -15,6 +15,8 @@ from .errors import MissionRefusedError, WaitTimeoutError
 
 __tracebackhide__ = True
 
+MISSION, FENCE, RALLY = 0, 1, 2
+"""MAV_MISSION_TYPE"""
 SILENCE_S = 1.0
 """When nothing was asked for so long, what was sent last is sent again."""
 AT_ONCE = 10
@@ -29,6 +31,8 @@ class Missions(Controls):
     _upload: Sequence[MissionItem] = ()
     _last_item = -1
     """The last one that the vehicle asked for."""
+    _list = MISSION
+    """Which list it goes to (MAV_MISSION_TYPE)."""
     _asked = 0
     """How often it has asked for one."""
     _result: int | None = None
@@ -65,6 +69,22 @@ class Missions(Controls):
         self.telemetry.items.clear()
         self.transfer(items)
         return mission
+
+    def upload_fence(self, items: Sequence[MissionItem]) -> None:
+        """Upload areas to stay in or out of, as NAV_FENCE items; none clears them.
+
+        Raises:
+            MissionRefusedError, WaitTimeoutError: as for ``upload``.
+        """
+        self.transfer(items, FENCE)
+
+    def upload_rally_points(self, items: Sequence[MissionItem]) -> None:
+        """Upload places to return to, as NAV_RALLY_POINT items; none clears them.
+
+        Raises:
+            MissionRefusedError, WaitTimeoutError: as for ``upload``.
+        """
+        self.transfer(items, RALLY)
 
     def download(self) -> tuple[MissionItem, ...]:
         """The mission that the vehicle has, home first.
@@ -106,15 +126,15 @@ class Missions(Controls):
         if self.flies:
             self.command("MISSION_START", subject="the start of the mission")
 
-    def transfer(self, items: Sequence[MissionItem]) -> None:
-        """Send items, home first, as they are, by the mission protocol.
+    def transfer(self, items: Sequence[MissionItem], kind: int = MISSION) -> None:
+        """Send items as they are, a mission's with home first, by the mission protocol; ``kind``: MAV_MISSION_TYPE.
 
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
         begin = progress = self.now
-        self._upload, self._last_item, self._result = items, -1, None
-        self.send("MISSION_COUNT", count=len(items))
+        self._upload, self._list, self._last_item, self._result = items, kind, -1, None
+        self.send("MISSION_COUNT", count=len(items), mission_type=kind)
         while self._result is None:
             before, item = self._asked, self._last_item
             goes_on = self.passes(partial(self._goes_on, before), SILENCE_S)
@@ -126,7 +146,7 @@ class Missions(Controls):
                 last = f"item {self._last_item} was asked for" if self._last_item >= 0 else "no item was asked for"
                 self.raise_error(WaitTimeoutError("MISSION_ACK", self.now - begin, last, begin))
             if self._last_item < 0:
-                self.send("MISSION_COUNT", count=len(items))
+                self.send("MISSION_COUNT", count=len(items), mission_type=kind)
             else:
                 self._send_item(self._last_item)
         self._upload = ()
@@ -140,10 +160,11 @@ class Missions(Controls):
 
     def _take(self, name: str, fields: Any) -> None:
         super()._take(name, fields)
-        if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT") and fields.seq < len(self._upload):
+        asks = name in ("MISSION_REQUEST", "MISSION_REQUEST_INT") and fields.mission_type == self._list
+        if asks and fields.seq < len(self._upload):
             self._last_item, self._asked = int(fields.seq), self._asked + 1
             self._send_item(self._last_item)
-        elif name == "MISSION_ACK" and fields.mission_type == 0:
+        elif name == "MISSION_ACK" and fields.mission_type == self._list:
             self._result = int(fields.type)
 
     def _send_item(self, seq: int) -> None:
@@ -151,4 +172,5 @@ class Missions(Controls):
         self.send(
             "MISSION_ITEM_INT", seq=seq, frame=item.frame, command=item.command, autocontinue=item.autocontinue,
             param1=item.p1, param2=item.p2, param3=item.p3, param4=item.p4, x=item.x, y=item.y, z=item.z,
+            mission_type=self._list,
         )  # fmt: skip

@@ -66,6 +66,10 @@ class Sensors(Record):
     lidar_count: int  # scans so far
     lidar_time_us: int  # of the last one
     rangefinder_count: int  # readings so far
+    lidar_samples: int  # of a scan
+    lidar_fov: float  # symmetric about straight ahead [rad]
+    lidar_min: float  # range [m]
+    lidar_max: float
     # counter-clockwise from right to left [m]; inf: nothing in range
     lidar_ranges: Floats = array(LIDAR_SAMPLES, stored="f4")
     rangefinder_range: Floats = array(1, stored="f4")  # looking down [m]; inf: nothing in range

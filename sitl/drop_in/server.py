@@ -11,7 +11,9 @@ from pathlib import Path
 from .. import vehicles
 from ..autopilot.params import files
 from ..autopilot.params.table import Table
+from ..autopilot.shell_parameters import clears_mission
 from ..bridge.links import Link
+from ..bridge.services.mission import MissionService
 from ..bridge.services.signing import SigningService
 from ..bridge.signing import WINDOW, Signing
 from ..core.compile import Progress
@@ -41,8 +43,9 @@ MODELS = {
         "octa": "ardupilot_octa",
         "octa-quad": "ardupilot_octa_quad",
         "y6": "ardupilot_y6",
+        "calibration": "calibration_copter",
     },
-    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover"},
+    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
 }
 """ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
 JSON = "JSON"
@@ -84,9 +87,12 @@ class Session:
         self._values.update(params)  # values out of range are kept as they are, and told so
         self.pacing = Pacing(None)
         self._follow_speedup()
-        simulation.bridge.autopilot.replace_mission(self.storage.mission)
+        if not clears_mission(self._values):
+            simulation.bridge.autopilot.replace_mission(self.storage.mission)
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
+        self._places = (self.storage.fence, self.storage.rally)
+        simulation.bridge.get(MissionService).keep(*self._places, counted=True)
         if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again
             kept = kept._replace(timestamp=kept.timestamp + WINDOW)
             simulation.bridge.get(SigningService).signing = Signing(kept)
@@ -188,6 +194,10 @@ class Session:
         if mission is not self._mission:
             self._mission = mission
             self.storage.keep_mission(mission.items)
+        places = self.simulation.bridge.get(MissionService).lists
+        if places != self._places:
+            self._places = places
+            self.storage.keep_places(*places)
         self._keep_key()
         self.storage.write()
         dropped = self.simulation.bridge.dropped

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the autopilot keeps when it is switched off, as a file: parameters, mission, signing key."""
+"""What the autopilot keeps when it is switched off, as a file: parameters, lists of places, signing key."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import json
 import os
 from pathlib import Path
 
+from ..autopilot.fence import items as fence
+from ..autopilot.fence.state import FenceState
 from ..autopilot.mission.item import MissionItem
 from ..bridge.signing import KEY_BYTES, OFF, SigningState
 from ..errors import SitlError
@@ -27,12 +29,17 @@ class Storage:
         self.path = path
         self.parameters: dict[str, float] = {}
         self.mission: tuple[MissionItem, ...] = ()
+        self.fence: tuple[MissionItem, ...] = ()
+        self.rally: tuple[MissionItem, ...] = ()
         self.signing = OFF
         self._is_changed = False
         try:
             kept = json.loads(path.read_text(encoding="utf-8"))
             self.parameters = {str(name): float(value) for name, value in kept["parameters"].items()}
             self.mission = tuple(MissionItem(*item) for item in kept["mission"])
+            self.fence = tuple(MissionItem(*item) for item in kept.get("fence", ()))
+            self.rally = tuple(MissionItem(*item) for item in kept.get("rally", ()))
+            fence.load(FenceState(), list(fence.shapes(self.fence)))
             key, timestamp = kept.get("signing", ("", 0))
             self.signing = SigningState(bytes.fromhex(key), int(timestamp))
             if len(self.signing.key) not in (0, KEY_BYTES):
@@ -67,6 +74,11 @@ class Storage:
         self.mission = items
         self._is_changed = True
 
+    def keep_places(self, fences: tuple[MissionItem, ...], rally: tuple[MissionItem, ...]) -> None:
+        """Keep fences and rally points."""
+        self.fence, self.rally = fences, rally
+        self._is_changed = True
+
     def keep_signing(self, state: SigningState) -> None:
         """Keep the key and the time stamp."""
         self.signing = SigningState(state.key, state.timestamp)
@@ -82,6 +94,7 @@ class Storage:
             return
         self._is_changed = False
         kept: dict[str, object] = {"parameters": self.parameters, "mission": self.mission}
+        kept |= {"fence": self.fence, "rally": self.rally}
         if self.signing.key:
             kept["signing"] = (self.signing.key.hex(), self.signing.timestamp)
         text = json.dumps(kept, indent=0)

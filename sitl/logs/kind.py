@@ -30,7 +30,9 @@ class KindLogs:
     """MAV_TYPEs whose telemetry logs can be read as this kind's."""
     mode_names: tuple[str, ...]
     """ArduPilot's names of all modes by their numbers, those that we do not have included; "-": not in use."""
-    panels: tuple[Callable[[Any, Flight], None], ...]
+    event_rows: Callable[[Any, int, float], list[tuple[str, tuple[float, ...]]]] | None = None
+    """Further messages of an event: name and values of each, of (the vehicle's record, code, first number)."""
+    panels: tuple[Callable[[Any, Flight], None], ...] = ()
     """What a picture of a flight shows beside the plan view: three functions of (axes, flight)."""
 
 

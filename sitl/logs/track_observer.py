@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..autopilot import events as core
+from ..autopilot.modes import shown
 from ..core.geodesy import offset_ne
 from .track import COLUMNS, STEP_US, Track
 
@@ -68,7 +69,7 @@ class TrackObserver:
         """Vector from the home to the origin since the last boot [m]."""
         self._found_home: tuple[float, float, float] | None = None
         self._is_new = True
-        self._note_mode(simulation.time_us * 1e-6, int(simulation.v.autopilot.modes.number))
+        self._note_mode(simulation.time_us * 1e-6, int(shown(simulation.v.autopilot.modes)))
         self._armed.append((simulation.time_us * 1e-6, bool(simulation.v.autopilot.arming.armed)))
         (self._seen,) = self._events()
         self.due_us = -(-simulation.time_us // STEP_US) * STEP_US

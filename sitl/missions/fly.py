@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_RETURN_TO_LAUNCH, home_item
+from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_RETURN_TO_LAUNCH, MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.navigation.state import COMPLETE
 from sitl.client import Text
@@ -109,6 +109,8 @@ def fly(
     simulation: Simulation,
     mission: Mission,
     *,
+    fence: Sequence[MissionItem] = (),
+    rally: Sequence[MissionItem] = (),
     limit_s: float = LIMIT_S,
     advance: Callable[[int], object] | None = None,
     on_step: OnStep = lambda time, text: None,
@@ -118,6 +120,7 @@ def fly(
     Args:
         simulation: at power-on.
         mission: home first; home (0, 0) becomes the vehicle's.
+        fence, rally: areas and rally points, as items; they are uploaded when there are some.
         limit_s: simulated time after which it is given up, since arming.
         advance: lets simulated time pass until a time [us]; None: as fast as it can.
         on_step: called with each step.
@@ -126,6 +129,7 @@ def fly(
         MissionRefused: the vehicle cannot fly it.
     """
     flight = _Flight(simulation, checked(mission, simulation), limit_s, advance, on_step)
+    flight.fence, flight.rally = fence, rally
     try:
         flight.run()
     except StationError as error:
@@ -148,6 +152,8 @@ class _Flight:
         lat, lon, alt, _ = simulation.home
         home = home_item(round(lat * 1e7), round(lon * 1e7), alt) if mission.items[0].no_place else mission.items[0]
         self.items = (home, *mission.items[1:])
+        self.fence: Sequence[MissionItem] = ()
+        self.rally: Sequence[MissionItem] = ()
         self.last = max((seq for seq, item in enumerate(self.items) if seq and item.is_nav), default=0)
         """Number of the last navigation command."""
         self.outcome = Outcome()
@@ -163,6 +169,10 @@ class _Flight:
         station.wait_ready(READY_S)
         outcome.ready = station.now
         self.on_step(station.now, "ready to arm")
+        if self.fence:
+            station.upload_fence(self.fence)
+        if self.rally:
+            station.upload_rally_points(self.rally)
         station.transfer(self.items)
         self.on_step(station.now, f"mission of {len(self.items) - 1} items uploaded")
         station.set_mode("GUIDED")

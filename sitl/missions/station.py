@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NoReturn
 
+from sitl.autopilot.modes import shown
 from sitl.client import Client, ClientError, CommandRefusedError, InProcess, MissionRefusedError, WaitTimeoutError
 from sitl.client.waits import READY
 from sitl.errors import SitlError
@@ -46,7 +47,7 @@ class Station(Client):
     @property
     def mode(self) -> str:
         """The vehicle's mode at this moment."""
-        return self.telemetry.mode_names[int(self.simulation.v.autopilot.modes.number)]
+        return self.telemetry.mode_names[int(shown(self.simulation.v.autopilot.modes))]
 
     def step(self, stop_us: int | None = None) -> None:
         super().step(stop_us)

@@ -76,9 +76,9 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
     control(fleet, index)
-    ap, sensors = vehicle.autopilot, vehicle.sensors
-    update_vibration(ap.vibration, sensors.acc)
-    remember(ap.inertial, vehicle.time_us, sensors.acc, sensors.gyro, ap.estimate.q)
+    ap = vehicle.autopilot
+    update_vibration(ap.vibration, ap.calibrated.acc)
+    remember(ap.inertial, vehicle.time_us, ap.calibrated.acc, ap.calibrated.gyro, ap.estimate.q)
 
 
 @inlined

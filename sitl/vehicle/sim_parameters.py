@@ -7,13 +7,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..autopilot.params.simulation import Axes
-from ..core.vectors import Vec3
+from ..autopilot.params.simulation import DELIVERED, axes
+from ..core.algebra import ZERO, conjugate, quat_from_euler
+from ..core.vectors import Euler, Vec3
+from ..physics.native.records import Iron
 from .record import Vehicle
 
 PREFIX = "SIM_"
 DEFAULT_VOLTAGE = float(np.float32(12.6))
 """SIM_BATT_VOLTAGE that leaves the airframe's battery as it is [V]."""
+SINGULAR = 1e-6
+"""Determinant below which a matrix of soft iron is none."""
 Fault = Callable[[Vehicle], None]
 """Brings the physics or the sensors of a vehicle in line with its parameters."""
 
@@ -30,28 +34,42 @@ def register_fault(prefix: str, apply: Fault) -> None:
     _registered[f"{prefix}_"] = apply
 
 
-def axes(group: Axes) -> Vec3:
-    """Three parameters as a vector."""
-    return Vec3(group.X, group.Y, group.Z)
-
-
 def acts_on_the_world(parameter: str) -> bool:
     """Whether a parameter belongs to the simulated world, not to the firmware."""
     return parameter.startswith((PREFIX, *_registered))
 
 
+def _bend(iron: Iron, diagonal: Vec3, others: Vec3) -> None:
+    """Soft iron that a matrix of this diagonal and these elements xy, xz, yz makes up for."""
+    matrix = np.array(
+        ((diagonal.x, others.x, others.y), (others.x, diagonal.y, others.z), (others.y, others.z, diagonal.z))
+    )
+    iron.is_soft = any(diagonal) and bool(abs(np.linalg.det(matrix)) > SINGULAR)
+    if iron.is_soft:
+        x, y, z = np.linalg.inv(matrix).tolist()
+        iron.x, iron.y, iron.z = Vec3(*x), Vec3(*y), Vec3(*z)
+
+
 def apply(v: Vehicle) -> None:
     """Bring what every kind of vehicle has in line with its SIM_ parameters, and with those of other packages."""
-    sim, physics, wind = v.autopilot.params.SIM, v.physics, v.physics.wind
+    sim, physics, sensors, wind = v.autopilot.params.SIM, v.physics, v.physics.sensors, v.physics.wind
     wind.speed, wind.direction = sim.WIND_SPD, sim.WIND_DIR
     wind.turbulence, wind.time_constant = sim.WIND_TURB, sim.WIND_TC
-    physics.sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0
-    physics.sensors.gps_jammed = sim.GPS1_JAM != 0
-    physics.sensors.acc_fault = axes(sim.ACC1_BIAS)
-    physics.sensors.mag2_offset, physics.sensors.mag3_offset = 1e-3 * axes(sim.MAG2.OFS), 1e-3 * axes(sim.MAG3.OFS)
+    sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0
+    sensors.gps_jammed = sim.GPS1_JAM != 0
+    sensors.acc_fault = axes(sim.ACC1_BIAS)
+    sensors.acc_stretch = Vec3(*(1.0 / k - 1.0 if k else 0.0 for k in axes(sim.ACC1_SCAL)))
+    trim = sim.ACC_TRIM
+    sensors.acc_is_turned = any(axes(trim))
+    sensors.acc_mount = conjugate(quat_from_euler(Euler(trim.X, trim.Y, trim.Z)))
+    sensors.gyro_fault = axes(sim.GYR1_BIAS)
+    for k, compass in enumerate((sim.MAG1, sim.MAG2, sim.MAG3)):
+        iron, corrected = sensors.irons[k], ZERO if k else DELIVERED
+        iron.hard = 1e-3 * (axes(compass.OFS) - corrected)
+        _bend(iron, axes(compass.DIA), axes(compass.ODI))
     physics.battery.full_voltage = 0.0 if sim.BATT_VOLTAGE == DEFAULT_VOLTAGE else sim.BATT_VOLTAGE
     if v.tick == 0 and sim.BARO_COUNT < 1:
-        physics.sensors.baro_missing = True
+        sensors.baro_missing = True
         v.sensors.baro_count = 0
     v.autopilot.rc.has_receiver = sim.RC_FAIL == 0
     for fault in _registered.values():

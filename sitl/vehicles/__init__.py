@@ -36,10 +36,11 @@ __all__ = [
 
 _FRAMES = (
     "ardupilot_x", "ardupilot_hexa", "ardupilot_hexa_x", "ardupilot_octa", "ardupilot_octa_quad", "ardupilot_y6",
+    "calibration_copter", "calibration_rover",
 )  # fmt: skip
 """Rows of ``ardupilot_frames``."""
 _MODULES = (
-    "erle_copter", "ardupilot_quad", *_FRAMES, "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover",
+    "erle_copter", "ardupilot_quad", "erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover", *_FRAMES,
 )  # fmt: skip
 GROUP = "sitl.airframes"
 """Entry points of airframes of other packages: name -> Airframe."""

@@ -1,14 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ArduPilot's other SITL multicopters; ``ardupilot_quad`` tells of their model."""
+"""ArduPilot's other SITL multicopters (``ardupilot_quad`` tells of their model), and vehicles on a bench."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from . import ardupilot_quad, ardupilot_rover
+from .airframe import Airframe
 from .ardupilot_quad import multicopter
 from .copter_airframe import CCW, CW
 
-FRAMES = {
+
+def _on_bench(airframe: Airframe, name: str) -> Airframe:
+    """A vehicle that a bench turns, for calibrations (``sitl.physics.native.bench``)."""
+    description = f"{airframe.description}, on a bench that turns it"
+    return replace(airframe, name=name, description=description, figures={**airframe.figures, "on_bench": 1})
+
+
+FRAMES: dict[str, Airframe] = {
     airframe.name: airframe
     for airframe in (
+        _on_bench(ardupilot_quad.AIRFRAME, "calibration_copter"),
+        _on_bench(ardupilot_rover.AIRFRAME, "calibration_rover"),
         multicopter("ardupilot_x", "SITL quad, X frame", ((45, CCW), (-135, CCW), (-45, CW), (135, CW)), 1, 1),
         multicopter(
             "ardupilot_hexa",

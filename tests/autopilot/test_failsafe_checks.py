@@ -18,6 +18,7 @@ from sitl.autopilot.failsafe_checks import (
     watch_monitor,
 )
 from sitl.autopilot.params.parameters import Parameters
+from sitl.autopilot.params.simulation import DELIVERED
 from sitl.autopilot.params.system import Battery, Compass, Failsafes
 from sitl.autopilot.state import BatteryState, Estimate, Failsafe, Sensors
 from sitl.core.vectors import Vec3
@@ -134,6 +135,9 @@ def compasses(second: Vec3, params: Compass) -> int:
     """Failed checks with a first compass that shows 0.25 gauss north and 0.5 down, and no third."""
     sensors = Sensors()
     sensors.mag, sensors.mag2 = Vec3(0.25, 0.0, 0.5), second
+    params.OFS.X, params.OFS.Y, params.OFS.Z = DELIVERED
+    for diagonal in (params.DIA, params.DIA2):
+        diagonal.X = diagonal.Y = diagonal.Z = 1.0
     return compass_checks(sensors, params)
 
 

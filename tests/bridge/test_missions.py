@@ -11,6 +11,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services.mission import MissionService
 from tests.bridge.fakes import HOME, Bench, Client
 
 ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE = range(5)
@@ -234,10 +235,15 @@ def test_too_many(bench: Bench) -> None:
     assert ack.type == NO_SPACE and text.text == "Only 724 items are supported"
 
 
-@pytest.mark.parametrize(("kind", "command", "total"), [(1, 5003, "FENCE_TOTAL"), (2, 5100, "RALLY_TOTAL")])
-def test_fence_and_rally_points_are_kept(bench: Bench, kind: int, command: int, total: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "command", "p1", "total", "counted"),
+    [(1, 5003, 50.0, "FENCE_TOTAL", 0), (1, 5001, 3.0, "FENCE_TOTAL", 5), (2, 5100, 0.0, "RALLY_TOTAL", 3)],
+)
+def test_fence_and_rally_points_are_kept(
+    bench: Bench, kind: int, command: int, p1: float, total: str, counted: int
+) -> None:
     bench.autopilot.items = old = tuple(SQUARE)
-    points = [MissionItem(command, 3, p1=50.0, x=HOME[0] + k, y=HOME[1], z=20.0) for k in range(3)]
+    points = [MissionItem(command, 3, p1=p1, x=HOME[0] + k, y=HOME[1], z=20.0) for k in range(3)]
 
     def listed() -> int:
         (n,) = bench.ask(mavlink.MAVLink_mission_request_list_message(1, 1, kind))
@@ -250,16 +256,49 @@ def test_fence_and_rally_points_are_kept(bench: Bench, kind: int, command: int, 
             assert [(m.get_type(), m.seq, m.mission_type) for m in requests] == [("MISSION_REQUEST", k, kind)]
             requests = bench.ask(item_int(k, point, kind=kind), "MISSION_REQUEST", "MISSION_ACK")
         assert [(m.get_type(), m.type, m.mission_type) for m in requests] == [("MISSION_ACK", ACCEPTED, kind)]
-        assert listed() == bench.vehicle.parameters[total] == 3
+        assert (listed(), bench.vehicle.parameters[total]) == (3, counted)
 
     assert listed() == 0
     for clear in (count(0, kind), *(mavlink.MAVLink_mission_clear_all_message(1, 1, k) for k in (kind, 255))):
         put()
         (got,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 2, kind))
-        assert (got.command, got.x, got.param1, got.mission_type, got.current) == (command, HOME[0] + 2, 50.0, kind, 0)
+        assert (got.command, got.x, got.param1, got.mission_type, got.current) == (command, HOME[0] + 2, p1, kind, 0)
         assert bench.autopilot.items is old
         (ack,) = bench.ask(clear, "MISSION_ACK")
         assert ack.type == ACCEPTED and listed() == bench.vehicle.parameters[total] == 0
+
+
+def test_room_for_fences_and_rally_points(bench: Bench) -> None:
+    """ArduPilot's storage; BRD_SD_FENCE gives more."""
+    for kind, most in ((1, 70), (2, 46)):
+        text, ack = bench.ask(count(most + 1, kind), "STATUSTEXT", "MISSION_ACK")
+        assert ack.type == NO_SPACE and text.text == f"Only {most} items are supported"
+
+    def circles(number: int) -> list[Any]:
+        bench.ask(count(number, 1))
+        for k in range(number):
+            got = bench.ask(item_int(k, MissionItem(5004, 0, p1=5.0, x=k), kind=1), "STATUSTEXT", "MISSION_ACK")
+        return [m.text if m.get_type() == "STATUSTEXT" else m.type for m in got]
+
+    full = "Fence exceeds storage size"
+    assert ACCEPTED in circles(42)
+    assert {full, 1} <= set(circles(43))
+    assert len(bench.bridge.get(MissionService).items(1)) == 42, "what was there stays"
+    bench.vehicle.parameters["BRD_SD_FENCE"] = 128.0
+    assert ACCEPTED in circles(56)
+    assert {full, 1} <= set(circles(57))
+
+
+def test_items_that_make_no_fence_are_refused(bench: Bench) -> None:
+    bench.ask(count(2, 1))
+    bench.ask(item_int(0, MissionItem(5001, 0, p1=2.0), kind=1))
+    got = bench.ask(item_int(1, MissionItem(5001, 0, p1=2.0), kind=1), "STATUSTEXT", "MISSION_ACK")
+    assert [m.text for m in got if m.get_type() == "STATUSTEXT"] == [
+        "Invalid vertex count (2)",
+        "Fence validation failed",
+    ]
+    assert [m.type for m in got if m.get_type() == "MISSION_ACK"] == [1]
+    assert bench.bridge.get(MissionService).items(1) == ()
 
 
 def test_lists_take_only_their_items(bench: Bench) -> None:

@@ -13,6 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge import docs, services
 from sitl.bridge.dialect import message_by_id
+from sitl.bridge.docs import BY_SERVICES
 from sitl.bridge.profile import Profile, load
 from sitl.bridge.services.service import Handler, Service
 from sitl.bridge.wire.choose import message_of
@@ -32,7 +33,7 @@ def test_it_says_the_type_of_its_kind(name: str, profile: Profile) -> None:
 def test_streams(profile: Profile) -> None:
     sent = Counter(name for _, names in profile.groups.values() for name in names)
     assert sent and max(sent.values()) == 1, "a message has one group"
-    assert set(sent) <= {message_of(law).kind.name for law in profile.core.builders}
+    assert set(sent) <= {*BY_SERVICES, *(message_of(law).kind.name for law in profile.core.builders)}
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
@@ -60,6 +61,9 @@ def test_messages_that_laws_take(profile: Profile) -> None:
         "MANUAL_CONTROL",
         "GLOBAL_POSITION_INT",
         "FOLLOW_TARGET",
+        "OBSTACLE_DISTANCE",
+        "DISTANCE_SENSOR",
+        "OBSTACLE_DISTANCE_3D",
     }
 
 

@@ -45,10 +45,10 @@ def test_position_and_attitude(bench: Bench) -> None:
 
 
 def test_imu_units(bench: Bench) -> None:
-    sensors = bench.vehicle.v.sensors
-    sensors.acc = (0.0, 9.80665, -9.80665)
-    sensors.gyro = (0.5, 0.0, -0.25)
-    sensors.mag = (0.25, -0.05, 0.4)
+    sensors, shown = bench.vehicle.v.sensors, bench.vehicle.v.autopilot.calibrated
+    shown.acc = (0.0, 9.80665, -9.80665)
+    shown.gyro = (0.5, 0.0, -0.25)
+    shown.mag = (0.25, -0.05, 0.4)
     sensors.abs_pressure, sensors.temperature = 945.0, 25.5
     raw = get(bench, "RAW_IMU")
     assert (raw.xacc, raw.zgyro, raw.xmag, raw.temperature) == (0, -250, 250, 2550)

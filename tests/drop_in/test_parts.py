@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from sitl.autopilot.mission.item import NAV_WAYPOINT, MissionItem, home_item
+from sitl.autopilot.mission.item import FENCE_INCLUSION, NAV_WAYPOINT, RALLY_POINT, MissionItem, home_item
 from sitl.drop_in.command_line import parse
 from sitl.drop_in.server import Session
 from sitl.drop_in.statistics import SINCE_S, Statistics
@@ -61,14 +61,28 @@ def test_storage_keeps_and_forgets(tmp_path: Path) -> None:
     items = (home_item(1, 2, 3.0), MissionItem(NAV_WAYPOINT, x=5, y=6, z=7.5))
     storage.keep("WPNAV_SPEED", 450.0)
     storage.keep_mission(items)
+    fence = tuple(MissionItem(FENCE_INCLUSION, 0, 3.0, x=k, y=k * k) for k in range(3))
+    points = (MissionItem(RALLY_POINT, x=5, y=6, z=7.0),)
+    storage.keep_places(fence, points)
     storage.write()
     again = Storage(path)
     assert (again.parameters, again.mission) == ({"WPNAV_SPEED": 450.0}, items)
+    assert (again.fence, again.rally) == (fence, points)
     assert [file.name for file in tmp_path.iterdir()] == ["kept.json"]
     assert Storage.wiped(path).parameters == {} and not path.exists()
 
 
-@pytest.mark.parametrize("text", ["", "{}", "[]", '{"parameters": {"A": "b"}, "mission": []}', '{"parameters": 5}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{}",
+        "[]",
+        '{"parameters": {"A": "b"}, "mission": []}',
+        '{"parameters": 5}',
+        '{"parameters": {}, "mission": [], "fence": [[5001, 0, 2]]}',
+    ],
+)
 def test_damaged_storage_is_named(tmp_path: Path, text: str) -> None:
     path = tmp_path / "kept.json"
     path.write_text(text)

@@ -308,3 +308,79 @@ def test_loiter_to_altitude(core: Core) -> None:
     for place, wanted in zip(places, [(30, 0, -40), (30, 0, -20), (30, 30, -20), (30, 30, -5)], strict=True):
         assert np.hypot(*(place[:2] - wanted[:2])) < 2.2
         assert place[2] == pytest.approx(wanted[2], abs=0.5)
+
+
+def test_circles_are_told_and_counted_in_whole_ones(core: Core) -> None:
+    """Times are those of a real ArduPilot, which flies 2.25 circles as 2: 18.7 and 18.0 s."""
+    p = Aviator(core, "ardupilot_quad").ready()
+    p.start_mission(UP, Item(c.NAV_LOITER_TURNS, (20.0, 0.0), 10.0, (2.25, 0.0, 10.0)), DOWN)
+    assert p.fly(120.0, lambda: p.said("Mission: 3 Land"))
+    times = {text: time for time, _, text in p.texts}
+    told = [times[f"Mission: starting circle {k}/2"] for k in (1, 2, 3)]
+    assert np.diff(told) == pytest.approx([18.7, 18.0], abs=0.1)
+    assert p.reached_at(2) == pytest.approx(told[2], abs=0.01)
+
+
+def test_a_part_of_a_circle(core: Core) -> None:
+    """Half of one: 9.7 s."""
+    p = Aviator(core, "ardupilot_quad").ready()
+    p.start_mission(UP, Item(c.NAV_LOITER_TURNS, (20.0, 0.0), 10.0, (0.5, 0.0, 10.0)), DOWN)
+    assert p.fly(120.0, lambda: p.said("Mission: 3 Land"))
+    told = [time for time, _, text in p.texts if "starting circle 1/0" in text]
+    assert p.reached_at(2) - told[0] == pytest.approx(9.7, abs=0.1)
+    assert not p.said("starting circle 2")
+
+
+def test_states_of_a_mission_that_is_left_and_paused(core: Core) -> None:
+    """Left is not started, as ArduPilot tells it; a pause is one only on a way."""
+    not_started, active, paused = 2, 3, 4
+    p = Aviator(core, "ardupilot_quad").ready()
+    p.start_mission(UP, Item(c.NAV_WAYPOINT, (60.0, 0.0), 10.0), Item(c.NAV_LOITER_TURNS, (60.0, 0.0), 10.0, (1.0,)))
+
+    def state() -> tuple[int, int]:
+        with p.messages("MISSION_CURRENT") as found:
+            p.ask(512, 42)
+        return int(found[-1].mission_state), int(found[-1].mission_mode)
+
+    assert state() == (active, 1)
+    assert p.ask(193, 0) == 4
+    assert p.said("Failed to pause")  # the take-off goes on
+    assert p.fly(60.0, lambda: p.said("Mission: 2 WP"))
+    p.fly(3.0)
+    assert p.ask(193, 0) == 0
+    assert state() == (paused, 1)
+    p.fly(5.0)
+    assert np.linalg.norm(p.vel) < 0.2
+    assert p.set_mode(aviator.LOITER)
+    assert state() == (paused, 0)
+    assert p.set_mode(AUTO)
+    p.fly(3.0)
+    assert state() == (active, 1) and p.vel[0] > 1.0
+    assert p.set_mode(aviator.LOITER)
+    assert state() == (not_started, 0)
+
+
+def test_the_item_is_chosen_again(core: Core) -> None:
+    """224: 0 is the first item, there is no -1; outside of AUTO the next navigation command becomes current."""
+    p = Aviator(core, "ardupilot_quad").ready()
+    p.upload(UP, Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(c.DO_CHANGE_SPEED, None, 0.0, (1.0, 3.0)),
+             Item(c.NAV_WAYPOINT, (20.0, 20.0), 10.0))  # fmt: skip
+    for params, result, current in (((3, 0), 0, 4), ((-1, 1), 2, 4), ((0, 1), 0, 1), ((2.5, 2), 0, 2), ((9, 1), 2, 2)):
+        assert p.ask(224, *params) == result
+        assert p.ap.modes.nav.mission_current == current
+    p.ask(224, 3)
+    p.arm()
+    assert p.set_mode(aviator.GUIDED)
+    p.take_off(10.0)
+    assert p.set_mode(AUTO)
+    assert [text for _, _, text in p.texts][-2:] == ["Mission: 3 ChangeSpeed", "Mission: 4 WP"]
+
+
+@pytest.mark.parametrize(("options", "items"), [(0, 2), (1, 0)])
+def test_a_boot_clears_the_mission_if_it_is_asked_to(core: Core, options: int, items: int) -> None:
+    p = Aviator(core, "ardupilot_quad", MIS_OPTIONS=options).ready()
+    p.upload(UP)
+    assert len(p.simulation.mission) == 2
+    assert p.ask(246, 1) == 0
+    p.fly(1.0)
+    assert len(p.simulation.mission) == items

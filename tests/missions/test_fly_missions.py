@@ -143,6 +143,24 @@ def test_every_mission_of_the_library_is_completed(name: str) -> None:
     assert outcome.deviation.distance < 2.5
 
 
+@pytest.mark.parametrize("radius", [80.0, 10.0])
+def test_the_fence_of_a_plan_is_uploaded_and_heeded(radius: float) -> None:
+    """Within the plan's own circle the mission is flown; a smaller one ends it on the way out, and it returns."""
+    file = load(library.find("copter/fence_and_rally").path)
+    assert file.home is not None
+    fence = tuple(item._replace(p1=radius) if item.command == c.FENCE_CIRCLE else item for item in file.fence_items)
+    simulation = Simulation("erle_copter", home=(*file.home, 0.0), params={"FENCE_ENABLE": 1})
+    try:
+        outcome = fly(simulation, file.mission, fence=fence, rally=file.rally_items)
+        autopilot = simulation.v.autopilot
+    finally:
+        simulation.close()
+    assert (autopilot.fence.shapes, autopilot.params.RALLY.TOTAL) == (3, 1)
+    assert outcome.completed == (radius > 50.0)
+    breached = [time for time, _, text in outcome.texts if text == "Polygon fence breached"]
+    assert len(breached) == (0 if radius > 50.0 else 1)
+
+
 def test_the_files_are_what_the_drafts_make(tmp_path: Path) -> None:
     """Else: python -m sitl.missions.library.make."""
     make.write(tmp_path)

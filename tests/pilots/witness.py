@@ -12,6 +12,7 @@ import numpy as np
 
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
+from sitl.autopilot.modes import shown
 from sitl.client import MissionRefusedError
 from sitl.core.geodesy import add_offset
 from sitl.missions.pilot import ARM, Pilot
@@ -56,8 +57,8 @@ class Witness(Pilot):
 
     @property
     def mode(self) -> int:
-        """Custom mode number."""
-        return int(self.ap.modes.number)
+        """Custom mode number, as clients are told it."""
+        return int(shown(self.ap.modes))
 
     @property
     def pos(self) -> np.ndarray:

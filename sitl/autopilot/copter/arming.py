@@ -7,6 +7,7 @@ from ...core.kernels import inlined, law
 from .. import home, smart_rtl_path
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
 from ..events import ARMED, ARMING_REFUSED, emit
+from ..fence.checks import switch_on_arming
 from ..state import Arming
 from .arming_checks import MANDATORY, arm_checks, check
 from .control.motors import ARMING_DELAY_US
@@ -44,6 +45,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     smart_rtl_path.begin(ap.modes.path, ap.estimate.pos, ap.estimate.position_ok, v.time_us, ap.params.SRTL)
     ap.modes.takeoff.user_active = False
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
+    switch_on_arming(ap.fence, ap.params.FENCE, int(ap.params.FENCE.AUTOENABLE), ap.events, v.time_us)
     return 0
 
 

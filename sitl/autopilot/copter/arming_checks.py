@@ -6,12 +6,16 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.vectors import Vec3
 from ..arming_checks import (
     BY_MAVLINK,
     BY_RUDDER,
     CHECK_GPS,
+    CHECK_PARAMETERS,
     CHECK_RC,
     EMERGENCY_STOP,
+    FENCE_POSITION,
+    FENCE_SHIFT,
     FRAME,
     GPS_FIX,
     INTERLOCK,
@@ -24,10 +28,14 @@ from ..arming_checks import (
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
     battery_checks,
+    calibration_checks,
+    obstacle_check,
+    proximity_checks,
     radio_checks,
     sensor_checks,
     wants,
 )
+from ..fence import arming as fence_arming
 from ..params.system import Arming
 from ..state import Estimate, Radio
 from . import pilot
@@ -70,15 +78,28 @@ def check(v: Vehicle) -> int:
     ap = v.autopilot
     p = ap.params
     failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
+    failed |= calibration_checks(ap.calibrated.state, p.ARMING)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    failed |= proximity_checks(ap.proximity, v.time_us)
+    if ap.avoid.obstacles and wants(p.ARMING, CHECK_PARAMETERS):
+        failed |= obstacle_check(ap.proximity, v.time_us)
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
         failed |= NO_MISSION
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
+    fence = p.FENCE
+    if (
+        fence_arming.needs_position(ap.fence, fence)
+        and not ap.estimate.position_ok
+        and not requires_position(ap.modes.number)
+    ):
+        failed |= FENCE_POSITION
+    limits = Vec3(fence.ALT_MAX, fence.ALT_MIN, fence.AUTOENABLE)
+    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, fence, limits) << FENCE_SHIFT
     return failed if ap.control.motors.count > 0 else failed | FRAME
 
 

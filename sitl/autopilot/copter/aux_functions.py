@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from .. import aux_functions as shared
+from .. import payload
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
 from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
@@ -88,6 +89,10 @@ FUNCTIONS = shared.by_number(
         AuxFunction(7, _save_waypoint, "high, armed, not in AUTO: adds the place to the mission", "SaveWaypoint"),
         AuxFunction(13, _super_simple, "high: SUPER_SIMPLE; middle: SIMPLE; low: off"),
         AuxFunction(MOTOR_INTERLOCK, _interlock, "low: motors stand; else they may turn", "MotorInterlock"),
+        shared.fitted(payload.SWITCH_WINCH, "high: the winch holds its line; else it lets go", "WinchEnable"),
+        shared.fitted(
+            payload.SWITCH_WINDING, "high: the winch lowers; low: it raises; middle: it stops", "WinchControl"
+        ),
         AuxFunction(61, _zigzag, "in ZIGZAG: low stores or flies to A, high B, middle gives back to the sticks"),
         AuxFunction(
             83, _sweep, "in ZIGZAG, with ZIGZ_AUTO_ENABLE: high begins a sweep or goes on with it; else pauses it"

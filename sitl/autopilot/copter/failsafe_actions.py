@@ -7,6 +7,7 @@ from ...core.kernels import law
 from ..events import NO_WAY_BACK, emit
 from ..modes import ACCEPTED
 from .modes import ground, set_mode
+from .modes.auto import AUTO_RTL
 from .modes.brake import BRAKE
 from .modes.land import LAND
 from .modes.rtl import RTL
@@ -22,11 +23,12 @@ DO_RTL = 2
 DO_SMART_RTL = 3  # else RTL, else LAND
 DO_SMART_RTL_OR_LAND = 4
 DO_STOP = 5
+DO_AUTO_RTL = 6  # else RTL, else LAND
 DO_BRAKE = 7
 
-_BATTERY = (NOTHING, DO_LAND, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_STOP, DO_RTL, DO_BRAKE)
-_RADIO = (NOTHING, DO_RTL, DO_RTL, DO_LAND, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_RTL, DO_BRAKE)
-_GCS = (NOTHING, DO_RTL, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_LAND, DO_RTL, DO_BRAKE)
+_BATTERY = (NOTHING, DO_LAND, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_STOP, DO_AUTO_RTL, DO_BRAKE)
+_RADIO = (NOTHING, DO_RTL, DO_RTL, DO_LAND, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_AUTO_RTL, DO_BRAKE)
+_GCS = (NOTHING, DO_RTL, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_LAND, DO_AUTO_RTL, DO_BRAKE)
 
 CONTINUE_LANDING = 8
 """FS_OPTIONS: a landing under way goes on."""
@@ -80,6 +82,11 @@ def act(v: Vehicle, action: int, reason: int, method: int) -> None:
             return
         action = DO_RTL if action == DO_SMART_RTL else DO_LAND
         emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 0.0)
+    if action == DO_AUTO_RTL:
+        if set_mode.request(v, AUTO_RTL, reason) == ACCEPTED:
+            return
+        action = DO_RTL
+        emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 1.0)
     if action == DO_RTL:
         if mode != RTL and set_mode.request(v, RTL, reason) != ACCEPTED:
             land_with_pause(v, reason)

@@ -34,4 +34,4 @@ def power_on(v: Vehicle) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("copter", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS)
+FIRMWARE = Firmware("copter", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS, fence_bytes=560, rally_bytes=690)

@@ -7,7 +7,7 @@ import math
 
 from ...core.vectors import Vec3
 from ..mission import item as commands
-from ..mission.commands import Commands, is_speed, whole_seconds
+from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import MissionItem
 from ..mission.notes import INFO, Note, Text
 from ..mission.place import down, point
@@ -16,7 +16,8 @@ from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
 from .modes import auto, auto_yaw
-from .modes.auto import AUTO
+from .modes.auto import AUTO, AUTO_RTL
+from .modes.state import GuidedState
 from .navigation import waypoint
 from .navigation.planner import PLANNER, Following
 from .navigation.state import CopterNav
@@ -44,6 +45,7 @@ KINDS = {
     commands.NAV_LOITER_TO_ALT: kinds.LOITER_TO_ALT,
     commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_VTOL_LAND: kinds.LAND,
+    commands.NAV_GUIDED_ENABLE: kinds.GUIDED,
 }
 OTHERS = (
     commands.CONDITION_DELAY,
@@ -51,15 +53,19 @@ OTHERS = (
     commands.CONDITION_YAW,
     commands.DO_JUMP,
     commands.DO_CHANGE_SPEED,
+    commands.DO_FENCE_ENABLE,
     commands.DO_SET_HOME,
     commands.DO_SET_ROI_LOCATION,
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
     commands.DO_JUMP_TAG,
+    commands.DO_GUIDED_LIMITS,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
-    *commands.DEVICE_COMMANDS,
+    *commands.VIDEO_COMMANDS,
     *commands.OUTPUT_COMMANDS,
+    *commands.MOUNT_COMMANDS,
+    *commands.PAYLOAD_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NAV_LOITER_TIME)
@@ -68,7 +74,7 @@ SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NA
 class CopterCommands(Commands[Vehicle]):
     """Take-off, legs, circles, return and landing; heading and region of interest."""
 
-    auto = AUTO
+    auto, auto_return = AUTO, AUTO_RTL
     taken = frozenset((*KINDS, *OTHERS))
     planner = PLANNER
 
@@ -87,6 +93,8 @@ class CopterCommands(Commands[Vehicle]):
         ap, time_us = v.autopilot, v.time_us
         nav = ap.modes.nav
         kind = KINDS[item.command]
+        if kind == kinds.GUIDED and not int(item.p1) > 0:
+            kind = kinds.PASSED_OVER  # it would end guided flight, which has ended
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
             auto.choose_heading(ap.modes.auto_yaw, kind, ap.params.WP, ap.control.attitude, ap.estimate)
         here, _ = PLANNER.origin_of_next(ap, time_us)
@@ -111,7 +119,7 @@ class CopterCommands(Commands[Vehicle]):
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)
         elif kind == kinds.LOITER_TURNS:
-            nav.turns = max(item.p1, 0.0)
+            nav.turns = turns(item)
         return []
 
     def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
@@ -162,6 +170,8 @@ class CopterCommands(Commands[Vehicle]):
             set_roi(v, item)
         elif item.command == commands.DO_SET_ROI_NONE:
             _look_ahead(ap)
+        elif item.command == commands.DO_GUIDED_LIMITS:
+            _limit_guided(ap.modes.guided, item)
         return super().run(v, item)
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
@@ -203,6 +213,12 @@ def set_roi(v: Vehicle, item: MissionItem) -> None:
         return
     ap = v.autopilot
     auto_yaw.look_at(ap.modes.auto_yaw, point(ap, item, ap.estimate.pos), ap.control.attitude, ap.estimate)
+
+
+def _limit_guided(guided: GuidedState, item: MissionItem) -> None:
+    """Whole seconds, heights over the origin and distance from where guided flight begins [m]; 0: no limit."""
+    guided.limit_us = int(whole_seconds(item) * 1e6)
+    guided.limit_low, guided.limit_high, guided.limit_distance = item.p2, item.p3, item.p4
 
 
 def _look_ahead(ap: Autopilot) -> None:

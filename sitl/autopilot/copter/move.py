@@ -51,6 +51,7 @@ def move_altitude(c: AltitudeState, d: Displacement) -> None:
 def move_guided(g: GuidedState, d: Displacement) -> None:
     """GUIDED's set-point."""
     g.pos, g.vel, g.acc, g.q = moved(d, g.pos), turned(d, g.vel), turned(d, g.acc), turned_attitude(d, g.q)
+    g.limit_from = moved_ne(d, g.limit_from)
 
 
 @law

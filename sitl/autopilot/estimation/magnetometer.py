@@ -27,7 +27,7 @@ from ...core.scalars import wrap_pi
 from ...core.vectors import Vec3
 from .. import events
 from ..params.estimator import Ekf3
-from ..state import Estimate, Sensors
+from ..state import Estimate
 from . import noise
 from .covariance import clear, turn_frame
 from .fusion import NIS_MAGNETOMETER, NO_NIS, clear_row, correct, gate_ratio, innovate
@@ -45,12 +45,11 @@ MIN_HORIZONTAL = 0.005
 
 
 @law
-def read(ekf: Ekf, sensors: Sensors) -> None:
-    """Add a new sample, turned to NED, to the sum; one that makes no sense is passed over."""
-    if sensors.mag_count == ekf.mag_seen:
+def read(ekf: Ekf, count: int, field: Vec3) -> None:
+    """Add sample ``count`` [gauss], turned to NED, to the sum if it is new; one that makes no sense is passed over."""
+    if count == ekf.mag_seen:
         return
-    ekf.mag_seen = sensors.mag_count
-    field = sensors.mag
+    ekf.mag_seen = count
     if not within(field, 2.0) or dot(field, field) < 0.0025:
         return
     ekf.mag_sum += rotate(ekf.q, field - ekf.mag_bias)

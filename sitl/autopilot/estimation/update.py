@@ -7,6 +7,7 @@ from ...core.algebra import IDENTITY
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events
+from ..sensor_calibration import read_sensors
 from ..state import Estimate, Vehicle
 from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
 from .alignment import CALIBRATE, RUN, TILT, YAW
@@ -96,11 +97,12 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick: ``sensors`` to ``autopilot.estimate``."""
     v = fleet[i]
     ap, sensors = v.autopilot, v.sensors
-    ekf = ap.ekf
+    ekf, shown = ap.ekf, ap.calibrated
+    read_sensors(shown, sensors, ap.params)
     if ekf.use_external:
         return
     ekf.now_us = v.time_us
-    strapdown.read_imu(ekf, sensors.gyro, sensors.acc)
+    strapdown.read_imu(ekf, shown.gyro, shown.acc)
     barometer.read(ekf, sensors)
     gps.read(ekf, sensors)
     if ekf.phase == CALIBRATE:
@@ -108,7 +110,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
             _boot(ekf, ap.estimate, ap.events)
         return
     strapdown.advance(ekf, DT)
-    magnetometer.read(ekf, sensors)
+    magnetometer.read(ekf, sensors.mag_count, shown.mag)
     if ekf.step_ticks >= STEP_TICKS:
         step(fleet, i)
     status.publish(ekf, ap.estimate, DT, ap.params.EK3.TAU_OUTPUT)

@@ -7,12 +7,14 @@ import math
 from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
+from ..fence.checks import ALL, switch_by_user
+from ..fence.texts import names
 from ..navigation.planner import Planner
 from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
 from ..state import Vehicle
 from . import item as commands
 from .item import MissionItem
-from .notes import Note, OutputItem
+from .notes import NOTICE, Note, OutputItem, Text
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
@@ -23,6 +25,8 @@ class Commands(ABC, Generic[V]):
 
     auto: int
     """Number of the mode that runs missions."""
+    auto_return = -1
+    """Number that AUTO is shown under while it flies the mission's way back."""
     taken: frozenset[int]
     """MAV_CMDs that missions may hold."""
     planner: Planner[Any]
@@ -69,7 +73,9 @@ class Commands(ABC, Generic[V]):
             nav.condition_distance = item.p1
         elif item.command == commands.DO_SET_HOME:
             set_home(v.autopilot, item)
-        elif item.command in commands.OUTPUT_COMMANDS or item.command in commands.CAMERA_COMMANDS:
+        elif item.command == commands.DO_FENCE_ENABLE:
+            return _enable_fence(v, item.p1 == 1.0)
+        elif item.command in commands.CARRIED_OUT:
             return [OutputItem(item)]
         return []
 
@@ -78,9 +84,23 @@ class Commands(ABC, Generic[V]):
         """DO_CHANGE_SPEED (SPEED_TYPE, m/s); whether it was taken."""
 
 
+def _enable_fence(v: Vehicle, on: bool) -> list[Note]:
+    """DO_FENCE_ENABLE: all fences of FENCE_TYPE, or none."""
+    ap = v.autopilot
+    before = ap.fence.on
+    switch_by_user(ap.fence, on, ALL, ap.params.FENCE, ap.events, v.time_us)
+    changed = before ^ ap.fence.on
+    return [Text(NOTICE, f"{names(changed)} {'enabled' if on else 'disabled'}")] if changed else []
+
+
 def whole_seconds(item: MissionItem) -> float:
     """The delay in parameter 1 as ArduPilot stores it [s]."""
     return float(int(min(max(item.p1, 0.0), 65535.0)))
+
+
+def turns(item: MissionItem) -> float:
+    """Circles of LOITER_TURNS as ArduPilot stores them: whole ones, or a part of one."""
+    return float(int(item.p1)) if item.p1 >= 1.0 else max(item.p1, 0.0)
 
 
 def is_speed(speed: float) -> bool:

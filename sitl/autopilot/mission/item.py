@@ -30,6 +30,7 @@ DO_SET_REVERSE = 194
 DO_SET_ROI_LOCATION = 195
 DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
+DO_FENCE_ENABLE = 207
 NAV_SET_YAW_SPEED = 213
 DO_GUIDED_LIMITS = 222
 DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO = 181, 182, 183, 184
@@ -93,6 +94,7 @@ COMMANDS = {
     DO_SET_ROI_LOCATION: Command("SetROI", False, True),
     DO_SET_ROI_NONE: Command("SetROI", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
+    DO_FENCE_ENABLE: Command("FenceEnable", False, False),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
     DO_RETURN_PATH_START: Command("ReturnPathStart", False, True),
     DO_LAND_START: Command("LandStart", False, True),
@@ -128,17 +130,14 @@ CAMERA_COMMANDS = (
     IMAGE_START_CAPTURE,
     IMAGE_STOP_CAPTURE,
 )
-DEVICE_COMMANDS = (
-    DO_MOUNT_CONTROL,
-    DO_GIMBAL_MANAGER_PITCHYAW,
-    VIDEO_START_CAPTURE,
-    VIDEO_STOP_CAPTURE,
-    DO_GRIPPER,
-    DO_SPRAYER,
-    DO_WINCH,
-)
-"""Taken, and without effect: no vehicle here has a gimbal, a video camera, a gripper, a sprayer or a winch."""
+VIDEO_COMMANDS = (VIDEO_START_CAPTURE, VIDEO_STOP_CAPTURE)
+"""Taken, and without effect: no vehicle here has a video camera."""
 OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
+MOUNT_COMMANDS = (DO_MOUNT_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
+PAYLOAD_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
+ROI_COMMANDS = (DO_SET_ROI_LOCATION, DO_SET_ROI_NONE, DO_SET_ROI)
+CARRIED_OUT = frozenset((*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS))
+"""By what is fitted to the vehicle, besides what the autopilot does with them."""
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""
 

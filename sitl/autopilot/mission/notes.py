@@ -38,9 +38,17 @@ class CurrentChanged:
 
 @dataclass(frozen=True, slots=True)
 class OutputItem:
-    """A do-command about servo outputs, relays or the camera, to be carried out now."""
+    """A do-command about what is fitted to the vehicle (``item.CARRIED_OUT``), to be carried out now."""
 
     item: MissionItem
 
 
-Note = Text | ItemReached | CurrentChanged | OutputItem
+@dataclass(frozen=True, slots=True)
+class Switched:
+    """A switch of something that is fitted to the vehicle was moved (``payload.SWITCH_*``)."""
+
+    function: int
+    position: int
+
+
+Note = Text | ItemReached | CurrentChanged | OutputItem | Switched

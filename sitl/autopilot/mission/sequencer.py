@@ -19,20 +19,26 @@ from typing import Any, Protocol
 from .. import events
 from ..navigation.command import give_none
 from ..navigation.state import (
+    BY_LANDING,
     COMPLETE,
     CONDITION_NONE,
+    DETOUR_REQUEST,
     DO_COMMAND,
     JUMPS,
+    LANDING,
     LEG_REQUEST,
+    NONE,
+    OUTWARD,
+    RETURN_PATH,
     RUNNING,
     SPEED_REQUEST,
     STOPPED,
     Nav,
 )
 from ..state import Vehicle
-from . import jumps
+from . import jumps, returning
 from .commands import Commands
-from .item import NAV_TAKEOFF, NAV_VTOL_TAKEOFF, MissionItem
+from .item import DO_LAND_START, DO_RETURN_PATH_START, NAV_TAKEOFF, NAV_VTOL_TAKEOFF, MissionItem
 from .mission import Mission
 from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
 
@@ -80,6 +86,8 @@ class Sequencer:
         ap.modes.mission_count = len(mission)
         first = mission.get(jumps.next_nav(mission, 1, {}, JUMPS))
         ap.modes.mission_takes_off = first is not None and first.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
+        ap.modes.mission_lands = bool(returning.marks(mission, DO_LAND_START))
+        ap.modes.mission_returns = returning.has_path(mission)
 
     def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
         """Take a new mission. One under way goes on: with its present command, from the start if that has changed.
@@ -143,6 +151,7 @@ class Sequencer:
         nav = v.autopilot.modes.nav
         if nav.mission_state == RUNNING:
             nav.mission_state = STOPPED
+        nav.mission_part = OUTWARD
         nav.condition_kind = CONDITION_NONE
         give_none(nav)
         return []
@@ -163,7 +172,7 @@ class Sequencer:
     def set_current(self, v: Vehicle, seq: int) -> tuple[bool, list[Note]]:
         """MISSION_SET_CURRENT: (whether there is such an item, notes).
 
-        0 is the mission's start; in AUTO it goes there at once.
+        0 is the mission's start; in AUTO it goes there at once. Jumps are counted anew.
         """
         nav = v.autopilot.modes.nav
         notes: list[Note] = []
@@ -175,9 +184,27 @@ class Sequencer:
             self._run_from(v, max(seq, 1), notes)
         else:
             nav.mission_state = STOPPED
-            nav.mission_resume, nav.mission_do_next = True, 0
-            self._set_current(nav, max(seq, 1), notes)
+            nav.mission_resume = True
+            self._resume_at(nav, max(seq, 1), notes)
         return (True, notes)
+
+    def go_back(self, v: Vehicle, way: int, at_once: bool) -> list[Note]:
+        """Go to the mission's part that brings the vehicle back: ``at_once`` when AUTO flies, else when it begins.
+
+        ``way``: BEST, BY_LANDING or BY_PATH; there must be one.
+        """
+        nav = v.autopilot.modes.nav
+        leg = returning.nearest_leg(self.mission, v.autopilot) if way != BY_LANDING else 0
+        seq = leg or returning.nearest_landing(self.mission, v.autopilot)
+        notes: list[Note] = []
+        jumps.keep(nav, {})
+        if at_once and nav.mission_state != STOPPED:
+            self._run_from(v, seq, notes)
+        else:
+            self._stand_at(nav, seq, notes)
+        nav.mission_part = RETURN_PATH if leg else LANDING
+        notes.append(Text(INFO, "Return path started" if leg else "Landing sequence start"))
+        return notes
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
         """DO_CHANGE_SPEED [m/s] from outside while the mission runs: legs under way go on with the new limit."""
@@ -195,23 +222,40 @@ class Sequencer:
             return self._arrived(v) if int(b) == nav.command_count else []
         if code == events.LEG_ENDING and a == LEG_REQUEST:
             self.commands.planner.serve(v.autopilot, v.time_us)
+        elif code == events.LEG_ENDING and a == DETOUR_REQUEST:
+            self.commands.planner.go_on(v.autopilot, v.time_us)
         elif code == events.LEG_ENDING and a == SPEED_REQUEST:
             self.commands.planner.change_speed(v.autopilot)
         elif code == events.MODE_CHANGED:
             in_auto = int(a) == self.commands.auto
-            if in_auto and not running:
+            if in_auto and (not running or nav.command_kind == NONE):
                 return self.start(v)
-            if not in_auto and running:
+            if running and not in_auto and int(a) != self.commands.auto_return:
                 return self.stop(v)
         elif code == events.EKF_ORIGIN_SET:
             if nav.mission_state == STOPPED and v.autopilot.modes.number == self.commands.auto:
                 return self.start(v)
+        elif code == events.RETURN_WANTED:
+            return self.go_back(v, int(a), b != 0.0)
         elif code == events.DISARMED:
             in_auto = v.autopilot.modes.number == self.commands.auto
             return [] if in_auto and self.commands.goes_on_disarmed else self.reset(v)
         return []
 
     # --- inside
+
+    def _stand_at(self, nav: Nav, seq: int, notes: list[Note]) -> None:
+        """Go on at item ``seq``, and what is done on the way to a navigation command there, when the mission runs."""
+        nav.mission_state, nav.mission_resume = STOPPED, True
+        following = jumps.next_nav(self.mission, seq, jumps.runs(nav), JUMPS) or seq
+        notes += [Text(INFO, f"Mission: {k} {self.mission.items[k].name}") for k in dict.fromkeys((seq, following))]
+        self._resume_at(nav, seq, notes)
+
+    def _resume_at(self, nav: Nav, seq: int, notes: list[Note]) -> None:
+        """The mission goes on at item ``seq``; current is the navigation command there, or the next one."""
+        to = jumps.next_nav(self.mission, seq, jumps.runs(nav), JUMPS) or seq
+        nav.mission_do, nav.mission_do_next = (seq, seq + 1) if to != seq else (0, 0)
+        self._set_current(nav, to, notes)
 
     def _set_current(self, nav: Nav, seq: int, notes: list[Note]) -> None:
         if nav.mission_current != seq:
@@ -221,7 +265,7 @@ class Sequencer:
     def _run_from(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         """Run the mission from item ``seq``: do-commands that come first, then the navigation command."""
         nav = v.autopilot.modes.nav
-        nav.mission_state = RUNNING
+        nav.mission_state, nav.mission_part = RUNNING, OUTWARD
         self._advance(v, seq, notes)
 
     def _complete(self, v: Vehicle) -> list[Note]:
@@ -273,6 +317,8 @@ class Sequencer:
         """Begin navigation command ``seq``, and run the other do-commands before it."""
         nav = v.autopilot.modes.nav
         item = self.mission.items[seq]
+        if item.command in returning.LANDINGS:
+            nav.mission_part = LANDING
         notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
         self._set_current(nav, seq, notes)
         notes += self.commands.give(v, seq, item)
@@ -308,9 +354,14 @@ class Sequencer:
     def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
-        v.autopilot.modes.nav.mission_do = seq
+        nav = v.autopilot.modes.nav
+        nav.mission_do = seq
+        if item.command == DO_LAND_START:
+            nav.mission_part = LANDING
+        elif item.command == DO_RETURN_PATH_START and nav.mission_part == OUTWARD:
+            nav.mission_part = RETURN_PATH
         notes += self.commands.run(v, item)
-        if v.autopilot.modes.nav.condition_kind == CONDITION_NONE:
+        if nav.condition_kind == CONDITION_NONE:
             notes.append(ItemReached(seq))
 
     def _condition_met(self, v: Vehicle, seq: int) -> list[Note]:

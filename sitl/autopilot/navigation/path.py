@@ -18,8 +18,17 @@ from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..control.shaping import Motion
 from ..events import LEG_ENDING, Events, emit_and_return
+from ..fence.checks import active
+from ..fence.state import AREAS, FenceState
+from ..params.avoidance import PathPlanning
+from ..params.fence import Fence
 from .profile import clear, evaluate, finished, remaining, step
-from .state import LEG_REQUEST, Leg, Nav
+from .state import DETOUR_REQUEST, GO_ON, LEG_REQUEST, Detour, Leg, Nav
+
+DIJKSTRA = (2.0, 3.0)
+"""OA_TYPE"""
+AGAIN_US = 1_000_000
+"""Where there is no way, one is looked for again so often."""
 
 
 @law
@@ -28,6 +37,7 @@ def clear_legs(nav: Nav) -> None:
     clear(nav.previous)
     clear(nav.current)
     clear(nav.next)
+    nav.detour.left = nav.detour.blocked_us = 0
 
 
 @law
@@ -56,6 +66,41 @@ def request_legs(nav: Nav, events: Events, time_us: int, target: Vec3, following
     request_leg(nav, events, time_us, target)
     nav.request_next = following
     nav.request_pending = 2
+
+
+@law
+def set_place(detour: Detour, k: int, place: Vec3) -> None:
+    """Place ``k`` of a detour, NED [m]."""
+    detour.places[3 * k], detour.places[3 * k + 1], detour.places[3 * k + 2] = place.x, place.y, place.z
+
+
+@law
+def arrive(nav: Nav) -> None:
+    """The leg under way is at its end: the destination, or a place of a detour, after which the shell
+    plans the next leg."""
+    if nav.detour.left == 0:
+        nav.reached = True
+    elif nav.detour.blocked_us == 0:
+        nav.request_pending = GO_ON
+
+
+@law
+def areas_of(fence: FenceState, oa: PathPlanning, params: Fence) -> int:
+    """A number for the areas that ways lead around now (OA_TYPE); 0: none."""
+    if oa.TYPE not in DIJKSTRA or (active(fence, params) & AREAS) == 0:
+        return 0
+    return fence.shapes << 32 | fence.corners
+
+
+@law
+def watch_detour(nav: Nav, areas: int, events: Events, time_us: int) -> None:
+    """Ten times a second: where there was no way, look again each second; where the ``areas`` (``areas_of``) are
+    others than before, lay the way anew."""
+    if nav.active_us == 0 or time_us - nav.active_us >= AGAIN_US:
+        return
+    blocked = nav.detour.blocked_us
+    if (blocked > 0 and time_us - blocked >= AGAIN_US) or (areas != nav.detour.areas and not nav.next.started):
+        emit_and_return(events, time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)
 
 
 @law

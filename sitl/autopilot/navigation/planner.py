@@ -7,14 +7,19 @@ import math
 from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
-from ...core.algebra import ZERO
+from ...core.algebra import ZERO, horizontal, vector_at, with_down
 from ...core.vectors import Vec3
+from ..avoidance.shortest_path import find_path
+from ..events import NO_WAY, emit
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
+from .path import areas_of, set_place
 from .profile import clear, evaluate
-from .state import Leg
+from .state import DETOUR, GO_ON, Leg
 
 A = TypeVar("A", bound=Autopilot)
+TOLD_US = 5_000_000
+"""That there is no way is said no more often."""
 
 
 def end(leg: Leg) -> Vec3:
@@ -79,6 +84,56 @@ class Planner(ABC, Generic[A]):
         return self.stopping_point(ap), False
 
     def begin(self, ap: A, time_us: int, target: Vec3) -> None:
+        """Set off to ``target`` (NED [m]), around what is in the way (OA_TYPE); where there is no way it stops."""
+        nav = ap.modes.nav
+        detour = nav.detour
+        detour.left = detour.blocked_us = 0
+        detour.areas = areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+        if detour.areas == 0:
+            self.begin_leg(ap, time_us, target)
+            return
+        origin, _ = self.origin_of_next(ap, time_us)
+        way = find_path(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
+        if way is None or len(way) > DETOUR:
+            self.begin_leg(ap, time_us, self.stopping_point(ap))
+            set_place(detour, 0, target)
+            detour.left, detour.blocked_us = 1, time_us
+            if time_us - detour.told_us >= TOLD_US or detour.told_us == 0:
+                detour.told_us = time_us
+                emit(ap.events, time_us, NO_WAY, 0.0, 0.0)
+            return
+        places = [with_down(place, target.z) for place in way[:-1]] + [target]
+        for k, place in enumerate(reversed(places)):
+            set_place(detour, k, place)
+        detour.left = len(places)
+        self._go_to_next(ap, time_us)
+
+    def go_on(self, ap: A, time_us: int) -> None:
+        """A place of a detour is reached: on to the next one. Where there was no way, or the areas are others than
+        before, a way to the destination is laid anew."""
+        nav = ap.modes.nav
+        detour = nav.detour
+        is_old = detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+        if is_old and not nav.reached and nav.current.segments > 0:
+            target = vector_at(detour.places, 0) if detour.left > 0 else end(nav.current)
+            self.begin(ap, time_us, target)
+        elif nav.request_pending == GO_ON and detour.left > 0:
+            nav.reached = True
+            self._go_to_next(ap, time_us)
+        else:
+            detour.areas = areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+            return
+        nav.request_pending = 0
+        self.start(ap, time_us)
+
+    def _go_to_next(self, ap: A, time_us: int) -> None:
+        detour = ap.modes.nav.detour
+        detour.left -= 1
+        self.begin_leg(ap, time_us, vector_at(detour.places, 3 * detour.left))
+        if detour.left > 0:
+            self.look_ahead(ap, None)
+
+    def begin_leg(self, ap: A, time_us: int, target: Vec3) -> None:
         """Make the leg to ``target`` (NED [m]) the current one.
 
         It continues the leg just travelled when that was reached (and takes over the leg planned ahead, which may be
@@ -104,10 +159,15 @@ class Planner(ABC, Generic[A]):
         nav.target = target
 
     def look_ahead(self, ap: A, target: Vec3 | None) -> None:
-        """Plan the leg after the current one, to be joined without a stop; None: stop at the end of the current one."""
+        """Plan the leg after the current one, to be joined without a stop; None: stop at the end of the current one.
+
+        On a detour it is the leg to the detour's next place.
+        """
         nav = ap.modes.nav
         if nav.next.started:
             return
+        if nav.detour.left > 0:
+            target = vector_at(nav.detour.places, 3 * nav.detour.left - 3)
         clear(nav.next)
         nav.current.fast = False
         if target is None or math.dist(end(nav.current), target) < SHORTEST or nav.current.length < SHORTEST:

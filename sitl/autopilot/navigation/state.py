@@ -21,7 +21,7 @@ LOITER_TIME = 5  # fly the leg to target, stay for delay
 RTL = 6
 LAND = 7  # at target when has_place, else where it is
 DELAY = 8  # stay where it is for delay
-GUIDED = 9  # rover: set-points drive, until target (when has_place) or a limit is reached
+GUIDED = 9  # set-points drive, until a limit is reached (a rover: or target, when has_place)
 YAW_SPEED = 10  # rover: turn to a heading at a speed
 PASSED_OVER = 11  # complete at once
 LOITER_TO_ALT = 12  # copter: fly the leg to target, then climb or sink to its height
@@ -36,6 +36,7 @@ CONDITION_YAW = 3  # until auto_yaw (modes) has turned
 NAV_COMMAND = 0.0  # the navigation command
 DO_COMMAND = 1.0  # the condition that held back do-commands is met
 LEG_REQUEST = 2.0  # LEG_ENDING: the core asks for a leg to ``request`` (path.request_leg)
+DETOUR_REQUEST = 4.0  # LEG_ENDING: a place of a detour is reached, or a way is to be looked for again
 SPEED_REQUEST = 3.0  # LEG_ENDING: the speed limit changed: plan the legs anew
 
 # State of the mission (``mission_state``)
@@ -43,7 +44,21 @@ STOPPED = 0
 RUNNING = 1
 COMPLETE = 2
 
+# Parts of a mission (``mission_part``)
+OUTWARD = 0
+RETURN_PATH = 1  # behind DO_RETURN_PATH_START
+LANDING = 2  # behind DO_LAND_START, or a landing
+
+# Ways back (AUTO_RTL)
+BEST = 0  # by a return path, else by a landing sequence
+BY_LANDING = 1
+BY_PATH = 2
+
 SEGMENTS = 16
+DETOUR = 24
+"""Places of a detour that there is room for."""
+GO_ON = 3
+"""``request_pending``: a place of a detour is reached."""
 JUMPS = 100
 
 
@@ -72,6 +87,16 @@ class Leg(Record):
     s: Floats = array(SEGMENTS)  # [m/s^4]
 
 
+class Detour(Record):
+    """A way around fences: places behind the end of the leg under way (``navigation.detour``)."""
+
+    left: int  # places that are still to come, the destination the last of them; 0: none
+    places: Floats = array(3 * DETOUR)  # the next one last, NED [m]
+    areas: int  # the areas of the fence that it was laid around (``path.areas_of``)
+    blocked_us: int  # there is no way: when that was found; 0 not
+    told_us: int  # when it was last said
+
+
 class Nav(Record):
     """Navigation and missions: what those of all firmwares share."""
 
@@ -90,6 +115,7 @@ class Nav(Record):
     previous: Leg  # still decelerating beyond the corner
     current: Leg
     next: Leg
+    detour: Detour
     active_us: int  # last time flown along legs
     fresh: bool  # the current leg starts from a standstill: controllers start anew
     joined: bool  # the current leg goes on from the one before without a stop
@@ -100,7 +126,7 @@ class Nav(Record):
     acc: Vec3  # [m/s^2]
     request: Vec3  # the core asks for a leg to here, NED [m]
     request_next: Vec3  # and then to here, without a stop, when request_pending is 2 [m]
-    request_pending: int  # legs asked for: 0, 1 or 2
+    request_pending: int  # legs asked for: 0, 1 or 2; GO_ON
     speed_ne: float  # horizontal speed limit that a command set [m/s]; 0 none: the parameter's
     # do-commands
     condition_kind: int
@@ -113,6 +139,7 @@ class Nav(Record):
     mission_do: int  # do-command waiting or last run
     mission_do_next: int  # where to look for the following do-command; 0 all done
     mission_resume: bool  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
+    mission_part: int  # OUTWARD, RETURN_PATH or LANDING: what the command under way belongs to
     mission_events: int  # events that the sequencer has seen
     jump_item: Ints = array(JUMPS, stored="i8")  # DO_JUMP items run so far ...
     jump_runs: Ints = array(JUMPS, stored="i8")  # ... and how often

@@ -7,12 +7,14 @@ from typing import Any
 
 from ...core.border import RC_INPUTS
 from ...core.records import Records
+from .avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from .estimator import Ekf3
+from .fence import Fence, Rally
 from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
-from .system import Arming, Battery, Compass, Failsafes, Log, Mavlink, Mission, Statistics, StreamRates
+from .system import Ahrs, Arming, Battery, Compass, Failsafes, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 
 
 class Parameters(ParameterGroup):
@@ -22,18 +24,26 @@ class Parameters(ParameterGroup):
     ``params["ATC_RAT_RLL_P"]``, ``params.ATC_RAT_RLL_P``. Laws use the path: ``params.ATC.RAT_RLL.P``.
     """
 
+    AHRS: Ahrs
     ARMING: Arming
+    AVOID: Avoid
     BATT: Battery
     COMPASS: Compass
     EK3: Ekf3
+    FENCE: Fence
     FOLL: Follow
     FS: Failsafes
     GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
     INITIAL_MODE: float = param(0, 0, 127, "", "Mode after boot, until the mode channel says another", INT8)
+    INS: Inertial
     LOG: Log
     MAV: Mavlink
     MAV1: StreamRates
     MIS: Mission
+    OA: PathPlanning
+    PRX: Proximity
+    PRX1: ProximitySensor
+    RALLY: Rally
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(20, 20, 30, 20) + 12 * (0,))
     RC_OVERRIDE_TIME: float = param(
         3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...core.kernels import law
+from ...core.vectors import Vec3
 from .parameter import INT8, ParameterGroup, group, param
 
 
@@ -16,17 +18,31 @@ class Axes(ParameterGroup):
     Z: float = param(0, -10000, 10000, "", "down")
 
 
+DELIVERED = Vec3(5.0, 13.0, -18.0)
+"""Hard iron of the simulated compasses, and the offsets that vehicles are delivered with [mGauss]: ArduPilot's."""
+
+
+@law
+def axes(group: Axes) -> Vec3:
+    """Three parameters as a vector."""
+    return Vec3(group.X, group.Y, group.Z)
+
+
 def hard_iron(label: str) -> Any:
     """Three axes of an offset of a compass, with ArduPilot's default."""
-    axes = {"X": 5.0, "Y": 13.0, "Z": -18.0}
-    rows = {k: {"default": value, "unit": "mGauss", "doc": f"{label}, {k}"} for k, value in axes.items()}
+    rows = {
+        k: {"default": value, "unit": "mGauss", "doc": f"{label}, {k}"}
+        for k, value in zip("XYZ", (DELIVERED.x, DELIVERED.y, DELIVERED.z), strict=True)
+    }
     return group(label, **rows)
 
 
-class SecondCompass(ParameterGroup):
-    """SIM_MAG2_, SIM_MAG3_: a compass besides the first."""
+class SimulatedCompass(ParameterGroup):
+    """SIM_MAG1_, SIM_MAG2_, SIM_MAG3_: what is wrong with a compass."""
 
     OFS: Axes = hard_iron("What this compass shows too little")
+    DIA: Axes = group("Soft iron: COMPASS_DIA that makes up for it; 0, 0, 0: there is none")
+    ODI: Axes = group("Soft iron: COMPASS_ODI that makes up for it")
 
 
 class Simulated(ParameterGroup):
@@ -37,12 +53,16 @@ class Simulated(ParameterGroup):
     WIND_TURB: float = param(0, 0, 20, "m/s", "Turbulence, standard deviation of each axis")
     WIND_TC: float = param(5, 0.1, 300, "s", "Correlation time of the turbulence and lag of wind changes")
     ACC1_BIAS: Axes = group("What the accelerometer shows too much [m/s/s]")
+    ACC1_SCAL: Axes = group("The accelerometer shows its share 1 / this of an acceleration; 0: all of it")
+    ACC_TRIM: Axes = group("How far the accelerometer is turned in the vehicle: the AHRS_TRIM that it needs [rad]")
+    GYR1_BIAS: Axes = group("What the gyro shows too much [rad/s]")
     BARO_COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
     BATT_VOLTAGE: float = param(12.6, 0, 1000, "V", "Voltage of the full battery; 12.6: that of the airframe")
     GPS1_TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver", INT8)
     GPS1_JAM: float = param(0, 0, 1, "", "1 jams the GPS receiver", INT8)
-    MAG2: SecondCompass
-    MAG3: SecondCompass
+    MAG1: SimulatedCompass
+    MAG2: SimulatedCompass
+    MAG3: SimulatedCompass
     GPS1_ENABLE: float = param(1, 0, 1, "", "0 switches the GPS receiver off", INT8)
     SPEEDUP: float = param(
         1, -1, 100000, "", "Simulated seconds a second; 0 or less: as fast as it goes (drop-in executables only)"

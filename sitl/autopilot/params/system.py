@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .parameter import INT8, INT16, INT32, ParameterGroup, param
+from .parameter import INT8, INT16, INT32, ParameterGroup, group, param
 from .simulation import Axes, hard_iron
 
 
@@ -40,11 +40,34 @@ class Battery(ParameterGroup):
     ARM_MAH: float = param(0, 0, 2000000, "mAh", "Least charge left for arming; 0 off", INT32)
 
 
-class Compass(ParameterGroup):
-    """COMPASS_: the second and third compass, which arming checks compare with the first."""
+class Ahrs(ParameterGroup):
+    """AHRS_: how the autopilot is mounted."""
 
+    TRIM: Axes = group("How far it leans in a vehicle that is level [rad]")
+
+
+class Inertial(ParameterGroup):
+    """INS_: calibration of accelerometers and gyros."""
+
+    GYROFFS: Axes = group("Taken off what the gyro shows [rad/s]")
+    ACCOFFS: Axes = group("Taken off what the accelerometer shows [m/s/s]")
+    ACCSCAL: Axes = group("Factor of what the accelerometer then shows", X=1.0, Y=1.0, Z=1.0)
+
+
+class Compass(ParameterGroup):
+    """COMPASS_: calibration of the compasses; arming checks compare the second and third with the first."""
+
+    OFS: Axes = hard_iron("Added to what the first compass shows")
+    DIA: Axes = group("First compass: diagonal of the matrix for soft iron", X=1.0, Y=1.0, Z=1.0)
+    ODI: Axes = group("First compass: elements xy, xz and yz of that matrix")
     OFS2: Axes = hard_iron("Added to what the second compass shows")
+    DIA2: Axes = group("Second compass: diagonal of the matrix for soft iron", X=1.0, Y=1.0, Z=1.0)
+    ODI2: Axes = group("Second compass: elements xy, xz and yz of that matrix")
     OFS3: Axes = hard_iron("Added to what the third compass shows")
+    DIA3: Axes = group("Third compass: diagonal of the matrix for soft iron", X=1.0, Y=1.0, Z=1.0)
+    ODI3: Axes = group("Third compass: elements xy, xz and yz of that matrix")
+    CAL_FIT: float = param(16, 0, 100, "mGauss", "Greatest mean error of a calibration that counts")
+    OFFS_MAX: float = param(1800, 0, 3000, "mGauss", "Greatest offset of a calibration that counts", INT16)
     USE2: float = param(1, 0, 1, "", "1 the second compass counts", INT8)
     USE3: float = param(1, 0, 1, "", "1 the third compass counts", INT8)
 

@@ -8,9 +8,11 @@ from ..arming_checks import (
     AHRS_TYPE,
     BY_RUDDER,
     CHECK_GPS,
+    CHECK_PARAMETERS,
     CHECK_RC,
     EKF_FAILSAFE,
     EMERGENCY_STOP,
+    FENCE_SHIFT,
     GPS_FIX,
     MODE,
     MODE_BY_RUDDER,
@@ -22,22 +24,23 @@ from ..arming_checks import (
     THROTTLE_OFF_CENTRE,
     WAYPOINT_SPEED,
     battery_checks,
+    calibration_checks,
+    proximity_checks,
     radio_checks,
     sensor_checks,
     wants,
 )
+from ..fence import arming as fence_arming
 from ..params.system import Arming
 from ..state import Estimate
 from .control import servos
 from .control.motors import is_skid
+from .heights import HEIGHTS
 from .modes.auto import AUTO
 from .modes.state import Modes, PilotState
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .parameters import Parameters
 from .state import Vehicle
-
-CHECK_PARAMETERS = 32
-"""ARMING_CHECK"""
 
 
 @law
@@ -69,9 +72,11 @@ def check(v: Vehicle) -> int:
     ap = v.autopilot
     modes, p = ap.modes, ap.params
     sensors = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
+    sensors |= calibration_checks(ap.calibrated.state, p.ARMING)
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
+    sensors |= proximity_checks(ap.proximity, v.time_us)
     failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
     if modes.number == AUTO and modes.mission_count < 2:
         failed |= NO_MISSION
@@ -79,6 +84,7 @@ def check(v: Vehicle) -> int:
         failed |= EMERGENCY_STOP
     if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
         failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, p.FENCE, HEIGHTS) << FENCE_SHIFT
     return failed if allows_arming(modes.number) else failed | MODE
 
 

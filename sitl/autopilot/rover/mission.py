@@ -7,7 +7,7 @@ import math
 
 from ...core.vectors import Vec3
 from ..mission import item as commands
-from ..mission.commands import Commands, is_speed, whole_seconds
+from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import MissionItem
 from ..mission.notes import INFO, NOTICE, WARNING, Note, Text
 from ..mission.place import point
@@ -38,17 +38,20 @@ OTHERS = (
     commands.CONDITION_DISTANCE,
     commands.DO_JUMP,
     commands.DO_CHANGE_SPEED,
+    commands.DO_FENCE_ENABLE,
     commands.DO_SET_HOME,
     commands.DO_SET_REVERSE,
-    commands.DO_SET_ROI_LOCATION,  # taken and without effect: there is nothing to point
+    commands.DO_SET_ROI_LOCATION,  # for the gimbal
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
     commands.DO_GUIDED_LIMITS,
     commands.DO_JUMP_TAG,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
-    *commands.DEVICE_COMMANDS,
+    *commands.VIDEO_COMMANDS,
     *commands.OUTPUT_COMMANDS,
+    *commands.MOUNT_COMMANDS,
+    *commands.PAYLOAD_COMMANDS,
 )
 
 
@@ -85,7 +88,7 @@ class RoverCommands(Commands[Vehicle]):
         if kind in LEGS:
             nav.delay = 0.0 if kind == kinds.LOITER_UNLIMITED else whole_seconds(item)
         elif kind == kinds.LOITER_TURNS:
-            nav.turns = max(item.p1, 0.0)
+            nav.turns = turns(item)
             nav.circle_radius = min(max(item.p3, -RADIUS_MAX), RADIUS_MAX)
         elif kind == kinds.YAW_SPEED:
             nav.heading = math.radians(item.p1) + (ap.estimate.yaw if item.p3 > 0.0 else 0.0)

@@ -9,14 +9,15 @@ from typing import Any
 from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
-from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, table, throw, zigzag
+from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, systemid, table, throw, zigzag
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
+from ...autopilot.mission import returning
 from ...autopilot.mission.notes import Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
-from ..base_autopilot import CRITICAL, INFO, WARNING, BaseAutopilot
+from ..base_autopilot import BY_GROUND_STATION, CRITICAL, INFO, WARNING, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
@@ -53,18 +54,31 @@ class CopterAutopilot(BaseAutopilot):
         if code == events.PATH_LOST:
             return [Text(WARNING, smart_rtl_path.lost_text(int(a)))]
         if code == events.NO_WAY_BACK:
-            return [Text(WARNING, f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
+            return [Text(WARNING, _INSTEAD[int(a)] if b else f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
+        if code == events.CIRCLE_BEGINS:
+            return [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")]
+        if code == events.RETURN_ACTIVE:
+            return [Text(INFO, returning.ACTIVE_TEXTS[int(a)])]
         if code == events.THROW_STAGE:
             return [Text(INFO, throw.TEXTS[int(a)])]
+        if code == events.SYSTEM_ID_DID:
+            severity = WARNING if int(a) in systemid.REFUSALS else INFO
+            return [Text(severity, systemid.text(int(a), b, self._v.autopilot.params.ANGLE_MAX * 0.01))]
         if code == events.ZIGZAG_DID:
             return [Text(INFO, zigzag.text(int(a), int(b), int(self._v.autopilot.params.ZIGZ.LINE_NUM)))]
         return super().texts_of(code, a, b)
 
     def start_mission(self) -> bool:
+        if self._v.autopilot.modes.shown == auto.AUTO_RTL and not self.set_mode(auto.AUTO):
+            return False
         if not super().start_mission():
             return False
         auto.start_mission(self._v.autopilot.modes.auto, self._v.autopilot.arming)
         return True
+
+    def go_back(self, way: int) -> bool:
+        """AUTO_RTL by a return path (BY_PATH) or a landing sequence (BY_LANDING)."""
+        return int(set_mode.go_back(self._v, way, BY_GROUND_STATION)) == 0
 
     # ------------------------------------------------------------------ take-off and motors
 
@@ -129,7 +143,10 @@ class CopterAutopilot(BaseAutopilot):
         return commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:
-        return commands.set_paused(self._v.autopilot.modes, on) == 0
+        done = commands.set_paused(self._v.autopilot.modes, on) == 0
+        if on and not done:
+            self._say(INFO, ["Failed to pause"])
+        return done
 
     def set_roi(self, place: Vector | None) -> None:
         if place is None:

@@ -9,11 +9,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, cast
 
+from ...autopilot.navigation.state import BY_LANDING, BY_PATH
 from ..channel import Channel
 from ..services import command_table
 from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry
 from ..services.command_table import set_mode
+from ..services.mount import MountService
 from ..services.service import ACCEPTED, DENIED, FAILED
+from ..services.winch import WinchService
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
@@ -79,30 +82,40 @@ def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def pause_continue(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """193: p1 0 pause, 1 continue."""
+    """193: p1 0 pause, 1 continue, in GUIDED and AUTO; FAILED, with a text, in other modes and where AUTO has none."""
     if command.p1 not in (0.0, 1.0):
         return DENIED
-    return ACCEPTED if _copter(bridge).pause(command.p1 == 0.0) else FAILED
+    ok = _copter(bridge).pause(command.p1 == 0.0)
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
 
 
 def set_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """195, 201: point the nose at a place; all zero ends it."""
+    """195, 201: point the nose at a place, or the gimbal if it has a yaw axis; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return DENIED
+    mount: MountService = bridge.get(MountService)
+    if mount.turns_by_itself:
+        return command_table.look_at(bridge, channel, command)
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         _copter(bridge).set_roi(None)
-        return ACCEPTED
+        return command_table.look_at(bridge, channel, command)
     place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
     if place is None:
         return FAILED
     _copter(bridge).set_roi(place)
-    return ACCEPTED
+    return command_table.look_at(bridge, channel, command)
 
 
 def no_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
     """197: look ahead again."""
     _copter(bridge).set_roi(None)
-    return ACCEPTED
+    return command_table.look_ahead(bridge, channel, command)
+
+
+def winch(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42600: p2 0 lets the line go, 1 lowers by p3 [m] (below 0 raises), 2 winds at p4 [m/s]; FAILED without winch."""
+    return int(bridge.get(WinchService).act(command.p2, command.p3, command.p4))
 
 
 def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -112,6 +125,22 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
     _copter(bridge).terminate()
     bridge.say_pending()
     return ACCEPTED
+
+
+def return_path(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """188: AUTO_RTL by the mission's return path that is nearest."""
+    return _go_back(bridge, BY_PATH)
+
+
+def landing_sequence(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """189: AUTO_RTL by the mission's landing sequence that is nearest."""
+    return _go_back(bridge, BY_LANDING)
+
+
+def _go_back(bridge: Bridge, way: int) -> int:
+    ok = _copter(bridge).go_back(way)
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
 
 
 COMMANDS: dict[int, Entry] = {
@@ -124,9 +153,12 @@ COMMANDS: dict[int, Entry] = {
     115: Entry(condition_yaw, required=(1,)),
     178: Entry(change_speed, required=(1, 2)),
     185: Entry(terminate, required=(1,)),
+    188: Entry(return_path),
+    189: Entry(landing_sequence),
     193: Entry(pause_continue, required=(1,)),
     195: Entry(set_roi, required=(5, 6, 7), place=True),
     197: Entry(no_roi),
     201: Entry(set_roi, required=(5, 6, 7), place=True),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
+    42600: Entry(winch),
 }

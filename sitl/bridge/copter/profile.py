@@ -30,7 +30,7 @@ PROFILE = Profile(
         2: (
             "EXT_STAT",
             ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
-             "POSITION_TARGET_GLOBAL_INT"),
+             "FENCE_STATUS", "POSITION_TARGET_GLOBAL_INT"),
         ),
         3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
         4: ("RAW_CTRL", ()),
@@ -39,7 +39,8 @@ PROFILE = Profile(
         11: ("EXTRA2", ("VFR_HUD",)),
         12: (
             "EXTRA3",
-            ("AHRS", "WIND", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION"),
+            ("AHRS", "WIND", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION",
+             "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },
     commands=COMMANDS,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...autopilot.copter.modes.guided import GUIDED, takes_attitudes
+from ...autopilot.copter.modes.auto import is_guided
 from ...autopilot.copter.modes.guided_setpoints import (
     NO_YAW,
     YawSetpoint,
@@ -18,6 +18,7 @@ from ...autopilot.copter.modes.guided_setpoints import (
     set_position,
     set_velocity,
     stop,
+    takes_attitudes,
 )
 from ...autopilot.mission.item import MissionItem
 from ...core.algebra import IDENTITY
@@ -55,7 +56,7 @@ OVER_HOME = 1
 @law
 def position_target_local(m: SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
     """Fly to a place, with a velocity or an acceleration, in a local frame."""
-    if v.autopilot.modes.number != GUIDED:
+    if not is_guided(v.autopilot.modes):
         return
     if m.coordinate_frame not in LOCAL_FRAMES:
         stop(v)
@@ -66,7 +67,7 @@ def position_target_local(m: SetPositionTargetLocalNed, v: Copter, sender: int) 
 @law
 def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
     """The same with a place on the globe; one that is not there is ignored."""
-    if v.autopilot.modes.number != GUIDED:
+    if not is_guided(v.autopilot.modes):
         return
     frame, use_pos = m.coordinate_frame, (m.type_mask & POSITION_IGNORED) == 0
     if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt)):
@@ -110,7 +111,7 @@ def is_finite(target: Target) -> bool:
 def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
     """Fly an attitude, or body rates."""
     mask = m.type_mask
-    if not takes_attitudes(v.autopilot.modes.number) or (mask & THRUST_IGNORED) != 0:
+    if not takes_attitudes(v.autopilot.modes) or (mask & THRUST_IGNORED) != 0:
         return
     rates = Vec3(
         0.0 if (mask & ROLL_RATE_IGNORED) != 0 else m.body_roll_rate,

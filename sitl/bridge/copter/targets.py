@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from ...autopilot.copter.modes.auto import AUTO
+from ...autopilot.copter.modes.auto import AUTO, is_guided
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
@@ -34,10 +34,10 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m]."""
     modes, control, pos = v.autopilot.modes, v.autopilot.control, v.autopilot.estimate.pos
     euler = control.attitude.target_euler
-    if modes.number == AUTO or modes.number == SMART_RTL:
-        to = modes.nav.target
-    elif modes.number == GUIDED:
+    if is_guided(modes):
         to = modes.guided.pos
+    elif modes.number == AUTO or modes.number == SMART_RTL:
+        to = modes.nav.target
     else:
         to = v.autopilot.home.pos
     if modes.number in _FLY_TO_A_PLACE:
@@ -82,7 +82,7 @@ class PositionTargetLocalNed(Message, name="POSITION_TARGET_LOCAL_NED"):
 def position_target_local(m: PositionTargetLocalNed, v: Copter) -> bool:
     """POSITION_TARGET_LOCAL_NED: the target of GUIDED; nothing in other modes."""
     guided = v.autopilot.modes.guided
-    if v.autopilot.modes.number != GUIDED or not 0 <= guided.submode < len(TARGET_MASKS):
+    if not is_guided(v.autopilot.modes) or not 0 <= guided.submode < len(TARGET_MASKS):
         return False
     pos, vel, acc = guided.pos, guided.vel, guided.acc
     m.time_boot_ms = boot_ms(v.time_us)
@@ -114,7 +114,7 @@ def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
     modes, estimate = v.autopilot.modes, v.autopilot.estimate
     if not estimate.origin_set or (modes.number != AUTO and modes.number != GUIDED):
         return False
-    to = modes.guided.pos if modes.number == GUIDED else modes.nav.target
+    to = modes.guided.pos if is_guided(modes) else modes.nav.target
     place = add_offset(estimate.origin_lat, estimate.origin_lon, to.x, to.y)
     m.time_boot_ms = boot_ms(v.time_us)
     m.lat_int = int32(place.lat)

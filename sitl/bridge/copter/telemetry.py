@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...autopilot.avoidance.proximity import has_data
 from ...autopilot.control.pid import pid_gains
 from ...autopilot.copter.control.altitude import altitude_gains
 from ...autopilot.copter.modes.auto import AUTO
@@ -27,7 +28,7 @@ from ..telemetry.heartbeat import (
     fill_heartbeat,
 )
 from ..telemetry.motion import VfrHud
-from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
+from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, PROXIMITY, RATE, YAW, MissionCurrent, SysStatus
 from ..telemetry.tuning import PITCH, ROLL, VERTICAL, YAW_LOOP, PidTuning, fill_tuning, next_loop
 from ..telemetry.units import uint8, uint16
 from ..wire.message import Message
@@ -81,13 +82,15 @@ def controllers_at_work(mode: int, armed: bool) -> int:
 def sys_status(m: SysStatus, v: Copter) -> bool:
     """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
     at_work = controllers_at_work(v.autopilot.modes.number, v.autopilot.arming.armed)
-    return status.sys_status(m, v, CONTROLLERS, at_work, CONTROLLERS)
+    looks = PROXIMITY if v.autopilot.proximity.kind != 0 else 0
+    sees = looks if has_data(v.autopilot.proximity, v.time_us) else 0
+    return status.sys_status(m, v, CONTROLLERS | looks, at_work | looks, CONTROLLERS | sees)
 
 
 @law
 def mission_current(m: MissionCurrent, v: Copter) -> bool:
     """MISSION_CURRENT: number of the item, number of items without home, state."""
-    return status.mission_current(m, v, AUTO)
+    return status.mission_current(m, v, AUTO, v.autopilot.modes.nav.paused)
 
 
 @law

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...core.record_reader import RecordReader
+from ...physics.native.ranging import show_lidar
 from ..dialect import message
 from ..telemetry.builder import build
 from ..telemetry.ranging import FACING_DOWN, PART, SCAN_NAME, distance_sensor, obstacle_distance, scan
@@ -78,7 +79,7 @@ class ScanReader:
     """
 
     def __init__(self, v: Any, samples: int) -> None:
-        self._sensors, self._samples = v.sensors, samples
+        self._sensors, self._samples, self._figures = v.sensors, samples, v.physics.airframe
         self._readings = np.empty(samples, np.float32)
         self._parts = -(-samples // PART)
         self._time_us, self._next = -1, 0
@@ -115,6 +116,7 @@ class ScanReader:
             s.lidar_ranges[: self._samples] = self._readings
             s.lidar_time_us = t
             s.lidar_count += 1
+            show_lidar(s, self._figures)
 
 
 class RangeReader:

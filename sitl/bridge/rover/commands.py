@@ -36,11 +36,6 @@ def set_reverse(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-def roi(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """195, 197, 201: taken, and nothing to do: no camera is fitted."""
-    return ACCEPTED
-
-
 PERCENT, PULSE = 0.0, 1.0
 """MOTOR_TEST_THROTTLE_TYPE"""
 
@@ -65,9 +60,6 @@ COMMANDS: dict[int, Entry] = {
     **command_table.COMMANDS,
     178: Entry(change_speed, required=(1, 2)),
     194: Entry(set_reverse, required=(1,)),
-    195: Entry(roi),
-    197: Entry(roi),
-    201: Entry(roi),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
     213: Entry(yaw_speed, required=(1, 2)),
 }

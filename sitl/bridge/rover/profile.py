@@ -28,7 +28,7 @@ PROFILE = Profile(
         2: (
             "EXT_STAT",
             ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "NAV_CONTROLLER_OUTPUT",
-             "POSITION_TARGET_GLOBAL_INT"),
+             "FENCE_STATUS", "POSITION_TARGET_GLOBAL_INT"),
         ),
         3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
         4: ("RAW_CTRL", ("RC_CHANNELS_SCALED",)),
@@ -38,7 +38,7 @@ PROFILE = Profile(
         12: (
             "EXTRA3",
             ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION",
-             "WHEEL_DISTANCE"),
+             "WHEEL_DISTANCE", "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },
     commands=COMMANDS,

@@ -87,7 +87,7 @@ def sys_status(m: SysStatus, v: Rover) -> bool:
 @law
 def mission_current(m: MissionCurrent, v: Rover) -> bool:
     """MISSION_CURRENT: number of the item, number of items without home, state."""
-    return status.mission_current(m, v, AUTO)
+    return status.mission_current(m, v, AUTO, False)
 
 
 @law

@@ -1,22 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """MAVLink's microservices (https://mavlink.io/en/services/)."""
 
+from .calibration import CalibrationService
 from .camera import CameraService
 from .commands import CommandService
+from .compass_calibration import CompassCalibrationService
 from .config_error import ConfigErrorService
 from .ftp import FtpService
+from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
+from .mount import MountService
+from .old_points import OldPointService
 from .outputs import OutputService
 from .parameters import ParameterService
 from .service import Service
 from .setpoints import SetpointService
 from .signing import SigningService
+from .sprayer import SprayerService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
+from .winch import WinchService
 
 ALL_SERVICES: tuple[type[Service], ...] = (
     StatusTextService,
@@ -26,6 +33,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     CommandService,
     ParameterService,
     MissionService,
+    OldPointService,
     SetpointService,
     HomeService,
     TimesyncService,
@@ -37,6 +45,12 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     LogDownloadService,
     OutputService,
     CameraService,
+    GripperService,
+    WinchService,
+    SprayerService,
+    MountService,
+    CalibrationService,
+    CompassCalibrationService,
     SigningService,
 )
 """In the order in which they act when several are due at the same time."""

@@ -37,6 +37,8 @@ class Command(NamedTuple):
     p5: float
     """As given, for commands that are not about a place."""
     p6: float
+    sender: tuple[int, int] = (0, 0)
+    """System and component."""
 
 
 class Entry(NamedTuple):
@@ -52,6 +54,8 @@ class Entry(NamedTuple):
     """COMMAND_LONG is UNSUPPORTED: single precision cannot say where."""
     long_frame: int = GLOBAL_RELATIVE_ALT
     """Frame of a COMMAND_LONG, which has none."""
+    takes_nan: bool = False
+    """A NaN stays one."""
 
 
 def from_long(fields: Any, entry: Entry) -> Command | None:
@@ -103,4 +107,4 @@ def from_int(fields: Any, entry: Entry) -> Command | None:
 def _clean(values: tuple[float, ...], entry: Entry) -> list[float] | None:
     if any(math.isinf(x) for x in values) or any(math.isnan(values[k - 1]) for k in entry.required):
         return None
-    return [0.0 if math.isnan(x) else x for x in values]
+    return [0.0 if math.isnan(x) and not entry.takes_nan else x for x in values]

@@ -11,15 +11,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...autopilot.aux_switch import LOW
+from ...autopilot.fence.checks import ALL, switch_by_user
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
+from . import calibration
+from .calibration import CalibrationService
 from .camera import CameraService
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
+from .compass_calibration import CompassCalibrationService
+from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService
+from .mount import MountService
 from .outputs import OutputService
 from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
+from .sprayer import SprayerService
 from .statustext import StatusTextService
 from .streams import StreamService
 
@@ -87,25 +94,32 @@ def reboot(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-LEVEL, SIMPLE_ACCELEROMETER = 2.0, 4.0
+POSITIONS_OF_ACCELEROMETER, LEVEL_TRIM, SIMPLE_ACCELEROMETER, SAVE = 1.0, 2.0, 4.0, 76.0
+"""p5 of 241; SAVE: p2 or p5, what parameters hold counts as calibrated."""
 
 
 def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """241: p1 1 gyros, p3 1 barometer, p5 2 level, 4 accelerometers: none is needed, success is said at once."""
-    say = bridge.get(StatusTextService).say
+    """241: p1 1 gyros, p3 1 barometer, p5 1 accelerometers in six positions, 2 level, 4 accelerometers level."""
+    say, service = bridge.get(StatusTextService).say, bridge.get(CalibrationService)
     if bridge.autopilot.armed():
         say(NOTICE, "Disarm to allow calibration")
         return FAILED
-    if command.p1 == 1.0 or command.p5 in (LEVEL, SIMPLE_ACCELEROMETER):
+    if command.p1 == 1.0 or command.p5 in (LEVEL_TRIM, SIMPLE_ACCELEROMETER):
         say(INFO, "Initialising ArduPilot")
-        if command.p5 == LEVEL:
-            say(INFO, "Trim OK: roll=0.00 pitch=0.00 yaw=0.00")
-        return ACCEPTED
+        tasks = {LEVEL_TRIM: calibration.LEVEL, SIMPLE_ACCELEROMETER: calibration.SIMPLE}
+        return int(service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5]))
     if command.p3 == 1.0:
         say(INFO, "Updating barometer calibration")
         say(INFO, "Barometer calibration complete")
         return ACCEPTED
-    return UNSUPPORTED
+    if command.p5 == POSITIONS_OF_ACCELEROMETER:
+        return int(service.start_positions())
+    return ACCEPTED if SAVE in (command.p2, command.p5) else UNSUPPORTED
+
+
+def accelerometer_position(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42429: the vehicle is in position p1."""
+    return int(bridge.get(CalibrationService).is_in_position(command.p1))
 
 
 def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -117,19 +131,24 @@ def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def calibrate_compass(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42424: FAILED: calibrations by turning the vehicle are not simulated, and the first compass has no offsets."""
-    bridge.get(StatusTextService).say(NOTICE, "Compass calibration is not simulated")
-    return FAILED
+    """42424: p1 bits of compasses (0 all), p2 again after a failure, p3 saves, p4 delay [s], p5 reboots then."""
+    p = command
+    return int(bridge.get(CompassCalibrationService).start(p.p1, p.p2 != 0.0, p.p3 != 0.0, p.p4, p.p5 != 0.0))
 
 
 def accept_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42425: FAILED, as in ArduPilot while no calibration is complete."""
-    return FAILED
+    """42425: saves what was found of compasses p1."""
+    return int(bridge.get(CompassCalibrationService).accept(command.p1))
 
 
 def cancel_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42426: ACCEPTED, as in ArduPilot: none is under way."""
-    return ACCEPTED
+    """42426: stops the calibration of compasses p1."""
+    return int(bridge.get(CompassCalibrationService).cancel(command.p1))
+
+
+def calibrate_compass_by_heading(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42006: p1 heading [deg], p2 bits of compasses (0 all), p3 and p4 place [deg] (0, 0: where the vehicle is)."""
+    return int(bridge.get(CompassCalibrationService).use_heading(command.p1, command.p2, command.p3, command.p4))
 
 
 def send_banner(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -254,6 +273,62 @@ def stop_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
     return int(bridge.get(CameraService).stop(command.p1))
 
 
+def grip(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """211: p2 0 opens the gripper, 1 closes it; FAILED without GRIP_ENABLE and GRIP_TYPE 1."""
+    return int(bridge.get(GripperService).act(command.p2))
+
+
+def spray(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """216: p1 1 runs the sprayer, 0 ends it; no effect without SPRAY_ENABLE."""
+    bridge.get(SprayerService).act(command.p1)
+    return ACCEPTED
+
+
+def configure_mount(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """204 (old): p1 mode of the gimbal, as for 205; FAILED without MNT1_TYPE 1."""
+    return int(bridge.get(MountService).configure(command.p1))
+
+
+def control_mount(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """205: p1 pitch, p2 roll, p3 yaw [deg]; p7 0 folds, 1 neutral, 2 these angles, 3 sticks, 4 last place, 6 home."""
+    return int(bridge.get(MountService).control(command.p1, command.p2, command.p3, command.z))
+
+
+def pitch_and_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """1000: p1 pitch, p2 yaw [deg], or NaN and p3, p4 their rates [deg/s]; p5 flags, p7 gimbal (0, 1)."""
+    c = command
+    return int(bridge.get(MountService).pitch_yaw(c.p1, c.p2, c.p3, c.p4, c.p5, c.z))
+
+
+def control_gimbal(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """1001: p1 system and p2 component that have primary control of the gimbal; -2: the sender."""
+    return int(bridge.get(MountService).give_control(command.p1, command.p2, command.sender))
+
+
+def follow_system(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """198: taken; the gimbal does not follow other vehicles here."""
+    return ACCEPTED
+
+
+def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """195, 201: the gimbal points at a place; all zero ends it."""
+    if command.frame not in GLOBAL_FRAMES:
+        return DENIED
+    mount = bridge.get(MountService)
+    if command.lat == 0 and command.lon == 0 and command.z == 0.0:
+        mount.look_ahead()
+    else:
+        alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
+        mount.look_at(command.lat, command.lon, alt)
+    return ACCEPTED
+
+
+def look_ahead(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """197: the gimbal does what MNT1_DEFLT_MODE says."""
+    bridge.get(MountService).look_ahead()
+    return ACCEPTED
+
+
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
     """192: go to a place in GUIDED; p1 speed, p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
@@ -303,6 +378,17 @@ def _home_result(bridge: Bridge, ok: bool) -> int:
     return ACCEPTED if ok else FAILED
 
 
+def enable_fence(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """207: p1 1 switches fences on, 0 off; p2 which (bits as of FENCE_TYPE), 0 all."""
+    which = int(command.p2) if 0.0 < command.p2 <= ALL else ALL
+    if not 0.0 <= command.p1 <= 2.0 or not 0.0 <= command.p2 <= ALL:
+        return FAILED
+    v = bridge.vehicle.v
+    ap = v.autopilot
+    switch_by_user(ap.fence, int(command.p1) == 1, which, ap.params.FENCE, ap.events, v.time_us)
+    return ACCEPTED
+
+
 def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
     """300: AUTO from the beginning; p1, p2 (first and last item) must be zero."""
     if command.p1 != 0.0 or command.p2 != 0.0:
@@ -313,10 +399,10 @@ def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """224: p1 number of the item (-1: keep), p2 1 resets the mission first."""
-    if command.p1 != int(command.p1) or command.p2 not in (0.0, 1.0):
+    """224: p1 number of the item (0: the first); jumps are counted anew whatever p2 is; DENIED without such an item."""
+    if not 0.0 <= command.p1 <= 65535.0:
         return DENIED
-    ok = bridge.autopilot.set_current_item(int(command.p1), command.p2 == 1.0)
+    ok = bridge.autopilot.set_current_item(int(command.p1))
     bridge.say_pending()
     return ACCEPTED if ok else DENIED
 
@@ -326,15 +412,19 @@ COMMANDS: dict[int, Entry] = {
     245: Entry(storage),
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
+    42006: Entry(calibrate_compass_by_heading, required=(1,)),
     42424: Entry(calibrate_compass),
     42425: Entry(accept_compass_calibration),
     42426: Entry(cancel_compass_calibration),
     42428: Entry(send_banner),
+    42429: Entry(accelerometer_position, required=(1,)),
     42651: Entry(reset_battery, required=(1, 2)),
     410: Entry(get_home),
     510: Entry(get_interval, required=(1,)),
     511: Entry(set_interval, required=(1, 2)),
     512: Entry(request_message, required=(1,)),
+    1000: Entry(pitch_and_yaw, takes_nan=True),
+    1001: Entry(control_gimbal),
     2000: Entry(start_pictures),
     2001: Entry(stop_pictures),
     2600: Entry(control_high_latency, required=(1,)),
@@ -350,6 +440,15 @@ COMMANDS: dict[int, Entry] = {
     202: Entry(configure_camera),
     203: Entry(control_camera),
     206: Entry(set_camera_distance, required=(1,)),
+    195: Entry(look_at, place=True),
+    197: Entry(look_ahead),
+    198: Entry(follow_system),
+    201: Entry(look_at, place=True),
+    204: Entry(configure_mount),
+    205: Entry(control_mount),
+    207: Entry(enable_fence, required=(1,)),
+    211: Entry(grip),
+    216: Entry(spray),
     218: Entry(aux_function, required=(1, 2)),
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),

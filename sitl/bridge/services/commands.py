@@ -59,7 +59,7 @@ class CommandService(Service):
         self._run(channel, entry, from_int(fields, entry), fields.command, sender)
 
     def _run(self, channel: Channel, entry: Entry, command: Command | None, number: int, sender: Sender) -> None:
-        result = DENIED if command is None else entry.run(self.bridge, channel, command)
+        result = DENIED if command is None else entry.run(self.bridge, channel, command._replace(sender=sender))
         self._ack(channel, number, result, sender)
         self.bridge.send_asked()
 

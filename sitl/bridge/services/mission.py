@@ -10,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ...autopilot.fence.items import FenceError
 from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem, home_item
 from ...autopilot.mission.validate import MAX_ITEMS
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
+from . import place_lists
 from .mission_upload import (
     ACCEPTED,
     CANCELLED,
@@ -30,19 +32,13 @@ from .mission_upload import (
     to_float,
     to_int,
 )
-from .service import INFO, WARNING, Handler, Sender, Service
+from .service import DEBUG, INFO, WARNING, Handler, Sender, Service
 from .setpoints import SetpointService
 from .statustext import StatusTextService
 
 MISSION, FENCE, RALLY, ALL = 0, 1, 2, 255
 """MAV_MISSION_TYPE"""
-TOTALS = {FENCE: "FENCE_TOTAL", RALLY: "RALLY_TOTAL"}
-"""Parameters that count the items."""
-RECEIVED = {
-    MISSION: "Flight plan received",
-    FENCE: "Fence received; it has no effect in this simulator",
-    RALLY: "Rally points received; they have no effect in this simulator",
-}
+RECEIVED = {MISSION: (INFO, "Flight plan received"), FENCE: (DEBUG, "Fence Indexed OK")}
 ACK, COUNT, REQUEST = message("MISSION_ACK"), message("MISSION_COUNT"), message("MISSION_REQUEST")
 MISSION_CURRENT = message("MISSION_CURRENT").id
 COPY_US = 2_000_000
@@ -54,7 +50,7 @@ GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
 
 
 class MissionService(Service):
-    """Missions: upload, download, clear, set current, partial write; fences and rally points are kept, no more."""
+    """Missions, fences, rally points: upload, download, clear, partial write; the mission's current item."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
@@ -87,7 +83,20 @@ class MissionService(Service):
 
     def follow(self, before: MissionService) -> None:
         """Fences and rally points outlive a reboot."""
-        self._lists = dict(before._lists)
+        self.keep(before._lists[FENCE], before._lists[RALLY])
+
+    def keep(self, fence: tuple[MissionItem, ...], rally: tuple[MissionItem, ...], *, counted: bool = False) -> None:
+        """Take lists that were taken before; FENCE_TOTAL and RALLY_TOTAL count them, or stay as they are."""
+        place_lists.load_fence(self.bridge.vehicle, fence, checked=False)
+        place_lists.load_rally(self.bridge.vehicle, rally)
+        self._lists = {FENCE: fence, RALLY: rally}
+        if counted:
+            self.bridge.vehicle.parameters.update({"FENCE_TOTAL": place_lists.count(fence), "RALLY_TOTAL": len(rally)})
+
+    @property
+    def lists(self) -> tuple[tuple[MissionItem, ...], tuple[MissionItem, ...]]:
+        """Fences and rally points, for ``keep``."""
+        return self._lists[FENCE], self._lists[RALLY]
 
     def _ack(self, channel: Channel, sender: Sender, result: int, kind: int = MISSION) -> None:
         system, component = sender
@@ -103,7 +112,10 @@ class MissionService(Service):
 
     def items(self, kind: int) -> tuple[MissionItem, ...]:
         """A list as it is now."""
-        return self.bridge.autopilot.mission_items() if kind == MISSION else self._lists[kind]
+        if kind == MISSION:
+            return self.bridge.autopilot.mission_items()
+        total = int(self.bridge.vehicle.parameters["RALLY_TOTAL"])
+        return place_lists.counted(self._lists[RALLY], total) if kind == RALLY else self._lists[kind]
 
     def home_alone(self, kind: int) -> tuple[MissionItem, ...]:
         """Item 0, home, can be read of an empty mission all the same (DroneKit's download waits for it)."""
@@ -113,22 +125,51 @@ class MissionService(Service):
         """Replace a list whole; the MAV_MISSION_RESULT."""
         if kind == MISSION:
             return int(self.bridge.autopilot.replace_mission(items))
-        self._lists[kind] = items
-        values = self.bridge.vehicle.parameters
-        if TOTALS[kind] in values.table:
-            values[TOTALS[kind]] = len(items)
+        vehicle = self.bridge.vehicle
+        if kind == RALLY:
+            self._lists[RALLY] = items = tuple(place_lists.as_rally_point(item) for item in items)
+            place_lists.load_rally(vehicle, items)
+            vehicle.parameters["RALLY_TOTAL"] = len(items)
+        elif not self.replace_fence(tuple(place_lists.as_fence(item) for item in items)):
+            return ERROR
+        else:
+            vehicle.parameters["FENCE_TOTAL"] = place_lists.count(self._lists[FENCE])
         return ACCEPTED
+
+    def replace_fence(self, items: tuple[MissionItem, ...]) -> bool:
+        """Replace the fences; whether they could be."""
+        try:
+            place_lists.load_fence(self.bridge.vehicle, items)
+        except FenceError as error:
+            say = self.bridge.get(StatusTextService).say
+            say(WARNING, str(error))
+            if items and "storage" not in str(error):
+                say(WARNING, "Fence validation failed")
+            return False
+        self._lists[FENCE] = items
+        return True
+
+    def _room(self, kind: int) -> int:
+        """How many items fit into a list."""
+        if kind == MISSION:
+            return MAX_ITEMS
+        vehicle = self.bridge.vehicle
+        return place_lists.most_fence_items(vehicle) if kind == FENCE else place_lists.most_rally_points(vehicle)
 
     def take(self, kind: int, rows: Sequence[Any]) -> bool:
         """Replace a list by fields of MISSION_ITEM_INT; False, and it stays, when one is refused or an upload runs."""
         taken = [from_int(fields, self._taken[kind]) for fields in rows]
-        if self.upload is not None or len(rows) > MAX_ITEMS or any(result != ACCEPTED for _, result in taken):
+        if self.upload is not None or len(rows) > self._room(kind) or any(result != ACCEPTED for _, result in taken):
             return False
         done = self._replace(kind, tuple(item for item, _ in taken)) == ACCEPTED
         if done:
-            self.bridge.get(StatusTextService).say(INFO, RECEIVED[kind])
+            self._say_received(kind)
         self.bridge.say_pending()
         return done
+
+    def _say_received(self, kind: int) -> None:
+        if kind in RECEIVED:
+            self.bridge.get(StatusTextService).say(*RECEIVED[kind])
 
     def _is_mine(self, channel: Channel, sender: Sender) -> bool:
         """Whether no upload is under way, or this sender's."""
@@ -149,8 +190,8 @@ class MissionService(Service):
             pass
         elif self._may_start(channel, sender, kind):
             self.upload = None
-            if fields.count > MAX_ITEMS:
-                self.bridge.get(StatusTextService).say(WARNING, f"Only {MAX_ITEMS} items are supported")
+            if fields.count > (room := self._room(kind)):
+                self.bridge.get(StatusTextService).say(WARNING, f"Only {room} items are supported")
                 self._ack(channel, sender, NO_SPACE, kind)
             elif fields.count == 0:  # taken while the mission runs, too: it has come to its end then
                 self._ack(channel, sender, self._replace(kind, ()), kind)
@@ -252,7 +293,7 @@ class MissionService(Service):
         if result == ACCEPTED:
             seqs = range(upload.first, upload.stop)
             self._last = (upload.channel, upload.sender, upload.kind, seqs, self.bridge.now_us)
-            self.bridge.get(StatusTextService).say(INFO, RECEIVED[upload.kind])
+            self._say_received(upload.kind)
         self.bridge.say_pending()
 
     def _cancel(self, result: int) -> None:
@@ -339,6 +380,6 @@ class MissionService(Service):
             self._ack(channel, sender, ACCEPTED if cleared else ERROR, kind)
 
     def _set_current(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        if self.bridge.autopilot.set_current_item(fields.seq, False):
+        if self.bridge.autopilot.set_current_item(fields.seq):
             self.bridge.send_now(channel, MISSION_CURRENT)
         self.bridge.say_pending()

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Text
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Switched, Text
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
 from .home import HomeService
-from .service import INFO, WARNING, Service
+from .service import CRITICAL, INFO, WARNING, Service
 
 TEXT_BYTES = 50
 KIND = message("STATUSTEXT")
@@ -68,12 +68,14 @@ TEXTS = {
     core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
     core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),
     core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
 }
 """Event code -> (severity, text with the event's numbers a and b), of every firmware."""
 
 HEARTBEAT = message("HEARTBEAT").id
 MISSION_CURRENT = message("MISSION_CURRENT").id
+FENCE_STATUS = message("FENCE_STATUS").id
 REACHED = message("MISSION_ITEM_REACHED")
 E = "autopilot.events."
 
@@ -128,6 +130,8 @@ class EventService(Service):
         if code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
+        if code == core.FENCE_BREACHED:
+            self.bridge.send_to_all(FENCE_STATUS)
         if code in (core.ARMED, core.DISARMED):
             self.bridge.get(PreArmService).find_due()
         if code == core.EKF_INITIALISED:
@@ -151,6 +155,8 @@ class EventService(Service):
                     listener.reached(note.seq)
             elif isinstance(note, OutputItem):
                 self.bridge.carry_out(note.item)
+            elif isinstance(note, Switched):
+                self.bridge.switched(note.function, note.position)
             elif isinstance(note, CurrentChanged):
                 self.bridge.send_to_all(MISSION_CURRENT)
 

@@ -34,7 +34,7 @@ def send_modes(channel: Channel, modes: Sequence[Mode[Any]], index: int) -> bool
     for k, mode in enumerate(modes, start=1):
         if index in (0, k):
             properties = (AUTOMATIC if mode.autonomous else 0) | (0 if mode.selectable else NOT_SELECTABLE)
-            name = mode.name.encode()
+            name = (mode.title or mode.name).encode()
             fields = (mode.number, properties, len(modes), k, mode.standard_mode, name)
             channel.send(AVAILABLE_MODES, AVAILABLE_MODES.pack(*fields))
     return True

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...autopilot.modes import shown
 from ...core.kernels import law
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
@@ -26,7 +27,7 @@ class Heartbeat(Message, name="HEARTBEAT"):
 @law
 def fill_heartbeat(m: Heartbeat, v: Vehicle, mav_type: int, base_mode: int, state: int) -> bool:
     """HEARTBEAT of a vehicle of this MAV_TYPE."""
-    m.custom_mode = v.autopilot.modes.number & 0xFFFFFFFF
+    m.custom_mode = shown(v.autopilot.modes) & 0xFFFFFFFF
     m.type = mav_type
     m.autopilot = ARDUPILOTMEGA
     m.base_mode = base_mode

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lidar and range-finder."""
+"""Lidar, range-finder, and what the proximity sensor sees."""
 
 from __future__ import annotations
 
 import math
 
+from ...autopilot.avoidance import proximity
+from ...autopilot.avoidance.proximity import Proximity
 from ...core.border import LIDAR_SAMPLES
 from ...core.kernels import law
 from ...core.records import Floats, Ints
@@ -17,6 +19,8 @@ SECTORS = 72
 """Elements of OBSTACLE_DISTANCE."""
 UNKNOWN = 65535
 LASER, BODY_FRD, FACING_DOWN, COVARIANCE_UNKNOWN = 0, 12, 25, 255
+SECTOR_ID = 10
+"""Of the DISTANCE_SENSOR of sector 0 (ArduPilot's)."""
 PART = 58
 """Elements of DEBUG_FLOAT_ARRAY."""
 SCAN_NAME = b"LASER"
@@ -85,24 +89,56 @@ class DistanceSensor(Message, name="DISTANCE_SENSOR"):
     max_distance: int
     current_distance: int
     type: int
+    id: int
     orientation: int
     covariance: int
 
 
 @law
-def distance_sensor(m: DistanceSensor, v: Vehicle) -> bool:
+def next_part(v: Vehicle, first: int) -> int:
+    """The part of DISTANCE_SENSOR, ``first`` or behind it, whose sector sees something; 0: there is none."""
+    seen = v.autopilot.proximity
+    if proximity.has_data(seen, v.time_us):
+        for part in range(first, proximity.SECTORS + 1):
+            if proximity.sees(seen, part - 1, v.time_us):
+                return part
+    return 0
+
+
+@law
+def fill_sector(m: DistanceSensor, seen: Proximity, k: int) -> None:
+    """What is nearest in a sector."""
+    m.min_distance = uint16(seen.range_min * 100.0)
+    m.max_distance = uint16(seen.range_max * 100.0)
+    m.current_distance = uint16(float(seen.distance[k]) * 100.0)
+    m.id = SECTOR_ID + k
+    m.orientation = k
+    m.covariance = 0
+
+
+@law
+def distance_sensor(m: DistanceSensor, v: Vehicle, port: Port) -> bool:
     """DISTANCE_SENSOR: the range-finder that looks down [cm]; the range + 1 where it meets nothing; nothing without a
-    range-finder or a world.
+    range-finder or a world. Then each sector in which the proximity sensor sees something, orientation 0 to 7.
     """
     s, figures = v.sensors, v.physics.airframe
     m.time_boot_ms = boot_ms(v.time_us)
+    m.type = LASER
+    part = port.part
+    if part == 0 and s.rangefinder_count == 0:
+        part = next_part(v, 1)
+        if part == 0:
+            return False
+    port.part = next_part(v, part + 1)
+    if part > 0:
+        fill_sector(m, v.autopilot.proximity, part - 1)
+        return True
     m.min_distance = uint16(figures.rangefinder_min * 100.0 + 0.5)
     m.max_distance = uint16(figures.rangefinder_max * 100.0 + 0.5)
     m.current_distance = centimetres(float(s.rangefinder_range[0]), figures.rangefinder_max)
-    m.type = LASER
     m.orientation = FACING_DOWN
     m.covariance = COVARIANCE_UNKNOWN
-    return s.rangefinder_count != 0
+    return True
 
 
 class DebugFloatArray(Message, name="DEBUG_FLOAT_ARRAY"):

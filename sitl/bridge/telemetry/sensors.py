@@ -37,8 +37,8 @@ class RawImu(Message, name="RAW_IMU"):
 @law
 def raw_imu(m: RawImu, v: Vehicle) -> bool:
     """RAW_IMU: mG, mrad/s, mgauss (ArduPilot sends scaled values here), centidegrees Celsius."""
-    s = v.sensors
-    acc, gyro, mag = s.acc, s.gyro, s.mag
+    s, c = v.sensors, v.autopilot.calibrated
+    acc, gyro, mag = c.acc, c.gyro, c.mag
     m.time_usec = v.time_us
     m.xacc = int16(acc.x * MILLIG_PER_ACC)
     m.yacc = int16(acc.y * MILLIG_PER_ACC)
@@ -70,8 +70,8 @@ class ScaledImu(Message, name="SCALED_IMU"):
 @law
 def scaled_imu(m: ScaledImu, v: Vehicle) -> bool:
     """SCALED_IMU: mG, mrad/s, mgauss."""
-    s = v.sensors
-    acc, gyro, mag = s.acc, s.gyro, s.mag
+    s, c = v.sensors, v.autopilot.calibrated
+    acc, gyro, mag = c.acc, c.gyro, c.mag
     m.time_boot_ms = boot_ms(v.time_us)
     m.xacc = int16(acc.x * MILLIG_PER_ACC)
     m.yacc = int16(acc.y * MILLIG_PER_ACC)
@@ -106,8 +106,8 @@ class HighresImu(Message, name="HIGHRES_IMU"):
 @law
 def highres_imu(m: HighresImu, v: Vehicle) -> bool:
     """HIGHRES_IMU: m/s^2, rad/s, gauss, hPa, pressure altitude in the standard atmosphere [m], degC."""
-    s = v.sensors
-    acc, gyro, mag, pressure = s.acc, s.gyro, s.mag, s.abs_pressure
+    s, c = v.sensors, v.autopilot.calibrated
+    acc, gyro, mag, pressure = c.acc, c.gyro, c.mag, s.abs_pressure
     m.time_usec = v.time_us
     m.xacc = acc.x
     m.yacc = acc.y

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ... import __version__
 from ...autopilot import relays
+from ...autopilot.modes import shown
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
@@ -29,7 +30,7 @@ COMPASS_CALIBRATION, FENCE, RALLY = 0x1000, 0x4000, 0x8000
 SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = 0x40, 0x80, 0x100, 0x800, 0x2000
 CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
 CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2 | COMPASS_CALIBRATION | FENCE | RALLY
-"""What every firmware can: ArduPilot's. Compass calibrations are refused; fences and rally points are kept."""
+"""What every firmware can: ArduPilot's. Compass calibrations are refused."""
 
 FLIGHT_VERSION = (4, 7, 0, 0)
 """Major, minor, patch, type (0: development).
@@ -69,7 +70,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
         timestamp=boot_ms(int(v.time_us)),
         type=profile.mav_type,
         autopilot=ARDUPILOTMEGA,
-        custom_mode=int(ap.modes.number) & 0xFFFF,
+        custom_mode=int(shown(ap.modes)) & 0xFFFF,
         latitude=int(here.lat),
         longitude=int(here.lon),
         altitude=int16(here.alt),

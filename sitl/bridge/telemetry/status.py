@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
+from ...autopilot.fence.checks import kinds
 from ...core.kernels import law
 from ...core.records import Ints
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
 from ..wire.port import Port
+from .fence import is_at_work
 from .units import boot_ms, int16, int32, percent, uint16
 
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
 RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
+PROXIMITY = 0x4000000
 PRESENT = GYRO | ACCEL | MAG | BARO | AHRS | PREARM
 """In every firmware, besides its controllers; a GPS receiver once it has said something, until it is silent."""
 SAMPLE_US = 500_000
@@ -32,7 +35,7 @@ def sensor_health(v: Vehicle) -> int:
     """
     t, s, ekf = v.time_us, v.sensors, v.autopilot.ekf
     watched = ekf.yaw_aligned and not ekf.use_external
-    health = GEOFENCE  # no fence is not a breached one
+    health = GEOFENCE if v.autopilot.fence.breached == 0 else 0
     if s.time_us > 0 and (ekf.use_external or ekf.bad_imu == 0):
         health |= GYRO | ACCEL
     if s.mag_count > 0 and not (watched and t - ekf.mag_us > SAMPLE_US):
@@ -72,8 +75,9 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
             health |= BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
         health |= PREARM
-    m.onboard_control_sensors_present = common | controllers
-    m.onboard_control_sensors_enabled = common | at_work
+    fence = GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
+    m.onboard_control_sensors_present = common | controllers | fence
+    m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0)
     m.onboard_control_sensors_health = health
     m.voltage_battery = uint16(battery.voltage * 1e3) if monitor >= VOLTAGE_MONITOR else UNKNOWN
     m.current_battery = int16(battery.current * 100.0) if monitor >= CURRENT_MONITOR else -1
@@ -213,8 +217,8 @@ NO_MISSION, NOT_STARTED, ACTIVE, PAUSED, COMPLETE = 1, 2, 3, 4, 5
 
 
 @law
-def mission_current(m: MissionCurrent, v: Vehicle, auto: int) -> bool:
-    """MISSION_CURRENT of a firmware in which the mode ``auto`` runs missions."""
+def mission_current(m: MissionCurrent, v: Vehicle, auto: int, paused: bool) -> bool:
+    """MISSION_CURRENT of a firmware in which the mode ``auto`` runs missions; ``paused``: by DO_PAUSE_CONTINUE."""
     modes, total = v.autopilot.modes, v.autopilot.params.MIS.TOTAL
     m.seq = uint16(modes.nav.mission_current)
     m.total = uint16(total - 1.0)
@@ -222,10 +226,10 @@ def mission_current(m: MissionCurrent, v: Vehicle, auto: int) -> bool:
         m.mission_state = NO_MISSION
     elif modes.nav.mission_state == 2:
         m.mission_state = COMPLETE
-    elif modes.nav.mission_state == 1:
-        m.mission_state = ACTIVE
+    elif paused:
+        m.mission_state = PAUSED
     else:
-        m.mission_state = PAUSED if modes.nav.mission_current > 0 else NOT_STARTED
+        m.mission_state = ACTIVE if modes.nav.mission_state == 1 else NOT_STARTED
     m.mission_mode = 1 if modes.number == auto else 0
     return True
 

@@ -92,6 +92,21 @@ EVENT_MESSAGES = (
     Message("ARM", tuple(Field(*x) for x in (("ArmState", "B"), ("ArmChecks", "I"), ("Forced", "B"), ("Method", "B")))),
     Message("EV", (Field("Id", "B"),)),
     Message("ERR", (Field("Subsys", "B"), Field("ECode", "B"))),
+    Message(
+        "SIDD",
+        (
+            Field("Time", "f", "s", "0"), Field("Targ", "f"), Field("F", "f", "z", "0"),
+            *(Field(f"G{axis}", "f", "k", "0") for axis in "xyz"),
+            *(Field(f"A{axis}", "f", "o", "0") for axis in "xyz"),
+        ),
+    ),
+    Message(
+        "SIDS",
+        (
+            Field("Ax", "B"), Field("Mag", "f"), Field("FSt", "f", "z", "0"), Field("FSp", "f", "z", "0"),
+            *(Field(name, "f", "s", "0") for name in ("TFin", "TC", "TR", "TFout")),
+        ),
+    ),
     Message("CMD", COMMAND, bits=bits.COMMANDS),
     Message("MISE", COMMAND, bits=bits.COMMANDS),
     Message(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ...autopilot.events import EVENT_RING
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
+from ...autopilot.modes import shown
 from ...autopilot.params.table import Values
 from ..kind import logs_of
 from . import bits, formats
@@ -125,6 +127,8 @@ class LogEncoder:
             at = k % EVENT_RING
             event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
             self.note(int(ring.time_us[at]), self.events.event, *event)
+            for name, numbers in self._kind.event_rows(self._vehicle.v, *event[:2]) if self._kind.event_rows else ():
+                self.note(int(ring.time_us[at]), partial(self.events.pack, name), *numbers)
         self._seen = count
 
     def skip_events_before(self, time_us: int) -> None:
@@ -186,7 +190,7 @@ class LogEncoder:
             pack.pack("VER", time_us, 3, *version[1:]),
             pack.text(time_us, described),
             pack.text(time_us, f"Airframe: {v.airframe.name}"),
-            pack.pack("MODE", time_us, int(modes.number), int(modes.number), int(modes.reason)),
+            pack.pack("MODE", time_us, shown(modes), shown(modes), int(modes.reason)),
             pack.mission(time_us, v.mission.items),
         ]
         self._samples.turn(0)

@@ -12,13 +12,18 @@ from typing import Any, NamedTuple
 
 from ...autopilot import events as core
 from ...autopilot import failsafe_checks as failsafes
+from ...autopilot.fence.checks import AUTO_ON, BY_FLOOR, ON
+from ...autopilot.fence.state import AREAS, CIRCLE, MAX_ALT, MIN_ALT
 from ...autopilot.mission.item import MissionItem
 from .common import EVENT_MESSAGES
 from .formats import HEAD, TYPES
 
 EV_ARMED, EV_DISARMED, EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED, EV_LOST_GPS = 10, 11, 15, 17, 18, 19
 EV_SET_HOME, EV_NOT_LANDED, EV_ALT_RESET, EV_YAW_RESET = 25, 28, 60, 62
-_RADIO, _BATTERY, _GCS, _MODE, _CRASH, _EKF, _THRUST = 5, 6, 8, 10, 12, 17, 25
+EV_FENCE_ON, EV_FENCE_OFF = 41, 42
+_FENCES = {MAX_ALT: 76, CIRCLE: 78, MIN_ALT: 80, AREAS: 82}
+"""Fence -> EV number when it is switched on; off: the next."""
+_RADIO, _BATTERY, _GCS, _FENCE, _MODE, _CRASH, _EKF, _THRUST = 5, 6, 8, 9, 10, 12, 17, 25
 _FAILSAFES = {
     failsafes.RADIO: _RADIO,
     failsafes.GCS: _GCS,
@@ -93,6 +98,13 @@ class EventEncoder:
             return self.pack("ERR", time_us, _CRASH, 1)
         if code == core.THRUST_LOST:
             return self.pack("ERR", time_us, _THRUST, 1)
+        if code in (core.FENCE_BREACHED, core.FENCE_CLEAR):
+            return self.pack("ERR", time_us, _FENCE, int(a))
+        if code == core.FENCE_SWITCHED:
+            on = int(b) in (AUTO_ON, BY_FLOOR, ON)
+            numbers = [EV_FENCE_ON if on else EV_FENCE_OFF]
+            numbers += [number if on else number + 1 for bit, number in _FENCES.items() if int(a) & bit]
+            return b"".join(self.pack("EV", time_us, number) for number in numbers)
         if code == core.EKF_STOPPED_GPS:
             return self.pack("EV", time_us, EV_LOST_GPS)
         return b""

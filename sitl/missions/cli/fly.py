@@ -68,10 +68,12 @@ def run(options: argparse.Namespace) -> int:
             if len(file.mission) != curved:
                 print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
             if file.has_fence_or_rally:
-                print("  geofence and rally points are not uploaded: the firmware has none")
+                say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
         outcome = fly(
             simulation,
             file.mission,
+            fence=file.fence_items,
+            rally=file.rally_items,
             limit_s=options.time_limit,
             advance=paced(simulation, speedup),
             on_step=quiet if options.quiet else print_step,
@@ -82,6 +84,13 @@ def run(options: argparse.Namespace) -> int:
     print(summary(outcome))
     print(f"log: {log}" + (f"\nrecording: {options.rec}" if options.rec else ""))
     return 0 if outcome.completed else 1
+
+
+def say_places(file: MissionFile, enabled: bool) -> None:
+    """Say what is uploaded besides the mission; ``enabled``: the vehicle heeds fences."""
+    areas, points = len(file.circles) + len(file.polygons), len(file.rally)
+    unheeded = "" if enabled or not areas else " (without effect: FENCE_ENABLE is 0)"
+    print(f"  geofence of {areas} areas{unheeded}, {points} rally points")
 
 
 def print_step(time: float, text: str) -> None:

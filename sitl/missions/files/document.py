@@ -9,7 +9,19 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from sitl.autopilot.mission import validate
-from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_TAKEOFF, MissionItem
+from sitl.autopilot.mission.item import (
+    COMMANDS,
+    FENCE_CIRCLE,
+    FENCE_CIRCLE_OUT,
+    FENCE_EXCLUSION,
+    FENCE_INCLUSION,
+    FENCE_RETURN_POINT,
+    NAV_LAND,
+    NAV_TAKEOFF,
+    RALLY_POINT,
+    RELATIVE,
+    MissionItem,
+)
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.validate import HIGHEST, PLACE_FRAMES
 from sitl.core.geodesy import add_offset, offset_ne
@@ -118,6 +130,23 @@ class MissionFile:
     def has_fence_or_rally(self) -> bool:
         """Whether it holds more than a mission."""
         return bool(self.circles or self.polygons or self.rally)
+
+    @property
+    def fence_items(self) -> tuple[MissionItem, ...]:
+        """The geofence as a vehicle takes it: point of return, polygons, circles."""
+        back = self.breach_return
+        items = [] if back is None else [_at(FENCE_RETURN_POINT, (back[0], back[1]), z=back[2])]
+        for polygon in self.polygons:
+            command = FENCE_INCLUSION if polygon.inclusion else FENCE_EXCLUSION
+            items += [_at(command, corner, len(polygon.corners)) for corner in polygon.corners]
+        for circle in self.circles:
+            items.append(_at(FENCE_CIRCLE if circle.inclusion else FENCE_CIRCLE_OUT, circle.centre, circle.radius))
+        return tuple(items)
+
+    @property
+    def rally_items(self) -> tuple[MissionItem, ...]:
+        """The rally points as a vehicle takes them."""
+        return tuple(_at(RALLY_POINT, point.place, z=point.height) for point in self.rally)
 
     def simple(self) -> MissionFile:
         """A copy in which complex items are replaced by their simple items."""
@@ -247,3 +276,8 @@ def shifted(line: list[Point], distance: float, closed: bool = False) -> list[Po
 def area(polygon: list[Point]) -> float:
     """Area [m^2]; positive when its corners go round clockwise, seen from above."""
     return 0.5 * sum(polygon[k - 1][0] * polygon[k][1] - polygon[k][0] * polygon[k - 1][1] for k in range(len(polygon)))
+
+
+def _at(command: int, place: Place, p1: float = 0.0, z: float = 0.0) -> MissionItem:
+    lat, lon = place
+    return MissionItem(command, RELATIVE, float(p1), x=round(lat * 1e7), y=round(lon * 1e7), z=z)

@@ -24,16 +24,16 @@ BOOT_SPEEDUP = 60
 WHY = """
 ### Where manoeuvres differ, and why
 
-- *Rover, from standstill* (RTL, SMART_RTL, AUTO after its delay, the first turns, headings in AUTO with the steering stick
-  out, the end of HOLD). The real estimate of a rover that stands is 0.02 to 0.05 m/s and 2 to 6 deg of heading off: its
-  filter trusts receiver and compass less and follows the drift of the simulated gyros later. Ours is 0.01 m/s and
-  1 deg off. Path time runs only as fast as the vehicle moves along its leg, so that the first metre takes half a
+- *Rover, from standstill* (RTL, SMART_RTL, AUTO after its delay, the first turns, headings in AUTO with the steering
+  stick out, the end of HOLD). The real estimate of a rover that stands is 0.02 to 0.05 m/s and 2 to 6 deg of heading
+  off: its filter trusts receiver and compass less and follows the drift of the simulated gyros later. Ours is 0.01 m/s
+  and 1 deg off. Path time runs only as fast as the vehicle moves along its leg, so that the first metre takes half a
   second more or less. In SMART_RTL that decides between a turn to the left and one to the right: of three flights of
   the real one, two took 24 s to half of the way and one 20 s.
 - *Copter, sticks: half of the lean* and the height after a short climb. Overrides are read here with the frames of the
   receiver, 50 times a second; the real one reads them 250 times a second, 20 ms earlier.
-- *3 m/s east: 95 %* and the first moments of turn rates: both curves are almost level there, and commands reach the real
-  one some 10 ms late.
+- *3 m/s east: 95 %* and the first moments of turn rates: both curves are almost level there, and commands reach the
+  real one some 10 ms late.
 """
 HEADING = "## Manoeuvres"
 

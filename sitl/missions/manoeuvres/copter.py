@@ -338,6 +338,45 @@ def come_home(f: Flyer) -> None:
     f.note("RTL: lands off home", "m", float(t.distance(0.0, 0.0)[-1]))
 
 
+def within_fence(f: Flyer) -> None:
+    """LOITER and GUIDED against a circle around home, sliding and stopping; a ceiling, and a lower one."""
+    f.airborne(10.0)
+    f.params.update(
+        FENCE_TYPE=3, FENCE_RADIUS=20, FENCE_MARGIN=3, FENCE_ALT_MAX=30, FENCE_ACTION=0, AVOID_BEHAVE=0, FENCE_ENABLE=1
+    )  # fmt: skip
+    for behave, name in ((0, "slides"), (1, "stops")):
+        f.params["AVOID_BEHAVE"] = behave
+        f.change_mode("LOITER")
+        f.sticks({PITCH: 1300, ROLL: 1600})
+        t = f.fly(20.0)
+        out = t.distance(0.0, 0.0)
+        f.note(f"LOITER {name}: 15 m from home", "s", t.crossing(out, 15.0))
+        f.note(f"LOITER {name}: farthest", "m", float(out.max()))
+        f.note(f"LOITER {name}: at the end", "m", float(out[-1]))
+        f.sticks({})
+        f.change_mode("GUIDED")
+        f.go_to(0.0, 0.0, 10.0)
+        f.delay(14.0)
+        f.set_velocity(4.0, 1.5)
+        t = f.fly(14.0)
+        out = t.distance(0.0, 0.0)
+        f.note(f"GUIDED {name}: farthest", "m", float(out.max()))
+        f.note(f"GUIDED {name}: at the end", "m", float(out[-1]))
+        f.note(f"GUIDED {name}: east at the end", "m", float(t.y[-1]))
+        f.go_to(0.0, 0.0, 10.0)
+        f.delay(14.0)
+    f.change_mode("LOITER")
+    f.sticks({THROTTLE: 1900})
+    t = f.fly(20.0)
+    f.note("ceiling: 20 m high", "s", t.crossing(t.height, 20.0))
+    f.note("ceiling: highest", "m", float(t.height.max()))
+    f.params["FENCE_ALT_MAX"] = 20
+    t = f.fly(20.0)
+    f.note("lower ceiling: fastest sink", "m/s", float(-t.climb.min()))
+    f.note("lower ceiling: below 18.5 m", "s", t.below(t.height, 18.5))
+    f.note("lower ceiling: height at the end", "m", float(t.height[-1]))
+
+
 def mission(f: Flyer) -> None:
     """AUTO: take-off, corners, a delay, a climb, a turn, a change of speed, circles, landing."""
     f.be_ready()
@@ -378,6 +417,6 @@ FLIGHTS = {
     flight.__name__: flight
     for flight in (
         take_off_and_land, positions, velocities, yaws, alt_hold, loiter, poshold, stabilize, acro, brake_and_circle,
-        come_home, mission,
+        come_home, mission, within_fence,
     )
 }  # fmt: skip

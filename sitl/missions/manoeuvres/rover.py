@@ -227,7 +227,32 @@ def stops(f: Flyer) -> None:
     f.note("CIRCLE: diameter", "m", float(np.ptp(t.y)))
 
 
+def within_fence(f: Flyer) -> None:
+    """ACRO and GUIDED against a circle around home."""
+    _ready(f)
+    f.params.update(FENCE_TYPE=2, FENCE_RADIUS=25, FENCE_MARGIN=2, FENCE_ACTION=0, FENCE_ENABLE=1)
+    f.set_mode("ACRO")
+    f.sticks({3: 1700})
+    t = f.fly(25.0)
+    out = t.distance(0.0, 0.0)
+    f.note("ACRO: 15 m from home", "s", t.crossing(out, 15.0))
+    f.note("ACRO: peak speed", "m/s", float(t.speed.max()))
+    f.note("ACRO: farthest", "m", float(out.max()))
+    f.note("ACRO: at the end", "m", float(out[-1]))
+    f.sticks({})
+    f.set_mode("GUIDED")
+    f.go_to(0.0, 0.0, 0.0)
+    f.delay(25.0)
+    f.go_to(0.0, 40.0, 0.0)
+    t = f.fly(30.0)
+    out = t.distance(0.0, 0.0)
+    f.note("GUIDED to a place beyond: farthest", "m", float(out.max()))
+    f.note("GUIDED to a place beyond: at the end", "m", float(out[-1]))
+
+
 FLIGHTS = {
     flight.__name__: flight
-    for flight in (velocities, positions, manual, acro, steering, mission, stick_mixing, rtl, smart_rtl, stops)
-}
+    for flight in (
+        velocities, positions, manual, acro, steering, mission, stick_mixing, rtl, smart_rtl, stops, within_fence,
+    )
+}  # fmt: skip

@@ -156,6 +156,12 @@ def read(v: Vehicle[Physics], beams: Beams, number: int) -> None:
 
 
 @law
+def show_lidar(s: Sensors, a: Figures) -> None:
+    """Tell the autopilot what its lidar is."""
+    s.lidar_samples, s.lidar_fov, s.lidar_min, s.lidar_max = a.lidar_samples, a.lidar_fov, a.lidar_min, a.lidar_max
+
+
+@law
 def finish(v: Vehicle[Physics], beams: Beams, number: int) -> None:
     """Write a sensor's readings of the ranges that its rays met, and count the scan. Ticks that are longer than the
     period leave some out."""
@@ -164,6 +170,7 @@ def finish(v: Vehicle[Physics], beams: Beams, number: int) -> None:
     taken = max(scans_taken(s, number) + 1, math.floor((v.time_us + 0.5) / period_us(a, number)) + 1)
     if number == LIDAR:
         s.lidar_count, s.lidar_time_us = taken, v.time_us
+        show_lidar(s, a)
     else:
         s.rangefinder_count = taken
 

@@ -121,12 +121,29 @@ class Jam(Record):
     satellites: int
 
 
+COMPASSES = 3
+
+
+class Iron(Record):
+    """What iron in the vehicle does to a compass."""
+
+    hard: Vec3  # what it shows too little, body [gauss] (SIM_MAG1_OFS: what it differs from the offsets at delivery)
+    is_soft: bool
+    x: Vec3  # rows of what soft iron makes of a field, body
+    y: Vec3
+    z: Vec3
+
+
 class SensorState(Record):
     """What is wrong with the sensors; hidden from the autopilot."""
 
     acc_bias: Vec3  # turn-on bias, body [m/s^2]
     acc_walk: Vec3  # in-run bias, body [m/s^2]
     acc_fault: Vec3  # bias of a broken sensor, body [m/s^2] (SIM_ACC1_BIAS)
+    acc_stretch: Vec3  # scale error of a broken sensor, body (SIM_ACC1_SCAL)
+    acc_is_turned: bool  # in the vehicle
+    acc_mount: Quat  # from the vehicle's axes to the sensor's (SIM_ACC_TRIM)
+    gyro_fault: Vec3  # bias of a broken sensor, body [rad/s] (SIM_GYR1_BIAS)
     acc_scale: Vec3  # 1 + error, body
     gyro_bias: Vec3  # turn-on bias, body [rad/s]
     gyro_walk: Vec3  # in-run bias, body [rad/s]
@@ -141,8 +158,7 @@ class SensorState(Record):
     gps_fixes: Records[Fix] = repeat(Fix, GPS_RING)  # fix n at n % GPS_RING
     baro_drift: float  # in standard deviations
     baro_missing: bool  # none was found at power-on (SIM_BARO_COUNT)
-    mag2_offset: Vec3  # what the second compass shows too little, body [gauss] (SIM_MAG2_OFS)
-    mag3_offset: Vec3  # the third [gauss]
+    irons: Records[Iron] = repeat(Iron, COMPASSES)
 
 
 class Place(Record):

@@ -18,6 +18,7 @@ class Body(Record):
 
     mass: float = figure("kg", "everything included", 0.001, 1e4)
     inertia: Vec3 = figure("kg m^2", "about body x, y, z", 1e-9, 1e6)
+    on_bench: int = figure("", "1: stands on a bench that turns it as outputs 5 to 8 say", 0, 1, 0)
 
 
 OUTLINE_DISCS = 3

@@ -48,9 +48,8 @@ def test_broken_pressure_is_passed_over(bad: float) -> None:
 
 @pytest.mark.parametrize("bad", [(float("nan"), 0.2, 0.3), (0.2, float("inf"), 0), (0, 0, 0), (5.0, 0, 0)])
 def test_broken_field_is_passed_over(bad) -> None:
-    ekf, sensors = Ekf(), Sensors()
-    sensors.mag_count, sensors.mag = 1, bad
-    magnetometer.read(ekf, sensors)
+    ekf = Ekf()
+    magnetometer.read(ekf, 1, Vec3(*bad))
     assert ekf.mag_n == 0 and ekf.mag_seen == 1
 
 

@@ -426,7 +426,7 @@ def test_no_mission_breaks_it(listed: list[MissionItem], todo: list[str]) -> Non
             assert p.nav.command_kind != NONE
 
 
-@pytest.mark.parametrize("number", [*c.MARKS, *c.DEVICE_COMMANDS])
+@pytest.mark.parametrize("number", [*c.MARKS, *c.VIDEO_COMMANDS])
 def test_marks_and_devices_that_are_not_fitted_are_passed(number: int) -> None:
     p = Vehicle(WP, MissionItem(number), WP).start()
     assert p.order() == [1, 3]

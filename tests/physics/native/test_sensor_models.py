@@ -186,7 +186,7 @@ def test_a_vehicle_without_barometer_gets_no_samples(rig):
 
 def test_more_compasses_differ_by_their_offsets_alone(rig):
     r = rig()
-    r.p.sensors.mag2_offset, r.p.sensors.mag3_offset = Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.0, -0.2)
+    r.p.sensors.irons[1].hard, r.p.sensors.irons[2].hard = Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.0, -0.2)
     magnetometer.sample(r.p, r.v.sensors, r.v.rng)
     first = np.array(r.v.sensors.mag)
     assert np.array(r.v.sensors.mag2) - first == approx([-0.1, 0.0, 0.0], abs=1e-6)

@@ -191,6 +191,10 @@ def update_ne(control: Control, est: Estimate, p: Parameters) -> None:
     if not is_active_ne(control):
         init_ne(control, est, p)
     pos, vel = horizontal(est.pos), horizontal(est.vel)
+    if c.disturbed:
+        c.disturbed = False
+        pos += c.disturbance_pos
+        vel += c.disturbance_vel
     follow_reset_ne(c, pos, horizontal(est.reset_vel), est.reset_ne_count)
     c.last_tick = control.tick
     control_horizontal(c, pos, vel, accel_limit_ne(control, p), position_gains(p.PSC))

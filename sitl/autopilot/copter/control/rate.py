@@ -28,6 +28,11 @@ def control_rates(rate: RateState, motors: MotorsState, target: Vec3, rates: Vec
     motors.roll = update_pid(rate.roll, target.x, rates.x, DT, motors.limit_roll, pid_gains(params.RAT_RLL))
     motors.pitch = update_pid(rate.pitch, target.y, rates.y, DT, motors.limit_pitch, pid_gains(params.RAT_PIT))
     motors.yaw = update_pid(rate.yaw, target.z, rates.z, DT, motors.limit_yaw, pid_gains(params.RAT_YAW))
+    if motors.excited:
+        motors.excited = False
+        motors.roll += motors.excitation.x
+        motors.pitch += motors.excitation.y
+        motors.yaw += motors.excitation.z
 
 
 @law

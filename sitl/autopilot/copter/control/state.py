@@ -79,6 +79,9 @@ class PositionState(Record):
     vel_derivative: Vec2  # of the error, filtered [m/s^2]
     vel_integrator: Vec2  # [m/s^2]
     accel_limit: float  # acceleration that the permitted lean gives [m/s^2], renewed every few ticks
+    disturbed: bool  # SYSTEMID adds to what is measured in this tick
+    disturbance_pos: Vec2  # [m]
+    disturbance_vel: Vec2  # [m/s]
 
 
 class AltitudeState(Record):
@@ -127,6 +130,8 @@ class MotorsState(Record):
     roll: float  # demands -1 .. 1
     pitch: float
     yaw: float
+    excited: bool  # SYSTEMID adds to the demands in this tick
+    excitation: Vec3  # roll, pitch, yaw
     throttle_in: float  # demand 0 .. 1
     throttle_filter_hz: float  # 0: no filter
     throttle: float  # filtered demand

@@ -9,7 +9,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...modes import ACCEPTED
 from ...state import Arming, Estimate, Radio
-from .. import pilot
+from .. import avoidance, pilot
 from ..control import altitude, altitude_start, attitude
 from ..control.state import AltitudeState, Control, MotorsState
 from ..control.throttle_mix import lean_limit
@@ -79,6 +79,12 @@ def climb_rate(modes: Modes, rc: Radio, limits: AltitudeState, p: Parameters) ->
 
 
 @law
+def kept_below(v: Vehicle, doing: int, climb: float) -> float:
+    """The climb rate [m/s] of a vehicle that flies, below the ceiling of the fence."""
+    return avoidance.limit_climb(v, climb) if doing == FLYING else climb
+
+
+@law
 def run_vertical(
     doing: int, climb: float, arming: Arming, state: TakeoffState, control: Control, est: Estimate, p: Parameters
 ) -> None:
@@ -114,7 +120,10 @@ def run(v: Vehicle) -> None:
         attitude.reset_yaw_target(control.attitude, est.yaw)
     lean_max = math.radians(p.ANGLE_MAX * 0.01)
     lean = pilot.lean_angles(modes.pilot, lean_max, min(lean_max, lean_limit(control.attitude)))
+    if doing == FLYING:
+        lean = avoidance.limit_lean(v, lean, lean_max)
     attitude.input_euler_roll_pitch_yaw_rate(control, est, p, lean, modes.pilot.yaw_rate)
+    climb = kept_below(v, doing, climb)
     run_vertical(doing, climb, ap.arming, modes.takeoff, control, est, p)
 
 

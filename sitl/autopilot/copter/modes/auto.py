@@ -7,23 +7,28 @@ and says when it is done (``navigation.command.complete``), upon which the shell
 
 from __future__ import annotations
 
+from ....core.algebra import horizontal
 from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
-from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from ...events import CIRCLE_BEGINS, MODE_CHANGED, Events, emit
+from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, REASON_AUTO_RTL_EXIT
+from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
-from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, RTL, TAKEOFF
+from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, RTL, TAKEOFF
 from ...state import Arming, Estimate
 from ..control.state import AttitudeState, Control
-from ..navigation import command, waypoint
+from ..navigation import circle, command, waypoint
 from ..navigation.state import CopterNav
 from ..parameters import Parameters
 from ..parameters.flight import Waypoints
 from ..state import Vehicle
-from . import auto_yaw, ground, land, loiter_to_alt, rtl, takeoff
+from . import auto_yaw, ground, guided, land, loiter_to_alt, rtl, takeoff
 from .mode import CopterMode
 from .state import AutoState, AutoYaw, Modes
 
 AUTO = 3
+AUTO_RTL = 27
+"""Shown instead while the mission's way back is flown (auto_rtl.py)."""
 
 # AUTO_OPTIONS
 _ARM = 1
@@ -79,6 +84,7 @@ def start(v: Vehicle) -> int:
     if cause != ACCEPTED:
         return cause
     reset(modes.auto, modes.nav)
+    guided.clear_limits(modes.guided)
     if modes.auto_yaw.mode == auto_yaw.ROI:
         auto_yaw.set_mode(modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
     auto_yaw.set_default(modes.auto_yaw, p.WP, False, control.attitude, est)
@@ -109,6 +115,9 @@ def begin(v: Vehicle) -> None:
         takeoff.begin(modes.takeoff, nav.target.z, ap.arming.landed, control, est, p)
     elif auto.submode == RTL:
         rtl.begin(v)
+    elif auto.submode == kinds.GUIDED:
+        guided.start(v)
+        guided.begin_limits(modes.guided, v.time_us, horizontal(est.pos))
     elif auto.submode == LAND and not nav.has_place:
         begin_descent(modes, v.time_us, control, est, p)
 
@@ -135,12 +144,24 @@ def run(v: Vehicle) -> None:
     modes, est = ap.modes, ap.estimate
     if modes.auto.command != modes.nav.command_count:
         begin(v)
-    if not has_option(ap.params, _NO_PILOT_YAW):
+    if modes.auto.submode != kinds.GUIDED and not has_option(ap.params, _NO_PILOT_YAW):
         auto_yaw.follow_pilot(modes, ap.control.attitude, est)
     if run_command(v, modes.auto.submode):
         complete(modes.nav, ap.events, v.time_us)
+    end_return(v)
     turned = auto_yaw.has_turned(modes.auto_yaw, est.yaw)
     check_condition(modes.nav, ap.events, v.time_us, est.pos, turned)
+
+
+@law
+def end_return(v: Vehicle) -> None:
+    """AUTO_RTL is over when the mission goes on elsewhere."""
+    modes = v.autopilot.modes
+    nav = modes.nav
+    if modes.shown == AUTO_RTL and nav.mission_part == OUTWARD and nav.mission_state != COMPLETE:
+        modes.shown = 0
+        modes.reason = REASON_AUTO_RTL_EXIT
+        emit(v.autopilot.events, v.time_us, MODE_CHANGED, float(AUTO), float(REASON_AUTO_RTL_EXIT))
 
 
 @law
@@ -159,7 +180,10 @@ def run_command(v: Vehicle, kind: int) -> bool:
     if kind == RTL:
         rtl.run(v)
         return ap.arming.landed and rtl.is_landing(ap.modes)
-    return run_path(v, kind)
+    if kind == kinds.GUIDED:
+        guided.run(v)
+        return guided.is_at_limit(ap.modes.guided, v.time_us, ap.estimate.pos)
+    return run_path(v, kind) or kind == PASSED_OVER
 
 
 @law
@@ -180,8 +204,19 @@ def run_path(v: Vehicle, kind: int) -> bool:
         return False
     control.motors.desired_spool = ground.UNLIMITED
     done = command.run(modes.nav, control, est, p, v.time_us)
+    if kind == kinds.LOITER_TURNS and modes.nav.circle_running:
+        tell_circle(modes.nav, ap.events, v.time_us)
     ground.fly(modes.auto_yaw, control, est, p)
     return done
+
+
+@law
+def tell_circle(nav: CopterNav, events: Events, time_us: int) -> None:
+    """Say when the next circle begins, and when the last one is done."""
+    number = 1 + int(circle.turned(nav))
+    if number > nav.circle_told:
+        nav.circle_told = number
+        emit(events, time_us, CIRCLE_BEGINS, float(number), float(int(nav.turns)))
 
 
 @law
@@ -203,6 +238,17 @@ def run_land(v: Vehicle) -> bool:
     if reached:
         begin_descent(modes, v.time_us, control, est, p)
     return done
+
+
+@law
+def is_guided(modes: Modes) -> bool:
+    """Whether set-points are flown: in GUIDED, and where a mission allows them."""
+    return modes.number == guided.GUIDED or (modes.number == AUTO and modes.auto.submode == kinds.GUIDED)
+
+
+def is_on_a_way(nav: CopterNav) -> bool:
+    """Whether the command under way follows a path to a place that it has not reached."""
+    return nav.command_kind in (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME) and not nav.reached
 
 
 @law

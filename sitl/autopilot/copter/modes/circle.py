@@ -117,7 +117,7 @@ def run(v: Vehicle) -> None:
     apply(nav, state, p)
     circle.advance(nav)
     circle.follow(nav, control)
-    climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
+    climb = alt_hold.kept_below(v, alt_hold.FLYING, alt_hold.climb_rate(modes, ap.rc, control.pos_d, p))
     altitude.input_vel_accel_d(control.pos_d, -climb, 0.0)
     auto_yaw.follow_pilot(modes, control.attitude, est)
     if modes.auto_yaw.mode == auto_yaw.CIRCLE:

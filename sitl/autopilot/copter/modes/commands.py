@@ -12,7 +12,7 @@ from ..control import altitude_start, position_start
 from ..control.state import Control
 from ..parameters import Parameters
 from ..state import Autopilot
-from . import auto_yaw, guided, takeoff
+from . import auto, auto_yaw, guided, takeoff
 from .auto import AUTO
 from .auto_yaw import Turn
 from .guided import GUIDED
@@ -27,6 +27,8 @@ OUT_OF_RANGE = 3
 NOT_ARMED = 4
 ALREADY_FLYING = 5
 TOO_LOW = 6
+BEYOND_FENCE = 7
+NOT_ON_A_WAY = 8
 
 LARGEST = 1e9
 """Metres, metres a second, radians beyond this are refused; what is on the globe is less."""
@@ -129,6 +131,8 @@ def set_paused(modes: Modes, paused: bool) -> int:
     """MAV_CMD_DO_PAUSE_CONTINUE in GUIDED and AUTO: stop and hold, or go on."""
     if modes.number == GUIDED:
         modes.guided.paused = paused
+    elif modes.number == AUTO and paused and not auto.is_on_a_way(modes.nav):
+        return NOT_ON_A_WAY
     elif modes.number == AUTO:
         modes.nav.paused = paused
     else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...events import DISARMED, emit_and_return
+from ...fence.checks import switch_on_disarming
 from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start
 from ..control.state import Control, MotorsState
@@ -52,6 +53,7 @@ def disarm(v: Vehicle, method: int) -> None:
     ap.modes.takeoff.user_active = False
     ap.modes.auto.started = False
     ap.control.motors.desired_spool = SHUT_DOWN
+    switch_on_disarming(ap.fence, int(ap.params.FENCE.AUTOENABLE), ap.events, v.time_us)
     emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
 
 

@@ -3,19 +3,22 @@
 
 Set-points are written by the laws of ``guided_setpoints``. Velocity, acceleration and attitude set-points older than
 GUID_TIMEOUT stop the vehicle: velocity and acceleration become zero, the attitude level at constant height.
+
+A mission's GUIDED_ENABLE flies so, too, within the limits of DO_GUIDED_LIMITS.
 """
 
 from __future__ import annotations
 
-from ....core.algebra import ZERO, euler_of, horizontal, quat_from_euler
+from ....core.algebra import ZERO, euler_of, horizontal, norm2, quat_from_euler
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ....core.vectors import Euler
+from ....core.vectors import Euler, Vec2, Vec3
 from ...arming_checks import BY_RUDDER
 from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, Events, emit
 from ...modes import ACCEPTED
 from ...state import Arming, Estimate
+from .. import avoidance
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from ..control.state import DT, Control
 from ..parameters import Parameters
@@ -63,12 +66,6 @@ def start_submode(guided: GuidedState, submode: int, control: Control, est: Esti
 
 
 @law
-def takes_attitudes(mode: int) -> bool:
-    """Whether a mode flies SET_ATTITUDE_TARGET."""
-    return mode in (GUIDED, GUIDED_NOGPS)
-
-
-@law
 def is_stale(guided: GuidedState, time_us: int, timeout: float) -> bool:
     """Whether the set-point is older than ``timeout`` [s]."""
     return time_us - guided.update_us > timeout * 1e6
@@ -107,12 +104,12 @@ def run(v: Vehicle) -> None:
                 note_timeout(guided, stale, ap.events, v.time_us)
             if stale:
                 auto_yaw.stop_turning(modes.auto_yaw, control.attitude, est)
-            follow_setpoint(guided, stale, control)
+            follow_setpoint(v, guided, stale, control)
         ground.fly(modes.auto_yaw, control, est, p)
 
 
 @law
-def follow_setpoint(guided: GuidedState, stale: bool, control: Control) -> None:
+def follow_setpoint(v: Vehicle, guided: GuidedState, stale: bool, control: Control) -> None:
     """Ask the position controllers for the set-point, which moves on between messages; a stale motion stops.
 
     POSITION: fly to a point and stay; the speed limits keep a climbing path straight.
@@ -136,8 +133,8 @@ def follow_setpoint(guided: GuidedState, stale: bool, control: Control) -> None:
         position.input_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
         altitude.input_pos_vel_accel_d(control.pos_d, Motion(pos.z, vel.z, acc.z))
     else:
-        position.input_vel_accel_ne(control.pos_ne, horizontal(vel), horizontal(acc))
-        altitude.input_vel_accel_d(control.pos_d, vel.z, acc.z)
+        position.input_vel_accel_ne(control.pos_ne, avoidance.limit_velocity(v, horizontal(vel)), horizontal(acc))
+        altitude.input_vel_accel_d(control.pos_d, -avoidance.limit_climb(v, -vel.z), acc.z)
 
 
 @law
@@ -204,6 +201,34 @@ def level_off(guided: GuidedState, control: Control, est: Estimate, p: Parameter
         guided.use_thrust = False
         altitude_start.init_d(control, est, p)
     guided.climb_rate = 0.0
+
+
+@law
+def clear_limits(guided: GuidedState) -> None:
+    """No limits, until a mission sets some."""
+    guided.limit_us = 0
+    guided.limit_low = 0.0
+    guided.limit_high = 0.0
+    guided.limit_distance = 0.0
+
+
+@law
+def begin_limits(guided: GuidedState, time_us: int, pos: Vec2) -> None:
+    """Guided within a mission begins now, at ``pos`` NE [m]."""
+    guided.limit_since_us = time_us
+    guided.limit_from = pos
+
+
+@law
+def is_at_limit(guided: GuidedState, time_us: int, pos: Vec3) -> bool:
+    """Guided within a mission: whether its time is over, or ``pos`` (NED [m]) is too low, too high or too far away."""
+    if guided.limit_us > 0 and time_us - guided.limit_since_us >= guided.limit_us:
+        return True
+    if guided.limit_low != 0.0 and -pos.z < guided.limit_low:
+        return True
+    if guided.limit_high != 0.0 and -pos.z > guided.limit_high:
+        return True
+    return guided.limit_distance > 0.0 and norm2(horizontal(pos) - guided.limit_from) > guided.limit_distance
 
 
 @law

@@ -13,12 +13,14 @@ from ....core.algebra import ZERO, quat_norm_squared
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Quat, Vec3
+from ...fence.checks import allows
 from ..control.state import AltitudeState
 from ..state import Autopilot, Vehicle
 from . import auto_yaw, guided
-from .commands import NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
-from .guided import ACCEL, ANGLE, GUIDED, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
-from .state import GuidedState
+from .auto import is_guided
+from .commands import BEYOND_FENCE, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
+from .guided import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
+from .state import GuidedState, Modes
 
 _THRUST_IS_THRUST = 8
 """GUID_OPTIONS: thrust of SET_ATTITUDE_TARGET is thrust, not climb rate."""
@@ -38,11 +40,18 @@ NO_YAW = YawSetpoint(False, 0.0, False, 0.0, False)
 
 
 @law
-def refusal(mode: int, usable: bool, yaw: YawSetpoint) -> int:
+def refusal(modes: Modes, usable: bool, yaw: YawSetpoint) -> int:
     """OK, or why a set-point is not taken; ``usable``: its numbers are."""
     if not (usable and is_usable(yaw.angle) and is_usable(yaw.rate)):
         return NOT_FINITE
-    return OK if mode == GUIDED else WRONG_MODE
+    return OK if is_guided(modes) else WRONG_MODE
+
+
+@law
+def is_beyond_fence(ap: Autopilot, pos: Vec3) -> bool:
+    """Whether a place, NED [m] from the origin, is beyond a fence that is on."""
+    fence = ap.params.FENCE
+    return ap.fence.on != 0 and not allows(ap.fence, ap.home, pos, fence, fence.ALT_MAX, fence.ALT_MIN)
 
 
 @law
@@ -75,7 +84,9 @@ def begin(v: Vehicle, submode: int) -> GuidedState:
 @law
 def set_position(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
     """Fly to a point, NED [m] from the origin, and stay."""
-    code = refusal(v.autopilot.modes.number, is_usable_vector(pos), yaw)
+    code = refusal(v.autopilot.modes, is_usable_vector(pos), yaw)
+    if code == OK and is_beyond_fence(v.autopilot, pos):
+        code = BEYOND_FENCE
     if code == OK:
         begin(v, POSITION).pos = pos
         set_yaw(v.autopilot, yaw)
@@ -85,7 +96,7 @@ def set_position(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
 @law
 def set_velocity(v: Vehicle, vel: Vec3, acc: Vec3, yaw: YawSetpoint) -> int:
     """Fly a velocity [m/s] that changes with an acceleration [m/s^2], NED."""
-    code = refusal(v.autopilot.modes.number, is_usable_vector(vel) and is_usable_vector(acc), yaw)
+    code = refusal(v.autopilot.modes, is_usable_vector(vel) and is_usable_vector(acc), yaw)
     if code == OK:
         target = begin(v, VELOCITY_ACCEL)
         target.vel, target.acc = vel, acc
@@ -96,7 +107,7 @@ def set_velocity(v: Vehicle, vel: Vec3, acc: Vec3, yaw: YawSetpoint) -> int:
 @law
 def set_accel(v: Vehicle, acc: Vec3, yaw: YawSetpoint) -> int:
     """Fly an acceleration, NED [m/s^2]."""
-    code = refusal(v.autopilot.modes.number, is_usable_vector(acc), yaw)
+    code = refusal(v.autopilot.modes, is_usable_vector(acc), yaw)
     if code == OK:
         begin(v, ACCEL).acc = acc
         set_yaw(v.autopilot, yaw)
@@ -107,7 +118,9 @@ def set_accel(v: Vehicle, acc: Vec3, yaw: YawSetpoint) -> int:
 def set_pos_vel_accel(v: Vehicle, pos: Vec3, vel: Vec3, acc: Vec3, yaw: YawSetpoint) -> int:
     """Follow a point (NED [m]) that moves with a velocity [m/s] and an acceleration [m/s^2]."""
     usable = is_usable_vector(pos) and is_usable_vector(vel) and is_usable_vector(acc)
-    code = refusal(v.autopilot.modes.number, usable, yaw)
+    code = refusal(v.autopilot.modes, usable, yaw)
+    if code == OK and is_beyond_fence(v.autopilot, pos):
+        code = BEYOND_FENCE
     if code == OK:
         target = begin(v, POS_VEL_ACCEL)
         target.pos, target.vel, target.acc = pos, vel, acc
@@ -123,8 +136,9 @@ def set_attitude(v: Vehicle, use_attitude: bool, q: Quat, rates: Vec3, thrust: f
     GUID_OPTIONS bit 8 the thrust.
     """
     ap = v.autopilot
-    mode = GUIDED if guided.takes_attitudes(ap.modes.number) else ap.modes.number
-    code = refusal(mode, is_usable_vector(rates) and is_usable(thrust), NO_YAW)
+    code = OK if takes_attitudes(ap.modes) else WRONG_MODE
+    if not (is_usable_vector(rates) and is_usable(thrust)):
+        code = NOT_FINITE
     size = math.sqrt(quat_norm_squared(q)) if use_attitude else 1.0
     if code == OK and not 0.5 <= size <= 2.0:
         code = OUT_OF_RANGE if size == size else NOT_FINITE
@@ -139,6 +153,12 @@ def set_attitude(v: Vehicle, use_attitude: bool, q: Quat, rates: Vec3, thrust: f
     target.use_thrust = (int(ap.params.GUID.OPTIONS) & _THRUST_IS_THRUST) != 0
     target.climb_rate = climb_of_thrust(target.thrust, ap.control.pos_d)
     return code
+
+
+@law
+def takes_attitudes(modes: Modes) -> bool:
+    """Whether SET_ATTITUDE_TARGET is flown."""
+    return is_guided(modes) or modes.number == guided.GUIDED_NOGPS
 
 
 @law

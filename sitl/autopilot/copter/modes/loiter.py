@@ -15,10 +15,11 @@ from ....core.algebra import ZERO2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Euler, Vec2
+from ...avoidance.limit import is_active
 from ...control.shaping import Motion2, shape_angle, sqrt_controller
 from ...modes import ACCEPTED
 from ...state import Estimate
-from .. import pilot
+from .. import avoidance, pilot
 from ..control import attitude, position, position_start
 from ..control.state import DT, GRAVITY, Control, PositionState
 from ..parameters import Parameters
@@ -135,6 +136,12 @@ def advance_path(loiter: LoiterState, path: Motion2, limits: Limits, braking: bo
 
 
 @law
+def kept_away(path: Motion2, moved: Motion2, vel: Vec2) -> Motion2:
+    """The desired motion one tick after ``path``, with a velocity that avoids something in place of its own."""
+    return Motion2(path.pos + vel * DT, vel, moved.acc)
+
+
+@law
 def is_braking(loiter: LoiterState, time_us: int, delay: float) -> bool:
     """Whether the sticks have been centred for a delay [s]."""
     if loiter.acc.x != 0.0 or loiter.acc.y != 0.0:
@@ -172,10 +179,14 @@ def run(v: Vehicle) -> None:
         if ap.arming.landed_maybe:
             position_start.soften_for_landing_ne(control.pos_ne, est.pos)
         braking = is_braking(loiter, v.time_us, p.LOIT.BRK_DELAY)
-        moved = advance_path(loiter, position.desired_motion_ne(control.pos_ne), limits(p), braking)
+        path = position.desired_motion_ne(control.pos_ne)
+        moved = advance_path(loiter, path, limits(p), braking)
+        if is_active(ap.avoid):
+            moved = kept_away(path, moved, avoidance.limit_velocity(v, moved.vel))
         position.set_pos_vel_accel_ne(control.pos_ne, moved)
         position.update_ne(control, est, p)
         attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), yaw_rate)
+    climb = alt_hold.kept_below(v, doing, climb)
     alt_hold.run_vertical(doing, climb, ap.arming, modes.takeoff, control, est, p)
 
 

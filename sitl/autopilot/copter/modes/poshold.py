@@ -203,6 +203,7 @@ def run(v: Vehicle) -> None:
         loiter.stand(modes.loiter, modes.pilot.yaw_rate, control, est, p)
     else:
         fly(v)
+    climb = alt_hold.kept_below(v, doing, climb)
     alt_hold.run_vertical(doing, climb, ap.arming, modes.takeoff, control, est, p)
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""RTL: climbs, flies home along a planned leg, turns as when armed, waits, lands (or stays at RTL_ALT_FINAL)."""
+"""RTL: climbs, flies home or to a rally point along a planned leg, turns as when armed, waits, lands (or stays at
+RTL_ALT_FINAL).
+"""
 
 from __future__ import annotations
 
@@ -8,8 +10,10 @@ import math
 from ....core.algebra import ZERO2, horizontal, with_down
 from ....core.kernels import law
 from ....core.vectors import Vec3
+from ... import rally
 from ...control.shaping import Motion
 from ...events import Events
+from ...fence.state import MAX_ALT
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ...state import Estimate
@@ -58,7 +62,11 @@ def begin(v: Vehicle) -> None:
     nav.speed_down = 0.0
     ground.set_waypoint_limits(control, p)
     ground.continue_position_control(control, est, p)
-    plan_heights(rtl, ap.home.pos, est.pos, p.RTL)
+    fence = Vec3(p.FENCE.ALT_MAX, p.FENCE.ALT_MIN, p.FENCE.MARGIN)
+    target = rally.best(ap.rally, est, ap.home, ap.fence, p, fence)
+    plan_heights(rtl, ap.home.pos, target, est.pos, p.RTL)
+    if ap.fence.on & int(p.FENCE.TYPE) & MAX_ALT != 0:
+        keep_below(rtl, ap.home.pos.z - (fence.x - fence.z), est.pos.z)
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
@@ -68,22 +76,31 @@ def begin(v: Vehicle) -> None:
 
 
 @law
-def plan_heights(rtl: RtlState, home: Vec3, pos: Vec3, p: Rtl) -> None:
-    """Where home is, the height of the way there from ``pos``, and where RTL_ALT_FINAL ends; NED [m]."""
-    away = home - pos
-    rtl.home = horizontal(home)
-    rtl.return_d = home.z - return_height(away.z, math.hypot(away.x, away.y), p)
+def plan_heights(rtl: RtlState, home: Vec3, target: Vec3, pos: Vec3, p: Rtl) -> None:
+    """Where to go, the height of the way there from ``pos``, and where RTL_ALT_FINAL ends; NED [m].
+
+    ``target``: home or a rally point, above which the vehicle arrives no lower than that.
+    """
+    away = target - pos
+    rtl.home = horizontal(target)
+    rtl.return_d = home.z - return_height(home.z - pos.z, home.z - target.z, math.hypot(away.x, away.y), p)
     rtl.descent_d = home.z - p.ALT_FINAL * 0.01
 
 
 @law
-def return_height(height: float, distance: float, p: Rtl) -> float:
-    """Height of the way home from a height and a distance, all above or from home [m]; never below the present one.
+def keep_below(rtl: RtlState, top_d: float, d: float) -> None:
+    """The way back leads no higher than ``top_d``, but not down from where the vehicle is; down [m]."""
+    rtl.return_d = min(max(rtl.return_d, top_d), d)
 
-    RTL_ALT, RTL_CLIMB_MIN, RTL_CONE_SLOPE.
+
+@law
+def return_height(height: float, least: float, distance: float, p: Rtl) -> float:
+    """Height of the way back from a height and a distance, all above home [m]; never below the present one.
+
+    RTL_ALT, RTL_CLIMB_MIN, RTL_CONE_SLOPE; ``least``: of the place to return to.
     """
     height_min = max(_CLIMB_MIN, height + max(p.CLIMB_MIN * 0.01, 0.0))
-    target = max(p.ALT * 0.01, height_min)
+    target = max(max(p.ALT * 0.01, least), height_min)
     if p.CONE_SLOPE >= _SLOPE_MIN:
         target = min(target, max(distance * p.CONE_SLOPE, height_min))
     return max(target, height)

@@ -5,25 +5,32 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ... import modes as all_modes
-from ...events import MODE_REFUSED, emit
+from ...events import MODE_CHANGED, MODE_REFUSED, RETURN_ACTIVE, RETURN_WANTED, emit, emit_and_return
+from ...fence.checks import begin_recovery, keeps_mode
 from ...modes import (
     ACCEPTED,
+    IN_FENCE_RECOVERY,
     INIT_FAILED,
     MISSING_TAKEOFF,
     NEEDS_ALTITUDE,
+    NO_LANDING,
+    NO_PATH,
+    NO_RETURN,
     NO_SUCH_MODE,
     REQUIRES_POSITION,
     THROTTLE_TOO_HIGH,
     enter,
+    shown,
 )
+from ...navigation.state import BEST, BY_LANDING, BY_PATH, LANDING, OUTWARD
 from ...state import Arming, Estimate
 from ..control.motors import hover_throttle
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import stabilize
-from .auto import AUTO
+from .auto import AUTO, AUTO_RTL
 from .state import Modes
-from .table import NAMES, has_manual_throttle, is_known, requires_position, start
+from .table import TITLES, has_manual_throttle, is_known, requires_position, start
 
 _CAUSES = {
     INIT_FAILED: "init failed",
@@ -31,6 +38,10 @@ _CAUSES = {
     THROTTLE_TOO_HIGH: "throttle too high",
     NEEDS_ALTITUDE: "need alt estimate",
     MISSING_TAKEOFF: "init failed",
+    IN_FENCE_RECOVERY: "in fence recovery",
+    NO_RETURN: "No return path or landing sequence found",
+    NO_PATH: "No return path found",
+    NO_LANDING: "No landing sequence found",
 }
 
 
@@ -59,13 +70,23 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     A change is told to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number,
     cause) with nothing changed.
     """
+    if number == AUTO_RTL:
+        return go_back(v, BEST, reason)
+    if number == shown(v.autopilot.modes):
+        v.autopilot.modes.reason = reason
+        return ACCEPTED
+    return change(v, number, reason)
+
+
+@law
+def change(v: Vehicle, number: int, reason: int) -> int:
+    """Change to another mode than the present one, as ``request`` does."""
     ap = v.autopilot
     modes = ap.modes
-    if number == modes.number:
-        modes.reason = reason
-        return ACCEPTED
     pending = modes.nav.request_pending
     cause = refusal(number, modes, ap.arming, ap.estimate, ap.params)
+    if ap.arming.armed and not ap.arming.landed and keeps_mode(ap.fence, modes.reason, ap.params.FENCE):
+        cause = IN_FENCE_RECOVERY
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = start(number, v)
@@ -74,11 +95,47 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     modes.takeoff.user_active = False
+    begin_recovery(ap.fence, ap.params.FENCE, ap.events, v.time_us)
     enter(modes, ap.events, v.time_us, number, reason, AUTO)
     return cause
 
 
+@law
+def go_back(v: Vehicle, way: int, reason: int) -> int:
+    """AUTO_RTL: go on in AUTO at the mission's part that brings the vehicle back (``way``: BEST, BY_LANDING, BY_PATH).
+
+    Returns what ``request`` does. The shell looks for the part.
+    """
+    ap = v.autopilot
+    modes = ap.modes
+    flies_mission = modes.number == AUTO
+    if way == BEST and modes.shown == AUTO_RTL:
+        return ACCEPTED
+    if way != BY_LANDING and modes.nav.mission_part != OUTWARD:
+        emit(ap.events, v.time_us, RETURN_ACTIVE, float(modes.nav.mission_part), 0.0)
+    elif may_go_back(modes, way):
+        emit_and_return(ap.events, v.time_us, RETURN_WANTED, float(way), 1.0 if flies_mission else 0.0)
+    else:
+        cause = NO_LANDING if way == BY_LANDING else NO_PATH if way == BY_PATH else NO_RETURN
+        emit(ap.events, v.time_us, MODE_REFUSED, float(AUTO_RTL), float(cause))
+        return cause
+    cause = ACCEPTED if flies_mission else change(v, AUTO, reason)
+    if cause == ACCEPTED:
+        if modes.nav.mission_part == OUTWARD:
+            modes.nav.mission_part = LANDING  # until the shell, at the end of this tick, has looked for the part
+        modes.shown = AUTO_RTL
+        modes.reason = reason
+        emit(ap.events, v.time_us, MODE_CHANGED, float(AUTO_RTL), float(reason))
+    return cause
+
+
+@law
+def may_go_back(modes: Modes, way: int) -> bool:
+    """Whether the mission has such a part."""
+    return (way != BY_LANDING and modes.mission_returns) or (way != BY_PATH and modes.mission_lands)
+
+
 def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
-    failed = f"Mode change to {NAMES.get(number)} failed: {_CAUSES.get(cause)}"
+    failed = f"Mode change to {TITLES.get(number)} failed: {_CAUSES.get(cause)}"
     return all_modes.refusal_texts(number, cause, failed)

@@ -54,6 +54,13 @@ class GuidedState(Record):
     climb_rate: float  # ANGLE: [m/s] up
     thrust: float  # ANGLE: 0 .. 1
     use_thrust: bool  # ANGLE: thrust instead of climb rate
+    # within a mission (DO_GUIDED_LIMITS); 0: no limit
+    limit_us: int  # how long
+    limit_low: float  # heights over the origin [m]
+    limit_high: float
+    limit_distance: float  # from where it began [m]
+    limit_since_us: int  # when it began
+    limit_from: Vec2  # and where, NE [m]
 
 
 class LoiterState(Record):
@@ -137,6 +144,19 @@ class ZigZagState(Record):
     line: int  # of the sweep
 
 
+class SystemIdState(Record):
+    """SYSTEMID."""
+
+    testing: bool  # the chirp runs
+    holds_place: bool  # an axis of the position
+    time: float  # since the mode began [s]
+    value: float  # of the chirp
+    frequency: float  # [rad/s]
+    place: Vec2  # to hold, NE [m]
+    vel: Vec2  # [m/s]
+    acc: Vec2  # [m/s^2]
+
+
 class RtlState(Record):
     """RTL and SMART_RTL."""
 
@@ -217,6 +237,7 @@ class Modes(shared.Modes):
     drift: DriftState
     throw: ThrowState
     zigzag: ZigZagState
+    systemid: SystemIdState
     rtl: RtlState
     path: shared.PathState
     land: LandState

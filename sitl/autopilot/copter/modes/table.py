@@ -13,11 +13,13 @@ from . import (
     acro,
     alt_hold,
     auto,
+    auto_rtl,
     avoid_adsb,
     brake,
     circle,
     drift,
     flip,
+    flowhold,
     follow,
     guided,
     guided_nogps,
@@ -27,7 +29,9 @@ from . import (
     rtl,
     smart_rtl,
     stabilize,
+    systemid,
     throw,
+    turtle,
     zigzag,
 )
 from .mode import CopterMode
@@ -54,10 +58,16 @@ MODES: tuple[CopterMode, ...] = with_registered(
         smart_rtl.MODE,
         follow.MODE,
         zigzag.MODE,
+        systemid.MODE,
+        flowhold.MODE,
+        turtle.MODE,
+        auto_rtl.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""
 NAMES = {mode.number: mode.name for mode in MODES}
+TITLES = {mode.number: mode.title or mode.name for mode in MODES}
+"""As texts say them."""
 
 run = by_number("run", {mode.number: mode.run for mode in MODES}, stabilize.MODE.run)
 start = by_number("start", {mode.number: mode.start for mode in MODES}, stabilize.MODE.start)

@@ -11,6 +11,7 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ...control.shaping import Motion
 from ...events import TAKEOFF_COMPLETE, emit
+from ...fence.checks import switch_after_takeoff
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
 from ..control.state import DT, AltitudeState, Control
@@ -57,6 +58,7 @@ def run(v: Vehicle) -> None:
         if not takeoff.complete and is_done(control.pos_d, takeoff.target_d):
             takeoff.complete = True
             emit(ap.events, v.time_us, TAKEOFF_COMPLETE, -est.pos.z, 0.0)
+            switch_after_takeoff(ap.fence, p.FENCE, int(p.FENCE.AUTOENABLE), ap.events, v.time_us)
 
 
 @law

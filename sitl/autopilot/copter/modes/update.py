@@ -6,10 +6,14 @@ from __future__ import annotations
 from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home
+from ...avoidance import proximity
+from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
+from ...navigation.path import areas_of, watch_detour
+from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, crash, failsafe, landing, motor_test, pilot, takeoff_check, thrust_loss
+from .. import arming, avoidance, crash, failsafe, fence, landing, motor_test, pilot, takeoff_check, thrust_loss
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -37,6 +41,7 @@ def init(v: Vehicle) -> None:
     ap.arming.landed_maybe = True
     battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.rc, ap.modes.pilot)
+    proximity.power_on(ap.proximity, ap.params.PRX1)
 
 
 @unit
@@ -49,6 +54,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
         read_transmitter(v)
     if tick % _TENTH == 4:
         check_slowly(v)
+    if tick % fence.TICKS == 8:
+        fence.watch(v)
     if tick % _QUARTER == 12:
         home.set_first(ap.home, ap.estimate)
         ap.arming.prearm_ok = arming.check(v) == 0
@@ -95,6 +102,9 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.watch_vibration(v)
     arming.disarm_idle(v)
     takeoff_check.check(v)
+    avoidance.watch(v)
+    ap = v.autopilot
+    watch_detour(ap.modes.nav, areas_of(ap.fence, ap.params.OA, ap.params.FENCE), ap.events, v.time_us)
 
 
 @inlined
@@ -102,6 +112,8 @@ def run_mode(v: Vehicle) -> None:
     """The mode's own tick, then the change that it may have asked for."""
     ap = v.autopilot
     table.run(ap.modes.number, v)
+    if ap.modes.nav.request_pending == GO_ON:
+        emit_and_return(ap.events, v.time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)
     wanted = take_asked(ap.modes)
     if wanted >= 0:
         set_mode.request(v, wanted, ap.modes.wanted_reason)

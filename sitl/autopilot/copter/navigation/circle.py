@@ -33,6 +33,7 @@ def start(nav: CopterNav, pos: Vec3, yaw: float) -> None:
     else:
         nav.circle_angle = yaw - math.pi  # at the centre: back out, looking ahead
     nav.circle_total = 0.0
+    nav.circle_told = 0
     nav.circle_rate = 0.0
     nav.circle_running = True
 
@@ -54,6 +55,12 @@ def set_limits(nav: CopterNav, rate: float, speed_max: float, accel: float) -> N
 
 
 @law
+def turned(nav: CopterNav) -> float:
+    """Turns flown so far, positive whatever the direction."""
+    return abs(nav.circle_total) / (2.0 * math.pi)
+
+
+@law
 def advance(nav: CopterNav) -> float:
     """Move the target one tick around the circle; the turns flown so far (positive whatever the direction)."""
     change = nav.circle_acc * DT
@@ -72,7 +79,7 @@ def advance(nav: CopterNav) -> float:
     nav.pos = Vec3(centre.x + n, centre.y + e, centre.z)
     nav.vel = ZERO
     nav.acc = ZERO
-    return abs(nav.circle_total) / (2.0 * math.pi)
+    return turned(nav)
 
 
 @law

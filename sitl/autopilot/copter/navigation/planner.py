@@ -123,7 +123,7 @@ class CopterPlanner(Planner[Autopilot]):
             return spline.direction(nav.spline, 1.0) * (nav.spline.speed if nav.current.fast else 0.0)
         return nav.current.unit * end_speed(nav.current)
 
-    def begin(self, ap: Autopilot, time_us: int, target: Vec3) -> None:
+    def begin_leg(self, ap: Autopilot, time_us: int, target: Vec3) -> None:
         """A leg along the path under way goes on with its speed; across it, it begins where the vehicle would stop."""
         nav = ap.modes.nav
         carried = self.carried(ap, time_us)
@@ -132,7 +132,7 @@ class CopterPlanner(Planner[Autopilot]):
         along = speed > 0.0 and dot(carried, away) > _ALONG * speed * length
         if speed > 0.0 and not along:
             nav.reached = False
-        super().begin(ap, time_us, target)
+        super().begin_leg(ap, time_us, target)
         nav.spline.active = False
         if along:
             self.replan_between(ap, nav.current, speed, 0.0)
@@ -187,6 +187,8 @@ class CopterPlanner(Planner[Autopilot]):
         """Plan the leg under way to go over into a curve at a speed, unless it has come too far for that."""
         nav = ap.modes.nav
         leg = nav.current
+        if nav.detour.left > 0:
+            return
         if nav.next.started or leg.elapsed >= leg.turn_out or leg.length < SHORTEST:
             return
         clear(nav.next)

@@ -42,5 +42,6 @@ class CopterNav(Nav):
     circle_top_rate: float  # signed, wanted [rad/s]
     circle_acc: float  # [rad/s^2]
     circle_running: bool  # false: still on the way to the edge
+    circle_told: int  # number of the circle that was told last
     height_error: float  # LOITER_TO_ALT: in the last tick, down positive [m]
     spline: Spline

@@ -115,7 +115,7 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     nav.vel = nav.vel * nav.pause_scale
     follow_target(control, nav, nav.vel.z, nav.acc.z)
     if done and (nav.current.fast or is_near_end(nav, est.pos, CM * legs.RADIUS)):
-        nav.reached = True
+        path.arrive(nav)
     return nav.reached
 
 

@@ -7,14 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.records import Floats, Records
-from ... import camera, relays
+from ... import shell_parameters
 from ...params import parameters as shared
+from ...params.avoidance import PathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
+from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.system import Arming, Compass, Log, Mavlink, Mission, Statistics, StreamRates
+from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
+from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
@@ -28,12 +31,13 @@ from .flight import (
     PosHold,
     Rtl,
     SmartRtl,
+    SystemId,
     TakeOff,
     Throw,
     Waypoints,
     ZigZag,
 )
-from .safety import Battery, Failsafes, Simulated
+from .safety import Battery, Failsafes, Fence, Simulated
 
 
 class Frame(ParameterGroup):
@@ -56,6 +60,7 @@ class Parameters(shared.Parameters):
 
     ACRO: Acro
     ANGLE_MAX: float = param(3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16)
+    AHRS: Ahrs
     ARMING: Arming
     ATC: Attitude
     AUTO_OPTIONS: float = param(
@@ -66,6 +71,7 @@ class Parameters(shared.Parameters):
         "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
         INT32,
     )
+    AVOID: Avoid
     BATT: Battery
     CIRCLE: Circle
     COMPASS: Compass
@@ -73,6 +79,7 @@ class Parameters(shared.Parameters):
         10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8
     )
     EK3: Ekf3
+    FENCE: Fence
     FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
@@ -83,6 +90,7 @@ class Parameters(shared.Parameters):
     GPS1_DELAY_MS: float
     GUID: Guided
     INITIAL_MODE: float
+    INS: Inertial
     LAND: Land
     LOG: Log
     LOIT: Loiter
@@ -90,9 +98,13 @@ class Parameters(shared.Parameters):
     MAV1: StreamRates
     MIS: Mission
     MOT: Motors
+    OA: PathPlanning
     PHLD: PosHold
     PILOT: Pilot
+    PRX: Proximity
+    PRX1: ProximitySensor
     PSC: Position
+    RALLY: Rally
     RC: Records[RcChannel]
     RC_OVERRIDE_TIME: float
     RC_FS_TIMEOUT: float = param(1.0, 0.5, 10.0, "s", "Silence of the receiver that counts as lost")
@@ -105,6 +117,7 @@ class Parameters(shared.Parameters):
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SERVO: Records[Output] = numbered(Output, 16)
+    SID: SystemId
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
     SRTL: SmartRtl
@@ -127,4 +140,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS)

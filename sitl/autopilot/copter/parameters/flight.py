@@ -149,6 +149,25 @@ class Throw(ParameterGroup):
     TYPE: float = param(0, 0, 1, "", "0 thrown upwards, 1 dropped", INT8)
 
 
+class SystemId(ParameterGroup):
+    """SID_: the chirp of SYSTEMID."""
+
+    AXIS: float = param(
+        0,
+        0,
+        19,
+        "",
+        "Added to: 1-3 lean, turn; 4-6 the same, no feed-forward; 7-9 rates; 10-13 motors; 14-19 place; 0: refused",
+        INT8,
+    )
+    MAGNITUDE: float = param(15.0, -1000.0, 1000.0, "", "Size of the chirp, in the unit of its axis")
+    F_START_HZ: float = param(0.5, 0.0, 100.0, "Hz", "Frequency at its start")
+    F_STOP_HZ: float = param(40.0, 0.0, 100.0, "Hz", "Frequency at its end")
+    T_FADE_IN: float = param(15.0, 0.0, 1000.0, "s", "Time in which it becomes full")
+    T_REC: float = param(70.0, 0.0, 1000.0, "s", "Length of the chirp")
+    T_FADE_OUT: float = param(2.0, 0.0, 1000.0, "s", "Time in which it vanishes at its end")
+
+
 class Waypoints(ParameterGroup):
     """WP_: heading at waypoints, height without navigation."""
 

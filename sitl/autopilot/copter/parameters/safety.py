@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...params import simulation, system
+from ...params import fence, simulation, system
 from ...params.parameter import INT8, INT16, INT32, param
 
 
@@ -51,6 +51,26 @@ class Failsafes(system.Failsafes):
     CRASH_CHECK: float = param(1, 0, 1, "", "Disarm after a crash", INT8)
     OPTIONS: float = param(
         16, 0, 127, "", "Goes on: 1 AUTO, 4 GUIDED without radio; 2 AUTO, 16 pilot modes without GCS; 8 LAND", INT32
+    )
+
+
+class Fence(fence.Fence):
+    """FENCE_: with limits in height."""
+
+    ACTION: float = param(
+        1, -128, 127, "",
+        "Breached: 0 nothing, 1 RTL or LAND, 2 LAND, 3 SMART_RTL, RTL or LAND, 4 BRAKE or LAND, 5 SMART_RTL or LAND",
+        INT8,
+    )  # fmt: skip
+    ALT_MAX: float = param(100.0, -1e9, 1e9, "m", "Greatest height above home")
+    ALT_MIN: float = param(-10.0, -1e9, 1e9, "m", "Least height above home, once the vehicle has been above it")
+    AUTOENABLE: float = param(
+        0,
+        0,
+        3,
+        "",
+        "Fences switch themselves: 1, 2 on after an automatic take-off, 3 on when armed; off on landing",
+        INT8,
     )
 
 

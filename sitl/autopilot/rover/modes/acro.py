@@ -7,9 +7,10 @@ import math
 
 from ....core.kernels import law
 from .. import pilot
-from ..control import motors, speed
+from ..control import motors
 from ..control.steering import out_from_rate
 from ..state import Vehicle
+from . import drive
 from .mode import RoverMode
 
 ACRO = 1
@@ -24,7 +25,7 @@ def run(v: Vehicle) -> None:
     if control.speed.forward_ok:
         wanted = pilot.steering_and_speed(ap.modes.pilot, control, p)
         steering = wanted.steering
-        speed.drive(control, armed, wanted.speed, p)
+        drive.at_speed(v, wanted.speed)
     else:
         sticks = pilot.limited_sticks(ap.modes.pilot, control.motors.throttle_last, p)
         steering = sticks.steering

@@ -144,7 +144,7 @@ def run_command(v: Vehicle) -> None:
         guided.run(v)
     elif submode == TURNING and not auto.heading_reached:
         drive.turn_to(control, ap.estimate, ap.modes.pilot, auto.heading, p)
-        speed.drive(control, armed, pilot.nudged(ap.modes.pilot, auto.speed, p), p)
+        drive.at_speed(v, pilot.nudged(ap.modes.pilot, auto.speed, p))
         auto.heading_reached = abs(wrap_pi(auto.heading - ap.estimate.yaw)) < HEADING_REACHED
     else:
         speed.stop(control, armed, p)

@@ -205,7 +205,7 @@ def run(v: Vehicle) -> None:
         emit(ap.events, v.time_us, CIRCLE_ADAPTED, float(FELL_BEHIND), circle.speed)
     position.follow_target(control, ap.estimate, armed, p)
     drive.turn(control, ap.estimate, ap.modes.pilot, control.position.desired_turn_rate, p)
-    speed.drive(control, armed, control.position.desired_speed, p)
+    drive.on_path(v, control.position.desired_speed)
 
 
 @law

@@ -8,17 +8,22 @@ in the direction of travel gets it.
 from __future__ import annotations
 
 from ....core.kernels import law
+from ...avoidance import limit
+from ...avoidance.velocity import braking
 from ...events import LEG_ENDING, emit_and_return
 from ...navigation.state import SPEED_REQUEST
 from ...state import Estimate
 from .. import pilot
 from ..control import motors, speed, steering
-from ..control.state import Control, PositionState
+from ..control.state import DT, Control, PositionState
 from ..navigation import waypoint
 from ..navigation.state import RoverNav
 from ..parameters import Parameters
 from ..state import Vehicle
 from .state import PilotState
+
+DECEL_SHARE = 0.5
+"""Of the greatest deceleration: so much is planned with before obstacles and fences (ArduPilot's)."""
 
 
 @law
@@ -36,6 +41,29 @@ def turn_to(control: Control, estimate: Estimate, sticks: PilotState, heading: f
 
 
 @law
+def at_speed(v: Vehicle, desired: float) -> None:
+    """Drive at ``desired`` [m/s], or as slowly as obstacles and fences ask for."""
+    ap = v.autopilot
+    control, p = ap.control, ap.params
+    if limit.is_active(ap.avoid):
+        asked = speed.accel_limited(control, desired, p.ATC)
+        b = braking(0.0, DECEL_SHARE * speed.decel_max(p.ATC), DT, p.AVOID.BEHAVE)
+        desired = limit.limit_speed(ap, v.time_us, asked, b)
+    speed.drive(control, ap.arming.armed, desired, p)
+
+
+@law
+def on_path(v: Vehicle, desired: float) -> None:
+    """The same on a path, which is braked on as its position controller does."""
+    ap = v.autopilot
+    c, p = ap.control.position, ap.params
+    if limit.is_active(ap.avoid):
+        b = braking(p.PSC.POS_P, min(c.accel_max, c.lat_accel_max), DT, p.AVOID.BEHAVE)
+        desired = limit.limit_speed(ap, v.time_us, desired, b)
+    speed.drive(ap.control, ap.arming.armed, desired, p)
+
+
+@law
 def follow_path(v: Vehicle) -> None:
     """One period along the path of ``navigation.waypoint``: it says how fast and how to turn."""
     ap = v.autopilot
@@ -44,7 +72,7 @@ def follow_path(v: Vehicle) -> None:
     path.nudge_speed = abs(pilot.stick_speed(ap.modes.pilot, path.reversed, ap.params))
     if waypoint.follow(nav, ap.control, ap.estimate, armed, v.time_us, ap.params):
         emit_and_return(ap.events, v.time_us, LEG_ENDING, SPEED_REQUEST, 0.0)
-    speed.drive(ap.control, armed, path.desired_speed, ap.params)
+    on_path(v, path.desired_speed)
     turn(ap.control, ap.estimate, ap.modes.pilot, path.desired_turn_rate, ap.params)
 
 

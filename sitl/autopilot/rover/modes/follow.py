@@ -55,7 +55,7 @@ def run(v: Vehicle) -> None:
         speed.stop(control, ap.arming.armed, p)
         return
     drive.turn_to(control, ap.estimate, ap.modes.pilot, math.atan2(wanted.y, wanted.x), p)
-    speed.drive(control, ap.arming.armed, pilot.nudged(ap.modes.pilot, norm2(wanted), p), p)
+    drive.at_speed(v, pilot.nudged(ap.modes.pilot, norm2(wanted), p))
 
 
 MODE = RoverMode(number=FOLLOW, name="FOLLOW", start=start, run=run, needs_position=True, autonomous=True)

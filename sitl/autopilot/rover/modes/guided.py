@@ -80,7 +80,7 @@ def run(v: Vehicle) -> None:
             drive.turn(control, ap.estimate, ap.modes.pilot, guided.turn_rate, p)
         elif kind == HEADING_AND_SPEED:
             drive.turn_to(control, ap.estimate, ap.modes.pilot, guided.heading, p)
-        speed.drive(control, armed, pilot.nudged(ap.modes.pilot, guided.speed, p), p)
+        drive.at_speed(v, pilot.nudged(ap.modes.pilot, guided.speed, p))
 
 
 def change_speed(v: Vehicle, wanted: float) -> bool:

@@ -64,7 +64,7 @@ def set_position(v: Vehicle, point: Vec2) -> int:
     code = refusal(ap.modes, point.x, point.y)
     if code != OK:
         return code
-    if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0:
+    if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0 or ap.params.OA.TYPE != 0.0:
         request_leg(ap.modes.nav, ap.events, v.time_us, with_down(point, 0.0))
     else:
         waypoint.set_destination_shaped(ap.modes.nav, ap.estimate, v.time_us, point, ap.params)

@@ -70,7 +70,7 @@ def run(v: Vehicle) -> None:
     else:
         aim(loiter, pos, ap.estimate.yaw, ap.params)
     drive.turn_to(ap.control, ap.estimate, ap.modes.pilot, loiter.heading, ap.params)
-    speed.drive(ap.control, ap.arming.armed, loiter.speed, ap.params)
+    drive.at_speed(v, loiter.speed)
 
 
 @law

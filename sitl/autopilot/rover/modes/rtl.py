@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""RTL: drives home along a planned leg (RTL_SPEED) and stops there."""
+"""RTL: drives home or to a rally point along a planned leg (RTL_SPEED) and stops there."""
 
 from __future__ import annotations
 
 from ....core.algebra import horizontal, with_down
 from ....core.kernels import law
+from ... import rally
 from ...events import DESTINATION_REACHED, emit
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation.path import request_leg
 from ..control import speed
+from ..heights import HEIGHTS
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import drive
@@ -25,7 +27,8 @@ def start(v: Vehicle) -> int:
         return INIT_FAILED
     nav = ap.modes.nav
     drive.begin_return(nav, ap.control.position, ap.params)
-    request_leg(nav, ap.events, v.time_us, with_down(horizontal(ap.home.pos), 0.0))
+    target = rally.best(ap.rally, ap.estimate, ap.home, ap.fence, ap.params, HEIGHTS)
+    request_leg(nav, ap.events, v.time_us, with_down(horizontal(target), 0.0))
     ap.modes.rtl.told = False
     return ACCEPTED
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from ....core.kernels import law
 from ... import modes as all_modes
 from ...events import MODE_REFUSED, emit
+from ...fence.checks import begin_recovery
 from ...modes import ACCEPTED, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
 from ..control.motors import is_skid
 from ..navigation import waypoint
@@ -64,6 +65,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
+    begin_recovery(ap.fence, ap.params.FENCE, ap.events, v.time_us)
     waypoint.set_reversed(modes.nav, ap.estimate, False, ap.params)
     enter(modes, ap.events, v.time_us, number, reason, AUTO)
     return cause

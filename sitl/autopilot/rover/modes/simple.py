@@ -6,9 +6,10 @@ from __future__ import annotations
 from ....core.kernels import law
 from ....core.scalars import wrap_2pi
 from .. import pilot
-from ..control import motors, speed
+from ..control import motors
 from ..control.steering import out_from_heading
 from ..state import Vehicle
+from . import drive
 from .mode import RoverMode
 from .state import SimpleState
 
@@ -35,7 +36,7 @@ def run(v: Vehicle) -> None:
         from_first = int(p.SIMPLE_TYPE) == FROM_FIRST_HEADING
         simple.heading = wrap_2pi(wanted.heading + simple.first_heading) if from_first else wanted.heading
     motors.set_steering(control.motors, out_from_heading(control, ap.estimate, simple.heading, p.ATC))
-    speed.drive(control, ap.arming.armed, wanted.speed, p)
+    drive.at_speed(v, wanted.speed)
 
 
 MODE = RoverMode(number=SIMPLE, name="SIMPLE", run=run, needs_position=True, manual_input=True)

@@ -12,9 +12,10 @@ import math
 from ....core.kernels import law
 from ....core.scalars import constrain
 from .. import pilot
-from ..control import motors, speed
+from ..control import motors
 from ..control.steering import lat_accel_max, out_from_lat_accel, out_from_rate
 from ..state import Vehicle
+from . import drive
 from .mode import RoverMode
 
 STEERING = 3
@@ -53,7 +54,7 @@ def run(v: Vehicle) -> None:
         accel = stick_accel(wanted, control.speed.forward, p.TURN_RADIUS, lat_accel_max(p.ATC))
         demand = out_from_lat_accel(control, ap.estimate, accel, p.ATC)
     motors.set_steering(control.motors, demand)
-    speed.drive(control, ap.arming.armed, wanted.speed, p)
+    drive.at_speed(v, wanted.speed)
 
 
 MODE = RoverMode(number=STEERING, name="STEERING", run=run, needs_velocity=True, manual_input=True)

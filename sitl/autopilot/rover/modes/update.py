@@ -9,13 +9,16 @@ from ....core.records import Records
 from ....core.vectors import Vec3
 from ... import aux_switch, battery, home, smart_rtl_path
 from ...arming_checks import BY_RUDDER
-from ...events import Events
+from ...avoidance import limit, proximity
+from ...events import LEG_ENDING, Events, emit_and_return
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
+from ...navigation.path import areas_of, watch_detour
+from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...params.system import SmartRtl
 from ...state import Estimate, HomeState
-from .. import crash, failsafe, motor_test, pilot
+from .. import crash, failsafe, fence, motor_test, pilot
 from ..arming import set_disarmed, stick_command, try_arm
 from ..arming_checks import check
 from ..control.forward_speed import sense
@@ -42,6 +45,7 @@ def init(v: Vehicle) -> None:
     ap.arming.landed = True
     battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.modes.pilot, ap.rc)
+    proximity.power_on(ap.proximity, ap.params.PRX1)
 
 
 @unit
@@ -61,6 +65,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     if tick % _SECOND == 0:
         follow_home(ap.home, ap.estimate, ap.arming.armed)
     table.run(modes.number, v)
+    if modes.nav.request_pending == GO_ON:
+        emit_and_return(ap.events, v.time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)
     wanted = take_asked(modes)
     if wanted >= 0:
         set_mode.request(v, wanted, modes.wanted_reason)
@@ -106,7 +112,10 @@ def check_slowly(v: Vehicle) -> None:
     watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)
     failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
+    fence.watch(v)
     crash.check(v)
+    limit.watch(v, False)
+    watch_detour(ap.modes.nav, areas_of(ap.fence, p.OA, p.FENCE), ap.events, v.time_us)
 
 
 @law

@@ -42,10 +42,10 @@ class RoverPlanner(Planner[Autopilot]):
         drive.pivot_next = pivot.would_turn(after - before, ap.params)
         return not drive.pivot_next
 
-    def begin(self, ap: Autopilot, time_us: int, target: Vec3) -> None:
+    def begin_leg(self, ap: Autopilot, time_us: int, target: Vec3) -> None:
         """With today's limits."""
         waypoint.set_limits(ap.control.position, ap.modes.nav, ap.params)
-        super().begin(ap, time_us, target)
+        super().begin_leg(ap, time_us, target)
         if ap.modes.nav.joined and ap.modes.nav.current.top_speed != ap.control.position.speed_max:
             self.change_speed(ap)  # it was planned ahead, before the mission changed the speed
         waypoint.begin_leg(ap.modes.nav, ap.estimate, time_us, ap.params)

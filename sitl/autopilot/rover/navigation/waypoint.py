@@ -287,7 +287,8 @@ def advance(nav: RoverNav, c: PositionState, estimate: Estimate, params: Paramet
     position.set_pos_vel_accel(c, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
     if done and not nav.reached:
         near = path.distance(nav, pos) <= params.WP.RADIUS
-        nav.reached = nav.current.fast or near or has_passed(nav.drive.origin, horizontal(nav.target), horizontal(pos))
+        if nav.current.fast or near or has_passed(nav.drive.origin, horizontal(nav.target), horizontal(pos)):
+            path.arrive(nav)
 
 
 @law

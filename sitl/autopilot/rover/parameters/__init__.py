@@ -8,27 +8,31 @@ from typing import TYPE_CHECKING
 
 from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
-from ... import camera, relays
+from ... import shell_parameters
 from ...params import parameters as shared
+from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
+from ...params.fence import Rally
 from ...params.follow import Follow
 from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.simulation import Simulated
-from ...params.system import Arming, Compass, Log, Mavlink, SmartRtl, Statistics, StreamRates
+from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
-from .safety import Battery, Failsafes
+from .safety import Battery, Failsafes, Fence
 
 
 class Parameters(shared.Parameters):
     """The rover's parameters, in the order of the wire."""
 
     ACRO_TURN_RATE: float = param(180.0, 0.0, 360.0, "deg/s", "Turn rate of a full steering stick")
+    AHRS: Ahrs
     ARMING: Arming
     ATC: Attitude
+    AVOID: Avoid = group(BEHAVE=1)
     BATT: Battery
     CIRC: Circle
     COMPASS: Compass
@@ -36,6 +40,7 @@ class Parameters(shared.Parameters):
     CRUISE: Cruise
     SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
     EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7)
+    FENCE: Fence
     FOLL: Follow
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
     FS: Failsafes
@@ -45,6 +50,7 @@ class Parameters(shared.Parameters):
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
     )
     INITIAL_MODE: float
+    INS: Inertial
     LOG: Log = group(BITMASK=65535)
     LOIT: Loiter
     MANUAL: Manual
@@ -54,10 +60,14 @@ class Parameters(shared.Parameters):
     MODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     MODE_CH: float = param(8, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     MOT: Motors
+    OA: PathPlanning
     PILOT_STEER_TYPE: float = param(
         0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
     )
+    PRX: Proximity
+    PRX1: ProximitySensor
     PSC: Position
+    RALLY: Rally = group(LIMIT_KM=0.5)
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(30, 0, 30, 30) + 12 * (0,))
     RC_OVERRIDE_TIME: float
     RCMAP: RcMap
@@ -77,4 +87,4 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("rover", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), {**relays.MEANINGS, **camera.MEANINGS})
+TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS)

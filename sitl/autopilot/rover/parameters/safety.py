@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...params import system
+from ...params import fence, system
 from ...params.parameter import INT8, INT16, INT32, param
 
 
@@ -49,3 +49,17 @@ class Failsafes(system.Failsafes):
         0.8, 0.0, 2.0, "", "Test ratio of the estimator that counts as bad; 0 switches the check off"
     )
     OPTIONS: float = param(0, 0, 1, "", "1: radio and GCS failsafes act in HOLD, too", INT32)
+
+
+class Fence(fence.Fence):
+    """FENCE_: what follows a breach."""
+
+    TYPE: float = param(6, 0, 15, "", "Bits: 2 circle around home, 4 areas", INT8)
+    ACTION: float = param(
+        1,
+        -128,
+        127,
+        "",
+        "Breached: 0 nothing, 1 RTL or HOLD, 2 HOLD, 3 SMART_RTL, RTL or HOLD, 4 SMART_RTL or HOLD",
+        INT8,
+    )

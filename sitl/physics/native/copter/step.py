@@ -7,7 +7,7 @@ from ....core.algebra import ZERO, rotate, rotate_inverse
 from ....core.kernels import inline_unit, law
 from ....core.records import Records
 from ....core.vectors import Vec3
-from .. import battery, obstacles, wind
+from .. import battery, bench, obstacles, wind
 from ..body import GRAVITY, Inertia, Wrench, fly
 from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
 from ..sensors.sense import sense
@@ -80,7 +80,10 @@ def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     v = fleet[i]
     begin(v)
     p = v.physics
-    move(p, v.time_us)
+    if p.airframe.on_bench:
+        bench.turn(p.body, v.actuators.pwm, v.time_us)
+    else:
+        move(p, v.time_us)
     if p.obstacles.present:
         obstacles.collide(p.obstacles, p.body, p.airframe, v.time_us)
         obstacles.show(p.obstacles, p.body)

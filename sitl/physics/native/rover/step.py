@@ -7,7 +7,7 @@ from ....core.kernels import inline_unit, law
 from ....core.records import Floats, Records
 from ....core.vectors import Vec2
 from ....vehicles.figures.rover import STEERING_SKID, Figures
-from .. import battery, obstacles
+from .. import battery, bench, obstacles
 from ..records import Body, Vehicle
 from ..sensors.sense import sense
 from ..tick import TICK_S, TICK_US, Clock
@@ -86,7 +86,10 @@ def step(fleet: Records[Vehicle[Physics]], i: int) -> None:
     v = fleet[i]
     begin(v)
     p = v.physics
-    move(p.wheels, p.body, p.airframe, p.derived, v.actuators.controls)
+    if p.airframe.on_bench:
+        bench.turn(p.body, v.actuators.pwm, v.time_us)
+    else:
+        move(p.wheels, p.body, p.airframe, p.derived, v.actuators.controls)
     if p.obstacles.present:
         if obstacles.collide(p.obstacles, p.body, p.airframe, v.time_us):
             hold_back(p.body, p.obstacles, p.wheels, p.airframe.rear_axle)

@@ -7,7 +7,7 @@ error + range.
 
 from __future__ import annotations
 
-from ....core.algebra import by_component
+from ....core.algebra import by_component, rotate
 from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal, normal_vector
@@ -37,9 +37,10 @@ def measure(truth: Vec3, scale: Vec3, bias: Vec3, noise: float, rng: Rng) -> Vec
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
     a, s, d, body = p.airframe, p.sensors, p.derived, p.body
-    acc = measure(body.specific_force, s.acc_scale, s.acc_bias + s.acc_walk + s.acc_fault, d.acc_noise, rng)
+    force = rotate(s.acc_mount, body.specific_force) if s.acc_is_turned else body.specific_force
+    acc = measure(force, s.acc_scale + s.acc_stretch, s.acc_bias + s.acc_walk + s.acc_fault, d.acc_noise, rng)
     sensors.acc = saturate(acc, a.acc_range)
-    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise, rng)
+    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk + s.gyro_fault, d.gyro_noise, rng)
     sensors.gyro = saturate(gyro, a.gyro_range)
 
 

@@ -223,7 +223,8 @@ def test_a_high_throttle_cancels_a_landing(option: int, throttle: float, cancell
 def test_the_way_home_is_not_below_the_vehicle(height: float, away: float, alt: float, slope: float) -> None:
     state, p = RtlState(), Rtl()
     p.ALT, p.CONE_SLOPE, p.ALT_FINAL = alt, slope, 300.0
-    rtl.plan_heights(state, Vec3(3.0, 4.0, -2.0), Vec3(3.0 + away, 4.0, -2.0 - height), p)
+    home = Vec3(3.0, 4.0, -2.0)
+    rtl.plan_heights(state, home, home, Vec3(3.0 + away, 4.0, -2.0 - height), p)
     assert state.return_d <= -2.0 - height + 1e-9
     assert (state.home, state.descent_d) == (Vec2(3.0, 4.0), -5.0)
 

@@ -41,12 +41,12 @@ def way_home(wanted: float, climb: float, slope: float) -> Rtl:
     ),
 )
 def test_height_of_the_way_home(height, distance, wanted, climb, slope, result):
-    assert rtl.return_height(height, distance, way_home(wanted, climb, slope)) == pytest.approx(result)
+    assert rtl.return_height(height, 0.0, distance, way_home(wanted, climb, slope)) == pytest.approx(result)
 
 
 @given(st.floats(-100, 1000), st.floats(0, 1e4), st.floats(0.3, 3000), st.floats(0, 30), st.floats(0, 10))
 def test_the_way_home_is_never_below_the_vehicle(height, distance, wanted, climb, slope):
-    assert rtl.return_height(height, distance, way_home(wanted, climb, slope)) >= height
+    assert rtl.return_height(height, 0.0, distance, way_home(wanted, climb, slope)) >= height
 
 
 def test_it_asks_for_both_legs_and_keeps_its_heading(flying):

@@ -10,12 +10,13 @@ import pytest
 from sitl.autopilot import smart_rtl_path
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
-from sitl.autopilot.copter.modes.auto import AUTO
+from sitl.autopilot.copter.modes.auto import AUTO, AUTO_RTL
 from sitl.autopilot.copter.modes.avoid_adsb import AVOID_ADSB
 from sitl.autopilot.copter.modes.brake import BRAKE
 from sitl.autopilot.copter.modes.circle import CIRCLE
 from sitl.autopilot.copter.modes.drift import DRIFT
 from sitl.autopilot.copter.modes.flip import FLIP
+from sitl.autopilot.copter.modes.flowhold import FLOWHOLD
 from sitl.autopilot.copter.modes.follow import FOLLOW
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.autopilot.copter.modes.land import LAND
@@ -24,8 +25,10 @@ from sitl.autopilot.copter.modes.poshold import POSHOLD
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.smart_rtl import SMART_RTL
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
+from sitl.autopilot.copter.modes.systemid import SYSTEMID
 from sitl.autopilot.copter.modes.table import NAMES
 from sitl.autopilot.copter.modes.throw import THROW
+from sitl.autopilot.copter.modes.turtle import TURTLE
 from sitl.autopilot.copter.modes.zigzag import ZIGZAG
 from sitl.autopilot.events import FOLLOW_OFF, MODE_CHANGED, MODE_REFUSED
 from sitl.autopilot.modes import (
@@ -40,7 +43,7 @@ from sitl.autopilot.modes import (
 )
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
-ALL = tuple(number for number in NAMES if number not in (FLIP, SMART_RTL, THROW))
+ALL = tuple(number for number in NAMES if number not in (FLIP, SMART_RTL, THROW, AUTO_RTL, SYSTEMID, FLOWHOLD, TURTLE))
 
 
 @pytest.mark.parametrize("number", ALL)

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Avoidance: what is seen around the vehicle, and velocities that keep away from it and from fences."""

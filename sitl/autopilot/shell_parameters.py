@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parameters that are read outside the core, and what they do."""
+
+from __future__ import annotations
+
+from . import camera, payload, relays
+from .params.table import Values
+
+MISSION_OPTIONS, CLEARED_AT_BOOT = "MIS_OPTIONS", 1
+
+MEANINGS = {
+    MISSION_OPTIONS: "Bits: 1 a boot clears the mission",
+    **relays.MEANINGS,
+    **camera.MEANINGS,
+    **payload.MEANINGS,
+}
+"""By name; those of outputs where the core has none of its own."""
+
+
+def clears_mission(values: Values) -> bool:
+    """Whether a boot clears the mission."""
+    return MISSION_OPTIONS in values.table and int(values[MISSION_OPTIONS]) & CLEARED_AT_BOOT != 0

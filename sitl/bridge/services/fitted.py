@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which service does what missions and switches ask of the things that are fitted to a vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ...autopilot import payload
+from ...autopilot.aux_switch import HIGH, LOW
+from ...autopilot.mission import item as commands
+from .camera import CameraService
+from .gripper import GripperService
+from .mount import MountService
+from .service import Service
+from .sprayer import SprayerService
+from .winch import WinchService
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+
+CARRIED_OUT_BY: dict[int, type[Service]] = {
+    **dict.fromkeys(commands.CAMERA_COMMANDS, CameraService),
+    **dict.fromkeys((*commands.MOUNT_COMMANDS, *commands.ROI_COMMANDS), MountService),
+    commands.DO_GRIPPER: GripperService,
+    commands.DO_SPRAYER: SprayerService,
+    commands.DO_WINCH: WinchService,
+}
+"""By command of a mission; outputs and relays do the others."""
+
+
+def _grip(gripper: GripperService, position: int) -> None:
+    if position == HIGH:
+        gripper.grab()
+    elif position == LOW:
+        gripper.release()
+
+
+_SWITCHES: dict[int, tuple[type[Service], Callable[[Any, int], None]]] = {
+    payload.SWITCH_GRIPPER: (GripperService, _grip),
+    payload.SWITCH_SPRAYER: (SprayerService, lambda sprayer, position: sprayer.run(position == HIGH, True)),
+    payload.SWITCH_WINCH: (WinchService, WinchService.enable),
+    payload.SWITCH_WINDING: (WinchService, WinchService.control),
+    payload.SWITCH_FOLD: (MountService, MountService.fold),
+    payload.SWITCH_LOCK: (MountService, MountService.lock),
+    payload.SWITCH_CAMERA: (
+        CameraService,
+        lambda camera, position: camera.take_picture() if position == HIGH else None,
+    ),
+}
+"""By function."""
+
+
+def switched(bridge: Bridge, function: int, position: int) -> None:
+    """A switch with one of these functions was moved."""
+    service, act = _SWITCHES[function]
+    act(bridge.get(service), position)

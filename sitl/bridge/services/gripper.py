@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gripper (GRIP_*): servo outputs of function 28 open and close it. Nothing is carried: it is told, not felt."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ...autopilot import payload
+from ...autopilot.mission.item import MissionItem
+from ..wire.port import NEVER
+from .payload import PayloadService
+from .service import ACCEPTED, FAILED, INFO
+from .statustext import StatusTextService
+
+RELEASE, GRAB = 0, 1
+"""GRIPPER_ACTIONS"""
+MOVES_US = 500_000
+"""So long it moves."""
+READY_US = 2_000_000
+"""After boot."""
+TEXTS = {RELEASE: ("Gripper load releasing", "Gripper load released"),
+         GRAB: ("Gripper load grabbing", "Gripper load grabbed")}  # fmt: skip
+"""By action: when it begins, and when it is done."""
+
+
+class State(NamedTuple):
+    """What it does. Times since boot [us]."""
+
+    action: int = RELEASE
+    done_us: int = READY_US + MOVES_US
+    is_done: bool = False
+    released_us: int = 0
+    """When it was told to open."""
+
+
+class GripperService(PayloadService):
+    """The gripper."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._there = self._value("GRIP_ENABLE") != 0.0 and self._value("GRIP_TYPE") == payload.BY_SERVO
+        self._state = State()
+        if self._there:
+            self._send(payload.GRIPPER, self._values["GRIP_RELEASE"])
+            self.due_us = self._state.done_us
+
+    def snapshot(self) -> Any:
+        return (tuple(self._state), self.due_us)
+
+    def restore(self, state: Any) -> None:
+        found, self.due_us = state
+        self._state = State(*found)
+
+    @property
+    def is_there(self) -> bool:
+        """Whether there is one, and switched on."""
+        return self._there and self._values["GRIP_ENABLE"] != 0.0
+
+    def carry_out(self, item: MissionItem) -> None:
+        """A mission's DO_GRIPPER."""
+        self.act(item.p2)
+
+    def act(self, action: float) -> int:
+        """RELEASE or GRAB, in whole numbers. Its MAV_RESULT."""
+        if not self.is_there or not RELEASE <= action < GRAB + 1:
+            return FAILED
+        if int(action) == GRAB:
+            self.grab()
+        else:
+            self.release()
+        return ACCEPTED
+
+    def grab(self) -> None:
+        """Close it."""
+        if self.is_there:
+            self._move(GRAB, "GRIP_GRAB")
+
+    def release(self) -> None:
+        """Open it."""
+        if self.is_there:
+            self._move(RELEASE, "GRIP_RELEASE")
+
+    def _move(self, action: int, pulse: str) -> None:
+        say, now, state = self.bridge.get(StatusTextService).say, self.bridge.now_us, self._state
+        self._send(payload.GRIPPER, self._values[pulse])
+        if state.action == action:
+            if state.is_done:
+                say(INFO, TEXTS[action][1])
+            return
+        say(INFO, TEXTS[action][0])
+        self._state = State(action, now + MOVES_US, False, now if action == RELEASE else state.released_us)
+        self.due_us = now + MOVES_US
+
+    def service(self, now_us: int) -> None:
+        state, self.due_us = self._state, NEVER
+        if not state.is_done and now_us >= state.done_us:
+            self._state = state._replace(is_done=True)
+            self.bridge.get(StatusTextService).say(INFO, TEXTS[state.action][1])
+        if self._state.action == RELEASE and self._state.is_done:
+            self._close_in_time(now_us)
+
+    def _close_in_time(self, now_us: int) -> None:
+        wait_us = round(min(max(self._values["GRIP_AUTOCLOSE"], 0.0), 1e6) * 1e6)
+        if wait_us > 0 and self._state.released_us > 0:
+            if now_us >= self._state.released_us + wait_us:
+                self.grab()
+            else:
+                self.due_us = self._state.released_us + wait_us

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The protocols of before missions had types: FENCE_POINT for one area to stay in, RALLY_POINT.
+
+Points come one by one, in any order. FENCE_TOTAL counts the point of return (0), the corners, and the first one again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...autopilot.fence.items import FEWEST_CORNERS
+from ...autopilot.mission.item import (
+    FENCE_INCLUSION,
+    FENCE_RETURN_POINT,
+    GLOBAL,
+    RALLY_POINT,
+    RELATIVE,
+    MissionItem,
+)
+from ..channel import Channel
+from ..dialect import message
+from .mission import MissionService
+from .place_lists import counted
+from .service import INFO, WARNING, Handler, Sender, Service
+from .statustext import StatusTextService
+
+FENCE, RALLY = message("FENCE_POINT"), message("RALLY_POINT")
+AROUND = 2
+"""Points that FENCE_TOTAL counts besides the corners."""
+Place = tuple[int, int]
+NOWHERE: Place = (0, 0)
+
+
+class OldPointService(Service):
+    """FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT, RALLY_FETCH_POINT."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._warned: tuple[str, ...] = ()
+
+    def handlers(self) -> dict[str, Handler]:
+        return {
+            "FENCE_POINT": self._set_fence_point,
+            "FENCE_FETCH_POINT": self._fetch_fence_point,
+            "RALLY_POINT": self._set_rally_point,
+            "RALLY_FETCH_POINT": self._fetch_rally_point,
+        }
+
+    def snapshot(self) -> tuple[str, ...]:
+        return self._warned
+
+    def restore(self, state: tuple[str, ...]) -> None:
+        self._warned = state
+
+    def _warn(self, text: str) -> None:
+        self.bridge.get(StatusTextService).say(WARNING, text)
+
+    def _deprecated(self, name: str) -> None:
+        if name not in self._warned:
+            self._warned += (name,)
+            self.bridge.get(StatusTextService).say(INFO, f"Received message ({name}) is deprecated")
+
+    def _total(self, name: str) -> int:
+        return int(self.bridge.vehicle.parameters[name])
+
+    # ------------------------------------------------------------------ fence
+
+    def _fence(self) -> tuple[Place | None, list[Place]]:
+        """The point of return and the corners of the first area to stay in."""
+        items, _ = self.bridge.get(MissionService).lists
+        back = [(item.x, item.y) for item in items if item.command == FENCE_RETURN_POINT]
+        inner = [item for item in items if item.command == FENCE_INCLUSION]
+        corners = [(item.x, item.y) for item in inner[: int(inner[0].p1)]] if inner else []
+        return (back[0] if back else None), corners
+
+    def _set_fence_point(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._deprecated("FENCE_POINT")
+        total, k = self._total("FENCE_TOTAL"), fields.idx
+        if fields.count != total:
+            self._warn(f"Invalid fence point, bad count ({fields.count} vs {total})")
+        elif k >= total:
+            self._warn(f"Invalid fence point, index past total ({k} >= {total})")
+        elif total < FEWEST_CORNERS + AROUND:
+            self._warn("Invalid FENCE_TOTAL, must be at least 5")
+        elif not (abs(fields.lat) <= 90.0 and abs(fields.lng) <= 180.0):
+            self._warn("Invalid fence point, bad lat or lng")
+        else:
+            back, corners = self._fence()
+            place = (round(fields.lat * 1e7), round(fields.lng * 1e7))
+            if k == 0:
+                back = place
+            elif k < total - 1:
+                if len(corners) != total - AROUND:
+                    corners = [NOWHERE] * (total - AROUND)
+                corners[k - 1] = place
+            self._keep(back, corners)
+
+    def _keep(self, back: Place | None, corners: list[Place]) -> None:
+        items = [MissionItem(FENCE_RETURN_POINT, GLOBAL, x=back[0], y=back[1])] if back else []
+        items += [MissionItem(FENCE_INCLUSION, GLOBAL, len(corners), x=x, y=y) for x, y in corners]
+        self.bridge.get(MissionService).replace_fence(tuple(items))
+
+    def _fetch_fence_point(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._deprecated("FENCE_FETCH_POINT")
+        total, k = self._total("FENCE_TOTAL"), fields.idx
+        if k >= total:
+            self._warn(f"Invalid fence point, index past total({k} >= {total})")
+            return
+        back, corners = self._fence()
+        lat, lon = NOWHERE
+        if k == 0 and back is None and not corners:
+            self._warn("Failed to get return point")
+        elif k == 0:
+            lat, lon = back or _middle(corners)
+        elif corners and (k <= len(corners) or k == total - 1):
+            lat, lon = corners[(k - 1) % len(corners)]
+        system, component = sender
+        point = {"idx": k, "count": total, "lat": lat * 1e-7, "lng": lon * 1e-7}
+        channel.send(FENCE, FENCE.payload(target_system=system, target_component=component, **point))
+
+    # ------------------------------------------------------------------ rally points
+
+    def _set_rally_point(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._deprecated("RALLY_POINT")
+        total, k = self._total("RALLY_TOTAL"), fields.idx
+        if k >= total:
+            self._warn("Bad rally point ID")
+        elif fields.count != total:
+            self._warn("Bad rally point count")
+        else:
+            missions = self.bridge.get(MissionService)
+            fence, points = missions.lists
+            changed = list(counted(points, total))
+            changed[k] = MissionItem(RALLY_POINT, RELATIVE, x=fields.lat, y=fields.lng, z=float(fields.alt))
+            missions.keep(fence, tuple(changed))
+
+    def _fetch_rally_point(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        self._deprecated("RALLY_FETCH_POINT")
+        total, k = self._total("RALLY_TOTAL"), fields.idx
+        if k >= total:
+            self._warn("Bad rally point ID")
+            return
+        _, points = self.bridge.get(MissionService).lists
+        item = counted(points, total)[k]
+        system, component = sender
+        point = {"idx": k, "count": total, "lat": item.x, "lng": item.y, "alt": int(item.z)}
+        channel.send(RALLY, RALLY.payload(target_system=system, target_component=component, **point))
+
+
+def _middle(corners: list[Place]) -> Place:
+    """The middle of the area's extent, which stands in for a point of return."""
+    lats, lons = zip(*corners, strict=True)
+    return (min(lats) + max(lats)) // 2, (min(lons) + max(lons)) // 2

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What others see around the vehicle, for its proximity sensor (PRX1_TYPE 2): OBSTACLE_DISTANCE, DISTANCE_SENSOR and
+OBSTACLE_DISTANCE_3D.
+
+A DISTANCE_SENSOR looks into one sector: orientations 0 (ahead) to 7, clockwise. The others are left out.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ...autopilot.avoidance.proximity import (
+    MAVLINK,
+    SECTOR,
+    SECTORS,
+    Proximity,
+    begin_scan,
+    end_scan,
+    end_sector,
+    mounted,
+    note_reading,
+    sector_of,
+)
+from ...core.kernels import law
+from ...core.scalars import finite
+from ...vehicle.record import Vehicle
+from ..telemetry.ranging import BODY_FRD, DistanceSensor, ObstacleDistance
+from ..wire.message import Message
+
+LEVEL = math.tan(math.radians(15.0))
+"""Sectors reach so far up and down."""
+
+
+class ObstacleDistance3d(Message, name="OBSTACLE_DISTANCE_3D"):
+    """A place on the body, forward, right, down, and the sensor's range, all [m]."""
+
+    frame: int
+    x: float
+    y: float
+    z: float
+    min_distance: float
+    max_distance: float
+
+
+@law
+def obstacles(m: ObstacleDistance, v: Vehicle, sender: int) -> None:
+    """OBSTACLE_DISTANCE: readings of all directions [cm]; a sector without a good one sees nothing."""
+    seen, p = v.autopilot.proximity, v.autopilot.params
+    step = m.increment_f if m.increment_f != 0.0 else float(m.increment)
+    if seen.kind != MAVLINK or step == 0.0 or not finite(step + m.angle_offset):
+        return
+    begin_scan(seen, m.min_distance * 0.01, m.max_distance * 0.01, p.PRX1)
+    for k in range(m.distances.shape[0]):
+        angle = m.angle_offset + k * step
+        if abs(k * step) < 360.0:
+            note_reading(seen, math.radians(angle), m.distances[k] * 0.01, p.PRX1)
+    end_scan(seen, v.time_us, p.PRX.FILT)
+
+
+@law
+def note_one(v: Vehicle, seen: Proximity, angle: float, distance: float) -> None:
+    """One reading [m] at an angle [rad]: what its sector sees."""
+    p = v.autopilot.params
+    note_reading(seen, angle, distance, p.PRX1)
+    end_sector(seen, sector_of(mounted(angle, p.PRX1)), v.time_us, p.PRX.FILT)
+    seen.update_us = v.time_us
+
+
+@law
+def distance(m: DistanceSensor, v: Vehicle, sender: int) -> None:
+    """DISTANCE_SENSOR of another one: a reading [cm] of one sector."""
+    seen = v.autopilot.proximity
+    if seen.kind == MAVLINK and m.orientation < SECTORS:
+        begin_scan(seen, m.min_distance * 0.01, m.max_distance * 0.01, v.autopilot.params.PRX1)
+        note_one(v, seen, m.orientation * SECTOR, m.current_distance * 0.01)
+
+
+@law
+def obstacle_3d(m: ObstacleDistance3d, v: Vehicle, sender: int) -> None:
+    """OBSTACLE_DISTANCE_3D: an obstacle's place on the body; what is far above or below is left out."""
+    seen = v.autopilot.proximity
+    away = math.hypot(m.x, m.y)
+    is_known = finite(away) and finite(m.min_distance) and finite(m.max_distance)
+    if is_known and seen.kind == MAVLINK and m.frame == BODY_FRD and abs(m.z) < away * LEVEL:
+        begin_scan(seen, m.min_distance, m.max_distance, v.autopilot.params.PRX1)
+        note_one(v, seen, math.atan2(m.y, m.x), away)

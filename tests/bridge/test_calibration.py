@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sensors with errors are calibrated over MAVLink; the bench turns the vehicle as a user's hands would."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sitl import Simulation
+from sitl.client import Client
+from sitl.client.errors import CommandRefusedError
+from sitl.core.algebra import yaw_of
+
+IRON = {
+    "SIM_MAG1_OFS_X": 100, "SIM_MAG1_OFS_Y": 200, "SIM_MAG1_OFS_Z": -150, "SIM_MAG1_DIA_X": 1.0, "SIM_MAG1_DIA_Y": 1.1,
+    "SIM_MAG1_DIA_Z": 1.2, "SIM_MAG1_ODI_X": 0.004, "SIM_MAG2_OFS_X": -80,
+}  # fmt: skip
+ACCELEROMETER = {
+    "SIM_ACC1_BIAS_X": 0.7, "SIM_ACC1_BIAS_Y": -0.3, "SIM_ACC1_BIAS_Z": 1.8, "SIM_ACC1_SCAL_X": 0.98,
+    "SIM_ACC1_SCAL_Y": 1.12, "SIM_ACC1_SCAL_Z": 1.05, "SIM_ACC_TRIM_X": 0.05, "SIM_ACC_TRIM_Y": -0.03,
+}  # fmt: skip
+SIDES = ((0, 0), (-90, 0), (90, 0), (0, -90), (0, 90), (180, 0))
+"""Roll and pitch [deg] of the six positions."""
+BOOT_S = 25.0
+
+
+class User(Client):
+    """A client that remembers what calibrations tell."""
+
+    def __init__(self, frame: str = "calibration_copter", **params: float) -> None:
+        self.told: list[tuple[str, Any]] = []
+        super().__init__(Simulation(frame, params=params))
+        self.delay(BOOT_S)
+
+    def _take(self, name: str, fields: Any) -> None:
+        super()._take(name, fields)
+        if name in ("MAG_CAL_PROGRESS", "MAG_CAL_REPORT", "COMMAND_LONG"):
+            self.told.append((name, fields))
+
+    def last(self, name: str) -> Any:
+        return next(fields for kind, fields in reversed(self.told) if kind == name)
+
+    def has_text(self, text: str) -> bool:
+        return any(text in said.text for said in self.texts)
+
+    def turn(self, roll: float, pitch: float, yaw: float = 0.0) -> None:
+        """Have the bench hold an attitude [deg]."""
+        for output, angle in ((6, roll), (7, pitch), (8, yaw)):
+            self.command("DO_SET_SERVO", output, round(1500 + angle / 0.36))
+        self.command("DO_SET_SERVO", 5, 1150)
+        self.delay(4.0)
+
+    def axes(self, group: str) -> list[float]:
+        return [self.params[f"{group}_{axis}"] for axis in "XYZ"]
+
+    def reported(self) -> set[int]:
+        return {fields.compass_id for name, fields in self.told if name == "MAG_CAL_REPORT"}
+
+
+def test_gyros() -> None:
+    user = User(SIM_GYR1_BIAS_X=0.02, SIM_GYR1_BIAS_Z=-0.01)
+    drift = user.simulation.v.autopilot.estimate.rates
+    user.command("PREFLIGHT_CALIBRATION", 1)
+    user.delay(2.0)
+    assert user.axes("INS_GYROFFS") == pytest.approx([0.02, 0.0, -0.01], abs=1e-3)
+    assert tuple(user.simulation.v.autopilot.estimate.rates) == pytest.approx(tuple(drift), abs=2e-3)
+
+
+def test_accelerometers_level_and_trim() -> None:
+    user = User("ardupilot_rover", SIM_ACC1_BIAS_X=0.7, SIM_ACC1_BIAS_Z=-0.5)
+    assert abs(user.attitude.pitch) > math.radians(3.0)
+    user.command("PREFLIGHT_CALIBRATION", 0, 0, 0, 0, 4)
+    user.delay(6.0)
+    assert user.axes("INS_ACCOFFS") == pytest.approx([0.7, 0.0, -0.5], abs=0.02)
+    assert abs(user.attitude.pitch) < math.radians(0.5)
+    user.params["SIM_ACC_TRIM_X"] = 0.06
+    user.command("PREFLIGHT_CALIBRATION", 0, 0, 0, 0, 2)
+    with pytest.raises(CommandRefusedError):
+        user.command("PREFLIGHT_CALIBRATION", 1)  # one after the other
+    user.delay(2.0)
+    assert user.params["AHRS_TRIM_X"] == pytest.approx(0.06, abs=1e-3)
+    assert user.has_text("Trim OK: roll=3.4")
+
+
+def test_accelerometers_in_six_positions() -> None:
+    user = User(**ACCELEROMETER)
+    user.command("PREFLIGHT_CALIBRATION", 0, 0, 0, 0, 1)
+    for number, (roll, pitch) in enumerate(SIDES, start=1):
+        user.turn(roll, pitch)
+        asked = user.last("COMMAND_LONG")
+        assert (asked.command, asked.param1) == (42429, number)
+        if number == 3:  # as MAVProxy does: any acknowledgement
+            user.send("COMMAND_ACK", command=number, result=1)
+        else:
+            with pytest.raises(CommandRefusedError):
+                user.command("ACCELCAL_VEHICLE_POS", number + 1)
+            user.command("ACCELCAL_VEHICLE_POS", number)
+        user.delay(1.5)
+    assert user.has_text("Calibration successful") and user.last("COMMAND_LONG").param1 == 16777215
+    assert user.axes("INS_ACCOFFS") == pytest.approx([0.7, -0.3, 1.8], rel=0.005)
+    assert user.axes("INS_ACCSCAL") == pytest.approx([0.98, 1.12, 1.05], rel=0.005)
+    assert (user.params["AHRS_TRIM_X"], user.params["AHRS_TRIM_Y"]) == pytest.approx((0.05, -0.03), rel=0.005)
+    user.turn(0, 0)
+    assert tuple(user.simulation.v.autopilot.calibrated.acc) == pytest.approx((0.0, 0.0, -9.8), abs=0.02)
+    user.delay(30.0)
+    assert user.has_text("Accels calibrated requires reboot")
+
+
+def test_positions_that_are_all_the_same_fail() -> None:
+    user = User()
+    user.command("PREFLIGHT_CALIBRATION", 0, 0, 0, 0, 1)
+    for number in range(1, 7):
+        user.command("ACCELCAL_VEHICLE_POS", number)
+        user.delay(1.5)
+    assert user.has_text("Calibration FAILED") and user.last("COMMAND_LONG").param1 == 16777216
+    assert user.axes("INS_ACCOFFS") == [0.0, 0.0, 0.0]
+
+
+def test_compasses_by_turning() -> None:
+    user = User(**IRON)
+    user.command("DO_START_MAG_CAL", 0)
+    user.command("DO_SET_SERVO", 5, 1250)
+    assert user.passes(lambda: user.told and user.last("MAG_CAL_PROGRESS").completion_pct > 20, 60)
+    user.command("DO_START_MAG_CAL", 0)  # goes on
+    user.delay(1.0)
+    assert user.last("MAG_CAL_PROGRESS").completion_pct > 20
+    with pytest.raises(CommandRefusedError):
+        user.command("DO_ACCEPT_MAG_CAL", 0)
+    kept = user.simulation.snapshot()
+    seen = []
+    for _ in range(2):
+        user.simulation.restore(kept)
+        user.told.clear()
+        assert user.passes(lambda: user.reported() == {0, 1, 2}, 200)
+        seen.append(user.last("MAG_CAL_REPORT"))
+    assert seen[0] == seen[1]  # a snapshot has the samples
+    assert all(fields.cal_status == 4 for name, fields in user.told if name == "MAG_CAL_REPORT")
+    assert user.params["COMPASS_OFS_X"] == 5.0
+    user.command("DO_ACCEPT_MAG_CAL", 0)
+    assert user.axes("COMPASS_OFS") == pytest.approx([100.0, 200.0, -150.0], abs=0.5)
+    assert user.axes("COMPASS_DIA") == pytest.approx([1.0, 1.1, 1.2], abs=1e-3)
+    assert user.params["COMPASS_ODI_X"] == pytest.approx(0.004, abs=1e-4)
+    assert user.axes("COMPASS_OFS2") == pytest.approx([-80.0, 13.0, -18.0], abs=0.5)
+    user.turn(0, 0)
+    user.delay(30.0)
+    assert user.has_text("Compass calibration running") and user.has_text("Compass calibrated requires reboot")
+    assert not user.has_text("Compass not healthy")
+
+
+def test_a_calibration_that_fits_badly_fails_and_one_is_cancelled() -> None:
+    user = User(COMPASS_OFFS_MAX=50, **IRON)
+    user.command("DO_START_MAG_CAL", 1)
+    user.command("DO_SET_SERVO", 5, 1250)
+    assert user.passes(lambda: user.reported() == {0}, 200)
+    assert user.last("MAG_CAL_REPORT").cal_status == 5
+    with pytest.raises(CommandRefusedError):
+        user.command("DO_ACCEPT_MAG_CAL", 1)
+    user.command("DO_CANCEL_MAG_CAL", 1)
+    user.command("DO_START_MAG_CAL", 2)
+    user.delay(1.0)
+    assert user.last("MAG_CAL_PROGRESS").compass_id == 1
+    user.command("DO_CANCEL_MAG_CAL", 0)
+    user.told.clear()
+    user.delay(2.0)
+    assert not user.told and user.axes("COMPASS_OFS") == [5.0, 13.0, -18.0]
+    for mask in (8, -1):
+        with pytest.raises(CommandRefusedError):
+            user.command("DO_START_MAG_CAL", mask)
+
+
+def test_compasses_from_a_known_heading() -> None:
+    user = User("ardupilot_rover", SIM_MAG1_OFS_X=100, SIM_MAG1_OFS_Y=300, SIM_MAG3_OFS_Z=99)
+    true = math.degrees(yaw_of(user.simulation.v.physics.body.q))
+    assert abs(math.degrees(user.attitude.yaw) - true) > 10.0
+    user.command("FIXED_MAG_CAL_YAW", true)
+    assert user.axes("COMPASS_OFS") == pytest.approx([100.0, 300.0, -18.0], abs=3.0)
+    assert user.axes("COMPASS_OFS3") == pytest.approx([5.0, 13.0, 99.0], abs=3.0)
+    user.delay(30.0)
+    assert abs(math.degrees(user.attitude.yaw) - true) < 2.0
+
+
+def test_an_armed_vehicle_is_not_calibrated() -> None:
+    user = User("ardupilot_rover")
+    user.wait_ready()
+    user.arm()
+    for name, params in (("PREFLIGHT_CALIBRATION", (1,)), ("DO_START_MAG_CAL", (0,))):
+        with pytest.raises(CommandRefusedError):
+            user.command(name, *params)
+    assert user.has_text("Disarm to allow calibration") and user.has_text("Disarm to allow compass calibration")
+
+
+def test_all_directions_have_a_section() -> None:
+    from sitl.bridge.services.compass_calibration import SECTIONS
+
+    assert SECTIONS.shape == (80, 3)
+    apart = np.degrees(np.arccos(np.clip(SECTIONS @ SECTIONS.T - 2.0 * np.eye(80), -1.0, 1.0)))
+    assert apart.min() > 15.0

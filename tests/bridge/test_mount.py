@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gimbal on servo outputs: answers, flags and pulses are those of a real ArduPilot with the same parameters."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from sitl.autopilot.aux_switch import HIGH, LOW
+from sitl.autopilot.mission import item as c
+from sitl.autopilot.mission.item import MissionItem
+from sitl.core.algebra import euler_of
+from sitl.core.vectors import Euler, Quat, Vec3
+from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
+
+ACCEPTED, FAILED = 0, 4
+CONFIGURE, CONTROL, PITCH_YAW, GIVE = 204, c.DO_MOUNT_CONTROL, c.DO_GIMBAL_MANAGER_PITCHYAW, 1001
+ROI, NO_ROI, REQUEST = c.DO_SET_ROI_LOCATION, c.DO_SET_ROI_NONE, 512
+RETRACT, NEUTRAL, LEVEL, YAW_LOCK, FROM_NOSE = 1, 2, 12, 16, 32
+NAN = math.nan
+
+
+def bench(vehicle: FakeVehicle | None = None, **params: float) -> Bench:
+    """A gimbal with three axes on outputs 9, 10, 11: yaw, pitch, roll."""
+    vehicle = vehicle or FakeVehicle()
+    vehicle.locate()
+    axes = {"SERVO9_FUNCTION": 6.0, "SERVO10_FUNCTION": 7.0, "SERVO11_FUNCTION": 8.0}
+    vehicle.parameters.update({"MNT1_TYPE": 1.0} | axes | params)
+    return Bench(vehicle)
+
+
+def pulses(b: Bench, seconds: float = 0.1) -> tuple[int, ...]:
+    """Of yaw, pitch and roll, after some time."""
+    b.run(seconds)
+    now = {call[1]: call[2] for call in b.autopilot.calls if call[0] == "set_servo"}
+    return tuple(now.get(n, 0) for n in (9, 10, 11))
+
+
+def told(b: Bench) -> tuple[Any, Euler]:
+    """GIMBAL_DEVICE_ATTITUDE_STATUS: the message, and its angles [deg]."""
+    (m,) = b.telemetry("GIMBAL_DEVICE_ATTITUDE_STATUS")
+    return m, Euler(*map(math.degrees, euler_of(Quat(*m.q))))
+
+
+@pytest.mark.parametrize("vehicle", [FakeVehicle, FakeRover])
+def test_without_a_gimbal(vehicle: type[FakeVehicle]) -> None:
+    b = bench(vehicle(), MNT1_TYPE=0.0)
+    for number in (CONFIGURE, CONTROL, PITCH_YAW, GIVE):
+        assert b.command(number, 1, 1) == FAILED
+    for number in (ROI, NO_ROI, 198, 201):
+        assert b.command(number, 0, 0, 0, 0, -35.3, 149.1, 10) == ACCEPTED
+    assert b.command(REQUEST, 285) == FAILED
+    assert pulses(b, 1.0) == (0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("angles", "wanted"),
+    [((-30, 0, 45, 0, 0, 0, 2), (1600, 1536, 1500)), ((20, 10, -90, 0, 0, 0, 2), (1300, 1900, 1633))],
+)
+def test_angles_of_the_old_command(angles: tuple[float, ...], wanted: tuple[int, ...]) -> None:
+    b = bench()
+    assert b.command(CONTROL, *angles) == ACCEPTED
+    assert pulses(b) == wanted
+    m, euler = told(b)
+    assert m.flags == LEVEL | FROM_NOSE
+    assert euler == pytest.approx((angles[1], angles[0], angles[2]), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("pitch", "yaw", "wanted"),
+    [(-20, 30, (1566, 1609, 1500)), (-95, 300, (1366, 1100, 1500)), (0, 0, (1500, 1754, 1500))],
+)
+def test_angles_of_the_gimbal_manager(pitch: float, yaw: float, wanted: tuple[int, ...]) -> None:
+    b = bench()
+    assert b.command(PITCH_YAW, pitch, yaw) == ACCEPTED
+    assert pulses(b) == wanted
+    assert b.command(PITCH_YAW, pitch, yaw, 0, 0, 0, 0, 2) == FAILED  # another gimbal
+
+
+def test_yaw_from_north_and_rates() -> None:
+    b = bench()
+    b.vehicle.v.autopilot.estimate.euler = Euler(0.0, 0.0, math.radians(80.0))
+    assert b.command(PITCH_YAW, -20, 30, 0, 0, YAW_LOCK) == ACCEPTED
+    assert pulses(b) == (1388, 1609, 1500)
+    assert told(b)[0].flags == LEVEL | FROM_NOSE | YAW_LOCK
+    assert b.command(PITCH_YAW, NAN, NAN, -5, 10, YAW_LOCK) == ACCEPTED
+    b.run(1.0)
+    assert told(b)[1][1:] == pytest.approx((-25.0, -40.0), abs=0.3)
+    b.run(60.0)
+    assert told(b)[1].pitch == pytest.approx(-90.0, abs=0.1)
+    assert b.command(PITCH_YAW, NAN, 10, NAN, NAN) == FAILED
+
+
+@pytest.mark.parametrize("heading", [0.0, 90.0])
+def test_it_stays_level(heading: float) -> None:
+    b = bench()
+    estimate = b.vehicle.v.autopilot.estimate
+    estimate.euler = Euler(math.radians(10.0), math.radians(-15.0), math.radians(heading))
+    assert b.command(PITCH_YAW, -30, 0) == ACCEPTED
+    b.run(0.1)
+    assert told(b)[1].pitch == pytest.approx(-15.0, abs=0.5)
+    assert told(b)[1].roll == pytest.approx(-10.0, abs=0.5)
+
+
+def test_folded_neutral_and_back() -> None:
+    b = bench(MNT1_RETRACT_Y=-80.0, MNT1_NEUTRAL_Z=36.0)
+    assert b.command(CONTROL, 0, 0, 0, 0, 0, 0, 0) == ACCEPTED
+    assert (pulses(b), told(b)[0].flags) == ((1500, 1172, 1500), LEVEL | FROM_NOSE | RETRACT)
+    assert b.command(PITCH_YAW, 0, 0, 0, 0, NEUTRAL) == ACCEPTED
+    assert (pulses(b), told(b)[0].flags) == ((1580, 1754, 1500), LEVEL | FROM_NOSE | NEUTRAL)
+    assert b.command(CONFIGURE, 2) == ACCEPTED
+    assert b.command(CONFIGURE, 5) == FAILED
+    assert b.command(CONTROL, 0, 0, 0, 0, 0, 0, 7) == FAILED
+    b.bridge.switched(27, HIGH)
+    assert pulses(b)[1] == 1172
+    b.bridge.switched(27, LOW)
+    assert pulses(b) == (1500, 1500, 1500)  # sticks, which there are none
+
+
+def test_sticks_turn_it() -> None:
+    b = bench(RC6_OPTION=213.0, RC8_OPTION=214.0, RC6_MIN=1000.0, RC6_MAX=2000.0)
+    rc = b.vehicle.v.autopilot.rc
+    for stick, wanted in ((1000, 1100), (1500, 1500), (2000, 1900), (1750, 1700)):
+        rc.channels[5] = stick
+        assert pulses(b)[1] == pytest.approx(wanted, abs=1)
+    b.vehicle.parameters["MNT1_RC_RATE"] = 20.0
+    rc.channels[5], rc.channels[7] = 1000, 1500
+    before = told(b)[1].pitch
+    b.run(1.0)
+    assert told(b)[1].pitch - before == pytest.approx(-20.0, abs=0.5)
+    assert told(b)[0].flags == LEVEL | FROM_NOSE
+    b.bridge.switched(163, HIGH)
+    assert told(b)[0].flags == LEVEL | FROM_NOSE | YAW_LOCK
+
+
+def test_a_region_of_interest() -> None:
+    """To the north, 20 m away and 20 m below."""
+    b = bench()
+    estimate = b.vehicle.v.autopilot.estimate
+    estimate.pos, estimate.euler = Vec3(0.0, 0.0, -30.0), Euler(0.0, 0.0, math.radians(45.0))
+    there = MissionItem(ROI, c.RELATIVE_INT, x=HOME[0] + 1797, y=HOME[1], z=10.0)
+    b.bridge.carry_out(there)
+    b.run(0.1)
+    assert told(b)[1] == pytest.approx((0.0, -45.0, -45.0), abs=0.2)
+    assert ("set_roi", None) in b.autopilot.calls  # the nose does not turn
+    b.bridge.carry_out(MissionItem(NO_ROI))
+    assert pulses(b) == (1500, 1500, 1500)
+    b.autopilot.calls.clear()
+    assert b.command(ROI, 0, 0, 0, 0, there.x * 1e-7, there.y * 1e-7, 10.0) == ACCEPTED
+    b.run(0.1)
+    assert told(b)[1] == pytest.approx((0.0, -45.0, -45.0), abs=0.5)
+    assert not [call for call in b.autopilot.calls if call[0] == "set_roi"]
+    assert b.command(NO_ROI) == ACCEPTED
+    assert pulses(b) == (1500, 1500, 1500)
+
+
+def test_a_gimbal_without_yaw_leaves_turning_to_the_nose() -> None:
+    b = bench(SERVO9_FUNCTION=0.0)
+    assert b.command(ROI, 0, 0, 0, 0, -35.3, 149.1, 10) == ACCEPTED
+    assert [call[0] for call in b.autopilot.calls if call[0] == "set_roi"] == ["set_roi"]
+
+
+def test_who_has_control() -> None:
+    b = bench()
+    (m,) = b.telemetry("GIMBAL_MANAGER_INFORMATION")
+    assert (m.cap_flags, m.gimbal_device_id, m.pitch_max) == (206847, 1, pytest.approx(math.radians(20.0)))
+    assert b.command(GIVE, 7, 8) == ACCEPTED
+    assert b.command(GIVE, -2, -2) == ACCEPTED
+    (m,) = b.telemetry("GIMBAL_MANAGER_STATUS")
+    assert (m.primary_control_sysid, m.primary_control_compid, m.flags) == (255, 190, LEVEL)
+
+
+def test_missions_turn_it() -> None:
+    b = bench()
+    b.bridge.carry_out(MissionItem(CONTROL, p1=-30.0, p3=45.0))
+    assert pulses(b)[:2] == (1600, 1536)
+    b.bridge.carry_out(MissionItem(PITCH_YAW, p1=-20.0, p2=30.0))
+    assert pulses(b)[:2] == (1566, 1609)

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gripper, winch and sprayer: answers, texts and pulses are those of a real ArduPilot with the same parameters."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
+from sitl.autopilot.mission import item as c
+from sitl.autopilot.mission.item import MissionItem
+from sitl.core.vectors import Vec3
+from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
+
+ACCEPTED, UNSUPPORTED, FAILED = 0, 3, 4
+GRIPPER, SPRAYER, WINCH, REQUEST = c.DO_GRIPPER, c.DO_SPRAYER, c.DO_WINCH, 512
+
+
+class Fitted(Bench):
+    """With a second client that hears texts."""
+
+    def __init__(self, vehicle: FakeVehicle) -> None:
+        super().__init__(vehicle)
+        self.ear = self.connect(system=254)
+
+
+def bench(vehicle: FakeVehicle | None = None, **params: float) -> Fitted:
+    """A vehicle on the ground, with these parameters at boot."""
+    vehicle = vehicle or FakeVehicle()
+    vehicle.locate()
+    vehicle.parameters.update(params)
+    return Fitted(vehicle)
+
+
+def pulse(b: Bench, output: int = 9) -> int | None:
+    """The last pulse of an output."""
+    found: list[Any] = [call[2] for call in b.autopilot.calls if call[:2] == ("set_servo", output)]
+    return int(found[-1]) if found else None
+
+
+BOOT = ("Barometer 1 calibration complete", "ArduPilot Ready")
+
+
+def texts(b: Fitted, seconds: float = 0.0) -> list[str]:
+    """What was said since the last call and is said in the next seconds, but for booting."""
+    b.run(seconds)
+    b.bridge.flush()
+    return [m.text for m in b.ear.receive("STATUSTEXT") if m.text not in BOOT]
+
+
+GRIP = {"GRIP_ENABLE": 1.0, "GRIP_TYPE": 1.0, "SERVO9_FUNCTION": 28.0}
+
+
+@pytest.mark.parametrize("vehicle", [FakeVehicle, FakeRover])
+def test_a_gripper_closes_and_opens(vehicle: type[FakeVehicle]) -> None:
+    b = bench(vehicle(), **GRIP)
+    assert pulse(b) == 1100
+    assert "Gripper load released" in texts(b, 3.0)
+    assert b.command(GRIPPER, 1, 0) == ACCEPTED
+    assert texts(b) == ["Gripper load released"]
+    assert b.command(GRIPPER, 1, 1) == ACCEPTED
+    assert (texts(b, 0.45), pulse(b)) == (["Gripper load grabbing"], 1900)
+    assert texts(b, 0.1) == ["Gripper load grabbed"]
+    assert b.command(GRIPPER, 2, 0.7) == ACCEPTED  # whole numbers, any gripper
+    assert (texts(b, 1.0), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1100)
+    assert b.command(GRIPPER, 1, 2) == FAILED
+    b.vehicle.parameters["GRIP_ENABLE"] = 0.0
+    assert b.command(GRIPPER, 1, 1) == FAILED
+    b.bridge.switched(19, HIGH)
+    assert (texts(b, 1.0), pulse(b)) == ([], 1100)
+
+
+def test_a_gripper_by_switch_and_by_mission_closes_by_itself() -> None:
+    b = bench(**GRIP, GRIP_AUTOCLOSE=3.0, GRIP_RELEASE=1300.0, GRIP_GRAB=1700.0)
+    texts(b, 3.0)
+    b.bridge.switched(19, HIGH)
+    b.bridge.switched(19, MIDDLE)
+    assert (texts(b, 1.0), pulse(b)) == (["Gripper load grabbing", "Gripper load grabbed"], 1700)
+    b.bridge.carry_out(MissionItem(GRIPPER, p1=1.0, p2=0.0))
+    assert (texts(b, 2.9), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1300)
+    assert (texts(b, 1.0), pulse(b)) == (["Gripper load grabbing", "Gripper load grabbed"], 1700)
+
+
+def test_without_payload() -> None:
+    b, r = bench(), bench(FakeRover())
+    assert (b.command(GRIPPER, 1, 1), r.command(GRIPPER, 1, 1)) == (FAILED, FAILED)
+    assert (b.command(WINCH, 1, 1, 1), r.command(WINCH, 1, 1, 1)) == (FAILED, UNSUPPORTED)
+    assert (b.command(SPRAYER, 1), r.command(SPRAYER, 1)) == (ACCEPTED, ACCEPTED)
+    for number in (15, 19, 44, 45):
+        b.bridge.switched(number, HIGH)
+    b.run(2.0)
+    assert b.autopilot.calls == []
+    assert b.command(REQUEST, 9005) == FAILED
+
+
+REEL = {"WINCH_TYPE": 1.0, "SERVO9_FUNCTION": 88.0}
+
+
+def length(b: Bench) -> Any:
+    """WINCH_STATUS."""
+    (m,) = b.telemetry("WINCH_STATUS")
+    return m
+
+
+def test_a_winch_lowers_and_raises_by_a_length() -> None:
+    b = bench(**REEL)
+    assert pulse(b) is None
+    assert b.command(WINCH, 1, 1, 5, 0.5) == ACCEPTED
+    assert texts(b, 1.0) == ["Winch: lowering  5.0m to  5.0m"]
+    assert (length(b).line_length, length(b).speed, pulse(b)) == (pytest.approx(1.0, abs=0.03), 1.0, 1900)
+    b.run(3.55)
+    assert length(b).line_length == pytest.approx(4.42, abs=0.03)  # the real one after 4.55 s
+    assert length(b).speed == pytest.approx(0.59, abs=0.02)
+    b.run(7.0)
+    assert (length(b).line_length, pulse(b)) == (pytest.approx(5.0, abs=0.01), 1500)
+    assert (length(b).status, length(b).temperature) == (1, 32767)
+    assert math.isnan(length(b).tension)
+    assert b.command(WINCH, 1, 1, -3, 0) == ACCEPTED
+    assert texts(b, 1.0) == ["Winch: raising  3.0m to  2.0m"]
+    assert pulse(b) == 1100
+
+
+def test_a_winch_winds_at_a_rate() -> None:
+    b = bench(**REEL, WINCH_RATE_MAX=2.0)
+    assert b.command(WINCH, 1, 2, 0, -1.4) == ACCEPTED
+    b.run(1.0)
+    assert (length(b).line_length, pulse(b)) == (pytest.approx(-1.4, abs=0.05), 1220)
+    assert b.command(WINCH, 1, 2, 0, 5) == ACCEPTED
+    b.run(0.1)
+    assert (length(b).speed, pulse(b)) == (2.0, 1900)
+    b.bridge.switched(45, LOW)
+    b.run(0.1)
+    assert (length(b).speed, pulse(b)) == (-2.0, 1100)
+    b.bridge.switched(45, MIDDLE)
+    b.run(0.1)
+    assert (length(b).speed, pulse(b)) == (0.0, 1500)
+    b.bridge.switched(44, MIDDLE)
+    assert pulse(b) == 0
+    b.bridge.switched(44, HIGH)
+    b.run(0.1)
+    assert pulse(b) == 1500
+    assert b.command(WINCH, 1, 0) == ACCEPTED
+    assert pulse(b) == 0
+    assert b.command(WINCH, 1, 3) == FAILED
+
+
+SPRAY = {"SPRAY_ENABLE": 1.0, "SERVO9_FUNCTION": 22.0, "SERVO10_FUNCTION": 23.0}
+
+
+def moving(b: Bench, speed: float) -> None:
+    """Over the ground [m/s]."""
+    b.vehicle.v.autopilot.estimate.vel = Vec3(speed, 0.0, -3.0)
+
+
+def test_a_sprayer_follows_the_speed_over_the_ground() -> None:
+    b = bench(**SPRAY)
+    b.vehicle.v.autopilot.arming.armed = True
+    b.run(1.0)
+    assert pulse(b) is None
+    assert b.command(SPRAYER, 1) == ACCEPTED
+    b.run(2.0)
+    assert (pulse(b), pulse(b, 10)) == (1100, 1100)  # below SPRAY_SPEED_MIN
+    for speed, wanted in ((9.1, 1828), (4.03, 1422), (12.0, 1900)):
+        moving(b, speed)
+        b.run(1.0)
+        assert (pulse(b), pulse(b, 10)) == (wanted, 1300)
+    moving(b, 0.5)
+    b.run(0.8)
+    assert (pulse(b), pulse(b, 10)) == (1140, 1300)
+    b.run(1.0)
+    assert (pulse(b), pulse(b, 10)) == (1100, 1100)
+    moving(b, 5.0)
+    b.run(1.0)
+    b.bridge.carry_out(MissionItem(SPRAYER, p1=0.0))
+    assert (pulse(b), pulse(b, 10)) == (1100, 1100)
+
+
+def test_a_switch_tests_the_sprayer_of_a_disarmed_vehicle() -> None:
+    b = bench(**SPRAY, SPRAY_PUMP_MIN=30.0, SPRAY_SPINNER=1600.0)
+    b.bridge.switched(15, LOW)
+    b.run(1.0)
+    assert pulse(b) is None
+    b.bridge.switched(15, HIGH)
+    b.run(1.0)
+    assert (pulse(b), pulse(b, 10)) == (1340, 1600)
+    b.bridge.switched(15, LOW)
+    assert (pulse(b), pulse(b, 10)) == (1100, 1100)
+
+
+@pytest.mark.parametrize(
+    ("params", "command", "values"),
+    [(GRIP, GRIPPER, (1, 1)), (REEL, WINCH, (1, 1, 4, 1)), (SPRAY, SPRAYER, (1,))],
+)
+def test_what_it_does_is_in_a_snapshot(params: dict[str, float], command: int, values: tuple[float, ...]) -> None:
+    b = bench(**params)
+    moving(b, 3.0)
+    b.run(3.0)
+    b.command(command, *values)
+    texts(b, 0.2)
+    before, time_us = b.bridge.snapshot(), int(b.vehicle.v.time_us)
+    b.autopilot.calls.clear()
+    b.run(3.0)
+    calls, said = list(b.autopilot.calls), texts(b)
+    b.bridge.restore(before)
+    b.vehicle.v.time_us = time_us
+    b.autopilot.calls.clear()
+    b.run(3.0)
+    assert (b.autopilot.calls, texts(b)) == (calls, said)
+    assert calls or said
