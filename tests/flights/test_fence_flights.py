@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fences and rally points in the air: what a breach does, when fences switch themselves, where RTL goes.
 
-Times and texts as a real ArduPilot's executable gave them for the same commands (docs/fences.md). Avoidance, which stops
-before a fence, is off.
+Times and texts as a real ArduPilot's executable gave them for the same commands (docs/fences.md). Avoidance, which
+stops before a fence, is off.
 """
 
 from __future__ import annotations
