@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fences and rally points on the ground: what a breach does, and where RTL goes.
 
-As a real ArduPilot's executable did for the same commands (docs/fences.md).
+As a real ArduPilot's executable did for the same commands (docs/fences.md). Avoidance is off.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ def drive_north(p: Driver) -> float:
     ],
 )
 def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int, armed: bool) -> None:
-    p = Driver(core, "ardupilot_rover", FENCE_ENABLE=1, FENCE_RADIUS=20.0, FENCE_ACTION=action).armed_in(GUIDED)
+    p = Driver(
+        core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_RADIUS=20.0, FENCE_ACTION=action
+    ).armed_in(GUIDED)
     there = drive_north(p)
     assert (p.mode, p.ap.arming.armed) == (mode, armed)
     assert (there > 50.0) if action == 0 else (there == pytest.approx(20.3, abs=0.7))
@@ -45,7 +47,7 @@ def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int,
 
 
 def test_it_comes_home_from_a_polygon(core: Core) -> None:
-    p = Driver(core, "ardupilot_rover", FENCE_ENABLE=1).ready()
+    p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_ENABLE=1).ready()
     corners = [p.location_of(*corner) for corner in ((-20.0, -20.0), (-20.0, 20.0), (25.0, 20.0), (25.0, -20.0))]
     p.upload_fence([MissionItem(c.FENCE_INCLUSION, c.GLOBAL, 4, x=x, y=y) for x, y in corners])
     p.arm(0.2)
@@ -55,7 +57,7 @@ def test_it_comes_home_from_a_polygon(core: Core) -> None:
 
 
 def test_a_hundred_metres_beyond_it_holds(core: Core) -> None:
-    p = Driver(core, "ardupilot_rover", FENCE_RADIUS=20.0).armed_in(GUIDED)
+    p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_RADIUS=20.0).armed_in(GUIDED)
     p.target(POSITION, x=130.0)
     assert p.fly(90.0, lambda: p.place[0] > 125.0)
     p.set_parameter("FENCE_ENABLE", 1)
@@ -63,7 +65,7 @@ def test_a_hundred_metres_beyond_it_holds(core: Core) -> None:
 
 
 def test_a_mission_switches_fences(core: Core) -> None:
-    p = Driver(core, "ardupilot_rover").armed_in(GUIDED)
+    p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0).armed_in(GUIDED)
     first, last = (Item(c.NAV_WAYPOINT, (north, 0.0)) for north in (10.0, 20.0))
     p.start_mission(Item(c.DO_FENCE_ENABLE, p=(1.0,)), first, Item(c.DO_FENCE_ENABLE), last)
     assert p.said("Circle and Polygon fences enabled") and p.ap.fence.on == CIRCLE | AREAS
@@ -72,7 +74,7 @@ def test_a_mission_switches_fences(core: Core) -> None:
 
 
 def test_rtl_goes_to_the_rally_point(core: Core) -> None:
-    p = Driver(core, "ardupilot_rover", RALLY_INCL_HOME=0).ready()
+    p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, RALLY_INCL_HOME=0).ready()
     x, y = p.location_of(10.0, 20.0)
     p.upload_rally_points([MissionItem(c.RALLY_POINT, c.RELATIVE, x=x, y=y)])
     p.arm(0.2)
