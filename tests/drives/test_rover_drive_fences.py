@@ -36,7 +36,9 @@ def drive_north(p: Driver) -> float:
     ],
 )
 def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int, armed: bool) -> None:
-    p = Driver(core, "ardupilot_rover", FENCE_ENABLE=1, FENCE_RADIUS=20.0, FENCE_ACTION=action).armed_in(GUIDED)
+    p = Driver(
+        core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_RADIUS=20.0, FENCE_ACTION=action
+    ).armed_in(GUIDED)
     there = drive_north(p)
     assert (p.mode, p.ap.arming.armed) == (mode, armed)
     assert (there > 50.0) if action == 0 else (there == pytest.approx(20.3, abs=0.7))
@@ -45,7 +47,7 @@ def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int,
 
 
 def test_it_comes_home_from_a_polygon(core: Core) -> None:
-    p = Driver(core, "ardupilot_rover", FENCE_ENABLE=1).ready()
+    p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_ENABLE=1).ready()
     corners = [p.location_of(*corner) for corner in ((-20.0, -20.0), (-20.0, 20.0), (25.0, 20.0), (25.0, -20.0))]
     p.upload_fence([MissionItem(c.FENCE_INCLUSION, c.GLOBAL, 4, x=x, y=y) for x, y in corners])
     p.arm(0.2)
@@ -55,7 +57,7 @@ def test_it_comes_home_from_a_polygon(core: Core) -> None:
 
 
 def test_a_hundred_metres_beyond_it_holds(core: Core) -> None:
-    p = Driver(core, "ardupilot_rover", FENCE_RADIUS=20.0).armed_in(GUIDED)
+    p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_RADIUS=20.0).armed_in(GUIDED)
     p.target(POSITION, x=130.0)
     assert p.fly(90.0, lambda: p.place[0] > 125.0)
     p.set_parameter("FENCE_ENABLE", 1)

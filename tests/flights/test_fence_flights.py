@@ -2,6 +2,7 @@
 """Fences and rally points in the air: what a breach does, when fences switch themselves, where RTL goes.
 
 Times and texts as a real ArduPilot's executable gave them for the same commands (docs/fences.md).
+AVOID_ENABLE is 0: with it a copter does not come to a fence.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def fly_north(p: Aviator) -> float:
     ("action", "mode"), [(0, LOITER), (1, RTL), (2, LAND), (3, SMART_RTL), (4, BRAKE), (5, SMART_RTL), (99, RTL)]
 )
 def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0, FENCE_ACTION=action).hover()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0, FENCE_ACTION=action).hover()
     there = fly_north(p)
     assert p.mode == mode and p.said("Circle fence breached")
     if action == 0:
@@ -58,7 +59,7 @@ def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int)
 
 
 def test_the_way_back_clears_the_breach_and_lands(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0).hover()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0).hover()
     fly_north(p)
     status, health = p.message("FENCE_STATUS"), p.message("SYS_STATUS").onboard_control_sensors_health
     assert (status.breach_status, status.breach_type, health & GEOFENCE) == (1, 3, 0)
@@ -71,7 +72,7 @@ def test_the_way_back_clears_the_breach_and_lands(core: Core) -> None:
 
 def test_too_high_and_no_further_breach_until_twenty_metres_more(core: Core) -> None:
     """A pilot who goes back to LOITER has ten seconds; what is breached then counts anew 20 m further."""
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=HIGHEST, FENCE_ALT_MAX=30.0).hover(20.0)
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=HIGHEST, FENCE_ALT_MAX=30.0).hover(20.0)
     assert p.set_mode(LOITER)
     p.hold(throttle=1800)
     assert p.fly(30.0, lambda: p.mode == RTL) and p.said("Max Alt fence breached")
@@ -83,7 +84,7 @@ def test_too_high_and_no_further_breach_until_twenty_metres_more(core: Core) -> 
 
 
 def test_a_hundred_metres_beyond_it_lands_there(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=0, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0).hover()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=0, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0).hover()
     p.target(POSITION, x=150.0, z=-10.0)
     assert p.fly(60.0, lambda: p.pos[0] > 148.0)
     p.set_parameter("FENCE_ENABLE", 1)
@@ -93,7 +94,7 @@ def test_a_hundred_metres_beyond_it_lands_there(core: Core) -> None:
 @pytest.mark.parametrize("by_area", [True, False])
 def test_areas_to_stay_in_and_out_of(core: Core, by_area: bool) -> None:
     """A square around home; a circle to stay out of to the north is nearer, when it is there."""
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=AREAS).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=AREAS).ready()
     items = square(p, c.FENCE_INCLUSION, 0.0, 0.0, 40.0)
     if not by_area:
         items += area(p, c.FENCE_CIRCLE_OUT, (35.0, 0.0), p1=10.0)
@@ -105,7 +106,7 @@ def test_areas_to_stay_in_and_out_of(core: Core, by_area: bool) -> None:
 
 
 def test_the_floor_goes_on_above_it_and_off_for_the_landing(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=15, FENCE_ALT_MIN=20.0, FENCE_ALT_MAX=60.0).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=15, FENCE_ALT_MIN=20.0, FENCE_ALT_MAX=60.0).ready()
     p.arm()
     assert not p.said("Min Alt fence enabled (auto enable)")
     p.take_off(25.0)
@@ -121,7 +122,7 @@ def test_the_floor_goes_on_above_it_and_off_for_the_landing(core: Core) -> None:
 
 def test_fences_go_on_after_a_take_off_and_off_on_the_ground(core: Core) -> None:
     limits = {"FENCE_TYPE": 11.0, "FENCE_ALT_MIN": 5.0, "FENCE_ALT_MAX": 40.0}
-    p = Aviator(core, FENCE_AUTOENABLE=1, **limits).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_AUTOENABLE=1, **limits).ready()
     p.arm()
     assert p.ap.fence.on == 0
     p.take_off(10.0)
@@ -132,7 +133,7 @@ def test_fences_go_on_after_a_take_off_and_off_on_the_ground(core: Core) -> None
 
 
 def test_fences_go_on_with_arming_and_off_with_disarming(core: Core) -> None:
-    p = Aviator(core, FENCE_AUTOENABLE=3, FENCE_TYPE=3.0).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_AUTOENABLE=3, FENCE_TYPE=3.0).ready()
     assert p.ap.fence.on == 0
     p.arm()
     assert p.ap.fence.on == 3 and p.said("Max Alt and Circle fences auto-enabled")
@@ -141,7 +142,7 @@ def test_fences_go_on_with_arming_and_off_with_disarming(core: Core) -> None:
 
 
 def test_commands_and_a_switch_put_fences_on_and_off(core: Core) -> None:
-    p = Aviator(core, FENCE_TYPE=15).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_TYPE=15).ready()
     assert [p.ask(ENABLE_FENCE, on, which) for on, which in ((1, 0), (0, 8), (0, 3))] == [0, 0, 0]
     assert p.ap.fence.on == AREAS
     assert p.ask(ENABLE_FENCE, 0, 0) == 0 and p.ap.fence.on == 0
@@ -163,7 +164,7 @@ def test_commands_and_a_switch_put_fences_on_and_off(core: Core) -> None:
     ],
 )
 def test_parameters_that_keep_it_on_the_ground(core: Core, params: dict[str, float], text: str) -> None:
-    p = Aviator(core, FENCE_TYPE=15).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_TYPE=15).ready()
     p.set_parameter("FENCE_ENABLE", 1)
     for name, value in params.items():
         p.set_parameter(name, value)
@@ -174,7 +175,7 @@ def test_parameters_that_keep_it_on_the_ground(core: Core, params: dict[str, flo
 
 
 def test_who_stands_in_a_breach_is_not_armed(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1).ready()
     p.upload_fence(square(p, c.FENCE_EXCLUSION, 0.0, 0.0, 20.0))
     p.fly(0.2)
     assert p.ask(400, 1) == 4
@@ -185,7 +186,7 @@ def test_who_stands_in_a_breach_is_not_armed(core: Core) -> None:
 
 
 def test_a_fence_without_a_position_keeps_it_on_the_ground(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, SIM_GPS1_ENABLE=0)
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, SIM_GPS1_ENABLE=0)
     p.fly(45.0)
     assert p.set_mode(STABILIZE)
     assert p.ask(400, 1) == 4
@@ -193,7 +194,9 @@ def test_a_fence_without_a_position_keeps_it_on_the_ground(core: Core) -> None:
 
 
 def test_a_place_beyond_the_fence_is_refused_in_guided(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE | HIGHEST, FENCE_RADIUS=30.0, FENCE_ALT_MAX=20.0).hover()
+    p = Aviator(
+        core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE | HIGHEST, FENCE_RADIUS=30.0, FENCE_ALT_MAX=20.0
+    ).hover()
     for place in ({"x": 40.0, "z": -10.0}, {"x": 5.0, "z": -25.0}):
         p.target(POSITION, **place)
         p.fly(5.0)
@@ -203,7 +206,7 @@ def test_a_place_beyond_the_fence_is_refused_in_guided(core: Core) -> None:
 
 
 def test_no_other_mode_while_breached(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0, FENCE_OPTIONS=1).hover()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=30.0, FENCE_OPTIONS=1).hover()
     fly_north(p)
     assert p.mode == RTL and not p.set_mode(LOITER)
     assert p.said("Mode change to LOITER failed: in fence recovery")
@@ -212,7 +215,7 @@ def test_no_other_mode_while_breached(core: Core) -> None:
 
 def test_the_margin_is_told(core: Core) -> None:
     params = {"FENCE_RADIUS": 30.0, "FENCE_MARGIN": 10.0, "FENCE_OPTIONS": 4.0, "FENCE_NTF_FREQ": 0.2}
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, **params).hover()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, **params).hover()
     fly_north(p)
     told = [text.text for text in p.texts if "fence in" in text.text]
     assert told and 9.0 < float(told[0].removeprefix("Circle fence in ").removesuffix("m")) <= 10.0
@@ -238,7 +241,7 @@ def test_rtl_goes_to_the_rally_point(core: Core, params: dict[str, float], north
 
 
 def test_the_nearest_rally_point_within_the_fence(core: Core) -> None:
-    p = Aviator(core, RALLY_INCL_HOME=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=60.0).ready()
+    p = Aviator(core, AVOID_ENABLE=0, RALLY_INCL_HOME=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=60.0).ready()
     places = [p.location_of(*place) for place in ((70.0, 0.0), (-30.0, 0.0), (0.0, 55.0))]
     p.upload_rally_points([MissionItem(c.RALLY_POINT, c.RELATIVE, x=x, y=y, z=10.0) for x, y in places])
     p.arm()
@@ -251,7 +254,7 @@ def test_the_nearest_rally_point_within_the_fence(core: Core) -> None:
 
 
 def test_rtl_stays_below_the_greatest_height(core: Core) -> None:
-    p = Aviator(core, FENCE_ENABLE=1, FENCE_TYPE=HIGHEST, FENCE_ALT_MAX=14.0).hover()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=HIGHEST, FENCE_ALT_MAX=14.0).hover()
     p.target(POSITION, x=20.0, z=-10.0)
     p.fly(12.0)
     assert p.set_mode(RTL)
