@@ -151,7 +151,7 @@ def streaming_compiled(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) ->
             send(row, VELOCITY, commands)
             fleet.advance_us(period_us)
             read(row)
-            north += northward[0] * math.cos(yaw[0])  # they are there to be used
+            north += northward.item() * math.cos(yaw.item())  # they are there to be used
         assert end.position_ms == end.attitude_ms >= fleet.clocks[0][0] // 1000 - 1, "telemetry is missing"
         return steps / rate_hz
 

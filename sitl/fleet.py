@@ -364,22 +364,29 @@ class Fleet:
 
     def advance_us(self, step_us: int | Array, which: Sequence[int] | Array | None = None) -> None:
         """The same by microseconds, one number or one for each vehicle of ``which``; ``which`` is not looked at."""
-        self._check_open()
-        times, until, needs_shell = self._times, self._until, self._needs_shell
-        faulty: list[tuple[int, int]] = []
-        alike_us = step_us if which is None and isinstance(step_us, int) and not self._faulty else STAYS
-        if alike_us == STAYS:
-            rows = slice(None) if which is None else which
-            until[:] = STAYS
-            until[rows] = times[rows] + step_us
-            faulty = [(index, int(until[index])) for index in sorted(self._faulty)]
-            until[list(self._faulty)] = STAYS
-        if self._run_alone(alike_us) if self._run_alone is not None else self._run_parts(alike_us):
-            for index in np.flatnonzero(needs_shell).tolist():
-                self._serve(index, int(until[index] - times[index]), int(needs_shell[index]))
-        for index, goal_us in faulty:
-            if goal_us != STAYS:
-                self._serve(index, goal_us - int(times[index]), TO_HEAR)
+        if self._is_closed:
+            self._check_open()
+        run, faulty = self._run_alone or self._run_parts, self._faulty
+        if which is None and not faulty and isinstance(step_us, int):
+            waits, goals = run(step_us), None
+        else:
+            goals = self._set_each(step_us, slice(None) if which is None else which)
+            waits = run(STAYS)
+        if waits:
+            for index in np.flatnonzero(self._needs_shell).tolist():
+                self._serve(index, int(self._until[index] - self._times[index]), int(self._needs_shell[index]))
+        for index, goal_us in goals or ():
+            self._serve(index, goal_us - int(self._times[index]), TO_HEAR)
+
+    def _set_each(self, step_us: int | Array, rows: Any) -> list[tuple[int, int]]:
+        """Say in the slots how far vehicles are to go [us]; the others stay. So do those whose links have faults: they
+        are returned, with their goals."""
+        until = self._until
+        until[:] = STAYS
+        until[rows] = self._times[rows] + step_us
+        faulty = [(index, int(until[index])) for index in sorted(self._faulty) if until[index] != STAYS]
+        until[list(self._faulty)] = STAYS
+        return faulty
 
     def _run_parts(self, step_us: int) -> bool:
         """Advance all vehicles by a time, or as their slots say (STAYS); whether any needs the shell."""

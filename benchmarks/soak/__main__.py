@@ -36,25 +36,29 @@ class Soak:
 
     def __init__(self, kind: str, deeds: int) -> None:
         self.kind, self._count = kind, deeds
-        self._simulation = Simulation(KINDS[kind].default_frame)
-        self._beginnings = self._fly()
-        firmware, profile = self._simulation.firmware, self._simulation.bridge.profile
+        self.end = b""
+        """Record of the vehicle at the end of the last episode."""
+        simulation = Simulation(KINDS[kind].default_frame)
+        self._core = simulation.core
+        self._beginnings = self._fly(simulation)
+        firmware, profile = simulation.firmware, simulation.bridge.profile
         self._table, self._commands = firmware.table, sorted(profile.commands)
         self._items = sorted(firmware.commands.taken)
+        simulation.close()
 
-    def _fly(self) -> list[Snapshot]:
+    def _fly(self, simulation: Simulation) -> list[Snapshot]:
         """At power-on, ready to arm, and in motion."""
-        begin = self._simulation.snapshot()
-        client = Client(self._simulation)
+        begin = simulation.snapshot()
+        client = Client(simulation)
         client.wait_ready(90.0)
-        ready = self._simulation.snapshot()
+        ready = simulation.snapshot()
         if client.flies:
             client.take_off(8.0)
         else:
             client.guided_and_armed()
         client.set_velocity(1.0, 0.5)
         client.delay(2.0)
-        return [begin, ready, self._simulation.snapshot()]
+        return [begin, ready, simulation.snapshot()]
 
     def deeds(self, seed: int) -> list[Deed]:
         """Of an episode."""
@@ -62,9 +66,11 @@ class Soak:
 
     def run(self, seed: int, deeds: Sequence[Deed]) -> tuple[int, str] | None:
         """Fly an episode; gives the deed that went wrong, and what; None: all is well."""
-        begin = self._beginnings[seed % len(self._beginnings)]
-        episode = Episode(self._simulation, begin)
-        return episode.run(deeds)
+        simulation = Simulation(KINDS[self.kind].default_frame, core=self._core)
+        found = Episode(simulation, self._beginnings[seed % len(self._beginnings)]).run(deeds)
+        self.end = simulation.fleet.tobytes()
+        simulation.close()
+        return found
 
     def shorten(self, seed: int, deeds: Sequence[Deed], what: str) -> list[Deed]:
         """The fewest deeds found after which the same goes wrong."""

@@ -57,20 +57,17 @@ class Episode:
     """A vehicle, a client, and what has been done so far.
 
     Args:
-        simulation: the vehicle; it is put to ``begin``.
+        simulation: the vehicle, new: an episode depends on its deeds alone. It is put to ``begin``.
         begin: where the episode begins.
     """
 
     def __init__(self, simulation: Simulation, begin: Snapshot) -> None:
         self.simulation = simulation
-        bridge = simulation.bridge
-        for link in list(bridge.board.links):
-            bridge.remove_link(link)
         simulation.restore(begin)
         self._link = InProcessLink()
         simulation.bridge.add_link(self._link)
         self._traffic = Traffic(simulation)
-        simulation.bridge.taps[:] = [self._traffic]
+        simulation.bridge.taps.append(self._traffic)
 
     def run(self, deeds: Sequence[Deed]) -> tuple[int, str] | None:
         """Do them all; gives the number of the deed after which something was wrong, and what; None: all was right."""

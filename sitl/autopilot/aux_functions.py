@@ -141,6 +141,31 @@ def arm_or_disarm(number: int, arming: Any) -> AuxFunction:
     return AuxFunction(number, act, "high: arms; low: disarms", needs_change=True)
 
 
+def disarm(arming: Any) -> AuxFunction:
+    """A function that disarms; ``arming``: the firmware's module."""
+
+    def act(holder: Holder, position: int) -> list[Note]:
+        if position == HIGH:
+            arming.disarm(holder.v, BY_SWITCH, False)
+        return []
+
+    return AuxFunction(81, act, "high: disarms", needs_change=True)
+
+
+def arm_or_stop(arming: Any) -> AuxFunction:
+    """A function that arms and stops the motors; ``arming``: the firmware's module."""
+
+    def act(holder: Holder, position: int) -> list[Note]:
+        holder.v.autopilot.arming.emergency_stop = position == LOW
+        if position == HIGH:
+            arming.try_arm(holder.v, BY_SWITCH, False)
+        return []
+
+    return AuxFunction(
+        165, act, "high: arms; low: motors stand, and cannot be armed; middle: they may", needs_change=True
+    )
+
+
 def _allow_overrides(holder: Holder, position: int) -> list[Note]:
     rc = holder.v.autopilot.rc
     if position == HIGH:
@@ -202,6 +227,8 @@ def fitted(number: int, doc: str, name: str = "") -> AuxFunction:
     return AuxFunction(number, lambda _, position: [Switched(number, position)], doc, name)
 
 
+WITHOUT_EFFECT = {30: "", 78: "RunCamControl", 79: "RunCamOSDControl", 113: "RetractMount2"}
+"""Functions that ArduPilot takes in its simulator, too, where nothing is fitted for them; and their names in texts."""
 STICKS = {212: "roll", 213: "pitch", 214: "yaw"}
 
 COMMON = (
@@ -218,6 +245,11 @@ COMMON = (
     fitted(
         payload.SWITCH_LOCK, "high: the sticks' yaw of the gimbal counts from north; else from the nose", "MountLock"
     ),
+    *(
+        fitted(n, f"high: relay {k + 1} is on; low: it is off", f"Relay{k + 1}")
+        for n, k in payload.SWITCH_RELAYS.items()
+    ),
+    *(AuxFunction(n, _nothing, "taken, without effect", name) for n, name in WITHOUT_EFFECT.items()),
     *(AuxFunction(n, _nothing, f"{axis} of the gimbal, by the channel's stick") for n, axis in STICKS.items()),
 )
 """Those that do the same in every firmware."""

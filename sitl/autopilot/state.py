@@ -204,7 +204,7 @@ class PathState(Record):
     n: Floats = array(PATH_POINTS)  # NED [m]
     e: Floats = array(PATH_POINTS)
     d: Floats = array(PATH_POINTS)
-    keep: Ints = array(PATH_POINTS, stored="i8")  # for the simplification
+    keep: Ints = array(PATH_POINTS, stored="u1")  # for the simplification: 1 a point that stays
 
 
 class Control(Record):

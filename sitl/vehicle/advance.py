@@ -38,8 +38,8 @@ def observe(v: Vehicle) -> None:
     e.status_flags = _ALL_WELL
 
 
-_LINE, _PART, _PARTS = 64, 1152, 40
-"""Bytes that come nearer at once, that do in a tick, and ticks until all have: more than any record is long."""
+_LINE, _PART, _PARTS = 64, 22 * 64, 40
+"""Bytes that come nearer at once, that do in a tick, and ticks until all have: 56 kB, about what a record has."""
 V = TypeVar("V", bound=Vehicle)
 Tick = Callable[[Sequence[V], int], None]
 """A unit or law that does its part of one tick of vehicle ``fleet[index]``."""

@@ -3,18 +3,24 @@
 
 from __future__ import annotations
 
+import math
+
 from .. import aux_functions as shared
 from .. import payload
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
 from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
-from ..mission.notes import INFO, Note, Text
+from ..mission.notes import INFO, WARNING, Note, Text
 from . import arming
-from .modes import simple, zigzag
+from .modes import commands, simple, zigzag
 from .modes.auto import AUTO
 from .modes.set_mode import request
 from .modes.table import NAMES
 
+TRIMMED_IN = (0, 2)
+"""Modes, STABILIZE and ALT_HOLD."""
+STICK_LEAN, MOST_TRIM = math.radians(45.0), math.radians(10.0)
+"""What a full stick adds to AHRS_TRIM, and its limit [rad]."""
 TAKEOFF_LEAST = 1.0
 """Height of a take-off that is saved, at least [m]."""
 
@@ -81,6 +87,28 @@ def _reset_heading(holder: Holder, position: int) -> list[Note]:
     return [Text(INFO, "Simple heading reset")]
 
 
+def _train(holder: Holder, position: int) -> list[Note]:
+    holder.v.autopilot.params.ACRO.TRAINER = float(position - LOW)
+    return []
+
+
+def _pause(holder: Holder, position: int) -> list[Note]:
+    if position == MIDDLE:
+        return []
+    done = commands.set_paused(holder.v.autopilot.modes, position == HIGH) == commands.OK
+    return [Text(WARNING, "Flight Mode Pause failed")] if position == HIGH and not done else []
+
+
+def _save_trim(holder: Holder, position: int) -> list[Note]:
+    ap = holder.v.autopilot
+    pilot, trim = ap.modes.pilot, ap.params.AHRS.TRIM
+    if position != HIGH or ap.modes.number not in TRIMMED_IN or pilot.throttle > 0.0:
+        return []
+    trim.X = min(max(trim.X + STICK_LEAN * pilot.roll, -MOST_TRIM), MOST_TRIM)
+    trim.Y = min(max(trim.Y + STICK_LEAN * pilot.pitch, -MOST_TRIM), MOST_TRIM)
+    return [Text(INFO, "Trim saved")]
+
+
 FUNCTIONS = shared.by_number(
     (
         *shared.COMMON,
@@ -100,5 +128,12 @@ FUNCTIONS = shared.by_number(
         AuxFunction(152, _reset_heading, "high: the heading now is forwards in SIMPLE"),
         shared.arm_or_disarm(153, arming),
         shared.arm_or_disarm(154, arming),
+        shared.disarm(arming),
+        shared.arm_or_stop(arming),
+        AuxFunction(
+            5, _save_trim, "high, throttle closed, in STABILIZE or ALT_HOLD: the sticks' lean goes into AHRS_TRIM"
+        ),
+        AuxFunction(14, _train, "ACRO_TRAINER: low 0, middle 1, high 2"),
+        AuxFunction(178, _pause, "high: pauses GUIDED or AUTO; low: goes on"),
     )
 )

@@ -42,5 +42,7 @@ FUNCTIONS = shared.by_number(
             7, _save_waypoint, "high: adds the place to the mission; disarmed begins a new one here", "SaveWaypoint"
         ),
         shared.arm_or_disarm(153, arming),
+        shared.disarm(arming),
+        shared.arm_or_stop(arming),
     )
 )

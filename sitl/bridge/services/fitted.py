@@ -7,11 +7,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ...autopilot import payload
-from ...autopilot.aux_switch import HIGH, LOW
+from ...autopilot.aux_switch import HIGH, LOW, MIDDLE
 from ...autopilot.mission import item as commands
 from .camera import CameraService
 from .gripper import GripperService
 from .mount import MountService
+from .outputs import OutputService
 from .service import Service
 from .sprayer import SprayerService
 from .winch import WinchService
@@ -53,5 +54,9 @@ _SWITCHES: dict[int, tuple[type[Service], Callable[[Any, int], None]]] = {
 
 def switched(bridge: Bridge, function: int, position: int) -> None:
     """A switch with one of these functions was moved."""
+    if function in payload.SWITCH_RELAYS:
+        if position != MIDDLE:
+            bridge.get(OutputService).set_relay(payload.SWITCH_RELAYS[function], float(position == HIGH))
+        return
     service, act = _SWITCHES[function]
     act(bridge.get(service), position)

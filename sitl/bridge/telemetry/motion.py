@@ -129,8 +129,8 @@ class HomePosition(Message, name="HOME_POSITION"):
 def home_position(m: HomePosition, v: Vehicle) -> bool:
     """HOME_POSITION: degE7, mm, and NED metres from the origin; nothing until home is set."""
     home = v.autopilot.home
-    m.latitude = home.lat
-    m.longitude = home.lon
+    m.latitude = int32(home.lat)
+    m.longitude = int32(home.lon)
     m.altitude = int32(home.alt * 1e3)
     m.x = home.pos.x
     m.y = home.pos.y

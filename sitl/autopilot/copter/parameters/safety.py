@@ -15,7 +15,7 @@ class Battery(system.Battery):
         -128,
         127,
         "",
-        "When low: 0 nothing, 1 LAND, 2 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 stops motors, 7 BRAKE or LAND",
+        "Low: 1 LAND, 2 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 stops motors, 6 AUTO_RTL or RTL, 7 BRAKE",
         INT8,
     )
     FS_CRT_ACT: float = param(0, -128, 127, "", "When critical: as BATT_FS_LOW_ACT", INT8)
@@ -29,7 +29,7 @@ class Failsafes(system.Failsafes):
         -128,
         127,
         "",
-        "Ground station lost: 0 nothing, 1 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 LAND, 7 BRAKE or LAND",
+        "GCS lost: 0 nothing, 1 RTL, 3 SMART_RTL or RTL, 4 SMART_RTL or LAND, 5 LAND, 6 AUTO_RTL or RTL, 7 BRAKE",
         INT8,
     )
     GCS_TIMEOUT: float = param(5.0, 2.0, 120.0, "s", "Silence of the ground station that counts as lost")
@@ -38,7 +38,7 @@ class Failsafes(system.Failsafes):
         -128,
         127,
         "",
-        "Radio lost: 0 nothing, 1 RTL, 3 LAND, 4 SMART_RTL or RTL, 5 SMART_RTL or LAND, 7 BRAKE or LAND",
+        "Radio lost: 0 nothing, 1 RTL, 3 LAND, 4 SMART_RTL or RTL, 5 SMART_RTL or LAND, 6 AUTO_RTL or RTL, 7 BRAKE",
         INT8,
     )
     THR_VALUE: float = param(975, 900, 1100, "us", "Throttle pulse below which the radio is lost", INT16)
