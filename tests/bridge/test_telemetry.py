@@ -74,7 +74,10 @@ def test_heartbeat_and_status(bench: Bench) -> None:
     ap.arming.prearm_ok = 1
     assert get(bench, "SYS_STATUS").onboard_control_sensors_health & 0x10000000
     fence = 0x100000  # ground stations report a breach where its health is missing
-    assert get(bench, "SYS_STATUS").onboard_control_sensors_health & fence
+    status = get(bench, "SYS_STATUS")
+    assert status.onboard_control_sensors_health & fence and status.onboard_control_sensors_present & fence
+    assert not status.onboard_control_sensors_enabled & fence
+    ap.params.FENCE.TYPE = 0
     assert not get(bench, "SYS_STATUS").onboard_control_sensors_present & fence
 
 

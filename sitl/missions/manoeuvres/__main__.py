@@ -34,6 +34,8 @@ WHY = """
   receiver, 50 times a second; the real one reads them 250 times a second, 20 ms earlier.
 - *3 m/s east: 95 %* and the first moments of turn rates: both curves are almost level there, and commands reach the
   real one some 10 ms late.
+- *Copter, GUIDED velocities against a fence*: the real one comes to rest 1.3 m within FENCE_MARGIN whatever
+  AVOID_BEHAVE is, and stays there; ours at its edge, as both do in LOITER.
 """
 HEADING = "## Manoeuvres"
 
