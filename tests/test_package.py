@@ -111,7 +111,9 @@ def test_every_name_is_there() -> None:
 
 
 def test_another_name_is_refused() -> None:
-    with pytest.raises(AttributeError, match=r"no attribute 'simulation_of'; it has Fleet, Move, Simulation, "):
+    with pytest.raises(
+        AttributeError, match=r"no attribute 'simulation_of'; it has Fleet, LinkFaults, Move, Simulation, "
+    ):
         sitl.simulation_of  # noqa: B018
 
 

@@ -14,7 +14,7 @@ from ..core import rng
 from ..core.compile import Progress
 from ..core.record_reader import RecordReader
 from ..physics.carried import Carried, carried
-from ..physics.engine import Engine, EngineVehicle, Laws
+from ..physics.engine import Engine, EngineError, EngineVehicle, Laws
 from ..physics.engines import NATIVE, find
 from ..physics.native.ranging import list_near
 from ..scenario import Options, Scenario
@@ -58,6 +58,10 @@ class LocalPlant(Plant):
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
+            if vehicle.airframe.figures.get("on_bench"):
+                raise EngineError(
+                    f"physics {backend!r} has no bench for airframe {vehicle.airframe.name!r}; {NATIVE!r} has"
+                )
             self.engine = find(backend, vehicle.kind.name, vehicle.kind.engines)(self._engine_vehicle())
         self.runs_in_core = self.engine is None
         self._run: Callable[[int], None] | None = None

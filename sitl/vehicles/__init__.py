@@ -46,10 +46,14 @@ GROUP = "sitl.airframes"
 """Entry points of airframes of other packages: name -> Airframe."""
 
 
-def names(kind: str | None = None) -> tuple[str, ...]:
-    """Names of the airframes that ``load`` knows: all, or those of a kind of vehicle."""
+def names(kind: str | None = None, *, on_bench: bool = True) -> tuple[str, ...]:
+    """Names of the airframes that ``load`` knows: all, or those of a kind of vehicle; without ``on_bench``, those that
+    move by themselves.
+    """
     known = tuple(dict.fromkeys((*_MODULES, *_installed())))
-    return known if kind is None else tuple(name for name in known if load(name).kind == kind)
+    if kind is not None:
+        known = tuple(name for name in known if load(name).kind == kind)
+    return known if on_bench else tuple(name for name in known if not load(name).figures.get("on_bench"))
 
 
 def load(name: str | Airframe) -> Airframe:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.copter.modes.table import NAMES
+from sitl.autopilot.copter.modes.table import TITLES
 from sitl.autopilot.rover.modes.table import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links.inprocess import InProcessLink
@@ -161,7 +161,7 @@ def test_available_modes(bench: Bench) -> None:
 
     every = modes(0)
     assert [m.mode_index for m in every] == list(range(1, every[0].number_modes + 1))
-    assert {m.custom_mode: m.mode_name.decode() for m in every} == NAMES
+    assert {m.custom_mode: m.mode_name.decode() for m in every} == TITLES
     assert modes(4) == every[3:4]
     assert modes(99) == []
 

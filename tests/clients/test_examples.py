@@ -29,7 +29,8 @@ def test_mavsdk(fly: Fly, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("frame", "speedup"), [("erle_rover", SPEEDUP), *((name, FASTEST) for name in vehicles.names("rover"))]
+    ("frame", "speedup"),
+    [("erle_rover", SPEEDUP), *((name, FASTEST) for name in vehicles.names("rover", on_bench=False))],
 )
 def test_mavsdk_rover(fly: Fly, frame: str, speedup: str) -> None:
     """Every rover drives it, the small one for six minutes."""

@@ -18,7 +18,7 @@ TYPES = {"ardupilot_x": 2, "ardupilot_y6": 13, "ardupilot_octa": 14, "ardupilot_
 FOLLOW = 23
 
 
-@pytest.mark.parametrize("name", vehicles.names("copter"))
+@pytest.mark.parametrize("name", vehicles.names("copter", on_bench=False))
 def test_the_rotors_of_an_airframe_are_where_its_frame_has_motors(name: str) -> None:
     airframe = vehicles.load(name)
     frame = frame_of(int(airframe.parameters["FRAME_CLASS"]), int(airframe.parameters["FRAME_TYPE"]))

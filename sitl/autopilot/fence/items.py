@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ...core.geodesy import offset_ne
+from ...errors import SitlError
 from ..mission.item import (
     FENCE_CIRCLE,
     FENCE_CIRCLE_OUT,
@@ -48,7 +49,7 @@ class Shape(NamedTuple):
     """Latitude and longitude [degE7] of its corners, or of a circle's centre."""
 
 
-class FenceError(ValueError):
+class FenceError(SitlError, ValueError):
     """Items that make no fence; the text is the pilot's."""
 
 

@@ -142,7 +142,6 @@ class CalibrationService(Service):
         elif task == LEVEL:
             roll, pitch = self._trim(acc)
             self._set("AHRS_TRIM", (roll, pitch))
-            self._align(acc)
             text = f"Trim OK: roll={math.degrees(roll):.2f} pitch={math.degrees(pitch):.2f} yaw=0.00"
             self.bridge.get(StatusTextService).say(INFO, text)
         else:

@@ -105,9 +105,11 @@ def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
         say(NOTICE, "Disarm to allow calibration")
         return FAILED
     if command.p1 == 1.0 or command.p5 in (LEVEL_TRIM, SIMPLE_ACCELEROMETER):
-        say(INFO, "Initialising ArduPilot")
         tasks = {LEVEL_TRIM: calibration.LEVEL, SIMPLE_ACCELEROMETER: calibration.SIMPLE}
-        return int(service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5]))
+        result = service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5])
+        if result == ACCEPTED:
+            say(INFO, "Initialising ArduPilot")
+        return result
     if command.p3 == 1.0:
         say(INFO, "Updating barometer calibration")
         say(INFO, "Barometer calibration complete")

@@ -39,8 +39,8 @@ def test_the_same_flight_is_like_golden(make: VehicleFactory, golden: Path) -> N
 
 
 def test_what_changes_within_the_limits_is_told(make: VehicleFactory, golden: Path) -> None:
-    gain = make("copter").parameter("ATC_RAT_YAW_I")
-    copter = hop(make("copter", params={"ATC_RAT_YAW_I": 1.01 * gain}))
+    gain = make("copter").parameter("PSC_POSXY_P")
+    copter = hop(make("copter", params={"PSC_POSXY_P": 1.001 * gain}))
     with pytest.warns(FlightChanged, match=r"hop\.rec: like golden, but not the same any more: .* after "):
         copter.assert_flies_like("golden/hop.rec")
 

@@ -111,7 +111,7 @@ class Rover(Witness):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("frame", vehicles.names("rover"))
+@pytest.mark.parametrize("frame", vehicles.names("rover", on_bench=False))
 def test_square_and_return(frame: str) -> None:
     r, side = Rover(frame).ready(), SIDES[frame]
     limit = 60.0 + 6.0 * side / float(r.ap.params.WP_SPEED)

@@ -26,7 +26,7 @@ from sitl.vehicle.rover import Rover as RoverRecord
 from sitl.worlds import Box, Start, World
 
 HOME = (-35.36, 149.16, 584.0, 0.0)
-AIRFRAMES = vehicles.names("rover")
+AIRFRAMES = vehicles.names("rover", on_bench=False)
 CARS = AIRFRAMES[:3]
 START = (Start("origin", (0.0, 0.0, 0.0), 0.0),)
 WALL = World("wall", (Box((5.0, 0.0, 0.5), (0.2, 8.0, 1.0)),), START)

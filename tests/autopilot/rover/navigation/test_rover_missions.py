@@ -192,7 +192,7 @@ def test_without_an_origin_it_waits() -> None:
 def test_what_the_other_firmware_takes_is_refused() -> None:
     for command in (c.NAV_TAKEOFF, c.NAV_LAND, c.CONDITION_YAW):
         assert check(MissionItem(command), COMMANDS.taken) == UNSUPPORTED
-    for command in (c.DO_SET_REVERSE, c.NAV_SET_YAW_SPEED, c.NAV_GUIDED_ENABLE, c.DO_GUIDED_LIMITS):
+    for command in (c.DO_SET_REVERSE, c.NAV_SET_YAW_SPEED):
         assert check(MissionItem(command), COPTER.taken) == UNSUPPORTED
     p = Missionary()
     assert p.sequencer is not None
