@@ -29,6 +29,7 @@ from ..parameters import Parameters
 from ..state import Vehicle
 from . import stabilize
 from .auto import AUTO, AUTO_RTL
+from .drift import DRIFT
 from .state import Modes
 from .table import TITLES, has_manual_throttle, is_known, requires_position, start
 
@@ -53,7 +54,8 @@ def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Pa
     if not arming.armed:
         return ACCEPTED
     manual_now = has_manual_throttle(modes.number)
-    if arming.landed and has_manual_throttle(number) and not manual_now:
+    by_stick = has_manual_throttle(number) or number == DRIFT
+    if arming.landed and by_stick and not manual_now:
         if stabilize.throttle(modes.pilot, p) > 0.5 * hover_throttle(p.MOT):
             return THROTTLE_TOO_HIGH
     if requires_position(number) and not estimate.position_ok:

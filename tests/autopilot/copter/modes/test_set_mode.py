@@ -137,12 +137,13 @@ def test_a_throw_begins_disarmed(vehicle, flying):
     assert set_mode.request(flying, THROW, REASON_GCS) == INIT_FAILED
 
 
-def test_stabilize_on_the_ground_with_raised_throttle_is_refused(flying):
+@pytest.mark.parametrize("number", [STABILIZE, DRIFT])
+def test_on_the_ground_the_stick_does_not_take_a_raised_throttle(flying, number):
     ap = flying.autopilot
     ap.arming.landed, ap.modes.pilot.throttle_filtered = 1, 0.6
-    assert set_mode.request(flying, STABILIZE, REASON_GCS) == THROTTLE_TOO_HIGH
+    assert set_mode.request(flying, number, REASON_GCS) == THROTTLE_TOO_HIGH
     ap.arming.landed = 0
-    assert set_mode.request(flying, STABILIZE, REASON_GCS) == ACCEPTED
+    assert set_mode.request(flying, number, REASON_GCS) == ACCEPTED
 
 
 def test_leaving_stabilize_needs_a_height(flying):
