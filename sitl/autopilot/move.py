@@ -70,6 +70,8 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     if not ap.ekf.use_external:
         move_ekf(ap.ekf, d)
     move_estimate(ap.estimate, d)
+    acc = ap.inertial_filter.acc
+    acc.first, acc.second = turned(d, acc.first), turned(d, acc.second)
     move_home(ap.home, ap.estimate, d)
     move_nav(ap.modes.nav, d)
     ap.avoid.limited_us = 0

@@ -50,7 +50,7 @@ class Parameters(shared.Parameters):
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
     )
     INITIAL_MODE: float
-    INS: Inertial
+    INS: Inertial = group(GYRO_FILTER=4, ACCEL_FILTER=10)
     LOG: Log = group(BITMASK=65535)
     LOIT: Loiter
     MANUAL: Manual
