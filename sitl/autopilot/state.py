@@ -19,6 +19,7 @@ from .estimation.state import Ekf
 from .events import Events
 from .fence.state import FenceState, RallyState
 from .inertial_ring import InertialRing
+from .landing_target.state import LandingTarget
 from .navigation.state import Nav
 from .params.parameters import Parameters
 from .sensor_calibration import Calibrated
@@ -233,6 +234,7 @@ class Autopilot(Record):
     rally: RallyState
     proximity: Proximity
     avoid: Avoidance
+    landing_target: LandingTarget
 
 
 class Vehicle(Protocol):

@@ -9,6 +9,7 @@ from typing import Any
 from ..autopilot import battery, events, home
 from ..autopilot.estimation import aiding
 from ..autopilot.fence import texts as fence_texts
+from ..autopilot.landing_target.texts import TEXTS as LANDING_TARGET_TEXTS
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
@@ -57,6 +58,8 @@ class BaseAutopilot:
         fence = fence_texts.note(code, a, b)
         if fence is not None:
             return [fence]
+        if code == events.LANDING_TARGET_DID:
+            return [Text(*LANDING_TARGET_TEXTS[int(a)])]
         if code == events.FOLLOW_OFF:
             return [Text(WARNING, "Set FOLL_ENABLE = 1")]
         if code == events.FOLLOW_OFFSET:
