@@ -21,7 +21,7 @@ class PrecisionLanding(ParameterGroup):
     CAM_POS_X: float = param(0, -5.0, 5.0, "m", "Place of the sensor on the vehicle, forward")
     CAM_POS_Y: float = param(0, -5.0, 5.0, "m", "Place of the sensor on the vehicle, right")
     CAM_POS_Z: float = param(0, -5.0, 5.0, "m", "Place of the sensor on the vehicle, down")
-    LAG: float = param(0.02, 0.02, 0.25, "s", "Age of a measurement when it arrives")
+    LAG: float = param(0.02, 0.0, 0.25, "s", "Age of a measurement when it arrives")
     XY_DIST_MAX: float = param(2.5, 0.0, 10.0, "m", "No descent while the target is further aside; 0: no limit")
     STRICT: float = param(
         1, 0, 2, "", "Without a target: 0 lands; 1 tries again, then lands; 2 tries again, then hovers", INT8
