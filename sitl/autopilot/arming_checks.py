@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
+from ..core import border
 from ..core.algebra import dot, norm
-from ..core.border import ACC_SILENT, GYRO_SILENT
 from ..core.kernels import law
 from . import radio, sensor_calibration
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
@@ -181,11 +181,11 @@ def calibration_checks(state: int, params: Arming) -> int:
 def imu_checks(sensors: Sensors) -> int:
     """Failed checks of two IMUs that show different things, or of which one is silent."""
     state = sensors.imu_state
-    if state & 3 * ACC_SILENT:
+    if state & 3 * border.ACC_SILENT:
         return ACCELS_SILENT
     if norm(sensors.acc2 - sensors.acc) > ACC_DIFFERENCE:
         return ACCELS
-    if state & 3 * GYRO_SILENT:
+    if state & 3 * border.GYRO_SILENT:
         return GYROS_SILENT
     return GYROS if norm(sensors.gyro2 - sensors.gyro) > GYRO_DIFFERENCE else 0
 
