@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""IMUs and compasses fail in the air. Figures of "the real one" are of ArduPilot 4.7's own simulator, hovering in LOITER."""
+"""IMUs and compasses fail in the air. "The real one" is ArduPilot 4.7 in its own simulator, hovering in LOITER."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_both_accelerometers_wrong_is_vibration_s_failsafe(core: Core) -> None:
 
 
 def test_compasses_that_fall_silent_are_left_one_after_the_other(core: Core) -> None:
-    """The real one switches 10.1 s after each failure, and at once when one of them comes back after all were silent."""
+    """The real one switches 10.1 s after each failure; after all were silent, at once when one of them comes back."""
     p = loiter(core)
     before = p.euler[2]
     for k, (failed, taken) in enumerate(((1, 1), (2, 2))):

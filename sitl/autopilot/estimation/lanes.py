@@ -116,7 +116,7 @@ def compare(ap: Autopilot, params: Ekf3) -> None:
     own, other = score(ap.ekf, ap.estimate, by_compass), score(lane.ekf, lane.estimate, by_compass)
     if abs(own - other) > params.ERR_THRESH:
         lane.lead = min(max(lane.lead + own - other, -LEAD), LEAD)
-    if (other < own and (own >= FAILED_SCORE or lane.lead >= LEAD)) or ap.ekf.phase != RUN:
+    if (other < own and (own >= FAILED_SCORE or lane.lead >= LEAD)) or (ap.arming.armed and ap.ekf.phase != RUN):
         switch(ap)
 
 

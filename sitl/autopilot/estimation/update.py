@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from ...core.algebra import IDENTITY
+from ...core.border import IMUS_DIFFER
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events
 from ..sensor_calibration import field_of, read_sensors
 from ..state import Estimate, Vehicle
+from ..vibration import compare_clips
 from . import (
     alignment,
     barometer,
@@ -148,6 +150,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     second = ap.second_lane
     if sensors.imu_state | second.runs != 0:
         lanes.begin_or_end(ap, sensors, v.time_us)
+        if sensors.imu_state & IMUS_DIFFER != 0:
+            compare_clips(ap.vibration, ap.calibrated.acc, ap.calibrated.acc2)
     for lane in range(1 + second.runs):
         run_lane(fleet, i, lane)
     if second.runs != 0 and ap.ekf.step_ticks == 0:

@@ -141,6 +141,8 @@ class EventService(Service):
         elif code == core.EKF_ORIGIN_SET:
             altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
             say(INFO, f"Field Elevation Set: {altitude:.0f}m")
+        elif code == core.EKF_COMPASS_CHANGED and self.bridge.vehicle.parameters["EK2_ENABLE"]:
+            say(INFO, f"EKF2 IMU{a:.0f} switching to compass {b:.0f}")  # a filter like the other, on the same sensors
         elif code == core.EKF_LANE_SWITCHED:
             say(WARNING, f"EKF primary changed:{a:.0f}")
         elif code == core.MODE_CHANGED:

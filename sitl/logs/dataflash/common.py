@@ -252,6 +252,7 @@ GPS_ACCURACY = Message(
     time=S + "gps_time_us",
 )
 
+
 def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
     """XKF1 to XKF5, XKFS and XKQ of a filter, whose number C is that of its IMU.
 
@@ -328,7 +329,7 @@ def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
                 Field("TS", "B"),
                 Field("SS", "I", source=e + "status_flags"),
                 Field("GPS", "H"),
-                Field("PI", "b"),
+                Field("PI", "b", source=K + "imu"),
             ),
             bits.MEDIUM,
             _ATTITUDE,
@@ -354,8 +355,25 @@ def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
             when=when,
         ),
         Message(
+            "XKFS",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                Field("MI", "B", source=k + "compass"),
+                *(Field(label, "B") for label in ("BI", "GI", "AI", "SS")),
+                Field("GPS_GTA", "B", source=derived.is_seen(k + "gps_good_us")),
+                Field("GPS_CHK_WAIT", "B"),
+                Field("MAG_FUSION", "B", source=1),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
             "XKQ",
-            (Field("C", "B", "#", source=k + "imu"), *(Field(f"Q{n + 1}", "f", "?", "?", f"{e}q[{n}]") for n in range(4))),
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                *(Field(f"Q{n + 1}", "f", "?", "?", f"{e}q[{n}]") for n in range(4)),
+            ),
             bits.MEDIUM,
             _ATTITUDE,
             when=when,
