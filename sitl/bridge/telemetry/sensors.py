@@ -190,7 +190,7 @@ class VibrationMessage(Message, name="VIBRATION"):
 
 @law
 def vibration(m: VibrationMessage, v: Vehicle) -> bool:
-    """VIBRATION: level on each axis [m/s^2], filtered at 5 and 2 Hz as ArduPilot's; samples beyond 15.5 g of both IMUs."""
+    """VIBRATION: level on each axis [m/s^2], filtered at 5 and 2 Hz as ArduPilot's; samples beyond 15.5 g, by IMU."""
     shakes = v.autopilot.vibration
     levels = vibration_levels(shakes)
     m.time_usec = v.time_us
