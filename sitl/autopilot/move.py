@@ -70,6 +70,8 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     """Put what all firmwares share elsewhere; the origin of the estimate has been moved."""
     if not ap.ekf.use_external:
         move_ekf(ap.ekf, d)
+        move_ekf(ap.second_lane.ekf, d)
+        move_estimate(ap.second_lane.estimate, d)
     move_estimate(ap.estimate, d)
     acc = ap.inertial_filter.acc
     acc.first, acc.second = turned(d, acc.first), turned(d, acc.second)

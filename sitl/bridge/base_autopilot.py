@@ -117,7 +117,10 @@ class BaseAutopilot:
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
         ap = self._v.autopilot
-        return aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(int(lat), int(lon), float(alt)))
+        origin = aiding.Origin(int(lat), int(lon), float(alt))
+        if ap.second_lane.runs:
+            aiding.set_origin(ap.second_lane.ekf, ap.second_lane.estimate, ap.events, origin)
+        return aiding.set_origin(ap.ekf, ap.estimate, ap.events, origin)
 
     def set_battery_left(self, percent: float) -> bool:
         ap = self._v.autopilot

@@ -4,13 +4,28 @@
 from __future__ import annotations
 
 from ...core.algebra import IDENTITY
+from ...core.border import IMUS_DIFFER
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events
 from ..inertial_filter import smoothed_acc, smoothed_rates
-from ..sensor_calibration import read_sensors
+from ..sensor_calibration import field_of, read_sensors
 from ..state import Autopilot, Estimate, Vehicle
-from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
+from ..vibration import compare_clips
+from . import (
+    alignment,
+    barometer,
+    compass,
+    covariance,
+    fusion,
+    gps,
+    history,
+    lanes,
+    magnetometer,
+    noise,
+    status,
+    strapdown,
+)
 from .alignment import CALIBRATE, RUN, TILT, YAW
 from .state import POS, VEL, Ekf
 
@@ -54,20 +69,24 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         ekf.yaw_in_flight = False
     if not alignment.is_healthy(ekf):
         if ekf.gps_in_use:
-            events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, 1.0, 0.0)
+            events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, float(ekf.imu), 0.0)
         alignment.restart(ekf)
 
 
 @inline_unit
-def step(fleet: Records[Vehicle], i: int) -> None:
-    """Prediction of the covariance over the last ticks, then fusion of what the sensors brought."""
+def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
+    """Prediction of the covariance over the last ticks, then fusion of what the sensors brought; ``lane``: 0, or 1 for
+    the second filter.
+    """
     v = fleet[i]
     ap = v.autopilot
-    ekf, estimate, params, armed = ap.ekf, ap.estimate, ap.params.EK3, ap.arming.armed
+    ekf, estimate = (ap.second_lane.ekf, ap.second_lane.estimate) if lane else (ap.ekf, ap.estimate)
+    params, armed = ap.params.EK3, ap.arming.armed
     covariance.predict(ekf, params)
     alignment.begin_step(ekf)
     history.keep(ekf)
     fused = barometer.fuse(ekf, estimate, params)
+    compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
     fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
     fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors)
     if not ekf.gps_in_use:
@@ -85,7 +104,7 @@ def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     if alignment.calibrate(ekf):
         barometer.set_ground(ekf)
         alignment.initialise(ekf)
-        events.emit(log, ekf.now_us, events.EKF_INITIALISED, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_INITIALISED, float(ekf.imu), 0.0)
         return
     ekf.q = IDENTITY
     estimate.q = IDENTITY
@@ -101,27 +120,52 @@ def smooth(ap: Autopilot) -> None:
     e.acc_ned = smoothed_acc(ap.inertial_filter, e.acc_ned, params)
 
 
+@law
+def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
+    """One tick of a filter: the one that is flown by (0), or the second one."""
+    v = fleet[i]
+    ap, sensors = v.autopilot, v.sensors
+    ekf, estimate = (ap.second_lane.ekf, ap.second_lane.estimate) if lane else (ap.ekf, ap.estimate)
+    shown, state = ap.calibrated, sensors.imu_state
+    ekf.now_us = v.time_us
+    if state == 0:
+        strapdown.read_imu(ekf, shown.gyro, shown.acc)
+    else:
+        strapdown.read_imu(ekf, lanes.gyro_of(ekf.imu, shown, state), lanes.acc_of(ekf.imu, shown, state))
+    barometer.read(ekf, sensors)
+    gps.read(ekf, sensors)
+    if ekf.phase == CALIBRATE:
+        if ap.params.EK3.ENABLE != 0:
+            _boot(ekf, estimate, ap.events)
+        return
+    strapdown.advance(ekf, DT)
+    if ekf.compass == 0:
+        magnetometer.read(ekf, sensors.mag_count, shown.mag)
+    else:
+        magnetometer.read(ekf, int(sensors.mag_us[ekf.compass]), field_of(ekf.compass, sensors, ap.params))
+    if ekf.step_ticks >= STEP_TICKS:
+        step(fleet, i, lane)
+    status.publish(ekf, estimate, DT, ap.params.EK3.TAU_OUTPUT)
+
+
 @inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick: ``sensors`` to ``autopilot.estimate``."""
     v = fleet[i]
     ap, sensors = v.autopilot, v.sensors
-    ekf, shown = ap.ekf, ap.calibrated
-    read_sensors(shown, sensors, ap.params)
-    if ekf.use_external:
+    read_sensors(ap.calibrated, sensors, ap.params)
+    if ap.ekf.use_external:
         smooth(ap)
         return
-    ekf.now_us = v.time_us
-    strapdown.read_imu(ekf, shown.gyro, shown.acc)
-    barometer.read(ekf, sensors)
-    gps.read(ekf, sensors)
-    if ekf.phase == CALIBRATE:
-        if ap.params.EK3.ENABLE != 0:
-            _boot(ekf, ap.estimate, ap.events)
-        return
-    strapdown.advance(ekf, DT)
-    magnetometer.read(ekf, sensors.mag_count, shown.mag)
-    if ekf.step_ticks >= STEP_TICKS:
-        step(fleet, i)
-    status.publish(ekf, ap.estimate, DT, ap.params.EK3.TAU_OUTPUT)
-    smooth(ap)
+    boots = ap.ekf.phase == CALIBRATE
+    second = ap.second_lane
+    if sensors.imu_state | second.runs != 0:
+        lanes.begin_or_end(ap, sensors, v.time_us)
+        if sensors.imu_state & IMUS_DIFFER != 0:
+            compare_clips(ap.vibration, ap.calibrated.acc, ap.calibrated.acc2)
+    for lane in range(1 + second.runs):
+        run_lane(fleet, i, lane)
+    if second.runs != 0 and ap.ekf.step_ticks == 0:
+        lanes.compare(ap, ap.params.EK3)
+    if not boots:
+        smooth(ap)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from .parameter import INT8, INT16, ParameterGroup, param
+from .parameter import INT8, INT16, INT32, ParameterGroup, param
 
 _GATE = "innovation gate, hundredths of a standard deviation"
 
@@ -31,4 +31,6 @@ class Ekf3(ParameterGroup):
     GPS_CHECK: float = param(31, 0, 255, "", "GPS checks before use: bit 0 satellites, bit 1 HDOP", INT8)
     CHECK_SCALE: float = param(100, 10, 1000, "%", "scale of the limits of the GPS checks", INT16)
     NOAID_M_NSE: float = param(10.0, 0.5, 1000, "m", "noise of the position held in flight without GPS")
+    ERR_THRESH: float = param(0.2, 0.05, 1, "", "difference of two filters' scores from which on it counts")
+    AFFINITY: float = param(0, 0, 15, "", "bit 2: a filter is also judged by its compass", INT32)
     TAU_OUTPUT: float = param(25, 1, 127, "cs", "time in which corrections reach the controllers", INT8)

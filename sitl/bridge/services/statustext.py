@@ -61,13 +61,15 @@ BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Re
 """(simulated us after boot, text)"""
 
 TEXTS = {
-    core.EKF_INITIALISED: (INFO, "EKF3 IMU0 initialised"),
-    core.EKF_TILT_ALIGNED: (INFO, "EKF3 IMU0 tilt alignment complete"),
-    core.EKF_YAW_ALIGNED: (INFO, "EKF3 IMU0 MAG0 initial yaw alignment complete"),
-    core.EKF_YAW_ALIGNED_IN_FLIGHT: (INFO, "EKF3 IMU0 MAG0 in-flight yaw alignment complete"),
-    core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
-    core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
-    core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.EKF_INITIALISED: (INFO, "EKF3 IMU{a:.0f} initialised"),
+    core.EKF_TILT_ALIGNED: (INFO, "EKF3 IMU{a:.0f} tilt alignment complete"),
+    core.EKF_YAW_ALIGNED: (INFO, "EKF3 IMU{a:.0f} MAG{b:.0f} initial yaw alignment complete"),
+    core.EKF_YAW_ALIGNED_IN_FLIGHT: (INFO, "EKF3 IMU{a:.0f} MAG{b:.0f} in-flight yaw alignment complete"),
+    core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU{a:.0f} origin set"),
+    core.EKF_USES_GPS: (INFO, "EKF3 IMU{a:.0f} is using GPS"),
+    core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
+    core.EKF_COMPASS_CHANGED: (INFO, "EKF3 IMU{a:.0f} switching to compass {b:.0f}"),
+    core.EKF_LANE_SWITCHED: (CRITICAL, "EKF3 lane switch {a:.0f}"),
     core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),
     core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
 }
@@ -139,6 +141,10 @@ class EventService(Service):
         elif code == core.EKF_ORIGIN_SET:
             altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
             say(INFO, f"Field Elevation Set: {altitude:.0f}m")
+        elif code == core.EKF_COMPASS_CHANGED and self.bridge.vehicle.parameters["EK2_ENABLE"]:
+            say(INFO, f"EKF2 IMU{a:.0f} switching to compass {b:.0f}")  # a filter like the other, on the same sensors
+        elif code == core.EKF_LANE_SWITCHED:
+            say(WARNING, f"EKF primary changed:{a:.0f}")
         elif code == core.MODE_CHANGED:
             self.bridge.send_to_all(HEARTBEAT)
         else:
