@@ -30,11 +30,14 @@ _DOWN = 25
 def defaults(airframe: Airframe, sees_ground: bool) -> str:
     """Parameters with which ArduPilot flies or drives this airframe, as a file.
 
-    The airframe's own are ArduPilot's names already. A step of the physics for each loop of a copter; a version that
-    does not know a name ignores it.
+    The airframe's own are ArduPilot's names already; a version that does not know a name ignores it. Its battery is its
+    own, with the voltage of ours when full.
     """
     of_kind = KINDS[airframe.kind].ardupilot_parameters
-    values: dict[str, float] = {**of_kind, "SIM_RATE_HZ": TICK_HZ, **airframe.parameters}
+    battery = float(airframe.value("battery_voltage_full"))
+    values: dict[str, float] = {
+        "SIM_RATE_HZ": TICK_HZ, "SIM_BATT_VOLTAGE": battery, **of_kind, **airframe.parameters
+    }  # fmt: skip
     if sees_ground:
         low, high = float(airframe.value("rangefinder_min")), float(airframe.value("rangefinder_max"))
         values |= {

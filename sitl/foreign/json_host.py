@@ -7,8 +7,8 @@ import socket
 import time
 from collections.abc import Callable
 
-from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, ticks
-from ..bridge.ardupilot_json.servos import controls, is_frame
+from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, lines, ticks
+from ..bridge.ardupilot_json.servos import Controls, is_frame
 from ..core.constants import TICK_US
 from ..errors import OptionError
 from ..plants.json_link import LOCAL, PORT, WAIT_S, parse_address, wait_in_kernel
@@ -63,7 +63,7 @@ class JsonHost:
         self.plant = plant
         self._lines = BodyLines(plant.vehicle)
         self._clock: Callable[[], int] = plant.vehicle.reader.field("time_us")
-        self._is_reversible = plant.vehicle.kind.has_reversible_outputs
+        self._controls = Controls(plant.vehicle.kind.has_reversible_outputs)
 
     @property
     def address(self) -> tuple[str, int]:
@@ -78,35 +78,36 @@ class JsonHost:
 
     def listen(self) -> bool:
         """Wait for a frame that requests a step, unless one is pending; returns whether there is one."""
-        if self._pending is not None:
-            return True
-        try:
-            datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
-        except OSError:  # none came, or our last answer met a closed port
-            return False
-        now = self._wall()
-        waiting = {peer: datagram}
-        if now - self._answered > _IDLE_S:
-            self._drain(waiting)
-        for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
-            if self._process(waiting[peer], peer, now):
-                return True
-        return False
+        while self._pending is None:
+            try:
+                datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
+            except OSError:  # none came, or our last answer met a closed port
+                return False
+            now = self._wall()
+            waiting = {peer: datagram}
+            if now - self._answered > _IDLE_S:
+                self._drain(waiting)
+            asked = Asked.NOTHING
+            for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
+                asked = self._process(waiting[peer], peer, now)
+                if asked is not Asked.NOTHING:
+                    break
+            if asked in (Asked.NOTHING, Asked.REPEAT):
+                return False
+        return True
 
-    def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
-        """Process one datagram; returns whether it requests a step."""
+    def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> Asked:
+        """Process one datagram; returns what it asks for. A request of a step is pending from now on."""
         request = self.end.receive(datagram, peer, now)
         if request.note:
             self._say(request.note)
-        if request.asked is Asked.NOTHING:
-            return False
-        self._peer = peer
         if request.asked is Asked.REPEAT:
+            self._peer = peer
             self._send(self.end.repeat(now))
             self._answered = now
-            return False
-        self._pending = request
-        return True
+        elif request.asked in (Asked.STEP, Asked.RESTART):
+            self._peer, self._pending = peer, request
+        return request.asked
 
     def _drain(self, waiting: dict[tuple[str, int], bytes]) -> None:
         """Read the waiting datagrams; of each sender the last frame counts, or its last datagram if there is no
@@ -129,15 +130,20 @@ class JsonHost:
             restart(plant)
             self.boots += 1
         actuators = plant.vehicle.v.actuators
-        actuators.controls[:] = controls(servos.pulses, self._is_reversible)
+        actuators.controls[:] = self._controls.of(servos.pulses)
         actuators.pwm[:] = servos.pulses[:16]
         count = ticks(servos.rate)
         if until_us is not None:
             count = min(count, max((until_us - self._clock()) // TICK_US, 1))
+        parts = lines(servos.rate)
+        before = self._lines.state() if parts > 1 else ()
         for _ in range(count):
             plant.tick()
+        answers = self._lines.lines(before, parts)
         self._answered = self._wall()
-        self._send(self.end.answer(self._lines.line(), self._answered))
+        self.end.answer(answers, self._answered)
+        for line in answers:
+            self._send(line)
 
     def _send(self, line: bytes) -> None:
         try:
