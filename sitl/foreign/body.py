@@ -65,12 +65,15 @@ class BodyLines:
         if slow != self._seen:
             self._seen, self._extras = slow, self._others(slow)
         now, end_us, extras = self._motion(), self._clock(), self._extras
+        if count == 1:
+            return [motion.encode((end_us * _S, *now), extras)]
+        felt, place, began_us = now[:_PLACE], now[_PLACE:], end_us - TICK_US
         made = []
         for k in range(1, count):
-            share, us = k / count, end_us - TICK_US + k * TICK_US // count
-            between = (a + share * (b - a) for a, b in zip(before[_PLACE:], now[_PLACE:]))
-            made.append(motion.encode((us * _S, *now[:_PLACE], *between), extras))
-        made.append(motion.encode((end_us * _S, *now), extras))
+            share = k / count
+            between = [a + share * (b - a) for a, b in zip(before[_PLACE:], place)]
+            made.append(motion.encode(((began_us + k * TICK_US // count) * _S, *felt, *between), extras, is_short=True))
+        made.append(motion.encode((end_us * _S, *now), extras, is_short=True))
         return made
 
     def _others(self, slow: tuple[Any, ...]) -> str:

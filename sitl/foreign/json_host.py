@@ -20,6 +20,8 @@ _GATHERED = 10_000
 """Largest number of waiting datagrams that are read before answering, so that nobody can prevent an answer."""
 _IDLE_S = 0.01
 """Time without an answer of ours after which waiting datagrams are read through [s]."""
+_ENOUGH = (Asked.NOTHING, Asked.REPEAT)
+"""What is asked for when the caller gets a turn without a step."""
 
 
 class JsonHost:
@@ -84,17 +86,21 @@ class JsonHost:
             except OSError:  # none came, or our last answer met a closed port
                 return False
             now = self._wall()
-            waiting = {peer: datagram}
             if now - self._answered > _IDLE_S:
-                self._drain(waiting)
-            asked = Asked.NOTHING
-            for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
-                asked = self._process(waiting[peer], peer, now)
-                if asked is not Asked.NOTHING:
-                    break
-            if asked in (Asked.NOTHING, Asked.REPEAT):
+                asked = self._process_all(self._drain(datagram, peer), now)
+            else:
+                asked = self._process(datagram, peer, now)
+            if asked in _ENOUGH:
                 return False
         return True
+
+    def _process_all(self, waiting: dict[tuple[str, int], bytes], now: float) -> Asked:
+        """Process what has waited, the autopilot's datagram before those of strangers, until one is served."""
+        for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):
+            asked = self._process(waiting[peer], peer, now)
+            if asked is not Asked.NOTHING:
+                return asked
+        return Asked.NOTHING
 
     def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> Asked:
         """Process one datagram; returns what it asks for. A request of a step is pending from now on."""
@@ -109,16 +115,18 @@ class JsonHost:
             self._peer, self._pending = peer, request
         return request.asked
 
-    def _drain(self, waiting: dict[tuple[str, int], bytes]) -> None:
-        """Read the waiting datagrams; of each sender the last frame counts, or its last datagram if there is no
-        frame."""
+    def _drain(self, datagram: bytes, peer: tuple[str, int]) -> dict[tuple[str, int], bytes]:
+        """Read the datagrams that wait behind this one; of each sender the last frame counts, or its last datagram if
+        there is no frame."""
+        waiting = {peer: datagram}
         for _ in range(_GATHERED):
             try:
                 datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM, socket.MSG_DONTWAIT)
             except OSError:
-                return
+                break
             if peer not in waiting or is_frame(datagram) or not is_frame(waiting[peer]):
                 waiting[peer] = datagram
+        return waiting
 
     def step(self, until_us: int | None = None) -> None:
         """Perform the requested step and answer it; at most until ``until_us`` [us since power-on]."""

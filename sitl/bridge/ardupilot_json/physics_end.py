@@ -15,7 +15,7 @@ An answer too many would be taken as the answer to the next frame, and the autop
 ahead of its physics. So of frames that wait together only the newest counts, and a repeated one that comes right after
 our answer, which must have crossed it, is not answered.
 
-An autopilot that asks for more steps a second than physics has ticks (``lines``) gets the lines of a whole tick at once.
+An autopilot that asks for more steps a second than physics has ticks (``lines``) gets the lines of a tick at once.
 The first one answers the frame that was stepped, the others answer the frames that follow, before they come.
 """
 
@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ...core.constants import TICK_HZ
-from .servos import COUNT_MASK, ServoError, Servos, decode
+from .servos import COUNT_AT, COUNT_MASK, ServoError, Servos, decode, is_frame
 
 MOST_TICKS = 8
 """A step is no longer than 20 ms, the period of a rover's loop."""
@@ -56,6 +56,9 @@ class Request:
     servos: Servos | None = None
     note: str = ""
     """Something that people should be told."""
+
+
+_AHEAD = Request(Asked.AHEAD)
 
 
 def ticks(rate: int) -> int:
@@ -89,6 +92,8 @@ class PhysicsEnd:
         """The last answers: to the frame that was stepped, and to those that follow it."""
         self._first = 0
         """Count of the frame that was stepped."""
+        self._ahead: dict[bytes, int] = {}
+        """Of the frames that are answered before they come: the count as it is written -> the count."""
         self.refused = 0
         """Datagrams that were no frames, or of another autopilot."""
         self._stepped_any = False
@@ -96,7 +101,12 @@ class PhysicsEnd:
         self._reported: set[str] = set()
 
     def receive(self, datagram: bytes, peer: Hashable, now: float) -> Request:
-        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, unless for NOTHING."""
+        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, if it is a step."""
+        if self._ahead and peer == self.peer and is_frame(datagram):
+            number = self._ahead.pop(datagram[COUNT_AT], None)
+            if number is not None:
+                self.count, self._received_at = number, now
+                return _AHEAD
         try:
             servos = decode(datagram)
         except ServoError as error:
@@ -119,8 +129,6 @@ class PhysicsEnd:
             asked = Asked.REPEAT if known else Asked.STEP
         elif servos.number <= before and (before - servos.number) < 1 << 31:
             asked, note = Asked.RESTART, note or "the autopilot has been started anew"
-        elif known and not moved:
-            asked = Asked.AHEAD
         else:
             asked = Asked.STEP
         return Request(asked, servos, note)
@@ -128,7 +136,9 @@ class PhysicsEnd:
     def answer(self, lines: Sequence[bytes], now: float) -> None:
         """Keep the answers to the last frame and those that follow, for when one is asked for again."""
         self.lines, self._answered_at, self._stepped_any = lines, now, True
-        self._first = self.count or 0
+        self._first = first = self.count or 0
+        counts = [(first + k) & COUNT_MASK for k in range(1, len(lines))]
+        self._ahead = {number.to_bytes(4, "little"): number for number in counts}
 
     def repeat(self, now: float) -> bytes:
         """The answer to the last frame once more; ``now``: wall time [s]."""

@@ -17,6 +17,8 @@ MAGIC = {16: 18458, 32: 29569}
 _LAYOUT = {count: struct.Struct(f"<HHI{count}H") for count in MAGIC}
 _BY_SIZE = {layout.size: (MAGIC[count], layout) for count, layout in _LAYOUT.items()}
 COUNT_MASK = 0xFFFFFFFF
+COUNT_AT = slice(4, 8)
+"""Bytes of the count in a datagram."""
 
 
 class ServoError(SitlError, ValueError):
