@@ -47,6 +47,8 @@ class JsonHost:
         self.end, self._say, self._wall = PhysicsEnd(), say, clock
         self.boots = 0
         """Number of restarts of the autopilot, each with the physics."""
+        self.before_boot_us = 0
+        """Simulated time before the last of them [us]."""
         self.attach(plant)
         self._pending: Request | None = None
         self._answered = float("-inf")
@@ -135,6 +137,7 @@ class JsonHost:
             return
         plant, servos = self.plant, request.servos
         if request.asked is Asked.RESTART:
+            self.before_boot_us += self._clock()
             restart(plant)
             self.boots += 1
         actuators = plant.vehicle.v.actuators
