@@ -11,8 +11,10 @@ from typing import Any, NamedTuple, NoReturn
 from sitl import client
 from sitl.bridge.links import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink
-from sitl.client.connection import InProcess
+from sitl.client.connection import Connection, InProcess
 from sitl.client.errors import ClientError
+from sitl.client.session import RATES_HZ
+from sitl.plants.plant import is_remote
 from sitl.simulation import Simulation
 
 
@@ -91,18 +93,32 @@ class Forking(client.Client):
     """A vehicle that can be put back. What goes wrong fails the test: it raises AssertionError.
 
     Args:
-        build: makes the simulation, at power-on; called again whenever the flight is flown again for its logs.
+        build: makes the simulation, at power-on; called again whenever the flight is flown again for its logs. Or makes
+            a connection to another autopilot, whose flight cannot be flown again.
         name: for messages and files.
     """
 
     failed_fork: Kept | None = None
     """What went wrong in a fork."""
 
-    def __init__(self, build: Callable[[], Simulation], name: str = "vehicle") -> None:
+    def __init__(self, build: Callable[[], Simulation | Connection], name: str = "vehicle") -> None:
         self.build = build
-        connection = InProcess(build())
-        self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
-        super().__init__(connection, name=name)
+        made = build()
+        connection = made if isinstance(made, Connection) else InProcess(made)
+        rates = None
+        if connection.simulation is not None:
+            self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
+        else:
+            rates = {**RATES_HZ, "MISSION_CURRENT": 10}  # ours tells it without being asked
+        super().__init__(connection, name=name, rates=rates)
+
+    @property
+    def cannot_repeat(self) -> str:
+        """Why its flight cannot be flown again; "": it can."""
+        simulation = self.connection.simulation
+        if simulation is None:
+            return f"autopilot {self.connection.name}"
+        return f"physics {simulation.physics}" if is_remote(simulation.physics) else ""
 
     def set_link_faults(self, faults: LinkFaults | None) -> None:
         """As ``Client.set_link_faults``."""

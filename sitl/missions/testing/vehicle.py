@@ -75,7 +75,8 @@ class Faulty(Client):
             return Fault(self, {}, silent=True)
         if what == "link":
             return Fault(self, {}, link=faults if faults is not None else LinkFaults(loss=1.0))
-        has_motors = any(p.name == "SIM_ENGINE_FAIL" for p in self.simulation.kind.firmware.table.with_effect)
+        assert self.connection.kind is not None
+        has_motors = any(p.name == "SIM_ENGINE_FAIL" for p in self.connection.kind.firmware.table.with_effect)
         if what == "motor" and has_motors:
             return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})
         known = [name for name in FAULTS if name != "motor" or has_motors]
