@@ -15,7 +15,7 @@ from ..core.constants import TICK_HZ
 from ..physics.native.power_on import Home
 from ..vehicle.kinds import KINDS
 from ..vehicles import Airframe
-from .process import AutopilotProcess
+from .process import GRACE_S, AutopilotProcess
 
 SERIAL_PORTS = 8
 """Number of ports from the base port that it may listen on: TCP for its serial ports, and the last one, UDP, for RC."""
@@ -89,4 +89,6 @@ def start(
     if overrides:
         files["overrides.parm"] = overrides
         named.append("{folder}/overrides.parm")
-    return AutopilotProcess(command(program, home, port, base, instance, speedup, named), files, {}, folder)
+    words = command(program, home, port, base, instance, speedup, named)
+    grace_s = 0.0 if folder is None else GRACE_S  # it does not end while its physics stands, and leaves nothing behind
+    return AutopilotProcess(words, files, {}, folder, grace_s)
