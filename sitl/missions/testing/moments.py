@@ -14,16 +14,20 @@ from sitl.bridge.links.inprocess import InProcessLink
 from sitl.client.connection import Connection, InProcess
 from sitl.client.errors import ClientError
 from sitl.client.session import RATES_HZ
+from sitl.errors import OptionError
 from sitl.plants.plant import is_remote
 from sitl.simulation import Simulation
+from sitl.vehicle.faults import Failure, parameters_of
 
 
 class Said(NamedTuple):
-    """Bytes of the client; without bytes, faults that its link has from then on."""
+    """Bytes of the client, a fault that was ordered; without either, faults that its link has from then on."""
 
     time_us: int
     data: bytes
     faults: LinkFaults | None = None
+    fault: str = ""
+    """As ``Simulation.order_fault`` takes it."""
 
 
 class Script:
@@ -58,12 +62,14 @@ def repeat(
     link = InProcessLink()
     simulation.bridge.add_link(link)
     prepare(simulation)
-    for time_us, data, faults in said:
+    for time_us, data, faults, fault in said:
         if time_us > simulation.time_us:
             simulation.advance_to(time_us)
             link.receive()  # nobody reads it
         if data:
             link.send(data)
+        elif fault:
+            simulation.order_fault(fault)
         else:
             simulation.set_link_faults(faults, link)
     simulation.advance_to(end_us)
@@ -103,6 +109,8 @@ class Forking(client.Client):
 
     def __init__(self, build: Callable[[], Simulation | Connection], name: str = "vehicle") -> None:
         self.build = build
+        self._before_faults: dict[str, float] = {}
+        """Parameters of another autopilot before it failed."""
         made = build()
         connection = made if isinstance(made, Connection) else InProcess(made)
         rates = None
@@ -124,6 +132,29 @@ class Forking(client.Client):
         """As ``Client.set_link_faults``."""
         super().set_link_faults(faults)
         self.script.said.append(Said(self.simulation.time_us, b"", faults))
+
+    def order_fault(self, text: str) -> None:
+        """Let something fail or be repaired now: ``Simulation.order_fault``. Another autopilot gets SIM_ parameters."""
+        if self.connection.simulation is None:
+            self._set_fault(text)
+            return
+        self.simulation.order_fault(text)
+        self.script.said.append(Said(self.simulation.time_us, b"", fault=text))
+
+    def _set_fault(self, text: str) -> None:
+        assert self.connection.kind is not None
+        table, before = self.connection.kind.firmware.table, self._before_faults
+        if text.startswith("-"):
+            unit = text[1:].partition(":")[0]
+            self.params.update({name: before.pop(name) for name in parameters_of(unit, table) if name in before})
+            return
+        failure = Failure.of_text(text).checked(table)
+        if failure.begin or failure.end is not None:
+            raise OptionError(f"fault {text}: of another autopilot it begins now, and ends when it is repaired")
+        values = failure.values(table, {})
+        for name in values:
+            before.setdefault(name, self.params[name])
+        self.params.update(values)
 
     def raise_error(self, error: ClientError) -> NoReturn:
         try:
