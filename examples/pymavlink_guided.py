@@ -73,6 +73,9 @@ def main() -> None:
     copter = Copter(sys.argv[1] if len(sys.argv) > 1 else "udpin:0.0.0.0:14550")
     copter.stream(mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 10.0)
     copter.stream(mavlink.MAVLINK_MSG_ID_SYS_STATUS, 2.0)
+    copter.stream(mavlink.MAVLINK_MSG_ID_EKF_STATUS_REPORT, 2.0)
+    position = mavlink.EKF_POS_HORIZ_ABS  # before that a real one arms, but does not take off
+    copter.wait("EKF_STATUS_REPORT", "it knows where it is", lambda m: m.flags & position, 120.0)
     copter.link.set_mode("GUIDED")
     copter.wait("HEARTBEAT", "mode GUIDED", lambda m: copter.link.flightmode == "GUIDED", 5.0)
     ready = mavlink.MAV_SYS_STATUS_PREARM_CHECK

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl exec``: a vehicle, and an unmodified script whose clock follows the vehicle's."""
+"""``sitl exec``: a vehicle, and an unmodified script whose clock follows the vehicle's.
+
+The autopilot may be another program (``--autopilot``): its time is held by our physics.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,15 @@ import signal
 import subprocess
 from collections.abc import Callable, Iterator
 
+from ..foreign.choice import ARDUPILOT, Choice, choose
+from ..foreign.session import ArduPilotSession
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup
 from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import DEFAULT, KINDS
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
-from . import recordings, run
+from . import foreign, recordings, run
 from .status import StatusLine
 
 DEFAULT_SPEEDUP = "20"
@@ -34,6 +39,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--vehicle", choices=sorted(KINDS), default=DEFAULT)
     add_speedup(parser)
     run.add_run_options(parser)
+    foreign.add_autopilot_options(parser)
     parser.add_argument("script", nargs=argparse.REMAINDER, metavar="-- COMMAND", help="what to run")
     parser.set_defaults(function=execute)
 
@@ -56,6 +62,9 @@ def execute(options: argparse.Namespace) -> int:
     if shutil.which(command[0]) is None:
         raise OptionError(f"command {command[0]!r} is not found or cannot be run")
     parse_speedup(options.speedup)
+    choice = choose(options.autopilot, options.vehicle)
+    if choice is not None:
+        return _execute_foreign(options, choice, command)
     simulation, tcp_port, _ = run.start(options)
     command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
@@ -68,6 +77,17 @@ def execute(options: argparse.Namespace) -> int:
         simulation.close()
 
 
+def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[str]) -> int:
+    """``execute`` with the program of another autopilot."""
+    foreign.check(options, choice)
+    if choice.kind != ARDUPILOT or choice.program is None:
+        raise OptionError(f"sitl exec: {choice.name} cannot be held by a script's clock; ardupilot:PROGRAM can")
+    with foreign.opened(options, choice, None, is_relayed_by_slice=True) as flown:
+        assert isinstance(flown.session, ArduPilotSession)
+        command = [word.replace("{tcp}", str(flown.tcp_port)) for word in command]
+        return run_script(flown.session, command, options.speedup, options.duration, flown.status.refresh)
+
+
 class ScriptPace:
     """Publishes the script's clock after each slice and waits until the next is due."""
 
@@ -75,7 +95,7 @@ class ScriptPace:
         self._pacer = pacer
         self.slice_us = pacer.slice_us
 
-    def after_slice(self, simulation: Simulation) -> None:
+    def after_slice(self, simulation: Simulation | ArduPilotSession) -> None:
         """Advance the script's clock."""
         self._pacer.pace(simulation.time_us)
 
@@ -91,38 +111,44 @@ def can_warp() -> str:
 
 
 def run_script(
-    simulation: Simulation,
+    vehicle: Simulation | ArduPilotSession,
     command: list[str],
     speedup: str,
     duration_s: float | None = None,
     on_slice: Callable[[], None] = lambda: None,
 ) -> int:
-    """Run ``command`` on the simulation's clock until it ends; its exit code (128 + n for signal n).
+    """Run ``command`` on the vehicle's clock until it ends; its exit code (128 + n for signal n).
 
     After ``duration_s`` simulated seconds it is ended, which is no failure: 0.
-    At ``speedup`` "1" the script needs no clock of its own where none can be had.
+    At ``speedup`` "1" a script of our autopilot needs no clock of its own where none can be had.
 
     Raises:
         CannotBuild: this machine cannot run scripts in simulated time, and ``speedup`` is not 1.
         OptionError: the command cannot be started.
+        AutopilotEndedError: the program of another autopilot has ended.
     """
     factor = parse_speedup(speedup)
-    until = simulation.time_us + int(duration_s * 1e6) if duration_s else None
+    until = vehicle.time_us + int(duration_s * 1e6) if duration_s else None
     reason = can_warp()
-    if reason and factor != 1.0:
+    if reason and (factor != 1.0 or not isinstance(vehicle, Simulation)):
         raise CannotBuild(reason)
     with contextlib.ExitStack() as stack:
         stack.enter_context(terminable())
         page = None if reason else stack.enter_context(ClockPage())
-        pace: runner.Pace = Pacing(1.0)
-        if page is not None:
-            pace = ScriptPace(Pacer(page, "max" if factor is None else factor))
+        pace = ScriptPace(Pacer(page, "max" if factor is None else factor)) if page is not None else None
         try:
             script = subprocess.Popen(command) if page is None else start_script(command, page, ends_with_us=True)
         except OSError as error:
             raise OptionError(f"command {command[0]!r} cannot be started: {error.strerror or error}") from None
         stack.callback(end, script, page)
-        runner.serve(simulation, pace, until_us=until, running=lambda: script.poll() is None, on_slice=on_slice)
+
+        def running() -> bool:
+            return script.poll() is None
+
+        if isinstance(vehicle, Simulation):
+            runner.serve(vehicle, pace or Pacing(1.0), until_us=until, running=running, on_slice=on_slice)
+        elif pace is not None:
+            vehicle.serve_slices(pace, until_us=until, running=running, on_slice=on_slice)
         if script.poll() is None:
             return 0
     code = script.returncode

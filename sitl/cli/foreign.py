@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl run --autopilot``: a foreign autopilot in our physics and world."""
+"""``--autopilot`` of ``sitl run`` and ``sitl exec``: a foreign autopilot in our physics and world."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import signal
-import sys
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..autopilot.params import files
 from ..bridge.bridge import EPOCH_US
-from ..bridge.links import Link, open_link
+from ..bridge.links import Link, TcpServerLink, open_link
 from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
 from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
@@ -39,52 +40,74 @@ def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def fly(options: argparse.Namespace, choice: Choice) -> int:
-    """Serve until Ctrl-C, SIGTERM, the end of ``--duration`` or of the autopilot."""
-    check(options, choice)
-    speedup = parse_speedup(options.speedup)
-    plant = build_plant(options)
-    links: list[Link] = []
-    log: TlogWriter | None = None
-    messages: deque[str] = deque()
-    try:
+@dataclass
+class Flown:
+    """A foreign autopilot that flies our physics for a command."""
+
+    session: Session
+    plant: LocalPlant
+    status: PlantStatus
+    tcp_port: int
+    """First TCP port on which clients reach it; 0: it has links of its own."""
+
+
+@contextlib.contextmanager
+def opened(
+    options: argparse.Namespace, choice: Choice, speedup: float | None, is_relayed_by_slice: bool = False
+) -> Iterator[Flown]:
+    """Physics, links, log and autopilot by the options, said on the terminal; all is closed at the end.
+
+    Args:
+        options: of the command.
+        choice: the autopilot.
+        speedup: times real time; None: as fast as it goes.
+        is_relayed_by_slice: see ``ArduPilotSession``.
+    """
+    with contextlib.ExitStack() as undo, contextlib.ExitStack() as unless_opened:
+        plant = build_plant(options)
+        unless_opened.callback(plant.close)
+        links: list[Link] = []
+        log: TlogWriter | None = None
+        messages: deque[str] = deque()
         if choice.program is not None and choice.kind == ARDUPILOT:  # PX4 speaks UDP itself
             links = open_links(options)
+            for link in links:
+                unless_opened.callback(link.close)
             folder = open_folder(options.log_dir)
             name = f"{choice.kind}-{plant.vehicle.airframe.name}-{options.instance}"
             log = TlogWriter(runner.new_file(folder, name), EPOCH_US)
-        session = build_session(options, choice, plant, links, speedup, log, messages.append)
-    except BaseException:
-        plant.close()
+            undo.callback(log.close)
+        session = build_session(options, choice, plant, links, speedup, log, messages.append, is_relayed_by_slice)
+        unless_opened.pop_all()  # the session closes them
+        undo.callback(session.close)
+        print(f"{choice.name} flies {plant.vehicle.airframe.name}; physics: {plant.backend}")
         for link in links:
-            link.close()
-        raise
-    print(f"{choice.name} flies {plant.vehicle.airframe.name}; physics: {plant.backend}")
-    for link in links:
-        print(f"MAVLink on {link.name}")
-    if log is not None:
-        print(f"log: {log.path}")
-    else:
-        print(f"MAVLink of the autopilot: {session.clients}")
-    sys.stdout.flush()
+            print(f"MAVLink on {link.name}")
+        print(f"log: {log.path}" if log is not None else f"MAVLink of the autopilot: {session.clients}", flush=True)
+        status = PlantStatus(plant, messages, not options.quiet)
+        undo.callback(status.close)
+        ports = [link.local_address[1] for link in links if isinstance(link, TcpServerLink)]
+        yield Flown(session, plant, status, ports[0] if ports else 0)
+
+
+def fly(options: argparse.Namespace, choice: Choice) -> int:
+    """Serve until Ctrl-C, SIGTERM, the end of ``--duration`` or of the autopilot."""
+    check(options, choice)
     stopped: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda n, _: stopped.append(n))
     until_us = int(options.duration * 1e6) if options.duration else math.inf
-    status = PlantStatus(plant, messages, not options.quiet)
-    clock = plant.vehicle.reader.field("time_us")
-    try:
-        session.serve(lambda: not stopped and clock() < until_us, status.refresh)
-    finally:
-        status.close()
-        session.close()
-        if log is not None:
-            log.close()
+    with opened(options, choice, parse_speedup(options.speedup)) as flown:
+        for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
+            signal.signal(number, lambda n, _: stopped.append(n))
+        clock = flown.plant.vehicle.reader.field("time_us")
+        flown.session.serve(lambda: not stopped and clock() < until_us, flown.status.refresh)
     return 0
 
 
 def check(options: argparse.Namespace, choice: Choice) -> None:
     """OptionError for an option that a foreign autopilot cannot have."""
+    for name in ("rec", "from_file"):
+        if getattr(options, name, None) is not None:
+            raise OptionError(f"--{name.removesuffix('_file')}: a run of {choice.kind} cannot be flown again")
     if getattr(options, "lockstep", False):
         raise OptionError(f"--lockstep: {choice.kind} knows no grants; environments hold its time (autopilot=)")
     if link_faults(options) is not None:
@@ -127,6 +150,7 @@ def build_session(
     speedup: float | None,
     log: TlogWriter | None,
     say: Callable[[str], None],
+    is_relayed_by_slice: bool = False,
 ) -> Session:
     """The session of the autopilot on its plant; ``speedup``: times real time, None: as fast as it goes."""
     clock = plant.vehicle.reader.field("time_us")
@@ -139,6 +163,7 @@ def build_session(
         return ArduPilotSession(
             choice, plant, links, instance=options.instance, speedup=speedup or FASTEST,
             params=[Path(path) for path in options.params], folder=options.autopilot_dir, say=say, tap=tap,
+            is_relayed_by_slice=is_relayed_by_slice,
         )  # fmt: skip
     values: dict[str, float] = {}
     for path in options.params:

@@ -19,6 +19,7 @@ from .endpoint import Endpoint, Inbox
 
 if TYPE_CHECKING:
     from ..simulation import Simulation
+    from ..vehicle.kind import Kind
 
 REQUEST_MESSAGE, AUTOPILOT_VERSION = command_number("REQUEST_MESSAGE"), message("AUTOPILOT_VERSION").id
 ACCEPTED = 0
@@ -52,6 +53,8 @@ class Connection:
     """Whether it has proved to be one; a vehicle in this process need not."""
     simulation: Simulation | None = None
     """The vehicle itself, when it is in this process."""
+    kind: Kind | None = None
+    """Of vehicle, when its physics is in this process."""
     link: InProcessLink | None = None
     """Its end of the way to it, then."""
 
@@ -171,6 +174,7 @@ class InProcess(Connection):
     ) -> None:
         super().__init__(Endpoint(link, system, component), inbox)
         self.simulation: Simulation = simulation
+        self.kind = simulation.kind
         self._advance_to = advance or simulation.advance_to
         self.link = self.endpoint.link
         simulation.bridge.add_link(self.endpoint.link)

@@ -465,14 +465,14 @@ class Session:
     @property
     def kind(self) -> str:
         """ "copter", "rover" ...; "vehicle" when it is in another process."""
-        simulation = self.connection.simulation
-        return simulation.kind.name if simulation is not None else "vehicle"
+        kind = self.connection.kind
+        return kind.name if kind is not None else "vehicle"
 
     @property
     def flies(self) -> bool:
         """Whether it takes off; a vehicle in another process is taken for one that does."""
-        simulation = self.connection.simulation
-        return simulation is None or simulation.kind.flies
+        kind = self.connection.kind
+        return kind is None or kind.flies
 
     # ------------------------------------------------------------------ failures
 

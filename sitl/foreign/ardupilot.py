@@ -15,7 +15,7 @@ from ..core.constants import TICK_HZ
 from ..physics.native.power_on import Home
 from ..vehicle.kinds import KINDS
 from ..vehicles import Airframe
-from .process import AutopilotProcess
+from .process import GRACE_S, AutopilotProcess
 
 SERIAL_PORTS = 8
 """Number of ports from the base port that it may listen on: TCP for its serial ports, and the last one, UDP, for RC."""
@@ -30,11 +30,14 @@ _DOWN = 25
 def defaults(airframe: Airframe, sees_ground: bool) -> str:
     """Parameters with which ArduPilot flies or drives this airframe, as a file.
 
-    The airframe's own are ArduPilot's names already. A step of the physics for each loop of a copter; a version that
-    does not know a name ignores it.
+    The airframe's own are ArduPilot's names already; a version that does not know a name ignores it. Its battery is its
+    own, with the voltage of ours when full.
     """
     of_kind = KINDS[airframe.kind].ardupilot_parameters
-    values: dict[str, float] = {**of_kind, "SIM_RATE_HZ": TICK_HZ, **airframe.parameters}
+    battery = float(airframe.value("battery_voltage_full"))
+    values: dict[str, float] = {
+        "SIM_RATE_HZ": TICK_HZ, "SIM_BATT_VOLTAGE": battery, **of_kind, **airframe.parameters
+    }  # fmt: skip
     if sees_ground:
         low, high = float(airframe.value("rangefinder_min")), float(airframe.value("rangefinder_max"))
         values |= {
@@ -86,4 +89,6 @@ def start(
     if overrides:
         files["overrides.parm"] = overrides
         named.append("{folder}/overrides.parm")
-    return AutopilotProcess(command(program, home, port, base, instance, speedup, named), files, {}, folder)
+    words = command(program, home, port, base, instance, speedup, named)
+    grace_s = 0.0 if folder is None else GRACE_S  # it does not end while its physics stands, and leaves nothing behind
+    return AutopilotProcess(words, files, {}, folder, grace_s)

@@ -9,6 +9,7 @@ from typing import Any
 
 from ..bridge.ardupilot_json import motion
 from ..core.algebra import euler_of
+from ..core.constants import TICK_US
 from ..plants.plant import SimulatedVehicle
 
 CLOCK_LEAD = 1e-9
@@ -19,6 +20,9 @@ differences a rounding error below 2500 us it would lose a microsecond now and t
 outweighs rounding.
 """
 _S = 1e-6 * (1.0 + CLOCK_LEAD)
+_PLACE = 6
+"""Where position, attitude and velocity begin in a motion."""
+Motion = tuple[float, ...]
 
 
 class BodyLines:
@@ -43,12 +47,34 @@ class BodyLines:
         self._seen: tuple[Any, ...] = ()
         self._extras = ""
 
-    def line(self) -> bytes:
-        """The motion now as a JSON line: the state at the end of a tick."""
+    def state(self) -> Motion:
+        """Rates and force (means over the last tick), position, attitude, velocity: 16 numbers."""
+        return self._motion()
+
+    def lines(self, before: Motion, count: int) -> list[bytes]:
+        """The last tick as JSON lines.
+
+        The last line is the state at the end of the tick. Those before it are on the straight way there; rates and
+        force are the tick's means in all of them, so that an IMU that sums them up gets the same.
+
+        Args:
+            before: state at its beginning; needed for more than one line.
+            count: number of lines; the tick is cut into parts of whole microseconds.
+        """
         slow = self._slow()
         if slow != self._seen:
             self._seen, self._extras = slow, self._others(slow)
-        return motion.encode((self._clock() * _S, *self._motion()), self._extras)
+        now, end_us, extras = self._motion(), self._clock(), self._extras
+        if count == 1:
+            return [motion.encode((end_us * _S, *now), extras)]
+        felt, place, began_us = now[:_PLACE], now[_PLACE:], end_us - TICK_US
+        made = []
+        for k in range(1, count):
+            share = k / count
+            between = [a + share * (b - a) for a, b in zip(before[_PLACE:], place)]
+            made.append(motion.encode(((began_us + k * TICK_US // count) * _S, *felt, *between), extras, is_short=True))
+        made.append(motion.encode((end_us * _S, *now), extras, is_short=True))
+        return made
 
     def _others(self, slow: tuple[Any, ...]) -> str:
         """Range-finder, battery, and apparent wind when there is wind; they change less often than the motion."""

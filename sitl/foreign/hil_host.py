@@ -38,6 +38,7 @@ class HilHost:
     ) -> None:
         self.boots = 0
         """Number of autopilots that have connected."""
+        self.before_boot_us = 0
         self._wall, self._connection, self._received = clock, None, b""
         self._due = float("-inf")
         self.attach(plant)

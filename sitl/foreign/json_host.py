@@ -7,8 +7,8 @@ import socket
 import time
 from collections.abc import Callable
 
-from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, ticks
-from ..bridge.ardupilot_json.servos import controls, is_frame
+from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, lines, ticks
+from ..bridge.ardupilot_json.servos import Controls, is_frame
 from ..core.constants import TICK_US
 from ..errors import OptionError
 from ..plants.json_link import LOCAL, PORT, WAIT_S, parse_address, wait_in_kernel
@@ -20,6 +20,8 @@ _GATHERED = 10_000
 """Largest number of waiting datagrams that are read before answering, so that nobody can prevent an answer."""
 _IDLE_S = 0.01
 """Time without an answer of ours after which waiting datagrams are read through [s]."""
+_ENOUGH = (Asked.NOTHING, Asked.REPEAT)
+"""What is asked for when the caller gets a turn without a step."""
 
 
 class JsonHost:
@@ -45,6 +47,8 @@ class JsonHost:
         self.end, self._say, self._wall = PhysicsEnd(), say, clock
         self.boots = 0
         """Number of restarts of the autopilot, each with the physics."""
+        self.before_boot_us = 0
+        """Simulated time before the last of them [us]."""
         self.attach(plant)
         self._pending: Request | None = None
         self._answered = float("-inf")
@@ -63,7 +67,7 @@ class JsonHost:
         self.plant = plant
         self._lines = BodyLines(plant.vehicle)
         self._clock: Callable[[], int] = plant.vehicle.reader.field("time_us")
-        self._is_reversible = plant.vehicle.kind.has_reversible_outputs
+        self._controls = Controls(plant.vehicle.kind.has_reversible_outputs)
 
     @property
     def address(self) -> tuple[str, int]:
@@ -78,46 +82,53 @@ class JsonHost:
 
     def listen(self) -> bool:
         """Wait for a frame that requests a step, unless one is pending; returns whether there is one."""
-        if self._pending is not None:
-            return True
-        try:
-            datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
-        except OSError:  # none came, or our last answer met a closed port
-            return False
-        now = self._wall()
-        waiting = {peer: datagram}
-        if now - self._answered > _IDLE_S:
-            self._drain(waiting)
-        for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):  # the autopilot before strangers
-            if self._process(waiting[peer], peer, now):
-                return True
-        return False
+        while self._pending is None:
+            try:
+                datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
+            except OSError:  # none came, or our last answer met a closed port
+                return False
+            now = self._wall()
+            if now - self._answered > _IDLE_S:
+                asked = self._process_all(self._drain(datagram, peer), now)
+            else:
+                asked = self._process(datagram, peer, now)
+            if asked in _ENOUGH:
+                return False
+        return True
 
-    def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> bool:
-        """Process one datagram; returns whether it requests a step."""
+    def _process_all(self, waiting: dict[tuple[str, int], bytes], now: float) -> Asked:
+        """Process what has waited, the autopilot's datagram before those of strangers, until one is served."""
+        for peer in sorted(waiting, key=lambda peer: peer != self.end.peer):
+            asked = self._process(waiting[peer], peer, now)
+            if asked is not Asked.NOTHING:
+                return asked
+        return Asked.NOTHING
+
+    def _process(self, datagram: bytes, peer: tuple[str, int], now: float) -> Asked:
+        """Process one datagram; returns what it asks for. A request of a step is pending from now on."""
         request = self.end.receive(datagram, peer, now)
         if request.note:
             self._say(request.note)
-        if request.asked is Asked.NOTHING:
-            return False
-        self._peer = peer
         if request.asked is Asked.REPEAT:
+            self._peer = peer
             self._send(self.end.repeat(now))
             self._answered = now
-            return False
-        self._pending = request
-        return True
+        elif request.asked in (Asked.STEP, Asked.RESTART):
+            self._peer, self._pending = peer, request
+        return request.asked
 
-    def _drain(self, waiting: dict[tuple[str, int], bytes]) -> None:
-        """Read the waiting datagrams; of each sender the last frame counts, or its last datagram if there is no
-        frame."""
+    def _drain(self, datagram: bytes, peer: tuple[str, int]) -> dict[tuple[str, int], bytes]:
+        """Read the datagrams that wait behind this one; of each sender the last frame counts, or its last datagram if
+        there is no frame."""
+        waiting = {peer: datagram}
         for _ in range(_GATHERED):
             try:
                 datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM, socket.MSG_DONTWAIT)
             except OSError:
-                return
+                break
             if peer not in waiting or is_frame(datagram) or not is_frame(waiting[peer]):
                 waiting[peer] = datagram
+        return waiting
 
     def step(self, until_us: int | None = None) -> None:
         """Perform the requested step and answer it; at most until ``until_us`` [us since power-on]."""
@@ -126,18 +137,24 @@ class JsonHost:
             return
         plant, servos = self.plant, request.servos
         if request.asked is Asked.RESTART:
+            self.before_boot_us += self._clock()
             restart(plant)
             self.boots += 1
         actuators = plant.vehicle.v.actuators
-        actuators.controls[:] = controls(servos.pulses, self._is_reversible)
+        actuators.controls[:] = self._controls.of(servos.pulses)
         actuators.pwm[:] = servos.pulses[:16]
         count = ticks(servos.rate)
         if until_us is not None:
             count = min(count, max((until_us - self._clock()) // TICK_US, 1))
+        parts = lines(servos.rate)
+        before = self._lines.state() if parts > 1 else ()
         for _ in range(count):
             plant.tick()
+        answers = self._lines.lines(before, parts)
         self._answered = self._wall()
-        self._send(self.end.answer(self._lines.line(), self._answered))
+        self.end.answer(answers, self._answered)
+        for line in answers:
+            self._send(line)
 
     def _send(self, line: bytes) -> None:
         try:

@@ -18,7 +18,7 @@ from ..bridge.frame import CHECKSUM, HEADER_V1, HEADER_V2, MARK_V1, MARK_V2, SIG
 from ..errors import OptionError, SitlError
 
 OUTPUT = "output.txt"
-_GRACE_S = 3.0
+GRACE_S = 3.0
 _LAST_LINES = 6
 
 
@@ -34,6 +34,7 @@ class AutopilotProcess:
         files: files to write into the folder first: name -> text.
         environment: environment variables added to ours.
         folder: working folder; None: a temporary one that is deleted at the end.
+        grace_s: wall time that it has to end when it is asked to [s]; 0: it is killed at once.
 
     Raises:
         OptionError: it cannot be started.
@@ -45,8 +46,9 @@ class AutopilotProcess:
         files: Mapping[str, str],
         environment: Mapping[str, str],
         folder: Path | None = None,
+        grace_s: float = GRACE_S,
     ) -> None:
-        self._owned = folder is None
+        self._owned, self._grace_s = folder is None, grace_s
         self.folder = Path(tempfile.mkdtemp(prefix="gym-sitl-")) if folder is None else folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self.command = [word.replace("{folder}", str(self.folder)) for word in command]
@@ -106,10 +108,10 @@ class AutopilotProcess:
     def stop(self) -> None:
         """End the process and its children; may be called twice."""
         atexit.unregister(self.stop)
-        if self._process.poll() is None:
+        if self._process.poll() is None and self._grace_s > 0.0:
             self._signal(signal.SIGTERM)
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(timeout=_GRACE_S)
+                self._process.wait(timeout=self._grace_s)
         self._watch_no_more()
         self._signal(signal.SIGKILL)  # also what is left of its group
         self._process.wait()

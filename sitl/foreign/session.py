@@ -15,6 +15,7 @@ from ..plants.json_link import PORT
 from ..plants.local import LocalPlant
 from ..plants.physics_server import PhysicsServer
 from ..run.pacing import Pacing
+from ..run.runner import Pace
 from . import ardupilot, px4
 from .choice import Choice
 from .json_host import JsonHost
@@ -56,6 +57,7 @@ class ArduPilotSession:
         folder: see ``AutopilotProcess``.
         say: prints a message for the user.
         tap: see ``Relay``.
+        is_relayed_by_slice: clients are served by ``serve_slices`` alone, else by a thread.
 
     Raises:
         OptionError: no port, or a program that cannot be started.
@@ -73,6 +75,7 @@ class ArduPilotSession:
         folder: Path | None = None,
         say: Say = lambda text: None,
         tap: Tap = lambda frame: None,
+        is_relayed_by_slice: bool = False,
     ) -> None:
         self.plant = plant
         self.process: AutopilotProcess | None = None
@@ -91,7 +94,8 @@ class ArduPilotSession:
                 )  # fmt: skip
                 undo.callback(self.process.stop)
                 self.relay = Relay((HOST, base), links, tap)
-                self.relay.start()
+                if not is_relayed_by_slice:
+                    self.relay.start()
             undo.pop_all()
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
@@ -103,6 +107,42 @@ class ArduPilotSession:
             return running()
 
         self.host.serve(goes_on, on_turn)
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since the start; reboots do not set it back [us]."""
+        return self.host.before_boot_us + self.host.time_us
+
+    def serve_slices(
+        self,
+        pace: Pace[ArduPilotSession],
+        *,
+        until_us: int | None = None,
+        running: Callable[[], bool] = lambda: True,
+        on_slice: Callable[[], None] = lambda: None,
+    ) -> None:
+        """As ``sitl.run.runner.serve``. Clients and autopilot hear each other between two slices, when the autopilot
+        has done all that it does until then.
+
+        Raises:
+            AutopilotEndedError: the program has ended.
+        """
+        host, relay, process = self.host, self.relay, self.process
+        assert relay is not None and process is not None
+        while running() and (until_us is None or self.time_us < until_us):
+            goal = self.time_us + pace.slice_us
+            goal = goal if until_us is None else min(goal, until_us)
+            while running():
+                if not host.listen():
+                    process.check()
+                    relay.turn(0.0)
+                elif self.time_us < goal:
+                    host.step(goal - host.before_boot_us)
+                else:
+                    break
+            relay.turn(0.0)
+            on_slice()
+            pace.after_slice(self)
 
     def close(self) -> None:
         if self.process is not None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from sitl import vehicles
 from sitl.bridge.links.inprocess import InProcessLink
+from sitl.client.endpoint import Inbox
 from sitl.envs.mavlink.foreign import Foreign, launch
 from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, FORMS, Choice, choose
@@ -50,7 +51,7 @@ class ForeignVehicle:
         self.v = plant.vehicle.v
         """Only the physics in it is valid: the autopilot is the foreign one."""
         self.before_boot_us = 0
-        self.connection: Foreign = launch(choice, plant, {}, 0, _PATIENCE_S)
+        self.connection: Foreign = launch(choice, plant, {}, Inbox(), _PATIENCE_S)
         self.connection.tap = self._tell
         self._links: list[InProcessLink] = []
         self._cutter = Cutter()

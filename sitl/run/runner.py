@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from ..bridge.channel import COMPONENT
 from ..bridge.links import Link, LinkAddressError, LogLink
@@ -36,12 +36,16 @@ LOG_STREAMS = {
 """Rates [Hz] of the stream groups in a run's own log."""
 
 
-class Pace(Protocol):
+Paced = TypeVar("Paced", contravariant=True)
+"""What is paced."""
+
+
+class Pace(Protocol[Paced]):
     """Decides how much simulated time goes by between two looks at the wall clock."""
 
     slice_us: int
 
-    def after_slice(self, simulation: Simulation) -> None:
+    def after_slice(self, simulation: Paced) -> None:
         """Called after each slice: wait as long as need be."""
         ...
 
@@ -121,7 +125,7 @@ def open_dataflash(simulation: Simulation, path: Path) -> DataFlash:
 
 def serve(
     simulation: Simulation,
-    pace: Pace,
+    pace: Pace[Simulation],
     *,
     until_us: int | None = None,
     running: Callable[[], bool] = lambda: True,

@@ -12,8 +12,12 @@ import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
-from sitl.envs import EnvOptionError
+from sitl.client.connection import Connection
+from sitl.client.endpoint import Endpoint
+from sitl.envs import EnvOptionError, NotReadyError
 from sitl.envs.mavlink.foreign import physics_port
+from sitl.envs.mavlink.preparation import set_intervals
+from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.errors import LinkLostError
 
@@ -92,6 +96,32 @@ def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, 
             env.close()
         finally:
             program.kill()
+
+
+class Refusing(Connection):
+    """Sends a message each 25 ms at most, as an ArduPilot with 50 loops a second."""
+
+    def __init__(self, is_exact: bool, least_us: int = 25_000) -> None:
+        super().__init__(Endpoint(), StepTelemetry(1))
+        self.inbox.scans_by_mavlink, self.is_exact, self.least_us = False, is_exact, least_us
+        self.asked: list[tuple[int, int]] = []
+
+    @property
+    def name(self) -> str:
+        return "refusing"
+
+    def command(self, name: str, *params, **named) -> int:
+        self.asked.append(params)
+        return 0 if params[1] >= self.least_us else 2
+
+
+def test_a_vehicle_that_cannot_send_so_often_is_asked_for_less():
+    link = Refusing(is_exact=False)
+    set_intervals(link, 20_000)
+    assert link.asked == [(32, 20_000), (32, 25_000), (30, 20_000), (30, 25_000)]
+    for slow in (Refusing(is_exact=True), Refusing(is_exact=False, least_us=41_000)):
+        with pytest.raises(NotReadyError, match="does not send LOCAL_POSITION_NED every 20 ms"):
+            set_intervals(slow, 20_000)
 
 
 def free_instance():

@@ -32,8 +32,10 @@ def test_ardupilots_parameters_are_the_airframes():
     text = ardupilot.defaults(vehicles.load("erle_copter"), sees_ground=True)
     values = dict(line.split(" ") for line in text.splitlines())
     assert values["FRAME_CLASS"] == "1" and values["FRAME_TYPE"] == "1" and values["MOT_SPIN_MAX"] == "0.838"
-    assert values["SIM_RATE_HZ"] == "400" and values["RNGFND1_TYPE"] == "100" and values["RNGFND1_MAX_CM"] == "5000"
-    assert "RNGFND1_TYPE" not in ardupilot.defaults(vehicles.load("erle_rover"), sees_ground=False)
+    assert values["SIM_RATE_HZ"] == "800" and values["SIM_BATT_VOLTAGE"] == "12.6"
+    assert values["RNGFND1_TYPE"] == "100" and values["RNGFND1_MAX_CM"] == "5000"
+    rover = ardupilot.defaults(vehicles.load("erle_rover"), sees_ground=False)
+    assert "RNGFND1_TYPE" not in rover and "SIM_RATE_HZ 400\n" in rover and "SIM_BATT_VOLTAGE 50.4\n" in rover
 
 
 def test_px4s_parameters_are_the_airframes():
@@ -85,8 +87,8 @@ def test_a_program_that_ends_is_told_of_with_its_last_words():
     process.stop()
 
 
-def test_a_program_that_does_not_heed_and_its_children_are_ended(monkeypatch):
-    monkeypatch.setattr("sitl.foreign.process._GRACE_S", 0.2)
+@pytest.mark.parametrize("grace_s", [0.2, 0.0])
+def test_a_program_that_does_not_heed_and_its_children_are_ended(grace_s):
     child = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print(1, flush=True); time.sleep(60)"
     process = AutopilotProcess(
         python(
@@ -98,6 +100,7 @@ def test_a_program_that_does_not_heed_and_its_children_are_ended(monkeypatch):
         ),
         {},
         {},
+        grace_s=grace_s,
     )
     while len(process.last_output().split(" / ")) < 2:
         process.check()

@@ -12,9 +12,13 @@ import sys
 import pytest
 
 from sitl.bridge.dialect import message
-from sitl.errors import OptionError
+from sitl.errors import LinkLostError, OptionError
 from sitl.logs.tlog import read_tlog
 from sitl.missions import compare
+from sitl.missions.testing.factory import VehicleFactory
+from sitl.missions.testing.golden import GoldenStore
+from sitl.missions.testing.setup import Defaults
+from sitl.missions.testing.vehicle import Copter
 from sitl.simulation import Simulation
 from tests.foreign.arducopter_stand_in import install
 
@@ -76,6 +80,71 @@ def test_ctrl_c_ends_the_run_and_the_program(arducopter, tmp_path):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=30)
     assert process.returncode == 0
+
+
+@pytest.mark.slow
+def test_a_script_is_run_on_the_clock_of_a_program(arducopter, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    words = ("--speedup", "20", "--out", "none", "--tcp", "0", "--log-dir", tmp_path / "logs")
+    run = ("--autopilot", f"ardupilot:{arducopter}", *words, "--", sys.executable, script, "{tcp}")
+    with command("exec", "--vehicle", "copter", *run, cwd=tmp_path) as process:
+        out, err = process.communicate(timeout=200)
+    assert process.returncode == 3, err
+    slept, passed = map(float, line_with(iter(out.split("\n")), "slept").split()[1:])
+    assert slept == pytest.approx(5.0, abs=0.1) and passed == pytest.approx(5.0, abs=0.5)
+
+
+SCRIPT = """
+import sys, time
+from pymavlink import mavutil
+
+link = mavutil.mavlink_connection(f"tcp:127.0.0.1:{sys.argv[1]}")
+link.wait_heartbeat()
+link.mav.command_long_send(1, 1, 511, 0, 30, 20000, 0, 0, 0, 0, 0)
+first, began = link.recv_match(type="ATTITUDE", blocking=True), time.monotonic()
+time.sleep(5.0)
+while link.recv_match(type="ATTITUDE", blocking=False):
+    pass
+last = link.recv_match(type="ATTITUDE", blocking=True)
+print("slept", time.monotonic() - began, (last.time_boot_ms - first.time_boot_ms) * 1e-3)
+raise SystemExit(3)
+"""
+
+
+@pytest.mark.parametrize("words", [("--rec", "a.rec"), ("--lockstep",)])
+def test_what_only_our_own_autopilot_has_is_refused(tmp_path, capsys, words):
+    from sitl.cli import main
+
+    assert main(["run", "copter", "--autopilot", f"ardupilot:{install(tmp_path)}", *words]) == 2
+    assert words[0] in capsys.readouterr().err
+
+
+def test_a_program_that_runs_already_cannot_be_held_by_a_script(capsys):
+    from sitl.cli import main
+
+    assert main(["exec", "--autopilot", "ardupilot:tcp:127.0.0.1:5760", "--", "true"]) == 2
+    assert "ardupilot:PROGRAM can" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_test_of_pytest_is_flown_by_a_program(arducopter, tmp_path):
+    factory = VehicleFactory(Defaults(autopilot=f"ardupilot:{arducopter}"), GoldenStore(tmp_path), tmp_path / "logs")
+    try:
+        copter = factory("copter", wind=(5.0, 0.0))
+        assert isinstance(copter, Copter) and copter.kind == "copter"
+        copter.takeoff(5.0)
+        assert copter.height == pytest.approx(5.0, abs=0.5)
+        assert copter.connection.plant.vehicle.v.physics.wind.vel[0] < -2.0
+        with pytest.raises(OptionError, match="cannot be flown again"):
+            copter.save_recording(tmp_path / "flight.rec")
+        (_, lines), *_ = factory.keep_logs(None)
+        assert lines[-1].startswith("no logs: autopilot")
+        copter.connection.process._signal(9)
+        with pytest.raises(LinkLostError, match="ended by signal 9"):
+            copter.delay(1.0)
+    finally:
+        factory.close()
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 
 from sitl.bridge.ardupilot_json import motion
 from sitl.bridge.ardupilot_json.autopilot_end import AutopilotEnd
-from sitl.bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, ticks
+from sitl.bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, lines, ticks
 from sitl.bridge.ardupilot_json.servos import Servos, decode, encode
 
 HERE, THERE = ("127.0.0.1", 1111), ("127.0.0.1", 2222)
@@ -28,6 +28,13 @@ def test_a_step_is_whole_ticks_no_longer_than_asked_for_but_for_the_first(rate, 
     assert ticks(rate) == steps
 
 
+@pytest.mark.parametrize(
+    ("rate", "count"), [(0, 1), (50, 1), (400, 1), (401, 1), (799, 1), (801, 2), (1200, 3), (1201, 3), (9999, 5)]
+)
+def test_a_tick_is_told_in_as_many_lines_as_are_asked_for(rate, count):
+    assert lines(rate) == count
+
+
 class Physics:
     """The end, and what is stepped for it."""
 
@@ -43,7 +50,8 @@ class Physics:
         if request.asked is Asked.RESTART:
             self.steps, self.restarts = 0, self.restarts + 1
         self.steps += 1
-        return self.end.answer(b"line %d" % self.steps, self.now)
+        self.end.answer([b"line %d" % self.steps], self.now)
+        return self.end.lines[0]
 
 
 def test_each_new_frame_is_one_step():
@@ -109,6 +117,52 @@ def test_a_second_autopilot_is_refused_while_the_first_lives_and_told_once():
     assert physics.end.receive(frame(0), THERE, physics.now + 0.02).note == ""
     assert physics.receive(frame(1)) == b"line 2"
     assert physics.end.refused == 2
+
+
+class TwoLines:
+    """The end that answers each step with two lines at once."""
+
+    def __init__(self) -> None:
+        self.end, self.steps, self.now = PhysicsEnd(), 0, 0.0
+
+    def receive(self, datagram: bytes, peer=HERE) -> Asked:
+        asked = self.end.receive(datagram, peer, self.now).asked
+        if asked in (Asked.STEP, Asked.RESTART):
+            self.steps += 1
+            self.end.answer([b"line %d, %d" % (self.steps, half) for half in (1, 2)], self.now)
+        return asked
+
+
+def test_of_two_lines_the_second_answers_the_next_frame_before_it_comes():
+    physics = TwoLines()
+    asked = [physics.receive(frame(n, 800 + (n > 0))) for n in range(6)]
+    assert asked == 3 * [Asked.STEP, Asked.AHEAD] and physics.steps == 3
+
+
+@pytest.mark.parametrize(("lost", "line"), [(4, b"line 3, 1"), (5, b"line 3, 2")])
+def test_a_lost_one_of_two_lines_is_sent_again(lost, line):
+    physics = TwoLines()
+    for number in range(lost + 1):
+        physics.receive(frame(number, 800))
+    physics.now += 10.0
+    assert physics.receive(frame(lost, 800)) is Asked.REPEAT and physics.end.repeat(physics.now) == line
+    rest = [physics.receive(frame(n, 800)) for n in range(lost + 1, 8)]
+    assert rest == [Asked.AHEAD, Asked.STEP, Asked.AHEAD][lost == 5 :] and physics.steps == 4
+
+
+def test_an_autopilot_that_was_started_anew_between_two_lines_finds_physics_at_power_on():
+    physics = TwoLines()
+    for number in range(5):
+        physics.receive(frame(number, 800))
+    assert physics.receive(frame(0, 800)) is Asked.RESTART
+    physics.now += 1.0
+    assert physics.receive(frame(1, 800), THERE) is Asked.STEP  # another one, which was sent nothing yet
+
+
+def test_two_lines_over_the_end_of_the_count():
+    physics = TwoLines()
+    asked = [physics.receive(frame(n & 0xFFFFFFFF, 800)) for n in range(0xFFFFFFFF, 0x100000002)]
+    assert asked == [Asked.STEP, Asked.AHEAD, Asked.STEP]
 
 
 def test_bytes_that_are_no_frame_are_counted_and_told_once():

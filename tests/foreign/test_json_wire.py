@@ -13,7 +13,7 @@ import pytest
 from sitl.bridge.ardupilot_json.motion import MotionError, extra
 from sitl.bridge.ardupilot_json.motion import decode as decode_motion
 from sitl.bridge.ardupilot_json.motion import encode as encode_motion
-from sitl.bridge.ardupilot_json.servos import ServoError, Servos, control, controls, decode, encode
+from sitl.bridge.ardupilot_json.servos import Controls, ServoError, Servos, decode, encode
 
 
 @pytest.mark.parametrize(("pulses", "magic", "size"), [(16, 18458, 40), (32, 29569, 72)])
@@ -50,12 +50,12 @@ def test_only_16_or_32_pulses_make_a_frame():
     [(0, 0.0, 0.0), (900, 0.0, -1.0), (1000, 0.0, -1.0), (1250, 0.25, -0.5), (1500, 0.5, 0.0), (2100, 1.0, 1.0)],
 )
 def test_a_pulse_is_a_rotors_or_a_servos_control(pulse, rotor, servo):
-    assert control(pulse, False) == rotor
-    assert control(pulse, True) == servo
+    assert Controls(False).of([pulse]) == [rotor]
+    assert Controls(True).of([pulse, pulse]) == [servo, servo]
 
 
 def test_the_border_takes_sixteen_of_32_pulses():
-    assert controls((1500,) * 16 + (2000,) * 16, False) == [0.5] * 16
+    assert Controls(False).of((1500,) * 16 + (2000,) * 16) == [0.5] * 16
 
 
 MOTION = (1.25, 0.1, -0.2, 0.3, 0.0, 0.0, -9.80665, 10.5, -20.25, -3.125, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, -0.5)

@@ -27,6 +27,8 @@ _LINE = (
     '\n{"timestamp":%r,"imu":{"gyro":[%r,%r,%r],"accel_body":[%r,%r,%r]},"position":[%r,%r,%r],'
     '"quaternion":[%r,%r,%r,%r],"velocity":[%r,%r,%r]'
 )
+_SHORT_LINE = "%r".join(part.replace("%r", "%.9g") for part in _LINE.split("%r", 1))
+"""The timestamp is whole, the others have as many digits as the numbers of 4 bytes that ArduPilot makes of them."""
 
 
 class MotionError(SitlError, ValueError):
@@ -57,14 +59,15 @@ class Motion:
     """Pulses of a radio receiver's channels [us]."""
 
 
-def encode(motion: Sequence[float], extras: str = "") -> bytes:
+def encode(motion: Sequence[float], extras: str = "", is_short: bool = False) -> bytes:
     """A line.
 
     Args:
         motion: timestamp, gyro, accel, position, attitude (w x y z), velocity: 17 numbers.
         extras: more members, each with its comma before it (``extra``).
+        is_short: with nine digits a number, which is quicker to write and to read; else with all that it has.
     """
-    return (_LINE % tuple(motion) + extras + "}\n").encode()
+    return ((_SHORT_LINE if is_short else _LINE) % tuple(motion) + extras + "}\n").encode()
 
 
 def extra(

@@ -14,19 +14,24 @@ one with each line that it has taken, so that
 An answer too many would be taken as the answer to the next frame, and the autopilot would from then on be one step
 ahead of its physics. So of frames that wait together only the newest counts, and a repeated one that comes right after
 our answer, which must have crossed it, is not answered.
+
+An autopilot that asks for more steps a second than physics has ticks (``lines``) gets the lines of a tick at once.
+The first one answers the frame that was stepped, the others answer the frames that follow, before they come.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
 from ...core.constants import TICK_HZ
-from .servos import ServoError, Servos, decode
+from .servos import COUNT_AT, COUNT_MASK, ServoError, Servos, decode, is_frame
 
 MOST_TICKS = 8
 """A step is no longer than 20 ms, the period of a rover's loop."""
+MOST_LINES = 5
+"""A step is no shorter than 500 us."""
 CROSSED_S = 0.5
 """Autopilots repeat a frame after a second or more without an answer [s]."""
 ALIVE_S = 0.25
@@ -39,6 +44,7 @@ class Asked(Enum):
     STEP = "step"
     RESTART = "power-on, then step"
     REPEAT = "the same line again"
+    AHEAD = "a line that was sent before it"
     NOTHING = "nothing"
 
 
@@ -52,13 +58,21 @@ class Request:
     """Something that people should be told."""
 
 
-def ticks(rate: int) -> int:
-    """Ticks of 2500 us to step for a frame: the whole ones in 1 / ``rate`` [Hz], at least one, at most 20 ms.
+_AHEAD = Request(Asked.AHEAD)
 
-    A frame that asks for less than a tick gets one: ArduPilot takes the step it is given. (It then asks for 401 Hz, one
-    more than it got, so that a finer step would have to be agreed on beforehand.)
-    """
+
+def ticks(rate: int) -> int:
+    """Ticks of 2500 us to step for a frame: the whole ones in 1 / ``rate`` [Hz], at least one, at most 20 ms."""
     return min(max(TICK_HZ // rate, 1), MOST_TICKS) if rate > 0 else 1
+
+
+def lines(rate: int) -> int:
+    """Lines that a tick is told in: as often as 1 / ``rate`` [Hz] goes into it, at least one, at most five.
+
+    ArduPilot takes the step that it is given and from then on asks for 1 Hz more than it got: that gives the same
+    number again.
+    """
+    return min(max(rate // TICK_HZ, 1), MOST_LINES)
 
 
 def named(peer: Hashable) -> str:
@@ -73,9 +87,13 @@ class PhysicsEnd:
         self.peer: Hashable | None = None
         """Where the autopilot is."""
         self.count: int | None = None
-        """Of the last frame that was stepped."""
-        self.line = b""
-        """The last answer."""
+        """Of the last frame."""
+        self.lines: Sequence[bytes] = ()
+        """The last answers: to the frame that was stepped, and to those that follow it."""
+        self._first = 0
+        """Count of the frame that was stepped."""
+        self._ahead: dict[bytes, int] = {}
+        """Of the frames that are answered before they come: the count as it is written -> the count."""
         self.refused = 0
         """Datagrams that were no frames, or of another autopilot."""
         self._stepped_any = False
@@ -83,7 +101,12 @@ class PhysicsEnd:
         self._reported: set[str] = set()
 
     def receive(self, datagram: bytes, peer: Hashable, now: float) -> Request:
-        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, unless for NOTHING."""
+        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, if it is a step."""
+        if self._ahead and peer == self.peer and is_frame(datagram):
+            number = self._ahead.pop(datagram[COUNT_AT], None)
+            if number is not None:
+                self.count, self._received_at = number, now
+                return _AHEAD
         try:
             servos = decode(datagram)
         except ServoError as error:
@@ -97,27 +120,30 @@ class PhysicsEnd:
             note = f"autopilot at {named(peer)}" + (f", before at {named(self.peer)}" if self.peer is not None else "")
         moved, self.peer, self._received_at = peer != self.peer, peer, now
         before, self.count = self.count, servos.number
+        known = (servos.number - self._first) & COUNT_MASK < len(self.lines)
         if before is None:
             asked = Asked.RESTART if servos.number == 0 and self._stepped_any else Asked.STEP
         elif servos.number == before and not moved:
             if now - self._answered_at < CROSSED_S:
                 return Request(Asked.NOTHING, servos)
-            asked = Asked.REPEAT if self.line else Asked.STEP
+            asked = Asked.REPEAT if known else Asked.STEP
         elif servos.number <= before and (before - servos.number) < 1 << 31:
             asked, note = Asked.RESTART, note or "the autopilot has been started anew"
         else:
             asked = Asked.STEP
         return Request(asked, servos, note)
 
-    def answer(self, line: bytes, now: float) -> bytes:
-        """Keep the answer to the last frame, for when it is asked for again."""
-        self.line, self._answered_at, self._stepped_any = line, now, True
-        return line
+    def answer(self, lines: Sequence[bytes], now: float) -> None:
+        """Keep the answers to the last frame and those that follow, for when one is asked for again."""
+        self.lines, self._answered_at, self._stepped_any = lines, now, True
+        self._first = first = self.count or 0
+        counts = [(first + k) & COUNT_MASK for k in range(1, len(lines))]
+        self._ahead = {number.to_bytes(4, "little"): number for number in counts}
 
     def repeat(self, now: float) -> bytes:
-        """The last answer once more, as bytes; ``now``: wall time [s]."""
+        """The answer to the last frame once more; ``now``: wall time [s]."""
         self._answered_at = now
-        return self.line
+        return self.lines[((self.count or 0) - self._first) & COUNT_MASK]
 
     def _refuse(self, note: str, kind: Hashable) -> Request:
         """Count, and tell each kind once."""

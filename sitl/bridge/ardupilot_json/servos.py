@@ -17,6 +17,8 @@ MAGIC = {16: 18458, 32: 29569}
 _LAYOUT = {count: struct.Struct(f"<HHI{count}H") for count in MAGIC}
 _BY_SIZE = {layout.size: (MAGIC[count], layout) for count, layout in _LAYOUT.items()}
 COUNT_MASK = 0xFFFFFFFF
+COUNT_AT = slice(4, 8)
+"""Bytes of the count in a datagram."""
 
 
 class ServoError(SitlError, ValueError):
@@ -64,15 +66,25 @@ def is_frame(datagram: bytes) -> bool:
     return known is not None and int.from_bytes(datagram[:2], "little") == known[0]
 
 
-def control(pulse: int, is_reversible: bool) -> float:
-    """The actuator control that a pulse [us] stands for: -1 .. 1 of a servo or a wheel's motor, 0 .. 1 of a rotor."""
-    if pulse == 0:
-        return 0.0
-    if is_reversible:
-        return min(max((pulse - 1500.0) / 500.0, -1.0), 1.0)
-    return min(max((pulse - 1000) * 0.001, 0.0), 1.0)
+class Controls(dict[int, float]):
+    """Pulse [us] -> actuator control: -1 .. 1 of a servo or a wheel's motor, 0 .. 1 of a rotor; worked out once each.
 
+    Args:
+        is_reversible: whether the outputs are servos or wheels.
+    """
 
-def controls(pulses: Sequence[int], is_reversible: bool) -> list[float]:
-    """The border's 16 actuator controls of a frame."""
-    return [control(pulse, is_reversible) for pulse in pulses[:16]]
+    def __init__(self, is_reversible: bool) -> None:
+        super().__init__({0: 0.0})
+        self._is_reversible = is_reversible
+
+    def __missing__(self, pulse: int) -> float:
+        if self._is_reversible:
+            value = min(max((pulse - 1500.0) / 500.0, -1.0), 1.0)
+        else:
+            value = min(max((pulse - 1000) * 0.001, 0.0), 1.0)
+        self[pulse] = value
+        return value
+
+    def of(self, pulses: Sequence[int]) -> list[float]:
+        """The border's 16 actuator controls of a frame."""
+        return [self[pulse] for pulse in pulses[:16]]

@@ -16,7 +16,7 @@ from sitl.bridge.hil.protocol import BASE_PORT
 from sitl.client.byte_socket import ByteSocket
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Connection
-from sitl.client.endpoint import Endpoint
+from sitl.client.endpoint import Endpoint, Inbox
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, Choice
@@ -25,6 +25,7 @@ from sitl.foreign.json_host import JsonHost
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
+from sitl.plants.physics_server import SimulatedPlant
 from sitl.run.runner import BASE_TCP_PORT
 
 from .preparation import FORCE
@@ -37,6 +38,8 @@ _ANSWER_US = 3_000_000
 _START_S = 60.0
 """Wall time that a program which was started has until its MAVLink is there [s]."""
 _HEARTBEAT_US = 30_000_000
+WORLD = ("SIM_WIND_", "SIM_ENGINE_")
+"""Beginnings of the SIM_ parameters that mean the physics around the autopilot's own sensors."""
 _TURNS = 16
 """Answers of the physics between two looks at MAVLink: the autopilot stands still when nobody reads."""
 
@@ -45,6 +48,7 @@ class Host(Protocol):
     """Serves a plant to an autopilot."""
 
     boots: int
+    before_boot_us: int
 
     @property
     def time_us(self) -> int:
@@ -63,6 +67,24 @@ class Host(Protocol):
         """Serve no more."""
 
 
+class SimParameters(dict[str, float]):
+    """Parameters as the autopilot tells them; those of the world (SIM_WIND_SPD) act on the physics, too, which is not
+    the autopilot's.
+
+    Args:
+        plant: the physics.
+    """
+
+    def __init__(self, plant: LocalPlant) -> None:
+        super().__init__()
+        self._set = SimulatedPlant(plant).set_parameter
+
+    def __setitem__(self, name: str, value: float) -> None:
+        super().__setitem__(name, value)
+        if name.startswith(WORLD):
+            self._set(name, value)
+
+
 class Foreign(Connection):
     """See the module.
 
@@ -71,12 +93,11 @@ class Foreign(Connection):
         plant: physics and world.
         connection: form of ``ByteSocket``: where the autopilot's MAVLink is.
         process: the autopilot, when it was started for this.
-        readings: of a scan.
+        inbox: gets what it says; one of an environment's steps also gets the physics' scans and touches.
         patience: wall time without a sign of life after which it is lost [s].
     """
 
     is_exact = False
-    inbox: StepTelemetry
 
     def __init__(
         self,
@@ -84,15 +105,15 @@ class Foreign(Connection):
         plant: LocalPlant,
         connection: str,
         process: AutopilotProcess | None,
-        readings: int,
+        inbox: Inbox,
         patience: float,
     ) -> None:
-        super().__init__(Endpoint(), StepTelemetry(readings))
-        self.inbox.scans_by_mavlink, self.inbox.longest_interval_us = False, 20_000
-        self.host, self.plant, self.process = host, plant, process
+        super().__init__(Endpoint(), inbox)
+        if isinstance(inbox, StepTelemetry):
+            inbox.scans_by_mavlink, inbox.longest_interval_us = False, 20_000
+        self.host, self.process = host, process
         self.patience, self._connection = patience, connection
-        self._sensors, self._obstacles = plant.vehicle.v.sensors, plant.vehicle.v.physics.obstacles
-        self._scans = self._hits = 0
+        self._use(plant)
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
         self.stream: ByteSocket | None = None
@@ -103,14 +124,24 @@ class Foreign(Connection):
             self.close()
             raise
 
+    def _use(self, plant: LocalPlant) -> None:
+        self.plant, self.kind = plant, plant.vehicle.kind
+        self._sensors, self._obstacles = plant.vehicle.v.sensors, plant.vehicle.v.physics.obstacles
+        self._scans = self._hits = 0
+        self.inbox.parameters = SimParameters(plant)
+
     @property
     def name(self) -> str:
         return self._connection
 
     @property
+    def boots(self) -> int:
+        return self.host.boots
+
+    @property
     def time_us(self) -> int:
-        """Simulated time since the autopilot was started [us]."""
-        return self.host.time_us
+        """Simulated time since the autopilot was started; reboots do not set it back [us]."""
+        return self.host.before_boot_us + self.host.time_us
 
     # ------------------------------------------------------------------ beginning
 
@@ -162,9 +193,7 @@ class Foreign(Connection):
         if result != ACCEPTED:
             raise NotReadyError(f"{self.name}: the autopilot refuses to reboot (MAV_RESULT {result})")
         self.plant.close()
-        self.plant = plant
-        self._sensors, self._obstacles = plant.vehicle.v.sensors, plant.vehicle.v.physics.obstacles
-        self._scans = self._hits = 0
+        self._use(plant)
         self.host.attach(plant)
         until = time.monotonic() + self.patience
         self.inbox.forget()
@@ -224,13 +253,21 @@ class Foreign(Connection):
     def _hear(self) -> None:
         if self.stream is None:
             return
-        data = self.stream.receive()
+        try:
+            data = self.stream.receive()
+        except LinkLostError:
+            if self.process is None or not self.process.is_running():
+                raise
+            self._connect()  # it reboots, and opens its port anew
+            return
         if data:
             self.inbox.feed(data)
             self.tap(data)
 
     def _look(self) -> None:
         """Take over the scan and the touches that are new."""
+        if not isinstance(self.inbox, StepTelemetry):
+            return
         scans, hits = int(self._sensors.lidar_count), int(self._obstacles.hit_count)
         if scans != self._scans:
             self.inbox.scan[: len(self.inbox.angles)] = self._sensors.lidar_ranges[: len(self.inbox.angles)]
@@ -265,8 +302,15 @@ def physics_port(connection: str) -> int:
     return PORT if other else PORT + 10 * instance
 
 
-def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], readings: int, patience: float) -> Foreign:
+def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox: Inbox, patience: float) -> Foreign:
     """A foreign autopilot on a plant, which is its from now on: started, or found where it runs.
+
+    Args:
+        choice: the autopilot.
+        plant: at power-on.
+        params: of the autopilot, under its own names.
+        inbox: see ``Foreign``.
+        patience: wall time without a sign of life after which it is lost [s].
 
     Raises:
         OptionError, LinkLostError: it cannot be started; it does not answer.
@@ -295,4 +339,4 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], readi
                 overrides="".join(f"{name} {value:g}\n" for name, value in params.items()),
             )  # fmt: skip
         undo.pop_all()
-    return Foreign(host, plant, where, process, readings, patience)
+    return Foreign(host, plant, where, process, inbox, patience)

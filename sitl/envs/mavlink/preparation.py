@@ -64,22 +64,24 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     """Ask for position, attitude and scan at an interval.
 
     A vehicle that knows nothing of whole scans (a real one) is asked for OBSTACLE_DISTANCE: centimetres, 72 sectors.
+    One whose clock does not go exactly as far as it is told to may send at longer intervals, up to twice as long: an
+    ArduPilot with 50 loops a second sends a message each 25 ms, and not each 20 ms.
 
     Raises:
         NotReadyError: the vehicle does not send one of them so often.
     """
     telemetry = link.inbox
     scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink else ()
+    intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
     for kind in (POSITION, ATTITUDE, *scan):
-        result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
-        if result != ACCEPTED and kind is SCAN:
+        if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):
+            continue
+        result = None
+        if kind is SCAN:
             link.inbox.scan_kind = kind = SECTORS
             result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
         if result != ACCEPTED:
-            raise NotReadyError(
-                f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms "
-                f"(MAV_RESULT {result})"
-            )
+            raise NotReadyError(f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms")
 
 
 def request_again(link: Connection) -> None:

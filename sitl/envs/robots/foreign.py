@@ -16,7 +16,7 @@ from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
-from ..mavlink.foreign import Foreign, launch
+from ..mavlink.foreign import WORLD, Foreign, launch
 from ..mavlink.preparation import REBOOT, is_simulator, reboot, refusal
 from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
@@ -119,9 +119,11 @@ class ForeignVehicles(Vehicles):
             before.close()
         try:
             start = (*pose[:3], math.degrees(pose[3]))
-            plant = stand_alone(replace(self.setup.scenario, frame=airframe, seed=seed, start=start, params={}))
+            params = dict(options.params or {})
+            world = {name: value for name, value in params.items() if name.startswith(WORLD)}
+            plant = stand_alone(replace(self.setup.scenario, frame=airframe, seed=seed, start=start, params=world))
             if rebooted is None:
-                found = launch(choice, plant, options.params or {}, len(self.setup.angles), options.patience)
+                found = launch(choice, plant, params, StepTelemetry(len(self.setup.angles)), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal, overload
 
 from sitl.bridge.links import LinkFaults
+from sitl.foreign.choice import NATIVE as OURS
 from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import KINDS
 
@@ -44,7 +45,7 @@ def begin(vehicle: Vehicle, setup: Setup, after: Prepare | None = None) -> None:
     The first one of a set-up boots; what comes later goes on from there, the same to the bit.
     """
     beginning = (setup, after)
-    is_kept = setup.physics in EXACT and _is_hashable(beginning)
+    is_kept = setup.physics in EXACT and setup.autopilot == OURS and _is_hashable(beginning)
     if is_kept and beginning in _kept:
         _kept.move_to_end(beginning)
         vehicle.restore(_kept[beginning])
@@ -101,7 +102,7 @@ class VehicleFactory:
                 function begin from its end. It uses nothing but the vehicle.
             name: for messages and logs.
             link_faults: of its link to the test, from when it is ready on.
-            options: frame, home, seed, estimator, params, world, start, physics, wind, mission.
+            options: frame, home, seed, estimator, params, world, start, physics, autopilot, wind, mission.
         """
         wanted = setup(self.defaults, kind, **options)
         name = name or wanted.kind
@@ -123,4 +124,4 @@ class VehicleFactory:
     def close(self) -> None:
         """Close all vehicles."""
         for vehicle in self.vehicles:
-            vehicle.simulation.close()
+            vehicle.close()

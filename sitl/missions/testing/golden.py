@@ -13,7 +13,6 @@ from typing import Any
 
 from sitl.errors import OptionError
 from sitl.logs.tlog import LogError
-from sitl.plants.plant import is_remote
 from sitl.recording.entries import RecordingError
 
 from ..comparison.alignment import AlignmentError
@@ -92,8 +91,8 @@ class Golden(Forking):
 
     def _record(self, folder: Path, stem: str) -> Path:
         """A recording of the flight so far."""
-        if is_remote(self.simulation.physics):
-            raise OptionError(f"physics {self.simulation.physics} cannot be started again: no recording, no golden")
+        if self.cannot_repeat:
+            raise OptionError(f"{self.cannot_repeat}: what it flew cannot be flown again: no recording, no golden")
         flown = fly_again(self, folder, stem, log=False)
         if not flown.same:
             raise AssertionError(NOT_AGAIN)

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sitl.logs.track_observer import TrackObserver
-from sitl.plants.plant import is_remote
 from sitl.recording.entries import of_state
 from sitl.recording.recorder import Recorder
 from sitl.run import runner
@@ -53,6 +52,7 @@ def fly_again(
     for old in (folder / f"{stem}{suffix}" for suffix in (SUFFIXES if log else (".rec",))):
         old.unlink(missing_ok=True)
     simulation = vehicle.build()
+    assert isinstance(simulation, Simulation)
     try:
         recorder = Recorder(simulation, folder / f"{stem}.rec")
         recorder.stopped = "the test ended"
@@ -73,13 +73,16 @@ def fly_again(
 
 def keep(vehicle: Forking, folder: Path, stem: str, error: BaseException | None) -> list[str]:
     """Logs of a vehicle whose test failed; what there is to say about them."""
-    simulation = vehicle.simulation
+    simulation = vehicle.connection.simulation
+    if simulation is None:
+        lines = [f"{vehicle.now:.1f} s simulated", f"  {vehicle.describe()}", *vehicle.last_texts(20)]
+        return [*lines, f"no logs: {vehicle.cannot_repeat}: what it flew cannot be flown again"]
     world = f" in {simulation.world.name}" if simulation.world is not None else ""
     lines = [f"{simulation.airframe.name}{world}, seed {simulation.seed}, {vehicle.now:.1f} s simulated"]
     lines.append(f"  {vehicle.describe()}")
     lines += [f"  {text}" for text in vehicle.last_texts(20)]
-    if is_remote(simulation.physics):
-        return [*lines, f"no logs: physics {simulation.physics} cannot be started again"]
+    if vehicle.cannot_repeat:
+        return [*lines, f"no logs: {vehicle.cannot_repeat}: what it flew cannot be flown again"]
     lost = vehicle.failed_fork
     if lost is not None and lost.error is error:
         flown = fly_again(vehicle, folder, stem, log=True, said=lost.said, end_us=lost.end_us)

@@ -49,11 +49,13 @@ class MissionFlier(Client):
         waypoints.
         """
         if isinstance(given, str | Path):
-            taken = self.simulation.firmware.commands.taken
+            assert self.connection.kind is not None
+            taken = self.connection.kind.firmware.commands.taken
             mission = for_vehicle(load(find(given, self.folders)), taken).mission
         else:
             mission = given if isinstance(given, Mission) else Mission(tuple(given))
-        return super().upload(checked(mission, self.simulation))
+        simulation = self.connection.simulation
+        return super().upload(checked(mission, simulation) if simulation is not None else mission)
 
     def fly_mission(self, given: Given, timeout: float = 1800.0) -> None:
         """Upload a mission, start it, and wait for its end: a copter is disarmed, a rover has reached the last item."""

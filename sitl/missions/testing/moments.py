@@ -11,9 +11,13 @@ from typing import Any, NamedTuple, NoReturn
 from sitl import client
 from sitl.bridge.links import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink
-from sitl.client.connection import InProcess
+from sitl.client.connection import Connection, InProcess
 from sitl.client.errors import ClientError
+from sitl.client.session import RATES_HZ
+from sitl.errors import OptionError
+from sitl.plants.plant import is_remote
 from sitl.simulation import Simulation
+from sitl.vehicle.faults import Failure, parameters_of
 
 
 class Said(NamedTuple):
@@ -95,18 +99,34 @@ class Forking(client.Client):
     """A vehicle that can be put back. What goes wrong fails the test: it raises AssertionError.
 
     Args:
-        build: makes the simulation, at power-on; called again whenever the flight is flown again for its logs.
+        build: makes the simulation, at power-on; called again whenever the flight is flown again for its logs. Or makes
+            a connection to another autopilot, whose flight cannot be flown again.
         name: for messages and files.
     """
 
     failed_fork: Kept | None = None
     """What went wrong in a fork."""
 
-    def __init__(self, build: Callable[[], Simulation], name: str = "vehicle") -> None:
+    def __init__(self, build: Callable[[], Simulation | Connection], name: str = "vehicle") -> None:
         self.build = build
-        connection = InProcess(build())
-        self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
-        super().__init__(connection, name=name)
+        self._before_faults: dict[str, float] = {}
+        """Parameters of another autopilot before it failed."""
+        made = build()
+        connection = made if isinstance(made, Connection) else InProcess(made)
+        rates = None
+        if connection.simulation is not None:
+            self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
+        else:
+            rates = {**RATES_HZ, "MISSION_CURRENT": 10}  # ours tells it without being asked
+        super().__init__(connection, name=name, rates=rates)
+
+    @property
+    def cannot_repeat(self) -> str:
+        """Why its flight cannot be flown again; "": it can."""
+        simulation = self.connection.simulation
+        if simulation is None:
+            return f"autopilot {self.connection.name}"
+        return f"physics {simulation.physics}" if is_remote(simulation.physics) else ""
 
     def set_link_faults(self, faults: LinkFaults | None) -> None:
         """As ``Client.set_link_faults``."""
@@ -114,9 +134,27 @@ class Forking(client.Client):
         self.script.said.append(Said(self.simulation.time_us, b"", faults))
 
     def order_fault(self, text: str) -> None:
-        """Let something fail or be repaired now: ``Simulation.order_fault``."""
+        """Let something fail or be repaired now: ``Simulation.order_fault``. Another autopilot gets SIM_ parameters."""
+        if self.connection.simulation is None:
+            self._set_fault(text)
+            return
         self.simulation.order_fault(text)
         self.script.said.append(Said(self.simulation.time_us, b"", fault=text))
+
+    def _set_fault(self, text: str) -> None:
+        assert self.connection.kind is not None
+        table, before = self.connection.kind.firmware.table, self._before_faults
+        if text.startswith("-"):
+            unit = text[1:].partition(":")[0]
+            self.params.update({name: before.pop(name) for name in parameters_of(unit, table) if name in before})
+            return
+        failure = Failure.of_text(text).checked(table)
+        if failure.begin or failure.end is not None:
+            raise OptionError(f"fault {text}: of another autopilot it begins now, and ends when it is repaired")
+        values = failure.values(table, {})
+        for name in values:
+            before.setdefault(name, self.params[name])
+        self.params.update(values)
 
     def raise_error(self, error: ClientError) -> NoReturn:
         try:

@@ -30,6 +30,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         ("log-dir", "DIR", "where logs of failing tests are kept (default: in pytest's cache)"),
         ("seed", "N", "seed of sensor noise, unless a test says another (default 0)"),
         ("physics", "NAME", "native, pybullet, jsbsim, ..., unless a test says another (default native)"),
+        ("autopilot", "NAME[:PROGRAM]", "native, or ardupilot:PROGRAM, unless a test says another (default native)"),
         ("params", "FILE", "parameters (.parm) of all vehicles"),
     ):
         group.addoption(f"--sitl-{name}", metavar=metavar, help=text)
@@ -40,7 +41,8 @@ def pytest_configure(config: pytest.Config) -> None:
     """Declare the marker."""
     config.addinivalue_line(
         "markers",
-        "sitl(frame, home, seed, params, world, start, physics, wind, mission, link_faults): how vehicles are made",
+        "sitl(frame, home, seed, params, world, start, physics, autopilot, wind, mission, link_faults): "
+        "how vehicles are made",
     )
 
 
@@ -132,9 +134,9 @@ def _defaults(config: pytest.Config, folder: Path) -> Any:
         raise pytest.UsageError(f"--sitl-seed {seed!r} is not a whole number")
     params = option(config, "params")
     values = files.load(config.rootpath / params) if params else {}
-    physics = option(config, "physics", "native")
+    physics, autopilot = option(config, "physics", "native"), option(config, "autopilot", "native")
     return Defaults(
-        int(seed) if seed else None, physics, values, (folder, config.invocation_params.dir, config.rootpath)
+        int(seed) if seed else None, physics, autopilot, values, (folder, config.invocation_params.dir, config.rootpath)
     )
 
 

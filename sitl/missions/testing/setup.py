@@ -10,9 +10,14 @@ from pathlib import Path
 
 from sitl import vehicles
 from sitl.autopilot.params import files
+from sitl.client.endpoint import Inbox
 from sitl.core.compile import Progress
+from sitl.envs.mavlink.foreign import WORLD, Foreign, launch
 from sitl.errors import OptionError
+from sitl.foreign.choice import NATIVE as OURS
+from sitl.foreign.choice import choose
 from sitl.physics.engines import NATIVE
+from sitl.plants.local import stand_alone
 from sitl.scenario import StartPose
 from sitl.simulation import Simulation
 from sitl.vehicle.core_entry import Core, load_core
@@ -26,6 +31,8 @@ from .missions import find
 
 __tracebackhide__ = True
 
+PATIENCE_S = 30.0
+"""Wall time without a sign of life of another autopilot after which it is lost [s]."""
 WIND = ("SIM_WIND_SPD", "SIM_WIND_DIR", "SIM_WIND_TURB")
 _cores: dict[str, Core] = {}
 compiling: Progress | None = None
@@ -44,14 +51,24 @@ class Setup:
     world: str | Path | World | None = None
     start: StartPose | None = None
     physics: str = NATIVE
+    autopilot: str = OURS
 
     @property
     def kind(self) -> str:
         """ "copter" or "rover"."""
         return vehicles.load(self.frame).kind
 
-    def build(self) -> Simulation:
-        """The simulation at power-on."""
+    def build(self) -> Simulation | Foreign:
+        """The simulation at power-on, or another autopilot that has just been started on our physics."""
+        choice = choose(self.autopilot, self.kind)
+        if choice is not None:
+            params = dict(self.params)
+            world = {name: value for name, value in params.items() if name.startswith(WORLD)}
+            plant = stand_alone(
+                self.frame, home=self.home, seed=self.seed, params=world, world=self.world, start=self.start,
+                physics=self.physics,
+            )  # fmt: skip
+            return launch(choice, plant, params, Inbox(), PATIENCE_S)
         simulation = Simulation(
             self.frame, home=self.home, seed=self.seed, estimator=self.estimator, params=dict(self.params),
             world=self.world, start=self.start, physics=self.physics,
@@ -76,6 +93,7 @@ class Defaults:
 
     seed: int | None = None
     physics: str = NATIVE
+    autopilot: str = OURS
     params: Mapping[str, float] = field(default_factory=dict)
     folders: tuple[Path, ...] = (Path(),)
     """Where files are looked for."""
@@ -93,6 +111,7 @@ def setup(
     world: str | Path | World | None = None,
     start: StartPose | None = None,
     physics: str | None = None,
+    autopilot: str | None = None,
     wind: float | Sequence[float] | None = None,
     mission: str | Path | None = None,
 ) -> Setup:
@@ -104,6 +123,7 @@ def setup(
         home: latitude, longitude [deg], altitude [m], heading [deg].
         params: values, or a .parm file.
         world, start: as ``Simulation`` takes them.
+        autopilot: "native", or another one ("ardupilot:PROGRAM"; ``sitl.foreign.choice``).
         wind: speed [m/s], or (speed, where it comes from [deg], turbulence [m/s]).
         mission: a file, or a name of the library, whose home, and in the library whose frame, world and parameters,
             the vehicle gets.
@@ -145,6 +165,7 @@ def setup(
     return Setup(
         frame, place, defaults.seed if seed is None else seed, estimator, tuple(sorted(values.items())), world,
         tuple(start) if isinstance(start, list) else start, physics or defaults.physics,
+        autopilot or defaults.autopilot,
     )  # type: ignore[arg-type]  # fmt: skip
 
 

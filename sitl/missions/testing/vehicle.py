@@ -81,8 +81,9 @@ class Faulty(Forking):
             failures = [Failure(what, type, instance or motor, thrust if amount is None else amount, at, until)]
         else:
             failures = [Failure(what, type, instance, amount, at, until)]
+        assert self.connection.kind is not None
         for failure in failures:
-            failure.checked(self.simulation.firmware.table)
+            failure.checked(self.connection.kind.firmware.table)
             self.order_fault(str(failure))
         return Fault(lambda: self._repair([(failure.unit, failure.instance) for failure in failures]))
 
