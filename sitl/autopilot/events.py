@@ -61,6 +61,8 @@ CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: it
 EKF_LANE_SWITCHED = 61  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 62  # a: IMU of the filter, b: compass
 NO_WAY = 60  # there is no way around the areas of the fence
+LANDING_TARGET_DID = 61  # a: what (landing_target/state.py)
+DOCK_DID = 62  # rover; a: what (dock.py)
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 
