@@ -81,9 +81,9 @@ FENCE_SHIFT = 38
 NOTHING_SEEN = 1 << 43
 OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
-ACCELS_SILENT, GYROS_SILENT = 1 << 60, 1 << 61
 CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
-PARACHUTE_RELEASED = 1 << 62
+PARACHUTE_RELEASED = 1 << 60
+ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -94,9 +94,9 @@ TEXTS = {
     CALIBRATING_COMPASS: "Compass calibration running",
     REBOOT_FOR_COMPASS: "Compass calibrated requires reboot",
     REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
-    PARACHUTE_RELEASED: "Chute is released",
     ACCELS_SILENT: "Accels not healthy",
     GYROS_SILENT: "Gyros not healthy",
+    PARACHUTE_RELEASED: "Chute is released",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",

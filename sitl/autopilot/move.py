@@ -70,6 +70,7 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     """Put what all firmwares share elsewhere; the origin of the estimate has been moved."""
     if not ap.ekf.use_external:
         move_ekf(ap.ekf, d)
+    if ap.second_lane.runs != 0:
         move_ekf(ap.second_lane.ekf, d)
         move_estimate(ap.second_lane.estimate, d)
     move_estimate(ap.estimate, d)
