@@ -206,13 +206,15 @@ def started_anew(flight) -> Ground:
 
 @pytest.mark.parametrize("flight", ["hil"], indirect=True)
 def test_an_autopilot_that_is_started_anew_over_hil_joins_in_the_air_disarmed_and_falls(flight):
+    high = flight.ground.place().alt
     flight.autopilot.kill()
     gone = flight.physics.says("has gone at")
     assert "time stands" in gone
     ground = started_anew(flight)
     assert gone.split("has gone at ")[1].split(" s")[0] in flight.physics.says("has come at")  # nothing moved meanwhile
     assert not ground.next("HEARTBEAT").base_mode & 128
-    ground.says("SIM Hit ground")
+    ground.next("EKF_STATUS_REPORT", lambda m: m.flags & 16)
+    assert ground.place().alt < high - 8000  # [mm]
     ground.take_off()
 
 
