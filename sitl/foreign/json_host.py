@@ -13,6 +13,7 @@ from ..core.constants import TICK_US
 from ..errors import OptionError
 from ..plants.json_link import LOCAL, PORT, WAIT_S, parse_address, wait_in_kernel
 from ..plants.local import LocalPlant, restart
+from ..plants.physics_server import Silence
 from .body import BodyLines
 
 _MAX_DATAGRAM = 65535
@@ -163,14 +164,20 @@ class JsonHost:
             self._say(f"an answer to {self._peer[0]}:{self._peer[1]} was not sent: {error.strerror or error}")
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None] = lambda: None) -> None:
-        """Answer until ``running()`` is false; ``on_turn`` is called from time to time, also without requests."""
+        """Answer until ``running()`` is false; ``on_turn`` is called from time to time, also without requests. An
+        autopilot that falls silent is told of, and time stands."""
         turn, turns = self.listen, 0
+        silence = Silence(self._say, lambda: f"{self.time_us * 1e-6:.4f} s")
         while True:
             if turn():
+                if silence.waits:
+                    silence.is_over()
                 self.step()
                 turns += 1
             else:
                 turns = 0
+                if self.end.peer is not None:
+                    silence.goes_on()
             if turns & 31 == 0:
                 if not running():
                     return
