@@ -98,8 +98,8 @@ def _feed_forward(holder: Holder, position: int) -> list[Note]:
 
 
 WITHOUT_EFFECT = {
-    10: "Rangefinder", 21: "ParachuteEnable", 22: "ParachuteRelease", 23: "Parachute3Position", 25: "", 29: "",
-    75: "SurfaceTracking", 76: "", 84: "AirMode", 109: "", 112: "", 159: "", 160: "Weathervane", 180: "", 182: "",
+    10: "Rangefinder", 25: "", 29: "", 75: "SurfaceTracking", 76: "", 84: "AirMode", 109: "", 112: "", 159: "",
+    160: "Weathervane", 180: "", 182: "",
 }  # fmt: skip
 """As in all firmwares."""
 
@@ -143,6 +143,13 @@ FUNCTIONS = shared.by_number(
         AuxFunction(26, _feed_forward, "high: ATC_RATE_FF_ENAB 1; else 0"),
         AuxFunction(
             39, _hold_over_target, "high: LOITER holds over a landing target (PLND_*); low: not", "PrecisionLoiter"
+        ),
+        shared.fitted(payload.SWITCH_PARACHUTE_ENABLE, "high: the parachute is enabled; else not", "ParachuteEnable"),
+        shared.fitted(payload.SWITCH_PARACHUTE_RELEASE, "high: releases the parachute", "ParachuteRelease"),
+        shared.fitted(
+            payload.SWITCH_PARACHUTE,
+            "the parachute: low not enabled, middle enabled, high released",
+            "Parachute3Position",
         ),
         AuxFunction(61, _zigzag, "in ZIGZAG: low stores or flies to A, high B, middle gives back to the sticks"),
         AuxFunction(
