@@ -222,13 +222,29 @@ def _nothing(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def without_effect(names: Mapping[int, str]) -> list[AuxFunction]:
+    """Functions that are taken and told to do nothing, by number, with their names in texts."""
+
+    def function(number: int, name: str) -> AuxFunction:
+        note = Text(INFO, f"Aux function {number} has no effect in this simulator")
+        return AuxFunction(number, lambda holder, position: [note], "taken, without effect", name)
+
+    return [function(number, name) for number, name in names.items()]
+
+
 def fitted(number: int, doc: str, name: str = "") -> AuxFunction:
     """A function of something that is fitted to the vehicle, which is not the autopilot's."""
     return AuxFunction(number, lambda _, position: [Switched(number, position)], doc, name)
 
 
-WITHOUT_EFFECT = {30: "", 78: "RunCamControl", 79: "RunCamOSDControl", 113: "RetractMount2"}
-"""Functions that ArduPilot takes in its simulator, too, where nothing is fitted for them; and their names in texts."""
+WITHOUT_EFFECT = {
+    30: "", 38: "", 62: "CompassLearn", 65: "GPSDisable", 78: "RunCamControl", 79: "RunCamOSDControl",
+    80: "VisOdomAlign", 85: "Generator", 90: "", 100: "", 101: "", 102: "CamModeToggle", 103: "", 104: "",
+    105: "GPSDisableYaw", 106: "DisableAirspeedUse", 110: "", 111: "", 113: "RetractMount2",
+    156: "Torqeedo Clear Err", 158: "", 162: "FFT Notch Tuning", 164: "Pause Stream Logging", 171: "",
+    177: "Mount LRF Enable",
+}  # fmt: skip
+"""Functions that ArduPilot takes in its simulator, of things that are not simulated here; and their names in texts."""
 STICKS = {212: "roll", 213: "pitch", 214: "yaw"}
 
 COMMON = (
@@ -249,7 +265,7 @@ COMMON = (
         fitted(n, f"high: relay {k + 1} is on; low: it is off", f"Relay{k + 1}")
         for n, k in payload.SWITCH_RELAYS.items()
     ),
-    *(AuxFunction(n, _nothing, "taken, without effect", name) for n, name in WITHOUT_EFFECT.items()),
+    *without_effect(WITHOUT_EFFECT),
     *(AuxFunction(n, _nothing, f"{axis} of the gimbal, by the channel's stick") for n, axis in STICKS.items()),
 )
 """Those that do the same in every firmware."""

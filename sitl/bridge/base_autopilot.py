@@ -155,8 +155,8 @@ class BaseAutopilot:
         self._notes.extend(self._sequencer().set_mission(self._v, Mission()))
         return True
 
-    def set_current_item(self, seq: int) -> bool:
-        ok, notes = self._sequencer().set_current(self._v, seq)
+    def set_current_item(self, seq: int, reset: bool = False) -> bool:
+        ok, notes = self._sequencer().set_current(self._v, seq, reset)
         self._notes.extend(notes)
         return bool(ok)
 

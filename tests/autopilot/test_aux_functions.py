@@ -90,6 +90,14 @@ def test_relays(number: int, relay: int) -> None:
 def test_functions_of_what_is_not_fitted_do_nothing(kind: type[FakeVehicle]) -> None:
     vehicle = kind()
     before = vehicle.fleet.tobytes()
-    for number in (30, 78, 79, 113):
-        assert move(vehicle, number, HIGH) == []
+    for number in (30, 62, 78, 90, 164):
+        notes = move(vehicle, number, HIGH)
+        assert notes[-1] == Text(6, f"Aux function {number} has no effect in this simulator")
     assert vehicle.fleet.tobytes() == before
+
+
+def test_feed_forward() -> None:
+    vehicle = FakeVehicle()
+    for position, enabled in ((LOW, 0.0), (HIGH, 1.0)):
+        assert move(vehicle, 26, position) == []
+        assert enabled == vehicle.v.autopilot.params.ATC.RATE_FF_ENAB

@@ -145,7 +145,7 @@ class FakeAutopilot:
         self.items = ()
         return True
 
-    def set_current_item(self, seq: int) -> bool:
+    def set_current_item(self, seq: int, reset: bool = False) -> bool:
         if not 0 <= seq < len(self.items):
             return False
         self.vehicle.v.autopilot.modes.nav.mission_current = seq

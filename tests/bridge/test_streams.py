@@ -276,3 +276,9 @@ def test_modes(rover_bench: Bench) -> None:
     found = [f.kind.decode(f.payload) for f in frames if f.kind.name == "AVAILABLE_MODES"]
     assert {m.custom_mode: m.mode_name.decode() for m in found} == ROVER_MODES
     assert [m.mode_name for m in found if m.properties & 2] == [b"INITIALISING"]
+
+
+@pytest.mark.parametrize(("number", "result"), [(285, 0), (280, 0), (281, 0), (9005, 0), (132, 0), (284, 4), (158, 4)])
+def test_messages_of_parts_that_are_off_may_be_asked_for(bench: Bench, number: int, result: int) -> None:
+    """As ArduCopter 4.7 answers without gimbal, winch and range-finder."""
+    assert bench.command(REQUEST, number) == result

@@ -384,3 +384,18 @@ def test_a_boot_clears_the_mission_if_it_is_asked_to(core: Core, options: int, i
     assert p.ask(246, 1) == 0
     p.fly(1.0)
     assert len(p.simulation.mission) == items
+
+
+def test_a_complete_mission_runs_again_when_it_is_reset(core: Core) -> None:
+    """224 with p2 0, and MISSION_SET_CURRENT, choose the item alone; with p2 1 AUTO flies there. So does ArduCopter."""
+    p = Aviator(core, AIRFRAMES[0]).ready()
+    p.start_mission(UP, Item(c.NAV_WAYPOINT, (5.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0))
+    p.fly(60.0, lambda: 3 in p.reached)
+    p.fly(3.0)
+    assert p.ask(224, 2, 0) == 0
+    p.fly(10.0)
+    current = p.message("MISSION_CURRENT")
+    assert (current.seq, current.mission_state) == (2, 2) and p.reached == [1, 2, 3] and p.pos[0] > 9.0
+    assert p.ask(224, 2, 1) == 0
+    p.fly(30.0, lambda: len(p.reached) == 5)
+    assert p.reached == [1, 2, 3, 2, 3]

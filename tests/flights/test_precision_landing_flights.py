@@ -17,7 +17,7 @@ from sitl.core.algebra import rotate_inverse
 from sitl.core.vectors import Vec3
 from sitl.simulation import Core
 from sitl.vehicle.landing_beacon import place_of
-from tests.flights.aviator import AUTO, LAND, RTL, Aviator, Item
+from tests.flights.aviator import AUTO, LAND, LOITER, RTL, Aviator, Item
 
 EVERYWHERE = {"PLND_ALT_MIN": 0.0, "PLND_ALT_MAX": 0.0}
 """The target is missed at any height, without a range-finder, too."""
@@ -299,3 +299,25 @@ def test_the_sensor_needs_to_be_enabled(core: Core) -> None:
     p.wait_disarmed(60.0)
     assert aside(p, place) > 1.5 and not p.said("PrecLand")
     assert not p.message("SYS_STATUS").onboard_control_sensors_present & 0x80
+
+
+def test_loiter_holds_over_the_target_while_a_switch_lets_it(core: Core) -> None:
+    p = pilot(core, SIM_PLD_DIST_LMT=40).hover(8.0)
+    p.hold()
+    assert p.set_mode(LOITER)
+    place = beacon(p, 3.0, 0.0)
+    p.fly(4.0)
+    assert aside(p, place) > 2.0
+    assert p.ask(218, 39, 2) == 0
+    p.fly(8.0)
+    assert aside(p, place) < 0.15
+    p.sticks(3.0, pitch=1800)
+    assert aside(p, place) > 2.0
+    p.hold()
+    p.fly(15.0)
+    assert aside(p, place) < 0.3
+    assert p.ask(218, 39, 0) == 0
+    p.sticks(2.0, pitch=1800)
+    p.hold()
+    p.fly(8.0)
+    assert aside(p, place) > 2.0

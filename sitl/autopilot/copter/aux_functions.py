@@ -92,6 +92,24 @@ def _train(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def _feed_forward(holder: Holder, position: int) -> list[Note]:
+    holder.v.autopilot.params.ATC.RATE_FF_ENAB = float(position == HIGH)
+    return []
+
+
+WITHOUT_EFFECT = {
+    10: "Rangefinder", 25: "", 29: "", 75: "SurfaceTracking", 76: "", 84: "AirMode", 109: "", 112: "", 159: "",
+    160: "Weathervane", 180: "", 182: "",
+}  # fmt: skip
+"""As in all firmwares."""
+
+
+def _hold_over_target(holder: Holder, position: int) -> list[Note]:
+    if position != MIDDLE:
+        holder.v.autopilot.modes.loiter.seeks_target = position == HIGH
+    return []
+
+
 def _pause(holder: Holder, position: int) -> list[Note]:
     if position == MIDDLE:
         return []
@@ -120,6 +138,11 @@ FUNCTIONS = shared.by_number(
         shared.fitted(payload.SWITCH_WINCH, "high: the winch holds its line; else it lets go", "WinchEnable"),
         shared.fitted(
             payload.SWITCH_WINDING, "high: the winch lowers; low: it raises; middle: it stops", "WinchControl"
+        ),
+        *shared.without_effect(WITHOUT_EFFECT),
+        AuxFunction(26, _feed_forward, "high: ATC_RATE_FF_ENAB 1; else 0"),
+        AuxFunction(
+            39, _hold_over_target, "high: LOITER holds over a landing target (PLND_*); low: not", "PrecisionLoiter"
         ),
         shared.fitted(payload.SWITCH_PARACHUTE_ENABLE, "high: the parachute is enabled; else not", "ParachuteEnable"),
         shared.fitted(payload.SWITCH_PARACHUTE_RELEASE, "high: releases the parachute", "ParachuteRelease"),

@@ -103,6 +103,21 @@ def turns(item: MissionItem) -> float:
     return float(int(item.p1)) if item.p1 >= 1.0 else max(item.p1, 0.0)
 
 
+RADIUS_MAX, FINE_MAX, TURNS_MAX = 2550.0, 255.0, 255.0
+"""Circles of LOITER_TURNS: greatest radius, greatest one to the metre [m]; most turns."""
+
+
+def stored(item: MissionItem) -> MissionItem:
+    """An item as ArduPilot's storage keeps it: of circles, whole turns or 256ths of one; metres, or tens of them."""
+    if item.command != commands.NAV_LOITER_TURNS or not (math.isfinite(item.p1) and math.isfinite(item.p3)):
+        return item
+    p1 = min(max(item.p1, 0.0), TURNS_MAX)
+    radius = min(abs(item.p3), RADIUS_MAX)
+    radius = float(int(radius)) if radius <= FINE_MAX else 10.0 * int(0.1 * radius)
+    whole = float(int(p1)) if p1 >= 1.0 else int(p1 * 256.0) / 256.0
+    return item._replace(p1=whole, p3=math.copysign(radius, item.p3) if radius else 0.0)
+
+
 def is_speed(speed: float) -> bool:
     """Whether a limit [m/s] can be set to it."""
     return 0.0 < speed < math.inf

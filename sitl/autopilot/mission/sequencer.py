@@ -169,10 +169,11 @@ class Sequencer:
             self._set_current(nav, 0, notes)
         return notes
 
-    def set_current(self, v: Vehicle, seq: int) -> tuple[bool, list[Note]]:
+    def set_current(self, v: Vehicle, seq: int, reset: bool = False) -> tuple[bool, list[Note]]:
         """MISSION_SET_CURRENT: (whether there is such an item, notes).
 
-        0 is the mission's start; in AUTO it goes there at once. Jumps are counted anew.
+        0 is the mission's start; a mission that runs goes there at once, with ``reset`` in AUTO also one that is
+        complete. Jumps are counted anew.
         """
         nav = v.autopilot.modes.nav
         notes: list[Note] = []
@@ -180,7 +181,7 @@ class Sequencer:
             return (False, notes)
         jumps.keep(nav, {})
         in_auto = v.autopilot.modes.number == self.commands.auto
-        if nav.mission_state == RUNNING or (nav.mission_state == COMPLETE and in_auto):
+        if nav.mission_state == RUNNING or (reset and in_auto):
             self._run_from(v, max(seq, 1), notes)
         else:
             nav.mission_state = STOPPED

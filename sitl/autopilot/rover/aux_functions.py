@@ -41,6 +41,7 @@ FUNCTIONS = shared.by_number(
         AuxFunction(
             7, _save_waypoint, "high: adds the place to the mission; disarmed begins a new one here", "SaveWaypoint"
         ),
+        *shared.without_effect({63: "SailboatTack", 74: "SailboatMotor", 97: ""}),
         shared.arm_or_disarm(153, arming),
         shared.disarm(arming),
         shared.arm_or_stop(arming),

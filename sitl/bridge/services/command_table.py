@@ -407,10 +407,10 @@ def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """224: p1 number of the item (0: the first); jumps are counted anew whatever p2 is; DENIED without such an item."""
+    """224: p1 number of the item (0: the first); in AUTO p2 1 runs a complete mission again; DENIED without it."""
     if not 0.0 <= command.p1 <= 65535.0:
         return DENIED
-    ok = bridge.autopilot.set_current_item(int(command.p1))
+    ok = bridge.autopilot.set_current_item(int(command.p1), command.p2 == 1.0)
     bridge.say_pending()
     return ACCEPTED if ok else DENIED
 

@@ -12,6 +12,7 @@ import math
 from collections.abc import Container
 from typing import Any
 
+from ...autopilot.mission.commands import stored
 from ...autopilot.mission.item import COMMANDS, MissionItem
 from ...autopilot.mission.validate import INVALID_PARAM5_X, INVALID_PARAM6_Y, check
 from ..channel import Channel
@@ -45,7 +46,8 @@ def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[Missio
     frame = _SAME_FRAME.get(fields.frame, fields.frame)
     p1, p2, p3, p4 = fields.param1, fields.param2, fields.param3, fields.param4
     item = MissionItem(fields.command, frame, p1, p2, p3, p4, x, y, fields.z, fields.autocontinue)
-    return item, check(item, taken)
+    result = check(item, taken)
+    return (stored(item) if result == ACCEPTED else item), result
 
 
 def _common(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> dict[str, Any]:

@@ -21,6 +21,9 @@ from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
 
 AVAILABLE_MODES = message("AVAILABLE_MODES")
+OF_PARTS = (132, 173, 246, 280, 281, 285, 301, 9005)
+"""Messages of range-finders, other traffic, gimbal and winch: one may ask for them where the part is missing or off;
+nothing comes then, as from ArduPilot."""
 AUTOMATIC = 4
 """MAV_MODE_PROPERTY_AUTO_MODE: moves without the pilot's sticks."""
 NOT_SELECTABLE = 2
@@ -164,4 +167,5 @@ class StreamService(Service):
         """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
         if int(command.p1) == AVAILABLE_MODES.id:
             return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
-        return self.bridge.send_after_answer(channel, int(command.p1))
+        result = self.bridge.send_after_answer(channel, int(command.p1))
+        return ACCEPTED if int(command.p1) in OF_PARTS else result

@@ -307,7 +307,9 @@ def test_set_current_in_flight() -> None:
     assert p.order() == [2, 1, 2, 4]
     assert p.sequencer.set_current(p.v, 5) == (False, [])
     assert p.sequencer.set_current(p.v, -1) == (False, [])
-    ok, _ = p.sequencer.set_current(p.v, 0)
+    ok, _ = p.sequencer.set_current(p.v, 0)  # the mission is complete by now
+    assert ok and p.nav.command_seq == 4
+    ok, _ = p.sequencer.set_current(p.v, 0, reset=True)
     assert ok
     assert p.nav.command_seq == 1
     assert Vehicle().sequencer.set_current(p.v, 0) == (False, [])

@@ -24,9 +24,10 @@ from ..control import attitude, position, position_start
 from ..control.state import DT, GRAVITY, Control, PositionState
 from ..parameters import Parameters
 from ..parameters.control import Attitude
-from ..state import Vehicle
+from ..state import Autopilot, Vehicle
 from . import alt_hold
 from .mode import CopterMode
+from .precision_land import target_motion
 from .state import LoiterState
 
 LOITER = 5
@@ -35,6 +36,8 @@ _CDEG = math.pi / 18000.0
 _LEAN_SHARE = 2.0 / 3.0
 """LOIT_ANG_MAX 0: so much of the lean limit is the pilot's."""
 _SPEED_MIN = 0.2  # [m/s]
+_RESTS = 0.5
+"""Least acceleration asked for by sticks [m/s^2] that takes the vehicle away from a landing target."""
 
 
 class Limits(NamedTuple):
@@ -178,16 +181,39 @@ def run(v: Vehicle) -> None:
     else:
         if ap.arming.landed_maybe:
             position_start.soften_for_landing_ne(control.pos_ne, est.pos)
-        braking = is_braking(loiter, v.time_us, p.LOIT.BRK_DELAY)
-        path = position.desired_motion_ne(control.pos_ne)
-        moved = advance_path(loiter, path, limits(p), braking)
-        if is_active(ap.avoid):
-            moved = kept_away(path, moved, avoidance.limit_velocity(v, moved.vel))
-        position.set_pos_vel_accel_ne(control.pos_ne, moved)
+        if hover_over_target(ap):
+            position.input_pos_vel_accel_ne(control.pos_ne, target_motion(ap.landing_target, est, p.PLND))
+        else:
+            fly_by_sticks(v)
         position.update_ne(control, est, p)
         attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), yaw_rate)
     climb = alt_hold.kept_below(v, doing, climb)
     alt_hold.run_vertical(doing, climb, ap.arming, modes.takeoff, control, est, p)
+
+
+@law
+def fly_by_sticks(v: Vehicle) -> None:
+    """Horizontal target of one tick in the air, as the sticks ask."""
+    ap = v.autopilot
+    loiter, path = ap.modes.loiter, position.desired_motion_ne(ap.control.pos_ne)
+    braking = is_braking(loiter, v.time_us, ap.params.LOIT.BRK_DELAY)
+    moved = advance_path(loiter, path, limits(ap.params), braking)
+    if is_active(ap.avoid):
+        moved = kept_away(path, moved, avoidance.limit_velocity(v, moved.vel))
+    position.set_pos_vel_accel_ne(ap.control.pos_ne, moved)
+
+
+@law
+def hover_over_target(ap: Autopilot) -> bool:
+    """Whether it holds over a landing target: a switch allows it, the sticks rest, and the target is seen."""
+    loiter, was_there = ap.modes.loiter, ap.modes.loiter.on_target
+    if not loiter.seeks_target and not was_there:
+        return False
+    rests = loiter.acc.x * loiter.acc.x + loiter.acc.y * loiter.acc.y < _RESTS * _RESTS
+    loiter.on_target = loiter.seeks_target and rests and ap.landing_target.acquired and not ap.arming.landed_maybe
+    if was_there and not loiter.on_target:
+        loiter.predicted_acc, loiter.brake_acc = ZERO2, 0.0
+    return loiter.on_target
 
 
 MODE = CopterMode(

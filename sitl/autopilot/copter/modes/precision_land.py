@@ -19,6 +19,7 @@ from ...landing_target.state import (
     LandingTarget,
 )
 from ...params.precision_landing import PrecisionLanding
+from ...state import Estimate
 from ..control import altitude, position, position_start
 from ..parameters import Parameters
 from ..state import Vehicle
@@ -146,8 +147,7 @@ def follow(v: Vehicle, sticks: Vec2, height: float, stay: bool) -> None:
     if ap.arming.landed_maybe:
         position_start.soften_for_landing_ne(control.pos_ne, est.pos)
     if on_target:
-        vel = t.closing + horizontal(est.vel) if has_option(ap.params.PLND, _MOVES) else ZERO2
-        position.input_pos_vel_accel_ne(control.pos_ne, Motion2(target_place(t, est), vel, ZERO2))
+        position.input_pos_vel_accel_ne(control.pos_ne, target_motion(t, est, ap.params.PLND))
     else:
         position.input_vel_accel_ne(control.pos_ne, sticks, ZERO2)
     if on_target and not stay and not modes.land.pause:
@@ -159,6 +159,13 @@ def follow(v: Vehicle, sticks: Vec2, height: float, stay: bool) -> None:
     else:
         descent.sink(control.pos_d, modes.land, height, ap.arming.landed_maybe, ap.params)
     ground.fly(modes.auto_yaw, control, est, ap.params)
+
+
+@law
+def target_motion(t: LandingTarget, est: Estimate, p: PrecisionLanding) -> Motion2:
+    """Where the target is and how it moves, from the origin; one that is not said to move stands."""
+    vel = t.closing + horizontal(est.vel) if has_option(p, _MOVES) else ZERO2
+    return Motion2(target_place(t, est), vel, ZERO2)
 
 
 @law

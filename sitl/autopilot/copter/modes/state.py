@@ -72,6 +72,8 @@ class LoiterState(Record):
     predicted_rate: Vec2  # [rad/s]
     brake_acc: float  # [m/s^2]
     brake_us: int  # when the sticks were released
+    seeks_target: bool  # a switch lets it hold over a landing target
+    on_target: bool  # it does
 
 
 class CircleState(Record):
