@@ -9,11 +9,22 @@ from typing import Any
 from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
-from ...autopilot.copter.modes import auto, commands, guided_setpoints, set_mode, simple, systemid, table, throw, zigzag
+from ...autopilot.copter.modes import (
+    auto,
+    autotune,
+    commands,
+    guided_setpoints,
+    set_mode,
+    simple,
+    systemid,
+    table,
+    throw,
+    zigzag,
+)
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
-from ...autopilot.mission.notes import Text
+from ...autopilot.mission.notes import NOTICE, Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
@@ -61,6 +72,10 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(INFO, returning.ACTIVE_TEXTS[int(a)])]
         if code == events.THROW_STAGE:
             return [Text(INFO, throw.TEXTS[int(a)])]
+        if code == events.AUTOTUNE_DID:
+            severity = NOTICE if int(a) in autotune.ALSO_NOTICE else INFO
+            said = autotune.texts(int(a), int(b), self._v.autopilot.modes.autotune)
+            return [Text(severity, f"AutoTune: {text}") for text in said]
         if code == events.SYSTEM_ID_DID:
             severity = WARNING if int(a) in systemid.REFUSALS else INFO
             return [Text(severity, systemid.text(int(a), b, self._v.autopilot.params.ANGLE_MAX * 0.01))]
