@@ -56,7 +56,8 @@ def measure_angle(t: AutotuneState, angle: float, rate: float, goal: float, time
     t.rate_min = min(t.rate_min, rate)
     if angle > t.angle_max:
         t.angle_max = t.angle_min = angle
-    t.angle_min = min(t.angle_min, angle)
+    elif angle < t.angle_min and t.angle_max > 0.25 * goal:
+        t.angle_min = angle
     if t.angle_max < RISEN * goal:
         t.limit_us = min(3 * (time_us - t.begun_us), TIMEOUT_US)
 
