@@ -20,6 +20,7 @@ from .events import Events
 from .fence.state import FenceState, RallyState
 from .inertial_filter import InertialFilter
 from .inertial_ring import InertialRing
+from .landing_target.state import LandingTarget
 from .navigation.state import Nav
 from .params.parameters import Parameters
 from .sensor_calibration import Calibrated
@@ -235,6 +236,7 @@ class Autopilot(Record):
     rally: RallyState
     proximity: Proximity
     avoid: Avoidance
+    landing_target: LandingTarget
 
 
 class Vehicle(Protocol):
