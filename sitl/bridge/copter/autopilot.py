@@ -24,7 +24,7 @@ from ...autopilot.copter.modes import (
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
-from ...autopilot.mission.notes import NOTICE, Text
+from ...autopilot.mission.notes import Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
@@ -73,7 +73,7 @@ class CopterAutopilot(BaseAutopilot):
         if code == events.THROW_STAGE:
             return [Text(INFO, throw.TEXTS[int(a)])]
         if code == events.AUTOTUNE_DID:
-            severity = NOTICE if int(a) in autotune.ALSO_NOTICE else INFO
+            severity = autotune.SEVERITIES.get(int(a), INFO)
             said = autotune.texts(int(a), int(b), self._v.autopilot.modes.autotune)
             return [Text(severity, f"AutoTune: {text}") for text in said]
         if code == events.SYSTEM_ID_DID:

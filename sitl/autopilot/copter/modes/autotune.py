@@ -14,6 +14,7 @@ from ....core.algebra import horizontal, norm2, quat_from_euler, rotate
 from ....core.kernels import law
 from ....core.scalars import PI, constrain, wrap_pi
 from ....core.vectors import Euler, Vec3
+from ...mission.notes import CRITICAL, NOTICE
 from ...modes import ACCEPTED, INIT_FAILED
 from .. import pilot
 from ..control import attitude
@@ -42,13 +43,13 @@ STEPS = {
     rules.ANGLE_P_UP: "Angle P Up",
 }
 _TEXTS = {
-    gains.STARTED: "Started", gains.STOPPED: "Stopped", gains.SUCCESS: "Success", gains.FAILURE: "Failed",
+    gains.STARTED: "Started", gains.STOPPED: "Stopped", gains.SUCCESS: "Success",
     gains.OVERRIDDEN: "pilot overrides active", gains.RESTORED: "original gains restored",
     gains.INCOMPLETE: "must be complete to test gains", gains.D_LIMIT: "Min Rate D limit reached",
 }  # fmt: skip
 _FAILURES = {rules.NO_ROOM: "Twitch Size", rules.NO_D: "Rate D Gain", rules.NO_P: "Rate P Gain"}
-ALSO_NOTICE = (gains.COMPLETE, gains.SUCCESS, gains.FAILURE)
-"""Texts with MAV_SEVERITY_NOTICE; the others are INFO."""
+SEVERITIES = {gains.COMPLETE: NOTICE, gains.SUCCESS: NOTICE, gains.FAILURE: CRITICAL}
+"""Of texts; of the others it is INFO."""
 
 _PAUSE_US = 500_000  # from the sticks' release to the next twitch
 _LEVEL_US = 250_000
@@ -79,7 +80,7 @@ def texts(did: int, number: int, t: AutotuneState) -> list[str]:
         axes = "".join(word for axis, word in enumerate(words) if number >> axis & 1)
         return [f"{'Pilot Testing' if did == gains.TRIES else 'Saved'} gains for {axes}"]
     if did == gains.FAILURE:
-        return [f"{_FAILURES[number]} Determination Failed", _TEXTS[did]]
+        return [f"{_FAILURES[number]} Determination Failed"]
     return [_TEXTS[did]] if did in _TEXTS else []
 
 
