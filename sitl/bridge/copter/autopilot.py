@@ -24,7 +24,7 @@ from ...autopilot.copter.modes import (
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
-from ...autopilot.mission.notes import Text
+from ...autopilot.mission.notes import ParametersFound, Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
@@ -75,7 +75,8 @@ class CopterAutopilot(BaseAutopilot):
         if code == events.AUTOTUNE_DID:
             severity = autotune.SEVERITIES.get(int(a), INFO)
             said = autotune.texts(int(a), int(b), self._v.autopilot.modes.autotune)
-            return [Text(severity, f"AutoTune: {text}") for text in said]
+            notes: list[Note] = [Text(severity, f"AutoTune: {text}") for text in said]
+            return [*notes, ParametersFound(autotune.parameters(int(b)))] if a == autotune.gains.SAVED else notes
         if code == events.SYSTEM_ID_DID:
             severity = WARNING if int(a) in systemid.REFUSALS else INFO
             return [Text(severity, systemid.text(int(a), b, self._v.autopilot.params.ANGLE_MAX * 0.01))]

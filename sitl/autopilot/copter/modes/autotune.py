@@ -84,6 +84,17 @@ def texts(did: int, number: int, t: AutotuneState) -> list[str]:
     return [_TEXTS[did]] if did in _TEXTS else []
 
 
+def parameters(axes: int) -> tuple[str, ...]:
+    """Names of the parameters that hold what was found: bits of axes."""
+    names: list[str] = []
+    for axis, short, letter in ((ROLL, "RLL", "R"), (PITCH, "PIT", "P"), (YAW, "YAW", "Y"), (YAW_D, "YAW", "Y")):
+        if axes >> axis & 1:
+            own = "FLTE" if axis == YAW else "D"
+            names += [f"ATC_RAT_{short}_{gain}" for gain in ("P", "I", own)]
+            names += [f"ATC_ANG_{short}_P", f"ATC_ACCEL_{letter}_MAX"]
+    return tuple(dict.fromkeys(names))
+
+
 @law
 def next_axis(chosen: int, done: int) -> int:
     """The next axis to tune: bits ``chosen`` without those ``done``; AXES: none."""
