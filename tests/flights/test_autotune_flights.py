@@ -89,6 +89,8 @@ def test_roll_is_tuned_as_by_a_real_one_tried_and_kept(core: Core, tmp_path: Pat
     p.simulation.close()
     log = read_log(tmp_path / "a.bin")
     assert [m.Id for m in log["EV"] if 30 <= m.Id <= 37] == [30, 33, 31, 36, 36, 37]
+    kept = {m.Name: m.Value for m in log["PARM"]}
+    assert {name: kept[name] for name in NAMES} == pytest.approx(found, rel=1e-6), "as if a client had set them"
     rows = log["ATUN"]
     assert len(rows) == pytest.approx(107, abs=16)
     assert [m.TuneStep for m in rows] == sorted(m.TuneStep for m in rows)
