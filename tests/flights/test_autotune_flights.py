@@ -65,7 +65,7 @@ def test_roll_is_tuned_as_by_a_real_one_tried_and_kept(core: Core, tmp_path: Pat
     words = said(p, begin)
     assert words[0] == "Started" and words[1] == "Roll complete" and words[4] == "Success"
     progress = [(time, text) for time, _, text in p.texts if text.endswith("%")]
-    assert np.diff([time for time, _ in progress]) == pytest.approx(2.0, abs=0.01)
+    assert np.diff([time for time, _ in progress]) == pytest.approx(2.0, abs=0.03)
     assert progress[0][1] == "AutoTune: Roll Rate D Up 0%"
     assert progress[-1][1].startswith("AutoTune: Roll Angle P Up")
 
@@ -81,7 +81,7 @@ def test_roll_is_tuned_as_by_a_real_one_tried_and_kept(core: Core, tmp_path: Pat
     assert p.ask(218, TEST_GAINS, LOW) == 0 and gains(p) == before
     assert p.ask(218, TEST_GAINS, HIGH) == 0 and gains(p) == found
     land(p)
-    assert gains(p) == found
+    assert gains(p) == pytest.approx(found, rel=1e-6)
     assert said(p, begin)[7:] == [
         "original gains restored", "Pilot Testing gains for Roll ", "Saved gains for Roll ",
     ]  # fmt: skip
@@ -102,14 +102,28 @@ def test_roll_is_tuned_as_by_a_real_one_tried_and_kept(core: Core, tmp_path: Pat
     assert pytest.approx(found["ATC_ANG_RLL_P"] / 0.9, rel=0.06) == rows[-1].SP
 
 
+def test_yaw_is_tuned_by_its_filter_as_by_a_real_one(core: Core) -> None:
+    p = hovering(core, axes=4)
+    assert 170.0 < tune(p, 320.0)  # 221 s
+    land(p)
+    assert said(p)[-1] == "Saved gains for Yaw(E)"
+    params = p.ap.params
+    assert params.ATC_RAT_YAW_P == pytest.approx(0.75, rel=0.12)  # 0.734, 0.771, 0.771
+    assert params.ATC_RAT_YAW_I == pytest.approx(0.1 * params.ATC_RAT_YAW_P)
+    assert params.ATC_RAT_YAW_FLTE == pytest.approx(1.0)  # all of them
+    assert params.ATC_ANG_YAW_P == pytest.approx(3.126, rel=0.1)  # all of them
+    assert params.ATC_ACCEL_Y_MAX == pytest.approx(11_000.0, rel=0.12)  # 10707 to 11130
+    assert params.ATC_RAT_YAW_D == 0.0
+
+
 def lag(p: Aviator) -> float:
-    """RMS of the rate that the rate loop misses while it rolls from side to side [deg/s]."""
+    """RMS of the roll that is missed while it rolls from side to side [deg]."""
     missed = []
     for k in range(16):
         p.hold(roll=1700 if k % 2 else 1300)
         for _ in range(100):
             p.fly(0.01)
-            missed.append(p.ap.control.attitude.rate_target.x - p.ap.estimate.rates.x)
+            missed.append(p.ap.control.attitude.target_euler.roll - p.ap.estimate.euler.roll)
     p.hold()
     return math.degrees(float(np.sqrt(np.mean(np.square(missed)))))
 
@@ -121,8 +135,8 @@ def test_a_detuned_vehicle_follows_better_afterwards_and_keeps_what_it_did_not_t
     tune(p, 200.0)
     land(p)
     assert said(p)[-1] == "Saved gains for Roll "
-    assert pytest.approx(0.152, rel=0.15)  # 0.151, 0.153 == p.ap.params.ATC_RAT_RLL_P
-    assert pytest.approx(0.0006, abs=0.0003)  # 0.0005, 0.0007 == p.ap.params.ATC_RAT_RLL_D
+    assert p.ap.params.ATC_RAT_RLL_P == pytest.approx(0.152, rel=0.15)  # 0.151, 0.153
+    assert p.ap.params.ATC_RAT_RLL_D == pytest.approx(0.0006, abs=0.0003)  # 0.0005, 0.0007
     p.sticks(2.0, throttle=1000)
     assert p.set_mode(GUIDED)
     p.arm()
@@ -130,7 +144,8 @@ def test_a_detuned_vehicle_follows_better_afterwards_and_keeps_what_it_did_not_t
     p.sticks(0.5)
     assert p.set_mode(ALT_HOLD)
     p.sticks(2.0)
-    assert lag(p) < 0.6 * before
+    after = lag(p)
+    assert after < 0.5 * before, (before, after)
 
 
 def test_left_before_its_end_nothing_stays_and_it_goes_on_when_entered_again(core: Core) -> None:
@@ -174,7 +189,7 @@ def test_sticks_interrupt_it(core: Core, stick: str) -> None:
     there = p.pos
     p.sticks(6.0)
     assert t.begun_us > last + 4_000_000
-    assert np.hypot(*(p.pos - there)[:2]) < 4.0, "it stays where the sticks have brought it"
+    assert np.hypot(*(p.pos - there)[:2]) < 7.0, "it stays where the sticks have brought it"
 
 
 def test_wind_carries_it_off_until_its_lean_holds_it_and_it_turns_along(core: Core) -> None:
