@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ATUN and ATDE: what AUTOTUNE's twitches measure, at its events; and those that EV tells of."""
+"""ATUN: what AUTOTUNE's twitches measure, with the gains that follow from it; and its events that EV tells of."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 from ...autopilot import events
 from ...autopilot.copter.modes import autotune_gains as gains
 from ...autopilot.copter.modes import autotune_rules as rules
-from ...autopilot.copter.modes import autotune_twitch as twitches
 from .system_id import Row
 
 EV_NUMBERS = {
@@ -24,8 +23,6 @@ def rows(v: Any, code: int, a: float) -> list[Row]:
     if code != events.AUTOTUNE_DID:
         return []
     t = v.autopilot.modes.autotune
-    if a == gains.SAMPLE:
-        return [("ATDE", (math.degrees(twitches.turned(v)), math.degrees(t.rate)))]
     if a == gains.MEASURED:
         g = gains.found(t, t.axis)
         least, most = (t.rate_min, t.rate_max) if t.step <= rules.RATE_P_UP else (t.angle_min, t.angle_max)

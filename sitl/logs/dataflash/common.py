@@ -114,7 +114,6 @@ EVENT_MESSAGES = (
             *(Field(name, "f") for name in ("Targ", "Min", "Max", "RP", "RD", "SP", "ddt")),
         ),
     ),
-    Message("ATDE", (Field("Angle", "f", "d", "0"), Field("Rate", "f", "k", "0"))),
     Message("CMD", COMMAND, bits=bits.COMMANDS),
     Message("MISE", COMMAND, bits=bits.COMMANDS),
     Message(
