@@ -64,6 +64,7 @@ DOCK_DID = 62  # rover; a: what (dock.py)
 YAW_IMBALANCE = 65  # copter; a: the integrator of the yaw rate loop
 EKF_LANE_SWITCHED = 81  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 82  # a: IMU of the filter, b: compass
+AUTOTUNE_DID = 63  # copter; a: what (autotune_gains.py), b: a number of it
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

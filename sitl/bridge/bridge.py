@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..autopilot.mission.item import MissionItem
@@ -29,6 +29,7 @@ from .services.fitted import CARRIED_OUT_BY, switched
 from .services.log_download import LogStore
 from .services.mission import MissionService
 from .services.outputs import OutputService
+from .services.parameters import ParameterService
 from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
@@ -549,6 +550,11 @@ class Bridge:
     def carry_out(self, item: MissionItem) -> None:
         """Do what a mission asks of servo outputs, relays, camera, gimbal and payload."""
         self.get(CARRIED_OUT_BY.get(item.command, OutputService)).carry_out(item)
+
+    def keep_parameters(self, names: Sequence[str]) -> None:
+        """Parameters were changed by the firmware, for good."""
+        for name in names:
+            self.get(ParameterService).set(name, self.vehicle.v.autopilot.params[name])
 
     def switched(self, function: int, position: int) -> None:
         """A switch of gimbal or payload was moved."""

@@ -12,7 +12,7 @@ from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
 from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
 from ..mission.notes import INFO, WARNING, Note, Text
 from . import arming
-from .modes import commands, simple, zigzag
+from .modes import autotune_gains, commands, simple, zigzag
 from .modes.auto import AUTO
 from .modes.set_mode import request
 from .modes.table import NAMES
@@ -79,6 +79,12 @@ def _sweep(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def _try_gains(holder: Holder, position: int) -> list[Note]:
+    if position != MIDDLE:
+        autotune_gains.try_gains(holder.v, position == HIGH)
+    return []
+
+
 def _reset_heading(holder: Holder, position: int) -> list[Note]:
     if position != HIGH:
         return []
@@ -99,7 +105,7 @@ def _feed_forward(holder: Holder, position: int) -> list[Note]:
 
 WITHOUT_EFFECT = {
     10: "Rangefinder", 25: "", 29: "", 75: "SurfaceTracking", 76: "", 84: "AirMode", 109: "", 112: "", 159: "",
-    160: "Weathervane", 180: "", 182: "",
+    160: "Weathervane", 182: "",
 }  # fmt: skip
 """As in all firmwares."""
 
@@ -156,6 +162,7 @@ FUNCTIONS = shared.by_number(
             83, _sweep, "in ZIGZAG, with ZIGZ_AUTO_ENABLE: high begins a sweep or goes on with it; else pauses it"
         ),
         AuxFunction(152, _reset_heading, "high: the heading now is forwards in SIMPLE"),
+        AuxFunction(180, _try_gains, "high: flies with the gains that AUTOTUNE found; low: with those from before"),
         shared.arm_or_disarm(153, arming),
         shared.arm_or_disarm(154, arming),
         shared.disarm(arming),

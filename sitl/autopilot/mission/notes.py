@@ -51,4 +51,11 @@ class Switched:
     position: int
 
 
-Note = Text | ItemReached | CurrentChanged | OutputItem | Switched
+@dataclass(frozen=True, slots=True)
+class ParametersFound:
+    """The firmware has changed these parameters for good: clients are told, and they are kept."""
+
+    names: tuple[str, ...]
+
+
+Note = Text | ItemReached | CurrentChanged | OutputItem | Switched | ParametersFound

@@ -11,6 +11,7 @@ from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
     auto,
+    autotune,
     commands,
     ground,
     guided_setpoints,
@@ -26,7 +27,7 @@ from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.modes.flip import FLIP
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
-from ...autopilot.mission.notes import Text
+from ...autopilot.mission.notes import ParametersFound, Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
@@ -76,6 +77,11 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(INFO, returning.ACTIVE_TEXTS[int(a)])]
         if code == events.THROW_STAGE:
             return [Text(INFO, throw.TEXTS[int(a)])]
+        if code == events.AUTOTUNE_DID:
+            severity = autotune.SEVERITIES.get(int(a), INFO)
+            said = autotune.texts(int(a), int(b), self._v.autopilot.modes.autotune)
+            notes: list[Note] = [Text(severity, f"AutoTune: {text}") for text in said]
+            return [*notes, ParametersFound(autotune.parameters(int(b)))] if a == autotune.gains.SAVED else notes
         if code == events.SYSTEM_ID_DID:
             severity = WARNING if int(a) in systemid.REFUSALS else INFO
             return [Text(severity, systemid.text(int(a), b, self._v.autopilot.params.ANGLE_MAX * 0.01))]

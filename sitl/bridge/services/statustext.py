@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, Switched, Text
+from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, ParametersFound, Switched, Text
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -165,6 +165,8 @@ class EventService(Service):
                 self.bridge.switched(note.function, note.position)
             elif isinstance(note, CurrentChanged):
                 self.bridge.send_to_all(MISSION_CURRENT)
+            elif isinstance(note, ParametersFound):
+                self.bridge.keep_parameters(note.names)
 
 
 EVERY_US = 30_000_000

@@ -107,6 +107,13 @@ EVENT_MESSAGES = (
             *(Field(name, "f", "s", "0") for name in ("TFin", "TC", "TR", "TFout")),
         ),
     ),
+    Message(
+        "ATUN",
+        (
+            Field("Axis", "B"), Field("TuneStep", "B"),
+            *(Field(name, "f") for name in ("Targ", "Min", "Max", "RP", "RD", "SP", "ddt")),
+        ),
+    ),
     Message("CMD", COMMAND, bits=bits.COMMANDS),
     Message("MISE", COMMAND, bits=bits.COMMANDS),
     Message(

@@ -7,7 +7,7 @@ from typing import Any
 
 from .. import plot
 from ..kind import KindLogs
-from . import bits, common, derived, system_id
+from . import autotune, bits, common, derived, system_id
 from .derived import DEG
 from .formats import Field, Message
 from .samples import Array
@@ -150,6 +150,6 @@ LOGS = KindLogs(
     word="Copter",
     mav_types=(2, 3, 4, 13, 14, 15, 29),
     mode_names=tuple(_MODES.split()),
-    event_rows=system_id.rows,
+    event_rows=lambda v, code, a: system_id.rows(v, code, a) + autotune.rows(v, code, a),
     panels=(plot.altitude, plot.attitude, plot.motors),
 )

@@ -11,7 +11,7 @@ from ..control import altitude, altitude_start, attitude, position, position_sta
 from ..control.state import Control, MotorsState
 from ..parameters import Parameters
 from ..state import Vehicle
-from . import auto_yaw
+from . import auto_yaw, autotune_gains
 from .state import AutoYaw
 
 # Spool states wanted by a mode (control/motors.py)
@@ -54,6 +54,7 @@ def disarm(v: Vehicle, method: int) -> None:
     ap.modes.auto.started = False
     ap.control.motors.desired_spool = SHUT_DOWN
     switch_on_disarming(ap.fence, int(ap.params.FENCE.AUTOENABLE), ap.events, v.time_us)
+    autotune_gains.settle(v)
     emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
 
 

@@ -27,8 +27,9 @@ from ...state import Arming, Estimate
 from ..control.motors import hover_throttle
 from ..parameters import Parameters
 from ..state import Vehicle
-from . import stabilize
+from . import autotune_gains, stabilize
 from .auto import AUTO, AUTO_RTL
+from .autotune import AUTOTUNE
 from .drift import DRIFT
 from .state import Modes
 from .table import TITLES, has_manual_throttle, is_known, requires_position, start
@@ -96,6 +97,8 @@ def change(v: Vehicle, number: int, reason: int) -> int:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
+    if modes.number == AUTOTUNE:
+        autotune_gains.leave(v)
     modes.takeoff.user_active = False
     begin_recovery(ap.fence, ap.params.FENCE, ap.events, v.time_us)
     enter(modes, ap.events, v.time_us, number, reason, AUTO)

@@ -159,6 +159,58 @@ class SystemIdState(Record):
     acc: Vec2  # [m/s^2]
 
 
+class AxisGains(Record):
+    """Gains of one axis that AUTOTUNE changes, in the units of their parameters."""
+
+    rate_p: float
+    rate_i: float
+    rate_d: float
+    error_hz: float  # FLTE
+    target_hz: float  # FLTT
+    angle_p: float
+    accel: float  # ACCEL_*_MAX
+
+
+class AutotuneState(Record):
+    """AUTOTUNE."""
+
+    phase: int  # autotune_gains.py: IDLE, TUNING, ...
+    axis: int  # ROLL, PITCH, YAW, YAW_D
+    step: int  # autotune_rules.py
+    done: int  # bits of the axes that are tuned
+    count: int  # right answers
+    ignore_next: bool
+    backwards: bool  # the twitch turns to the other side
+    twitching: bool  # else it levels
+    came_to: int  # what the last twitch came to (autotune_rules.py); GOES_ON: that has been dealt with
+    overridden_us: int  # when a stick was last out of its middle; 0 they are centred
+    warned_us: int  # when it last said so
+    told_us: int  # when it last said how far it is
+    levelling_us: int  # since when it levels
+    level_us: int  # since when it is level
+    begun_us: int  # of the twitch
+    limit_us: int  # its longest duration
+    scale: float  # of the greatest rate of twitches, 1 or less
+    target: float  # of the twitch [rad/s] or [rad]
+    start_rate: float  # in its direction [rad/s]
+    start_angle: float  # [rad]
+    rate: float  # filtered [rad/s]
+    rate_max: float
+    rate_min: float  # after the greatest
+    angle_max: float  # [rad]
+    angle_min: float  # after the greatest
+    accel: float  # up to the greatest rate [rad/s^2]
+    place: Vec2  # to come back to, NE [m]
+    heading: float  # [rad]
+    holds_place: bool
+    roll_before: AxisGains
+    pitch_before: AxisGains
+    yaw_before: AxisGains
+    roll: AxisGains  # found so far
+    pitch: AxisGains
+    yaw: AxisGains
+
+
 class RtlState(Record):
     """RTL and SMART_RTL."""
 
@@ -245,6 +297,7 @@ class Modes(shared.Modes):
     throw: ThrowState
     zigzag: ZigZagState
     systemid: SystemIdState
+    autotune: AutotuneState
     rtl: RtlState
     path: shared.PathState
     land: LandState

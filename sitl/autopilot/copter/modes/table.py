@@ -14,6 +14,7 @@ from . import (
     alt_hold,
     auto,
     auto_rtl,
+    autotune,
     avoid_adsb,
     brake,
     circle,
@@ -62,6 +63,7 @@ MODES: tuple[CopterMode, ...] = with_registered(
         flowhold.MODE,
         turtle.MODE,
         auto_rtl.MODE,
+        autotune.MODE,
     ),
 )
 """In the order of AVAILABLE_MODES."""

@@ -22,6 +22,7 @@ from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
+    Autotune,
     Circle,
     Follow,
     Guided,
@@ -72,6 +73,7 @@ class Parameters(shared.Parameters):
         "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
         INT32,
     )
+    AUTOTUNE: Autotune
     AVOID: Avoid
     BATT: Battery
     CIRCLE: Circle

@@ -149,6 +149,14 @@ class Throw(ParameterGroup):
     TYPE: float = param(0, 0, 1, "", "0 thrown upwards, 1 dropped", INT8)
 
 
+class Autotune(ParameterGroup):
+    """AUTOTUNE_: AUTOTUNE."""
+
+    AXES: float = param(7, 0, 15, "", "Bits: 1 roll, 2 pitch, 4 yaw's error filter, 8 yaw's D", INT8)
+    AGGR: float = param(0.075, 0.05, 0.1, "", "Bounce that is taken for one, as a part of the greatest rate")
+    MIN_D: float = param(0.0005, 0.0001, 0.005, "", "Least gain of the derivative")
+
+
 class SystemId(ParameterGroup):
     """SID_: the chirp of SYSTEMID."""
 

@@ -11,6 +11,7 @@ from sitl.autopilot import smart_rtl_path
 from sitl.autopilot.copter.modes import set_mode
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.auto import AUTO, AUTO_RTL
+from sitl.autopilot.copter.modes.autotune import AUTOTUNE
 from sitl.autopilot.copter.modes.avoid_adsb import AVOID_ADSB
 from sitl.autopilot.copter.modes.brake import BRAKE
 from sitl.autopilot.copter.modes.circle import CIRCLE
@@ -43,7 +44,9 @@ from sitl.autopilot.modes import (
 )
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 
-ALL = tuple(number for number in NAMES if number not in (FLIP, SMART_RTL, THROW, AUTO_RTL, SYSTEMID, FLOWHOLD, TURTLE))
+OTHERS = (FLIP, SMART_RTL, THROW, AUTO_RTL, SYSTEMID, FLOWHOLD, TURTLE, AUTOTUNE)
+"""Modes with conditions of their own."""
+ALL = tuple(number for number in NAMES if number not in OTHERS)
 
 
 @pytest.mark.parametrize("number", ALL)
