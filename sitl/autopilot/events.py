@@ -59,6 +59,9 @@ SYSTEM_ID_DID = 52  # copter; a: what (systemid.py), b: a number of it
 SYSTEM_ID_SAMPLE = 53  # copter: a sample of SYSTEMID, for the log
 CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
 NO_WAY = 60  # there is no way around the areas of the fence
+EKF_RELATIVE = 70  # the filter's position is relative to where it began
+EKF_STOPPED_AIDING = 71
+EKF_USES = 72  # a: 1 optical flow, 2 another system's position and velocity (EK3_SRC*, VISO_TYPE)
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

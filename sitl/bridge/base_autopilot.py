@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..autopilot import battery, events, home
-from ..autopilot.estimation import aiding
+from ..autopilot.estimation import aiding, sources
 from ..autopilot.fence import texts as fence_texts
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
@@ -114,6 +114,9 @@ class BaseAutopilot:
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
         ap = self._v.autopilot
         return aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(int(lat), int(lon), float(alt)))
+
+    def choose_sources(self, number: int) -> None:
+        sources.choose_set(self._v.autopilot.ekf, number)
 
     def set_battery_left(self, percent: float) -> bool:
         ap = self._v.autopilot

@@ -102,6 +102,15 @@ class Ekf(Record):
     gps_vel_fused_us: int
     hold_us: int  # last zero-velocity or held-position fusion
     hold_pos: Vec2  # NE position held [m]
+    # aiding without GPS (sources.py, flow.py)
+    source_set: int  # of EK3_SRC1, 2, 3: 0 .. 2
+    relative: bool  # velocity comes from optical flow or another system: the position is relative to where that began
+    relative_us: int  # when something of theirs was last fused
+    flow_seen: int  # last sample of optical flow
+    range_seen: int  # last reading of the range-finder
+    terrain_d: float  # position down of the ground below [m]
+    terrain_us: int  # when the range-finder last saw it
+    innovation_flow: Vec2  # [rad/s]
     # last innovations (measured minus expected), fused or not, for logs
     innovation_vel: Vec3  # GPS [m/s]
     innovation_pos: Vec3  # GPS north and east, barometer down [m]

@@ -6,10 +6,23 @@ from __future__ import annotations
 from ...core.algebra import IDENTITY
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
-from .. import events
+from .. import events, optical_flow
 from ..sensor_calibration import read_sensors
 from ..state import Estimate, Vehicle
-from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
+from . import (
+    alignment,
+    barometer,
+    covariance,
+    flow,
+    fusion,
+    gps,
+    history,
+    magnetometer,
+    noise,
+    sources,
+    status,
+    strapdown,
+)
 from .alignment import CALIBRATE, RUN, TILT, YAW
 from .state import POS, VEL, Ekf
 
@@ -57,19 +70,43 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         alignment.restart(ekf)
 
 
+@law
+def fuse_others(v: Vehicle, by_gps: bool) -> bool:
+    """Sources other than GPS and compass; ``by_gps``: the position comes from GPS. Whether something was fused."""
+    ap = v.autopilot
+    ekf, source = ap.ekf, ap.params.EK3.SRC[ap.ekf.source_set]
+    flow.read_range(ekf, v.sensors)
+    fused = False
+    if source.VELXY == sources.FLOW:
+        fused = flow.fuse(ekf, ap.estimate, ap.events, ap.flow, ap.params.EK3)
+    if ekf.gps_in_use and not by_gps:
+        ekf.gps_in_use = False
+        ekf.relative, ekf.relative_us = True, ekf.now_us
+        if source.VELXY == sources.FLOW:
+            events.emit(ap.events, ekf.now_us, events.EKF_USES, flow.BY_FLOW, 0.0)
+    flow.watch(ekf, ap.estimate, ap.events, sources.aid(source))
+    return fused
+
+
 @inline_unit
 def step(fleet: Records[Vehicle], i: int) -> None:
     """Prediction of the covariance over the last ticks, then fusion of what the sensors brought."""
     v = fleet[i]
     ap = v.autopilot
     ekf, estimate, params, armed = ap.ekf, ap.estimate, ap.params.EK3, ap.arming.armed
+    source = params.SRC[ekf.source_set]
+    usual = sources.are_usual(source)
     covariance.predict(ekf, params)
     alignment.begin_step(ekf)
     history.keep(ekf)
     fused = barometer.fuse(ekf, estimate, params)
     fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
-    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors)
-    if not ekf.gps_in_use:
+    by_gps = usual or source.POSXY == sources.GPS
+    takes_velocity = usual or source.VELXY == sources.GPS
+    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, by_gps, takes_velocity)
+    if not usual or ekf.relative:
+        fused |= fuse_others(v, by_gps)
+    if not (ekf.gps_in_use or (ekf.relative and armed)):
         fused |= hold(ekf, armed, params.NOAID_M_NSE)
     if fused:
         fusion.inject(ekf, params.ACC_BIAS_LIM)
@@ -105,6 +142,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     strapdown.read_imu(ekf, shown.gyro, shown.acc)
     barometer.read(ekf, sensors)
     gps.read(ekf, sensors)
+    if ap.flow.kind != 0:
+        optical_flow.read(ap.flow, sensors, ekf.now_us, ap.params.FLOW)
     if ekf.phase == CALIBRATE:
         if ap.params.EK3.ENABLE != 0:
             _boot(ekf, ap.estimate, ap.events)

@@ -68,6 +68,8 @@ TEXTS = {
     core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU0 origin set"),
     core.EKF_USES_GPS: (INFO, "EKF3 IMU0 is using GPS"),
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.EKF_STOPPED_AIDING: (WARNING, "EKF3 IMU0 stopped aiding"),
+    core.EKF_RELATIVE: (INFO, "EKF3 IMU0 started relative aiding"),
     core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),
     core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
 }
@@ -78,6 +80,7 @@ MISSION_CURRENT = message("MISSION_CURRENT").id
 FENCE_STATUS = message("FENCE_STATUS").id
 REACHED = message("MISSION_ITEM_REACHED")
 E = "autopilot.events."
+BY_FLOW = 1.0
 
 
 class EventService(Service):
@@ -127,6 +130,8 @@ class EventService(Service):
 
     def _tell(self, code: int, a: float, b: float) -> None:
         say = self.bridge.get(StatusTextService).say
+        if code == core.EKF_USES:
+            say(INFO, "EKF3 IMU0 fusing optical flow" if a == BY_FLOW else "EKF3 IMU0 is using external nav data")
         if code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ...autopilot.estimation.status import POS_HORIZ_REL
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
@@ -80,7 +81,7 @@ class LocalPositionNed(Message, name="LOCAL_POSITION_NED"):
 
 @law
 def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
-    """LOCAL_POSITION_NED: metres from the EKF origin, m/s; nothing until the origin is set."""
+    """LOCAL_POSITION_NED: metres from the EKF origin, m/s; nothing until that is set, or positions are relative."""
     estimate = v.autopilot.estimate
     pos, vel = estimate.pos, estimate.vel
     m.time_boot_ms = boot_ms(v.time_us)
@@ -90,7 +91,7 @@ def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
     m.vx = vel.x
     m.vy = vel.y
     m.vz = vel.z
-    return estimate.origin_set
+    return estimate.origin_set or estimate.status_flags & POS_HORIZ_REL != 0
 
 
 class VfrHud(Message, name="VFR_HUD"):
