@@ -24,6 +24,7 @@ from .optical_flow import OpticalFlow
 from .params.parameters import Parameters
 from .sensor_calibration import Calibrated
 from .vibration import Vibration
+from .visual_odometry import VisualOdometry
 
 
 class Estimate(Record):
@@ -235,6 +236,7 @@ class Autopilot(Record):
     proximity: Proximity
     avoid: Avoidance
     flow: OpticalFlow
+    odometry: VisualOdometry
 
 
 class Vehicle(Protocol):

@@ -221,8 +221,10 @@ def fuse(
         place_origin(ekf, estimate, log, Origin(sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter))
     learn_bias(ekf)
     when_us = ekf.gps_arrival_us - delay_us(params.GPS1_DELAY_MS)
+    if not is_source:
+        return False
     if ekf.gps_in_use:
         return fuse_fix(ekf, estimate, sensors, params.EK3, when_us, takes_velocity)
-    if is_source and may_start(ekf, estimate.origin_set):
+    if may_start(ekf, estimate.origin_set):
         start_using(ekf, estimate, log, sensors, 1e-6 * (ekf.now_us - when_us))
     return False

@@ -95,7 +95,7 @@ class Ekf(Record):
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
     gps_alt_filter: float  # mean altitude while on the ground [m]
-    gps_in_use: bool
+    gps_in_use: bool  # positions on the globe are fused: of GPS, or of another system in its place (external.py)
     gps_used_before: bool
     gps_glitch: bool  # last fix was beyond the gates
     gps_pos_fused_us: int
@@ -106,6 +106,8 @@ class Ekf(Record):
     source_set: int  # of EK3_SRC1, 2, 3: 0 .. 2
     relative: bool  # velocity comes from optical flow or another system: the position is relative to where that began
     relative_us: int  # when something of theirs was last fused
+    pose_seen: int  # last pose and velocity of another system (external.py)
+    velocity_seen: int
     flow_seen: int  # last sample of optical flow
     range_seen: int  # last reading of the range-finder
     terrain_d: float  # position down of the ground below [m]

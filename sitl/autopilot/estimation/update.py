@@ -13,6 +13,7 @@ from . import (
     alignment,
     barometer,
     covariance,
+    external,
     flow,
     fusion,
     gps,
@@ -79,7 +80,9 @@ def fuse_others(v: Vehicle, by_gps: bool) -> bool:
     fused = False
     if source.VELXY == sources.FLOW:
         fused = flow.fuse(ekf, ap.estimate, ap.events, ap.flow, ap.params.EK3)
-    if ekf.gps_in_use and not by_gps:
+    if ap.odometry.kind != 0:
+        fused |= external.fuse(ekf, ap.estimate, ap.events, ap.odometry, source, ap.params.EK3, ap.params.VISO)
+    if ekf.gps_in_use and not by_gps and source.POSXY != sources.EXTERNAL:
         ekf.gps_in_use = False
         ekf.relative, ekf.relative_us = True, ekf.now_us
         if source.VELXY == sources.FLOW:
@@ -99,8 +102,15 @@ def step(fleet: Records[Vehicle], i: int) -> None:
     covariance.predict(ekf, params)
     alignment.begin_step(ekf)
     history.keep(ekf)
-    fused = barometer.fuse(ekf, estimate, params)
-    fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
+    fused = False
+    if usual or not (source.POSZ == sources.EXTERNAL and ekf.gps_in_use):
+        fused |= barometer.fuse(ekf, estimate, params)
+    else:
+        barometer.leave_out(ekf)
+    if usual or source.YAW != sources.EXTERNAL:
+        fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
+    else:
+        magnetometer.clear_samples(ekf)
     by_gps = usual or source.POSXY == sources.GPS
     takes_velocity = usual or source.VELXY == sources.GPS
     fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, by_gps, takes_velocity)

@@ -15,7 +15,7 @@ from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
 from .system import Ahrs, Arming, Battery, Compass, Failsafes, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
-from .without_gps import Flow, RangeFinder
+from .without_gps import Flow, RangeFinder, VisualOdometry
 
 
 class Parameters(ParameterGroup):
@@ -58,6 +58,7 @@ class Parameters(ParameterGroup):
     )
     SIM: Simulated
     STAT: Statistics
+    VISO: VisualOdometry
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

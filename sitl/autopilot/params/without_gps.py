@@ -31,3 +31,15 @@ class RangeFinder(ParameterGroup):
     TYPE: float = param(0, 0, 127, "", "0: as the airframe has it; else there is one", INT8)
     MIN: float = param(0.2, 0.0, 1000.0, "m", "Least range of such a one")
     MAX: float = param(7.0, 0.0, 7000.0, "m", "Greatest range of such a one")
+
+
+class VisualOdometry(ParameterGroup):
+    """VISO_: another system that knows position or velocity."""
+
+    TYPE: float = param(0, 0, 127, "", "At boot: 0 none, 1 MAVLink; else none", INT8)
+    SCALE: float = param(1.0, 0.01, 100.0, "", "Metres for one unit of the positions told")
+    DELAY_MS: float = param(10, 0, 250, "ms", "Age of what is told when it comes", INT16)
+    VEL_M_NSE: float = param(0.1, 0.05, 5.0, "m/s", "Least standard deviation of a velocity")
+    POS_M_NSE: float = param(0.2, 0.1, 10.0, "m", "Least standard deviation of a position")
+    YAW_M_NSE: float = param(0.2, 0.05, 1.0, "rad", "Standard deviation of a heading")
+    QUAL_MIN: float = param(0, -1, 100, "%", "Least quality of an ODOMETRY message that is believed; 0: any", INT8)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from ...core.kernels import unit
 from ...vehicle.rover import Rover, advance
 from ..core_link import CoreUnits
+from ..services import odometry
 from ..services.follow import follow_target
 from ..services.proximity import distance, obstacle_3d, obstacles
 from ..services.rc import rc_channels_override
@@ -24,6 +25,7 @@ BUILDERS = compiled(MESSAGES)
 TAKERS = (
     position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control,
     other_position, follow_target, obstacles, distance, obstacle_3d, take_flow,
+    *odometry.TAKERS,
 )  # fmt: skip
 build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
 

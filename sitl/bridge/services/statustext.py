@@ -132,13 +132,21 @@ class EventService(Service):
         say = self.bridge.get(StatusTextService).say
         if code == core.EKF_USES:
             say(INFO, "EKF3 IMU0 fusing optical flow" if a == BY_FLOW else "EKF3 IMU0 is using external nav data")
-        if code in self._texts:
+        if code == core.EKF_YAW_ALIGNED and a != 0.0:
+            say(INFO, "EKF3 IMU0 yaw aligned")
+        elif code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
         if code == core.FENCE_BREACHED:
             self.bridge.send_to_all(FENCE_STATUS)
         if code in (core.ARMED, core.DISARMED):
             self.bridge.get(PreArmService).find_due()
+        if code == core.EKF_USES and a != BY_FLOW:
+            ekf = self.bridge.vehicle.v.autopilot.ekf
+            north, east, down = ekf.pos
+            say(INFO, f"EKF3 IMU0 initial pos NED = {north:.1f},{east:.1f},{down:.1f} (m)")
+            north, east, down = ekf.vel
+            say(INFO, f"EKF3 IMU0 initial vel NED = {north:.1f},{east:.1f},{down:.1f} (m/s)")
         if code == core.EKF_INITIALISED:
             say(INFO, "AHRS: EKF3 active")
         elif code == core.EKF_ORIGIN_SET:

@@ -7,6 +7,7 @@ import math
 from typing import NamedTuple
 
 from ...autopilot.estimation.status import POS_HORIZ_REL
+from ...autopilot.state import Estimate
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
@@ -40,6 +41,12 @@ def global_position(v: Vehicle) -> GlobalPosition:
     return GlobalPosition(0, 0, 0.0)
 
 
+@law
+def is_relative(estimate: Estimate) -> bool:
+    """Whether positions count from where the estimate began, somewhere on the globe."""
+    return not estimate.origin_set and estimate.status_flags & POS_HORIZ_REL != 0
+
+
 class GlobalPositionInt(Message, name="GLOBAL_POSITION_INT"):
     time_boot_ms: int
     lat: int
@@ -54,14 +61,19 @@ class GlobalPositionInt(Message, name="GLOBAL_POSITION_INT"):
 
 @law
 def global_position_int(m: GlobalPositionInt, v: Vehicle) -> bool:
-    """GLOBAL_POSITION_INT: degE7, mm above sea level and above home, cm/s, heading in centidegrees."""
+    """GLOBAL_POSITION_INT: degE7, mm above sea level and above home, cm/s, heading in centidegrees; without an origin
+    the relative height is that above the beginning.
+    """
     estimate, home = v.autopilot.estimate, v.autopilot.home
     here = global_position(v)
     m.time_boot_ms = boot_ms(v.time_us)
     m.lat = here.lat
     m.lon = here.lon
     m.alt = int32(here.alt * 1e3)
-    m.relative_alt = int32((here.alt - home.alt) * 1e3) if home.is_set else 0
+    if home.is_set:
+        m.relative_alt = int32((here.alt - home.alt) * 1e3)
+    elif is_relative(estimate):
+        m.relative_alt = int32(-estimate.pos.z * 1e3)
     m.vx = int16(estimate.vel.x * 100.0)
     m.vy = int16(estimate.vel.y * 100.0)
     m.vz = int16(estimate.vel.z * 100.0)
@@ -91,7 +103,7 @@ def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
     m.vx = vel.x
     m.vy = vel.y
     m.vz = vel.z
-    return estimate.origin_set or estimate.status_flags & POS_HORIZ_REL != 0
+    return estimate.origin_set or is_relative(estimate)
 
 
 class VfrHud(Message, name="VFR_HUD"):

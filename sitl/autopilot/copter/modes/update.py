@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import inlined, law, unit
 from ....core.records import Records
-from ... import battery, home, optical_flow
+from ... import battery, home, optical_flow, visual_odometry
 from ...avoidance import proximity
 from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
@@ -43,6 +43,7 @@ def init(v: Vehicle) -> None:
     pilot.init(ap.rc, ap.modes.pilot)
     proximity.power_on(ap.proximity, ap.params.PRX1)
     optical_flow.power_on(ap.flow, ap.params.FLOW)
+    visual_odometry.power_on(ap.odometry, ap.params.VISO)
 
 
 @unit
