@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A companion that tells a vehicle in this process where it is (ODOMETRY), as visual odometry or motion capture does."""
+"""A companion that tells a vehicle in this process where it is (ODOMETRY), as visual odometry and motion capture do."""
 
 from __future__ import annotations
 
