@@ -106,6 +106,7 @@ class Ekf(Record):
     source_set: int  # of EK3_SRC1, 2, 3: 0 .. 2
     relative: bool  # velocity comes from optical flow or another system: the position is relative to where that began
     relative_us: int  # when something of theirs was last fused
+    yaw_by_others: bool  # the heading comes from another system, not from the compass
     pose_seen: int  # last pose and velocity of another system (external.py)
     velocity_seen: int
     flow_seen: int  # last sample of optical flow

@@ -107,7 +107,8 @@ def step(fleet: Records[Vehicle], i: int) -> None:
         fused |= barometer.fuse(ekf, estimate, params)
     else:
         barometer.leave_out(ekf)
-    if usual or source.YAW != sources.EXTERNAL:
+    ekf.yaw_by_others = not usual and source.YAW == sources.EXTERNAL
+    if not ekf.yaw_by_others:
         fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
     else:
         magnetometer.clear_samples(ekf)

@@ -22,6 +22,7 @@ from .control import Attitude, Motors, Position
 from .flight import (
     Acro,
     Circle,
+    FlowHold,
     Follow,
     Guided,
     Land,
@@ -80,6 +81,7 @@ class Parameters(shared.Parameters):
     )
     EK3: Ekf3
     FENCE: Fence
+    FHLD: FlowHold
     FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
