@@ -10,7 +10,7 @@ others have gone on meanwhile. Each vehicle flies bit for bit as a ``Simulation`
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from ctypes import c_int64
 from dataclasses import replace
@@ -37,6 +37,7 @@ from .plants.local import LocalPlant
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
 from .vehicle.core_entry import Core, bind_fleet_unit, unit_address
+from .vehicle.faults import Failure
 from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
@@ -312,6 +313,35 @@ class Fleet:
         self._out_size[index] = self._out_count[index] = 0
         return self._extra.pop(index) + said if index in self._extra else said
 
+    def fail(self, which: int | Iterable[int], failure: Failure | str) -> None:
+        """Let something fail in vehicles, as ``Simulation.fail`` does (docs/faults.md); times count from now.
+
+        Raises:
+            OptionError: they have no such fault, or the fleet has no such vehicle.
+        """
+        for index in self._by_shell(which):
+            self.shell.fail(failure)
+            self._give([index], self._take())
+
+    def repair(self, which: int | Iterable[int], unit: str = "", instance: int = 0) -> None:
+        """End faults of vehicles, as ``Simulation.repair`` does.
+
+        Raises:
+            OptionError: there is no such unit, or no such vehicle.
+        """
+        for index in self._by_shell(which):
+            self.shell.repair(unit, instance)
+            self._give([index], self._take())
+
+    def _by_shell(self, which: int | Iterable[int]) -> Iterator[int]:
+        """Vehicles, the shell being in the state of each."""
+        for index in [which] if isinstance(which, int | np.integer) else list(which):
+            self._check(index)
+            self._check_open()
+            self.shell.restore(self.snapshot(index))
+            self.shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
+            yield int(index)
+
     def set_link_faults(self, which: int | Iterable[int], faults: LinkFaults | None) -> None:
         """Let vehicles' links to their clients lose, delay or change frames from now on (docs/faults.md).
 
@@ -322,17 +352,13 @@ class Fleet:
             which: a vehicle, or several.
             faults: what happens to frames; None: nothing any more.
         """
-        shell = self.shell
-        for index in [which] if isinstance(which, int | np.integer) else list(which):
-            self._check(index)
-            self._check_open()
-            shell.restore(self.snapshot(index))
-            channel = shell.bridge.channels[0]
-            channel.port._bytes[:] = self._ports_u1[index].tobytes()
-            own = replace(faults, seed=faults.seed + int(index)) if faults is not None else None
-            shell.bridge.board.faults.give(channel, own)
-            shell.bridge.board.faults.look([channel])
-            self._give([int(index)], self._take())
+        board = self.shell.bridge.board
+        for index in self._by_shell(which):
+            channel = self.shell.bridge.channels[0]
+            own = replace(faults, seed=faults.seed + index) if faults is not None else None
+            board.faults.give(channel, own)
+            board.faults.look([channel])
+            self._give([index], self._take())
 
     def drop_telemetry(self) -> None:
         """Throw away what clients have not received."""

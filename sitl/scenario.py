@@ -18,6 +18,7 @@ from . import vehicles, worlds
 from .errors import OptionError, did_you_mean
 from .physics.engines import NATIVE
 from .physics.native.power_on import DEFAULT_HOME, Home
+from .vehicle.faults import Failure
 from .vehicle.kind import Kind
 from .vehicle.kinds import DEFAULT, KINDS
 from .vehicles import Airframe
@@ -38,6 +39,7 @@ class Options(TypedDict, total=False):
     world: str | Path | World | None
     start: StartPose | None
     physics: str
+    faults: Sequence[str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,7 @@ class Scenario:
         physics: "native", "pybullet", "jsbsim", or where the physics is: "hil:tcp:HOST:PORT" (``sitl physics``),
             "json:HOST:PORT" (a simulator with ArduPilot's JSON interface). Home, seed, world and start of a physics
             elsewhere are its own.
+        faults: what fails, and when after power-on: "gps@12", "motor:2=0.5@20..30" (docs/faults.md).
 
     Raises:
         OptionError, sitl.vehicles.AirframeError: a value that cannot be taken, named.
@@ -70,11 +73,13 @@ class Scenario:
     world: str | Path | World | None = None
     start: StartPose | None = None
     physics: str = NATIVE
+    faults: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         if self.estimator not in ESTIMATORS:
             raise OptionError(f"estimator {self.estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         object.__setattr__(self, "params", dict(self.params or {}))
+        object.__setattr__(self, "faults", tuple(str(Failure.of_text(text)) for text in self.faults))
         if self.home is not None:
             object.__setattr__(self, "home", checked_home(self.home))
         if self.seed is not None:
@@ -162,6 +167,7 @@ class Scenario:
             "world": _world_to_json(self.world),
             "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
             "params": {name: float(value) for name, value in (self.params or {}).items()},
+            "faults": list(self.faults),
         }
 
     @classmethod
@@ -185,6 +191,7 @@ class Scenario:
             "params": data["params"],
             "start": tuple(start) if isinstance(start, list) else start,
             "physics": data["physics"],
+            "faults": data.get("faults", ()),
         }
         return cls(**{**found, **{name: value for name, value in options.items() if value is not None}})
 

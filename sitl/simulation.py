@@ -19,6 +19,7 @@ from .autopilot.params import files
 from .autopilot.params.table import Values
 from .bridge.bridge import Bridge, BridgeState
 from .bridge.links import Link, LinkFaults
+from .bridge.services.faults import FaultService
 from .bridge.services.statustext import EventService, StatusTextService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
@@ -32,6 +33,7 @@ from .plants.plant import PhysicsLostError, Plant, SimulatedVehicle, is_remote, 
 from .scenario import Options, Scenario
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
+from .vehicle.faults import Failure
 from .vehicles import Airframe, AirframeError
 from .worlds import World
 
@@ -162,6 +164,8 @@ class Simulation:
         self.bridge.core.load(self.plant.runs_in_core, progress)
         if isinstance(self.plant, LocalPlant):
             self.plant.load()
+        for text in scenario.faults:
+            self.bridge.get(FaultService).fail(Failure.of_text(text))
 
     @property
     def resolved(self) -> Scenario:
@@ -296,6 +300,44 @@ class Simulation:
             link: one that was added to ``bridge``; None: all, later ones too.
         """
         self.bridge.set_link_faults(faults, link)
+
+    def fail(self, failure: Failure | str) -> None:
+        """Let something fail, see docs/faults.md.
+
+        Args:
+            failure: what, and when from now on; a text as of ``Failure.of_text``: "gps@12", "motor:2=0.5@20..30".
+
+        Raises:
+            OptionError: this vehicle has no such fault; the message says what it has.
+        """
+        failure = Failure.of_text(failure) if isinstance(failure, str) else failure
+        self.bridge.get(FaultService).fail(failure)
+        self._note_fault(str(failure))
+
+    def repair(self, unit: str = "", instance: int = 0) -> None:
+        """A unit's faults are over, those to come too: its parameters are what they were before the first one.
+
+        Args:
+            unit: as "gps", or a SIM_ parameter; "": all that has failed.
+            instance: which one, from 1; 0: all.
+
+        Raises:
+            OptionError: there is no such unit.
+        """
+        self.bridge.get(FaultService).repair(unit, instance)
+        self._note_fault(f"-{unit}:{instance}")
+
+    def order_fault(self, text: str) -> None:
+        """``fail`` or ``repair`` by the text under which recordings keep it."""
+        if text.startswith("-"):
+            unit, _, instance = text[1:].partition(":")
+            self.repair(unit, int(instance or 0))
+        else:
+            self.fail(text)
+
+    def _note_fault(self, text: str) -> None:
+        if self.bridge.board.journal is not None:
+            self.bridge.board.journal.failed(text)
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""

@@ -16,6 +16,10 @@ MEANINGS = {
 }
 """By name; those of outputs where the core has none of its own."""
 
+FAILURES = "SYS_FAILURE_EN"
+OWN = {FAILURES: "1: MAV_CMD_INJECT_FAILURE is carried out"}
+"""Those that ArduPilot does not have; MAVSDK's failure plugin asks for this one of PX4."""
+
 
 def clears_mission(values: Values) -> bool:
     """Whether a boot clears the mission."""

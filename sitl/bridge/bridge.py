@@ -24,6 +24,7 @@ from .places import Places
 from .profile import load
 from .services import all_services
 from .services.commands import Grants
+from .services.faults import FaultService
 from .services.fitted import CARRIED_OUT_BY, switched
 from .services.log_download import LogStore
 from .services.mission import MissionService
@@ -595,6 +596,7 @@ class Bridge:
         new = Bridge(self.vehicle, epoch_us=self.epoch_us, autopilot=self._given_autopilot)
         new.get(MissionService).follow(self.get(MissionService))
         new.get(SigningService).follow(self._signing)
+        new.get(FaultService).follow(self.get(FaultService))
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

@@ -89,6 +89,9 @@ class Journal(Protocol):
     def logs(self) -> None:
         """The vehicle keeps on-board logs from now on."""
 
+    def failed(self, text: str) -> None:
+        """A fault was ordered, or ("-" and a unit) repaired, by this program."""
+
     def restored(self) -> None:
         """The vehicle was put back to a snapshot."""
 

@@ -89,6 +89,8 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
         raise OptionError(f"--lockstep: {choice.kind} knows no grants; environments hold its time (autopilot=)")
     if link_faults(options) is not None:
         raise OptionError(f"--link-...: the links of {choice.kind} are its own; only our autopilot's have faults")
+    if getattr(options, "fail", ()):
+        raise OptionError(f"--fail: {choice.kind} has SIM_ parameters of its own; set those")
     if options.estimator != "ekf":
         raise OptionError(f"--estimator {options.estimator}: {choice.kind} has estimators of its own")
     if options.physics not in BACKENDS:

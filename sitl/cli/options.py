@@ -15,6 +15,7 @@ from ..physics.engines import NATIVE
 from ..plants.plant import FORMS
 from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, checked_home
 from ..simulation import OptionError, Simulation
+from ..vehicle.faults import FORM
 from ..vehicle.kinds import DEFAULT, KINDS
 from .progress import CompileProgress
 
@@ -93,6 +94,13 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, metavar="N", help="seed of sensor noise and turbulence")
     parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")
     parser.add_argument("--params", action="append", default=[], metavar="FILE", help=".parm file (repeatable)")
+    parser.add_argument(
+        "--fail",
+        action="append",
+        default=[],
+        metavar="FAULT",
+        help=f"what fails, and when: {FORM}, as gps@12 or motor:2=0.5@20..30 (repeatable; docs/faults.md)",
+    )
     parser.add_argument("--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="where .tlog files go")
 
 
@@ -117,6 +125,7 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
         world=options.world,
         start=options.start,
         physics=options.physics,
+        faults=getattr(options, "fail", ()),
     )
 
 

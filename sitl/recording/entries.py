@@ -51,6 +51,8 @@ class EntryKind(IntEnum):
     """An action that no replay can repeat: the vehicle was restored to a snapshot; data: description."""
     LOGS = 15
     """On-board logs are kept from now on, and clients can download them."""
+    FAULT = 16
+    """A fault was ordered (data: its text) or repaired ("-" and its unit)."""
 
 
 class Entry(NamedTuple):

@@ -196,6 +196,9 @@ class Recorder:
     def logs(self) -> None:
         self._note(EntryKind.LOGS)
 
+    def failed(self, text: str) -> None:
+        self._note(EntryKind.FAULT, 0, text.encode())
+
     def restored(self) -> None:
         self._note(EntryKind.NOT_REPLAYABLE, 0, b"the vehicle was put back to a snapshot")
 

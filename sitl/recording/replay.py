@@ -172,6 +172,8 @@ class Replay:
             bridge.beat()
         elif kind is EntryKind.LOGS:
             self._keep_logs()
+        elif kind is EntryKind.FAULT:
+            self.simulation.order_fault(entry.data.decode())
         elif kind is EntryKind.CHECK:
             self._check(entry)
 

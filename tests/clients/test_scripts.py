@@ -26,7 +26,7 @@ def installed(package: str) -> bool:
     return True
 
 
-@pytest.mark.parametrize("name", ["ground", "flight", "setpoints", "missions", "as_published"])
+@pytest.mark.parametrize("name", ["ground", "flight", "setpoints", "missions", "failure", "as_published"])
 def test_mavsdk(fly: Fly, name: str) -> None:
     pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
     fly(SCRIPTS / f"mavsdk_{name}.py", MAVSDK)

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from .parameter import Parameter, rows, stored
+from .parameter import INT32, Parameter, rows, stored
 from .parameters import Parameters
 
 _KEPT_LISTS = 64
@@ -25,13 +25,18 @@ class Table:
         record: those that have an effect.
         names: file of all parameters of a real ArduPilot, in the order of its list; None: there are no others.
         read_by_shell: those of them that Python reads, and what they do.
+        own: others that Python reads and ArduPilot does not have, and what they do; all are 0 at first.
 
     Raises:
         ValueError: a name is there twice.
     """
 
     def __init__(
-        self, record: type[Parameters], names: Path | None = None, read_by_shell: Mapping[str, str] | None = None
+        self,
+        record: type[Parameters],
+        names: Path | None = None,
+        read_by_shell: Mapping[str, str] | None = None,
+        own: Mapping[str, str] | None = None,
     ) -> None:
         self.record = record
         self.with_effect = tuple(rows(record))
@@ -41,6 +46,8 @@ class Table:
             found = [p.name for p in self.with_effect]
             raise ValueError(f"parameters defined twice: {sorted({n for n in found if found.count(n) > 1})}")
         theirs = {} if names is None else {p.name: p for p in _read(names, read_by_shell or {})}
+        for name, doc in (own or {}).items():
+            theirs[name] = Parameter(name, 0.0, doc=doc, kind=INT32, has_effect=False)
         self._by_name = {
             name: ours[name]._replace(shown_by=p.shown_by) if name in ours else p for name, p in theirs.items()
         }

@@ -6,6 +6,7 @@ from .camera import CameraService
 from .commands import CommandService
 from .compass_calibration import CompassCalibrationService
 from .config_error import ConfigErrorService
+from .faults import FaultService
 from .ftp import FtpService
 from .gripper import GripperService
 from .high_latency import HighLatencyService
@@ -52,6 +53,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     CalibrationService,
     CompassCalibrationService,
     SigningService,
+    FaultService,
 )
 """In the order in which they act when several are due at the same time."""
 _registered: list[type[Service]] = []

@@ -20,6 +20,7 @@ from .calibration import CalibrationService
 from .camera import CameraService
 from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
 from .compass_calibration import CompassCalibrationService
+from .faults import FaultService
 from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService
@@ -164,6 +165,11 @@ def reset_battery(bridge: Bridge, channel: Channel, command: Command) -> int:
     if not (0.0 < command.p1 <= 65535.0 and 0.0 <= command.p2 <= 100.0):
         return DENIED
     return ACCEPTED if int(command.p1) & 1 and bridge.autopilot.set_battery_left(command.p2) else FAILED
+
+
+def inject_failure(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """420: p1 FAILURE_UNIT, p2 FAILURE_TYPE (0 repairs), p3 instance (0 all); UNSUPPORTED while SYS_FAILURE_EN is 0."""
+    return int(bridge.get(FaultService).command(command.p1, command.p2, command.p3))
 
 
 FORCE_ARM, FORCE = 2989.0, 21196.0
@@ -423,6 +429,7 @@ COMMANDS: dict[int, Entry] = {
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
     42007: Entry(choose_sources, required=(1,)),
+    420: Entry(inject_failure, required=(1, 2)),
     42006: Entry(calibrate_compass_by_heading, required=(1,)),
     42424: Entry(calibrate_compass),
     42425: Entry(accept_compass_calibration),

@@ -17,11 +17,13 @@ from sitl.simulation import Simulation
 
 
 class Said(NamedTuple):
-    """Bytes of the client; without bytes, faults that its link has from then on."""
+    """Bytes of the client, a fault that was ordered; without either, faults that its link has from then on."""
 
     time_us: int
     data: bytes
     faults: LinkFaults | None = None
+    fault: str = ""
+    """As ``Simulation.order_fault`` takes it."""
 
 
 class Script:
@@ -56,12 +58,14 @@ def repeat(
     link = InProcessLink()
     simulation.bridge.add_link(link)
     prepare(simulation)
-    for time_us, data, faults in said:
+    for time_us, data, faults, fault in said:
         if time_us > simulation.time_us:
             simulation.advance_to(time_us)
             link.receive()  # nobody reads it
         if data:
             link.send(data)
+        elif fault:
+            simulation.order_fault(fault)
         else:
             simulation.set_link_faults(faults, link)
     simulation.advance_to(end_us)
@@ -108,6 +112,11 @@ class Forking(client.Client):
         """As ``Client.set_link_faults``."""
         super().set_link_faults(faults)
         self.script.said.append(Said(self.simulation.time_us, b"", faults))
+
+    def order_fault(self, text: str) -> None:
+        """Let something fail or be repaired now: ``Simulation.order_fault``."""
+        self.simulation.order_fault(text)
+        self.script.said.append(Said(self.simulation.time_us, b"", fault=text))
 
     def raise_error(self, error: ClientError) -> NoReturn:
         try:

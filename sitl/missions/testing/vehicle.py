@@ -3,44 +3,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
 from types import TracebackType
 from typing import Any
 
 from sitl.bridge.links import LinkFaults
-from sitl.client import Client, Text, UnknownNameError
 from sitl.client import Position as Place
+from sitl.client import Text
+from sitl.errors import OptionError
+from sitl.vehicle.faults import Failure
 
 from .golden import Golden
 from .missions import MissionFlier
+from .moments import Forking
 
 __tracebackhide__ = True
 
-FAULTS = ("gps", "rc", "motor", "station", "wind", "link")
+STATION, LINK, WIND = "station", "link", "wind"
+OF_CLIENTS = (STATION, LINK)
+"""Faults that are not of the vehicle."""
 
 
 class Fault:
     """A fault that lasts until ``repair``, or until the end of a ``with`` block."""
 
-    def __init__(
-        self, vehicle: Faulty, values: dict[str, float], silent: bool = False, link: LinkFaults | None = None
-    ) -> None:
-        self._vehicle, self._silent, self._link = vehicle, silent, link
-        self._before = {name: vehicle.params[name] for name in values}
-        vehicle.params.update(values)
-        if silent:
-            vehicle.heartbeats(False)
-        if link is not None:
-            vehicle.set_link_faults(link)
+    def __init__(self, end: Callable[[], None]) -> None:
+        self._end = end
 
     def repair(self) -> None:
         """All is as before."""
-        self._vehicle.params.update(self._before)
-        if self._silent:
-            self._vehicle.heartbeats(True)
-        if self._link is not None:
-            self._vehicle.set_link_faults(None)
+        self._end()
 
     def __enter__(self) -> Fault:
         return self
@@ -52,34 +45,61 @@ class Fault:
             self.repair()
 
 
-class Faulty(Client):
+class Faulty(Forking):
     """A vehicle that can fail."""
 
-    def fail(self, what: str, *, motor: int = 1, thrust: float = 0.0, speed: float = 10.0, direction: float = 0.0,
-             turbulence: float = 0.0, faults: LinkFaults | None = None) -> Fault:  # fmt: skip
-        """Let something fail, until ``.repair()`` of what this gives, or for a ``with`` block.
+    def fail(self, what: str, type: str = "", *, instance: int = 0, amount: float | None = None, at: float = 0.0,
+             until: float | None = None, motor: int = 1, thrust: float = 0.0, speed: float = 10.0,
+             direction: float = 0.0, turbulence: float = 0.0, faults: LinkFaults | None = None) -> Fault:  # fmt: skip
+        """Let something fail, until ``restore(what)``, ``.repair()`` of what this gives, or for a ``with`` block.
 
         Args:
-            what: "gps": no fix any more; "rc": the transmitter is off; "motor": number ``motor`` (copters) keeps
-                a share ``thrust`` of its thrust; "station": no heartbeat of this ground station any more;
-                "wind": ``speed`` [m/s] from ``direction`` [deg] with ``turbulence`` [m/s]; "link": the link to this
-                ground station has ``faults`` (None: it is cut, so that nothing arrives).
+            what: a unit or a SIM_ parameter of docs/faults.md ("gps", "motor", "SIM_WIND_SPD"); besides "station": no
+                heartbeat of this ground station any more, and "link": the link to it has ``faults`` (None: it is cut).
+            type: how, as "off"; "": the unit's first type.
+            instance: which one, from 1; 0: all.
+            amount: how much; None: the usual amount.
+            at, until: simulated seconds from now; None: it stays.
+            motor, thrust: of "motor": which one, and the share of its thrust that is left.
+            speed, direction, turbulence: of "wind" [m/s], where it comes from [deg], [m/s].
+
+        Raises:
+            OptionError: the vehicle has no such fault; the message says what it has.
         """
-        if what == "gps":
-            return Fault(self, {"SIM_GPS1_ENABLE": 0})
-        if what == "rc":
-            return Fault(self, {"SIM_RC_FAIL": 1})
-        if what == "wind":
-            return Fault(self, {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence})
-        if what == "station":
-            return Fault(self, {}, silent=True)
-        if what == "link":
-            return Fault(self, {}, link=faults if faults is not None else LinkFaults(loss=1.0))
-        has_motors = any(p.name == "SIM_ENGINE_FAIL" for p in self.simulation.kind.firmware.table.with_effect)
-        if what == "motor" and has_motors:
-            return Fault(self, {"SIM_ENGINE_MUL": thrust, "SIM_ENGINE_FAIL": 1 << (motor - 1)})
-        known = [name for name in FAULTS if name != "motor" or has_motors]
-        raise UnknownNameError(f"a {self.kind} has no fault {what!r}; there are {', '.join(known)}")
+        if what in OF_CLIENTS:
+            if at or until is not None:
+                raise OptionError(f"fault {what!r} is this client's, and begins now: at and until are of the vehicle's")
+            if what == STATION:
+                self.heartbeats(False)
+            else:
+                self.set_link_faults(faults if faults is not None else LinkFaults(loss=1.0))
+            return Fault(lambda: self.restore(what))
+        if what == WIND:
+            figures = {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence}
+            failures = [Failure(name, amount=value, begin=at, end=until) for name, value in figures.items()]
+        elif what == "motor":
+            failures = [Failure(what, type, instance or motor, thrust if amount is None else amount, at, until)]
+        else:
+            failures = [Failure(what, type, instance, amount, at, until)]
+        for failure in failures:
+            failure.checked(self.simulation.firmware.table)
+            self.order_fault(str(failure))
+        return Fault(lambda: self._repair([(failure.unit, failure.instance) for failure in failures]))
+
+    def _repair(self, units: Iterable[tuple[str, int]]) -> None:
+        for unit, instance in units:
+            self.order_fault(f"-{unit}:{instance}")
+
+    def restore(self, moment: Any) -> None:
+        """Put the vehicle back to a moment of ``snapshot()``, or end a fault by its name ("gps"; "": all)."""
+        if not isinstance(moment, str):
+            super().restore(moment)
+        elif moment == STATION:
+            self.heartbeats(True)
+        elif moment == LINK:
+            self.set_link_faults(None)
+        else:
+            self._repair([(moment, 0)])
 
 
 __all__ = ["Copter", "Place", "Rover", "Text", "Vehicle"]

@@ -92,9 +92,9 @@ def test_faults_come_and_go(make: VehicleFactory) -> None:
     gps = copter.fail("gps")
     copter.wait_mode("LAND")
     gps.repair()
-    with pytest.raises(ValueError, match="a copter has no fault 'engine'; there are gps, rc"):
+    with pytest.raises(ValueError, match="there is no fault 'engine'; there are gps"):
         copter.fail("engine")
-    with pytest.raises(ValueError, match="a rover has no fault 'motor'"):
+    with pytest.raises(ValueError, match="there is no fault 'motor'"):
         make("rover").fail("motor")
 
 

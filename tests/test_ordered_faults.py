@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Faults of a simulation: at their times, over snapshots, reboots, recordings and fleets, and by INJECT_FAILURE."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from sitl import Fleet, Simulation
+from sitl.client import Client
+from sitl.errors import OptionError
+from sitl.recording.recorder import Recorder
+from sitl.recording.recording import read
+from sitl.recording.replay import Replay
+from sitl.scenario import Scenario
+from sitl.vehicle.faults import Failure
+
+OFF, OK, SLOW = 1, 0, 5
+BATTERY, GPS, MOTOR, VIO = 100, 4, 101, 6
+ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3
+
+
+def is_off(simulation: Simulation) -> bool:
+    return simulation.parameters["SIM_GPS1_ENABLE"] == 0.0 and bool(simulation.v.physics.sensors.gps_off)
+
+
+def test_a_fault_comes_and_goes_at_its_tick() -> None:
+    simulation = Simulation("erle_rover", faults=["gps@2..3"])
+    simulation.advance_to(1_997_500)
+    assert not is_off(simulation)
+    simulation.advance_to(2_000_000)
+    assert is_off(simulation)
+    moment = simulation.snapshot()
+    simulation.advance_to(3_002_500)
+    assert not is_off(simulation)
+    simulation.restore(moment)
+    assert is_off(simulation)
+    simulation.advance(1.0025)
+    assert not is_off(simulation)
+
+
+def test_what_has_failed_is_put_back_as_it_was() -> None:
+    simulation = Simulation("erle_copter", params={"SIM_BATT_VOLTAGE": 12.0})
+    for text in ("battery=11", "battery=10", "motor:1", "motor:4=0.5", "wind@5", "SIM_WIND_DIR=10"):
+        simulation.fail(text)
+    simulation.repair("motor", 1)
+    assert (simulation.parameters["SIM_ENGINE_FAIL"], simulation.parameters["SIM_ENGINE_MUL"]) == (8.0, 0.5)
+    assert simulation.parameters["SIM_BATT_VOLTAGE"] == 10.0
+    simulation.repair("battery")
+    assert simulation.parameters["SIM_BATT_VOLTAGE"] == 12.0
+    simulation.repair()
+    simulation.advance(6.0)
+    for name, value in (("SIM_ENGINE_FAIL", 0.0), ("SIM_WIND_DIR", 180.0), ("SIM_WIND_SPD", 0.0)):
+        assert simulation.parameters[name] == value
+    with pytest.raises(OptionError, match="there is no fault 'gsp'"):
+        simulation.repair("gsp")
+    with pytest.raises(OptionError, match="there is no fault 'motor'"):
+        Simulation("erle_rover", faults=["motor"])
+
+
+def test_a_reboot_changes_no_times() -> None:
+    simulation = Simulation("erle_rover")
+    simulation.advance(1.0)
+    simulation.fail(Failure("gps", begin=4.0, end=5.0))
+    simulation.request_reboot()
+    simulation.advance(3.9)
+    assert not is_off(simulation)
+    simulation.advance(0.2)
+    assert is_off(simulation)
+    simulation.advance(1.0)
+    assert not is_off(simulation)
+
+
+def test_recordings_and_scenarios_have_them(tmp_path: Path) -> None:
+    simulation = Simulation("erle_rover", faults=["gps@1"])
+    assert Scenario.from_json(simulation.resolved.to_json()).faults == ("gps@1.0",)
+    recorder = Recorder(simulation, tmp_path / "a.rec")
+    simulation.advance(1.5)
+    simulation.fail("battery=9@0.5")
+    simulation.advance(1.0)
+    simulation.repair("gps")
+    simulation.advance(1.0)
+    recorder.close()
+    replay = Replay(read(tmp_path / "a.rec"))
+    assert replay.run() == []
+    assert replay.simulation.parameters["SIM_BATT_VOLTAGE"] == 9.0 and not is_off(replay.simulation)
+
+
+def test_a_vehicle_of_a_fleet_fails_as_one_alone() -> None:
+    alone, fleet = Simulation("erle_rover"), Fleet("erle_rover", 2)
+    alone.advance(1.0)
+    fleet.advance(1.0)
+    alone.fail("gps@0.5..0.7")
+    fleet.fail(1, "gps@0.5..0.7")
+    for _ in range(4):
+        alone.advance(0.2)
+        fleet.advance(0.2)
+        assert fleet.view(1).physics.sensors.gps_off == alone.v.physics.sensors.gps_off
+        assert not fleet.view(0).physics.sensors.gps_off
+    assert fleet.records[1].tobytes() == alone.fleet[0].tobytes()
+    fleet.fail([0, 1], "gps")
+    fleet.repair(0)
+    assert [bool(fleet.view(k).physics.sensors.gps_off) for k in (0, 1)] == [False, True]
+    fleet.close()
+
+
+def test_inject_failure() -> None:
+    """ArduPilot 4.7 answers 420 with UNSUPPORTED; so does this autopilot until SYS_FAILURE_EN is set."""
+    client = Client(Simulation("erle_copter"))
+    order = lambda *params: client.request("INJECT_FAILURE", *params)  # noqa: E731
+    assert order(GPS, OFF, 0) == UNSUPPORTED and not is_off(client.simulation)
+    client.params["SYS_FAILURE_EN"] = 1
+    assert order(GPS, OFF, 0) == ACCEPTED and is_off(client.simulation)
+    assert order(GPS, OK, 0) == ACCEPTED and not is_off(client.simulation)
+    assert order(MOTOR, OFF, 2) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 2
+    assert order(MOTOR, OFF, 3) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 6
+    assert order(MOTOR, OK, 2) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 4
+    assert order(MOTOR, OFF, 9) == DENIED and order(MOTOR, OFF, 1.5) == DENIED
+    for unit, kind in ((VIO, OFF), (77, OFF), (GPS, SLOW), (GPS, 8), (GPS, 1.5), (BATTERY, OFF)):
+        assert order(unit, kind, 0) == UNSUPPORTED
