@@ -15,9 +15,9 @@ FLOW: dict[str, float] = {"FLOW_TYPE": 10, "SIM_FLOW_ENABLE": 1}
 FORWARD = 1300
 
 
-def hold(core: Core, **params: float) -> Aviator:
+def hold(core: Core, frame: str = "erle_copter", **params: float) -> Aviator:
     """A copter that has flown by GPS to 10 m, and then holds by flow alone."""
-    p = Aviator(core, **{**FLOW, **params}).hover()
+    p = Aviator(core, frame, **{**FLOW, **params}).hover()
     assert p.set_mode(ALT_HOLD)
     p.sticks(0.5)
     assert p.set_mode(FLOWHOLD)
@@ -61,16 +61,15 @@ def test_it_learns_the_lean_against_wind(core: Core, gain: float) -> None:
 
 def test_sticks_lean_it_and_it_brakes(core: Core) -> None:
     """The real one goes 10 m in 5 s and stops within 3.1 m, in 6 s."""
-    p = hold(core)
+    p = hold(core, "ardupilot_quad")
     p.sticks(5.0)
     before = p.pos
     p.sticks(5.0, pitch=FORWARD)
-    assert 5.0 < math.dist(p.pos[:2], before[:2]) < 20.0
     speed, let_go = math.hypot(*p.vel[:2]), p.pos
-    assert speed > 1.5
+    print(math.dist(p.pos[:2], before[:2]), speed)
     p.sticks(8.0)
-    assert math.hypot(*p.vel[:2]) < 0.5
-    assert math.dist(p.pos[:2], let_go[:2]) < 1.5 * speed + 3.0
+    print(math.dist(p.pos[:2], let_go[:2]), math.hypot(*p.vel[:2]))
+    assert False
 
 
 def test_flow_of_poor_quality_is_not_believed(core: Core) -> None:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """FLOWHOLD: holds still by optical flow alone: no GPS and no range-finder; sticks lean it, and it brakes when let go.
 
-Flow times the height over the take-off is a velocity. It is led to zero by a lean in proportion to it, and by one that
-grows with the way gone and stays against wind (FHLD_XY_P, FHLD_XY_I: shares of ANGLE_MAX for 1 m/s).
+Flow times the height over the take-off is a velocity. A lean in proportion to it drags at all times (FHLD_XY_P, a share of
+ANGLE_MAX for 1 m/s); one that grows with the way gone leads it to zero against wind (FHLD_XY_I). Let go, it brakes first,
+as POSHOLD does.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from ..parameters.flight import FlowHold
 from ..state import Vehicle
 from . import alt_hold
 from .mode import CopterMode
+from .poshold import brake_lean
 from .state import FlowHoldState
 
 FLOWHOLD = 22
@@ -34,7 +36,7 @@ LEAST_HEIGHT = 0.1
 """[m]"""
 SLOW = 0.3
 """It has stopped when it is slower [m/s]."""
-BRAKE_US = 5_000_000
+BRAKE_US = 3_000_000
 """And holds after braking for so long, however fast it is."""
 
 
@@ -45,7 +47,7 @@ def start(v: Vehicle) -> int:
     if not is_healthy(ap.flow, v.time_us):
         return INIT_FAILED
     state = ap.modes.flowhold
-    state.shown, state.against_wind, state.lean = ZERO2, ZERO2, ZERO2
+    state.shown, state.against_wind = ZERO2, ZERO2
     state.braking, state.brake_us = True, v.time_us
     alt_hold.start_vertical(ap.modes.takeoff, ap.control, ap.estimate, ap.params)
     return ACCEPTED
@@ -67,19 +69,10 @@ def velocity(state: FlowHoldState, height: float) -> Vec2:
 
 
 @law
-def hold_lean(state: FlowHoldState, vel: Vec2, yaw: float, p: Parameters) -> Vec2:
-    """Lean back and left [rad] that leads a velocity, forward and right [m/s], to zero; learns that against wind."""
-    most = math.radians(p.ANGLE_MAX * 0.01)
-    if not state.braking:
-        limit = min(math.radians(p.FHLD.XY_IMAX * 0.01), most)
-        state.against_wind = limit_length(state.against_wind + DT * p.FHLD.XY_I * most * turned(vel, yaw), limit)
-    return p.FHLD.XY_P * most * vel
-
-
-@law
-def slewed(lean: Vec2, wanted: Vec2, step: float) -> Vec2:
-    """The lean [rad] one tick nearer to what is wanted, by ``step`` at most on each axis."""
-    return Vec2(lean.x + constrain(wanted.x - lean.x, -step, step), lean.y + constrain(wanted.y - lean.y, -step, step))
+def learn_wind(state: FlowHoldState, vel: Vec2, most: float, p: FlowHold) -> None:
+    """The lean against the wind grows with the way gone: velocity north and east [m/s], ``most`` it may lean [rad]."""
+    grown = state.against_wind + DT * p.XY_I * most * vel
+    state.against_wind = limit_length(grown, min(math.radians(p.XY_IMAX * 0.01), most))
 
 
 @law
@@ -87,15 +80,18 @@ def advance(state: FlowHoldState, stick: Lean, vel: Vec2, est: Estimate, time_us
     """The lean [rad] of this tick; ``stick``: that of the pilot, ``vel``: forward and right [m/s]."""
     if stick.roll != 0.0 or stick.pitch != 0.0:
         state.braking, state.brake_us = True, time_us
-        state.lean = Vec2(stick.pitch, -stick.roll)
+    elif norm2(vel) < SLOW or time_us - state.brake_us > BRAKE_US:
+        state.braking = False
+    most = math.radians(p.ANGLE_MAX * 0.01)
+    if state.braking and state.brake_us != time_us:
+        limit = p.ANGLE_MAX * 0.01
+        lean = Vec2(brake_lean(vel.x, p.FHLD.BRAKE_RATE, limit), brake_lean(vel.y, p.FHLD.BRAKE_RATE, limit))
     else:
-        if norm2(vel) < SLOW or time_us - state.brake_us > BRAKE_US:
-            state.braking = False
-        wanted = hold_lean(state, vel, est.yaw, p)
-        rate = p.FHLD.BRAKE_RATE if state.braking else 10.0 * p.FHLD.BRAKE_RATE
-        state.lean = slewed(state.lean, wanted, math.radians(rate) * DT)
-    steady = turned(state.against_wind, -est.yaw)
-    return Lean(-(state.lean.y + steady.y), state.lean.x + steady.x)
+        lean = p.FHLD.XY_P * most * vel
+    if not state.braking:
+        learn_wind(state, turned(vel, est.yaw), most, p.FHLD)
+    lean = limit_length(lean + turned(state.against_wind, -est.yaw), 0.5 * most)
+    return Lean(stick.roll - lean.y, stick.pitch + lean.x)
 
 
 @law
@@ -124,7 +120,7 @@ def run(v: Vehicle) -> None:
         fly(v)
     else:
         state = modes.flowhold
-        state.shown, state.against_wind, state.lean = ZERO2, ZERO2, ZERO2
+        state.shown, state.against_wind = ZERO2, ZERO2
         if doing != alt_hold.LANDED_READY:
             attitude.reset_yaw_target(control.attitude, est.yaw)
         attitude.input_euler_roll_pitch_yaw_rate(control, est, p, Lean(0.0, 0.0), modes.pilot.yaw_rate)

@@ -105,7 +105,6 @@ class FlowHoldState(Record):
     """FLOWHOLD."""
 
     shown: Vec2  # flow without body rates, low-passed [rad/s]
-    lean: Vec2  # back and left, without that against the wind [rad]
     against_wind: Vec2  # lean that the wind needs, towards south and west [rad]
     braking: bool  # the sticks were let go, and it still moves
     brake_us: int  # when they were

@@ -105,7 +105,7 @@ class FlowHold(ParameterGroup):
     FLOW_MAX: float = param(0.6, 0.1, 2.5, "rad/s", "Greatest flow that counts")
     FILT_HZ: float = param(5.0, 0.5, 100.0, "Hz", "Low-pass of the flow")
     QUAL_MIN: float = param(10, 0, 127, "", "Least quality of a flow that is believed", INT8)
-    BRAKE_RATE: float = param(8, 1, 30, "deg/s", "How fast it leans back to stop", INT8)
+    BRAKE_RATE: float = param(8, 1, 30, "deg/s", "How hard it leans back to stop", INT8)
 
 
 class Rtl(ParameterGroup):
