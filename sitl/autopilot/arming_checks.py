@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ..core.algebra import dot, dot2, horizontal, norm, norm2
+from ..core import border
+from ..core.algebra import dot, norm
 from ..core.kernels import law
-from ..core.vectors import Vec3
 from . import radio_checks, sensor_calibration
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
@@ -20,10 +20,9 @@ from .events import ARMING_REFUSED, Events, emit
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
 from .params.parameters import Parameters
-from .params.simulation import axes
 from .params.system import Arming, Compass
 from .radio_checks import RC_MISSING, THROTTLE_FAILSAFE
-from .sensor_calibration import corrected_field, first_field
+from .sensor_calibration import differs, is_heard, shown_field
 from .state import BatteryState, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
@@ -81,6 +80,7 @@ FENCE_SHIFT = 38
 NOTHING_SEEN = 1 << 43
 OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
+ACCELS_SILENT, GYROS_SILENT = 1 << 60, 1 << 61
 CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
 
 TEXTS = {
@@ -92,6 +92,8 @@ TEXTS = {
     CALIBRATING_COMPASS: "Compass calibration running",
     REBOOT_FOR_COMPASS: "Compass calibrated requires reboot",
     REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
+    ACCELS_SILENT: "Accels not healthy",
+    GYROS_SILENT: "Gyros not healthy",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",
@@ -135,11 +137,8 @@ _LOW_BITS, _METHOD_BITS = 48, 5
 
 OBSTACLE_ROOM = 0.6
 """Room that a copter with a proximity sensor needs around it [m]."""
-COMPASS_COS, COMPASS_FLAT_COS = 0.0, 0.5
-"""Of the greatest angles between two compasses' fields: 90 degrees in space, 60 in the x-y plane."""
-COMPASS_FLAT_DIFFERENCE = 0.2
-"""Greatest difference of their x-y components [gauss]."""
-
+ACC_DIFFERENCE, GYRO_DIFFERENCE = 0.75, math.radians(5.0)
+"""Greatest differences of what two IMUs show [m/s^2], [rad/s]."""
 _READY_US = 2_450_000
 _ACCELS_US = 13_400_000
 _GYROS_US = 23_400_000
@@ -165,28 +164,13 @@ def wants(params: Arming, check: int) -> bool:
 
 
 @law
-def differs(field: Vec3, other: Vec3) -> bool:
-    """Whether a compass shows another field than the first: by angle in space, by angle or length in the x-y plane."""
-    size = norm(field) * norm(other)
-    flat, other_flat = horizontal(field), horizontal(other)
-    flat_size = norm2(flat) * norm2(other_flat)
-    if flat_size <= 0.0:
-        return True
-    if dot(field, other) < size * COMPASS_COS or dot2(flat, other_flat) < flat_size * COMPASS_FLAT_COS:
-        return True
-    return norm2(flat - other_flat) > COMPASS_FLAT_DIFFERENCE
-
-
-@law
 def compass_checks(sensors: Sensors, params: Compass) -> int:
     """Failed checks of the compasses against each other; those that are missing or not in use do not count."""
-    first, second, third = first_field(sensors, params), sensors.mag2, sensors.mag3
-    if params.USE2 > 0.0 and dot(second, second) > 0.0:
-        if differs(first, corrected_field(second, axes(params.OFS2), params.DIA2, params.ODI2)):
-            return COMPASSES
-    if params.USE3 > 0.0 and dot(third, third) > 0.0:
-        if differs(first, corrected_field(third, axes(params.OFS3), params.DIA3, params.ODI3)):
-            return COMPASSES
+    first, second, third = shown_field(0, sensors, params), sensors.mag2, sensors.mag3
+    if params.USE2 > 0.0 and dot(second, second) > 0.0 and differs(first, shown_field(1, sensors, params)):
+        return COMPASSES
+    if params.USE3 > 0.0 and dot(third, third) > 0.0 and differs(first, shown_field(2, sensors, params)):
+        return COMPASSES
     return 0
 
 
@@ -205,6 +189,19 @@ def calibration_checks(state: int, params: Arming) -> int:
 
 
 @law
+def imu_checks(sensors: Sensors) -> int:
+    """Failed checks of two IMUs that show different things, or of which one is silent."""
+    state = sensors.imu_state
+    if state & 3 * border.ACC_SILENT:
+        return ACCELS_SILENT
+    if norm(sensors.acc2 - sensors.acc) > ACC_DIFFERENCE:
+        return ACCELS
+    if state & 3 * border.GYRO_SILENT:
+        return GYROS_SILENT
+    return GYROS if norm(sensors.gyro2 - sensors.gyro) > GYRO_DIFFERENCE else 0
+
+
+@law
 def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, p: Parameters) -> int:
     """Failed checks of sensors and attitude."""
     failed, params = 0, p.ARMING
@@ -212,7 +209,7 @@ def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, p: Paramete
         failed |= NOT_INITIALISED
     if sensors.baro_count == 0 and wants(params, CHECK_BARO):
         failed |= BAROMETER
-    if sensors.mag_count == 0 and wants(params, CHECK_COMPASS):
+    if not is_heard(0, sensors, time_us) and wants(params, CHECK_COMPASS):
         failed |= COMPASS
     elif wants(params, CHECK_COMPASS):
         failed |= compass_checks(sensors, p.COMPASS)
@@ -221,6 +218,8 @@ def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, p: Paramete
             failed |= ACCELS
         elif time_us < _GYROS_US:
             failed |= GYROS
+        elif sensors.imu_state != 0:
+            failed |= imu_checks(sensors)
         elif not attitude_ok:
             failed |= ATTITUDE
     return failed

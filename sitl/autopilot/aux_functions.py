@@ -220,7 +220,7 @@ def _avoid_obstacles(holder: Holder, position: int) -> list[Note]:
 
 
 def _choose_sources(holder: Holder, position: int) -> list[Note]:
-    choose_set(holder.v.autopilot.ekf, position - LOW)
+    choose_set(holder.v.autopilot, position - LOW)
     return [Text(INFO, f"Using EKF Source Set {position - LOW + 1}")]
 
 

@@ -69,6 +69,8 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     """Put what all firmwares share elsewhere; the origin of the estimate has been moved."""
     if not ap.ekf.use_external:
         move_ekf(ap.ekf, d)
+        move_ekf(ap.second_lane.ekf, d)
+        move_estimate(ap.second_lane.estimate, d)
     move_estimate(ap.estimate, d)
     move_home(ap.home, ap.estimate, d)
     move_nav(ap.modes.nav, d)

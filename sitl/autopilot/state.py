@@ -74,6 +74,16 @@ class Estimate(Record):
         return yaw_of(self.q)
 
 
+class SecondLane(Record):
+    """A second filter, on the other IMU, as long as the IMUs differ; ``autopilot.ekf`` is the one that is flown by."""
+
+    runs: int  # 1: it does
+    ekf: Ekf
+    estimate: Estimate  # what this filter says
+    lead: float  # how much better than the other it has been, 1 at most
+    differ_us: int  # when the IMUs were last seen to differ
+
+
 class Radio(Record):
     """The radio's channels."""
 
@@ -221,6 +231,7 @@ class Autopilot(Record):
     params: Parameters
     estimate: Estimate
     ekf: Ekf
+    second_lane: SecondLane
     rc: Radio
     home: HomeState
     battery: BatteryState

@@ -28,6 +28,19 @@ class Vibration(Record):
     floor: Vec3  # slow part of the specific force, body [m/s^2]
     squares: Vec3  # filtered squares of the rest [m^2/s^4]
     clips: int  # samples with a clipped axis since boot
+    more_clips: int  # by so many the second IMU has more
+
+
+@law
+def is_clipped(acc: Vec3) -> bool:
+    """Whether an axis of a sample [m/s^2] is clipped."""
+    return abs(acc.x) > CLIP or abs(acc.y) > CLIP or abs(acc.z) > CLIP
+
+
+@law
+def compare_clips(vibration: Vibration, acc: Vec3, acc2: Vec3) -> None:
+    """Samples of two IMUs that differ."""
+    vibration.more_clips += (1 if is_clipped(acc2) else 0) - (1 if is_clipped(acc) else 0)
 
 
 @inlined
@@ -35,7 +48,7 @@ def update_vibration(vibration: Vibration, acc: Vec3) -> None:
     """Take a sample of the accelerometer [m/s^2] into account; one that is no number counts for nothing."""
     if not (finite(acc.x) and finite(acc.y) and finite(acc.z)):
         return
-    if abs(acc.x) > CLIP or abs(acc.y) > CLIP or abs(acc.z) > CLIP:
+    if is_clipped(acc):
         vibration.clips += 1
     vibration.floor += lowpass_gain(FLOOR_HZ, _DT) * (acc - vibration.floor)
     rest = acc - vibration.floor

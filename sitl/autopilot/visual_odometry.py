@@ -47,8 +47,7 @@ class VisualOdometry(Record):
     kind: int  # VISO_TYPE at power-on, where there is such a system; 0 none
     pose: Pose
     velocity: Velocity
-    resets: int  # its reset counter: it has jumped since the last one
-    jumped: bool  # and the filter has not followed yet
+    resets: int  # its reset counter: it jumps when it counts
     quality: int  # -1 failed, 0 unknown, 1 .. 100
 
 
@@ -68,14 +67,6 @@ def takes(seen: VisualOdometry, quality: int, p: Settings) -> bool:
     """Whether a message of this quality is believed (VISO_QUAL_MIN); notes it."""
     seen.quality = quality
     return seen.kind != 0 and (p.QUAL_MIN <= 0.0 or quality >= p.QUAL_MIN)
-
-
-@law
-def note_resets(seen: VisualOdometry, resets: int) -> None:
-    """Note the other system's reset counter."""
-    if seen.pose.count > 0 and resets != seen.resets:
-        seen.jumped = True
-    seen.resets = resets
 
 
 @law

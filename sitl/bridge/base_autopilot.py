@@ -114,10 +114,13 @@ class BaseAutopilot:
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
         ap = self._v.autopilot
-        return aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(int(lat), int(lon), float(alt)))
+        origin = aiding.Origin(int(lat), int(lon), float(alt))
+        if ap.second_lane.runs:
+            aiding.set_origin(ap.second_lane.ekf, ap.second_lane.estimate, ap.events, origin)
+        return aiding.set_origin(ap.ekf, ap.estimate, ap.events, origin)
 
     def choose_sources(self, number: int) -> None:
-        sources.choose_set(self._v.autopilot.ekf, number)
+        sources.choose_set(self._v.autopilot, number)
 
     def set_battery_left(self, percent: float) -> bool:
         ap = self._v.autopilot

@@ -21,6 +21,10 @@ ESCS = 8
 RC_INPUTS = 16
 """Channels of a receiver."""
 
+IMUS_DIFFER, GYRO_SILENT, ACC_SILENT = 1, 2, 8
+"""``Sensors.imu_state``: the second IMU shows something of its own; a gyro or accelerometer of the first IMU sends
+nothing, and, twice the bit, of the second."""
+
 NarrowVec3 = Annotated[Vec3, Stored("f4")]
 """A vector at float32 precision, as HIL_SENSOR carries it."""
 NarrowVec2 = Annotated[Vec2, Stored("f4")]
@@ -55,6 +59,11 @@ class Sensors(Record):
     # two more compasses; zero where there are none
     mag2: NarrowVec3  # field, body [gauss]
     mag3: NarrowVec3
+    mag_us: Ints = array(3, stored="i8")  # when each compass was last heard; 0: never, or its reader does not know
+    # a second IMU
+    imu_state: int  # 0: it shows what the first does; else bits IMUS_DIFFER, GYRO_SILENT, ACC_SILENT
+    acc2: NarrowVec3  # specific force, body [m/s^2]
+    gyro2: NarrowVec3  # body rates [rad/s]
     # ESC_TELEMETRY, of a vehicle whose speed controllers tell how fast motors turn
     esc_count: int  # samples so far
     esc_time_us: int  # of the last one

@@ -57,6 +57,11 @@ def ints_at(address: int, count: int) -> Ints:
     return np.ndarray((count,), np.int64, _memory(address, 8 * count))
 
 
+def words_of(record: Record) -> Ints:
+    """A record's memory as int64 numbers, whatever its fields are: to copy all of it."""
+    return np.ndarray((record.dtype.itemsize // 8,), np.int64, record._bytes)
+
+
 def call_unit(address: int, fleet: int, count: int, index: int, n0: int, n1: int, n2: int) -> None:
     """Call a compiled unit that takes three numbers.
 

@@ -27,7 +27,7 @@ from numba.extending import intrinsic, overload, typeof_impl
 from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
-from .memory import bytes_at, call_unit, fetch_ahead, floats_at, ints_at, record_at, table_at
+from .memory import bytes_at, call_unit, fetch_ahead, floats_at, ints_at, record_at, table_at, words_of
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record
 from .vectors import Value
@@ -248,6 +248,20 @@ def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
 @overload(ints_at, jit_options=_MAKES_ARRAYS)
 def _ints_at(address, count):  # type: ignore[no-untyped-def]
     return lambda address, count: carray(_to_ints(address), (count,))
+
+
+@intrinsic
+def _words(typing_context, record):  # type: ignore[no-untyped-def]
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], context.get_value_type(sig.return_type))
+
+    return types.CPointer(types.int64)(record), generate  # type: ignore[attr-defined]
+
+
+@overload(words_of, jit_options=_MAKES_ARRAYS)
+def _words_of(record):  # type: ignore[no-untyped-def]
+    count = record.dtype.itemsize // 8
+    return lambda record: carray(_words(record), (count,))
 
 
 @intrinsic

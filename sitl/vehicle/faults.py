@@ -61,6 +61,13 @@ class Effect(NamedTuple):
 EFFECTS: tuple[Effect, ...] = (
     Effect("gps", "off", {"SIM_GPS1_ENABLE": 0}, "the receiver is off"),
     Effect("gps", "garbage", {"SIM_GPS1_JAM": 1}, "the receiver is jammed: place, speed and satellites jump"),
+    Effect("gyro", "wrong", {"SIM_GYR{n}_BIAS_X": AMOUNT}, "the roll rate that it shows is off", 0.5, "[rad/s]", 2),
+    Effect("gyro", "off", {"SIM_GYR_FAIL_MSK": MASK}, "the gyro sends nothing", instances=2),
+    Effect("accel", "wrong", {"SIM_ACC{n}_BIAS_X": AMOUNT}, "it shows so much too much forward", 5.0, "[m/s/s]", 2),
+    Effect("accel", "off", {"SIM_ACC_FAIL_MSK": MASK}, "the accelerometer sends nothing", instances=2),
+    Effect("accel", "stuck", {"SIM_ACCEL{n}_FAIL": AMOUNT}, "all axes show one number", 20.0, "[m/s/s]", 2),
+    Effect("mag", "off", {"SIM_MAG{n}_FAIL": 1}, "the compass sends nothing", instances=3),
+    Effect("mag", "wrong", {"SIM_MAG{n}_OFS_X": AMOUNT}, "hard iron ahead of it", 400.0, "[mGauss]", 3),
     Effect("battery", "wrong", {"SIM_BATT_VOLTAGE": AMOUNT}, "another voltage of the full battery", 10.0, "[V]"),
     Effect(
         "motor", "off", {"SIM_ENGINE_FAIL": MASK, "SIM_ENGINE_MUL": AMOUNT}, "the motor keeps a share of its thrust",

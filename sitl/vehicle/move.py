@@ -106,7 +106,8 @@ def move_frame(v: Vehicle, d: Displacement) -> Displacement:
     if not e.origin_set:
         return displacement(d.angle, Vec3(0.0, 0.0, d.shift.z), d.velocity)
     local = of_estimate(v.physics.place, e, d)
-    e.origin_lat, e.origin_lon = local.lat, local.lon
+    second = ap.second_lane.estimate
+    second.origin_lat, second.origin_lon = e.origin_lat, e.origin_lon = local.lat, local.lon
     return local.displacement
 
 

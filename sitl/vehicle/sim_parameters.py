@@ -12,6 +12,7 @@ from ..core.algebra import ZERO, conjugate, quat_from_euler
 from ..core.constants import TICK_US
 from ..core.vectors import Euler, Vec3
 from ..physics.native.records import Iron
+from . import imu_faults
 from .record import Vehicle
 
 PREFIX = "SIM_"
@@ -21,6 +22,8 @@ DEFAULT_VOLTAGE = float(np.float32(12.6))
 """SIM_BATT_VOLTAGE that leaves the airframe's battery as it is [V]."""
 SINGULAR = 1e-6
 """Determinant below which a matrix of soft iron is none."""
+NOISE_SHARE = 0.3
+"""Standard deviation of a compass's noise, of SIM_MAG_RND."""
 Fault = Callable[[Vehicle], None]
 """Brings the physics or the sensors of a vehicle in line with its parameters."""
 
@@ -72,14 +75,18 @@ def apply(v: Vehicle) -> None:
     wind.turbulence, wind.time_constant = sim.WIND_TURB, sim.WIND_TC
     sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0 or v.autopilot.params.GPS1_TYPE == 0
     sensors.gps_jammed = sim.GPS1_JAM != 0
-    sensors.acc_fault = axes(sim.ACC1_BIAS)
-    sensors.acc_stretch = Vec3(*(1.0 / k - 1.0 if k else 0.0 for k in axes(sim.ACC1_SCAL)))
+    imu_faults.apply(sim, sensors, v.sensors)
     trim = sim.ACC_TRIM
     sensors.acc_is_turned = any(axes(trim))
     sensors.acc_mount = conjugate(quat_from_euler(Euler(trim.X, trim.Y, trim.Z)))
-    sensors.gyro_fault = axes(sim.GYR1_BIAS)
+    sensors.compass_by_current = 1e-3 * axes(sim.MAG_MOT)
+    sensors.compass_noise = 1e-3 * NOISE_SHARE * sim.MAG_RND
+    sensors.is_disturbed = sim.MAG_RND > 0 or any(axes(sim.MAG_MOT))
+    sensors.compass_silent = 0
     for k, compass in enumerate((sim.MAG1, sim.MAG2, sim.MAG3)):
+        sensors.compass_silent |= (compass.FAIL != 0) << k
         iron, corrected = sensors.irons[k], ZERO if k else DELIVERED
+        iron.gain_error = compass.SCALING - 1.0
         iron.hard = 1e-3 * (axes(compass.OFS) - corrected)
         _bend(iron, axes(compass.DIA), axes(compass.ODI))
     physics.battery.full_voltage = 0.0 if sim.BATT_VOLTAGE == DEFAULT_VOLTAGE else sim.BATT_VOLTAGE

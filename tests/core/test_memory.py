@@ -13,7 +13,8 @@ import pytest
 
 from sitl.core.compile import make_jitable
 from sitl.core.kernels import law
-from sitl.core.memory import call_unit, floats_at, ints_at, table_at
+from sitl.core.memory import call_unit, floats_at, ints_at, record_at, table_at, words_of
+from sitl.core.records import Record
 
 
 @law
@@ -44,6 +45,45 @@ def test_arrays_at_an_address(make: Callable[[], Callable[[int, int, int], int]]
     assert table.tolist() == [[0.0, 1.0, 2.0], [2.5, 4.0, 5.0]]
     assert floats.tolist() == [float(1 << 40), 0.5]
     assert ints.tolist() == [7, 7, 7, 1 << 40]
+
+
+class Inner(Record):
+    number: int
+    share: float
+
+
+class Outer(Record):
+    first: Inner
+    second: Inner
+
+
+@law
+def copy_second(address: int) -> int:
+    """Copy the second record at an address into the first, word by word; how many there are."""
+    v = record_at(Outer, address)
+    to, source = words_of(v.first), words_of(v.second)
+    for k in range(len(to)):
+        to[k] = source[k]
+    return len(to)
+
+
+@pytest.mark.parametrize("is_compiled", [False, True])
+def test_words_of_a_record_in_a_record(is_compiled: bool) -> None:
+    fleet = Outer.fleet(2)
+    v, other = Outer.of(fleet, 0), Outer.of(fleet, 1)
+    v.second.number, v.second.share, other.first.number = -5, 0.1, 3
+    copy = copy_second
+    if is_compiled:
+        import_module("sitl.core.numba_records")
+        make_jitable()
+
+        @numba.njit
+        def copy(address: int) -> int:
+            return copy_second(address)
+
+    assert copy(fleet.ctypes.data) == 2
+    assert (v.first.number, v.first.share) == (-5, 0.1)
+    assert (v.second.number, other.first.number) == (-5, 3)
 
 
 def test_nothing_is_at_an_address_too() -> None:

@@ -60,16 +60,15 @@ def test_it_learns_the_lean_against_wind(core: Core, gain: float) -> None:
 
 
 def test_sticks_lean_it_and_it_brakes(core: Core) -> None:
-    """The real one goes 10 m in 5 s and stops within 3.1 m, in 6 s."""
+    """The real one goes 10 m in 5 s, then at 2.9 m/s, and stops within 3.1 m."""
     p = hold(core, "ardupilot_quad")
     p.sticks(5.0)
     before = p.pos
     p.sticks(5.0, pitch=FORWARD)
     speed, let_go = math.hypot(*p.vel[:2]), p.pos
-    print(math.dist(p.pos[:2], before[:2]), speed)
+    assert 6.0 < math.dist(p.pos[:2], before[:2]) < 13.0 and 1.3 < speed < 3.5
     p.sticks(8.0)
-    print(math.dist(p.pos[:2], let_go[:2]), math.hypot(*p.vel[:2]))
-    assert False
+    assert math.dist(p.pos[:2], let_go[:2]) < 3.2 and math.hypot(*p.vel[:2]) < 0.5
 
 
 def test_flow_of_poor_quality_is_not_believed(core: Core) -> None:

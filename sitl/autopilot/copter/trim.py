@@ -56,6 +56,7 @@ def lean_acceleration(q: Quat) -> Vec2:
 def lean(ap: Autopilot, turn: Quat) -> None:
     """The body has leant by ``turn`` (NED): the estimate knows, attitude and velocity loops ask for it."""
     ap.ekf.q = multiply(turn, ap.ekf.q)
+    ap.second_lane.ekf.q = multiply(turn, ap.second_lane.ekf.q)
     ap.estimate.q = multiply(turn, ap.estimate.q)
     attitude, position = ap.control.attitude, ap.control.pos_ne
     before = lean_acceleration(attitude.target_q)

@@ -32,7 +32,7 @@ def place_origin(ekf: Ekf, estimate: Estimate, log: events.Events, origin: Origi
     estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = origin.lat, origin.lon, origin.alt
     estimate.origin_set = True
     learn_field(ekf, estimate, origin.lat, origin.lon)
-    events.emit(log, ekf.now_us, events.EKF_ORIGIN_SET, 0.0, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_ORIGIN_SET, float(ekf.imu), 0.0)
 
 
 @law
@@ -82,7 +82,7 @@ def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Senso
     ekf.gps_used_before = True
     ekf.gps_pos_fused_us = ekf.now_us
     ekf.gps_vel_fused_us = ekf.now_us
-    events.emit(log, ekf.now_us, events.EKF_USES_GPS, 0.0, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_USES_GPS, float(ekf.imu), 0.0)
 
 
 @law
@@ -93,4 +93,4 @@ def stop_using(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     estimate.variance_pos = 0.0
     estimate.variance_vel = 0.0
     reset_ne(ekf, estimate, ekf.hold_pos, ZERO2)
-    events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, 0.0, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, float(ekf.imu), 0.0)

@@ -126,7 +126,7 @@ def check_tilt(ekf: Ekf, log: events.Events) -> None:
         ekf.tilt_aligned = True
         ekf.phase = YAW
         clear_samples(ekf)
-        events.emit(log, ekf.now_us, events.EKF_TILT_ALIGNED, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_TILT_ALIGNED, float(ekf.imu), 0.0)
 
 
 @law

@@ -25,7 +25,7 @@ from .magnetometer import turn
 from .sources import EXTERNAL
 from .state import THETA, VEL, Ekf
 
-BY_OTHERS = 2.0
+BY_OTHERS, YAW_BY_OTHERS = 2.0, 3.0
 """Of EKF_USES."""
 
 
@@ -42,7 +42,7 @@ def jump_to(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, source: Sources,
     reset_ne(ekf, estimate, horizontal(seen.pose.pos + age * vel), horizontal(vel))
     if source.POSZ == EXTERNAL:
         reset_height(ekf, estimate, seen.pose.pos.z, seen.pose.sigma * seen.pose.sigma)
-    seen.jumped = False
+    ekf.pose_resets = seen.resets
 
 
 @law
@@ -59,7 +59,7 @@ def begin(ekf: Ekf, estimate: Estimate, log: events.Events, seen: VisualOdometry
     ekf.gps_in_use, ekf.relative = True, False
     ekf.gps_pos_fused_us = ekf.now_us
     ekf.gps_vel_fused_us = ekf.now_us
-    events.emit(log, ekf.now_us, events.EKF_USES, BY_OTHERS, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), BY_OTHERS)
 
 
 @law
@@ -131,7 +131,7 @@ def align_yaw(ekf: Ekf, estimate: Estimate, log: events.Events, yaw: float) -> N
     """Take the first heading told [rad]."""
     turn(ekf, estimate, wrap_pi(yaw - yaw_of(ekf.q)))
     ekf.yaw_aligned = True
-    events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, BY_OTHERS, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), YAW_BY_OTHERS)
 
 
 @law
@@ -166,7 +166,7 @@ def take_pose(
     age = 1e-6 * (ekf.now_us - when_us)
     if not ekf.gps_in_use:
         begin(ekf, estimate, log, seen, source, age)
-    elif seen.jumped:
+    elif seen.resets != ekf.pose_resets:
         jump_to(ekf, estimate, seen, source, age)
         ekf.gps_pos_fused_us = ekf.now_us
     elif not fuse_pose(ekf, estimate, seen, params, when_us, source.POSZ == EXTERNAL):
@@ -189,7 +189,7 @@ def take_velocity(
         vel = velocity_of(ekf, seen)
         reset_ne(ekf, estimate, horizontal(ekf.pos), Vec2(vel.x, vel.y))
         ekf.relative, ekf.relative_us = True, ekf.now_us
-        events.emit(log, ekf.now_us, events.EKF_RELATIVE, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_RELATIVE, float(ekf.imu), 0.0)
         return False
     when_us = seen.velocity.time_us - delay_us(p)
     return fuse_velocity(ekf, estimate, seen, params, when_us, source.VELZ == EXTERNAL)

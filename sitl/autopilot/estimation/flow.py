@@ -75,8 +75,8 @@ def begin(ekf: Ekf, estimate: Estimate, log: events.Events, shown: Vec2) -> None
     reset_ne(ekf, estimate, horizontal(ekf.pos), horizontal(vel))
     ekf.relative = True
     ekf.relative_us = ekf.now_us
-    events.emit(log, ekf.now_us, events.EKF_USES, BY_FLOW, 0.0)
-    events.emit(log, ekf.now_us, events.EKF_RELATIVE, 0.0, 0.0)
+    events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), BY_FLOW)
+    events.emit(log, ekf.now_us, events.EKF_RELATIVE, float(ekf.imu), 0.0)
 
 
 @law
@@ -132,7 +132,7 @@ def watch(ekf: Ekf, estimate: Estimate, log: events.Events, has_source: bool) ->
     """Hold the position when nothing has been fused for long, or nothing will be."""
     if ekf.relative and (ekf.now_us - ekf.relative_us > STOP_US or not has_source):
         stop(ekf, estimate)
-        events.emit(log, ekf.now_us, events.EKF_STOPPED_AIDING, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_STOPPED_AIDING, float(ekf.imu), 0.0)
 
 
 @law

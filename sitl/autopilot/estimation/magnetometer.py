@@ -137,7 +137,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     residual = wrap_pi(ekf.declination - math.atan2(e, n))
     if not ekf.yaw_aligned:
         ekf.yaw_aligned = True
-        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))
         _realign(ekf, estimate, residual, variance)
         return True
     _set_row(ekf)
@@ -149,7 +149,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     leaving = is_leaving_ground(ekf, armed)
     if leaving:
         ekf.yaw_in_flight = True
-        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED_IN_FLIGHT, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED_IN_FLIGHT, float(ekf.imu), float(ekf.compass))
     if ratio < 1.0:
         correct(ekf, innovation, NIS_MAGNETOMETER)
         ekf.mag_fused_us = ekf.now_us

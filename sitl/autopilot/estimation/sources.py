@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ..params.without_gps import Sources
-from .state import Ekf
+from ..state import Autopilot
 
 NONE, BAROMETER, GPS, FLOW, EXTERNAL = 0, 1, 3, 5, 6
 COMPASS = 1
@@ -25,6 +25,6 @@ def aid(s: Sources) -> bool:
 
 
 @law
-def choose_set(ekf: Ekf, number: int) -> None:
-    """Take set ``number`` (0 .. 2) from now on."""
-    ekf.source_set = number
+def choose_set(ap: Autopilot, number: int) -> None:
+    """Let both filters take set ``number`` (0 .. 2) from now on."""
+    ap.ekf.source_set = ap.second_lane.ekf.source_set = number

@@ -21,6 +21,8 @@ RING = 32
 class Ekf(Record):
     """The extended Kalman filter."""
 
+    imu: int  # which IMU it works on: 0 the first, 1 the second
+    compass: int  # which compass: 0, 1 or 2
     use_external: bool  # somebody else writes the estimate; the filter stands still
     phase: int  # alignment.py: CALIBRATE, TILT, YAW, RUN
     resets: int  # times the filter lost its health and began anew
@@ -80,6 +82,7 @@ class Ekf(Record):
     baro_fused_us: int
     # magnetometer
     mag_seen: int
+    mag_changed_us: int  # when it took to another compass
     mag_n: int
     mag_sum: Vec3  # field turned to NED [gauss]
     mag_us: int
@@ -109,6 +112,7 @@ class Ekf(Record):
     yaw_by_others: bool  # the heading comes from another system, not from the compass
     pose_seen: int  # last pose and velocity of another system (external.py)
     velocity_seen: int
+    pose_resets: int  # its reset counter, as far as the filter has followed
     flow_seen: int  # last sample of optical flow
     range_seen: int  # last reading of the range-finder
     terrain_d: float  # position down of the ground below [m]

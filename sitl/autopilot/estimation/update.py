@@ -4,20 +4,24 @@
 from __future__ import annotations
 
 from ...core.algebra import IDENTITY
+from ...core.border import IMUS_DIFFER
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events, optical_flow
-from ..sensor_calibration import read_sensors
+from ..sensor_calibration import field_of, read_sensors
 from ..state import Estimate, Vehicle
+from ..vibration import compare_clips
 from . import (
     alignment,
     barometer,
+    compass,
     covariance,
     external,
     flow,
     fusion,
     gps,
     history,
+    lanes,
     magnetometer,
     noise,
     sources,
@@ -67,36 +71,39 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         ekf.yaw_in_flight = False
     if not alignment.is_healthy(ekf):
         if ekf.gps_in_use:
-            events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, 1.0, 0.0)
+            events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, float(ekf.imu), 0.0)
         alignment.restart(ekf)
 
 
 @law
-def fuse_others(v: Vehicle, by_gps: bool) -> bool:
+def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate, by_gps: bool) -> bool:
     """Sources other than GPS and compass; ``by_gps``: the position comes from GPS. Whether something was fused."""
     ap = v.autopilot
-    ekf, source = ap.ekf, ap.params.EK3.SRC[ap.ekf.source_set]
+    source = ap.params.EK3.SRC[ekf.source_set]
     flow.read_range(ekf, v.sensors)
     fused = False
     if source.VELXY == sources.FLOW:
-        fused = flow.fuse(ekf, ap.estimate, ap.events, ap.flow, ap.params.EK3)
+        fused = flow.fuse(ekf, estimate, ap.events, ap.flow, ap.params.EK3)
     if ap.odometry.kind != 0:
-        fused |= external.fuse(ekf, ap.estimate, ap.events, ap.odometry, source, ap.params.EK3, ap.params.VISO)
+        fused |= external.fuse(ekf, estimate, ap.events, ap.odometry, source, ap.params.EK3, ap.params.VISO)
     if ekf.gps_in_use and not by_gps and source.POSXY != sources.EXTERNAL:
         ekf.gps_in_use = False
         ekf.relative, ekf.relative_us = True, ekf.now_us
         if source.VELXY == sources.FLOW:
-            events.emit(ap.events, ekf.now_us, events.EKF_USES, flow.BY_FLOW, 0.0)
-    flow.watch(ekf, ap.estimate, ap.events, sources.aid(source))
+            events.emit(ap.events, ekf.now_us, events.EKF_USES, float(ekf.imu), flow.BY_FLOW)
+    flow.watch(ekf, estimate, ap.events, sources.aid(source))
     return fused
 
 
 @inline_unit
-def step(fleet: Records[Vehicle], i: int) -> None:
-    """Prediction of the covariance over the last ticks, then fusion of what the sensors brought."""
+def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
+    """Prediction of the covariance over the last ticks, then fusion of what the sensors brought; ``lane``: 0, or 1 for
+    the second filter.
+    """
     v = fleet[i]
     ap = v.autopilot
-    ekf, estimate, params, armed = ap.ekf, ap.estimate, ap.params.EK3, ap.arming.armed
+    ekf, estimate = (ap.second_lane.ekf, ap.second_lane.estimate) if lane else (ap.ekf, ap.estimate)
+    params, armed = ap.params.EK3, ap.arming.armed
     source = params.SRC[ekf.source_set]
     usual = sources.are_usual(source)
     covariance.predict(ekf, params)
@@ -109,6 +116,7 @@ def step(fleet: Records[Vehicle], i: int) -> None:
         barometer.leave_out(ekf)
     ekf.yaw_by_others = not usual and source.YAW == sources.EXTERNAL
     if not ekf.yaw_by_others:
+        compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
         fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
     else:
         magnetometer.clear_samples(ekf)
@@ -116,7 +124,7 @@ def step(fleet: Records[Vehicle], i: int) -> None:
     takes_velocity = usual or source.VELXY == sources.GPS
     fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, by_gps, takes_velocity)
     if not usual or ekf.relative:
-        fused |= fuse_others(v, by_gps)
+        fused |= fuse_others(v, ekf, estimate, by_gps)
     if not (ekf.gps_in_use or (ekf.relative and armed)):
         fused |= hold(ekf, armed, params.NOAID_M_NSE)
     if fused:
@@ -132,7 +140,7 @@ def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     if alignment.calibrate(ekf):
         barometer.set_ground(ekf)
         alignment.initialise(ekf)
-        events.emit(log, ekf.now_us, events.EKF_INITIALISED, 0.0, 0.0)
+        events.emit(log, ekf.now_us, events.EKF_INITIALISED, float(ekf.imu), 0.0)
         return
     ekf.q = IDENTITY
     estimate.q = IDENTITY
@@ -140,27 +148,50 @@ def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     estimate.rates = ekf.good_gyro
 
 
+@law
+def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
+    """One tick of a filter: the one that is flown by (0), or the second one."""
+    v = fleet[i]
+    ap, sensors = v.autopilot, v.sensors
+    ekf, estimate = (ap.second_lane.ekf, ap.second_lane.estimate) if lane else (ap.ekf, ap.estimate)
+    shown, state = ap.calibrated, sensors.imu_state
+    ekf.now_us = v.time_us
+    if state == 0:
+        strapdown.read_imu(ekf, shown.gyro, shown.acc)
+    else:
+        strapdown.read_imu(ekf, lanes.gyro_of(ekf.imu, shown, state), lanes.acc_of(ekf.imu, shown, state))
+    barometer.read(ekf, sensors)
+    gps.read(ekf, sensors)
+    if ekf.phase == CALIBRATE:
+        if ap.params.EK3.ENABLE != 0:
+            _boot(ekf, estimate, ap.events)
+        return
+    strapdown.advance(ekf, DT)
+    if ekf.compass == 0:
+        magnetometer.read(ekf, sensors.mag_count, shown.mag)
+    else:
+        magnetometer.read(ekf, int(sensors.mag_us[ekf.compass]), field_of(ekf.compass, sensors, ap.params))
+    if ekf.step_ticks >= STEP_TICKS:
+        step(fleet, i, lane)
+    status.publish(ekf, estimate, DT, ap.params.EK3.TAU_OUTPUT)
+
+
 @inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick: ``sensors`` to ``autopilot.estimate``."""
     v = fleet[i]
     ap, sensors = v.autopilot, v.sensors
-    ekf, shown = ap.ekf, ap.calibrated
-    read_sensors(shown, sensors, ap.params)
-    if ekf.use_external:
+    read_sensors(ap.calibrated, sensors, ap.params)
+    if ap.ekf.use_external:
         return
-    ekf.now_us = v.time_us
-    strapdown.read_imu(ekf, shown.gyro, shown.acc)
-    barometer.read(ekf, sensors)
-    gps.read(ekf, sensors)
+    second = ap.second_lane
+    if sensors.imu_state | second.runs != 0:
+        lanes.begin_or_end(ap, sensors, v.time_us)
+        if sensors.imu_state & IMUS_DIFFER != 0:
+            compare_clips(ap.vibration, ap.calibrated.acc, ap.calibrated.acc2)
     if ap.flow.kind != 0:
-        optical_flow.read(ap.flow, sensors, ekf.now_us, ap.params.FLOW)
-    if ekf.phase == CALIBRATE:
-        if ap.params.EK3.ENABLE != 0:
-            _boot(ekf, ap.estimate, ap.events)
-        return
-    strapdown.advance(ekf, DT)
-    magnetometer.read(ekf, sensors.mag_count, shown.mag)
-    if ekf.step_ticks >= STEP_TICKS:
-        step(fleet, i)
-    status.publish(ekf, ap.estimate, DT, ap.params.EK3.TAU_OUTPUT)
+        optical_flow.read(ap.flow, sensors, v.time_us, ap.params.FLOW)
+    for lane in range(1 + second.runs):
+        run_lane(fleet, i, lane)
+    if second.runs != 0 and ap.ekf.step_ticks == 0:
+        lanes.compare(ap, ap.params.EK3)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.records import Records
-from .parameter import INT8, INT16, ParameterGroup, numbered, param
+from .parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
 from .without_gps import Sources
 
 _GATE = "innovation gate, hundredths of a standard deviation"
@@ -33,6 +33,8 @@ class Ekf3(ParameterGroup):
     GPS_CHECK: float = param(31, 0, 255, "", "GPS checks before use: bit 0 satellites, bit 1 HDOP", INT8)
     CHECK_SCALE: float = param(100, 10, 1000, "%", "scale of the limits of the GPS checks", INT16)
     NOAID_M_NSE: float = param(10.0, 0.5, 1000, "m", "noise of the position held in flight without GPS")
+    ERR_THRESH: float = param(0.2, 0.05, 1, "", "difference of two filters' scores from which on it counts")
+    AFFINITY: float = param(0, 0, 15, "", "bit 2: a filter is also judged by its compass", INT32)
     TAU_OUTPUT: float = param(25, 1, 127, "cs", "time in which corrections reach the controllers", INT8)
     MAX_FLOW: float = param(2.5, 1.0, 4.0, "rad/s", "Greatest flow that is used; it limits speeds, too")
     FLOW_M_NSE: float = param(0.25, 0.05, 1.0, "rad/s", "optical flow noise")

@@ -37,12 +37,17 @@ def hard_iron(label: str) -> Any:
     return group(label, **rows)
 
 
+_NOISE = "Noise of the {} while motors turn: its amplitude where the frame vibrates, ten standard deviations elsewhere"
+
+
 class SimulatedCompass(ParameterGroup):
     """SIM_MAG1_, SIM_MAG2_, SIM_MAG3_: what is wrong with a compass."""
 
     OFS: Axes = hard_iron("What this compass shows too little")
     DIA: Axes = group("Soft iron: COMPASS_DIA that makes up for it; 0, 0, 0: there is none")
     ODI: Axes = group("Soft iron: COMPASS_ODI that makes up for it")
+    FAIL: float = param(0, 0, 1, "", "1: it sends nothing", INT8)
+    SCALING: float = param(1, 0, 10, "", "Share of the field that it shows")
 
 
 class Simulated(ParameterGroup):
@@ -54,8 +59,24 @@ class Simulated(ParameterGroup):
     WIND_TC: float = param(5, 0.1, 300, "s", "Correlation time of the turbulence and lag of wind changes")
     ACC1_BIAS: Axes = group("What the accelerometer shows too much [m/s/s]")
     ACC1_SCAL: Axes = group("The accelerometer shows its share 1 / this of an acceleration; 0: all of it")
+    ACC2_BIAS: Axes = group("What the second accelerometer shows too much [m/s/s]")
+    ACC2_SCAL: Axes = group("The second accelerometer shows its share 1 / this of an acceleration; 0: all of it")
+    ACC1_RND: float = param(0, 0, 1000, "m/s/s", _NOISE.format("accelerometer"))
+    ACC2_RND: float = param(0, 0, 1000, "m/s/s", _NOISE.format("second accelerometer"))
+    ACCEL1_FAIL: float = param(0, -1000, 1000, "m/s/s", "What all axes of the accelerometer show; 0: it works")
+    ACCEL2_FAIL: float = param(0, -1000, 1000, "m/s/s", "What all axes of the second accelerometer show; 0: it works")
+    ACC_FAIL_MSK: float = param(
+        0, 0, 127, "", "Accelerometers that send nothing: bit 0 the first, bit 1 the second", INT8
+    )
     ACC_TRIM: Axes = group("How far the accelerometer is turned in the vehicle: the AHRS_TRIM that it needs [rad]")
     GYR1_BIAS: Axes = group("What the gyro shows too much [rad/s]")
+    GYR2_BIAS: Axes = group("What the second gyro shows too much [rad/s]")
+    GYR1_SCALE: Axes = group("What the gyro shows too much [% of the rate]")
+    GYR2_SCALE: Axes = group("What the second gyro shows too much [% of the rate]")
+    GYR1_RND: float = param(0, 0, 1000, "deg/s", _NOISE.format("gyro"))
+    GYR2_RND: float = param(0, 0, 1000, "deg/s", _NOISE.format("second gyro"))
+    GYR_FAIL_MSK: float = param(0, 0, 127, "", "Gyros that send nothing: bit 0 the first, bit 1 the second", INT8)
+    VIB_FREQ: Axes = group("Frequency at which the frame vibrates while motors turn; 0, 0, 0: not at all [Hz]")
     BARO_COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
     BATT_VOLTAGE: float = param(12.6, 0, 1000, "V", "Voltage of the full battery; 12.6: that of the airframe")
     GPS1_TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver", INT8)
@@ -63,6 +84,8 @@ class Simulated(ParameterGroup):
     MAG1: SimulatedCompass
     MAG2: SimulatedCompass
     MAG3: SimulatedCompass
+    MAG_MOT: Axes = group("Field of the motors' current at the compasses [mGauss/A]")
+    MAG_RND: float = param(0, 0, 1000, "mGauss", "Noise of the compasses; its standard deviation is 0.3 of this")
     GPS1_ENABLE: float = param(1, 0, 1, "", "0 switches the GPS receiver off", INT8)
     SPEEDUP: float = param(
         1, -1, 100000, "", "Simulated seconds a second; 0 or less: as fast as it goes (drop-in executables only)"

@@ -68,6 +68,7 @@ class Compass(ParameterGroup):
     ODI3: Axes = group("Third compass: elements xy, xz and yz of that matrix")
     CAL_FIT: float = param(16, 0, 100, "mGauss", "Greatest mean error of a calibration that counts")
     OFFS_MAX: float = param(1800, 0, 3000, "mGauss", "Greatest offset of a calibration that counts", INT16)
+    USE: float = param(1, 0, 1, "", "1 the first compass counts", INT8)
     USE2: float = param(1, 0, 1, "", "1 the second compass counts", INT8)
     USE3: float = param(1, 0, 1, "", "1 the third compass counts", INT8)
 

@@ -6,7 +6,7 @@ Positions are NED from where the estimate began. Times in the messages are not u
 
 from __future__ import annotations
 
-from ...autopilot.visual_odometry import UNKNOWN_QUALITY, note_resets, take_pose, take_velocity, takes
+from ...autopilot.visual_odometry import UNKNOWN_QUALITY, take_pose, take_velocity, takes
 from ...core.algebra import quat_from_euler
 from ...core.kernels import law
 from ...core.records import Floats
@@ -101,7 +101,7 @@ def pose(v: Vehicle, pos: Vec3, euler: Euler, variance: float, resets: int) -> N
     """A position with Euler angles."""
     seen, p = v.autopilot.odometry, v.autopilot.params.VISO
     if takes(seen, UNKNOWN_QUALITY, p) and finite(euler.roll + euler.pitch + euler.yaw):
-        note_resets(seen, resets)
+        seen.resets = resets
         take_pose(seen, pos, quat_from_euler(euler), variance, v.time_us, p)
 
 
@@ -157,7 +157,7 @@ def odometry(m: Odometry, v: Vehicle, sender: int) -> None:
     if (m.frame_id != LOCAL_FRD and m.frame_id != LOCAL_NED) or m.child_frame_id != BODY_FRD:
         return
     if attitude.is_given and takes(seen, m.quality, p):
-        note_resets(seen, m.reset_counter)
+        seen.resets = m.reset_counter
         take_pose(seen, Vec3(m.x, m.y, m.z), attitude.q, variance_of(m.pose_covariance), v.time_us, p)
         take_velocity(seen, Vec3(m.vx, m.vy, m.vz), True, variance_of(m.velocity_covariance), v.time_us, p)
 

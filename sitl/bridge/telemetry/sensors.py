@@ -185,11 +185,12 @@ class VibrationMessage(Message, name="VIBRATION"):
     vibration_y: float
     vibration_z: float
     clipping_0: int
+    clipping_1: int
 
 
 @law
 def vibration(m: VibrationMessage, v: Vehicle) -> bool:
-    """VIBRATION: level on each axis [m/s^2], filtered at 5 and 2 Hz as ArduPilot's; samples beyond 15.5 g."""
+    """VIBRATION: level on each axis [m/s^2], filtered at 5 and 2 Hz as ArduPilot's; samples beyond 15.5 g, by IMU."""
     shakes = v.autopilot.vibration
     levels = vibration_levels(shakes)
     m.time_usec = v.time_us
@@ -197,6 +198,7 @@ def vibration(m: VibrationMessage, v: Vehicle) -> bool:
     m.vibration_y = levels.y
     m.vibration_z = levels.z
     m.clipping_0 = shakes.clips
+    m.clipping_1 = shakes.clips + shakes.more_clips
     return True
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 from ...autopilot import visual_odometry
 from ...autopilot.fence.checks import kinds
 from ...autopilot.optical_flow import is_healthy
+from ...autopilot.sensor_calibration import is_heard
+from ...core.border import ACC_SILENT, GYRO_SILENT
 from ...core.kernels import law
 from ...core.records import Ints
 from ...vehicle.record import Vehicle
@@ -39,8 +41,9 @@ def sensor_health(v: Vehicle) -> int:
     watched = ekf.yaw_aligned and not ekf.use_external
     health = GEOFENCE if v.autopilot.fence.breached == 0 else 0
     if s.time_us > 0 and (ekf.use_external or ekf.bad_imu == 0):
-        health |= GYRO | ACCEL
-    if s.mag_count > 0 and not (watched and t - ekf.mag_us > SAMPLE_US):
+        health |= GYRO if s.imu_state & 3 * GYRO_SILENT == 0 else 0
+        health |= ACCEL if s.imu_state & 3 * ACC_SILENT == 0 else 0
+    if s.mag_count > 0 and is_heard(0, s, t) and not (watched and t - ekf.mag_us > SAMPLE_US):
         health |= MAG
     if s.baro_count > 0 and not (watched and t - ekf.baro_us > SAMPLE_US):
         health |= BARO

@@ -267,107 +267,141 @@ GPS_ACCURACY = Message(
     time=S + "gps_time_us",
 )
 
-_EULER = tuple(derived.euler(E + "q", k) for k in range(3))
+
+def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
+    """XKF1 to XKF5, XKFS and XKQ of a filter, whose number C is that of its IMU.
+
+    XKF3 has ArduPilot's sign, expected minus measured; of the magnetometer only the yaw is fused.
+
+    Args:
+        e: path of what it says.
+        k: of its own record.
+        when: see ``Message``.
+    """
+    euler = tuple(derived.euler(e + "q", n) for n in range(3))
+    return (
+        Message(
+            "XKF1",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                Field("Roll", "c", "d", "B", euler[0], DEG),
+                Field("Pitch", "c", "d", "B", euler[1], DEG),
+                Field("Yaw", "C", "h", "B", derived.wrapped(euler[2])),
+                *(Field(f"V{axis}", "f", "n", "0", f"{e}vel[{n}]") for n, axis in enumerate("NED")),
+                Field("dPD", "f", "n", "0", e + "vel[2]"),
+                *(Field(f"P{axis}", "f", "m", "0", f"{e}pos[{n}]") for n, axis in enumerate("NED")),
+                *(Field(f"G{axis}", "c", "k", "B", f"{k}gyro_bias[{n}]", DEG) for n, axis in enumerate("XYZ")),
+                Field("OH", "e", "m", "B", e + "origin_alt"),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
+            "XKF2",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                *(Field(f"A{axis}", "c", source=f"{k}acc_bias[{n}]") for n, axis in enumerate("XYZ")),
+                Field("VWN", "c", "n", "B"),
+                Field("VWE", "c", "n", "B"),
+                *(Field(f"M{axis}", "h", "G", "C", f"{k}earth_field[{n}]", 1000.0) for n, axis in enumerate("NED")),
+                *(Field(f"M{axis}", "h", "G", "C", f"{k}mag_bias[{n}]", 1000.0) for n, axis in enumerate("XYZ")),
+                Field("IDX", "f", "o", "0"),
+                Field("IDY", "f", "o", "0"),
+                Field("IS", "f", "r", "0"),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
+            "XKF3",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                *(Field(f"IV{axis}", "c", "n", "B", f"{k}innovation_vel[{n}]", -1.0) for n, axis in enumerate("NED")),
+                *(Field(f"IP{axis}", "c", "m", "B", f"{k}innovation_pos[{n}]", -1.0) for n, axis in enumerate("NED")),
+                *(Field(f"IM{axis}", "h", "G", "C") for axis in "XYZ"),
+                Field("IYAW", "c", "d", "B", k + "innovation_yaw", -DEG),
+                Field("IVT", "c", "?", "?"),
+                Field("RErr", "f"),
+                Field("ErSc", "f"),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
+            "XKF4",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                *(Field(f"S{x}", "H", "-", "B", f"{e}variance_{y}", 100.0)
+                  for x, y in (("V", "vel"), ("P", "pos"), ("H", "hgt"), ("M", "mag"))),
+                Field("SVT", "H", "-", "B"),
+                Field("errRP", "f", "-", "-", derived.angle_error(k + "P"), 1.0 / DEG),
+                Field("OFN", "f", "m", "?", e + "reset_pos[0]"),
+                Field("OFE", "f", "m", "?", e + "reset_pos[1]"),
+                Field("FS", "H"),
+                Field("TS", "B"),
+                Field("SS", "I", source=e + "status_flags"),
+                Field("GPS", "H"),
+                Field("PI", "b", source=K + "imu"),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
+            "XKF5",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                Field("NI", "B"),
+                *(Field(f"FI{x}", "h", source=f"{k}innovation_flow[{n}]", scale=1000.0) for n, x in enumerate("XY")),
+                Field("AFI", "h"),
+                Field("HAGL", "c", "m", "B", derived.difference(k + "ground_d", e + "pos[2]")),
+                Field("offset", "c", "?", "B", k + "ground_d"),
+                Field("RI", "c", "?", "B"),
+                Field("rng", "C", "?", "B"),
+                Field("Herr", "C", "m", "B"),
+                Field("eAng", "f", "r", "0", derived.angle_error(k + "P"), 1.0 / DEG),
+                Field("eVel", "f", "n", "0", derived.length(*(f"{k}lag_vel[{n}]" for n in range(3)))),
+                Field("ePos", "f", "m", "0", derived.length(*(f"{k}lag_pos[{n}]" for n in range(3)))),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
+            "XKFS",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                Field("MI", "B", source=k + "compass"),
+                *(Field(label, "B") for label in ("BI", "GI", "AI", "SS")),
+                Field("GPS_GTA", "B", source=derived.is_seen(k + "gps_good_us")),
+                Field("GPS_CHK_WAIT", "B"),
+                Field("MAG_FUSION", "B", source=1),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+        Message(
+            "XKQ",
+            (
+                Field("C", "B", "#", source=k + "imu"),
+                *(Field(f"Q{n + 1}", "f", "?", "?", f"{e}q[{n}]") for n in range(4)),
+            ),
+            bits.MEDIUM,
+            _ATTITUDE,
+            when=when,
+        ),
+    )  # fmt: skip
+
+
 FILTER = (
-    Message(
-        "XKF1",
-        (
-            Field("C", "B", "#"),
-            Field("Roll", "c", "d", "B", _EULER[0], DEG),
-            Field("Pitch", "c", "d", "B", _EULER[1], DEG),
-            Field("Yaw", "C", "h", "B", derived.wrapped(_EULER[2])),
-            *(Field(f"V{axis}", "f", "n", "0", f"{E}vel[{k}]") for k, axis in enumerate("NED")),
-            Field("dPD", "f", "n", "0", E + "vel[2]"),
-            *(Field(f"P{axis}", "f", "m", "0", f"{E}pos[{k}]") for k, axis in enumerate("NED")),
-            *(Field(f"G{axis}", "c", "k", "B", f"{K}gyro_bias[{k}]", DEG) for k, axis in enumerate("XYZ")),
-            Field("OH", "e", "m", "B", E + "origin_alt"),
-        ),
-        bits.MEDIUM,
-        _ATTITUDE,
-        when=derived.estimates,
-    ),
-    Message(
-        "XKF2",
-        (
-            Field("C", "B", "#"),
-            *(Field(f"A{axis}", "c", source=f"{K}acc_bias[{k}]") for k, axis in enumerate("XYZ")),
-            Field("VWN", "c", "n", "B"),
-            Field("VWE", "c", "n", "B"),
-            *(Field(f"M{axis}", "h", "G", "C", f"{K}earth_field[{k}]", 1000.0) for k, axis in enumerate("NED")),
-            *(Field(f"M{axis}", "h", "G", "C", f"{K}mag_bias[{k}]", 1000.0) for k, axis in enumerate("XYZ")),
-            Field("IDX", "f", "o", "0"),
-            Field("IDY", "f", "o", "0"),
-            Field("IS", "f", "r", "0"),
-        ),
-        bits.MEDIUM,
-        _ATTITUDE,
-        when=derived.estimates,
-    ),
-    Message(
-        "XKF3",
-        (
-            Field("C", "B", "#"),
-            *(Field(f"IV{axis}", "c", "n", "B", f"{K}innovation_vel[{k}]", -1.0) for k, axis in enumerate("NED")),
-            *(Field(f"IP{axis}", "c", "m", "B", f"{K}innovation_pos[{k}]", -1.0) for k, axis in enumerate("NED")),
-            *(Field(f"IM{axis}", "h", "G", "C") for axis in "XYZ"),
-            Field("IYAW", "c", "d", "B", K + "innovation_yaw", -DEG),
-            Field("IVT", "c", "?", "?"),
-            Field("RErr", "f"),
-            Field("ErSc", "f"),
-        ),
-        bits.MEDIUM,
-        _ATTITUDE,
-        when=derived.estimates,
-    ),
-    Message(
-        "XKF4",
-        (
-            Field("C", "B", "#"),
-            *(Field(f"S{x}", "H", "-", "B", f"{E}variance_{y}", 100.0)
-              for x, y in (("V", "vel"), ("P", "pos"), ("H", "hgt"), ("M", "mag"))),
-            Field("SVT", "H", "-", "B"),
-            Field("errRP", "f", "-", "-", derived.angle_error(K + "P"), 1.0 / DEG),
-            Field("OFN", "f", "m", "?", E + "reset_pos[0]"),
-            Field("OFE", "f", "m", "?", E + "reset_pos[1]"),
-            Field("FS", "H"),
-            Field("TS", "B"),
-            Field("SS", "I", source=E + "status_flags"),
-            Field("GPS", "H"),
-            Field("PI", "b"),
-        ),
-        bits.MEDIUM,
-        _ATTITUDE,
-        when=derived.estimates,
-    ),
-    Message(
-        "XKF5",
-        (
-            Field("C", "B", "#"),
-            Field("NI", "B"),
-            *(Field(f"FI{axis}", "h", source=f"{K}innovation_flow[{k}]", scale=1000.0) for k, axis in enumerate("XY")),
-            Field("AFI", "h"),
-            Field("HAGL", "c", "m", "B", derived.difference(K + "ground_d", E + "pos[2]")),
-            Field("offset", "c", "?", "B", K + "ground_d"),
-            Field("RI", "c", "?", "B"),
-            Field("rng", "C", "?", "B"),
-            Field("Herr", "C", "m", "B"),
-            Field("eAng", "f", "r", "0", derived.angle_error(K + "P"), 1.0 / DEG),
-            Field("eVel", "f", "n", "0", derived.length(*(f"{K}lag_vel[{k}]" for k in range(3)))),
-            Field("ePos", "f", "m", "0", derived.length(*(f"{K}lag_pos[{k}]" for k in range(3)))),
-        ),
-        bits.MEDIUM,
-        _ATTITUDE,
-        when=derived.estimates,
-    ),
-    Message(
-        "XKQ",
-        (Field("C", "B", "#"), *(Field(f"Q{k + 1}", "f", "?", "?", f"{E}q[{k}]") for k in range(4))),
-        bits.MEDIUM,
-        _ATTITUDE,
-        when=derived.estimates,
-    ),
-)  # fmt: skip
-"""XKF3 has ArduPilot's sign, expected minus measured; of the magnetometer only the yaw is fused."""
+    *estimator(E, K, derived.estimates),
+    *estimator(A + "second_lane.estimate.", A + "second_lane.ekf.", derived.second_lane_estimates),
+)
+"""The filter that is flown by, and the second one while there is one."""
 
 _BODY, _PLACE = "physics.body.", "physics.place."
 

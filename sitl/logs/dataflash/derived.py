@@ -166,6 +166,11 @@ def estimates(s: Any) -> Array:
     return (s.raw(A + "ekf.use_external") == 0) & (s.raw(A + "ekf.tilt_aligned") != 0)
 
 
+def second_lane_estimates(s: Any) -> Array:
+    """The same of the second filter, shape (rows,)."""
+    return estimates(s) & (s.raw(A + "second_lane.runs") != 0)
+
+
 def angle_error(path: str) -> Column:
     """Largest of three errors of the filter [deg], from its covariance."""
     return lambda s: np.sqrt(np.maximum(s(f"{path}[0,0]"), np.maximum(s(f"{path}[1,1]"), 0.0))) * DEG

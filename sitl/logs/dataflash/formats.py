@@ -158,7 +158,7 @@ _DESCRIBED = (
 def number_all(messages: Iterable[Message]) -> dict[str, int]:
     """A number for each message, by its name."""
     free = (n for n in range(FIRST_NUMBER, 255) if not FMT_NUMBER <= n <= FMTU_NUMBER)
-    return {message.name: number for message, number in zip(messages, free, strict=False)}
+    return dict(zip(dict.fromkeys(message.name for message in messages), free, strict=False))
 
 
 def _fmt(number: int, length: int, name: str, letters: str, labels: str) -> bytes:
@@ -167,7 +167,7 @@ def _fmt(number: int, length: int, name: str, letters: str, labels: str) -> byte
 
 def head(messages: Iterable[Message], numbers: dict[str, int], time_us: int) -> bytes:
     """All FMT, UNIT, MULT and FMTU messages."""
-    messages = tuple(messages)
+    messages = tuple({m.name: m for m in messages}.values())
     parts = [_fmt(n, layout.size, name, letters, labels) for n, layout, name, letters, labels, _, _ in _DESCRIBED]
     parts += [_fmt(numbers[m.name], m.packer.size, m.name, m.format, m.labels) for m in messages]
     parts += [_UNIT.pack(HEAD, UNIT_NUMBER, time_us, ord(key), text.encode()) for key, text in UNITS.items()]

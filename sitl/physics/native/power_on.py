@@ -75,6 +75,6 @@ def draw_errors(s: SensorState, a: SensorFigures, rng: Rng) -> None:
 def first_samples(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """What the sensors show before the first tick (no GPS yet)."""
     sensors.acc = p.body.specific_force
-    magnetometer.sample(p, sensors, rng)
+    magnetometer.sample(p, sensors, rng, 0)
     barometer.sample(p, sensors, rng)
     power.sample(p.battery, sensors)

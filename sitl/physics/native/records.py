@@ -129,9 +129,25 @@ class Iron(Record):
 
     hard: Vec3  # what it shows too little, body [gauss] (SIM_MAG1_OFS: what it differs from the offsets at delivery)
     is_soft: bool
+    gain_error: float  # share that it shows too much (SIM_MAG1_SCALING)
     x: Vec3  # rows of what soft iron makes of a field, body
     y: Vec3
     z: Vec3
+
+
+IMUS = 2
+
+
+class ImuFault(Record):
+    """What is wrong with an accelerometer and a gyro, besides what all have."""
+
+    acc_bias: Vec3  # body [m/s^2] (SIM_ACC1_BIAS)
+    acc_stretch: Vec3  # scale error, body (SIM_ACC1_SCAL)
+    acc_noise: float  # while motors turn [m/s^2] (SIM_ACC1_RND)
+    acc_stuck: float  # all that its axes show [m/s^2]; 0: it is not stuck (SIM_ACCEL1_FAIL)
+    gyro_bias: Vec3  # body [rad/s] (SIM_GYR1_BIAS)
+    gyro_stretch: Vec3  # scale error, body (SIM_GYR1_SCALE)
+    gyro_noise: float  # while motors turn [rad/s] (SIM_GYR1_RND)
 
 
 class SensorState(Record):
@@ -139,11 +155,8 @@ class SensorState(Record):
 
     acc_bias: Vec3  # turn-on bias, body [m/s^2]
     acc_walk: Vec3  # in-run bias, body [m/s^2]
-    acc_fault: Vec3  # bias of a broken sensor, body [m/s^2] (SIM_ACC1_BIAS)
-    acc_stretch: Vec3  # scale error of a broken sensor, body (SIM_ACC1_SCAL)
     acc_is_turned: bool  # in the vehicle
     acc_mount: Quat  # from the vehicle's axes to the sensor's (SIM_ACC_TRIM)
-    gyro_fault: Vec3  # bias of a broken sensor, body [rad/s] (SIM_GYR1_BIAS)
     acc_scale: Vec3  # 1 + error, body
     gyro_bias: Vec3  # turn-on bias, body [rad/s]
     gyro_walk: Vec3  # in-run bias, body [rad/s]
@@ -156,6 +169,14 @@ class SensorState(Record):
     gps_head: int  # fixes taken so far
     gps_tail: int  # fixes delivered so far
     gps_fixes: Records[Fix] = repeat(Fix, GPS_RING)  # fix n at n % GPS_RING
+    imus_faulty: bool  # one of them, or both
+    imu_state: int  # ``sensors.imu_state``
+    imus: Records[ImuFault] = repeat(ImuFault, IMUS)
+    vibration_hz: Vec3  # of the body's axes; 0, 0, 0: none (SIM_VIB_FREQ)
+    compass_silent: int  # bit k: compass k sends nothing (SIM_MAG1_FAIL)
+    is_disturbed: bool  # by one of these:
+    compass_noise: float  # [gauss] (SIM_MAG_RND)
+    compass_by_current: Vec3  # field, body [gauss/A] (SIM_MAG_MOT)
     baro_drift: float  # in standard deviations
     baro_missing: bool  # none was found at power-on (SIM_BARO_COUNT)
     irons: Records[Iron] = repeat(Iron, COMPASSES)

@@ -171,7 +171,8 @@ def test_a_range_bounds_all_but_nan(bad):
 
 def test_a_broken_accelerometer_shows_its_bias(rig):
     r = rig("erle_copter", noise_scale=0.0)
-    r.p.sensors.acc_fault = Vec3(1.0, -2.0, 3.0)
+    r.p.sensors.imus_faulty = True
+    r.p.sensors.imus[0].acc_bias = Vec3(1.0, -2.0, 3.0)
     imu.sample(r.p, r.v.sensors, r.v.rng)
     assert list(r.v.sensors.acc) == approx([1.0, -2.0, 3.0 - 9.80665], abs=1e-6)
 

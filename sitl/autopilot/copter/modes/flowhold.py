@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """FLOWHOLD: holds still by optical flow alone: no GPS and no range-finder; sticks lean it, and it brakes when let go.
 
-Flow times the height over the take-off is a velocity. A lean in proportion to it drags at all times (FHLD_XY_P, a share of
-ANGLE_MAX for 1 m/s); one that grows with the way gone leads it to zero against wind (FHLD_XY_I). Let go, it brakes first,
-as POSHOLD does.
+Flow times the height over the take-off is a velocity. A lean in proportion to it drags at all times (FHLD_XY_P, a share
+of ANGLE_MAX for 1 m/s); one that grows with the way gone leads it to zero against wind (FHLD_XY_I). Let go, it brakes
+first, as POSHOLD does.
 """
 
 from __future__ import annotations

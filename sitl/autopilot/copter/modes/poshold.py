@@ -51,8 +51,7 @@ _ENTRY_SPEED = 0.5
 
 @law
 def brake_lean(speed: float, rate: float, most: float) -> float:
-    """Lean [rad] that brakes a ``speed`` [m/s]: more for its size near rest, and with a greater PHLD_BRAKE_RATE; at most
-    ``most`` [deg].
+    """Lean [rad] that brakes a ``speed`` [m/s]: more for its size near rest; ``rate``: PHLD_BRAKE_RATE, ``most`` [deg].
 
     Source: ArduPilot's; with PHLD_BRAKE_RATE 8 12.6 degrees at 2 m/s, 25 degrees at 7 m/s.
     """

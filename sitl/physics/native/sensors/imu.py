@@ -15,16 +15,10 @@ from ....core.vectors import Vec3
 from ....vehicles.figures.body import Figures
 from ..records import Derived, Physics, SensorState
 from ..tick import TICK_S
+from .imu_faults import Sample, saturate, show
 
 WALK_TICKS = 40
 """The in-run biases are stepped every 0.1 s."""
-
-
-@law
-def saturate(value: Vec3, bound: float) -> Vec3:
-    """``value`` with each component within +-``bound``; NaN stays."""
-    x, y, z = value.x, value.y, value.z
-    return Vec3(min(max(x, -bound), bound), min(max(y, -bound), bound), min(max(z, -bound), bound))
 
 
 @law
@@ -38,10 +32,12 @@ def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
     a, s, d, body = p.airframe, p.sensors, p.derived, p.body
     force = rotate(s.acc_mount, body.specific_force) if s.acc_is_turned else body.specific_force
-    acc = measure(force, s.acc_scale + s.acc_stretch, s.acc_bias + s.acc_walk + s.acc_fault, d.acc_noise, rng)
-    sensors.acc = saturate(acc, a.acc_range)
-    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk + s.gyro_fault, d.gyro_noise, rng)
-    sensors.gyro = saturate(gyro, a.gyro_range)
+    acc = measure(force, s.acc_scale, s.acc_bias + s.acc_walk, d.acc_noise, rng)
+    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise, rng)
+    if s.imus_faulty:
+        show(p, sensors, rng, Sample(acc, gyro), Sample(force, body.rates_mean))
+        return
+    sensors.acc, sensors.gyro = saturate(acc, a.acc_range), saturate(gyro, a.gyro_range)
 
 
 @law

@@ -25,14 +25,23 @@ def shown(field: Vec3, iron: Iron) -> Vec3:
     """What a compass shows of a field [gauss], body frame."""
     if iron.is_soft:
         field = Vec3(dot(iron.x, field), dot(iron.y, field), dot(iron.z, field))
-    return field - iron.hard
+    return (1.0 + iron.gain_error) * field - iron.hard
 
 
 @law
-def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
-    """Write mag, mag2 and mag3 [gauss], body frame. The compasses differ by what iron does to them alone."""
-    field, irons = measure_field(p.body.q, p.place.field, p.airframe, rng), p.sensors.irons
-    sensors.mag = shown(field, irons[0])
-    sensors.mag2 = shown(field, irons[1])
-    sensors.mag3 = shown(field, irons[2])
-    sensors.mag_count += 1
+def sample(p: Physics, sensors: Sensors, rng: Rng, time_us: int) -> None:
+    """Write mag, mag2 and mag3 [gauss], body frame. The compasses differ by what iron does to them, and by faults."""
+    s = p.sensors
+    field, irons, silent = measure_field(p.body.q, p.place.field, p.airframe, rng), s.irons, s.compass_silent
+    if s.is_disturbed:
+        field += p.battery.current * s.compass_by_current + s.compass_noise * normal_vector(rng)
+    if silent & 1 == 0:
+        sensors.mag = shown(field, irons[0])
+        sensors.mag_count += 1
+        sensors.mag_us[0] = time_us
+    if silent & 2 == 0:
+        sensors.mag2 = shown(field, irons[1])
+        sensors.mag_us[1] = time_us
+    if silent & 4 == 0:
+        sensors.mag3 = shown(field, irons[2])
+        sensors.mag_us[2] = time_us

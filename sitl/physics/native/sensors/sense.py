@@ -22,7 +22,7 @@ def sense(p: Physics, sensors: Sensors, rng: Rng, now: Clock) -> None:
         power.sample(p.battery, sensors)
     imu.sample(p, sensors, rng)
     if tick % p.derived.mag_period == 1:
-        magnetometer.sample(p, sensors, rng)
+        magnetometer.sample(p, sensors, rng, now.time_us)
     if tick % p.derived.baro_period == 1:
         set_air(p.air, p.place.alt - p.body.pos.z)
         barometer.sample(p, sensors, rng)
