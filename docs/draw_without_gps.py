@@ -18,7 +18,7 @@ from sitl.worlds.drawing import plan
 FLOW: dict[str, float] = {
     "EK3_SRC1_POSXY": 0, "EK3_SRC1_VELXY": 5, "EK3_SRC1_VELZ": 0, "FLOW_TYPE": 10, "SIM_FLOW_ENABLE": 1, "GPS1_TYPE": 0,
 }  # fmt: skip
-SQUARE = ((0.4, 0.0), (0.4, 0.4), (0.0, 0.4), (0.0, 0.0))
+WAY = ((-8.0, 0.0), (-8.0, -3.0), (0.0, -3.0), (0.0, 0.0))
 MINUTES = 5
 
 
@@ -36,9 +36,9 @@ def squares(params: dict[str, float]) -> tuple[list[tuple[float, float]], Simula
     client.take_off(1)
     places = []
     body = client.simulation.v.physics.body
-    for k in range(MINUTES * 10):
-        client.set_position(*SQUARE[k % 4], 1.0)
-        for _ in range(30):
+    for k in range(MINUTES * 6):
+        client.set_position(*WAY[k % 4], 1.0)
+        for _ in range(50):
             client.delay(0.2)
             places.append((body.pos.x, body.pos.y))
     return places, client.simulation

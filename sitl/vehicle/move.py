@@ -106,8 +106,9 @@ def move_frame(v: Vehicle, d: Displacement) -> Displacement:
     if not e.origin_set:
         return displacement(d.angle, Vec3(0.0, 0.0, d.shift.z), d.velocity)
     local = of_estimate(v.physics.place, e, d)
-    second = ap.second_lane.estimate
-    second.origin_lat, second.origin_lon = e.origin_lat, e.origin_lon = local.lat, local.lon
+    e.origin_lat, e.origin_lon = local.lat, local.lon
+    if ap.second_lane.runs != 0:
+        ap.second_lane.estimate.origin_lat, ap.second_lane.estimate.origin_lon = local.lat, local.lon
     return local.displacement
 
 

@@ -99,8 +99,10 @@ def switch(ap: Autopilot) -> None:
     pos, vel = lane.estimate.pos - seen.pos, lane.estimate.vel - seen.vel
     yaw = wrap_pi(yaw_of(lane.estimate.q) - yaw_of(seen.q))
     ne, d, yaws = seen.reset_ne_count + 1, seen.reset_d_count + 1, seen.reset_yaw_count + 1
+    rates, acc = seen.rates, seen.acc_ned  # low-passed
     _exchange(words_of(ap.ekf), words_of(lane.ekf))
     _exchange(words_of(seen), words_of(lane.estimate))
+    seen.rates, seen.acc_ned = rates, acc
     seen.reset_pos, seen.reset_vel, seen.reset_yaw = pos, vel, yaw
     seen.reset_ne_count, seen.reset_d_count, seen.reset_yaw_count = ne, d, yaws
     lane.lead = 0.0

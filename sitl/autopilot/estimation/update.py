@@ -8,8 +8,9 @@ from ...core.border import IMUS_DIFFER
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events, optical_flow
+from ..inertial_filter import smoothed_acc, smoothed_rates
 from ..sensor_calibration import field_of, read_sensors
-from ..state import Estimate, Vehicle
+from ..state import Autopilot, Estimate, Vehicle
 from ..vibration import compare_clips
 from . import (
     alignment,
@@ -149,6 +150,14 @@ def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
 
 
 @law
+def smooth(ap: Autopilot) -> None:
+    """Low-pass what controllers see of rates and acceleration."""
+    e, params = ap.estimate, ap.params.INS
+    e.rates = smoothed_rates(ap.inertial_filter, e.rates, params)
+    e.acc_ned = smoothed_acc(ap.inertial_filter, e.acc_ned, params)
+
+
+@law
 def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
     """One tick of a filter: the one that is flown by (0), or the second one."""
     v = fleet[i]
@@ -174,6 +183,8 @@ def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
     if ekf.step_ticks >= STEP_TICKS:
         step(fleet, i, lane)
     status.publish(ekf, estimate, DT, ap.params.EK3.TAU_OUTPUT)
+    if lane == 0:
+        smooth(ap)
 
 
 @inline_unit
@@ -183,6 +194,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     ap, sensors = v.autopilot, v.sensors
     read_sensors(ap.calibrated, sensors, ap.params)
     if ap.ekf.use_external:
+        smooth(ap)
         return
     second = ap.second_lane
     if sensors.imu_state | second.runs != 0:

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from .parameter import INT8, INT16, ParameterGroup, group, param
+from .parameter import INT8, INT16, INT32, ParameterGroup, group, param
 
 
 class Axes(ParameterGroup):
@@ -48,6 +48,25 @@ class SimulatedCompass(ParameterGroup):
     ODI: Axes = group("Soft iron: COMPASS_ODI that makes up for it")
     FAIL: float = param(0, 0, 1, "", "1: it sends nothing", INT8)
     SCALING: float = param(1, 0, 10, "", "Share of the field that it shows")
+
+
+class LandingBeacon(ParameterGroup):
+    """SIM_PLD_: a beacon that sensors of precision landing see."""
+
+    ENABLE: float = param(0, 0, 1, "", "1: the beacon is on", INT8)
+    LAT: float = param(0, -90, 90, "deg", "Latitude of the beacon")
+    LON: float = param(0, -180, 180, "deg", "Longitude of the beacon")
+    HEIGHT: float = param(0, -100000, 100000, "m", "Height of the beacon over the place of power-on")
+    RATE: float = param(100, 1, 400, "Hz", "Measurements a second", INT32)
+    TYPE: float = param(
+        0, 0, 2, "", "Where it is seen: 0 in a cylinder, 1 in a cone, 2 in half a sphere of radius DIST_LMT", INT8
+    )
+    ALT_LMT: float = param(15.0, 0.0, 100000, "m", "Length of cylinder and cone")
+    DIST_LMT: float = param(10.0, 0.0, 100000, "m", "Radius of the cylinder, of the cone at its end, of the sphere")
+    ORIENT: float = param(
+        24, 0, 43, "", "Where it shines: 0 north, 1 north-east, ... 7 north-west, 24 up, 25 down", INT8
+    )
+    OPTIONS: float = param(0, 0, 1, "", "1: distances are measured, too, not directions alone", INT8)
 
 
 class Simulated(ParameterGroup):
@@ -94,4 +113,5 @@ class Simulated(ParameterGroup):
     FLOW_RATE: float = param(10, 1, 400, "Hz", "Samples of optical flow a second", INT16)
     FLOW_DELAY: float = param(0, 0, 127, "ms", "Age of a sample of optical flow when it arrives", INT8)
     FLOW_RND: float = param(0.05, 0, 10, "rad/s", "Noise of the optical flow, greatest")
+    PLD: LandingBeacon
     RC_FAIL: float = param(0, 0, 1, "", "1 switches the pilot's transmitter off", INT8)

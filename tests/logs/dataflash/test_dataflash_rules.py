@@ -134,9 +134,9 @@ def test_every_message_fits_what_fmt_can_say(kind: str) -> None:
     messages = (*EVENT_MESSAGES, *logs_of(kind).messages(EVERY_BIT, 0, True))
     for m in messages:
         formats.check(m)
-    names = [m.name for m in messages]
-    assert len(set(names)) == len(names)
-    assert len(set(formats.number_all(messages).values())) == len(names)
+    kinds = {(m.name, m.format, m.labels, m.units, m.multipliers) for m in messages}
+    assert len({m.name for m in messages}) == len(kinds), "of one name there is one format"
+    assert len(set(formats.number_all(messages).values())) == len(kinds)
 
 
 @pytest.mark.parametrize(
@@ -185,3 +185,18 @@ def test_the_filter_tells_its_innovations(tmp_path: Path) -> None:
     for name, most in (("IVN", 1.0), ("IPE", 3.0), ("IPD", 2.0), ("IYAW", 5.0)):  # at rest: noise about zero
         values = np.array([getattr(m, name) for m in used])
         assert 0.0 < np.std(values) < most and abs(np.mean(values)) < 0.5 * most, name
+
+
+def test_two_filters_are_logged_while_there_are_two(tmp_path: Path) -> None:
+    simulation = Simulation("erle_copter", params={"LOG_DISARMED": 1, "SIM_ACC2_BIAS_Z": 0.5})
+    path = tmp_path / "run.bin"
+    runner.open_dataflash(simulation, path)
+    simulation.advance(60.0)
+    assert simulation.v.autopilot.second_lane.runs == 1
+    simulation.close()
+    log = read_log(path)
+    for name in ("XKF1", "XKF2", "XKF3", "XKF4", "XKF5", "XKFS", "XKQ"):
+        assert [m.C for m in log[name][-2:]] == [0, 1], name
+    first, second = log["XKF2"][-2:]
+    assert pytest.approx((0.0, 0.5), abs=0.15) == (first.AZ, second.AZ), "each learns the bias of its own sensor"
+    assert {m.PI for m in log["XKF4"]} == {0} and {m.MI for m in log["XKFS"]} == {0}
