@@ -17,6 +17,7 @@ from sitl.worlds.drawing import plan
 
 FLOW: dict[str, float] = {
     "EK3_SRC1_POSXY": 0, "EK3_SRC1_VELXY": 5, "EK3_SRC1_VELZ": 0, "FLOW_TYPE": 10, "SIM_FLOW_ENABLE": 1, "GPS1_TYPE": 0,
+    "WPNAV_SPEED": 100,
 }  # fmt: skip
 WAY = ((-8.0, 0.0), (-8.0, -3.0), (0.0, -3.0), (0.0, 0.0))
 MINUTES = 5
